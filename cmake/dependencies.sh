@@ -1,0 +1,41 @@
+# shellcheck shell=bash
+# Installs the Debian packages that the project needs and the system lacks. Sourced by
+# test.sh and demo.sh.
+
+# fcl_ccd_install_dependencies build|all
+fcl_ccd_install_dependencies() {
+  # To build everything and run the tests. pkg-config: a test builds with fcl.pc.
+  local packages=(
+    g++ make cmake pkg-config
+    libfcl-dev libeigen3-dev libboost-dev
+    libcli11-dev nlohmann-json3-dev libcgal-dev
+    libgtest-dev libpng-dev
+  )
+  # The second compiler and the style checks.
+  if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14); fi
+
+  # On another system CMake says what it cannot find.
+  command -v dpkg-query >/dev/null || return 0
+
+  local package missing=()
+  for package in "${packages[@]}"; do
+    if ! dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q ' installed$'; then
+      missing+=("$package")
+    fi
+  done
+  if [ ${#missing[@]} -eq 0 ]; then return 0; fi
+
+  local as_root=()
+  local install=(apt-get install -y --no-install-recommends "${missing[@]}")
+  if [ "$(id -u)" -ne 0 ]; then
+    as_root=(sudo -n)
+    if ! sudo -n true 2>/dev/null; then
+      echo "Packages are missing. Install them as root, then run this again:" >&2
+      echo "  apt-get update && ${install[*]}" >&2
+      exit 1
+    fi
+  fi
+  echo "Installing: ${missing[*]}"
+  "${as_root[@]}" apt-get update >/dev/null
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive "${install[@]}" >/dev/null
+}

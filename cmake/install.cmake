@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: BSD-3-Clause
+
+# Installs the library as a package named "fcl" that stands before stock FCL and uses it:
+# a program that asks for FCL gets both when this prefix comes first on its search path.
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl)
+
+# The overlay includes the stock header of the same name, so it cannot replace it.
+install(
+  CODE [[
+  if(EXISTS "${CMAKE_INSTALL_PREFIX}/include/fcl/config.h")
+    message(FATAL_ERROR "Stock FCL is installed in ${CMAKE_INSTALL_PREFIX} and would be "
+                        "overwritten: choose another prefix.")
+  endif()
+]])
+
+install(
+  TARGETS fcl_ccd
+  EXPORT fcl_ccd-targets
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(EXPORT fcl_ccd-targets DESTINATION ${package_dir})
+install(
+  DIRECTORY ${PROJECT_SOURCE_DIR}/include/fcl
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING
+  PATTERN "*.h")
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# The package states the version of the FCL that it extends, by FCL's own rule.
+write_basic_package_version_file(
+  ${CMAKE_CURRENT_BINARY_DIR}/basic-version.cmake
+  VERSION ${fcl_VERSION}
+  COMPATIBILITY AnyNewerVersion)
+file(READ ${CMAKE_CURRENT_BINARY_DIR}/basic-version.cmake FCL_CCD_BASIC_VERSION)
+configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl-config-version.cmake.in
+               ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake @ONLY)
+configure_package_config_file(
+  ${CMAKE_CURRENT_LIST_DIR}/fcl-config.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
+  INSTALL_DESTINATION ${package_dir}
+  PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBDIR
+  NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake
+        DESTINATION ${package_dir})
+
+# pkg-config cannot chain to a package of the same name: fcl.pc repeats what stock says.
+file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+set(FCL_CCD_STOCK_PC_CFLAGS "")
+set(FCL_CCD_STOCK_PC_LIBS "")
+cmake_path(GET FCL_INCLUDE_DIRS PARENT_PATH stock_prefix)
+if(NOT stock_prefix STREQUAL "/usr")
+  string(APPEND FCL_CCD_STOCK_PC_CFLAGS " -I${FCL_INCLUDE_DIRS}")
+  string(APPEND FCL_CCD_STOCK_PC_LIBS " -L${FCL_LIBRARY_DIRS}")
+endif()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fcl.pc
+               @ONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian), builds in Release and runs the tests.
+#   bash cmake/test.sh         the test suite
+#   bash cmake/test.sh --all   also: sanitizers, clang with -Werror, clang-tidy, and the
+#                              checks that need clang (what CI runs; CI=true means the same)
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=cmake/dependencies.sh
+source cmake/dependencies.sh
+
+all=false
+case "${1-}" in
+  --all) all=true ;;
+  "") ;;
+  *) echo "usage: bash cmake/test.sh [--all]" >&2; exit 2 ;;
+esac
+if [ "${CI-}" = true ]; then all=true; fi
+
+if $all; then
+  fcl_ccd_install_dependencies all
+else
+  fcl_ccd_install_dependencies build
+fi
+jobs=$(nproc)
+
+build() {
+  local preset=$1
+  shift
+  echo "== $preset: configure and build ($((SECONDS / 60)) min so far)"
+  cmake --preset "$preset" "$@"
+  cmake --build --preset "$preset" -j "$jobs"
+}
+
+# The Release run is the last, so that its summary closes the output.
+if $all; then
+  build clang-werror
+  echo "== clang-tidy"
+  # Its stderr only counts the findings in other people's headers.
+  find src -name '*.cpp' -print0 |
+    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
+  build asan-ubsan
+  echo "== asan-ubsan: unit tests"
+  ctest --preset asan-ubsan -j "$jobs"
+  build release -DFCL_CCD_WERROR=ON
+else
+  build release
+fi
+echo "== release: tests ($((SECONDS / 60)) min so far)"
+# One at a time: tests that measure time are not disturbed by others.
+ctest --preset release

@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_BVH_DEFORMABLE_BVH_MODEL_INL_H
+#define FCL_BVH_DEFORMABLE_BVH_MODEL_INL_H
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include "fcl/common/exception.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+
+namespace fcl {
+
+#define FCL_CCD_EXTERN_MODELS(S)                         \
+  extern template class DeformableBVHModel<AABB<S>>;     \
+  extern template class DeformableBVHModel<OBB<S>>;      \
+  extern template class DeformableBVHModel<RSS<S>>;      \
+  extern template class DeformableBVHModel<kIOS<S>>;     \
+  extern template class DeformableBVHModel<OBBRSS<S>>;   \
+  extern template class DeformableBVHModel<KDOP<S, 16>>; \
+  extern template class DeformableBVHModel<KDOP<S, 18>>; \
+  extern template class DeformableBVHModel<KDOP<S, 24>>;
+FCL_CCD_EXTERN_MODELS(double)
+FCL_CCD_EXTERN_MODELS(float)
+#undef FCL_CCD_EXTERN_MODELS
+
+template <typename BV>
+DeformableBVHModel<BV>::DeformableBVHModel() = default;
+
+template <typename BV>
+DeformableBVHModel<BV>::~DeformableBVHModel() = default;
+
+template <typename BV>
+DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
+    : Base(other),
+      detail::DeformableMesh(other),
+      staged_(other.staged_),
+      fcl_tree_built_(other.fcl_tree_built_),
+      fcl_tree_up_to_date_(other.fcl_tree_up_to_date_),
+      last_error_(other.last_error_) {
+  // FCL shares these between copies, although building writes to them.
+  this->bv_splitter = std::make_shared<detail::BVSplitter<BV>>(detail::SPLIT_METHOD_MEAN);
+  this->bv_fitter = std::make_shared<detail::BVFitter<BV>>();
+  if (other.isInStep()) seal_ = currentSeal();
+}
+
+template <typename BV>
+DeformableBVHModel<BV>& DeformableBVHModel<BV>::operator=(
+    const DeformableBVHModel& other) {
+  if (this == &other) return *this;
+  DeformableBVHModel copy(other);
+  swapBase(copy);
+  detail::DeformableMesh::operator=(copy);
+  staged_ = std::move(copy.staged_);
+  seal_ = copy.seal_;
+  fcl_tree_built_ = copy.fcl_tree_built_;
+  fcl_tree_up_to_date_ = copy.fcl_tree_up_to_date_;
+  last_error_ = std::move(copy.last_error_);
+  return *this;
+}
+
+// FCL's own assignment copies pointers, private ones included: what makes it wrong for
+// users is what a swap needs. No array is shared once the three steps are done.
+template <typename BV>
+void DeformableBVHModel<BV>::swapBase(Base& other) {
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdeprecated-copy"
+  const Base empty;
+  Base held;
+  held = *this;
+  Base::operator=(other);
+  other = held;
+  held = empty;
+#pragma GCC diagnostic pop
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::refuse(int code, std::string why) {
+  last_error_ = std::move(why);
+  return code;
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::accept() {
+  last_error_.clear();
+  return BVH_OK;
+}
+
+template <typename BV>
+bool DeformableBVHModel<BV>::Seal::operator==(const Seal& other) const {
+  return vertices == other.vertices && prev_vertices == other.prev_vertices &&
+         tri_indices == other.tri_indices && num_vertices == other.num_vertices &&
+         num_tris == other.num_tris && build_state == other.build_state;
+}
+
+template <typename BV>
+typename DeformableBVHModel<BV>::Seal DeformableBVHModel<BV>::currentSeal() const {
+  return {this->vertices,     this->prev_vertices, this->tri_indices,
+          this->num_vertices, this->num_tris,      this->build_state};
+}
+
+// Every change through the base class breaks the seal: an update leaves the UPDATED
+// state, a replacement deletes prev_vertices, a rebuild does both or changes the sizes.
+template <typename BV>
+bool DeformableBVHModel<BV>::isInStep() const {
+  return seal_.vertices && seal_.prev_vertices && seal_ == currentSeal();
+}
+
+template <typename BV>
+bool DeformableBVHModel<BV>::isBuilt() const {
+  return isInStep() || (this->vertices && this->num_tris > 0 &&
+                        (this->build_state == BVH_BUILD_STATE_PROCESSED ||
+                         this->build_state == BVH_BUILD_STATE_UPDATED));
+}
+
+template <typename BV>
+detail::deformable::VertexFrames DeformableBVHModel<BV>::frames() const {
+  return {this->prev_vertices->data(), this->vertices->data(),
+          static_cast<std::size_t>(this->num_vertices)};
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::checkFinite(const S* coordinates, std::size_t count,
+                                        const char* frame) {
+  for (std::size_t i = 0; i < 3 * count; ++i)
+    if (!std::isfinite(coordinates[i]))
+      return refuse(BVH_ERR_INCORRECT_DATA, "vertex " + std::to_string(i / 3) +
+                                                " of the " + frame +
+                                                " frame is not finite");
+  return BVH_OK;
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
+  if (this->build_state != BVH_BUILD_STATE_BEGUN)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
+  if (this->num_tris == 0 || this->num_vertices == 0)
+    return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
+  const auto count = static_cast<std::size_t>(this->num_vertices);
+  for (int i = 0; i < this->num_tris; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (this->tri_indices[i][k] >= count)
+        return refuse(BVH_ERR_INCORRECT_DATA,
+                      "triangle " + std::to_string(i) + " refers to vertex " +
+                          std::to_string(this->tri_indices[i][k]) + " of " +
+                          std::to_string(count));
+  if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
+
+  if (fcl_tree == FclTree::kUpdate) {
+    if (const int code = Base::endModel())
+      return refuse(code, "FCL refused to build its tree");
+  }
+  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  delete[] this->prev_vertices;
+  this->prev_vertices = new Vector3<S>[count];
+  std::copy(this->vertices, this->vertices + count, this->prev_vertices);
+  open_ = Open::kNone;
+  buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
+  finish();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::open(Open what, const char* caller) {
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  std::string(caller) + "() on a model that is not built");
+  staged_.clear();
+  staged_.reserve(static_cast<std::size_t>(this->num_vertices));
+  open_ = what;
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::stage(const Vector3<S>* points, std::size_t count,
+                                  Open expected) {
+  if (open_ != expected)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "a vertex without a begin...Model()");
+  staged_.insert(staged_.end(), points, points + count);
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
+  if (open_ != expected)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  std::string(caller) + "() without its begin...Model()");
+  open_ = Open::kNone;
+  const auto count = static_cast<std::size_t>(this->num_vertices);
+  if (staged_.size() != count)
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(staged_.size()) +
+                                              " vertices given for a model of " +
+                                              std::to_string(count));
+  return checkFinite(staged_.data()->data(), count, "current");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::beginUpdateModel() {
+  return open(Open::kUpdate, "beginUpdateModel");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateVertex(const Vector3<S>& p) {
+  return stage(&p, 1, Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                           const Vector3<S>& p3) {
+  const Vector3<S> points[3] = {p1, p2, p3};
+  return stage(points, 3, Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateSubModel(const std::vector<Vector3<S>>& ps) {
+  return stage(ps.data(), ps.size(), Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
+  if (const int code = close(Open::kUpdate, "endUpdateModel")) return code;
+  advance(FclTree::kUpdate, refit, bottomup);
+  finish();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::beginReplaceModel() {
+  return open(Open::kReplace, "beginReplaceModel");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceVertex(const Vector3<S>& p) {
+  return stage(&p, 1, Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                            const Vector3<S>& p3) {
+  const Vector3<S> points[3] = {p1, p2, p3};
+  return stage(points, 3, Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceSubModel(const std::vector<Vector3<S>>& ps) {
+  return stage(ps.data(), ps.size(), Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
+  if (const int code = close(Open::kReplace, "endReplaceModel")) return code;
+  setPreviousFrame(staged_.data()->data());
+  advance(FclTree::kUpdate, refit, bottomup);
+  finish();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
+                                         std::size_t num_vertices, FclTree fcl_tree) {
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  "updateFrames() on a model that is not built");
+  if (isUpdateOpen())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "updateFrames() between begin...Model() and end...Model()");
+  if (!previous || !current)
+    return refuse(BVH_ERR_INCORRECT_DATA, "updateFrames() with a null frame");
+  if (num_vertices != static_cast<std::size_t>(this->num_vertices))
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
+                                              " vertices given for a model of " +
+                                              std::to_string(this->num_vertices));
+  if (const int code = checkFinite(previous, num_vertices, "previous")) return code;
+  if (const int code = checkFinite(current, num_vertices, "current")) return code;
+
+  // Both copies are made before an array changes: the frames may be the model's own.
+  staged_.resize(num_vertices);
+  std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
+  setPreviousFrame(previous);
+  const bool build = fcl_tree == FclTree::kUpdate && !fcl_tree_built_;
+  advance(fcl_tree, true, true);
+  finish();
+  if (build) return updateFclTree();
+  return accept();
+}
+
+/// What advance() takes as the previous frame is the array of the current one.
+template <typename BV>
+void DeformableBVHModel<BV>::setPreviousFrame(const S* previous) {
+  std::memmove(this->vertices->data(), previous,
+               3 * static_cast<std::size_t>(this->num_vertices) * sizeof(S));
+}
+
+/// The current frame becomes the previous one, staged_ the current one.
+template <typename BV>
+void DeformableBVHModel<BV>::advance(FclTree fcl_tree, bool refit, bool bottomup) {
+  // After a change through the base class the base alone knows what the model is.
+  const bool rebuild = !isInStep();
+  if (rebuild) fcl_tree_built_ = true;
+  if (!this->prev_vertices)
+    this->prev_vertices = new Vector3<S>[static_cast<std::size_t>(this->num_vertices)];
+  fcl_tree_up_to_date_ = fcl_tree_built_ && fcl_tree == FclTree::kUpdate;
+  if (fcl_tree_up_to_date_) {
+    this->build_state = BVH_BUILD_STATE_PROCESSED;
+    Base::beginUpdateModel();
+    Base::updateSubModel(staged_);
+    Base::endUpdateModel(refit, bottomup);
+  } else {
+    std::swap(this->vertices, this->prev_vertices);
+    std::copy(staged_.begin(), staged_.end(), this->vertices);
+  }
+  this->build_state = fcl_tree_built_ ? BVH_BUILD_STATE_PROCESSED : BVH_BUILD_STATE_BEGUN;
+  if (rebuild)
+    buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
+}
+
+template <typename BV>
+void DeformableBVHModel<BV>::finish() {
+  refitTree(frames());
+  computeLocalAABB();
+  seal_ = currentSeal();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateFclTree() {
+  if (!isInStep())
+    return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
+                  "updateFclTree() on a model that is not built");
+  if (isUpdateOpen())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "updateFclTree() between begin...Model() and end...Model()");
+  if (!fcl_tree_built_) {
+    if (const int code = Base::endModel())
+      return refuse(code, "FCL refused to build its tree");
+    fcl_tree_built_ = fcl_tree_up_to_date_ = true;
+  } else if (!fcl_tree_up_to_date_) {
+    staged_.assign(this->vertices, this->vertices + this->num_vertices);
+    setPreviousFrame(this->prev_vertices->data());
+    advance(FclTree::kUpdate, true, true);
+  }
+  seal_ = currentSeal();
+  return accept();
+}
+
+template <typename BV>
+bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
+  return !isInStep() || fcl_tree_up_to_date_;
+}
+
+template <typename BV>
+const std::string& DeformableBVHModel<BV>::lastError() const {
+  return last_error_;
+}
+
+template <typename BV>
+std::size_t DeformableBVHModel<BV>::deformableMemUsage() const {
+  return treeMemUsage() + staged_.capacity() * sizeof(staged_[0]);
+}
+
+template <typename BV>
+NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
+  if (!isFclTreeUpToDate())
+    throw Exception(
+        "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
+        "queries "
+        "need it; call updateFclTree() first");
+  return Base::getNodeType();
+}
+
+template <typename BV>
+void DeformableBVHModel<BV>::computeLocalAABB() {
+  AABB<S> box;
+  const auto forEachPoint = [this](auto&& visit) {
+    for (int i = 0; i < this->num_vertices; ++i) {
+      visit(this->vertices[i]);
+      if (this->prev_vertices) visit(this->prev_vertices[i]);
+    }
+  };
+  forEachPoint([&box](const Vector3<S>& p) { box += p; });
+  S squared_radius = 0;
+  const Vector3<S> center = box.center();
+  forEachPoint([&](const Vector3<S>& p) {
+    squared_radius = std::max(squared_radius, (center - p).squaredNorm());
+  });
+  this->aabb_local = box;
+  this->aabb_center = center;
+  this->aabb_radius = std::sqrt(squared_radius);
+}
+
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_BVH_DEFORMABLE_BVH_MODEL_H
+#define FCL_BVH_DEFORMABLE_BVH_MODEL_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/math/bv/utility.h"
+#include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
+
+namespace fcl {
+
+/// @brief What a build or an update does with FCL's own tree, which discrete queries
+/// (collide, distance) need and continuous ones do not.
+enum class FclTree {
+  kUpdate,  ///< bring it up to date
+  kSkip     ///< leave it; discrete queries throw until updateFclTree()
+};
+
+/// @brief A triangle mesh that deforms between two frames: BVHModel<BV> with a moving
+/// 16-DOP tree of its own beside FCL's. Usable wherever FCL takes a BVHModel<BV>.
+///
+/// Life: beginModel / addVertex / addTriangle / addSubModel / endModel build it once,
+/// both frames equal. Each step then gives the next frame, through beginUpdateModel /
+/// updateVertex / updateSubModel / endUpdateModel (the current frame becomes the previous
+/// one), or both frames at once through updateFrames. A step refits the boxes; topology
+/// and tree stay.
+///
+/// Errors: functions return FCL's BVHReturnCode; on any error the model is what it was
+/// before the call (before the begin... call, for a begin/end sequence), nothing is
+/// printed, and lastError() says what is wrong.
+///
+/// Inherited behaviour that differs from BVHModel:
+/// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
+///   queries keep a model's transform (in the UPDATED state they drop it); after
+///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN: FCL's tree is still to be
+///   built;
+/// - prev_vertices is never null in a built model;
+/// - getNodeType() throws fcl::Exception while FCL's tree is out of date: every discrete
+///   query of FCL starts with it;
+/// - the local AABB contains both frames and is up to date after every build and update.
+///
+/// No update function of BVHModel is virtual. One called through a pointer or reference
+/// to BVHModel<BV> is noticed: continuous queries then read the base's frames and refit
+/// per call, as for a plain BVHModel, until the next update through this class.
+///
+/// Thread-safety: concurrent const access is safe; copies are deep and independent.
+template <typename BV>
+class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
+ public:
+  using S = typename BV::S;
+  using Base = BVHModel<BV>;
+
+  DeformableBVHModel();
+  DeformableBVHModel(const DeformableBVHModel& other);
+  DeformableBVHModel& operator=(const DeformableBVHModel& other);
+  ~DeformableBVHModel();
+
+  /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
+  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), coordinates that are not finite and vertex
+  /// indices out of range (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
+  int endModel(FclTree fcl_tree = FclTree::kUpdate);
+
+  /// @name Replace the current frame; both frames become equal (no motion).
+  /// @{
+  int beginReplaceModel();
+  int replaceVertex(const Vector3<S>& p);
+  int replaceTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
+  int replaceSubModel(const std::vector<Vector3<S>>& ps);
+  int endReplaceModel(bool refit = true, bool bottomup = true);
+  /// @}
+
+  /// @name Give the next frame, vertex by vertex or in parts; the current frame becomes
+  /// the previous one. FCL's tree is brought up to date unless it was never built.
+  /// `refit` and `bottomup` concern FCL's tree only.
+  /// @{
+  int beginUpdateModel();
+  int updateVertex(const Vector3<S>& p);
+  int updateTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
+  int updateSubModel(const std::vector<Vector3<S>>& ps);
+  int endUpdateModel(bool refit = true, bool bottomup = true);
+  /// @}
+
+  /// @brief Gives both frames at once.
+  /// @param previous, current  num_vertices x 3 coordinates each (x y z x y z ...), model
+  /// frame, copied; may be the model's own arrays.
+  /// @param num_vertices  must equal the model's.
+  int updateFrames(const S* previous, const S* current, std::size_t num_vertices,
+                   FclTree fcl_tree = FclTree::kSkip);
+
+  /// @brief Brings FCL's own tree up to date (builds it if it was never built).
+  int updateFclTree();
+
+  /// @brief Whether FCL's own tree is up to date, that is, discrete queries are allowed.
+  bool isFclTreeUpToDate() const;
+
+  /// @brief What the last refused call found, for example "vertex 17 of the current frame
+  /// is not finite"; empty if the last call succeeded.
+  const std::string& lastError() const;
+
+  /// @brief Bytes that this class holds over BVHModel<BV> with two frames.
+  std::size_t deformableMemUsage() const;
+
+  NODE_TYPE getNodeType() const override;
+  void computeLocalAABB() override;
+
+  EIGEN_MAKE_ALIGNED_OPERATOR_NEW
+
+ private:
+  /// The base's arrays and sizes that the moving tree was made for.
+  struct Seal {
+    const Vector3<S>* vertices{nullptr};
+    const Vector3<S>* prev_vertices{nullptr};
+    const Triangle* tri_indices{nullptr};
+    int num_vertices{0};
+    int num_tris{0};
+    BVHBuildState build_state{BVH_BUILD_STATE_EMPTY};
+
+    bool operator==(const Seal& other) const;
+  };
+
+  int refuse(int code, std::string why);
+  int accept();
+  bool isInStep() const override;
+  bool isBuilt() const;
+  Seal currentSeal() const;
+  detail::deformable::VertexFrames frames() const override;
+  int checkFinite(const S* coordinates, std::size_t count, const char* frame);
+  int open(Open what, const char* caller);
+  int stage(const Vector3<S>* points, std::size_t count, Open expected);
+  int close(Open expected, const char* caller);
+  void setPreviousFrame(const S* previous);
+  void advance(FclTree fcl_tree, bool refit, bool bottomup);
+  void finish();
+  void swapBase(Base& other);
+
+  /// Coordinates given since begin..., so that a refused frame changes nothing.
+  std::vector<Vector3<S>> staged_;
+  Seal seal_;
+  bool fcl_tree_built_{false};
+  bool fcl_tree_up_to_date_{false};
+  std::string last_error_;
+};
+
+}  // namespace fcl
+
+#include "fcl/geometry/bvh/deformable_bvh_model-inl.h"
+
+#endif

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_CONTACT_SINK_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_CONTACT_SINK_H
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A contact between two features, by ids.
+struct FeatureContact {
+  FeatureKind kind;
+  /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
+  bool first_on_a;
+  std::uint32_t vertices[4];
+  /// Triangle of mesh a and of mesh b.
+  std::int32_t triangles[2];
+  double toc_lo;
+  double toc_hi;
+};
+
+/// @brief Order of contacts: by toc_lo, then kind, side and vertex ids; total on the
+/// contacts of one scene.
+bool isEarlier(const FeatureContact& x, const FeatureContact& y);
+
+/// @brief Keeps the earliest contacts, at most capacity.
+class ContactSink {
+ public:
+  /// @param may_repeat  whether add() can be given a pair more than once (then it must be
+  /// the same contact each time); only the first counts.
+  ContactSink(std::size_t capacity, bool may_repeat)
+      : capacity_(capacity), may_repeat_(may_repeat) {}
+
+  /// @return whether the contact was kept.
+  bool add(const FeatureContact& contact);
+
+  /// @brief The kept contacts, in the order of add() until isCut(), then in none.
+  const std::vector<FeatureContact>& contacts() const { return contacts_; }
+
+  /// @brief Whether contacts were dropped for want of capacity.
+  bool isCut() const { return cut_; }
+
+  /// @brief Upper end of the earliest bracket so far; 1 without contacts.
+  double firstHi() const { return first_hi_; }
+
+  /// @brief A contact that starts after this time would not be kept, nor would it be news
+  /// that some are dropped.
+  double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
+
+  /// @brief The contacts, earliest first; leaves the sink empty.
+  std::vector<FeatureContact> takeSorted();
+
+ private:
+  using PairKey = std::array<std::uint32_t, 5>;
+  static PairKey keyOf(const FeatureContact& contact);
+
+  std::size_t capacity_;
+  bool may_repeat_;
+  bool cut_{false};
+  double first_hi_{1};
+  /// Once cut_, a heap with the latest contact in front.
+  std::vector<FeatureContact> contacts_;
+  std::set<PairKey> seen_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

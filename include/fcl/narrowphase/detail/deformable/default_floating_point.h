@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFAULT_FLOATING_POINT_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFAULT_FLOATING_POINT_H
+
+#include <cfenv>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief While it lives, the thread computes in the default floating-point mode, which
+/// all error bounds assume (round to nearest, subnormals kept); then the caller's mode
+/// and flags are back.
+class DefaultFloatingPoint {
+ public:
+  DefaultFloatingPoint() {
+    std::fegetenv(&saved_);
+    std::fesetenv(FE_DFL_ENV);
+  }
+  ~DefaultFloatingPoint() { std::fesetenv(&saved_); }
+  DefaultFloatingPoint(const DefaultFloatingPoint&) = delete;
+  DefaultFloatingPoint& operator=(const DefaultFloatingPoint&) = delete;
+
+ private:
+  std::fenv_t saved_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

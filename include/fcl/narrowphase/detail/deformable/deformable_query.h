@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFORMABLE_QUERY_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFORMABLE_QUERY_H
+
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/mesh_instance.h"
+#include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+struct QueryAnswer {
+  /// Earliest first.
+  std::vector<FeatureContact> contacts;
+  bool cut{false};
+  bool has_crossing{false};
+  Crossing crossing{};
+  StageCounts counts;
+  StageTimes times;
+};
+
+/// @brief Traverses the tree of a with itself and tests what it finds.
+QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options);
+
+/// @brief Traverses the trees of a and b and tests what it finds.
+QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
+                      const QueryOptions& options);
+
+/// @brief What overlapWindow() needs between the trees of two instances.
+KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

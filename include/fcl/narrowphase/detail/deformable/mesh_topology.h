@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Representative triangles (Curtis, Tamstorf, Manocha 2008): every vertex, edge and face
+// is owned by exactly one triangle, so that each VF and EE pair of a scene is met once.
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_MESH_TOPOLOGY_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_MESH_TOPOLOGY_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fcl/math/triangle.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Vertex ids of a triangle and the features that it owns. Edge k joins vertices k
+/// and (k + 1) % 3.
+struct MeshTriangle {
+  std::uint32_t v[3];
+  std::uint32_t owned;
+
+  bool ownsVertex(unsigned k) const { return (owned >> k) & 1U; }
+  bool ownsEdge(unsigned k) const { return (owned >> (3 + k)) & 1U; }
+  bool ownsFace() const { return (owned >> 6) & 1U; }
+};
+
+/// All six border features and the face.
+constexpr std::uint32_t kOwnsAll = 0x7f;
+
+/// @brief The lowest-numbered triangle that has a feature owns it. A vertex without a
+/// triangle is not a feature; of several faces with the same vertex set only the first
+/// owns its face; an edge whose two ids are equal is owned by nobody.
+/// @param triangles indices below num_vertices (not checked here).
+std::vector<MeshTriangle> assignFeatures(const Triangle* triangles,
+                                         std::size_t num_triangles,
+                                         std::size_t num_vertices);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_PREPARED_MESH_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_PREPARED_MESH_H
+
+#include <string>
+#include <vector>
+
+#include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/detail/deformable/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief How a geometry moves, as far as the choice of the method needs it.
+enum class MeshKind {
+  kNotAMesh,   ///< a shape, an octree, a point cloud
+  kRigid,      ///< a triangle mesh with one frame
+  kDeforming,  ///< a triangle mesh whose two frames differ
+};
+
+template <typename S>
+MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
+
+/// @brief A geometry made ready for one query, with what had to be computed for it:
+/// nothing for a DeformableBVHModel that is only translated and for a rigid mesh; owners
+/// and boxes for a plain BVHModel in FCL's updated state; boxes for a rotated
+/// DeformableBVHModel.
+class PreparedMesh {
+ public:
+  /// @param name  how errors call the geometry, for example "o1"
+  /// @pre meshKindOf(geometry) != kNotAMesh; a rigid mesh is not rotated between the
+  /// poses
+  /// @throws fcl::Exception  model not built or being updated, pose or frame not finite,
+  /// vertex index out of range
+  template <typename S>
+  PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
+               const Transform3<S>& tf_end, const std::string& name);
+
+  PreparedMesh(const PreparedMesh&) = delete;
+  PreparedMesh& operator=(const PreparedMesh&) = delete;
+
+  const MeshInstance& instance() const { return instance_; }
+
+  /// @brief Seconds spent on boxes and owners.
+  double updateTime() const { return update_time_; }
+
+ private:
+  template <typename BV>
+  void prepareModel(const BVHModel<BV>& model, const Pose& beginning, const Pose& end,
+                    const std::string& name);
+  template <typename BV>
+  void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
+  void refit();
+
+  MeshInstance instance_;
+  std::vector<MeshTriangle> features_;
+  MovingKdopTree tree_;
+  double update_time_{0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

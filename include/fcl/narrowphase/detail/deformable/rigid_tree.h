@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_RIGID_TREE_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_RIGID_TREE_H
+
+#include <cstddef>
+
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/math/bv/moving_kdop.h"
+#include "fcl/narrowphase/detail/deformable/vertex_frames.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs: the
+/// box of a node is made from FCL's bounding volume when a traversal asks for it, so that
+/// a query costs nothing per vertex. Does not own the model.
+class RigidTree {
+ public:
+  RigidTree() = default;
+
+  /// @param pose  its rotation turns the boxes; its translation is left to
+  /// relativeShift().
+  template <typename BV>
+  RigidTree(const BVHModel<BV>& model, const Pose& pose)
+      : RigidTree(&model.getBV(0), sizeof(BVNode<BV>), &boxOf<BV>, pose) {}
+
+  bool isLeaf(int node) const { return link(node) < 0; }
+  int leftChild(int node) const { return link(node); }
+  int triangle(int node) const { return ~link(node); }
+
+  /// @brief Box of the node, the same in both frames.
+  MovingKdop box(int node) const;
+
+  /// @brief Point (rotated frame) that the boxes are relative to.
+  const double (&origin() const)[3] { return origin_; }
+
+  /// @brief Bound on the distance of the mesh from the origin along an axis.
+  double reach() const { return reach_; }
+
+ private:
+  /// A box in the model frame that contains a bounding volume: half axes as columns.
+  struct OrientedBox {
+    double center[3];
+    double half_axis[3][3];
+    /// Relative rounding of the volume's own numbers, see boxOf().
+    double slack;
+  };
+  using BoxOf = OrientedBox (*)(const void* node);
+
+  template <typename BV>
+  static OrientedBox boxOf(const void* node);
+
+  RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of, const Pose& pose);
+
+  const BVNodeBase* at(int node) const {
+    return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
+                                               static_cast<std::size_t>(node) * stride_);
+  }
+  int link(int node) const { return at(node)->first_child; }
+  OrientedBox rotated(int node) const;
+
+  const BVNodeBase* nodes_{nullptr};
+  std::size_t stride_{0};
+  BoxOf box_of_{nullptr};
+  double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double origin_[3]{0, 0, 0};
+  double reach_{0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/contact_sink.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
+  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
+  const auto key = [](const FeatureContact& c) {
+    return std::make_tuple(c.kind, !c.first_on_a, c.vertices[0], c.vertices[1],
+                           c.vertices[2], c.vertices[3]);
+  };
+  return key(x) < key(y);
+}
+
+ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
+  const std::uint32_t tag =
+      (c.kind == FeatureKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
+  return {tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
+}
+
+bool ContactSink::add(const FeatureContact& contact) {
+  if (may_repeat_ && seen_.count(keyOf(contact))) return false;
+  first_hi_ = std::min(first_hi_, contact.toc_hi);
+  if (contacts_.size() < capacity_) {
+    contacts_.push_back(contact);
+  } else {
+    if (!cut_) std::make_heap(contacts_.begin(), contacts_.end(), isEarlier);
+    cut_ = true;
+    if (!isEarlier(contact, contacts_.front())) return false;
+    std::pop_heap(contacts_.begin(), contacts_.end(), isEarlier);
+    if (may_repeat_) seen_.erase(keyOf(contacts_.back()));
+    contacts_.back() = contact;
+    std::push_heap(contacts_.begin(), contacts_.end(), isEarlier);
+  }
+  if (may_repeat_) seen_.insert(keyOf(contact));
+  return true;
+}
+
+std::vector<FeatureContact> ContactSink::takeSorted() {
+  std::sort(contacts_.begin(), contacts_.end(), isEarlier);
+  seen_.clear();
+  return std::move(contacts_);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

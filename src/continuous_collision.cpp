@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/continuous_collision.h"
+
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+
+#include "fcl/common/exception.h"
+#include "fcl/math/bv/utility.h"
+#include "fcl/narrowphase/detail/deformable/contact_conversion.h"
+#include "fcl/narrowphase/detail/deformable/deformable_query.h"
+#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "stock_fcl.h"
+
+namespace fcl {
+namespace {
+
+using detail::deformable::MeshKind;
+using detail::deformable::PreparedMesh;
+using detail::deformable::QueryAnswer;
+using detail::deformable::QueryGoal;
+using detail::deformable::QueryOptions;
+
+/// Poses at t = 0 and t = 1.
+template <typename S>
+struct Placement {
+  Transform3<S> beginning;
+  Transform3<S> end;
+
+  bool isRotating() const { return beginning.linear() != end.linear(); }
+};
+
+void require(const void* argument, const char* name) {
+  if (!argument) throw Exception(std::string(name) + " is null");
+}
+
+/// Whether the pair is answered here; if not, FCL's own function is called.
+template <typename S>
+bool isAnsweredHere(const CollisionGeometry<S>& o1, bool rotates1,
+                    const CollisionGeometry<S>& o2, bool rotates2) {
+  const auto accepts = [](const CollisionGeometry<S>& o, bool rotates) {
+    const MeshKind kind = detail::deformable::meshKindOf(o);
+    return kind == MeshKind::kDeforming || (kind == MeshKind::kRigid && !rotates);
+  };
+  return accepts(o1, rotates1) && accepts(o2, rotates2);
+}
+
+template <typename S>
+QueryOptions makeOptions(const ContinuousCollisionRequest<S>& request) {
+  QueryOptions options;
+  options.goal = QueryGoal::kFirst;
+  options.max_contacts = 1;
+  options.toc_err = static_cast<double>(request.toc_err);
+  options.stop_at_crossing = true;
+  if (!(options.toc_err > 0)) throw Exception("request.toc_err is not positive");
+  return options;
+}
+
+template <typename S>
+QueryOptions makeOptions(const ContinuousContactRequest<S>& request) {
+  QueryOptions options =
+      makeOptions(static_cast<const ContinuousCollisionRequest<S>&>(request));
+  if (request.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
+  options.goal = request.query == ContinuousQuery::kAll     ? QueryGoal::kAll
+                 : request.query == ContinuousQuery::kFirst ? QueryGoal::kFirst
+                                                            : QueryGoal::kAny;
+  options.max_contacts = request.num_max_contacts;
+  options.stop_at_crossing = false;
+  return options;
+}
+
+/// Translation on a straight line, rotation at constant speed (a deforming mesh only:
+/// its vertices do not follow it).
+template <typename S>
+Transform3<S> poseAt(const Placement<S>& placement, S t) {
+  Transform3<S> tf = placement.beginning;
+  tf.translation() =
+      (1 - t) * placement.beginning.translation() + t * placement.end.translation();
+  if (placement.isRotating())
+    tf.linear() = Quaternion<S>(placement.beginning.linear())
+                      .slerp(t, Quaternion<S>(placement.end.linear()))
+                      .toRotationMatrix();
+  return tf;
+}
+
+/// The part of the result that FCL's own type has.
+template <typename S>
+S fill(const QueryAnswer& answer, const Placement<S>& placement1,
+       const Placement<S>& placement2, ContinuousCollisionResult<S>& result) {
+  result.is_collide = answer.has_crossing || !answer.contacts.empty();
+  result.time_of_contact =
+      answer.has_crossing ? S(0)
+      : answer.contacts.empty()
+          ? S(1)
+          : detail::deformable::roundTimeDown<S>(answer.contacts.front().toc_lo);
+  result.contact_tf1 = poseAt(placement1, result.time_of_contact);
+  result.contact_tf2 = poseAt(placement2, result.time_of_contact);
+  return result.time_of_contact;
+}
+
+/// What a query looked at, for the conversion of its contacts.
+template <typename S>
+struct Scene {
+  const CollisionGeometry<S>& o1;
+  const CollisionGeometry<S>& o2;
+  const PreparedMesh& mesh1;
+  const PreparedMesh& mesh2;
+};
+
+template <typename S>
+void fillContacts(const QueryAnswer&, const Scene<S>&,
+                  const ContinuousCollisionRequest<S>&, ContinuousCollisionResult<S>&) {}
+
+template <typename S>
+void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
+                  const ContinuousContactRequest<S>& request,
+                  ContinuousContactResult<S>& result) {
+  const auto convert = [&](const auto& contact) {
+    auto out = detail::deformable::toContinuousContact<S>(
+        contact, scene.mesh1.instance(), scene.mesh2.instance(), request.enable_contact);
+    out.o1 = &scene.o1;
+    out.o2 = &scene.o2;
+    return out;
+  };
+  result.contacts.clear();
+  result.contacts.reserve(answer.contacts.size());
+  for (const auto& contact : answer.contacts) result.contacts.push_back(convert(contact));
+  result.contacts_cut = answer.cut;
+  result.initially_crossing = answer.has_crossing;
+  result.crossing =
+      answer.has_crossing ? convert(answer.crossing) : ContinuousContact<S>();
+  result.counts = answer.counts;
+  result.times = answer.times;
+  result.times.update += scene.mesh1.updateTime();
+  if (&scene.mesh1 != &scene.mesh2) result.times.update += scene.mesh2.updateTime();
+}
+
+/// Runs a query; what it finds wrong with a vertex becomes FCL's exception.
+template <typename Query>
+QueryAnswer answerOf(Query&& query) {
+  try {
+    return query();
+  } catch (const std::domain_error& error) {
+    throw Exception(error.what());
+  }
+}
+
+template <typename S, typename Request, typename Result>
+S collideMeshes(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
+                const CollisionGeometry<S>& o2, const Placement<S>& placement2,
+                const Request& request, Result& result) {
+  const QueryOptions options = makeOptions(request);
+  const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1");
+  const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2");
+  const QueryAnswer answer =
+      answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
+  fillContacts(answer, Scene<S>{o1, o2, mesh1, mesh2}, request, result);
+  return fill(answer, placement1, placement2, result);
+}
+
+template <typename S, typename Request, typename Result>
+S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& result) {
+  require(o, "o");
+  const QueryOptions options = makeOptions(request);
+  if (detail::deformable::meshKindOf(*o) == MeshKind::kNotAMesh)
+    throw Exception("continuousSelfCollide: the geometry is not a triangle mesh");
+  const Placement<S> still{Transform3<S>::Identity(), Transform3<S>::Identity()};
+  const PreparedMesh mesh(*o, still.beginning, still.end, "o");
+  const QueryAnswer answer =
+      answerOf([&] { return querySelf(mesh.instance(), options); });
+  fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, request, result);
+  return fill(answer, still, still, result);
+}
+
+template <typename Motion, typename S>
+bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
+  // FCL's InterpMotion<float> and ScrewMotion<float> are abstract: there are none to
+  // read.
+  if constexpr (!std::is_abstract_v<Motion>) {
+    const auto* known = dynamic_cast<const Motion*>(&motion);
+    if (!known) return false;
+    const Motion copy(*known);  // integrate() changes the motion
+    copy.integrate(0);
+    copy.getCurrentTransform(placement.beginning);
+    copy.integrate(1);
+    copy.getCurrentTransform(placement.end);
+    return true;
+  }
+  return false;
+}
+
+/// The ends of a motion. A motion that is not known to follow a straight line counts as a
+/// rotation: a rigid mesh that follows it is FCL's.
+template <typename S>
+Placement<S> placementOf(const MotionBase<S>& motion, bool& is_rotation) {
+  Placement<S> placement{Transform3<S>::Identity(), Transform3<S>::Identity()};
+  if (readMotion<TranslationMotion<S>>(motion, placement) ||
+      readMotion<InterpMotion<S>>(motion, placement) ||
+      readMotion<ScrewMotion<S>>(motion, placement)) {
+    is_rotation = placement.isRotating();
+    return placement;
+  }
+  is_rotation = true;
+  if (readMotion<SplineMotion<S>>(motion, placement)) return placement;
+  motion.integrate(0);
+  motion.getCurrentTransform(placement.beginning);
+  motion.integrate(1);
+  motion.getCurrentTransform(placement.end);
+  return placement;
+}
+
+/// FCL's own function, for what is not answered here.
+template <typename S>
+S collideInFcl(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+               const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+               const ContinuousCollisionRequest<S>& request,
+               ContinuousCollisionResult<S>& result) {
+  return detail::stockContinuousCollide(o1, motion1, o2, motion2, request, result);
+}
+
+template <typename S>
+S collideInFcl(const CollisionGeometry<S>*, const MotionBase<S>*,
+               const CollisionGeometry<S>*, const MotionBase<S>*,
+               const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
+  throw Exception(
+      "contacts of continuous collision need two triangle meshes that deform or "
+      "translate");
+}
+
+template <typename S, typename Request, typename Result>
+S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                 const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                 const Request& request, Result& result) {
+  require(o1, "o1");
+  require(o2, "o2");
+  require(motion1, "motion1");
+  require(motion2, "motion2");
+  bool rotates1 = false, rotates2 = false;
+  if (detail::deformable::meshKindOf(*o1) != MeshKind::kNotAMesh &&
+      detail::deformable::meshKindOf(*o2) != MeshKind::kNotAMesh) {
+    const Placement<S> placement1 = placementOf(*motion1, rotates1);
+    const Placement<S> placement2 = placementOf(*motion2, rotates2);
+    if (isAnsweredHere(*o1, rotates1, *o2, rotates2))
+      return collideMeshes(*o1, placement1, *o2, placement2, request, result);
+  }
+  return collideInFcl(o1, motion1, o2, motion2, request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideTransforms(const CollisionGeometry<S>* o1, const Placement<S>& placement1,
+                    const CollisionGeometry<S>* o2, const Placement<S>& placement2,
+                    const Request& request, Result& result) {
+  require(o1, "o1");
+  require(o2, "o2");
+  if (isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
+    return collideMeshes(*o1, placement1, *o2, placement2, request, result);
+  const auto motionOf = [&request](const Placement<S>& placement) {
+    return detail::stockMotion(placement.beginning, placement.end,
+                               request.ccd_motion_type);
+  };
+  return collideInFcl<S>(o1, motionOf(placement1).get(), o2, motionOf(placement2).get(),
+                         request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
+                 const CollisionObject<S>* o2, const Transform3<S>& tf2_end,
+                 const Request& request, Result& result) {
+  require(o1, "o1");
+  require(o2, "o2");
+  return collideTransforms<S>(
+      o1->collisionGeometry().get(), {o1->getTransform(), tf1_end},
+      o2->collisionGeometry().get(), {o2->getTransform(), tf2_end}, request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideMovingObjects(const ContinuousCollisionObject<S>* o1,
+                       const ContinuousCollisionObject<S>* o2, const Request& request,
+                       Result& result) {
+  require(o1, "o1");
+  require(o2, "o2");
+  return collideMotions<S>(o1->collisionGeometry().get(), o1->getMotion(),
+                           o2->collisionGeometry().get(), o2->getMotion(), request,
+                           result);
+}
+
+}  // namespace
+
+#define FCL_CCD_DEFINE_QUERIES(S, Request, Result)                                       \
+  S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,      \
+                      const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,      \
+                      const Request<S>& request, Result<S>& result) {                    \
+    return collideMotions(o1, motion1, o2, motion2, request, result);                    \
+  }                                                                                      \
+  S continuousCollide(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,      \
+                      const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,      \
+                      const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,        \
+                      const Request<S>& request, Result<S>& result) {                    \
+    return collideTransforms<S>(o1, {tf1_beg, tf1_end}, o2, {tf2_beg, tf2_end}, request, \
+                                result);                                                 \
+  }                                                                                      \
+  S continuousCollide(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,        \
+                      const CollisionObject<S>* o2, const Transform3<S>& tf2_end,        \
+                      const Request<S>& request, Result<S>& result) {                    \
+    return collideObjects(o1, tf1_end, o2, tf2_end, request, result);                    \
+  }                                                                                      \
+  S collide(const ContinuousCollisionObject<S>* o1,                                      \
+            const ContinuousCollisionObject<S>* o2, const Request<S>& request,           \
+            Result<S>& result) {                                                         \
+    return collideMovingObjects(o1, o2, request, result);                                \
+  }                                                                                      \
+  S continuousSelfCollide(const CollisionGeometry<S>* o, const Request<S>& request,      \
+                          Result<S>& result) {                                           \
+    return selfCollide(o, request, result);                                              \
+  }
+FCL_CCD_DEFINE_QUERIES(double, ContinuousCollisionRequest, ContinuousCollisionResult)
+FCL_CCD_DEFINE_QUERIES(float, ContinuousCollisionRequest, ContinuousCollisionResult)
+FCL_CCD_DEFINE_QUERIES(double, ContinuousContactRequest, ContinuousContactResult)
+FCL_CCD_DEFINE_QUERIES(float, ContinuousContactRequest, ContinuousContactResult)
+#undef FCL_CCD_DEFINE_QUERIES
+
+}  // namespace fcl

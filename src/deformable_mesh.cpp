@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
+
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+
+namespace fcl {
+namespace detail {
+
+void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
+                               const deformable::VertexFrames& frames) {
+  const deformable::DefaultFloatingPoint mode;
+  features_ = deformable::assignFeatures(triangles, num_triangles, frames.size());
+  tree_.build(features_, frames);
+}
+
+void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
+  const deformable::DefaultFloatingPoint mode;
+  tree_.refit(features_, frames);
+  is_deforming_ = false;
+  for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {
+    const deformable::VertexPath path = frames[i];
+    for (int k = 0; k < 3; ++k) is_deforming_ |= path.t0[k] != path.t1[k];
+  }
+}
+
+std::size_t DeformableMesh::treeMemUsage() const {
+  return features_.capacity() * sizeof(features_[0]) + tree_.memUsage();
+}
+
+}  // namespace detail
+}  // namespace fcl

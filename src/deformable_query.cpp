@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/deformable_query.h"
+
+#include <chrono>
+
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/detail/deformable/traversal.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+struct TrianglePair {
+  std::int32_t a, b;
+  TimeWindow window;
+};
+
+/// Triangle pairs are tested in blocks: the tree and the vertices do not push each other
+/// out of the cache at every pair, and the clock is read once a block. A first-contact
+/// query uses small blocks, since each contact found prunes what follows.
+constexpr std::size_t kBlock = 1024;
+constexpr std::size_t kFirstBlock = 32;
+
+template <bool kSelf, typename TreeA, typename TreeB>
+void run(const TreeA& tree_a, const TreeB& tree_b, const KdopShift* shift,
+         TrianglePairTest& leaves, std::size_t block_size, StageTimes& times) {
+  std::vector<NodePair> open;
+  std::vector<TrianglePair> block;
+  block.reserve(block_size);
+  const auto start = Clock::now();
+
+  const auto testBlock = [&] {
+    const auto test_start = Clock::now();
+    for (const TrianglePair& p : block) {
+      if (p.window.lo > leaves.latest()) continue;
+      leaves.test(p.a, p.b, p.window);
+      if (leaves.isDone()) break;
+    }
+    block.clear();
+    times.test += secondsSince(test_start);
+    return !leaves.isDone();
+  };
+  leaves.counts().node_pairs += traverse<kSelf>(
+      tree_a, tree_b, shift, open, [&] { return leaves.latest(); },
+      [&](int a, int b, TimeWindow window) {
+        block.push_back({a, b, window});
+        return block.size() < block_size || testBlock();
+      });
+  if (!leaves.isDone()) testBlock();
+  times.traverse += secondsSince(start) - times.test;
+}
+
+QueryAnswer collect(TrianglePairTest& leaves, const StageTimes& times) {
+  QueryAnswer answer;
+  answer.cut = leaves.sink().isCut();
+  answer.has_crossing = leaves.hasCrossing();
+  answer.crossing = leaves.crossing();
+  answer.contacts = leaves.sink().takeSorted();
+  answer.counts = leaves.counts();
+  answer.times = times;
+  return answer;
+}
+
+}  // namespace
+
+QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
+  const DefaultFloatingPoint mode;
+  TrianglePairTest leaves(a, a, options);
+  StageTimes times;
+  const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
+  if (a.tree)
+    run<true>(*a.tree, *a.tree, nullptr, leaves, block, times);
+  else
+    run<true>(a.rigid, a.rigid, nullptr, leaves, block, times);
+  return collect(leaves, times);
+}
+
+QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
+                      const QueryOptions& options) {
+  const DefaultFloatingPoint mode;
+  TrianglePairTest leaves(a, b, options);
+  StageTimes times;
+  const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
+  const KdopShift shift = relativeShift(a, b);
+  if (a.tree && b.tree)
+    run<false>(*a.tree, *b.tree, &shift, leaves, block, times);
+  else if (a.tree)
+    run<false>(*a.tree, b.rigid, &shift, leaves, block, times);
+  else if (b.tree)
+    run<false>(a.rigid, *b.tree, &shift, leaves, block, times);
+  else
+    run<false>(a.rigid, b.rigid, &shift, leaves, block, times);
+  return collect(leaves, times);
+}
+
+KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {
+  return relativeShift(a.tree ? a.tree->origin() : a.rigid.origin(), a.translation,
+                       a.tree ? a.tree->reach() : a.rigid.reach(),
+                       b.tree ? b.tree->origin() : b.rigid.origin(), b.translation,
+                       b.tree ? b.tree->reach() : b.rigid.reach());
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

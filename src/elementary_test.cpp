@@ -1,0 +1,484 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+// Error analysis. u = 2^-53. A difference of two coordinates is rounded once (relative
+// error u); interpolated at a time t its components have an absolute error of at most 4 u
+// times its norm (the larger max-norm of both frames): difference, weight 1 - t, product,
+// sum. U, V, W below are such norms. Second-order terms are below 2^-40 of the bounds and
+// lie in the room that each constant leaves.
+//
+// A component of v x w: two products of size VW, error (4 + 4 + 1) u VW each, and a sum
+// of size 2 VW: 20 u VW; its size is 2 VW. Of v0 x w1 + v1 x w0: size 4 VW, error 44 u
+// VW. Outer coefficients u.(v x w): three products of size 2 UVW, error (4 * 2 + 20 + 2)
+// u = 30 u, and sums of size 4 and 6: 100 u UVW. Inner ones, u1.(v0 x w0) + u0.(v0 x w1 +
+// v1 x w0): 100 u for the first, 3 (16 + 44 + 4) + 20 = 212 u for the second, 18 u for
+// the sum: 330 u UVW.
+constexpr double kUnit = 0x1p-53;
+constexpr double kOuterBound = 104 * kUnit;
+constexpr double kInnerBound = 344 * kUnit;
+// Inside conditions (x y cross product)(v w cross product), coefficients of degree 4:
+// outer 3 (80 + 4) + 20 = 272 u; next 2 * (3 (168 + 8) + 40) + 48 = 1184 u; middle 2 *
+// 272 + 3 (352 + 16) + 80 + 96 = 1824 u, all of XYVW.
+constexpr double kInsideBound = 2048 * kUnit;
+// d . x for a direction d taken as exact: three products of size DX, error (4 + 1) u,
+// sums of size 2 and 3: 20 u DX.
+constexpr double kSideBound = 32 * kUnit;
+// The bounds hold while no product that matters underflows or overflows: an underflow
+// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
+constexpr double kTiny = 0x1p-900;
+constexpr double kHuge = 0x1p900;
+
+bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
+
+struct Vec {
+  double x, y, z;
+};
+
+Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(const Vec& a, const Vec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double maxNorm(const Vec& a) {
+  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+}
+
+/// The difference of two vertices over the step.
+struct Difference {
+  Vec t0, t1;
+  double norm;
+
+  Difference() = default;
+  Difference(const VertexPath& p, const VertexPath& q)
+      : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
+        t1{p.t1[0] - q.t1[0], p.t1[1] - q.t1[1], p.t1[2] - q.t1[2]},
+        norm(std::max(maxNorm(t0), maxNorm(t1))) {}
+
+  Vec at(double t) const {
+    if (t == 0) return t0;
+    if (t == 1) return t1;
+    return (1 - t) * t0 + t * t1;
+  }
+};
+
+/// A vector that moves linearly from l to h, with its norm bound over the whole step.
+struct Segment {
+  Vec l, h;
+  double norm;
+};
+
+Segment restrict(const Difference& d, double lo, double hi) {
+  return {d.at(lo), d.at(hi), d.norm};
+}
+
+/// Cross product of two moving vectors, c0 (1-s)^2 + c1 s (1-s) + c2 s^2.
+struct Quadratic {
+  Vec c0, c1, c2;
+  double norm;
+};
+
+Quadratic cross(const Segment& a, const Segment& b) {
+  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
+          a.norm * b.norm};
+}
+
+/// f(s) = b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3] s^3, the volume spanned
+/// by u, v, w: Bernstein coefficients, the inner ones times 3.
+struct Cubic {
+  double b[4];
+  double size;  // U V W, the scale of the error bounds
+
+  bool isReliable(double normal_size) const {
+    return isInRange(size) && isInRange(normal_size);
+  }
+  /// All coefficients have one sign beyond doubt: no root.
+  bool hasNoRoot() const {
+    const double outer = kOuterBound * size, inner = kInnerBound * size;
+    return (b[0] > outer && b[1] > inner && b[2] > inner && b[3] > outer) ||
+           (b[0] < -outer && b[1] < -inner && b[2] < -inner && b[3] < -outer);
+  }
+  /// The ends have opposite signs beyond doubt: a root.
+  bool changesSign() const {
+    const double outer = kOuterBound * size;
+    return (b[0] > outer && b[3] < -outer) || (b[0] < -outer && b[3] > outer);
+  }
+  /// Nothing but rounding: subdividing will not show a sign.
+  bool isLost() const {
+    const double outer = kOuterBound * size, inner = kInnerBound * size;
+    return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
+           std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
+  }
+  double operator()(double s) const {
+    const double r = 1 - s;
+    return r * r * (b[0] * r + b[1] * s) + s * s * (b[2] * r + b[3] * s);
+  }
+};
+
+Cubic spannedVolume(const Segment& u, const Quadratic& n) {
+  return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
+           dot(u.h, n.c1) + dot(u.l, n.c2), dot(u.h, n.c2)},
+          u.norm * n.norm};
+}
+
+enum class Side { kNegative, kPositive, kMixed };
+
+/// Sign of the quartic q . n over the whole segment.
+Side sideOf(const Quadratic& q, const Quadratic& n) {
+  const double size = q.norm * n.norm;
+  if (!isInRange(size) || !isInRange(q.norm)) return Side::kMixed;
+  const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
+                       dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
+                       dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
+  const double bound = kInsideBound * size;
+  bool positive = true, negative = true;
+  for (const double ck : c) {
+    positive &= ck > bound;
+    negative &= ck < -bound;
+  }
+  return positive ? Side::kPositive : negative ? Side::kNegative : Side::kMixed;
+}
+
+/// The pair as differences. The volume is u . (v x w); v x w is normal to the triangle
+/// (VF) or to both edges (EE).
+struct Pair {
+  FeatureKind kind;
+  // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
+  // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
+  Difference u, v, w, r, q, z;
+
+  Pair(FeatureKind k, const FeaturePoints& x) : kind(k) {
+    if (kind == FeatureKind::kVertexFace) {
+      u = {x[0], x[1]};
+      v = {x[2], x[1]};
+      w = {x[3], x[1]};
+      r = {x[2], x[0]};
+      q = {x[3], x[0]};
+    } else {
+      u = {x[2], x[0]};
+      v = {x[1], x[0]};
+      w = {x[3], x[2]};
+      r = {x[1], x[2]};
+      q = {x[3], x[0]};
+      z = {x[3], x[1]};
+    }
+  }
+};
+
+/// Whether, at the times at which the four points of the pair are coplanar, the features
+/// touch: kPositive, always; kNegative, never.
+///
+/// With n = v x w, a coplanar u is a combination of v and w, and (x x y) . n / n^2 gives
+/// its coordinates: VF u = beta v + gamma w with beta n^2 = (u x w).n, gamma n^2 =
+/// (v x u).n and the third barycentric ((b-p) x (c-p)).n; EE u = s v - r w with s n^2 =
+/// (u x w).n, (1-s) n^2 = ((v-u) x w).n, r n^2 = (u x v).n, (1-r) n^2 = (v x (w+u)).n.
+/// One of them strictly negative implies n != 0 and a point outside.
+Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
+                const Segment& v, const Segment& w, const Quadratic& n) {
+  const Segment r = restrict(pair.r, lo, hi), q = restrict(pair.q, lo, hi);
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  Side side = Side::kPositive;
+  const auto require = [&](const Segment& x, const Segment& y) {
+    const Side s = sideOf(cross(x, y), n);
+    if (s == Side::kNegative) side = s;
+    if (s == Side::kMixed && side == Side::kPositive) side = s;
+    return s != Side::kNegative;
+  };
+  if (vf)
+    require(u, w) && require(v, u) && require(r, q);
+  else
+    require(u, w) && require(r, w) && require(u, v) && require(v, q);
+  return side;
+}
+
+/// Point of segment [p, q] nearest to the origin, in floating point.
+Vec nearestOnSegment(const Vec& p, const Vec& q) {
+  const Vec e = q - p;
+  const double length = dot(e, e);
+  const double s = length > 0 ? std::max(0., std::min(1., -dot(p, e) / length)) : 0.;
+  return p + s * e;
+}
+
+/// Point of triangle pqr nearest to the origin, in floating point.
+Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
+  const Vec n = cross(q - p, r - p);
+  const double area = dot(n, n);
+  if (area > 0 && dot(cross(p, q), n) >= 0 && dot(cross(q, r), n) >= 0 &&
+      dot(cross(r, p), n) >= 0)
+    return (dot(p, n) / area) * n;
+  Vec best = nearestOnSegment(p, q);
+  for (const Vec& c : {nearestOnSegment(q, r), nearestOnSegment(r, p)})
+    if (dot(c, c) < dot(best, best)) best = c;
+  return best;
+}
+
+/// Whether the direction from one feature to the other's nearest point in the middle of
+/// [lo, hi] keeps them apart at both ends, hence in between: the differences of their
+/// vertices stay on one side of a plane through the origin. The only test that decides
+/// pairs without a normal (parallel edges, triangles without area).
+bool areSeparated(const Pair& pair, double lo, double hi) {
+  const double mid = lo + 0.5 * (hi - lo);
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  // The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
+  const Difference* corner[4] = {&pair.u, &pair.r, &pair.q, &pair.z};
+  const double sign[4] = {1, -1, vf ? -1. : 1., 1};
+  const int corners = vf ? 3 : 4;
+  Vec at_mid[4] = {};
+  for (int i = 0; i < corners; ++i) at_mid[i] = sign[i] * corner[i]->at(mid);
+  Vec d = nearestOnTriangle(at_mid[0], at_mid[1], at_mid[vf ? 2 : 3]);
+  if (!vf) {  // the parallelogram's corners in order are u, -r, z, q
+    const Vec e = nearestOnTriangle(at_mid[0], at_mid[3], at_mid[2]);
+    if (dot(e, e) < dot(d, d)) d = e;
+  }
+  const double size = maxNorm(d);
+  for (int i = 0; i < corners; ++i) {
+    const double scale = size * corner[i]->norm;
+    if (!isInRange(scale)) return false;
+    if (!(sign[i] * dot(d, corner[i]->at(lo)) > kSideBound * scale)) return false;
+    if (!(sign[i] * dot(d, corner[i]->at(hi)) > kSideBound * scale)) return false;
+  }
+  return true;
+}
+
+/// A root of f in (0, 1), whose ends have opposite signs, to about tol; only a place to
+/// cut, so that its error costs time, never a wrong answer.
+double rootOf(const Cubic& f, double tol) {
+  double lo = 0, hi = 1;
+  double f_lo = f.b[0], f_hi = f.b[3];
+  double s = 0.5;
+  for (int i = 0; i < 24; ++i) {
+    // Illinois: false position that halves the weight of an end that stays.
+    const double previous = s;
+    s = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
+    if (!(s > lo && s < hi)) s = 0.5 * (lo + hi);
+    if (std::abs(s - previous) < tol) break;
+    const double value = f(s);
+    if ((value < 0) == (f_lo < 0)) {
+      lo = s;
+      f_lo = value;
+      f_hi *= 0.5;
+    } else {
+      hi = s;
+      f_hi = value;
+      f_lo *= 0.5;
+    }
+  }
+  return s;
+}
+
+/// Whether a vertex of one feature lies on a vertex of the other at t = 0: a contact at
+/// exactly 0, whatever comes later. Common in real meshes (vertices doubled along seams).
+bool startOnVertex(FeatureKind kind, const FeaturePoints& x) {
+  const auto coincide = [&x](int i, int j) {
+    return x[i].t0[0] == x[j].t0[0] && x[i].t0[1] == x[j].t0[1] &&
+           x[i].t0[2] == x[j].t0[2];
+  };
+  if (kind == FeatureKind::kVertexFace)
+    return coincide(0, 1) || coincide(0, 2) || coincide(0, 3);
+  return coincide(0, 2) || coincide(0, 3) || coincide(1, 2) || coincide(1, 3);
+}
+
+/// Intervals still to be looked at, the earliest on top. Each look replaces one by at
+/// most three and the number of looks is limited, so that the stack is never full.
+class IntervalStack {
+ public:
+  static constexpr int kMaxLooks = 128;
+
+  struct Interval {
+    double lo, hi;
+  };
+
+  void push(double lo, double hi) {
+    if (lo < hi || (lo == hi && size_ == 0)) items_[size_++] = {lo, hi};
+  }
+  Interval pop() { return items_[--size_]; }
+  bool isEmpty() const { return size_ == 0; }
+  double latest() const { return items_[0].hi; }
+
+ private:
+  Interval items_[2 * kMaxLooks + 3];
+  int size_{0};
+};
+
+/// What is left undecided and proved so far.
+struct Findings {
+  bool unsure{false};
+  double unsure_lo{1};
+  double unsure_hi{0};
+
+  void addUnsure(double lo, double hi) {
+    if (!unsure) unsure_lo = lo;
+    unsure = true;
+    unsure_hi = std::max(unsure_hi, hi);
+  }
+
+  ElementaryResult withoutProof() const {
+    if (unsure) return {Answer::kUnsure, unsure_lo, unsure_hi, DecidedBy::kSolver};
+    return {Answer::kNo, 0, 0, DecidedBy::kSolver};
+  }
+  /// A contact is proved in [lo, hi]; the first one may be in what is unsure before.
+  ElementaryResult withContactIn(double lo, double hi, double toc_err) const {
+    if (unsure) lo = unsure_lo;
+    return {hi - lo <= toc_err ? Answer::kYes : Answer::kUnsure, lo, hi,
+            DecidedBy::kSolver};
+  }
+};
+
+}  // namespace
+
+bool narrowWindow(FeatureKind kind, const FeaturePoints& x, double& lo, double& hi) {
+  const AxisRanges p0{x[0]}, p1{x[1]}, p2{x[2]}, p3{x[3]}, p23{p2, p3};
+  return kind == FeatureKind::kVertexFace ? narrowWindow(p0, AxisRanges(p1, p23), lo, hi)
+                                          : narrowWindow(AxisRanges(p0, p1), p23, lo, hi);
+}
+
+bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
+                       double window_hi) {
+  const bool vf = kind == FeatureKind::kVertexFace;
+  const Segment u = restrict(vf ? Difference(x[0], x[1]) : Difference(x[2], x[0]),
+                             window_lo, window_hi);
+  const Segment v = restrict(vf ? Difference(x[2], x[1]) : Difference(x[1], x[0]),
+                             window_lo, window_hi);
+  const Segment w = restrict(vf ? Difference(x[3], x[1]) : Difference(x[3], x[2]),
+                             window_lo, window_hi);
+  const Quadratic n = cross(v, w);
+  const Cubic f = spannedVolume(u, n);
+  return !(f.isReliable(n.norm) && f.hasNoRoot());
+}
+
+ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
+                                  double window_lo, double window_hi, double toc_err,
+                                  double t_stop) {
+  // An interval this short is not cut further.
+  const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
+  // A flat interval (no sign in sight) is cut only while the inside conditions may
+  // decide.
+  constexpr double kMinFlatWidth = 0x1p-6;
+
+  const Pair pair(kind, x);
+  IntervalStack open;
+  open.push(window_lo, window_hi);
+  Findings found;
+  for (int look = 0; !open.isEmpty(); ++look) {
+    const auto [lo, hi] = open.pop();
+    if (lo > t_stop) break;
+    if (look == IntervalStack::kMaxLooks) {
+      found.addUnsure(lo, open.isEmpty() ? hi : std::max(hi, open.latest()));
+      break;
+    }
+    const double width = hi - lo;
+    const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
+                  w = restrict(pair.w, lo, hi);
+    const Quadratic n = cross(v, w);
+    const Cubic f = spannedVolume(u, n);
+    const bool reliable = f.isReliable(n.norm);
+    if (reliable && f.hasNoRoot()) continue;
+    const bool crosses = reliable && f.changesSign();
+
+    const Side side = insideness(pair, lo, hi, u, v, w, n);
+    if (side == Side::kNegative) continue;
+    if (side == Side::kPositive && crosses && width <= toc_err)
+      return found.withContactIn(lo, hi, toc_err);
+    // A wide interval with a root is first cut close around it.
+    if (!(crosses && width > toc_err)) {
+      if (areSeparated(pair, lo, hi)) continue;
+      if (look == 0 && lo == 0 && startOnVertex(kind, x))
+        return {Answer::kYes, 0, 0, DecidedBy::kSolver};
+      const bool flat = !reliable || f.isLost();
+      if (width <= min_width || (flat && width <= kMinFlatWidth)) {
+        found.addUnsure(lo, hi);
+        continue;
+      }
+    }
+    if (crosses) {
+      const double half = width > toc_err ? 0.25 * toc_err : width * 0x1p-6;
+      const double t = lo + rootOf(f, 0.125 * half / width) * width;
+      const double a = std::max(lo, t - half), b = std::min(hi, t + half);
+      open.push(b, hi);
+      open.push(a, b);
+      open.push(lo, a);
+    } else {
+      const double mid = lo + 0.5 * width;
+      open.push(mid, hi);
+      open.push(lo, mid);
+    }
+  }
+  return found.withoutProof();
+}
+
+ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
+                                double window_lo, double window_hi, double toc_err,
+                                double t_stop) {
+  if (!narrowWindow(kind, x, window_lo, window_hi))
+    return {Answer::kNo, 0, 0, DecidedBy::kBox};
+  if (!mayBecomeCoplanar(kind, x, window_lo, window_hi))
+    return {Answer::kNo, 0, 0, DecidedBy::kFilter};
+  const ElementaryResult solved =
+      solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
+  return solved.answer == Answer::kUnsure ? decideExactly(kind, x, toc_err) : solved;
+}
+
+void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
+                     double (&position)[3], double (&normal)[3]) {
+  const bool vf = kind == FeatureKind::kVertexFace;
+  const Pair pair(kind, x);
+  const Vec u = pair.u.at(t), v = pair.v.at(t), w = pair.w.at(t);
+  Vec n = cross(v, w);
+  // Weights of the four vertices in the two points that meet (feature 2 minus feature 1).
+  double weight[4];
+  const double area = dot(n, n);
+  const auto ratio = [area](double value) {
+    return area > 0 ? std::max(0., std::min(1., value / area)) : 0.5;
+  };
+  if (vf) {
+    const double beta = area > 0 ? ratio(dot(cross(u, w), n)) : 1. / 3;
+    const double gamma = area > 0 ? ratio(dot(cross(v, u), n)) : 1. / 3;
+    weight[0] = -1;
+    weight[1] = 1 - beta - gamma;
+    weight[2] = beta;
+    weight[3] = gamma;
+  } else {
+    const double s = ratio(dot(cross(u, w), n)), r = ratio(dot(cross(u, v), n));
+    weight[0] = s - 1;
+    weight[1] = -s;
+    weight[2] = 1 - r;
+    weight[3] = r;
+  }
+  double position_1[3] = {0, 0, 0}, relative_velocity[3] = {0, 0, 0};
+  double offset_t0[3] = {0, 0, 0};
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double a = x[i].t0[k], b = x[i].t1[k];
+      if (i < (vf ? 1 : 2)) position_1[k] -= weight[i] * ((1 - t) * a + t * b);
+      relative_velocity[k] += weight[i] * (b - a);
+      offset_t0[k] += weight[i] * a;
+    }
+  std::copy(position_1, position_1 + 3, position);
+
+  const double length = std::sqrt(area);
+  if (!(length > 0) || !std::isfinite(length)) {
+    std::fill(normal, normal + 3, 0.);
+    return;
+  }
+  n = (1 / length) * n;
+  double along =
+      dot(n, {relative_velocity[0], relative_velocity[1], relative_velocity[2]});
+  if (along == 0) along = -dot(n, {offset_t0[0], offset_t0[1], offset_t0[2]});
+  if (along > 0) n = -1. * n;
+  normal[0] = n.x;
+  normal[1] = n.y;
+  normal[2] = n.z;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

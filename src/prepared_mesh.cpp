@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "fcl/common/exception.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/kIOS.h"
+#include "fcl/math/bv/utility.h"
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Calls visit with the geometry as the BVHModel that it is; false if it is none.
+template <typename S, typename Visit>
+bool visitModel(const CollisionGeometry<S>& geometry, Visit&& visit) {
+  if (geometry.getObjectType() != OT_BVH) return false;
+  const auto as = [&](auto* model) {
+    visit(*model);
+    return true;
+  };
+  switch (geometry.getNodeType()) {
+    case BV_AABB:
+      return as(static_cast<const BVHModel<AABB<S>>*>(&geometry));
+    case BV_OBB:
+      return as(static_cast<const BVHModel<OBB<S>>*>(&geometry));
+    case BV_RSS:
+      return as(static_cast<const BVHModel<RSS<S>>*>(&geometry));
+    case BV_kIOS:
+      return as(static_cast<const BVHModel<kIOS<S>>*>(&geometry));
+    case BV_OBBRSS:
+      return as(static_cast<const BVHModel<OBBRSS<S>>*>(&geometry));
+    case BV_KDOP16:
+      return as(static_cast<const BVHModel<KDOP<S, 16>>*>(&geometry));
+    case BV_KDOP18:
+      return as(static_cast<const BVHModel<KDOP<S, 18>>*>(&geometry));
+    case BV_KDOP24:
+      return as(static_cast<const BVHModel<KDOP<S, 24>>*>(&geometry));
+    default:
+      return false;
+  }
+}
+
+/// The geometry as a model of ours whose own tree can be used.
+template <typename S>
+const DeformableMesh* deformableMeshOf(const CollisionGeometry<S>& geometry) {
+  const auto* mesh = dynamic_cast<const DeformableMesh*>(&geometry);
+  return mesh && mesh->isInStep() ? mesh : nullptr;
+}
+
+template <typename S>
+Pose toPose(const Transform3<S>& tf, const std::string& name) {
+  Pose pose;
+  bool is_finite = true;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) {
+      pose.rotation[3 * i + k] = static_cast<double>(tf.linear()(i, k));
+      is_finite &= std::isfinite(pose.rotation[3 * i + k]);
+    }
+    pose.translation[i] = static_cast<double>(tf.translation()[i]);
+    is_finite &= std::isfinite(pose.translation[i]);
+  }
+  if (!is_finite) throw Exception(name + ": the transform is not finite");
+  return pose;
+}
+
+template <typename S>
+void requireFinite(const Vector3<S>* vertices, int count, const std::string& what) {
+  for (int i = 0; i < count; ++i)
+    if (!vertices[i].allFinite())
+      throw Exception(what + ": vertex " + std::to_string(i) + " is not finite");
+}
+
+}  // namespace
+
+template <typename S>
+MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
+  if (const DeformableMesh* mesh = deformableMeshOf(geometry))
+    return mesh->isDeforming() ? MeshKind::kDeforming : MeshKind::kRigid;
+  MeshKind kind = MeshKind::kNotAMesh;
+  visitModel(geometry, [&kind](const auto& model) {
+    if (model.num_vertices > 0 && model.num_tris == 0) return;  // a point cloud
+    const bool moved =
+        model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
+    kind = moved ? MeshKind::kDeforming : MeshKind::kRigid;
+  });
+  return kind;
+}
+
+template <typename S>
+PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
+                           const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
+                           const std::string& name) {
+  const Pose beginning = toPose<S>(tf_beg, name), end = toPose<S>(tf_end, name);
+  for (int k = 0; k < 3; ++k) {
+    instance_.translation[0][k] = beginning.translation[k];
+    instance_.translation[1][k] = end.translation[k];
+  }
+  const auto* any = dynamic_cast<const DeformableMesh*>(&geometry);
+  if (any && any->isUpdateOpen())
+    throw Exception(name + ": an update of the model has begun and not ended");
+  if (const DeformableMesh* mesh = deformableMeshOf(geometry)) {
+    instance_.frames = mesh->frames();
+    instance_.frames.setPoses(beginning, end);
+    instance_.prepared = mesh->features().data();
+    instance_.num_triangles = mesh->features().size();
+    instance_.tree = &mesh->movingTree();
+    if (beginning.isTranslation() && end.isTranslation()) return;
+    features_ = mesh->features();
+    tree_.setLinks(mesh->movingTree().links());
+    refit();
+    return;
+  }
+  visitModel(geometry,
+             [&](const auto& model) { prepareModel(model, beginning, end, name); });
+}
+
+template <typename BV>
+void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning,
+                                const Pose& end, const std::string& name) {
+  const bool deforming =
+      model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
+  if (!deforming && model.build_state != BVH_BUILD_STATE_PROCESSED)
+    throw Exception(name +
+                    ": the model is not built, or an update has begun and not ended");
+  const auto count = static_cast<std::size_t>(model.num_vertices);
+  const auto* current = model.vertices->data();
+  instance_.frames =
+      VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
+  instance_.frames.setPoses(beginning, end);
+  instance_.triangles = model.tri_indices;
+  instance_.num_triangles = static_cast<std::size_t>(model.num_tris);
+  if (deforming)
+    prepareDeforming(model, name);
+  else
+    instance_.rigid = RigidTree(model, beginning);
+}
+
+template <typename BV>
+void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name) {
+  requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
+  requireFinite(model.vertices, model.num_vertices, name + ", current frame");
+  const auto count = static_cast<std::size_t>(model.num_vertices);
+  for (std::size_t i = 0; i < instance_.num_triangles; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (model.tri_indices[i][k] >= count)
+        throw Exception(name + ": triangle " + std::to_string(i) +
+                        " refers to a vertex that is not there");
+  features_ = assignFeatures(model.tri_indices, instance_.num_triangles, count);
+  std::vector<std::int32_t> links(static_cast<std::size_t>(model.getNumBVs()));
+  for (int i = 0; i < model.getNumBVs(); ++i)
+    links[static_cast<std::size_t>(i)] = model.getBV(i).first_child;
+  tree_.setLinks(std::move(links));
+  refit();
+}
+
+void PreparedMesh::refit() {
+  const auto start = std::chrono::steady_clock::now();
+  const DefaultFloatingPoint mode;
+  tree_.refit(features_, instance_.frames);
+  instance_.prepared = features_.data();
+  instance_.tree = &tree_;
+  // The boxes are posed already.
+  for (auto& translation : instance_.translation)
+    std::fill(translation, translation + 3, 0.);
+  update_time_ =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                           \
+  template MeshKind meshKindOf(const CollisionGeometry<S>&);                             \
+  template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Transform3<S>&, \
+                                      const Transform3<S>&, const std::string&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

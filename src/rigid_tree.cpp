@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/rigid_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// FCL fits its volumes in S with rounding to nearest, so that a point can stand out of
+/// its volume by a few units in the last place of its coordinates, and merges add a few
+/// more on each level; 2^12 units cover any depth that a tree in memory can have (two
+/// units a level would take 2000 levels). Too large a margin costs only a box test.
+template <typename S>
+constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
+
+template <typename S>
+void set(double (&out)[3], const Vector3<S>& v, double scale = 1) {
+  for (int k = 0; k < 3; ++k) out[k] = scale * double{v[k]};
+}
+
+}  // namespace
+
+// An axis-aligned box from the first three slabs of an AABB or a KDOP.
+template <typename BV>
+RigidTree::OrientedBox RigidTree::boxOf(const void* node) {
+  using S = typename BV::S;
+  const BV& bv = static_cast<const BVNode<BV>*>(node)->bv;
+  OrientedBox box{};
+  const Vector3<S> center = bv.center();
+  const double size[3] = {double{bv.width()}, double{bv.height()}, double{bv.depth()}};
+  set<S>(box.center, center);
+  for (int k = 0; k < 3; ++k) box.half_axis[k][k] = 0.5 * size[k];
+  box.slack = kFitSlack<S>;
+  return box;
+}
+
+namespace {
+
+template <typename Box, typename S>
+Box fromObb(const OBB<S>& obb) {
+  Box box{};
+  set<S>(box.center, obb.To);
+  for (int k = 0; k < 3; ++k)
+    set<S>(box.half_axis[k], obb.axis.col(k), double{obb.extent[k]});
+  box.slack = kFitSlack<S>;
+  return box;
+}
+
+/// A rectangle of sides l at corner To, swept by a sphere of radius r.
+template <typename Box, typename S>
+Box fromRss(const RSS<S>& rss) {
+  Box box{};
+  const double half[3] = {0.5 * double{rss.l[0]}, 0.5 * double{rss.l[1]}, 0};
+  for (int k = 0; k < 3; ++k) {
+    box.center[k] = double{rss.To[k]} + double{rss.axis(k, 0)} * half[0] +
+                    double{rss.axis(k, 1)} * half[1];
+    for (int a = 0; a < 3; ++a)
+      box.half_axis[a][k] = double{rss.axis(k, a)} * (half[a] + double{rss.r});
+  }
+  box.slack = kFitSlack<S>;
+  return box;
+}
+
+}  // namespace
+
+#define FCL_CCD_BOX_OF(BV, EXPRESSION)                                       \
+  template <>                                                                \
+  RigidTree::OrientedBox RigidTree::boxOf<BV<double>>(const void* node) {    \
+    const BV<double>& bv = static_cast<const BVNode<BV<double>>*>(node)->bv; \
+    return EXPRESSION;                                                       \
+  }                                                                          \
+  template <>                                                                \
+  RigidTree::OrientedBox RigidTree::boxOf<BV<float>>(const void* node) {     \
+    const BV<float>& bv = static_cast<const BVNode<BV<float>>*>(node)->bv;   \
+    return EXPRESSION;                                                       \
+  }
+FCL_CCD_BOX_OF(OBB, fromObb<OrientedBox>(bv))
+FCL_CCD_BOX_OF(OBBRSS, fromObb<OrientedBox>(bv.obb))
+FCL_CCD_BOX_OF(kIOS, fromObb<OrientedBox>(bv.obb))
+FCL_CCD_BOX_OF(RSS, fromRss<OrientedBox>(bv))
+#undef FCL_CCD_BOX_OF
+
+#define FCL_CCD_INSTANTIATE(S)                                                \
+  template RigidTree::OrientedBox RigidTree::boxOf<AABB<S>>(const void*);     \
+  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 16>>(const void*); \
+  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 18>>(const void*); \
+  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 24>>(const void*);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+RigidTree::RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of,
+                     const Pose& pose)
+    : nodes_(nodes), stride_(stride), box_of_(box_of) {
+  std::copy(pose.rotation, pose.rotation + 9, rotation_);
+  const OrientedBox root = rotated(0);
+  std::copy(root.center, root.center + 3, origin_);
+  for (int k = 0; k < 3; ++k)
+    reach_ =
+        std::max(reach_, std::abs(root.half_axis[0][k]) + std::abs(root.half_axis[1][k]) +
+                             std::abs(root.half_axis[2][k]));
+  reach_ *= 1 + root.slack;
+}
+
+RigidTree::OrientedBox RigidTree::rotated(int node) const {
+  OrientedBox box = box_of_(at(node));
+  const auto turn = [this](double(&v)[3]) {
+    const double x = v[0], y = v[1], z = v[2];
+    for (int k = 0; k < 3; ++k)
+      v[k] = rotation_[3 * k] * x + rotation_[3 * k + 1] * y + rotation_[3 * k + 2] * z;
+  };
+  turn(box.center);
+  for (auto& axis : box.half_axis) turn(axis);
+  return box;
+}
+
+MovingKdop RigidTree::box(int node) const {
+  OrientedBox box = rotated(node);
+  // Everything that was rounded on the way here is below size; the fit's slack is far
+  // above the few 2^-53 of the rotation and of the sums below.
+  double size = 0;
+  for (int k = 0; k < 3; ++k) {
+    size += std::abs(box.center[k]) + std::abs(origin_[k]);
+    for (const auto& axis : box.half_axis) size += std::abs(axis[k]);
+    box.center[k] -= origin_[k];
+  }
+  const float pad = roundUp(size * box.slack, 0.f);
+
+  double center[8], spread[8], axis[8];
+  kdopCoordinates(box.center, center);
+  std::fill(spread, spread + 8, 0.);
+  for (const auto& half_axis : box.half_axis) {
+    kdopCoordinates(half_axis, axis);
+    for (int j = 0; j < 8; ++j) spread[j] += std::abs(axis[j]);
+  }
+  MovingKdop out;
+  for (int j = 0; j < 8; ++j) {
+    out.t0.half[j] = roundUp(spread[j] - center[j], pad);
+    out.t0.half[j + 8] = roundUp(spread[j] + center[j], pad);
+  }
+  out.t1 = out.t0;
+  return out;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
