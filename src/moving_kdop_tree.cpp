@@ -103,32 +103,29 @@ std::size_t split(Item* items, std::size_t count, bool search) {
   return count / 2;
 }
 
+/// The smallest box around both; a NaN, "unbounded", stays.
 void merge(const Kdop16& a, const Kdop16& b, Kdop16& out) {
-  for (int j = 0; j < 16; ++j)
-    // A NaN on either side must stay: it stands for "unbounded".
-    out.half[j] = a.half[j] > b.half[j] || a.half[j] != a.half[j] ? a.half[j] : b.half[j];
+  for (int q = 0; q < 4; ++q) {
+    const Float4 x = quad(a, q), y = quad(b, q);
+    const Float4 most = (x > y) | (x != x) ? x : y;
+    __builtin_memcpy(out.half + 4 * q, &most, sizeof(most));
+  }
 }
 
-/// Box of the triangle in one frame, relative to origin.
-void fitTriangle(const MeshTriangle& triangle, const VertexFrames& frames, int frame,
-                 const double (&origin)[3], float pad, Kdop16& out) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  double lo[8], hi[8];
-  std::fill(lo, lo + 8, kInfinity);
-  std::fill(hi, hi + 8, -kInfinity);
-  for (int i = 0; i < 3; ++i) {
-    double p[3], d[8];
-    frames.at(frame, triangle.v[i], p);
-    for (int k = 0; k < 3; ++k) p[k] -= origin[k];
-    kdopCoordinates(p, d);
-    for (int j = 0; j < 8; ++j) {
-      lo[j] = std::min(lo[j], d[j]);
-      hi[j] = std::max(hi[j], d[j]);
-    }
-  }
+void merge(const MovingKdop& a, const MovingKdop& b, MovingKdop& out) {
+  merge(a.t0, b.t0, out.t0);
+  merge(a.t1, b.t1, out.t1);
+}
+
+/// Box of a point.
+void fitPoint(const double (&point)[3], const double (&origin)[3], float pad,
+              Kdop16& out) {
+  const double p[3] = {point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]};
+  double d[8];
+  kdopCoordinates(p, d);
   for (int j = 0; j < 8; ++j) {
-    out.half[j] = roundUp(-lo[j], pad);
-    out.half[j + 8] = roundUp(hi[j], pad);
+    out.half[j] = roundUp(-d[j], pad);
+    out.half[j + 8] = roundUp(d[j], pad);
   }
 }
 
@@ -184,19 +181,15 @@ void MovingKdopTree::setLinks(std::vector<std::int32_t> links) {
 void MovingKdopTree::refit(const std::vector<MeshTriangle>& triangles,
                            const VertexFrames& frames) {
   double lo[3], hi[3];
-  for (int k = 0; k < 3; ++k) {
-    lo[k] = std::numeric_limits<double>::infinity();
-    hi[k] = -lo[k];
-  }
-  for (std::size_t i = 0; i < frames.size(); ++i)
-    for (int frame = 0; frame < 2; ++frame) {
-      double p[3];
-      frames.at(frame, i, p);
-      for (int k = 0; k < 3; ++k) {
-        lo[k] = std::min(lo[k], p[k]);
-        hi[k] = std::max(hi[k], p[k]);
-      }
+  std::fill(lo, lo + 3, std::numeric_limits<double>::infinity());
+  std::fill(hi, hi + 3, -std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const VertexPath path = frames[i];
+    for (int k = 0; k < 3; ++k) {
+      lo[k] = std::min(lo[k], std::min(path.t0[k], path.t1[k]));
+      hi[k] = std::max(hi[k], std::max(path.t0[k], path.t1[k]));
     }
+  }
   reach_ = 0;
   for (int k = 0; k < 3; ++k) {
     origin_[k] = 0.5 * lo[k] + 0.5 * hi[k];
@@ -206,22 +199,27 @@ void MovingKdopTree::refit(const std::vector<MeshTriangle>& triangles,
   // much again of the sum: together less than 2^-50 of the reach.
   const float pad = roundUp(reach_ * 0x1p-50, 0.f);
 
+  vertex_boxes_.resize(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const VertexPath path = frames[i];
+    fitPoint(path.t0, origin_, pad, vertex_boxes_[i].t0);
+    fitPoint(path.t1, origin_, pad, vertex_boxes_[i].t1);
+  }
   for (std::size_t i = links_.size(); i-- > 0;) {
-    MovingKdop& box = boxes_[i];
     if (links_[i] < 0) {
       const MeshTriangle& t = triangles[static_cast<std::size_t>(~links_[i])];
-      fitTriangle(t, frames, 0, origin_, pad, box.t0);
-      fitTriangle(t, frames, 1, origin_, pad, box.t1);
+      merge(vertex_boxes_[t.v[0]], vertex_boxes_[t.v[1]], boxes_[i]);
+      merge(boxes_[i], vertex_boxes_[t.v[2]], boxes_[i]);
     } else {
       const auto left = static_cast<std::size_t>(links_[i]);
-      merge(boxes_[left].t0, boxes_[left + 1].t0, box.t0);
-      merge(boxes_[left].t1, boxes_[left + 1].t1, box.t1);
+      merge(boxes_[left], boxes_[left + 1], boxes_[i]);
     }
   }
 }
 
 std::size_t MovingKdopTree::memUsage() const {
-  return links_.capacity() * sizeof(links_[0]) + boxes_.capacity() * sizeof(boxes_[0]);
+  return links_.capacity() * sizeof(links_[0]) + boxes_.capacity() * sizeof(boxes_[0]) +
+         vertex_boxes_.capacity() * sizeof(vertex_boxes_[0]);
 }
 
 KdopShift relativeShift(const double (&origin_a)[3], const double (&translation_a)[2][3],

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 namespace fcl {
 namespace detail {
@@ -84,18 +85,71 @@ FCL_CCD_BOX_OF(kIOS, fromObb<OrientedBox>(bv.obb))
 FCL_CCD_BOX_OF(RSS, fromRss<OrientedBox>(bv))
 #undef FCL_CCD_BOX_OF
 
-#define FCL_CCD_INSTANTIATE(S)                                                \
-  template RigidTree::OrientedBox RigidTree::boxOf<AABB<S>>(const void*);     \
-  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 16>>(const void*); \
-  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 18>>(const void*); \
-  template RigidTree::OrientedBox RigidTree::boxOf<KDOP<S, 24>>(const void*);
-FCL_CCD_INSTANTIATE(double)
-FCL_CCD_INSTANTIATE(float)
+// The first 8 directions of every KDOP of FCL's are ours.
+template <typename BV>
+RigidTree::SlabsOf RigidTree::slabsOf() {
+  using S = typename BV::S;
+  return [](const void* node) {
+    const BV& bv = static_cast<const BVNode<BV>*>(node)->bv;
+    Slabs slabs;
+    if constexpr (std::is_same_v<BV, AABB<S>>) {
+      const double lo[3] = {double{bv.min_[0]}, double{bv.min_[1]}, double{bv.min_[2]}};
+      const double hi[3] = {double{bv.max_[0]}, double{bv.max_[1]}, double{bv.max_[2]}};
+      kdopCoordinates(lo, slabs.lo);
+      kdopCoordinates(hi, slabs.hi);
+      for (int k = 1; k < 3; ++k) {  // x - y and x - z
+        slabs.lo[5 + k] = lo[0] - hi[k];
+        slabs.hi[5 + k] = hi[0] - lo[k];
+      }
+    } else {
+      constexpr std::size_t kHalf = sizeof(BV) / sizeof(S) / 2;
+      for (std::size_t j = 0; j < 8; ++j) {
+        slabs.lo[j] = double{bv.dist(j)};
+        slabs.hi[j] = double{bv.dist(j + kHalf)};
+      }
+    }
+    slabs.slack = kFitSlack<S>;
+    return slabs;
+  };
+}
+
+#define FCL_CCD_NO_SLABS(BV)                            \
+  template <>                                           \
+  RigidTree::SlabsOf RigidTree::slabsOf<BV<double>>() { \
+    return nullptr;                                     \
+  }                                                     \
+  template <>                                           \
+  RigidTree::SlabsOf RigidTree::slabsOf<BV<float>>() {  \
+    return nullptr;                                     \
+  }
+FCL_CCD_NO_SLABS(OBB)
+FCL_CCD_NO_SLABS(OBBRSS)
+FCL_CCD_NO_SLABS(kIOS)
+FCL_CCD_NO_SLABS(RSS)
+#undef FCL_CCD_NO_SLABS
+
+#define FCL_CCD_INSTANTIATE(BV)                                      \
+  template RigidTree::OrientedBox RigidTree::boxOf<BV>(const void*); \
+  template RigidTree::SlabsOf RigidTree::slabsOf<BV>();
+#define FCL_CCD_COMMA ,
+FCL_CCD_INSTANTIATE(AABB<double>)
+FCL_CCD_INSTANTIATE(AABB<float>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 16>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 16>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 18>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 18>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 24>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 24>)
+#undef FCL_CCD_COMMA
 #undef FCL_CCD_INSTANTIATE
 
 RigidTree::RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of,
-                     const Pose& pose)
-    : nodes_(nodes), stride_(stride), box_of_(box_of) {
+                     SlabsOf slabs_of, const Pose& pose)
+    : nodes_(nodes),
+      stride_(stride),
+      box_of_(box_of),
+      is_rotated_(!pose.isTranslation()) {
+  if (!is_rotated_) slabs_of_ = slabs_of;
   std::copy(pose.rotation, pose.rotation + 9, rotation_);
   const OrientedBox root = rotated(0);
   std::copy(root.center, root.center + 3, origin_);
@@ -108,6 +162,7 @@ RigidTree::RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of,
 
 RigidTree::OrientedBox RigidTree::rotated(int node) const {
   OrientedBox box = box_of_(at(node));
+  if (!is_rotated_) return box;
   const auto turn = [this](double(&v)[3]) {
     const double x = v[0], y = v[1], z = v[2];
     for (int k = 0; k < 3; ++k)
@@ -118,7 +173,26 @@ RigidTree::OrientedBox RigidTree::rotated(int node) const {
   return box;
 }
 
+MovingKdop RigidTree::boxFromSlabs(const Slabs& slabs) const {
+  double origin[8];
+  kdopCoordinates(origin_, origin);
+  // The bounds along x, y, z are those of coordinates, without error; a sum of two was
+  // rounded to within the slack of its terms.
+  double size = 0;
+  for (int k = 0; k < 3; ++k)
+    size += std::abs(origin_[k]) + std::max(std::abs(slabs.lo[k]), std::abs(slabs.hi[k]));
+  const float pad = roundUp(size * slabs.slack, 0.f);
+  MovingKdop out;
+  for (int j = 0; j < 8; ++j) {
+    out.t0.half[j] = roundUp(origin[j] - slabs.lo[j], pad);
+    out.t0.half[j + 8] = roundUp(slabs.hi[j] - origin[j], pad);
+  }
+  out.t1 = out.t0;
+  return out;
+}
+
 MovingKdop RigidTree::box(int node) const {
+  if (slabs_of_) return boxFromSlabs(slabs_of_(at(node)));
   OrientedBox box = rotated(node);
   // Everything that was rounded on the way here is below size; the fit's slack is far
   // above the few 2^-53 of the rotation and of the sums below.

@@ -51,6 +51,8 @@ class MovingKdopTree {
  private:
   std::vector<std::int32_t> links_;
   std::vector<MovingKdop> boxes_;
+  /// Boxes of the vertices, from which a refit makes those of the leaves.
+  std::vector<MovingKdop> vertex_boxes_;
   double origin_[3]{0, 0, 0};
   double reach_{0};
 };

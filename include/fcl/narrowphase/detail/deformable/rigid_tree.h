@@ -23,7 +23,7 @@ class RigidTree {
   /// relativeShift().
   template <typename BV>
   RigidTree(const BVHModel<BV>& model, const Pose& pose)
-      : RigidTree(&model.getBV(0), sizeof(BVNode<BV>), &boxOf<BV>, pose) {}
+      : RigidTree(&model.getBV(0), sizeof(BVNode<BV>), &boxOf<BV>, slabsOf<BV>(), pose) {}
 
   bool isLeaf(int node) const { return link(node) < 0; }
   int leftChild(int node) const { return link(node); }
@@ -48,10 +48,23 @@ class RigidTree {
   };
   using BoxOf = OrientedBox (*)(const void* node);
 
+  /// Bounds along the 8 directions, which AABBs and FCL's KDOPs have ready; null for
+  /// others.
+  struct Slabs {
+    double lo[8];
+    double hi[8];
+    double slack;
+  };
+  using SlabsOf = Slabs (*)(const void* node);
+
   template <typename BV>
   static OrientedBox boxOf(const void* node);
 
-  RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of, const Pose& pose);
+  template <typename BV>
+  static SlabsOf slabsOf();
+
+  RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of, SlabsOf slabs_of,
+            const Pose& pose);
 
   const BVNodeBase* at(int node) const {
     return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
@@ -59,10 +72,13 @@ class RigidTree {
   }
   int link(int node) const { return at(node)->first_child; }
   OrientedBox rotated(int node) const;
+  MovingKdop boxFromSlabs(const Slabs& slabs) const;
 
   const BVNodeBase* nodes_{nullptr};
   std::size_t stride_{0};
   BoxOf box_of_{nullptr};
+  SlabsOf slabs_of_{nullptr};  // null when rotated
+  bool is_rotated_{false};
   double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
   double origin_[3]{0, 0, 0};
   double reach_{0};

@@ -44,20 +44,18 @@ template <bool kSelf, typename TreeA, typename TreeB, typename Latest, typename 
 std::uint64_t traverse(const TreeA& tree_a, const TreeB& tree_b, const KdopShift* shift,
                        std::vector<NodePair>& open, Latest&& latest, Visit&& visit) {
   std::uint64_t compared = 0;
-  const auto window = [&](int a, int b) {
+  const auto pushIfOverlapping = [&](int a, const MovingKdop& box_a, int b,
+                                     const MovingKdop& box_b) {
     ++compared;
-    return overlapWindow<!kSelf>(tree_a.box(a), tree_b.box(b), shift);
-  };
-  const auto pushIfOverlapping = [&](int a, int b) {
-    const TimeWindow w = window(a, b);
-    if (!w.isEmpty()) open.push_back({a, b, w});
+    const TimeWindow window = overlapWindow<!kSelf>(box_a, box_b, shift);
+    if (!window.isEmpty()) open.push_back({a, b, window});
   };
 
   open.clear();
   if (kSelf)
     open.push_back({0, 0, {0.f, 1.f}});
   else
-    pushIfOverlapping(0, 0);
+    pushIfOverlapping(0, tree_a.box(0), 0, tree_b.box(0));
 
   while (!open.empty()) {
     const NodePair pair = open.back();
@@ -69,7 +67,7 @@ std::uint64_t traverse(const TreeA& tree_a, const TreeB& tree_b, const KdopShift
       const int left = tree_a.leftChild(pair.a);
       open.push_back({left + 1, left + 1, {0.f, 1.f}});
       open.push_back({left, left, {0.f, 1.f}});
-      pushIfOverlapping(left, left + 1);
+      pushIfOverlapping(left, tree_a.box(left), left + 1, tree_a.box(left + 1));
       continue;
     }
     const bool leaf_a = tree_a.isLeaf(pair.a), leaf_b = tree_b.isLeaf(pair.b);
@@ -78,17 +76,18 @@ std::uint64_t traverse(const TreeA& tree_a, const TreeB& tree_b, const KdopShift
         return compared;
       continue;
     }
-    const bool open_a =
-        leaf_b || (!leaf_a && extent(tree_a.box(pair.a)) > extent(tree_b.box(pair.b)));
+    // A box may be made on the spot (RigidTree): each is asked for once.
+    const MovingKdop& box_a = tree_a.box(pair.a);
+    const MovingKdop& box_b = tree_b.box(pair.b);
     const std::size_t first = open.size();
-    if (open_a) {
+    if (leaf_b || (!leaf_a && extent(box_a) > extent(box_b))) {
       const int left = tree_a.leftChild(pair.a);
-      pushIfOverlapping(left, pair.b);
-      pushIfOverlapping(left + 1, pair.b);
+      pushIfOverlapping(left, tree_a.box(left), pair.b, box_b);
+      pushIfOverlapping(left + 1, tree_a.box(left + 1), pair.b, box_b);
     } else {
       const int left = tree_b.leftChild(pair.b);
-      pushIfOverlapping(pair.a, left);
-      pushIfOverlapping(pair.a, left + 1);
+      pushIfOverlapping(pair.a, box_a, left, tree_b.box(left));
+      pushIfOverlapping(pair.a, box_a, left + 1, tree_b.box(left + 1));
     }
     if (open.size() == first + 2 && open[first].window.lo < open[first + 1].window.lo)
       std::swap(open[first], open[first + 1]);

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "file_bytes.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <stdexcept>
+#include <system_error>
+
+namespace fcl_ccd {
+
+std::string readBytes(const std::string& path) {
+  const auto reason = [] { return std::generic_category().message(errno); };
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
+      std::fopen(path.c_str(), "rb"), std::fclose);
+  if (file == nullptr) throw std::runtime_error("cannot open: " + reason());
+  std::string bytes;
+  char block[1 << 16];
+  while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
+    bytes.append(block, n);
+  if (std::ferror(file.get())) throw std::runtime_error("cannot read: " + reason());
+  if (bytes.empty()) throw std::runtime_error("the file is empty");
+  return bytes;
+}
+
+}  // namespace fcl_ccd

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_FILE_BYTES_H
+#define FCL_CCD_FILE_BYTES_H
+
+#include <string>
+
+namespace fcl_ccd {
+
+/// @brief The contents of a file, which is not empty.
+/// @throws std::runtime_error with the cause (but not the file's name).
+std::string readBytes(const std::string& path);
+
+}  // namespace fcl_ccd
+
+#endif

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh_io.h"
+
+#include <CGAL/IO/polygon_soup_io.h>
+#include <CGAL/Simple_cartesian.h>
+
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <istream>
+#include <limits>
+#include <stdexcept>
+#include <streambuf>
+
+#include "file_bytes.h"
+#include "output_file.h"
+#include "plain_mesh.h"
+
+namespace fcl_ccd {
+namespace {
+
+using Point = CGAL::Simple_cartesian<double>::Point_3;
+
+struct PolygonSoup {
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> polygons;
+};
+
+/// A stream over bytes that stay where they are.
+class ByteStreamBuffer : public std::streambuf {
+ public:
+  explicit ByteStreamBuffer(std::string& bytes) {
+    setg(bytes.data(), bytes.data(), bytes.data() + bytes.size());
+  }
+};
+
+std::string extensionOf(const std::string& path) {
+  const std::size_t dot = path.find_last_of("./");
+  std::string extension;
+  if (dot != std::string::npos && path[dot] == '.') extension = path.substr(dot + 1);
+  for (char& c : extension)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+/// @brief Hands the plain form of the file to CGAL's polygon soup reader of its format.
+PolygonSoup readSoup(const std::string& path) {
+  const std::string extension = extensionOf(path);
+  if (extension != "obj" && extension != "off" && extension != "ply")
+    throw std::runtime_error("unknown mesh format; expected .obj, .ply or .off");
+
+  std::string bytes = readBytes(path);
+  if (extension == "obj")
+    bytes = plainObj(bytes);
+  else if (extension == "off")
+    bytes = plainOff(bytes);
+  else
+    bytes = plainPly(bytes);
+
+  ByteStreamBuffer buffer(bytes);
+  std::istream stream(&buffer);
+  PolygonSoup soup;
+  const auto quiet = CGAL::parameters::verbose(false);
+  bool read = false;
+  if (extension == "obj")
+    read = CGAL::IO::read_OBJ(stream, soup.points, soup.polygons, quiet);
+  else if (extension == "off")
+    read = CGAL::IO::read_OFF(stream, soup.points, soup.polygons, quiet);
+  else
+    read = CGAL::IO::read_PLY(stream, soup.points, soup.polygons, quiet);
+  if (soup.points.empty()) throw std::runtime_error("the mesh has no vertices");
+  if (soup.polygons.empty()) throw std::runtime_error("the mesh has no faces");
+  if (!read) throw std::runtime_error("a value does not fit its type");
+  return soup;
+}
+
+std::string faceName(std::size_t i) {
+  return "face " + std::to_string(i) + " (counted from 0)";
+}
+
+std::vector<std::array<double, 3>> takeVertices(const std::vector<Point>& points) {
+  if (points.size() > std::size_t{std::numeric_limits<int>::max()})
+    throw std::runtime_error("too many vertices");
+  std::vector<std::array<double, 3>> vertices;
+  vertices.reserve(points.size());
+  for (const Point& p : points) {
+    if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(p.z()))
+      throw std::runtime_error("vertex " + std::to_string(vertices.size()) +
+                               " (counted from 0) has a coordinate that is not finite");
+    vertices.push_back({p.x(), p.y(), p.z()});
+  }
+  return vertices;
+}
+
+std::vector<std::array<int, 3>> fanTriangles(const PolygonSoup& soup) {
+  std::vector<std::array<int, 3>> triangles;
+  triangles.reserve(soup.polygons.size());
+  for (std::size_t i = 0; i < soup.polygons.size(); ++i) {
+    const std::vector<std::size_t>& corners = soup.polygons[i];
+    if (corners.size() < 3)
+      throw std::runtime_error(faceName(i) + " has fewer than three vertices");
+    for (const std::size_t id : corners)
+      if (id >= soup.points.size())
+        throw std::runtime_error(faceName(i) +
+                                 " names a vertex out of range; there are " +
+                                 std::to_string(soup.points.size()));
+    for (std::size_t k = 2; k < corners.size(); ++k)
+      triangles.push_back({static_cast<int>(corners[0]), static_cast<int>(corners[k - 1]),
+                           static_cast<int>(corners[k])});
+  }
+  if (triangles.size() > std::size_t{std::numeric_limits<int>::max()})
+    throw std::runtime_error("too many triangles");
+  return triangles;
+}
+
+/// Appends the bytes of a value, lowest first.
+template <typename Bits>
+void appendLittleEndian(Bits bits, std::string& out) {
+  for (std::size_t i = 0; i < sizeof bits; ++i)
+    out += static_cast<char>((bits >> (8 * i)) & 0xff);
+}
+
+void appendLittleEndian(double value, std::string& out) {
+  std::uint64_t bits = 0;
+  static_assert(sizeof bits == sizeof value, "IEEE double");
+  std::memcpy(&bits, &value, sizeof bits);
+  appendLittleEndian(bits, out);
+}
+
+}  // namespace
+
+Mesh readMesh(const std::string& path) {
+  try {
+    const PolygonSoup soup = readSoup(path);
+    return {takeVertices(soup.points), fanTriangles(soup)};
+  } catch (const std::exception& error) {
+    throw std::runtime_error(path + ": " + error.what());
+  }
+}
+
+std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours) {
+  if (colours.size() != mesh.vertices.size())
+    throw std::invalid_argument("a painted mesh needs one colour a vertex");
+  std::string out = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                    std::to_string(mesh.vertices.size()) +
+                    "\nproperty double x\nproperty double y\nproperty double z\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                    "element face " +
+                    std::to_string(mesh.triangles.size()) +
+                    "\nproperty list uchar int vertex_indices\nend_header\n";
+  out.reserve(out.size() + 27 * mesh.vertices.size() + 13 * mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    for (const double x : mesh.vertices[i]) appendLittleEndian(x, out);
+    for (const std::uint8_t channel : colours[i]) out += static_cast<char>(channel);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    out += '\3';
+    for (const int id : triangle) appendLittleEndian(static_cast<std::uint32_t>(id), out);
+  }
+  return out;
+}
+
+void writePaintedPly(const std::string& path, const Mesh& mesh,
+                     const std::vector<Colour>& colours) {
+  const std::string bytes = encodePaintedPly(mesh, colours);
+  OutputFile file(path);
+  file.write(bytes);
+  file.finish();
+  file.publish();
+}
+
+}  // namespace fcl_ccd

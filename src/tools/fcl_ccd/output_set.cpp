@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "output_set.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+namespace fcl_ccd {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether two paths name the same file, or would if it existed. Devices and pipes do not
+/// count: nothing in them is overwritten.
+bool isSameFile(const std::string& a, const std::string& b) {
+  std::error_code error;
+  if (fs::exists(a, error) && !fs::is_regular_file(a, error)) return false;
+  if (fs::equivalent(a, b, error)) return true;
+  return fs::weakly_canonical(fs::absolute(a, error), error) ==
+         fs::weakly_canonical(fs::absolute(b, error), error);
+}
+
+}  // namespace
+
+void print(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
+      std::fflush(stdout) != 0)
+    throw std::runtime_error("standard output: writing failed: " +
+                             std::generic_category().message(errno));
+}
+
+OutputFile* OutputSet::open(const std::string& path) {
+  if (path.empty()) return nullptr;
+  const auto taken =
+      std::find_if(taken_.begin(), taken_.end(),
+                   [&](const std::string& other) { return isSameFile(path, other); });
+  if (taken != taken_.end())
+    throw std::runtime_error(path + ": cannot write: it is also given as " + *taken);
+  files_.push_back(std::make_unique<OutputFile>(path));
+  taken_.push_back(path);
+  return files_.back().get();
+}
+
+void OutputSet::publish() {
+  for (const auto& file : files_) file->finish();
+  for (const auto& file : files_) file->publish();
+}
+
+}  // namespace fcl_ccd

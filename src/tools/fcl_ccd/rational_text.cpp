@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "rational_text.h"
+
+#include <algorithm>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "text_scan.h"
+
+namespace fcl_ccd {
+namespace {
+
+using boost::multiprecision::cpp_int;
+
+/// @brief A decimal integer of any size. (cpp_int's own parser also takes hexadecimal and
+/// octal, so that 010 would be 8.)
+cpp_int parseBigInteger(std::string_view text) {
+  const bool negative = !text.empty() && text[0] == '-';
+  std::string_view digits = text.substr(negative || text.substr(0, 1) == "+" ? 1 : 0);
+  const bool decimal =
+      !digits.empty() && std::all_of(digits.begin(), digits.end(),
+                                     [](char c) { return c >= '0' && c <= '9'; });
+  if (!decimal) throw std::runtime_error(quoted(text) + " is not an integer");
+  digits.remove_prefix(std::min(digits.find_first_not_of('0'), digits.size() - 1));
+  const cpp_int magnitude{std::string(digits)};
+  return negative ? cpp_int(-magnitude) : magnitude;
+}
+
+/// @brief Quotient of positive integers to 55 bits or more, of which the last is set when
+/// the division leaves a rest ("sticky"): rounding it once to 53 bits or fewer rounds the
+/// exact quotient.
+struct ScaledQuotient {
+  cpp_int mantissa;
+  int exponent;  ///< quotient = mantissa * 2^exponent
+  bool exact;
+};
+
+ScaledQuotient divide(const cpp_int& numerator, const cpp_int& denominator) {
+  const int bits = static_cast<int>(msb(numerator)) - static_cast<int>(msb(denominator));
+  const int exponent = bits - 56;  // the quotient has 56 or 57 bits before the sticky one
+  cpp_int dividend = numerator, divisor = denominator, rest;
+  if (exponent < 0)
+    dividend <<= -exponent;
+  else
+    divisor <<= exponent;
+  ScaledQuotient quotient{0, exponent - 1, true};
+  divide_qr(dividend, divisor, quotient.mantissa, rest);
+  quotient.mantissa <<= 1;
+  quotient.exact = rest == 0;
+  if (!quotient.exact) quotient.mantissa |= 1;
+  return quotient;
+}
+
+/// @brief mantissa * 2^exponent, rounded once, also where the result is subnormal.
+NearestDouble round(const ScaledQuotient& quotient) {
+  constexpr int kLowestExponent = -1074;  // of double's smallest subnormal
+  constexpr int kDigits = std::numeric_limits<double>::digits;
+  const int size = static_cast<int>(msb(quotient.mantissa)) + 1;
+  const int drop = std::max(size - kDigits, kLowestExponent - quotient.exponent);
+  cpp_int kept = quotient.mantissa;
+  bool exact = quotient.exact;
+  if (drop > 0) {
+    const cpp_int half = cpp_int(1) << (drop - 1);
+    const cpp_int rest = quotient.mantissa & ((half << 1) - 1);
+    kept = quotient.mantissa >> drop;
+    if (rest > half || (rest == half && (kept & 1) != 0)) ++kept;
+    exact = exact && rest == 0;
+  }
+  // kept has at most 53 bits, or is 2^53: the conversion and the scaling are exact.
+  const double value =
+      std::ldexp(kept.convert_to<double>(), quotient.exponent + std::max(drop, 0));
+  return {value, exact};
+}
+
+}  // namespace
+
+NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator) {
+  const cpp_int num = parseBigInteger(numerator), den = parseBigInteger(denominator);
+  if (den == 0) throw std::runtime_error("the denominator is 0");
+  if (num == 0) return {0, true};
+  NearestDouble nearest = round(divide(abs(num), abs(den)));
+  if (!std::isfinite(nearest.value))
+    throw std::runtime_error("the coordinate is beyond double's range");
+  if ((num < 0) != (den < 0)) nearest.value = -nearest.value;
+  return nearest;
+}
+
+}  // namespace fcl_ccd

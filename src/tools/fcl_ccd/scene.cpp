@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "fcl/narrowphase/continuous_collision.h"
+#include "stage_list.h"
+
+namespace fcl_ccd {
+namespace {
+
+using Contact = fcl::ContinuousContactd;
+using Kind = fcl::ContinuousContactKind;
+
+class Stopwatch {
+ public:
+  double seconds() const {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_)
+        .count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_{std::chrono::steady_clock::now()};
+};
+
+void requireSuccess(int code, const std::string& error, const char* mesh) {
+  if (code != fcl::BVH_OK)
+    throw std::runtime_error(std::string("mesh ") + mesh + " is refused: " + error);
+}
+
+template <typename Model>
+std::unique_ptr<Model> buildModel(const std::vector<fcl::Vector3d>& points,
+                                  const std::vector<fcl::Triangle>& triangles,
+                                  const char* mesh) {
+  auto model = std::make_unique<Model>();
+  requireSuccess(model->beginModel(static_cast<int>(triangles.size()),
+                                   static_cast<int>(points.size())),
+                 model->lastError(), mesh);
+  requireSuccess(model->addSubModel(points, triangles), model->lastError(), mesh);
+  const int code = model->endModel(fcl::FclTree::kSkip);
+  requireSuccess(code, model->lastError(), mesh);
+  return model;
+}
+
+/// @brief Builds a model from FCL's own types, so that their conversion is not timed.
+template <typename Model>
+std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, double& seconds) {
+  std::vector<fcl::Vector3d> points;
+  points.reserve(mesh.vertices.size());
+  for (const auto& p : mesh.vertices) points.emplace_back(p[0], p[1], p[2]);
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                           static_cast<std::size_t>(t[2]));
+  const Stopwatch watch;
+  auto model = buildModel<Model>(points, triangles, name);
+  seconds += watch.seconds();
+  return model;
+}
+
+template <typename Model>
+void updateModel(Model& model, const Mesh& from, const Mesh& to, const char* name) {
+  const int code =
+      model.updateFrames(from.vertices.data()->data(), to.vertices.data()->data(),
+                         to.vertices.size(), fcl::FclTree::kSkip);
+  requireSuccess(code, model.lastError(), name);
+}
+
+/// How many of the contact's vertices belong to the first feature.
+std::size_t firstFeatureSize(Kind kind) { return kind == Kind::kVertexFace ? 1 : 2; }
+
+SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) {
+  SceneContact out;
+  out.kind = contact.kind;
+  out.num_vertices = contact.numVertices();
+  out.toc_lo = contact.toc_lo;
+  out.toc_hi = contact.toc_hi;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(out.num_vertices); ++i) {
+    const bool of_first_feature = i < firstFeatureSize(contact.kind);
+    const bool of_o1 = of_first_feature == contact.first_on_o1;
+    out.vertices[i] = {contact.vertices[i], of_o1 ? o1_is_b : o2_is_b};
+  }
+  return out;
+}
+
+bool isEarlier(const SceneContact& a, const SceneContact& b) {
+  return a.toc_lo < b.toc_lo;
+}
+
+}  // namespace
+
+const SceneContact* StepResult::first() const {
+  if (!contacts.empty()) return &contacts.front();
+  return crossing ? &*crossing : nullptr;
+}
+
+Scene::Scene(const SceneFrame& frame, const QuerySettings& settings)
+    : settings_(settings) {
+  build_time_ = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < settings_.repeat; ++i) build(frame);
+}
+
+void Scene::build(const SceneFrame& frame) {
+  double seconds = 0;
+  a_ = timeBuild<Model>(*frame.a, "A", seconds);
+  if (frame.b != nullptr) b_ = timeBuild<Model>(*frame.b, "B", seconds);
+  build_time_ = std::min(build_time_, seconds);
+}
+
+void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
+  fcl::ContinuousContactRequestd request;
+  request.query = settings_.query;
+  request.toc_err = settings_.toc_err;
+  request.enable_contact = false;
+  fcl::ContinuousContactResultd result;
+  const fcl::Transform3d identity = fcl::Transform3d::Identity();
+  if (&o1 == &o2)
+    fcl::continuousSelfCollide(&o1, request, result);
+  else
+    fcl::continuousCollide(&o1, identity, identity, &o2, identity, identity, request,
+                           result);
+
+  const bool o1_is_b = &o1 == b_.get(), o2_is_b = &o2 == b_.get();
+  for (const Contact& contact : result.contacts)
+    step.contacts.push_back(toSceneContact(contact, o1_is_b, o2_is_b));
+  if (result.initially_crossing && !step.initially_crossing) {
+    step.initially_crossing = true;
+    step.crossing = toSceneContact(result.crossing, o1_is_b, o2_is_b);
+  }
+  for (const StageField& stage : kStages)
+    step.counts.*stage.count += result.counts.*stage.count;
+  step.times.update += result.times.update;
+  step.times.traverse += result.times.traverse;
+  step.times.test += result.times.test;
+}
+
+StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
+  StepResult step;
+  const Stopwatch watch;
+  updateModel(*a_, *from.a, *to.a, "A");
+  if (b_ != nullptr) updateModel(*b_, *from.b, *to.b, "B");
+  step.times.update = watch.seconds();
+
+  if (settings_.self) query(*a_, *a_, step);
+  const bool answered = settings_.query == fcl::ContinuousQuery::kAny &&
+                        (!step.contacts.empty() || step.initially_crossing);
+  if (b_ != nullptr && !answered) {
+    query(*a_, *b_, step);
+    std::stable_sort(step.contacts.begin(), step.contacts.end(), isEarlier);
+  }
+  return step;
+}
+
+StepResult Scene::step(const SceneFrame& from, const SceneFrame& to) {
+  StepResult best = runOnce(from, to);
+  for (int i = 1; i < settings_.repeat; ++i) {
+    const StepTimes times = runOnce(from, to).times;
+    if (times.total() < best.times.total()) best.times = times;
+  }
+  return best;
+}
+
+}  // namespace fcl_ccd

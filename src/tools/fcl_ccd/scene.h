@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_SCENE_H
+#define FCL_CCD_SCENE_H
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/AABB.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "mesh_io.h"
+
+namespace fcl_ccd {
+
+struct QuerySettings {
+  fcl::ContinuousQuery query{fcl::ContinuousQuery::kAll};
+  double toc_err{1e-4};
+  bool self{true};  ///< whether A is tested against itself
+  int repeat{1};
+};
+
+/// @brief A vertex of one of the two meshes.
+struct SceneVertex {
+  int id{-1};
+  bool of_b{false};
+};
+
+/// @brief A contact of the scene, without what the program does not report.
+struct SceneContact {
+  fcl::ContinuousContactKind kind{fcl::ContinuousContactKind::kVertexFace};
+  std::array<SceneVertex, 5> vertices;
+  int num_vertices{4};
+  double toc_lo{0};
+  double toc_hi{0};
+};
+
+/// @brief Seconds of each part of a step.
+struct StepTimes {
+  double build{0};
+  double update{0};
+  double traverse{0};
+  double test{0};
+  double total() const { return update + traverse + test; }
+};
+
+struct StepResult {
+  std::vector<SceneContact> contacts;  ///< earliest first
+  bool initially_crossing{false};
+  std::optional<SceneContact> crossing;
+  fcl::StageCounts counts;
+  StepTimes times;  ///< build is left 0
+
+  /// @brief The earliest contact; where there is none, the crossing at t = 0, if any.
+  const SceneContact* first() const;
+};
+
+/// @brief The vertex positions of one frame: mesh A, and B if there is one.
+struct SceneFrame {
+  const Mesh* a{nullptr};
+  const Mesh* b{nullptr};
+};
+
+/// @brief One or two meshes that deform from frame to frame.
+class Scene {
+ public:
+  /// @brief Builds the models, settings.repeat times.
+  /// @throws std::runtime_error naming the mesh ("A", "B") that the library refuses.
+  Scene(const SceneFrame& frame, const QuerySettings& settings);
+
+  /// @brief Least time that building the models took, in seconds.
+  double buildTime() const { return build_time_; }
+
+  /// @brief Moves the models from one frame to the next and runs the queries,
+  /// settings.repeat times; the times are those of the run with the least total.
+  StepResult step(const SceneFrame& from, const SceneFrame& to);
+
+ private:
+  using Model = fcl::DeformableBVHModel<fcl::AABBd>;
+
+  StepResult runOnce(const SceneFrame& from, const SceneFrame& to);
+  void build(const SceneFrame& frame);
+  void query(const Model& o1, const Model& o2, StepResult& step) const;
+
+  QuerySettings settings_;
+  double build_time_{0};
+  std::unique_ptr<Model> a_;
+  std::unique_ptr<Model> b_;
+};
+
+}  // namespace fcl_ccd
+
+#endif

@@ -1,0 +1,793 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Drives the program fcl-ccd as a user does, on meshes small enough to know the answer,
+// and its mesh reader on files of every format, whole and broken.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_io.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using fcl_ccd::Mesh;
+using Json = nlohmann::json;
+
+std::string readText(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void writeText(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
+
+std::vector<std::string> linesOf(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<std::string> fieldsOf(const std::string& line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == ',')
+      fields.emplace_back();
+    else
+      fields.back() += c;
+  }
+  return fields;
+}
+
+std::set<std::string> keysOf(const Json& object) {
+  std::set<std::string> keys;
+  for (const auto& item : object.items()) keys.insert(item.key());
+  return keys;
+}
+
+/// @brief 17 digits, which identify a double.
+std::string exactText(double value) {
+  std::ostringstream out;
+  out.precision(17);
+  out << value;
+  return out.str();
+}
+
+std::string toObj(const Mesh& mesh) {
+  std::string text = "# made by a test\n";
+  for (const auto& p : mesh.vertices)
+    text += "v " + exactText(p[0]) + ' ' + exactText(p[1]) + ' ' + exactText(p[2]) + '\n';
+  for (const auto& t : mesh.triangles)
+    text += "f " + std::to_string(t[0] + 1) + ' ' + std::to_string(t[1] + 1) + ' ' +
+            std::to_string(t[2] + 1) + '\n';
+  return text;
+}
+
+/// @brief Vertices and faces as OFF and ascii PLY have them.
+std::string asciiBody(const Mesh& mesh) {
+  std::string text;
+  for (const auto& p : mesh.vertices)
+    text += exactText(p[0]) + ' ' + exactText(p[1]) + ' ' + exactText(p[2]) + '\n';
+  for (const auto& t : mesh.triangles)
+    text += "3 " + std::to_string(t[0]) + ' ' + std::to_string(t[1]) + ' ' +
+            std::to_string(t[2]) + '\n';
+  return text;
+}
+
+std::string toOff(const Mesh& mesh) {
+  return "OFF\n" + std::to_string(mesh.vertices.size()) + ' ' +
+         std::to_string(mesh.triangles.size()) + " 0\n" + asciiBody(mesh);
+}
+
+std::string plyHeader(const Mesh& mesh, const std::string& format,
+                      const std::string& scalar) {
+  std::string text = "ply\nformat " + format + " 1.0\ncomment made by a test\n";
+  text += "element vertex " + std::to_string(mesh.vertices.size()) + '\n';
+  for (const char* name : {"x", "y", "z"})
+    text += "property " + scalar + ' ' + name + '\n';
+  text += "element face " + std::to_string(mesh.triangles.size()) + '\n';
+  return text + "property list uchar int vertex_indices\nend_header\n";
+}
+
+std::string toAsciiPly(const Mesh& mesh) {
+  return plyHeader(mesh, "ascii", "double") + asciiBody(mesh);
+}
+
+template <typename T>
+void appendBytes(T value, bool big_endian, std::string& out) {
+  std::string bytes(sizeof value, '\0');
+  std::memcpy(bytes.data(), &value, sizeof value);
+  const std::uint16_t probe = 1;
+  unsigned char first_byte = 0;
+  std::memcpy(&first_byte, &probe, 1);
+  const bool host_is_big_endian = first_byte == 0;
+  if (big_endian != host_is_big_endian) bytes.assign(bytes.rbegin(), bytes.rend());
+  out += bytes;
+}
+
+template <typename Scalar>
+std::string toBinaryPly(const Mesh& mesh, bool big_endian) {
+  std::string out =
+      plyHeader(mesh, big_endian ? "binary_big_endian" : "binary_little_endian",
+                sizeof(Scalar) == sizeof(float) ? "float" : "double");
+  for (const auto& p : mesh.vertices)
+    for (const double x : p) appendBytes(static_cast<Scalar>(x), big_endian, out);
+  for (const auto& t : mesh.triangles) {
+    out += '\3';
+    for (const int id : t) appendBytes(static_cast<std::int32_t>(id), big_endian, out);
+  }
+  return out;
+}
+
+/// @brief A floor (vertices 0 1 2) in the plane z = 0, and over it a triangle (3 4 5)
+/// that points down and is lowered by `drop`. With drop 2 its tip, vertex 3, meets the
+/// floor at t = 1/2, and nothing else touches.
+Mesh floorAndTip(double drop) {
+  return {{{-4, -4, 0},
+           {4, -4, 0},
+           {0, 4, 0},
+           {0, 0, 1 - drop},
+           {-1, 0, 3 - drop},
+           {1, 0, 3 - drop}},
+          {{0, 1, 2}, {3, 4, 5}}};
+}
+
+/// @brief A triangle whose edge 0 1 lies on the x axis.
+Mesh edgeAlongX() { return {{{-1, 0, 0}, {1, 0, 0}, {0, -1, -5}}, {{0, 1, 2}}}; }
+
+/// @brief A triangle whose edge 0 1, parallel to the y axis and at height 1, is lowered
+/// by `drop`. With drop 2 it meets the edge of edgeAlongX() at t = 1/2, and nothing else
+/// touches.
+Mesh edgeAlongY(double drop) {
+  return {{{0, -1, 1 - drop}, {0, 1, 1 - drop}, {0, 0, 3 - drop}}, {{0, 1, 2}}};
+}
+
+/// @brief Coordinates that need all 17 digits.
+Mesh unevenMesh() {
+  return {{{0.1, 1.0 / 3, 0.30000000000000004},
+           {1e-300, -123456.78901234567, 2.5},
+           {1e22, 4.9406564584124654e-324, -0.0}},
+          {{0, 1, 2}, {2, 1, 0}}};
+}
+
+class CcdTool : public ::testing::Test {
+ protected:
+  struct Outcome {
+    int exit_code;
+    std::string out;
+    std::string err;
+  };
+
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() /
+              ("fcl_ccd_tool_" + std::to_string(getpid()) + "_" +
+               ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path path(const std::string& name) const { return folder_ / name; }
+
+  /// @brief Runs the program in the test's folder; `arguments` in the shell's syntax,
+  /// `out_name` where its stdout goes.
+  Outcome run(const std::string& arguments,
+              const std::string& out_name = "out.txt") const {
+    const fs::path out = path(out_name), err = path("err.txt");
+    const std::string command = "cd '" + folder_.string() + "' && '" FCL_CCD_TOOL "' " +
+                                arguments + " >" + out_name + " 2>err.txt";
+    const int status = std::system(command.c_str());
+    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", readText(err)};
+    fs::remove(err);
+    if (!fs::is_regular_file(out)) return outcome;
+    outcome.out = readText(out);
+    fs::remove(out);
+    return outcome;
+  }
+
+  Json json(const std::string& name) const { return Json::parse(readText(path(name))); }
+
+  /// @brief Frames tip0.obj and tip1.obj: the tip falls through the floor.
+  void writeTip() const {
+    writeText(path("tip0.obj"), toObj(floorAndTip(0)));
+    writeText(path("tip1.obj"), toObj(floorAndTip(2)));
+  }
+
+  /// @brief Frames x0.off, x1.off (at rest) and y0.ply, y1.ply (falling onto it).
+  void writeEdges() const {
+    writeText(path("x0.off"), toOff(edgeAlongX()));
+    writeText(path("x1.off"), toOff(edgeAlongX()));
+    writeText(path("y0.ply"), toAsciiPly(edgeAlongY(0)));
+    writeText(path("y1.ply"), toBinaryPly<float>(edgeAlongY(2), true));
+  }
+
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_))
+      names.insert(entry.path().filename().string());
+    return names;
+  }
+
+  /// @brief The program fails with exit code 2, names `cause`, and leaves the folder's
+  /// files as they were.
+  void expectFailure(const std::string& arguments, const std::string& cause) const {
+    SCOPED_TRACE(arguments);
+    const std::set<std::string> before = files();
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err.find(cause), std::string::npos) << outcome.err;
+    EXPECT_EQ(files(), before);
+  }
+
+ private:
+  fs::path folder_;
+};
+
+void expectSame(const Mesh& a, const Mesh& b) {
+  EXPECT_EQ(a.triangles, b.triangles);
+  ASSERT_EQ(a.vertices.size(), b.vertices.size());
+  // Bit for bit: -0.0 and 0.0 differ.
+  EXPECT_EQ(std::memcmp(a.vertices.data(), b.vertices.data(),
+                        a.vertices.size() * sizeof a.vertices[0]),
+            0);
+}
+
+TEST_F(CcdTool, ReadsEveryFormatWithFullPrecision) {
+  const Mesh mesh = unevenMesh();
+  const std::vector<std::pair<std::string, std::string>> encodings = {
+      {"a.obj", toObj(mesh)},
+      {"a.off", toOff(mesh)},
+      {"a.ply", toAsciiPly(mesh)},
+      {"le.ply", toBinaryPly<double>(mesh, false)},
+      {"be.PLY", toBinaryPly<double>(mesh, true)}};
+  for (const auto& [name, text] : encodings) {
+    SCOPED_TRACE(name);
+    writeText(path(name), text);
+    expectSame(fcl_ccd::readMesh(path(name).string()), mesh);
+  }
+}
+
+TEST_F(CcdTool, ReadsFloatsExactly) {
+  Mesh mesh = floorAndTip(0.25);
+  for (auto& p : mesh.vertices) p[0] = static_cast<double>(static_cast<float>(p[0] / 3));
+  for (const bool big_endian : {false, true}) {
+    writeText(path("f.ply"), toBinaryPly<float>(mesh, big_endian));
+    expectSame(fcl_ccd::readMesh(path("f.ply").string()), mesh);
+  }
+}
+
+TEST_F(CcdTool, ReadsVariantsOfTheFormats) {
+  const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  const std::vector<std::pair<std::string, std::string>> encodings = {
+      {"quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"},
+      {"relative.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf -4 -3 -2 -1\n"},
+      {"full.obj",
+       "mtllib m.mtl\r\no square\r\nv\t0 0 0 1\r\nv 1 0 0 1\r\nv 1 1 0 1\r\nv 0 1 0 1\r\n"
+       "vt 0 0\r\nvn 0 0 1\r\nusemtl red\r\nf\t1/1/1 2//1 \\\r\n 3/1 4 # done\r\nl 1 2"},
+      {"quad.off",
+       "# c\nCOFF 4 1 0\n0 0 0 255 0 0\n1 0 0 1 1 1\n\n1 1 0 # here\n"
+       "0 1 0\n4 0 1 2 3 0.5 0.5 0.5\n"},
+      {"quad.ply",
+       "ply\r\nformat ascii 1.0\r\nobj_info x\r\nelement vertex 4\r\nproperty uchar "
+       "red\r\n"
+       "property float32 x\r\nproperty float64 y\r\nproperty double z\r\n"
+       "element material 1\r\nproperty int shine\r\nelement face 1\r\n"
+       "property list int uint vertex_index\r\nproperty list uchar float texcoord\r\n"
+       "end_header\r\n9 0 0 0\r\n9 1 0 0\r\n9 1 1 0\r\n9 0 1 0\r\n7\r\n"
+       "4 0 1 2 3 2 .5 .5\r\n"}};
+  for (const auto& [name, text] : encodings) {
+    SCOPED_TRACE(name);
+    writeText(path(name), text);
+    expectSame(fcl_ccd::readMesh(path(name).string()), square);
+  }
+}
+
+struct BrokenFile {
+  const char* name;
+  std::string text;
+  const char* cause;
+};
+
+std::vector<BrokenFile> brokenFiles() {
+  const Mesh mesh = floorAndTip(0);
+  const std::string obj = toObj(mesh), off = toOff(mesh), ply = toAsciiPly(mesh);
+  const std::string binary = toBinaryPly<float>(mesh, false);
+  const auto with = [](std::string text, const std::string& from, const std::string& to) {
+    return text.replace(text.find(from), from.size(), to);
+  };
+  Mesh infinite = mesh;
+  infinite.vertices[4][1] = HUGE_VAL;
+  return {
+      {"empty.obj", "", "empty"},
+      {"empty.ply", "", "empty"},
+      {"noise.obj", "\x01\xff noise\n", "not an OBJ statement"},
+      {"noise.off", "\x01\xff noise\n", "begins with OFF"},
+      {"noise.ply", "\x01\xff noise\n", "begins with 'ply'"},
+      {"mesh.stl", obj, "unknown mesh format"},
+      {"mesh", obj, "unknown mesh format"},
+      {"faceless.obj", obj.substr(0, obj.find("f ")), "no faces"},
+      {"cut.obj", obj.substr(0, obj.size() - 4), "at least three vertices"},
+      {"cut.off", off.substr(0, off.size() - 4), "ends before the face's 3 vertex ids"},
+      {"cut_early.off", off.substr(0, off.size() - 9), "ends before face 1 of 2"},
+      {"cut_header.off", "OFF\n", "ends before the number of vertices"},
+      {"cut.ply", ply.substr(0, ply.size() - 4), "face 1 of 2"},
+      {"cut_header.ply", ply.substr(0, ply.find("end_header")), "'end_header'"},
+      {"cut_binary.ply", binary.substr(0, binary.size() - 1), "face 1 of 2"},
+      {"cut_vertices.ply", binary.substr(0, binary.find("end_header") + 40),
+       "vertex 2 of"},
+      {"longer.off", off + "1 2 3\n", "more lines"},
+      {"longer.ply", ply + "1\n", "more data"},
+      {"longer_binary.ply", binary + "xyz", "more data"},
+      {"huge.off", with(off, "6 2 0", "2000000000 2 0"), "ends before vertex"},
+      {"huge.ply", with(binary, "vertex 6", "vertex 9000000000000000000"), "vertex "},
+      {"id.obj", with(obj, "f 4 5 6", "f 4 5 7"), "vertex id 7 is out of range"},
+      {"zero.obj", with(obj, "f 4 5 6", "f 4 5 0"), "out of range"},
+      {"back.obj", with(obj, "f 4 5 6", "f 4 5 -7"), "out of range"},
+      {"overflow.obj", with(obj, "f 4 5 6", "f 4 5 6 99999999999"), "out of range"},
+      {"word.obj", with(obj, "f 4 5 6", "f 4 5 6 x"), "'x' is not a vertex id"},
+      {"id.off", with(off, "3 3 4 5", "3 3 4 6"), "out of range"},
+      {"negative.off", with(off, "3 3 4 5", "3 3 4 -1"), "out of range"},
+      {"fraction.off", with(off, "3 3 4 5", "3 3 4 4.5"), "is not a vertex id"},
+      {"id.ply", with(ply, "3 3 4 5", "3 3 4 6"), "face 1 (counted from 0)"},
+      {"negative.ply", with(ply, "3 3 4 5", "3 3 4 -1"), "face 1 (counted from 0)"},
+      {"two.ply", with(ply, "3 3 4 5", "2 3 4"), "fewer than three vertices"},
+      {"nan.obj", with(obj, "v 4 -4 0", "v 4 nan 0"), "'nan' is not finite"},
+      {"inf.off", with(off, "4 -4 0", "4 1e999 0"), "'1e999' is not finite"},
+      {"nan.ply", with(ply, "4 -4 0", "4 -NaN 0"), "'-NaN' is not finite"},
+      {"inf.ply", toBinaryPly<double>(infinite, true), "vertex 4"},
+      {"word.ply", with(ply, "4 -4 0", "4 -4x 0"), "'-4x' is not a number"},
+      {"no_z.ply", with(ply, "property double z\n", ""), "no coordinate z"},
+      {"int_z.ply", with(ply, "property double z", "property int z"), "no coordinate z"},
+      {"type.ply", with(ply, "property double z", "property float80 z"), "'float80'"},
+      {"no_faces.ply", with(ply, "element face 2", "element fake 2"), "element 'face'"}};
+}
+
+TEST_F(CcdTool, RefusesBrokenFilesByNameAndCause) {
+  for (const BrokenFile& file : brokenFiles()) {
+    SCOPED_TRACE(file.name);
+    writeText(path(file.name), file.text);
+    try {
+      fcl_ccd::readMesh(path(file.name).string());
+      FAIL() << "no exception";
+    } catch (const std::runtime_error& error) {
+      const std::string what = error.what();
+      EXPECT_EQ(what.rfind(path(file.name).string() + ": ", 0), 0u) << what;
+      EXPECT_NE(what.find(file.cause), std::string::npos) << what;
+    }
+  }
+  EXPECT_THROW(fcl_ccd::readMesh(path("missing.ply").string()), std::runtime_error);
+  fs::create_directory(path("folder.ply"));
+  EXPECT_THROW(fcl_ccd::readMesh(path("folder.ply").string()), std::runtime_error);
+}
+
+TEST_F(CcdTool, PaintedPlyReadsBack) {
+  const Mesh mesh = unevenMesh();
+  const std::vector<fcl_ccd::Colour> colours(mesh.vertices.size(), {1, 2, 3});
+  fcl_ccd::writePaintedPly(path("p.ply").string(), mesh, colours);
+  expectSame(fcl_ccd::readMesh(path("p.ply").string()), mesh);
+  EXPECT_EQ(files(), std::set<std::string>{"p.ply"});
+  EXPECT_THROW(fcl_ccd::writePaintedPly(path("q.ply").string(), mesh, {}),
+               std::invalid_argument);
+  EXPECT_THROW(fcl_ccd::writePaintedPly(path("no/q.ply").string(), mesh, colours),
+               std::runtime_error);
+  EXPECT_EQ(files(), std::set<std::string>{"p.ply"});
+}
+
+TEST_F(CcdTool, FindsAVertexFaceContact) {
+  writeTip();
+  const Outcome outcome =
+      run("run tip0.obj tip1.obj --contacts c.csv --json r.json --toc-err 1e-6");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");  // no progress line unless stderr is a terminal
+  EXPECT_EQ(linesOf(outcome.out).size(), 2u) << outcome.out;
+  EXPECT_EQ(files(), (std::set<std::string>{"c.csv", "r.json", "tip0.obj", "tip1.obj"}));
+
+  const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi");
+  const std::vector<std::string> fields = fieldsOf(lines[1]);
+  ASSERT_EQ(fields.size(), 8u);
+  EXPECT_EQ(fields[0], "0");
+  EXPECT_EQ(fields[1], "vf");
+  EXPECT_EQ(fields[2], "3");
+  EXPECT_EQ((std::set<std::string>{fields[3], fields[4], fields[5]}),
+            (std::set<std::string>{"0", "1", "2"}));
+  const double toc_lo = std::stod(fields[6]), toc_hi = std::stod(fields[7]);
+  EXPECT_LE(toc_lo, 0.5);
+  EXPECT_GE(toc_hi, 0.5);
+  EXPECT_LE(toc_hi - toc_lo, 1e-6);
+
+  const Json first = json("r.json").at("steps").at(0).at("first");
+  EXPECT_EQ(first.at("kind"), "vf");
+  EXPECT_EQ(first.at("vertices").at(0), 3);
+  EXPECT_EQ(first.at("toc_lo").get<double>(), toc_lo);  // both files hold every digit
+  EXPECT_EQ(first.at("toc_hi").get<double>(), toc_hi);
+}
+
+TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
+  writeTip();
+  const Outcome outcome = run("run tip0.obj tip1.obj tip1.obj --json r.json --repeat 3");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json report = json("r.json");
+  EXPECT_EQ(keysOf(report), (std::set<std::string>{"steps"}));
+  ASSERT_EQ(report.at("steps").size(), 2u);
+  for (const Json& step : report.at("steps")) {
+    EXPECT_EQ(keysOf(step),
+              (std::set<std::string>{"vertices", "triangles", "contacts",
+                                     "initially_crossing", "first", "ms", "stages"}));
+    EXPECT_EQ(step.at("vertices"), 6);
+    EXPECT_EQ(step.at("triangles"), 2);
+    EXPECT_EQ(keysOf(step.at("contacts")), (std::set<std::string>{"vf", "ee"}));
+    const Json& ms = step.at("ms");
+    EXPECT_EQ(keysOf(ms),
+              (std::set<std::string>{"build", "update", "traverse", "test", "total"}));
+    EXPECT_DOUBLE_EQ(ms.at("total").get<double>(), ms.at("update").get<double>() +
+                                                       ms.at("traverse").get<double>() +
+                                                       ms.at("test").get<double>());
+    const Json& stages = step.at("stages");
+    EXPECT_EQ(keysOf(stages),
+              (std::set<std::string>{"node_pairs", "triangle_pairs", "adjacent_pairs",
+                                     "feature_pairs", "box_culled", "filter_culled",
+                                     "solver_culled", "exact_culled", "exact_tests",
+                                     "contacts", "crossing_tests"}));
+    int left = stages.at("feature_pairs").get<int>();
+    for (const char* culled :
+         {"box_culled", "filter_culled", "solver_culled", "exact_culled"})
+      left -= stages.at(culled).get<int>();
+    EXPECT_EQ(left, stages.at("contacts").get<int>());
+  }
+  const Json& moving = report.at("steps").at(0);
+  EXPECT_EQ(moving.at("contacts"), Json({{"vf", 1}, {"ee", 0}}));
+  EXPECT_EQ(moving.at("initially_crossing"), false);
+  EXPECT_EQ(keysOf(moving.at("first")),
+            (std::set<std::string>{"kind", "vertices", "toc_lo", "toc_hi"}));
+  EXPECT_GT(moving.at("ms").at("build").get<double>(), 0);
+  EXPECT_EQ(report.at("steps").at(1).at("ms").at("build").get<double>(), 0);
+}
+
+TEST_F(CcdTool, CrossingAtRestIsFirst) {
+  writeTip();
+  ASSERT_EQ(run("run tip1.obj tip1.obj --json r.json --contacts c.csv").exit_code, 0);
+  const Json step = json("r.json").at("steps").at(0);
+  EXPECT_EQ(step.at("initially_crossing"), true);
+  EXPECT_EQ(step.at("contacts"), Json({{"vf", 0}, {"ee", 0}}));
+  const Json& first = step.at("first");
+  EXPECT_EQ(first.at("kind"), "crossing");
+  EXPECT_EQ(first.at("vertices").size(), 5u);
+  EXPECT_EQ(first.at("toc_lo"), 0.0);
+  EXPECT_EQ(first.at("toc_hi"), 0.0);
+  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
+}
+
+TEST_F(CcdTool, WithoutContactFirstIsNull) {
+  writeTip();
+  const Outcome outcome = run("run tip0.obj tip0.obj --json r.json --contacts c.csv");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json step = json("r.json").at("steps").at(0);
+  EXPECT_TRUE(step.at("first").is_null());
+  EXPECT_EQ(step.at("initially_crossing"), false);
+  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
+}
+
+TEST_F(CcdTool, TestsTwoMeshes) {
+  writeEdges();
+  const Outcome outcome =
+      run("run x0.off x1.off --against y0.ply y1.ply --contacts c.csv --json r.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
+  ASSERT_EQ(lines.size(), 2u);
+  const std::vector<std::string> fields = fieldsOf(lines[1]);
+  ASSERT_EQ(fields.size(), 8u);
+  EXPECT_EQ(fields[1], "ee");
+  EXPECT_EQ((std::set<std::string>{fields[2], fields[3]}),
+            (std::set<std::string>{"0", "1"}));
+  EXPECT_EQ((std::set<std::string>{fields[4], fields[5]}),
+            (std::set<std::string>{"b0", "b1"}));
+  const Json step = json("r.json").at("steps").at(0);
+  EXPECT_EQ(step.at("vertices"), 6);
+  EXPECT_EQ(step.at("triangles"), 2);
+  EXPECT_EQ(step.at("first").at("kind"), "ee");
+  EXPECT_TRUE(step.at("first").at("vertices").at(0).is_number_integer());
+  EXPECT_EQ(step.at("first").at("vertices").at(2).get<std::string>()[0], 'b');
+}
+
+TEST_F(CcdTool, PrefixesTheVertexOfB) {
+  // The floor is A, the falling triangle B: its vertex 0 meets A's face.
+  const Mesh whole0 = floorAndTip(0), whole1 = floorAndTip(2);
+  const Mesh floor{{whole0.vertices.begin(), whole0.vertices.begin() + 3}, {{0, 1, 2}}};
+  writeText(path("floor.obj"), toObj(floor));
+  writeText(path("tip0.obj"),
+            toObj({{whole0.vertices.begin() + 3, whole0.vertices.end()}, {{0, 1, 2}}}));
+  writeText(path("tip1.obj"),
+            toObj({{whole1.vertices.begin() + 3, whole1.vertices.end()}, {{0, 1, 2}}}));
+  const auto contactOf = [&](const std::string& arguments) {
+    const Outcome outcome = run("run " + arguments + " --contacts c.csv");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
+    EXPECT_EQ(lines.size(), 2u);
+    return fieldsOf(lines.back());
+  };
+  std::vector<std::string> fields =
+      contactOf("floor.obj floor.obj --against tip0.obj tip1.obj");
+  EXPECT_EQ(fields[2], "b0");
+  EXPECT_NE(fields[3][0], 'b');
+  fields = contactOf("tip0.obj tip1.obj --against floor.obj floor.obj --no-self");
+  EXPECT_EQ(fields[2], "0");
+  EXPECT_EQ(fields[3][0], 'b');
+}
+
+TEST_F(CcdTool, NoSelfLeavesOnlyPairs) {
+  writeTip();
+  Mesh far = edgeAlongX();
+  for (auto& p : far.vertices) p[2] += 100;
+  writeText(path("far.obj"), toObj(far));
+  const std::string pair =
+      "run tip0.obj tip1.obj --against far.obj far.obj --json r.json";
+  ASSERT_EQ(run(pair).exit_code, 0);
+  EXPECT_EQ(json("r.json").at("steps").at(0).at("contacts").at("vf"), 1);
+  ASSERT_EQ(run(pair + " --no-self").exit_code, 0);
+  EXPECT_EQ(json("r.json").at("steps").at(0).at("contacts").at("vf"), 0);
+}
+
+TEST_F(CcdTool, FirstAndAnyAgreeWithAll) {
+  writeTip();
+  double toc_lo[3];
+  int i = 0;
+  for (const char* query : {"all", "first", "any"}) {
+    ASSERT_EQ(run("run tip0.obj tip1.obj --json r.json --query " + std::string(query))
+                  .exit_code,
+              0);
+    const Json step = json("r.json").at("steps").at(0);
+    EXPECT_EQ(step.at("contacts"), Json({{"vf", 1}, {"ee", 0}})) << query;
+    toc_lo[i++] = step.at("first").at("toc_lo").get<double>();
+  }
+  EXPECT_EQ(toc_lo[0], toc_lo[1]);
+  EXPECT_EQ(toc_lo[0], toc_lo[2]);  // there is only one to find
+}
+
+TEST_F(CcdTool, PaintsTheVerticesOfContacts) {
+  writeTip();
+  ASSERT_EQ(run("run tip0.obj tip1.obj --paint p.ply").exit_code, 0);
+  expectSame(fcl_ccd::readMesh(path("p.ply").string()), floorAndTip(2));
+  const std::string file = readText(path("p.ply"));
+  const std::string end = "end_header\n";
+  const std::size_t body = file.find(end) + end.size();
+  constexpr std::size_t kVertexBytes = 27, kColourOffset = 24;
+  const auto colourOf = [&](std::size_t v) {
+    return file.substr(body + v * kVertexBytes + kColourOffset, 3);
+  };
+  for (const std::size_t v : {0u, 1u, 2u}) EXPECT_EQ(colourOf(v), colourOf(3));
+  EXPECT_EQ(colourOf(4), colourOf(5));
+  EXPECT_NE(colourOf(3), colourOf(4));
+}
+
+TEST_F(CcdTool, BadInputsExitWithTwoAndWriteNothing) {
+  writeTip();
+  const Mesh tip = floorAndTip(0);
+  Mesh turned = tip;
+  turned.triangles[1] = {4, 3, 5};
+  Mesh smaller = tip;
+  smaller.vertices.pop_back();
+  smaller.triangles.pop_back();
+  writeText(path("turned.obj"), toObj(turned));
+  writeText(path("smaller.obj"), toObj(smaller));
+  writeText(path("cut.off"), toOff(tip).substr(0, 30));
+  writeText(path("nan.obj"), toObj(tip) + "v nan 0 0\n");
+  const std::string outputs = " --contacts c.csv --json r.json --paint p.ply";
+  expectFailure("run tip0.obj missing.obj" + outputs, "missing.obj: cannot open");
+  expectFailure("run missing.obj tip0.obj" + outputs, "missing.obj: cannot open");
+  expectFailure("run tip0.obj turned.obj" + outputs, "turned.obj: its faces differ");
+  expectFailure("run tip0.obj smaller.obj" + outputs, "smaller.obj: has 5 vertices");
+  expectFailure("run tip0.obj cut.off" + outputs, "cut.off: ");
+  expectFailure("run tip0.obj nan.obj" + outputs, "nan.obj: line ");
+  // Found only after a step has succeeded.
+  expectFailure("run tip0.obj tip1.obj turned.obj" + outputs, "turned.obj: ");
+}
+
+TEST_F(CcdTool, BadOutputsExitWithTwoAndWriteNothing) {
+  writeTip();
+  const std::string good = "run tip0.obj tip1.obj --contacts c.csv";
+  expectFailure(good + " --json no/r.json", "no/r.json: cannot write");
+  expectFailure(good + " --json .", ".: cannot write");
+  expectFailure(good + " --json c.csv", "c.csv: cannot write");
+  expectFailure(good + " --json ./c.csv", "c.csv: cannot write");
+  expectFailure(good + " --paint tip1.obj", "tip1.obj: cannot write");
+  EXPECT_EQ(readText(path("tip1.obj")), toObj(floorAndTip(2)));
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
+  expectFailure(good + " --json /dev/full", "/dev/full: writing failed");
+  const Outcome outcome = run(good, "/dev/full");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("standard output"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(path("c.csv")));
+}
+
+TEST_F(CcdTool, FailureLeavesAnExistingFileAlone) {
+  writeTip();
+  writeText(path("r.json"), "old");
+  EXPECT_EQ(run("run tip0.obj missing.obj --json r.json").exit_code, 2);
+  EXPECT_EQ(readText(path("r.json")), "old");
+  EXPECT_EQ(run("run tip0.obj tip1.obj --json r.json").exit_code, 0);
+  EXPECT_EQ(json("r.json").count("steps"), 1u);
+}
+
+TEST_F(CcdTool, FollowsLinksAndKeepsPermissions) {
+  writeTip();
+  writeText(path("r.json"), "old");
+  fs::permissions(path("r.json"), fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink("r.json", path("link.json"));
+  ASSERT_EQ(run("run tip0.obj tip1.obj --json link.json").exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(path("link.json")));
+  EXPECT_EQ(json("r.json").count("steps"), 1u);
+  EXPECT_EQ(fs::status(path("r.json")).permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(CcdTool, WritesToStdoutInPlace) {
+  if (!fs::exists("/dev/stdout")) GTEST_SKIP() << "no /dev/stdout here";
+  writeTip();
+  const Outcome outcome = run("run tip0.obj tip1.obj --contacts /dev/stdout");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> lines = linesOf(outcome.out);
+  ASSERT_EQ(lines.size(), 4u) << outcome.out;  // two of the table, two of the contacts
+  EXPECT_NE(std::find(lines.begin(), lines.end(), "step,kind,i0,i1,i2,i3,toc_lo,toc_hi"),
+            lines.end());
+}
+
+TEST_F(CcdTool, UsageErrorsExitWithTwo) {
+  writeTip();
+  for (const char* arguments :
+       {"", "walk", "run", "run tip0.obj", "run tip0.obj tip1.obj --against tip0.obj",
+        "run tip0.obj tip1.obj tip0.obj --against tip0.obj tip1.obj",
+        "run tip0.obj tip1.obj --no-self", "run tip0.obj tip1.obj --query some",
+        "run tip0.obj tip1.obj --repeat 0", "run tip0.obj tip1.obj --repeat x",
+        "run tip0.obj tip1.obj --toc-err 0", "run tip0.obj tip1.obj --toc-err -1",
+        "run tip0.obj tip1.obj --toc-err nan", "run tip0.obj tip1.obj --toc-err inf",
+        "run tip0.obj tip1.obj --colour red", "queries --kind vf", "queries q.csv",
+        "queries q.csv --kind fv"}) {
+    SCOPED_TRACE(arguments);
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_NE(outcome.err, "");
+    EXPECT_EQ(outcome.out, "");
+  }
+}
+
+TEST_F(CcdTool, HelpAndVersionExitWithZero) {
+  for (const char* arguments : {"--help", "run --help", "queries --help"}) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_NE(outcome.out.find("Examples:"), std::string::npos) << arguments;
+  }
+  const Outcome version = run("--version");
+  EXPECT_EQ(version.exit_code, 0);
+  EXPECT_EQ(version.out.rfind("fcl-ccd ", 0), 0u) << version.out;
+}
+
+/// @brief One query in the format of the CSV files: points x denominators `den`.
+std::string queryRows(const std::vector<std::array<int, 3>>& points, const char* den,
+                      const std::string& truth) {
+  std::string rows;
+  for (const auto& p : points) {
+    for (std::size_t k = 0; k < 3; ++k)
+      rows += (k > 0 ? "," : "") + std::to_string(p[k]) + ',' + den;
+    rows += (truth.empty() ? "" : ",") + truth + '\n';
+  }
+  return rows;
+}
+
+/// @brief A vertex falls through a triangle (at t = 1/2), or beside it.
+std::string vertexFaceRows(bool hit, const char* den, const std::string& truth) {
+  const int x = hit ? 0 : 50;
+  return queryRows({{x, 0, 2},
+                    {-8, -8, 0},
+                    {8, -8, 0},
+                    {0, 8, 0},
+                    {x, 0, -2},
+                    {-8, -8, 0},
+                    {8, -8, 0},
+                    {0, 8, 0}},
+                   den, truth);
+}
+
+TEST_F(CcdTool, CountsWrongAnswersOfQueries) {
+  // The second and the third lie about the truth.
+  writeText(path("q.csv"),
+            vertexFaceRows(true, "4", "1") + vertexFaceRows(false, "4", "1"));
+  writeText(path("r.csv"), vertexFaceRows(true, "18014398509481984", "0"));
+  const Outcome outcome = run("queries q.csv r.csv --kind vf --json r.json --repeat 2");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.err, "");
+  const Json report = json("r.json");
+  EXPECT_EQ(keysOf(report),
+            (std::set<std::string>{"queries", "true", "false_negatives",
+                                   "false_positives", "uncertain", "ns_per_query"}));
+  EXPECT_EQ(report.at("queries"), 3);
+  EXPECT_EQ(report.at("true"), 2);
+  EXPECT_EQ(report.at("false_negatives"), 1);
+  EXPECT_EQ(report.at("false_positives"), 1);
+  EXPECT_EQ(report.at("uncertain"), 0);
+  EXPECT_GT(report.at("ns_per_query").get<double>(), 0);
+}
+
+TEST_F(CcdTool, PrintsAnswersOfQueriesWithoutTruth) {
+  writeText(path("q.csv"),
+            vertexFaceRows(true, "4", "") + vertexFaceRows(false, "4", ""));
+  const Outcome outcome = run("queries q.csv --kind vf --print --json r.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const std::vector<std::string> lines = linesOf(outcome.out);
+  ASSERT_EQ(lines.size(), 2u);
+  const std::vector<std::string> fields = fieldsOf(lines[0]);
+  ASSERT_EQ(fields.size(), 4u);
+  EXPECT_EQ(fields[0] + fields[1], "0yes");
+  EXPECT_LE(std::stod(fields[2]), 0.5);
+  EXPECT_GE(std::stod(fields[3]), 0.5);
+  EXPECT_EQ(lines[1], "1,no,,");
+  EXPECT_TRUE(json("r.json").at("true").is_null());
+  EXPECT_TRUE(json("r.json").at("false_negatives").is_null());
+  EXPECT_TRUE(json("r.json").at("false_positives").is_null());
+}
+
+TEST_F(CcdTool, TestsEdgeEdgeQueries) {
+  writeText(path("q.csv"), queryRows({{-1, 0, 0},
+                                      {1, 0, 0},
+                                      {0, -1, 1},
+                                      {0, 1, 1},
+                                      {-1, 0, 0},
+                                      {1, 0, 0},
+                                      {0, -1, -1},
+                                      {0, 1, -1}},
+                                     "1", "1"));
+  const Outcome outcome = run("queries q.csv --kind ee --print");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(outcome.out.rfind("0,yes,", 0), 0u) << outcome.out;
+}
+
+TEST_F(CcdTool, WarnsOfQueriesThatAreNotDoubles) {
+  writeText(path("q.csv"), vertexFaceRows(true, "3", "1"));
+  const Outcome outcome = run("queries q.csv --kind vf --json r.json");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_NE(outcome.err.find("warning"), std::string::npos);
+  EXPECT_EQ(json("r.json").at("false_negatives"), 0);
+}
+
+TEST_F(CcdTool, BadQueriesExitWithTwo) {
+  const std::string good = vertexFaceRows(true, "4", "1");
+  const auto expectRefused = [&](const std::string& text, const std::string& cause) {
+    writeText(path("q.csv"), text);
+    expectFailure("queries q.csv --kind vf --json r.json", "q.csv: " + cause);
+  };
+  expectRefused("", "the file is empty");
+  expectRefused(good.substr(0, good.rfind("0,4,8")), "the file has 7 rows");
+  expectRefused("1,2,3\n" + good, "line 1: expected 6 or 7 fields, found 3");
+  expectRefused(good + "1,0,1,1,1,1,1\n", "line 9: the denominator is 0");
+  expectRefused(good + "1.5,1,1,1,1,1,1\n", "line 9: '1.5' is not an integer");
+  expectRefused(good + "1" + std::string(400, '0') + ",1,1,1,1,1,1\n",
+                "line 9: the coordinate is beyond double's range");
+  expectRefused(good + "1,1,1,1,1,1,2\n", "line 9: the seventh field is '2'");
+  expectRefused(good + "1,1,1,1,1,1\n", "line 9: some rows have a seventh field");
+  expectRefused(good + "1,1,1,1,1,1,1\n1,1,1,1,1,1,0\n",
+                "line 10: the rows of one query");
+  expectFailure("queries missing.csv --kind vf", "missing.csv: cannot open");
+}
+
+}  // namespace
