@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -57,6 +59,8 @@ double maxNorm(const Vec& a) {
 struct Difference {
   Vec t0, t1;
   double norm;
+
+  bool isStill() const { return t0.x == t1.x && t0.y == t1.y && t0.z == t1.z; }
 
   Difference() = default;
   Difference(const VertexPath& p, const VertexPath& q)
@@ -155,6 +159,9 @@ struct Pair {
   // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
   // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
   Difference u, v, w, r, q, z;
+
+  /// No relative motion: time decides nothing.
+  bool isStill() const { return u.isStill() && v.isStill() && w.isStill(); }
 
   Pair(FeatureKind k, const FeaturePoints& x) : kind(k) {
     if (kind == FeatureKind::kVertexFace) {
@@ -275,16 +282,23 @@ double rootOf(const Cubic& f, double tol) {
   return s;
 }
 
-/// Whether a vertex of one feature lies on a vertex of the other at t = 0: a contact at
-/// exactly 0, whatever comes later. Common in real meshes (vertices doubled along seams).
-bool startOnVertex(FeatureKind kind, const FeaturePoints& x) {
+/// Whether the features provably touch at t = 0, whatever comes later: a vertex on a
+/// vertex (seams of real meshes), or four points that are exactly coplanar and a point
+/// strictly inside (layers at rest). Touching at a border is left to decideExactly().
+bool touchAtStart(const Pair& pair, const FeaturePoints& x) {
   const auto coincide = [&x](int i, int j) {
     return x[i].t0[0] == x[j].t0[0] && x[i].t0[1] == x[j].t0[1] &&
            x[i].t0[2] == x[j].t0[2];
   };
-  if (kind == FeatureKind::kVertexFace)
-    return coincide(0, 1) || coincide(0, 2) || coincide(0, 3);
-  return coincide(0, 2) || coincide(0, 3) || coincide(1, 2) || coincide(1, 3);
+  const bool on_vertex =
+      pair.kind == FeatureKind::kVertexFace
+          ? coincide(0, 1) || coincide(0, 2) || coincide(0, 3)
+          : coincide(0, 2) || coincide(0, 3) || coincide(1, 2) || coincide(1, 3);
+  if (on_vertex) return true;
+  const Segment u = restrict(pair.u, 0, 0), v = restrict(pair.v, 0, 0),
+                w = restrict(pair.w, 0, 0);
+  return insideness(pair, 0, 0, u, v, w, cross(v, w)) == Side::kPositive &&
+         orientation(x[0].t0, x[1].t0, x[2].t0, x[3].t0) == 0;
 }
 
 /// Intervals still to be looked at, the earliest on top. Each look replaces one by at
@@ -391,10 +405,10 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     // A wide interval with a root is first cut close around it.
     if (!(crosses && width > toc_err)) {
       if (areSeparated(pair, lo, hi)) continue;
-      if (look == 0 && lo == 0 && startOnVertex(kind, x))
+      if (look == 0 && lo == 0 && touchAtStart(pair, x))
         return {Answer::kYes, 0, 0, DecidedBy::kSolver};
       const bool flat = !reliable || f.isLost();
-      if (width <= min_width || (flat && width <= kMinFlatWidth)) {
+      if (width <= min_width || (flat && width <= kMinFlatWidth) || pair.isStill()) {
         found.addUnsure(lo, hi);
         continue;
       }

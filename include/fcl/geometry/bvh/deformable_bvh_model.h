@@ -47,7 +47,7 @@ enum class FclTree {
 /// per call, as for a plain BVHModel, until the next update through this class.
 ///
 /// Thread-safety: concurrent const access is safe; copies are deep and independent.
-template <typename BV>
+template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:
   using S = typename BV::S;
@@ -87,6 +87,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// @param previous, current  num_vertices x 3 coordinates each (x y z x y z ...), model
   /// frame, copied; may be the model's own arrays.
   /// @param num_vertices  must equal the model's.
+  /// @param fcl_tree  whether FCL's own tree follows.
   int updateFrames(const S* previous, const S* current, std::size_t num_vertices,
                    FclTree fcl_tree = FclTree::kSkip);
 
@@ -103,6 +104,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// @brief Bytes that this class holds over BVHModel<BV> with two frames.
   std::size_t deformableMemUsage() const;
 
+  bool isInStep() const override;
+  detail::deformable::VertexFrames frames() const override;
   NODE_TYPE getNodeType() const override;
   void computeLocalAABB() override;
 
@@ -123,10 +126,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
 
   int refuse(int code, std::string why);
   int accept();
-  bool isInStep() const override;
   bool isBuilt() const;
   Seal currentSeal() const;
-  detail::deformable::VertexFrames frames() const override;
   int checkFinite(const S* coordinates, std::size_t count, const char* frame);
   int open(Open what, const char* caller);
   int stage(const Vector3<S>* points, std::size_t count, Open expected);

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The same query as in main.cpp, through FCL's header of everything.
+#include <fcl/fcl.h>
+
+double timeThroughFclHeader(const fcl::CollisionGeometryd& a,
+                            const fcl::CollisionGeometryd& b,
+                            const fcl::Transform3d& b_beg,
+                            const fcl::Transform3d& b_end) {
+  const fcl::Transform3d still = fcl::Transform3d::Identity();
+  fcl::ContinuousCollisionResultd result;
+  return fcl::continuousCollide(&a, still, still, &b, b_beg, b_end,
+                                fcl::ContinuousCollisionRequestd(), result);
+}

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Position based dynamics for scenes of cloth and moving obstacles, after Mueller et al.
+// 2007 "Position Based Dynamics" and Macklin et al. 2016 "XPBD". A contact is found by
+// the library's continuous query on the motion of the step; it becomes a constraint that
+// keeps its two features apart. Two departures keep every state free of crossings:
+// - the query is repeated on the corrected motion until it finds nothing;
+// - what is still in contact after that moves with the obstacle it touches, or not at all
+//   (the rigid impact zones of Provot 1997, with the simplest rigid motion).
+#ifndef FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
+#define FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/kDOP.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief Units are metres, seconds and kilograms.
+struct SimulatorOptions {
+  /// seconds a frame lasts
+  double frame_time{1.0 / 30};
+  /// steps a frame is divided into; each has its own continuous queries
+  int steps_per_frame{8};
+  /// passes over all constraints in a step
+  int iterations{25};
+  Vector3<double> gravity{0, 0, -9.81};
+  /// distance that surfaces keep, metres
+  double thickness{0.002};
+  /// speed at which surfaces closer than `thickness` are pushed apart, metres a second
+  double push_speed{0.05};
+  /// Coulomb coefficient
+  double friction{0.3};
+  /// part of the velocity lost in a second (exponential), 1 / s
+  double damping{0.5};
+  /// part of the velocity of two neighbours against each other lost in a second
+  /// (exponential), 1 / s; calms what contacts and springs do to each other
+  double internal_damping{100};
+  /// kilograms a square metre of cloth
+  double cloth_density{0.2};
+  /// XPBD compliance of the bending springs, metres a newton
+  double bend_compliance{0.5};
+  /// rounds of query and correction in a step before what is in contact is held
+  int response_rounds{4};
+  /// shakes the start positions by 1e-4 of an edge and orders the constraints
+  std::uint64_t seed{1};
+};
+
+/// @brief Where two features touched, as weights on their four vertices: positive ones
+/// add up to 1 on the first feature, negative ones to -1 on the second.
+struct ContactWeights {
+  std::array<int, 4> vertices;
+  std::array<double, 4> weights;
+};
+
+/// @brief A distinct pair of features that a query of the frame found.
+struct FrameContact {
+  ContinuousContactKind kind;
+  std::array<int, 2> triangles;
+  ContactWeights where;
+};
+
+/// @brief What happened in one frame.
+struct FrameReport {
+  std::vector<FrameContact> contacts;
+  std::size_t vertex_face{0};
+  std::size_t edge_edge{0};
+  /// those of both kinds between two features of one body
+  std::size_t self{0};
+  /// the first contact, as a fraction of the frame in [0, 1); 1 without contact
+  double first_contact{1};
+  /// number of continuous queries, and the seconds they and the whole frame took
+  int queries{0};
+  double query_seconds{0};
+  double total_seconds{0};
+  /// sum over the queries
+  StageCounts counts;
+  /// vertices that had to be held, summed over the steps
+  std::size_t held_vertices{0};
+  /// contacts still there when a step was accepted; 0 unless an obstacle crushes the
+  /// cloth
+  std::size_t unresolved{0};
+  /// whether a step began with surfaces that cross
+  bool crossing{false};
+};
+
+/// @brief Adds every count of `part` to `sum`.
+void addCounts(StageCounts& sum, const StageCounts& part);
+
+/// @brief Rigid motion of an obstacle: its pose at a time in seconds.
+using ObstacleMotion = std::function<Transform3<double>(double time)>;
+
+/// @brief Cloths and obstacles as one mesh, so that one self-collision query sees
+/// cloth-cloth and cloth-obstacle contacts alike. A run is a function of what was added
+/// and of the options: same seed, same bits.
+class ClothSimulator {
+ public:
+  explicit ClothSimulator(const SimulatorOptions& options) : options_(options) {}
+
+  /// @brief Adds a cloth at rest in the shape of `rest`, that starts in the shape of
+  /// `start` (same topology). @return its first vertex
+  int addCloth(const TestMesh& rest, const std::vector<Vector3<double>>& start);
+
+  /// @brief Adds an obstacle, given in its own frame. Without motion it stands still.
+  /// @return its first vertex
+  int addObstacle(const TestMesh& mesh, ObstacleMotion motion = {});
+
+  /// @brief Simulates one frame. The first call ends the construction.
+  /// @throws fcl::Exception if the library refuses the mesh, for example because a
+  /// coordinate is not finite.
+  FrameReport advanceFrame();
+
+  /// @brief All bodies in the order in which they were added, at the current time.
+  const TestMesh& mesh() const { return mesh_; }
+
+  /// @brief The body of a vertex: 0, 1, ... in the order in which they were added.
+  int bodyOf(std::size_t vertex) const { return body_of_[vertex]; }
+
+  /// @brief The options given.
+  const SimulatorOptions& options() const { return options_; }
+
+  /// @brief Seconds simulated.
+  double time() const { return static_cast<double>(step_) * stepTime(); }
+
+  /// @brief Largest current length of a cloth edge over its length at rest.
+  double maxStretch() const;
+
+ private:
+  struct Spring {
+    std::array<int, 2> vertices;
+    double rest_length;  // metres
+    double compliance;   // metres a newton
+    double multiplier;   // of the current step
+  };
+  struct ContactConstraint {
+    ContactWeights where;
+    Vector3<double> direction;  // from the second feature to the first, unit
+    double gap;                 // metres
+  };
+  struct Body {
+    int first_vertex;
+    int num_vertices;
+    bool is_obstacle;
+    TestMesh shape;
+    ObstacleMotion motion;
+  };
+
+  double stepTime() const { return options_.frame_time / options_.steps_per_frame; }
+  int addBody(const TestMesh& mesh, bool is_obstacle, ObstacleMotion motion);
+  void addSprings(const TestMesh& rest, int first_vertex);
+  void addMasses(const TestMesh& rest, int first_vertex);
+  void start();
+
+  void finishContacts(FrameReport& report) const;
+  void advanceStep(int step_of_frame, FrameReport& report);
+  void predict();
+  void pushApart();
+  void solve(int iterations);
+  void projectSpring(Spring& spring);
+  void projectContact(const ContactConstraint& contact);
+  void respond(int step_of_frame, FrameReport& report);
+  void holdInContact(int step_of_frame, FrameReport& report);
+  void finishStep();
+  void dampNeighbours();
+
+  ContinuousContactResult<double> query(int step_of_frame, FrameReport& report);
+  ContactWeights weightsAt(const ContinuousContact<double>& contact) const;
+  void addConstraint(const ContactWeights& where, Vector3<double> direction);
+  Transform3<double> bodyMotion(int body) const;
+
+  SimulatorOptions options_;
+  TestMesh mesh_;                       // positions at the start of the step
+  std::vector<Vector3<double>> moved_;  // positions at the end of the step
+  std::vector<Vector3<double>> velocities_;
+  std::vector<double> inverse_masses_;  // 0 for obstacles
+  std::vector<char> is_movable_;
+  std::vector<int> body_of_;
+  std::vector<Body> bodies_;
+  std::vector<Spring> edge_springs_;
+  std::vector<Spring> bend_springs_;
+  std::vector<ContactConstraint> contacts_;
+  std::vector<int> held_with_;  // body a held vertex moves with, or -1
+  double mean_edge_{0};
+  std::int64_t step_{0};
+  bool started_{false};
+  DeformableBVHModel<KDOP<double, 16>> model_;
+};
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_TEST_SUPPORT_MESH_GENERATORS_H
+#define FCL_TEST_SUPPORT_MESH_GENERATORS_H
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "fcl/common/types.h"
+#include "fcl/math/triangle.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief A triangle mesh in metres; triangles are wound so that their normal points out
+/// of a closed surface, and along +z for a flat sheet.
+struct TestMesh {
+  std::vector<Vector3<double>> vertices;
+  std::vector<Triangle> triangles;
+};
+
+/// @brief Small random number generator (splitmix64): unlike the distributions of
+/// <random>, it gives the same numbers with every standard library.
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  /// @brief The next 64 random bits.
+  std::uint64_t next();
+
+  /// @brief Uniform in [lo, hi).
+  double uniform(double lo, double hi);
+
+  /// @brief Uniform in {0, ..., count - 1}; the bias is below count / 2^64.
+  std::size_t index(std::size_t count) { return next() % count; }
+
+  /// @brief Uniform in the box [-half, half]^3.
+  Vector3<double> point(double half);
+
+ private:
+  std::uint64_t state_;
+};
+
+/// @brief Where the vertex at (u, v) in [0, 1]^2 of a sheet stands.
+using SheetPosition = std::function<Vector3<double>(double u, double v)>;
+
+/// @brief A sheet of nx x ny quads, 2 nx ny triangles, (nx + 1)(ny + 1) vertices with x
+/// running fastest; the diagonals alternate. Without `position`, the unit square in z =
+/// 0.
+TestMesh makeSheet(int nx, int ny, const SheetPosition& position = {});
+
+/// @brief A sphere around the origin from `slices` >= 3 meridians and `stacks` >= 2
+/// rings: 2 slices (stacks - 1) triangles.
+TestMesh makeUvSphere(int slices, int stacks, double radius);
+
+/// @brief A sphere around the origin: an icosahedron whose faces were split in four
+/// `subdivisions` times; 20 * 4^subdivisions triangles.
+TestMesh makeIcosphere(int subdivisions, double radius);
+
+/// @brief A box around the origin, each side split into `divisions`^2 quads; closed.
+TestMesh makeBox(const Vector3<double>& half_extents, int divisions = 1);
+
+/// @brief `count` separate random tetrahedra of about `size` inside [-half, half]^3;
+/// they may overlap.
+TestMesh makeTetrahedronSoup(int count, double half, double size, std::uint64_t seed);
+
+/// @brief `count` separate random triangles of about `size` inside [-half, half]^3; they
+/// may overlap.
+TestMesh makeTriangleSoup(int count, double half, double size, std::uint64_t seed);
+
+/// @brief Adds a copy of `part` to `mesh` as separate vertices and triangles.
+void append(TestMesh& mesh, const TestMesh& part);
+
+/// @brief The mesh with every vertex moved by `transform`.
+TestMesh transformed(const TestMesh& mesh, const Transform3<double>& transform);
+
+/// @brief Every edge of the triangles once, lower index first, sorted.
+std::vector<std::array<int, 2>> uniqueEdges(const std::vector<Triangle>& triangles);
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

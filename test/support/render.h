@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_TEST_SUPPORT_RENDER_H
+#define FCL_TEST_SUPPORT_RENDER_H
+
+#include <vector>
+
+#include "image.h"
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief How a triangle looks.
+struct Paint {
+  /// the side to which the normal points, and the other one
+  Colour front;
+  Colour back;
+  /// whether it is a ground, which fades into the background
+  bool fades{false};
+};
+
+/// @brief A mesh with a paint a triangle.
+struct PaintedMesh {
+  TestMesh mesh;
+  std::vector<Paint> paints;
+};
+
+/// @brief A small disc that faces the camera; hidden by what is in front of it.
+struct Marker {
+  Vector3<double> position;  // metres
+  Colour colour;
+};
+
+/// @brief A pinhole camera.
+struct Camera {
+  Vector3<double> eye{2, -2, 1.5};  // metres
+  Vector3<double> target{0, 0, 0};  // metres
+  double vertical_view_angle{0.6};  // radians
+};
+
+/// @brief How a picture is made; z is up.
+struct RenderOptions {
+  int width{800};   // pixels
+  int height{600};  // pixels
+  /// samples a pixel along each axis
+  int supersampling{2};
+  /// lights spread over the sky besides the sun; each casts shadows
+  int sky_lights{40};
+  /// direction to the sun, any length
+  Vector3<double> sun{0.5, -0.35, 1};
+  Colour background{colourFromHex(0xf4f5f7)};
+  /// horizontal distances from the camera's target, in metres, between which a ground
+  /// fades into the background, so that it has no visible end
+  double fade_begin{0.8};
+  double fade_end{1.45};
+  /// pixels
+  double marker_radius{2};
+};
+
+/// @brief Draws the scene with a z-buffer: smooth normals, both sides lit, shadows of the
+/// sun and of the sky. Triangles that reach behind the camera are left out.
+Image render(const PaintedMesh& scene, const std::vector<Marker>& markers,
+             const Camera& camera, const RenderOptions& options);
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_TEST_SUPPORT_SHARED_DATA_H
+#define FCL_TEST_SUPPORT_SHARED_DATA_H
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <optional>
+#include <string>
+#include <system_error>
+
+namespace fcl {
+namespace test {
+
+/// @brief Path of a file or folder of the data that lies outside the project: under
+/// $FCL_CCD_TEST_DATA, or beside the project. Nothing if it is not there; that is said,
+/// and where CI=true, it fails the test.
+inline std::optional<std::string> sharedData(const std::string& relative) {
+  const char* root = std::getenv("FCL_CCD_TEST_DATA");
+  const std::string path =
+      (root && *root ? std::string(root)
+                     : std::string(FCL_CCD_SOURCE_DIR) + "/../shared/data") +
+      "/" + relative;
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored)) return path;
+  const char* ci = std::getenv("CI");
+  EXPECT_FALSE(ci && std::string(ci) == "true") << path << " is not there";
+  std::cout << "not there, so not tested: " << path << "\n";
+  return std::nullopt;
+}
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
