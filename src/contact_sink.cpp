@@ -20,7 +20,10 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
 ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   const std::uint32_t tag =
       (c.kind == FeatureKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
-  return {tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
+  PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
+  // Faces with the same vertices are one face, whatever their order.
+  if (c.kind == FeatureKind::kVertexFace) std::sort(key.begin() + 2, key.end());
+  return key;
 }
 
 bool ContactSink::add(const FeatureContact& contact) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace fcl {
 namespace detail {
@@ -21,6 +22,20 @@ Polynomial pseudoRemainder(const Polynomial& a, const Polynomial& b) {
     rest = rest * Polynomial({lead}) - b * Polynomial(std::move(factor));
   }
   return rest;
+}
+
+/// k / 2^m rounded to a double below (direction -1) or above (1), or equal.
+double toDouble(const Integer& k, unsigned m, int direction) {
+  if (k == 0) return 0;
+  const auto bits = static_cast<unsigned>(boost::multiprecision::msb(k)) + 1;
+  const unsigned drop = bits > 53 ? bits - 53 : 0;
+  Integer head = k >> drop;
+  if ((head << drop) != k && direction > 0) ++head;
+  const double value =
+      std::ldexp(head.convert_to<double>(), static_cast<int>(drop) - static_cast<int>(m));
+  // A subnormal has fewer bits, to which ldexp() rounds either way.
+  if (value >= std::numeric_limits<double>::min()) return value;
+  return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
 }
 
 /// p divided by (2^m t - k), a root of it.
@@ -197,22 +212,15 @@ int Root::signOf(const Polynomial& g) {
 }
 
 std::pair<double, double> Root::bracket(double width) {
-  // 2^-1100 is below every double: a root that is not dyadic is told apart from 0 there.
-  while (!is_dyadic_ && m_ < 1100 && std::ldexp(1., -static_cast<int>(m_)) > width)
-    halve();
-  const auto toDouble = [this](const Integer& k, int direction) {
-    // k / 2^m rounded to a double below (direction -1) or above (1) or equal.
-    const auto bits =
-        k == 0 ? 0U : static_cast<unsigned>(boost::multiprecision::msb(k)) + 1;
-    const unsigned drop = bits > 53 ? bits - 53 : 0;
-    Integer head = k >> drop;
-    const bool exact = (head << drop) == k;
-    if (!exact && direction > 0) ++head;
-    const double value = std::ldexp(head.convert_to<double>(),
-                                    static_cast<int>(drop) - static_cast<int>(m_));
-    return value;
+  // With more bits than a double has, an interval closer than doubles would not show. A
+  // root below 2^-1074 has none.
+  const auto hasBitsOfDouble = [this] {
+    return k_ != 0 && boost::multiprecision::msb(k_) > 54;
   };
-  return {toDouble(k_, -1), toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), 1)};
+  while (!is_dyadic_ && m_ < 1100 && !hasBitsOfDouble() &&
+         std::ldexp(1., -static_cast<int>(m_)) > width)
+    halve();
+  return {toDouble(k_, m_, -1), toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1)};
 }
 
 }  // namespace deformable

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "fcl/common/exception.h"
@@ -137,15 +138,21 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
   instance_.num_triangles = static_cast<std::size_t>(model.num_tris);
-  if (deforming)
-    prepareDeforming(model, name);
-  else
-    instance_.rigid = RigidTree(model, beginning);
+  // FCL 0.7 merges two RSSs into one that can leave points out: a tree of them that was
+  // refit is no bound.
+  constexpr bool kHasSoundTree = !std::is_same_v<BV, RSS<typename BV::S>>;
+  if constexpr (kHasSoundTree)
+    if (!deforming) {
+      instance_.rigid = RigidTree(model, beginning);
+      return;
+    }
+  prepareDeforming(model, name);
 }
 
 template <typename BV>
 void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name) {
-  requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
+  if (model.prev_vertices)
+    requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
   requireFinite(model.vertices, model.num_vertices, name + ", current frame");
   const auto count = static_cast<std::size_t>(model.num_vertices);
   for (std::size_t i = 0; i < instance_.num_triangles; ++i)

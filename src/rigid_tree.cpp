@@ -51,21 +51,6 @@ Box fromObb(const OBB<S>& obb) {
   return box;
 }
 
-/// A rectangle of sides l at corner To, swept by a sphere of radius r.
-template <typename Box, typename S>
-Box fromRss(const RSS<S>& rss) {
-  Box box{};
-  const double half[3] = {0.5 * double{rss.l[0]}, 0.5 * double{rss.l[1]}, 0};
-  for (int k = 0; k < 3; ++k) {
-    box.center[k] = double{rss.To[k]} + double{rss.axis(k, 0)} * half[0] +
-                    double{rss.axis(k, 1)} * half[1];
-    for (int a = 0; a < 3; ++a)
-      box.half_axis[a][k] = double{rss.axis(k, a)} * (half[a] + double{rss.r});
-  }
-  box.slack = kFitSlack<S>;
-  return box;
-}
-
 }  // namespace
 
 #define FCL_CCD_BOX_OF(BV, EXPRESSION)                                       \
@@ -82,8 +67,12 @@ Box fromRss(const RSS<S>& rss) {
 FCL_CCD_BOX_OF(OBB, fromObb<OrientedBox>(bv))
 FCL_CCD_BOX_OF(OBBRSS, fromObb<OrientedBox>(bv.obb))
 FCL_CCD_BOX_OF(kIOS, fromObb<OrientedBox>(bv.obb))
-FCL_CCD_BOX_OF(RSS, fromRss<OrientedBox>(bv))
 #undef FCL_CCD_BOX_OF
+
+template <typename S, std::size_t N>
+constexpr std::size_t halfSlabCount(const KDOP<S, N>*) {
+  return N / 2;
+}
 
 // The first 8 directions of every KDOP of FCL's are ours.
 template <typename BV>
@@ -102,7 +91,7 @@ RigidTree::SlabsOf RigidTree::slabsOf() {
         slabs.hi[5 + k] = hi[0] - lo[k];
       }
     } else {
-      constexpr std::size_t kHalf = sizeof(BV) / sizeof(S) / 2;
+      constexpr std::size_t kHalf = halfSlabCount(static_cast<const BV*>(nullptr));
       for (std::size_t j = 0; j < 8; ++j) {
         slabs.lo[j] = double{bv.dist(j)};
         slabs.hi[j] = double{bv.dist(j + kHalf)};
@@ -125,7 +114,6 @@ RigidTree::SlabsOf RigidTree::slabsOf() {
 FCL_CCD_NO_SLABS(OBB)
 FCL_CCD_NO_SLABS(OBBRSS)
 FCL_CCD_NO_SLABS(kIOS)
-FCL_CCD_NO_SLABS(RSS)
 #undef FCL_CCD_NO_SLABS
 
 #define FCL_CCD_INSTANTIATE(BV)                                      \

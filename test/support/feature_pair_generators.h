@@ -79,7 +79,8 @@ inline MovingPair nearContactPair(Random& random, double gap) {
     p[0] = (1 - r) * p[1] + r * ((1 - s) * p[2] + s * p[3]);
     normal = (p[2] - p[1]).cross(p[3] - p[1]);
   } else {
-    const Vector3<double> move = ((1 - r) * p[0] + r * p[1]) - ((1 - s) * p[2] + s * p[3]);
+    const Vector3<double> move =
+        ((1 - r) * p[0] + r * p[1]) - ((1 - s) * p[2] + s * p[3]);
     p[2] += move;
     p[3] += move;
     normal = (p[1] - p[0]).cross(p[3] - p[2]);

@@ -76,7 +76,8 @@ bool isOnTriangle(const ExactPoint<N>& p, const ExactPoint<N>& a, const ExactPoi
                   const ExactPoint<N>& c) {
   const ExactPoint<N> n = cross(minus(b, a), minus(c, a));
   const std::size_t axis = nonzeroAxis(n);
-  if (axis == 3) return isOnSegment(p, a, b) || isOnSegment(p, b, c) || isOnSegment(p, c, a);
+  if (axis == 3)
+    return isOnSegment(p, a, b) || isOnSegment(p, b, c) || isOnSegment(p, c, a);
   if (dot(minus(p, a), n) != 0) return false;
   const int way = signOf(n[axis]);
   return turn(a, b, p, axis) * way >= 0 && turn(b, c, p, axis) * way >= 0 &&

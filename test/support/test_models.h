@@ -138,8 +138,8 @@ void expectIdentical(const ContinuousContactResult<S>& x,
   EXPECT_EQ(x.initially_crossing, y.initially_crossing);
   ASSERT_EQ(x.contacts.size(), y.contacts.size());
   for (std::size_t i = 0; i < x.contacts.size(); ++i) {
-    const auto &a = x.contacts[i];
-    const auto &b = y.contacts[i];
+    const auto& a = x.contacts[i];
+    const auto& b = y.contacts[i];
     ASSERT_EQ(nameOf(a), nameOf(b)) << "contact " << i;
     ASSERT_EQ(a.toc_lo, b.toc_lo) << "contact " << i;
     ASSERT_EQ(a.toc_hi, b.toc_hi) << "contact " << i;

@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/kIOS.h"
 
 namespace fcl {
 
@@ -25,6 +28,22 @@ namespace fcl {
 FCL_CCD_EXTERN_MODELS(double)
 FCL_CCD_EXTERN_MODELS(float)
 #undef FCL_CCD_EXTERN_MODELS
+
+namespace detail {
+
+/// FCL 0.7 merges two RSSs into one that can leave points out, so that a bottom-up refit
+/// of a tree that holds them makes distances too large; from the top down each volume is
+/// fitted to the vertices.
+template <typename BV>
+struct RefitsBottomUp : std::true_type {};
+template <typename S>
+struct RefitsBottomUp<RSS<S>> : std::false_type {};
+template <typename S>
+struct RefitsBottomUp<OBBRSS<S>> : std::false_type {};
+template <typename S>
+struct RefitsBottomUp<kIOS<S>> : std::false_type {};
+
+}  // namespace detail
 
 template <typename BV>
 DeformableBVHModel<BV>::DeformableBVHModel() = default;
@@ -306,7 +325,7 @@ void DeformableBVHModel<BV>::advance(FclTree fcl_tree, bool refit, bool bottomup
     this->build_state = BVH_BUILD_STATE_PROCESSED;
     Base::beginUpdateModel();
     Base::updateSubModel(staged_);
-    Base::endUpdateModel(refit, bottomup);
+    Base::endUpdateModel(refit, bottomup && detail::RefitsBottomUp<BV>::value);
   } else {
     std::swap(this->vertices, this->prev_vertices);
     std::copy(staged_.begin(), staged_.end(), this->vertices);

@@ -74,7 +74,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
 
   /// @name Give the next frame, vertex by vertex or in parts; the current frame becomes
   /// the previous one. FCL's tree is brought up to date unless it was never built.
-  /// `refit` and `bottomup` concern FCL's tree only.
+  /// `refit` and `bottomup` concern FCL's tree only; trees of RSS, OBBRSS and kIOS are
+  /// always refit from the top down, since FCL's merge of two RSSs can leave points out.
   /// @{
   int beginUpdateModel();
   int updateVertex(const Vector3<S>& p);

@@ -75,8 +75,15 @@ inline Float4 quad(const Kdop16& box, int q) {
   return v;
 }
 
-inline bool isAnyNegative(const Float4& v) {
-  return (v[0] < 0.f) | (v[1] < 0.f) | (v[2] < 0.f) | (v[3] < 0.f);
+/// A comparison of two Float4: all bits of a lane, or none.
+typedef int Mask4 __attribute__((vector_size(16)));
+
+inline bool isAny(const Mask4& mask) {
+#if defined(__SSE__)
+  return __builtin_ia32_movmskps(reinterpret_cast<const Float4&>(mask)) != 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
 }
 
 /// @brief When boxes a and b, which move linearly, overlap in all 8 directions. Never
@@ -98,8 +105,7 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
       s1[q] += quad(shift->t1, q);
     }
     // Negative at both ends: apart for the whole step. Most pairs end here.
-    const Float4 most = s1[q] < s0[q] ? s0[q] : s1[q];
-    if (isAnyNegative(most)) return {1.f, 0.f};
+    if (isAny((s0[q] < zero) & (s1[q] < zero))) return {1.f, 0.f};
   }
   // s0 and s1 are correctly rounded, so their signs are right; the quotient, between
   // numbers of opposite sign, is within 3 * 2^-24 relative of the true root.
@@ -107,9 +113,12 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
   constexpr float kUp = 1.f + 0x1p-21f;
   Float4 lo = zero, hi = one;
   for (int q = 0; q < 4; ++q) {
-    const Float4 t = s0[q] / (s0[q] - s1[q]);
-    const Float4 enter = s0[q] < zero ? t * kDown : zero;
-    const Float4 leave = s1[q] < zero ? t * kUp : one;
+    const Float4 change = s0[q] - s1[q];
+    // Where the difference overflows (or is NaN) the quotient would mean nothing.
+    const Mask4 valid = (change <= FLT_MAX) & (change >= -FLT_MAX);
+    const Float4 t = s0[q] / change;
+    const Float4 enter = (s0[q] < zero) & valid ? t * kDown : zero;
+    const Float4 leave = (s1[q] < zero) & valid ? t * kUp : one;
     lo = enter > lo ? enter : lo;
     hi = leave < hi ? leave : hi;
   }

@@ -33,8 +33,9 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y);
 /// @brief Keeps the earliest contacts, at most capacity.
 class ContactSink {
  public:
-  /// @param may_repeat  whether add() can be given a pair more than once (then it must be
-  /// the same contact each time); only the first counts.
+  /// @param capacity  at least 1
+  /// @param may_repeat  whether add() can be given a pair more than once; the first
+  /// counts.
   ContactSink(std::size_t capacity, bool may_repeat)
       : capacity_(capacity), may_repeat_(may_repeat) {}
 

@@ -9,6 +9,9 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_ELEMENTARY_TEST_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_ELEMENTARY_TEST_H
 
+#include <cfloat>
+#include <cmath>
+
 #include "fcl/narrowphase/detail/deformable/vertex_frames.h"
 
 namespace fcl {
@@ -82,11 +85,13 @@ inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
   if (apart) return false;
   if (!cut) return true;
   for (const FramePair& s : depth) {
+    const double change = s[0] - s[1];
+    if (!(std::abs(change) <= DBL_MAX)) continue;  // the quotient would mean nothing
     if (s[0] < 0) {
-      const double enter = s[0] / (s[0] - s[1]) - kWindowMargin;
+      const double enter = s[0] / change - kWindowMargin;
       if (enter > lo) lo = enter;
     } else if (s[1] < 0) {
-      const double leave = s[0] / (s[0] - s[1]) + kWindowMargin;
+      const double leave = s[0] / change + kWindowMargin;
       if (leave < hi) hi = leave;
     }
   }

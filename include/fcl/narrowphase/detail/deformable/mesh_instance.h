@@ -34,9 +34,13 @@ struct MeshInstance {
   MeshTriangle triangle(std::size_t i) const {
     if (prepared) return prepared[i];
     const Triangle& t = triangles[i];
-    return {{static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-             static_cast<std::uint32_t>(t[2])},
-            kOwnsAll};
+    MeshTriangle out{{static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+                      static_cast<std::uint32_t>(t[2])},
+                     kOwnsAll};
+    // As in assignFeatures(), an edge with two equal ids is none.
+    for (unsigned k = 0; k < 3; ++k)
+      if (out.v[k] == out.v[(k + 1) % 3]) out.owned &= ~(1U << (3 + k));
+    return out;
   }
 };
 

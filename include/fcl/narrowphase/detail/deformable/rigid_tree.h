@@ -19,6 +19,7 @@ class RigidTree {
  public:
   RigidTree() = default;
 
+  /// @tparam BV  any of FCL's but RSS, whose refit trees are no bounds.
   /// @param pose  its rotation turns the boxes; its translation is left to
   /// relativeShift().
   template <typename BV>

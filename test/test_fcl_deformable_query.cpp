@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Whole queries against brute force: every feature pair of the scene by the exact test.
+#include "fcl/narrowphase/detail/deformable/deformable_query.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/kDOP.h"
+#include "fcl/math/bv/kIOS.h"
+#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "moving_mesh.h"
+#include "test_models.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using test::MovingMesh;
+using test::PreparedMovingMesh;
+using test::Random;
+
+using Ids = std::vector<std::uint32_t>;
+/// Kind, whether the vertex of a VF pair is mesh b's, ids of both features.
+using PairName = std::tuple<FeatureKind, bool, Ids, Ids>;
+using Contacts = std::map<PairName, ElementaryResult>;
+
+struct Truth {
+  Contacts contacts;
+  bool has_crossing{false};
+
+  double earliestLo() const {
+    double lo = 1;
+    for (const auto& [name, r] : contacts) lo = std::min(lo, r.toc_lo);
+    return lo;
+  }
+  double earliestHi() const {
+    double hi = 1;
+    for (const auto& [name, r] : contacts) hi = std::min(hi, r.toc_hi);
+    return hi;
+  }
+};
+
+Ids sorted(Ids ids) {
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+/// The distinct features of a mesh, from its triangles' ids alone.
+struct Features {
+  std::set<Ids> vertices, edges, faces;
+
+  explicit Features(const MeshInstance& mesh) {
+    for (std::size_t i = 0; i < mesh.num_triangles; ++i) {
+      const MeshTriangle t = mesh.triangle(i);
+      for (unsigned k = 0; k < 3; ++k) {
+        vertices.insert({t.v[k]});
+        if (t.v[k] != t.v[(k + 1) % 3]) edges.insert(sorted({t.v[k], t.v[(k + 1) % 3]}));
+      }
+      faces.insert(sorted({t.v[0], t.v[1], t.v[2]}));
+    }
+  }
+};
+
+/// All contacts between features xs of x and ys of y, by the exact test.
+class BruteForce {
+ public:
+  BruteForce(const MeshInstance& a, const MeshInstance& b)
+      : a_(a), b_(b), self_(&a == &b), features_a_(a), features_b_(b) {
+    test(FeatureKind::kEdgeEdge, features_a_.edges, features_b_.edges, false);
+    test(FeatureKind::kVertexFace, features_a_.vertices, features_b_.faces, false);
+    crossings(a_, features_a_.edges, b_, features_b_.faces);
+    if (self_) return;
+    test(FeatureKind::kVertexFace, features_b_.vertices, features_a_.faces, true);
+    crossings(b_, features_b_.edges, a_, features_a_.faces);
+  }
+  const Truth& truth() const { return truth_; }
+
+ private:
+  void test(FeatureKind kind, const std::set<Ids>& xs, const std::set<Ids>& ys,
+            bool first_on_b) {
+    for (const Ids& x : xs)
+      for (const Ids& y : ys) {
+        if (kind == FeatureKind::kEdgeEdge && self_ && y < x) continue;
+        if (self_ && doShare(x, y)) continue;
+        std::vector<VertexPath> p = paths(first_on_b ? b_ : a_, x);
+        for (const VertexPath& q : paths(first_on_b ? a_ : b_, y)) p.push_back(q);
+        if (areApart(p, x.size())) continue;
+        const ElementaryResult r =
+            decideExactly(kind, {{&p[0], &p[1], &p[2], &p[3]}}, 1e-12);
+        if (r.answer == Answer::kYes) truth_.contacts[{kind, first_on_b, x, y}] = r;
+      }
+  }
+
+  void crossings(const MeshInstance& m, const std::set<Ids>& edges, const MeshInstance& n,
+                 const std::set<Ids>& faces) {
+    for (const Ids& x : edges)
+      for (const Ids& y : faces) {
+        if (self_ && doShare(x, y)) continue;
+        const auto e = paths(m, x), f = paths(n, y);
+        truth_.has_crossing |= isCrossing(e[0].t0, e[1].t0, f[0].t0, f[1].t0, f[2].t0);
+      }
+  }
+
+  static bool doShare(const Ids& x, const Ids& y) {
+    return std::any_of(x.begin(), x.end(), [&y](std::uint32_t id) {
+      return std::find(y.begin(), y.end(), id) != y.end();
+    });
+  }
+  static std::vector<VertexPath> paths(const MeshInstance& mesh, const Ids& ids) {
+    std::vector<VertexPath> p;
+    for (const std::uint32_t id : ids) p.push_back(mesh.frames[id]);
+    return p;
+  }
+  /// Whether one axis parts all of the first n points from all of the others at both
+  /// ends of the step, the same way: comparisons only, so that it is exact too.
+  static bool areApart(const std::vector<VertexPath>& p, std::size_t n) {
+    for (int k = 0; k < 3; ++k) {
+      bool below = true, above = true;
+      for (std::size_t i = 0; i < n; ++i)
+        for (std::size_t j = n; j < p.size(); ++j) {
+          below &= p[i].t0[k] < p[j].t0[k] && p[i].t1[k] < p[j].t1[k];
+          above &= p[i].t0[k] > p[j].t0[k] && p[i].t1[k] > p[j].t1[k];
+        }
+      if (below || above) return true;
+    }
+    return false;
+  }
+
+  const MeshInstance& a_;
+  const MeshInstance& b_;
+  bool self_;
+  Features features_a_, features_b_;
+  Truth truth_;
+};
+
+PairName nameOf(const FeatureContact& c, bool self) {
+  const std::uint32_t* v = c.vertices;
+  if (c.kind == FeatureKind::kVertexFace)
+    return {c.kind, !c.first_on_a, {v[0]}, sorted({v[1], v[2], v[3]})};
+  Ids x = sorted({v[0], v[1]}), y = sorted({v[2], v[3]});
+  if (self && y < x) std::swap(x, y);
+  return {c.kind, false, x, y};
+}
+
+bool hasAll(const MeshTriangle& t, const Ids& ids) {
+  return std::all_of(ids.begin(), ids.end(),
+                     [&t](std::uint32_t id) { return hasVertex(t, id); });
+}
+
+/// Every contact is a true one, named once, with a bracket of its time and the triangles
+/// that it is on; earliest first.
+void expectTrueContacts(const QueryAnswer& answer, const Truth& truth,
+                        const MeshInstance& a, const MeshInstance& b, double toc_err) {
+  const bool self = &a == &b;
+  std::set<PairName> met;
+  for (const FeatureContact& c : answer.contacts) {
+    const PairName name = nameOf(c, self);
+    EXPECT_TRUE(met.insert(name).second) << "reported twice";
+    const auto found = truth.contacts.find(name);
+    ASSERT_NE(found, truth.contacts.end()) << "not a contact";
+    EXPECT_LE(c.toc_lo, found->second.toc_hi);
+    EXPECT_GE(c.toc_hi, found->second.toc_lo);
+    EXPECT_LE(c.toc_hi - c.toc_lo, toc_err);
+    const auto& [kind, first_on_b, x, y] = name;
+    const MeshTriangle s = a.triangle(static_cast<std::size_t>(c.triangles[0]));
+    const MeshTriangle t = b.triangle(static_cast<std::size_t>(c.triangles[1]));
+    EXPECT_TRUE((hasAll(s, first_on_b ? y : x) && hasAll(t, first_on_b ? x : y)) ||
+                (self && kind == FeatureKind::kEdgeEdge && hasAll(s, y) && hasAll(t, x)));
+  }
+  EXPECT_TRUE(std::is_sorted(answer.contacts.begin(), answer.contacts.end(), isEarlier));
+}
+
+QueryAnswer query(const MeshInstance& a, const MeshInstance& b,
+                  const QueryOptions& options) {
+  return &a == &b ? querySelf(a, options) : queryPair(a, b, options);
+}
+
+void expectAll(const MeshInstance& a, const MeshInstance& b, const Truth& truth) {
+  QueryOptions options;
+  options.toc_err = 1e-6;
+  const QueryAnswer all = query(a, b, options);
+  expectTrueContacts(all, truth, a, b, options.toc_err);
+  EXPECT_EQ(all.contacts.size(), truth.contacts.size());
+  EXPECT_FALSE(all.cut);
+  EXPECT_EQ(all.has_crossing, truth.has_crossing);
+  const StageCounts& n = all.counts;
+  EXPECT_EQ(n.feature_pairs, n.box_culled + n.filter_culled + n.solver_culled +
+                                 n.exact_culled + n.contacts);
+  EXPECT_LE(n.exact_culled, n.exact_tests);
+  if (a.prepared && b.prepared) {
+    EXPECT_EQ(n.contacts, truth.contacts.size());
+  }
+}
+
+void expectEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& truth,
+                    std::size_t max_contacts) {
+  QueryOptions options;
+  options.goal = QueryGoal::kFirst;
+  options.max_contacts = max_contacts;
+  options.toc_err = 1e-6;
+  const QueryAnswer first = query(a, b, options);
+  expectTrueContacts(first, truth, a, b, options.toc_err);
+  EXPECT_EQ(first.has_crossing, truth.has_crossing);
+  ASSERT_EQ(first.contacts.empty(), truth.contacts.empty());
+  if (truth.contacts.empty()) return;
+  EXPECT_LE(first.contacts.front().toc_lo, truth.earliestHi());
+  EXPECT_GE(first.contacts.front().toc_lo, truth.earliestLo() - options.toc_err);
+}
+
+void expectKEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& truth,
+                     std::size_t k) {
+  SCOPED_TRACE("at most " + std::to_string(k));
+  QueryOptions options;
+  options.max_contacts = k;
+  options.toc_err = 1e-6;
+  const QueryAnswer some = query(a, b, options);
+  expectTrueContacts(some, truth, a, b, options.toc_err);
+  EXPECT_EQ(some.contacts.size(), std::min(k, truth.contacts.size()));
+  EXPECT_EQ(some.cut, truth.contacts.size() > k);
+  EXPECT_EQ(some.has_crossing, truth.has_crossing);
+  if (some.contacts.empty()) return;
+  std::set<PairName> kept;
+  for (const FeatureContact& c : some.contacts) kept.insert(nameOf(c, &a == &b));
+  for (const auto& [name, r] : truth.contacts)
+    if (!kept.count(name)) {
+      EXPECT_GE(r.toc_hi, some.contacts.back().toc_lo);
+    }
+}
+
+/// All goals against brute force; returns the number of contacts.
+std::size_t expectRightAnswers(const MeshInstance& a, const MeshInstance& b) {
+  const Truth truth = BruteForce(a, b).truth();
+  expectAll(a, b, truth);
+  expectEarliest(a, b, truth, static_cast<std::size_t>(-1));
+  expectEarliest(a, b, truth, 1);
+  const std::size_t total = truth.contacts.size();
+  for (const std::size_t k : {std::size_t{1}, total / 2, total, total + 1})
+    if (k > 0) expectKEarliest(a, b, truth, k);
+
+  QueryOptions any;
+  any.goal = QueryGoal::kAny;
+  const QueryAnswer answer = query(a, b, any);
+  EXPECT_EQ(answer.has_crossing || !answer.contacts.empty(),
+            truth.has_crossing || total > 0);
+  QueryOptions stop;
+  stop.stop_at_crossing = true;
+  EXPECT_EQ(query(a, b, stop).has_crossing, truth.has_crossing);
+  return total;
+}
+
+/// Small triangles here and there, some of which share vertices; coordinates on a coarse
+/// grid in every third. With defects: some repeat a vertex or are the same as another in
+/// another order, and a vertex has no triangle.
+MovingMesh smallSoup(Random& random, std::size_t count, double step,
+                     bool with_defects = true) {
+  MovingMesh mesh;
+  const bool on_grid = random.index(3) == 0;
+  const auto add = [&](const Vector3<double>& p) {
+    mesh.t0.push_back(p);
+    mesh.t1.push_back(p + random.point(step));
+    if (on_grid)
+      for (auto* q : {&mesh.t0.back(), &mesh.t1.back()})
+        for (int k = 0; k < 3; ++k) (*q)[k] = std::round(4 * (*q)[k]) / 4;
+    return mesh.t0.size() - 1;
+  };
+  if (with_defects) add(random.point(1));
+  while (mesh.triangles.size() < count) {
+    const Vector3<double> center = random.point(1);
+    std::size_t v[3];
+    for (auto& id : v) id = add(center + random.point(0.4));
+    mesh.triangles.emplace_back(v[0], v[1], v[2]);
+    const std::size_t w = add(center + random.point(0.4));
+    switch (with_defects ? random.index(6) : 3) {
+      case 0:
+        mesh.triangles.emplace_back(v[1], v[0], w);
+        mesh.triangles.emplace_back(v[0], v[1], w);
+        break;
+      case 1:
+        mesh.triangles.emplace_back(v[2], v[2], w);
+        break;
+      case 2:
+        mesh.triangles.emplace_back(v[2], v[1], v[0]);
+        break;
+      default:
+        mesh.triangles.emplace_back(v[2], w, v[1]);
+    }
+  }
+  return mesh;
+}
+
+TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 1000; seed < 1300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const MovingMesh mesh =
+        seed % 2
+            ? smallSoup(random, 20 + random.index(20), 0.4)
+            : test::crumpledSheet(random, 3 + static_cast<int>(random.index(2)), 0.25);
+    const PreparedMovingMesh prepared(mesh);
+    contacts += expectRightAnswers(prepared.instance(), prepared.instance());
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(contacts, 1000U);
+}
+
+TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 2000; seed < 2300; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const MovingMesh a = smallSoup(random, 20, 0.3);
+    const MovingMesh b =
+        seed % 2 ? smallSoup(random, 20, 0.3) : test::crumpledSheet(random, 3, 0.3);
+    Pose beginning, end;
+    if (seed % 3 == 0)
+      for (int k = 0; k < 3; ++k) {
+        beginning.translation[k] = random.uniform(-0.2, 0.2);
+        end.translation[k] = random.uniform(-0.2, 0.2);
+      }
+    const PreparedMovingMesh pa(a, beginning, end), pb(b);
+    contacts += expectRightAnswers(pa.instance(), pb.instance());
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(contacts, 1000U);
+}
+
+template <typename S>
+Transform3<S> pose(Random& random, const Matrix3<S>& rotation, double step) {
+  Transform3<S> tf = Transform3<S>::Identity();
+  tf.linear() = rotation;
+  tf.translation() = random.point(step).template cast<S>();
+  return tf;
+}
+
+/// Plain FCL models through PreparedMesh: rigid against rigid and against deforming, in
+/// rotated poses, with a motion of the first.
+template <typename BV>
+void expectRightAnswersOfModels(std::uint64_t first_seed) {
+  using S = typename BV::S;
+  using Model = BVHModel<BV>;
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = first_seed; seed < first_seed + 16; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto randomRotation = [&random](bool turned) -> Matrix3<S> {
+      if (!turned) return Matrix3<S>::Identity();
+      return AngleAxis<S>(static_cast<S>(random.uniform(0, 3)),
+                          random.point(1).template cast<S>().normalized())
+          .toRotationMatrix();
+    };
+    const MovingMesh mesh_a = smallSoup(random, 18, 0.2, false),
+                     mesh_b = smallSoup(random, 18, 0.2, false);
+    const auto a = test::makeModel<Model>({mesh_a.t0, mesh_a.triangles});
+    const auto b = seed % 2 ? test::makeModel<Model>({mesh_b.t0, mesh_b.triangles})
+                            : test::makeModel<Model>({mesh_b.t0, mesh_b.triangles},
+                                                     {mesh_b.t1, mesh_b.triangles});
+    EXPECT_EQ(meshKindOf<S>(*a), MeshKind::kRigid);
+    EXPECT_EQ(meshKindOf<S>(*b), seed % 2 ? MeshKind::kRigid : MeshKind::kDeforming);
+    const Matrix3<S> rotation_a = randomRotation(seed % 4 < 2),
+                     rotation_b = randomRotation(seed % 8 < 4);
+    const Transform3<S> a_beg = pose<S>(random, rotation_a, 0.3),
+                        a_end = pose<S>(random, rotation_a, 0.5);
+    const Transform3<S> b_beg = pose<S>(random, rotation_b, 0.3);
+    const PreparedMesh pa(*a, a_beg, a_end, "a"), pb(*b, b_beg, b_beg, "b");
+    EXPECT_EQ(pa.instance().prepared, nullptr);
+    for (std::size_t i = 0; i < mesh_a.t0.size(); ++i) {
+      const Vector3<double> expected =
+          a_end.template cast<double>() * mesh_a.t0[i].cast<S>().template cast<double>();
+      for (int k = 0; k < 3; ++k)
+        EXPECT_NEAR(pa.instance().frames[i].t1[k], expected[k], 1e-14);
+    }
+    contacts += expectRightAnswers(pa.instance(), pb.instance());
+    contacts += expectRightAnswers(pb.instance(), pa.instance());
+    ASSERT_FALSE(testing::Test::HasFailure());
+  }
+  EXPECT_GT(contacts, 200U);
+}
+
+template <typename BV>
+class FCL_DEFORMABLE_QUERY_MODELS : public testing::Test {};
+using Volumes = testing::Types<AABB<double>, OBB<double>, RSS<double>, kIOS<double>,
+                               OBBRSS<double>, KDOP<double, 16>, KDOP<double, 18>,
+                               KDOP<double, 24>, OBBRSS<float>, KDOP<float, 16>>;
+TYPED_TEST_SUITE(FCL_DEFORMABLE_QUERY_MODELS, Volumes);
+
+TYPED_TEST(FCL_DEFORMABLE_QUERY_MODELS, plainModelsAgainstBruteForce) {
+  expectRightAnswersOfModels<TypeParam>(3000);
+}
+
+/// A rigid mesh of the given triangles, and two triangles that fall through it.
+std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles) {
+  const MovingMesh needles{{{1, 1, 1}, {1.5, 1, 2}, {1, 1.25, 2}, {1, -1, 5}, {1, 1, 5}},
+                           {},
+                           {{0, 1, 2}, {0, 3, 4}}};
+  using Model = BVHModel<OBBRSS<double>>;
+  const auto a =
+      test::makeModel<Model>({{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}}, triangles});
+  const auto b = test::makeModel<Model>({needles.t0, needles.triangles});
+  const Transform3<double> begin = Transform3<double>::Identity();
+  Transform3<double> end = begin;
+  end.translation() = Vector3<double>(-2, 0, -2);
+  const PreparedMesh pa(*a, begin, begin, "a"), pb(*b, begin, end, "b");
+  return expectRightAnswers(pa.instance(), pb.instance());
+}
+
+// What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of
+// ids all the same.
+TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithDuplicateFaces) {
+  EXPECT_GT(expectRightAnswersOfRigidMesh({{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}), 0U);
+}
+
+// "An edge" from a vertex to itself is none; the needle's edge meets vertex 3 at t = 0.5.
+TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithRepeatedIds) {
+  EXPECT_GT(expectRightAnswersOfRigidMesh({{0, 1, 2}, {0, 0, 3}, {3, 3, 3}}), 0U);
+}
+
+}  // namespace
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Every VF and EE pair of a scene is met exactly once, whatever the mesh looks like.
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using Ids = std::vector<std::uint32_t>;
+/// Kind and side, sorted ids of the first and of the second feature.
+struct PairName {
+  int kind;  // 0: EE; 1: VF; 2: VF, the vertex is of the second mesh
+  Ids first, second;
+  bool operator<(const PairName& o) const {
+    return std::tie(kind, first, second) < std::tie(o.kind, o.first, o.second);
+  }
+  bool operator==(const PairName& o) const { return !(*this < o) && !(o < *this); }
+};
+using Tally = std::map<PairName, int>;
+
+Ids sorted(Ids ids) {
+  std::sort(ids.begin(), ids.end());
+  return ids;
+}
+
+struct Features {
+  std::set<Ids> vertices, edges, faces;
+
+  explicit Features(const std::vector<Triangle>& triangles) {
+    for (const Triangle& t : triangles) {
+      Ids v;
+      for (int k = 0; k < 3; ++k) v.push_back(static_cast<std::uint32_t>(t[k]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        vertices.insert({v[k]});
+        if (v[k] != v[(k + 1) % 3]) edges.insert(sorted({v[k], v[(k + 1) % 3]}));
+      }
+      faces.insert(sorted(v));
+    }
+  }
+};
+
+bool doShare(const Ids& a, const Ids& b) {
+  return std::any_of(a.begin(), a.end(), [&b](std::uint32_t id) {
+    return std::find(b.begin(), b.end(), id) != b.end();
+  });
+}
+
+/// Each pair once, by definition.
+Tally expectedPairs(const Features& a, const Features& b, bool self) {
+  Tally tally;
+  const auto add = [&](int kind, const std::set<Ids>& xs, const std::set<Ids>& ys) {
+    for (const Ids& x : xs)
+      for (const Ids& y : ys) {
+        if (self && doShare(x, y)) continue;
+        if (self && kind == 0 && y < x) continue;
+        tally[{kind, x, y}] = 1;
+      }
+  };
+  add(0, a.edges, b.edges);
+  add(1, a.vertices, b.faces);
+  if (!self) add(2, b.vertices, a.faces);
+  return tally;
+}
+
+PairName nameOf(const FeaturePair& pair, const MeshTriangle& a, const MeshTriangle& b,
+                bool self) {
+  if (pair.kind == FeatureKind::kEdgeEdge) {
+    Ids x = sorted({a.v[pair.first], a.v[(pair.first + 1) % 3]});
+    Ids y = sorted({b.v[pair.second], b.v[(pair.second + 1) % 3]});
+    if (self && y < x) std::swap(x, y);
+    return {0, x, y};
+  }
+  const MeshTriangle& v = pair.first_on_a ? a : b;
+  const MeshTriangle& f = pair.first_on_a ? b : a;
+  return {pair.first_on_a || self ? 1 : 2,
+          {v.v[pair.first]},
+          sorted({f.v[0], f.v[1], f.v[2]})};
+}
+
+void expectSelfPairs(const std::vector<Triangle>& triangles, std::size_t num_vertices) {
+  const auto mesh = assignFeatures(triangles.data(), triangles.size(), num_vertices);
+  Tally met;
+  for (std::size_t i = 0; i < mesh.size(); ++i)
+    for (std::size_t j = i + 1; j < mesh.size(); ++j) {
+      // The order of the two triangles must not matter.
+      const MeshTriangle &a = mesh[(i + j) % 2 ? i : j], &b = mesh[(i + j) % 2 ? j : i];
+      forEachFeaturePair<true>(
+          a, b, [&](const FeaturePair& pair) { ++met[nameOf(pair, a, b, true)]; });
+    }
+  const Features features(triangles);
+  EXPECT_TRUE(met == expectedPairs(features, features, true))
+      << met.size() << " pairs met of " << expectedPairs(features, features, true).size();
+}
+
+void expectMeshPairs(const std::vector<Triangle>& triangles_a, std::size_t vertices_a,
+                     const std::vector<Triangle>& triangles_b, std::size_t vertices_b) {
+  const auto mesh_a = assignFeatures(triangles_a.data(), triangles_a.size(), vertices_a);
+  const auto mesh_b = assignFeatures(triangles_b.data(), triangles_b.size(), vertices_b);
+  Tally met;
+  for (const MeshTriangle& a : mesh_a)
+    for (const MeshTriangle& b : mesh_b)
+      forEachFeaturePair<false>(
+          a, b, [&](const FeaturePair& pair) { ++met[nameOf(pair, a, b, false)]; });
+  EXPECT_TRUE(met == expectedPairs(Features(triangles_a), Features(triangles_b), false));
+}
+
+struct NamedMesh {
+  const char* name;
+  std::size_t num_vertices;
+  std::vector<Triangle> triangles;
+};
+
+std::vector<NamedMesh> meshes() {
+  return {
+      {"one triangle", 3, {{0, 1, 2}}},
+      {"two apart", 6, {{0, 1, 2}, {3, 4, 5}}},
+      {"two on an edge", 4, {{0, 1, 2}, {2, 1, 3}}},
+      {"two on an edge, wound alike", 4, {{0, 1, 2}, {1, 2, 3}}},
+      {"two at a vertex", 5, {{0, 1, 2}, {2, 3, 4}}},
+      {"three on an edge", 5, {{0, 1, 2}, {0, 1, 3}, {1, 0, 4}}},
+      {"closed", 4, {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}},
+      {"vertices without a triangle", 9, {{1, 3, 5}, {5, 3, 7}}},
+      {"duplicates in other orders",
+       7,
+       {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {4, 5, 6}, {4, 6, 5}, {0, 1, 4}}},
+      {"repeated ids",
+       6,
+       {{0, 0, 1}, {1, 2, 2}, {3, 3, 3}, {3, 4, 5}, {1, 0, 1}, {4, 3, 4}}},
+      {"components", 9, {{0, 1, 2}, {1, 2, 3}, {4, 5, 6}, {5, 6, 7}, {6, 7, 8}}},
+      {"sheet", 16, test::makeSheet(3, 3).triangles},
+      {"box", 8, test::makeBox({1, 1, 1}).triangles},
+  };
+}
+
+TEST(FCL_FEATURE_PAIRS, selfPairsAreMetOnce) {
+  for (const NamedMesh& mesh : meshes()) {
+    SCOPED_TRACE(mesh.name);
+    expectSelfPairs(mesh.triangles, mesh.num_vertices);
+  }
+}
+
+TEST(FCL_FEATURE_PAIRS, pairsOfTwoMeshesAreMetOnce) {
+  for (const NamedMesh& a : meshes())
+    for (const NamedMesh& b : meshes()) {
+      SCOPED_TRACE(std::string(a.name) + " and " + b.name);
+      expectMeshPairs(a.triangles, a.num_vertices, b.triangles, b.num_vertices);
+    }
+}
+
+std::vector<Triangle> randomTriangles(test::Random& random, std::size_t vertices) {
+  std::vector<Triangle> triangles;
+  for (std::size_t i = 1 + random.index(14); i-- > 0;) {
+    const std::size_t a = random.index(vertices), b = random.index(vertices);
+    triangles.emplace_back(a, b, random.index(vertices));
+  }
+  return triangles;
+}
+
+TEST(FCL_FEATURE_PAIRS, randomMeshes) {
+  constexpr std::uint64_t kSeed = 31;
+  test::Random random(kSeed);
+  for (int i = 0; i < 500; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", mesh " + std::to_string(i));
+    const std::size_t m = 3 + random.index(12), n = 3 + random.index(12);
+    const auto a = randomTriangles(random, m), b = randomTriangles(random, n);
+    expectSelfPairs(a, m);
+    if (i % 4 == 0) expectMeshPairs(a, m, b, n);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+TEST(FCL_FEATURE_PAIRS, theLowestTriangleOwns) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {2, 1, 3}, {1, 0, 2}};
+  const auto mesh = assignFeatures(triangles.data(), triangles.size(), 4);
+  EXPECT_EQ(mesh[0].owned, kOwnsAll);
+  // Of the second, vertex 3, its two new edges and the face.
+  EXPECT_FALSE(mesh[1].ownsVertex(0) || mesh[1].ownsVertex(1) || mesh[1].ownsEdge(0));
+  EXPECT_TRUE(mesh[1].ownsVertex(2) && mesh[1].ownsEdge(1) && mesh[1].ownsEdge(2));
+  EXPECT_TRUE(mesh[1].ownsFace());
+  EXPECT_EQ(mesh[2].owned, 0U);
+}
+
+}  // namespace
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
