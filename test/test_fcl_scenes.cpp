@@ -2,8 +2,6 @@
 //
 // Real scenes with exact truth (they lie outside the project; see shared_data.h): every
 // contact found, none invented, by every way to ask.
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +15,7 @@
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 #include "fcl/narrowphase/detail/traversal/collision_node.h"
-#include "mesh_io.h"
+#include "scene_data.h"
 #include "shared_data.h"
 #include "test_models.h"
 
@@ -30,60 +28,20 @@ using Plain = BVHModel<KDOP<double, 16>>;
 using Request = ContinuousContactRequest<double>;
 using Result = ContinuousContactResult<double>;
 
-/// Kind (0 VF, 1 EE) and ids: v, f0 < f1 < f2, or the edges and their ends in order.
-using Pair = std::array<int, 5>;
-
-Pair makePair(bool vf, std::array<int, 4> ids) {
-  if (vf) {
-    std::sort(ids.begin() + 1, ids.end());
-  } else {
-    std::array<int, 2> a{std::min(ids[0], ids[1]), std::max(ids[0], ids[1])},
-        b{std::min(ids[2], ids[3]), std::max(ids[2], ids[3])};
-    if (b < a) std::swap(a, b);
-    ids = {a[0], a[1], b[0], b[1]};
-  }
-  return {vf ? 0 : 1, ids[0], ids[1], ids[2], ids[3]};
-}
-
-std::vector<Pair> readTruth(const std::string& path) {
-  std::vector<Pair> pairs;
-  const gzFile file = gzopen(path.c_str(), "rb");
-  EXPECT_NE(file, nullptr) << path;
-  if (!file) return pairs;
-  char line[256];
-  while (gzgets(file, line, sizeof line)) {
-    if (line[0] == '#') continue;
-    std::istringstream in(line);
-    std::string kind;
-    std::array<int, 4> ids{};
-    char comma = 0;
-    std::getline(in, kind, ',');
-    in >> ids[0] >> comma >> ids[1] >> comma >> ids[2] >> comma >> ids[3];
-    EXPECT_TRUE(in && (kind == "vf" || kind == "ee")) << line;
-    pairs.push_back(makePair(kind == "vf", ids));
-  }
-  gzclose(file);
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
-}
-
 template <typename S>
-std::vector<Pair> pairsOf(const ContinuousContactResult<S>& result) {
-  std::vector<Pair> pairs;
-  for (const auto& c : result.contacts) {
-    const auto& v = c.vertices;
-    pairs.push_back(
-        makePair(c.kind == ContinuousContactKind::kVertexFace, {v[0], v[1], v[2], v[3]}));
-  }
+std::vector<PairName> pairsOf(const ContinuousContactResult<S>& result) {
+  std::vector<PairName> pairs;
+  for (const auto& c : result.contacts) pairs.push_back(pairName(c));
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
 /// Equal both ways; a difference is counted, with one example, not listed.
-void expectPairs(const std::vector<Pair>& got, const std::vector<Pair>& expected) {
-  const auto report = [](const char* what, const std::vector<Pair>& x,
-                         const std::vector<Pair>& y) {
-    std::vector<Pair> only;
+void expectPairs(const std::vector<PairName>& got,
+                 const std::vector<PairName>& expected) {
+  const auto report = [](const char* what, const std::vector<PairName>& x,
+                         const std::vector<PairName>& y) {
+    std::vector<PairName> only;
     std::set_difference(x.begin(), x.end(), y.begin(), y.end(), std::back_inserter(only));
     std::ostringstream example;
     if (!only.empty())
@@ -113,29 +71,20 @@ class Scenes : public ::testing::TestWithParam<SceneFiles> {
     const SceneFiles& files = GetParam();
     const auto folder = sharedData(std::string("scenes/") + files.folder);
     if (!folder) return false;
-    t0_ = read(*folder + "/" + files.t0);
-    t1_ = read(*folder + "/" + files.t1);
+    const FramePairMesh mesh =
+        readFramePair(*folder + "/" + files.t0, *folder + "/" + files.t1);
+    t0_ = {mesh.previous, mesh.triangles};
+    t1_ = {mesh.current, mesh.triangles};
     EXPECT_EQ(t0_.vertices.size(), files.vertices);
-    EXPECT_EQ(t1_.vertices.size(), files.vertices);
     EXPECT_EQ(t0_.triangles.size(), files.triangles);
-    truth_ = readTruth(*folder + "/true_pairs.csv.gz");
+    const auto truth = readTruePairs(*folder + "/true_pairs.csv.gz");
+    truth_.assign(truth.begin(), truth.end());
     EXPECT_EQ(truth_.size(), files.pairs);
     return true;
   }
 
-  static TestMesh read(const std::string& path) {
-    const fcl_ccd::Mesh file = fcl_ccd::readMesh(path);
-    TestMesh mesh;
-    for (const auto& p : file.vertices) mesh.vertices.emplace_back(p[0], p[1], p[2]);
-    for (const auto& t : file.triangles)
-      mesh.triangles.emplace_back(static_cast<std::size_t>(t[0]),
-                                  static_cast<std::size_t>(t[1]),
-                                  static_cast<std::size_t>(t[2]));
-    return mesh;
-  }
-
   TestMesh t0_, t1_;
-  std::vector<Pair> truth_;
+  std::vector<PairName> truth_;
 };
 
 TEST_P(Scenes, ContactsAreTheTruth) {
@@ -247,7 +196,7 @@ TEST_P(Scenes, FarFromTheOrigin) {
     return pairsOf(
         selfContacts<double>(*makeModel<Model>(onGrid(t0_, shift), onGrid(t1_, shift))));
   };
-  const std::vector<Pair> here = contacts(0);
+  const std::vector<PairName> here = contacts(0);
   EXPECT_GT(here.size(), truth_.size() / 2);
   expectPairs(contacts(1e6), here);
 }
