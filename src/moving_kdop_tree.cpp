@@ -107,7 +107,7 @@ std::size_t split(Item* items, std::size_t count, bool search) {
 void merge(const Kdop16& a, const Kdop16& b, Kdop16& out) {
   for (int q = 0; q < 4; ++q) {
     const Float4 x = quad(a, q), y = quad(b, q);
-    const Float4 most = (x > y) | (x != x) ? x : y;
+    const Float4 most = ((x > y) | (x != x)) ? x : y;
     __builtin_memcpy(out.half + 4 * q, &most, sizeof(most));
   }
 }

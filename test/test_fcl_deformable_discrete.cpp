@@ -260,11 +260,21 @@ void expectShapeDistancesRight() {
   }
 }
 
+template <typename BV>
+void expectNoShapeDistance() {
+  const auto model = makeModel<DeformableBVHModel<BV>>(bentSheet(4));
+  const Sphere<double> sphere(0.25);
+  const Pose here = Pose::Identity();
+  expectRefused([&] { distanceOf(*model, here, sphere, here); }, "no distance");
+  expectRefused([&] { distanceOf(sphere, here, *model, here); }, "no distance");
+}
+
 TEST(DiscreteDistance, MeshShape) {
-  expectShapeDistancesRight<AABB<double>>();
   expectShapeDistancesRight<RSS<double>>();
+  expectShapeDistancesRight<kIOS<double>>();
   expectShapeDistancesRight<OBBRSS<double>>();
-  expectShapeDistancesRight<KDOP<double, 16>>();
+  expectNoShapeDistance<AABB<double>>();
+  expectNoShapeDistance<KDOP<double, 16>>();
 }
 
 }  // namespace

@@ -397,7 +397,7 @@ class FCL_DEFORMABLE_QUERY_MODELS : public testing::Test {};
 using Volumes = testing::Types<AABB<double>, OBB<double>, RSS<double>, kIOS<double>,
                                OBBRSS<double>, KDOP<double, 16>, KDOP<double, 18>,
                                KDOP<double, 24>, OBBRSS<float>, KDOP<float, 16>>;
-TYPED_TEST_SUITE(FCL_DEFORMABLE_QUERY_MODELS, Volumes);
+TYPED_TEST_SUITE(FCL_DEFORMABLE_QUERY_MODELS, Volumes, );
 
 TYPED_TEST(FCL_DEFORMABLE_QUERY_MODELS, plainModelsAgainstBruteForce) {
   expectRightAnswersOfModels<TypeParam>(3000);

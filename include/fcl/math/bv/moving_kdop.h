@@ -117,8 +117,8 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
     // Where the difference overflows (or is NaN) the quotient would mean nothing.
     const Mask4 valid = (change <= FLT_MAX) & (change >= -FLT_MAX);
     const Float4 t = s0[q] / change;
-    const Float4 enter = (s0[q] < zero) & valid ? t * kDown : zero;
-    const Float4 leave = (s1[q] < zero) & valid ? t * kUp : one;
+    const Float4 enter = ((s0[q] < zero) & valid) ? t * kDown : zero;
+    const Float4 leave = ((s1[q] < zero) & valid) ? t * kUp : one;
     lo = enter > lo ? enter : lo;
     hi = leave < hi ? leave : hi;
   }
