@@ -26,17 +26,17 @@ void requireDistanceFunction(const CollisionGeometry<S>& o1,
 
 }  // namespace
 
-#define FCL_CCD_DEFINE_DISTANCE(S)                                               \
-  S distance(const CollisionObject<S>* o1, const CollisionObject<S>* o2,         \
-             const DistanceRequest<S>& request, DistanceResult<S>& result) {     \
-    requireDistanceFunction(*o1->collisionGeometry(), *o2->collisionGeometry()); \
-    return distance<S>(o1, o2, request, result);                                 \
-  }                                                                              \
-  S distance(const CollisionGeometry<S>* o1, const Transform3<S>& tf1,           \
-             const CollisionGeometry<S>* o2, const Transform3<S>& tf2,           \
-             const DistanceRequest<S>& request, DistanceResult<S>& result) {     \
-    requireDistanceFunction(*o1, *o2);                                           \
-    return detail::stockDistance(o1, tf1, o2, tf2, request, result);             \
+#define FCL_CCD_DEFINE_DISTANCE(S)                                                       \
+  S distance(const CollisionObject<S>* o1, const CollisionObject<S>* o2,                 \
+             const DistanceRequest<S>& request, DistanceResult<S>& result) {             \
+    return distance(o1->collisionGeometry().get(), o1->getTransform(),                   \
+                    o2->collisionGeometry().get(), o2->getTransform(), request, result); \
+  }                                                                                      \
+  S distance(const CollisionGeometry<S>* o1, const Transform3<S>& tf1,                   \
+             const CollisionGeometry<S>* o2, const Transform3<S>& tf2,                   \
+             const DistanceRequest<S>& request, DistanceResult<S>& result) {             \
+    requireDistanceFunction(*o1, *o2);                                                   \
+    return detail::stockDistance(o1, tf1, o2, tf2, request, result);                     \
   }
 FCL_CCD_DEFINE_DISTANCE(double)
 FCL_CCD_DEFINE_DISTANCE(float)
