@@ -4,6 +4,7 @@
 #include <stdexcept>
 #include <string>
 #include <type_traits>
+#include <typeinfo>
 
 #include "fcl/common/exception.h"
 #include "fcl/math/bv/utility.h"
@@ -177,9 +178,10 @@ bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
   // FCL's InterpMotion<float> and ScrewMotion<float> are abstract: there are none to
   // read.
   if constexpr (!std::is_abstract_v<Motion>) {
-    const auto* known = dynamic_cast<const Motion*>(&motion);
-    if (!known) return false;
-    const Motion copy(*known);  // integrate() changes the motion
+    // Of this class and of none derived from it, which may move otherwise.
+    if (typeid(motion) != typeid(Motion)) return false;
+    // integrate() changes the motion.
+    const Motion copy(static_cast<const Motion&>(motion));
     copy.integrate(0);
     copy.getCurrentTransform(placement.beginning);
     copy.integrate(1);

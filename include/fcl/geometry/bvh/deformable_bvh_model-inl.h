@@ -365,7 +365,10 @@ int DeformableBVHModel<BV>::updateFclTree() {
 
 template <typename BV>
 bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
-  return !isInStep() || fcl_tree_up_to_date_;
+  if (isInStep()) return fcl_tree_up_to_date_;
+  // Changed through the base class, which keeps its tree up to date, unless it never had
+  // one: vertices were added after endModel(FclTree::kSkip).
+  return !(seal_.vertices && this->build_state == BVH_BUILD_STATE_BEGUN);
 }
 
 template <typename BV>
