@@ -29,8 +29,8 @@ constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kFirstBlock = 32;
 
 template <bool kSelf, typename TreeA, typename TreeB>
-void run(const TreeA& tree_a, const TreeB& tree_b, const KdopShift* shift,
-         TrianglePairTest& leaves, std::size_t block_size, StageTimes& times) {
+void run(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, TrianglePairTest& leaves,
+         std::size_t block_size, StageTimes& times) {
   std::vector<NodePair> open;
   std::vector<TrianglePair> block;
   block.reserve(block_size);
@@ -57,6 +57,15 @@ void run(const TreeA& tree_a, const TreeB& tree_b, const KdopShift* shift,
   times.traverse += secondsSince(start) - times.test;
 }
 
+/// Calls visit with the tree to traverse.
+template <typename Visit>
+void visitTree(const MeshInstance& mesh, Visit&& visit) {
+  if (mesh.tree)
+    visit(*mesh.tree);
+  else
+    visit(RigidTreeReader(mesh.rigid));
+}
+
 QueryAnswer collect(TrianglePairTest& leaves, const StageTimes& times) {
   QueryAnswer answer;
   answer.cut = leaves.sink().isCut();
@@ -75,10 +84,8 @@ QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
   TrianglePairTest leaves(a, a, options);
   StageTimes times;
   const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
-  if (a.tree)
-    run<true>(*a.tree, *a.tree, nullptr, leaves, block, times);
-  else
-    run<true>(a.rigid, a.rigid, nullptr, leaves, block, times);
+  visitTree(a,
+            [&](auto&& tree) { run<true>(tree, tree, nullptr, leaves, block, times); });
   return collect(leaves, times);
 }
 
@@ -89,14 +96,11 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
   StageTimes times;
   const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
   const KdopShift shift = relativeShift(a, b);
-  if (a.tree && b.tree)
-    run<false>(*a.tree, *b.tree, &shift, leaves, block, times);
-  else if (a.tree)
-    run<false>(*a.tree, b.rigid, &shift, leaves, block, times);
-  else if (b.tree)
-    run<false>(a.rigid, *b.tree, &shift, leaves, block, times);
-  else
-    run<false>(a.rigid, b.rigid, &shift, leaves, block, times);
+  visitTree(a, [&](auto&& tree_a) {
+    visitTree(b, [&](auto&& tree_b) {
+      run<false>(tree_a, tree_b, &shift, leaves, block, times);
+    });
+  });
   return collect(leaves, times);
 }
 

@@ -403,6 +403,36 @@ TYPED_TEST(FCL_DEFORMABLE_QUERY_MODELS, plainModelsAgainstBruteForce) {
   expectRightAnswersOfModels<TypeParam>(3000);
 }
 
+// The boxes that a reader keeps are those that the tree makes, in whatever order nodes
+// are asked for; two siblings can be held at once.
+TEST(FCL_DEFORMABLE_QUERY, readerKeepsTheBoxesOfARigidTree) {
+  using Model = BVHModel<OBBRSS<double>>;
+  const auto model = test::makeModel<Model>(test::bentSheet(20));
+  const RigidTree tree(*model, Pose());
+  RigidTreeReader reader(tree);
+  test::Random random(31);
+  const auto expectSame = [&tree](const MovingKdop& box, int node) {
+    const MovingKdop made = tree.box(node);
+    for (int k = 0; k < 16; ++k) {
+      ASSERT_EQ(box.t0.half[k], made.t0.half[k]) << node;
+      ASSERT_EQ(box.t1.half[k], made.t1.half[k]) << node;
+    }
+  };
+  const int count = model->getNumBVs();
+  ASSERT_GT(count, 1000);  // far more than the reader keeps
+  for (int i = 0; i < 5000; ++i) {
+    // Now and then back to a few nodes, as traversals do.
+    const auto node = static_cast<int>(random.uniform(0, i % 3 ? count : 40));
+    expectSame(reader.box(node), node);
+    if (reader.isLeaf(node)) continue;
+    const int left = reader.leftChild(node);
+    const MovingKdop& first = reader.box(left);
+    const MovingKdop& second = reader.box(left + 1);
+    expectSame(first, left);
+    expectSame(second, left + 1);
+  }
+}
+
 /// A rigid mesh of the given triangles, and two triangles that fall through it.
 std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles) {
   const MovingMesh needles{{{1, 1, 1}, {1.5, 1, 2}, {1, 1.25, 2}, {1, -1, 5}, {1, 1, 5}},

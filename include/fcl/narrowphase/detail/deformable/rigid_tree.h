@@ -2,6 +2,7 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_RIGID_TREE_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_RIGID_TREE_H
 
+#include <algorithm>
 #include <cstddef>
 
 #include "fcl/geometry/bvh/BVH_model.h"
@@ -30,7 +31,7 @@ class RigidTree {
   int leftChild(int node) const { return link(node); }
   int triangle(int node) const { return ~link(node); }
 
-  /// @brief Box of the node, the same in both frames.
+  /// @brief Box of the node, the same in both frames; made anew at each call.
   MovingKdop box(int node) const;
 
   /// @brief Point (rotated frame) that the boxes are relative to.
@@ -83,6 +84,36 @@ class RigidTree {
   double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
   double origin_[3]{0, 0, 0};
   double reach_{0};
+};
+
+/// @brief A RigidTree as one traversal reads it: a node is met in many pairs, and its
+/// box, once made, stays in a small table. For one thread.
+class RigidTreeReader {
+ public:
+  explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
+    std::fill(node_, node_ + kSlots, -1);
+  }
+
+  bool isLeaf(int node) const { return tree_.isLeaf(node); }
+  int leftChild(int node) const { return tree_.leftChild(node); }
+  int triangle(int node) const { return tree_.triangle(node); }
+
+  /// @brief Box of the node; valid until the box of another node is asked for, its
+  /// sibling's excepted.
+  const MovingKdop& box(int node) {
+    const int slot = node % kSlots;
+    if (node_[slot] != node) {
+      box_[slot] = tree_.box(node);
+      node_[slot] = node;
+    }
+    return box_[slot];
+  }
+
+ private:
+  static constexpr int kSlots = 128;  // 16 KiB of boxes; siblings have different slots
+  const RigidTree& tree_;
+  int node_[kSlots];
+  MovingKdop box_[kSlots];
 };
 
 }  // namespace deformable

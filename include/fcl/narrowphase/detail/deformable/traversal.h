@@ -32,6 +32,7 @@ inline float extent(const MovingKdop& box) {
 
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
+/// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
 /// @tparam kSelf  tree_b is tree_a: each unordered pair of different triangles once
 /// @param shift  between the two trees' origins and translations; null for kSelf
 /// @param open  scratch, reused between calls; grows with the depth of the trees only
@@ -41,7 +42,7 @@ inline float extent(const MovingKdop& box) {
 ///
 /// Pairs are opened depth first, the one whose window starts earlier first.
 template <bool kSelf, typename TreeA, typename TreeB, typename Latest, typename Visit>
-std::uint64_t traverse(const TreeA& tree_a, const TreeB& tree_b, const KdopShift* shift,
+std::uint64_t traverse(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
                        std::vector<NodePair>& open, Latest&& latest, Visit&& visit) {
   std::uint64_t compared = 0;
   const auto pushIfOverlapping = [&](int a, const MovingKdop& box_a, int b,
@@ -76,7 +77,7 @@ std::uint64_t traverse(const TreeA& tree_a, const TreeB& tree_b, const KdopShift
         return compared;
       continue;
     }
-    // A box may be made on the spot (RigidTree): each is asked for once.
+    // A box may lie in a table of few (RigidTreeReader): one of a tree at a time.
     const MovingKdop& box_a = tree_a.box(pair.a);
     const MovingKdop& box_b = tree_b.box(pair.b);
     const std::size_t first = open.size();
