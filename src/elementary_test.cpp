@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 
 namespace fcl {
 namespace detail {

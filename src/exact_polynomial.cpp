@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace fcl {
@@ -10,29 +11,15 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Remainder of a by b, times a positive constant.
-Polynomial pseudoRemainder(const Polynomial& a, const Polynomial& b) {
-  Polynomial rest = a;
-  const int sign = b[b.degree()] < 0 ? -1 : 1;
-  while (!rest.isZero() && rest.degree() >= b.degree()) {
-    const int shift = rest.degree() - b.degree();
-    std::vector<Integer> factor(static_cast<std::size_t>(shift) + 1);
-    factor.back() = sign * rest[rest.degree()];
-    const Integer lead = sign * b[b.degree()];
-    rest = rest * Polynomial({lead}) - b * Polynomial(std::move(factor));
-  }
-  return rest;
-}
-
 /// k / 2^m rounded to a double below (direction -1) or above (1), or equal.
 double toDouble(const Integer& k, unsigned m, int direction) {
-  if (k == 0) return 0;
+  if (k.is_zero()) return 0;
   const auto bits = static_cast<unsigned>(boost::multiprecision::msb(k)) + 1;
   const unsigned drop = bits > 53 ? bits - 53 : 0;
   Integer head = k >> drop;
-  if ((head << drop) != k && direction > 0) ++head;
-  const double value =
-      std::ldexp(head.convert_to<double>(), static_cast<int>(drop) - static_cast<int>(m));
+  if (direction > 0 && (head << drop) != k) ++head;
+  const double value = std::ldexp(static_cast<double>(head.convert_to<std::int64_t>()),
+                                  static_cast<int>(drop) - static_cast<int>(m));
   // A subnormal has fewer bits, to which ldexp() rounds either way.
   if (value >= std::numeric_limits<double>::min()) return value;
   return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
@@ -40,42 +27,38 @@ double toDouble(const Integer& k, unsigned m, int direction) {
 
 /// p divided by (2^m t - k), a root of it.
 Polynomial withoutRoot(const Polynomial& p, const Integer& k, unsigned m) {
-  return p.quotient(Polynomial({-k, Integer(1) << m})).primitive();
+  return p.quotient(Polynomial{-k, Integer(1) << m}).primitive();
 }
 
 }  // namespace
 
-Polynomial::Polynomial(std::vector<Integer> coefficients) : c_(std::move(coefficients)) {
-  while (!c_.empty() && c_.back() == 0) c_.pop_back();
+Polynomial& Polynomial::operator+=(const Polynomial& other) {
+  if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
+  for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] += other.c_[i];
+  trim();
+  return *this;
 }
 
-Polynomial Polynomial::operator+(const Polynomial& other) const {
-  std::vector<Integer> sum(std::max(c_.size(), other.c_.size()));
-  for (std::size_t i = 0; i < c_.size(); ++i) sum[i] += c_[i];
-  for (std::size_t i = 0; i < other.c_.size(); ++i) sum[i] += other.c_[i];
-  return Polynomial(std::move(sum));
+Polynomial& Polynomial::operator-=(const Polynomial& other) {
+  if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
+  for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] -= other.c_[i];
+  trim();
+  return *this;
 }
 
-Polynomial Polynomial::operator-(const Polynomial& other) const {
-  std::vector<Integer> difference(std::max(c_.size(), other.c_.size()));
-  for (std::size_t i = 0; i < c_.size(); ++i) difference[i] += c_[i];
-  for (std::size_t i = 0; i < other.c_.size(); ++i) difference[i] -= other.c_[i];
-  return Polynomial(std::move(difference));
-}
-
-Polynomial Polynomial::operator*(const Polynomial& other) const {
-  if (isZero() || other.isZero()) return {};
-  std::vector<Integer> product(c_.size() + other.c_.size() - 1);
-  for (std::size_t i = 0; i < c_.size(); ++i)
-    for (std::size_t j = 0; j < other.c_.size(); ++j)
-      product[i + j] += c_[i] * other.c_[j];
-  return Polynomial(std::move(product));
+Polynomial operator*(const Polynomial& a, const Polynomial& b) {
+  Polynomial product;
+  if (a.isZero() || b.isZero()) return product;
+  product.c_.resize(a.c_.size() + b.c_.size() - 1);
+  for (std::size_t i = 0; i < a.c_.size(); ++i)
+    for (std::size_t j = 0; j < b.c_.size(); ++j) product.c_[i + j] += a.c_[i] * b.c_[j];
+  return product;
 }
 
 Polynomial Polynomial::derivative() const {
-  std::vector<Integer> d;
-  for (std::size_t i = 1; i < c_.size(); ++i) d.push_back(c_[i] * i);
-  return Polynomial(std::move(d));
+  Polynomial d;
+  for (std::size_t i = 1; i < c_.size(); ++i) d.c_.push_back(c_[i] * i);
+  return d;
 }
 
 Polynomial Polynomial::primitive() const {
@@ -87,47 +70,71 @@ Polynomial Polynomial::primitive() const {
   return p;
 }
 
-Polynomial Polynomial::quotient(const Polynomial& divisor) const {
-  Polynomial rest = *this;
-  const Integer& lead = divisor[divisor.degree()];
-  std::vector<Integer> q(static_cast<std::size_t>(degree() - divisor.degree()) + 1);
-  while (!rest.isZero() && rest.degree() >= divisor.degree()) {
-    const int shift = rest.degree() - divisor.degree();
-    std::vector<Integer> factor(static_cast<std::size_t>(shift) + 1);
-    factor.back() = rest[rest.degree()];
-    for (Integer& c : q) c *= lead;
-    q[static_cast<std::size_t>(shift)] += factor.back();
-    rest = rest * Polynomial({lead}) - divisor * Polynomial(std::move(factor));
+/// Remainder of a by b, times a constant.
+Polynomial remainder(const Polynomial& a, const Polynomial& b) {
+  Polynomial rest = a;
+  const std::size_t n = b.c_.size();
+  while (rest.c_.size() >= n) {
+    const Integer top = rest.c_.back();
+    const std::size_t shift = rest.c_.size() - n;
+    for (std::size_t i = 0; i < rest.c_.size(); ++i) {
+      rest.c_[i] *= b.c_.back();
+      if (i >= shift) rest.c_[i] -= top * b.c_[i - shift];
+    }
+    rest.trim();
   }
-  return Polynomial(std::move(q));
+  return rest;
+}
+
+Polynomial Polynomial::quotient(const Polynomial& divisor) const {
+  Polynomial rest = *this, q;
+  const std::size_t n = divisor.c_.size();
+  const Integer& lead = divisor.c_.back();
+  q.c_.resize(c_.size() - n + 1);
+  while (rest.c_.size() >= n) {
+    const Integer top = rest.c_.back();
+    const std::size_t shift = rest.c_.size() - n;
+    for (Integer& c : q.c_) c *= lead;
+    q.c_[shift] += top;
+    for (std::size_t i = 0; i < rest.c_.size(); ++i) {
+      rest.c_[i] *= lead;
+      if (i >= shift) rest.c_[i] -= top * divisor.c_[i - shift];
+    }
+    rest.trim();
+  }
+  return q;
 }
 
 int Polynomial::signAt(const Integer& k, unsigned m) const {
   if (isZero()) return 0;
   // 2^(m degree) p(k / 2^m) by Horner's rule.
   Integer value = c_.back();
-  for (int i = degree() - 1; i >= 0; --i)
-    value = value * k + ((*this)[i] << (m * static_cast<unsigned>(degree() - i)));
+  for (int i = degree() - 1; i >= 0; --i) {
+    value *= k;
+    value += (*this)[i] << (m * static_cast<unsigned>(degree() - i));
+  }
   return value.sign();
 }
 
-int Polynomial::signChanges(const Integer& k, unsigned m) const {
+Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) const {
   const std::size_t n = c_.size();
-  if (n == 0) return 0;
   // q(s) = 2^(m degree) p((k + s) / 2^m) by repeated synthetic division.
-  std::vector<Integer> q(n);
-  for (std::size_t i = 0; i < n; ++i)
-    q[i] = c_[i] << (m * static_cast<unsigned>(n - 1 - i));
-  if (k != 0)
+  Coefficients q = c_;
+  for (std::size_t i = 0; i < n; ++i) q[i] <<= m * static_cast<unsigned>(n - 1 - i);
+  if (!k.is_zero())
     for (std::size_t i = 0; i + 1 < n; ++i)
       for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1] * k;
-  // Bernstein coefficients times binomials: those of (1 + x)^degree q(1 / (1 + x)),
-  // reversed; the sign changes are the same.
+  // Those of (1 + x)^degree q(1 / (1 + x)), reversed.
   std::reverse(q.begin(), q.end());
   for (std::size_t i = 0; i + 1 < n; ++i)
     for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1];
+  std::reverse(q.begin(), q.end());
+  return q;
+}
+
+int Polynomial::signChanges(const Integer& k, unsigned m) const {
   int changes = 0, last = 0;
-  for (const Integer& b : q) {
+  for (const Integer& b : bernstein(k, m)) {
     const int sign = b.sign();
     if (sign == 0) continue;
     if (last != 0 && sign != last) ++changes;
@@ -138,7 +145,7 @@ int Polynomial::signChanges(const Integer& k, unsigned m) const {
 
 Polynomial gcd(Polynomial a, Polynomial b) {
   while (!b.isZero()) {
-    Polynomial rest = pseudoRemainder(a, b).primitive();
+    Polynomial rest = remainder(a, b).primitive();
     a = std::move(b);
     b = std::move(rest);
   }
@@ -146,18 +153,21 @@ Polynomial gcd(Polynomial a, Polynomial b) {
 }
 
 std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
-  Polynomial p = polynomial.primitive();
-  const Polynomial repeated = p.degree() > 1 ? gcd(p, p.derivative()) : Polynomial();
-  if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
-
+  // A root of higher multiplicity keeps two sign changes at every depth.
+  constexpr unsigned kMaxDepth = 12;
+  Polynomial p = polynomial;
+  bool square_free = p.degree() <= 1;
   std::vector<Root> roots;
   // Roots found on the way at dyadic points are divided out, so that ends of intervals
   // are never roots; the search then starts again.
   const auto takeDyadic = [&](const Integer& k, unsigned m) {
-    if (p.degree() < 1 || p.signAt(k, m) != 0) return false;
-    roots.emplace_back(k, m, true, Polynomial());
-    p = withoutRoot(p, k, m);
-    return true;
+    bool taken = false;
+    while (p.degree() >= 1 && p.signAt(k, m) == 0) {
+      if (!taken) roots.emplace_back(k, m);
+      p = withoutRoot(p, k, m);
+      taken = true;
+    }
+    return taken;
   };
   takeDyadic(0, 0);
   takeDyadic(1, 0);
@@ -169,8 +179,14 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
       const auto [k, m] = open.back();
       open.pop_back();
       const int changes = p.signChanges(k, m);
-      if (changes == 1) isolated.emplace_back(k, m, false, p);
+      if (changes == 1) isolated.emplace_back(k, m, p);
       if (changes <= 1) continue;
+      if (m == kMaxDepth && !square_free) {
+        const Polynomial repeated = gcd(p, p.derivative());
+        if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
+        square_free = again = true;
+        break;
+      }
       const Integer mid = 2 * k + 1;
       again = takeDyadic(mid, m + 1);
       open.emplace_back(mid, m + 1);
@@ -181,45 +197,117 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
   return roots;
 }
 
-void Root::halve() {
-  const Integer mid = 2 * k_ + 1;
-  const int at_mid = polynomial_.signAt(mid, m_ + 1);
-  if (at_mid == 0) {
-    k_ = mid;
-    is_dyadic_ = true;
-  } else {
-    k_ = at_mid == polynomial_.signAt(k_, m_) ? mid : Integer(mid - 1);
+/// Where in the interval, 0 to 1, the root seems to be.
+double Root::estimate() const {
+  const Polynomial::Coefficients exact = polynomial_.bernstein(k_, m_);
+  std::size_t bits = 0;
+  for (const Integer& b : exact)
+    if (!b.is_zero()) bits = std::max<std::size_t>(bits, msb(abs(b)));
+  const std::size_t drop = bits > 60 ? bits - 60 : 0;
+  double b[Polynomial::kMaxDegree + 1];
+  const std::size_t n = exact.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Integer head = abs(exact[i]) >> drop;
+    b[i] = static_cast<double>(head.convert_to<std::int64_t>()) * exact[i].sign();
   }
+  // Illinois: false position that halves the weight of an end that stays.
+  double lo = 0, hi = 1, f_lo = b[0], f_hi = b[n - 1], s = 0.5;
+  for (int i = 0; i < 60 && lo < hi; ++i) {
+    const double previous = s;
+    s = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
+    if (!(s > lo && s < hi)) s = 0.5 * (lo + hi);
+    if (s == previous) break;
+    double value = 0, r = 1;
+    for (std::size_t j = 0; j < n; ++j) {
+      value = value * (1 - s) + b[j] * r;
+      r *= s;
+    }
+    if (value == 0) break;
+    if ((value < 0) == (f_lo < 0)) {
+      lo = s;
+      f_lo = value;
+      f_hi *= 0.5;
+    } else {
+      hi = s;
+      f_hi = value;
+      f_lo *= 0.5;
+    }
+  }
+  return s;
+}
+
+int Root::probe(const Integer& k, unsigned m) {
+  const int sign = polynomial_.signAt(k, m);
+  if (sign == 0) {
+    k_ = k;
+    m_ = m;
+    is_dyadic_ = true;
+  }
+  return sign;
+}
+
+void Root::narrow(unsigned bits) {
+  // The neighbours of the place where the root seems to be.
+  if (bits > 1) {
+    const Integer first = k_ << bits, end = (k_ + 1) << bits;
+    const Integer guess =
+        first + static_cast<std::int64_t>(std::ldexp(estimate(), static_cast<int>(bits)));
+    const Integer below = guess > first ? guess - 1 : first,
+                  above = guess + 2 < end ? guess + 2 : end;
+    const unsigned m = m_ + bits;
+    int sign = below == first ? sign_below_ : probe(below, m);
+    if (is_dyadic_) return;
+    if (sign == sign_below_) {
+      for (Integer k = below; k < above; ++k) {
+        sign = k + 1 == end ? -sign_below_ : probe(k + 1, m);
+        if (is_dyadic_) return;
+        if (sign == sign_below_) continue;
+        k_ = k;
+        m_ = m;
+        return;
+      }
+    }
+  }
+  const Integer mid = 2 * k_ + 1;
+  const int sign = probe(mid, m_ + 1);
+  if (is_dyadic_) return;
+  k_ = sign == sign_below_ ? mid : mid - 1;
   ++m_;
 }
 
 int Root::signOf(const Polynomial& g) {
-  if (g.isZero()) return 0;
-  if (g.degree() == 0) return g[0].sign();
-  if (!is_dyadic_) {
-    if (g.signChanges(k_, m_) > 0) {
-      // A common root in the interval is this root: the only one of the square-free
-      // polynomial there, at which the divisor changes sign.
+  if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
+  // Where g has no root in the interval, its sign is that of any inner point.
+  constexpr unsigned kBits = 40;
+  bool common_known = false;
+  for (bool first = true; !is_dyadic_ && g.signChanges(k_, m_) > 0; first = false) {
+    if (!first && !common_known) {
+      // A common root in the interval is this root: the only one of its polynomial
+      // there, at which the divisor changes sign.
       const Polynomial common = gcd(polynomial_, g);
       if (common.degree() > 0 && common.signAt(k_, m_) != common.signAt(k_ + 1, m_))
         return 0;
+      common_known = true;
     }
-    while (!is_dyadic_ && g.signChanges(k_, m_) > 0) halve();
+    narrow(kBits);
   }
-  if (is_dyadic_) return g.signAt(k_, m_);
-  // No root of g inside; the sign is that of any inner point.
-  return g.signAt(2 * k_ + 1, m_ + 1);
+  return is_dyadic_ ? g.signAt(k_, m_) : g.signAt(2 * k_ + 1, m_ + 1);
 }
+
+double Root::lowerBound() const { return toDouble(k_, m_, -1); }
 
 std::pair<double, double> Root::bracket(double width) {
   // With more bits than a double has, an interval closer than doubles would not show. A
   // root below 2^-1074 has none.
   const auto hasBitsOfDouble = [this] {
-    return k_ != 0 && boost::multiprecision::msb(k_) > 54;
+    return !k_.is_zero() && boost::multiprecision::msb(k_) > 54;
   };
-  while (!is_dyadic_ && m_ < 1100 && !hasBitsOfDouble() &&
-         std::ldexp(1., -static_cast<int>(m_)) > width)
-    halve();
+  while (!is_dyadic_ && m_ < 1100 && !hasBitsOfDouble()) {
+    const double excess = std::ldexp(1., -static_cast<int>(m_)) / width;
+    if (!(excess > 1)) break;
+    constexpr int kMaxBits = 48;
+    narrow(static_cast<unsigned>(std::min(kMaxBits, std::ilogb(excess) + 1)));
+  }
   return {toDouble(k_, m_, -1), toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1)};
 }
 

@@ -5,7 +5,10 @@
 #ifndef FCL_CCD_SRC_EXACT_POLYNOMIAL_H
 #define FCL_CCD_SRC_EXACT_POLYNOMIAL_H
 
+#include <boost/container/static_vector.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cstddef>
+#include <initializer_list>
 #include <utility>
 #include <vector>
 
@@ -13,21 +16,33 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-using Integer = boost::multiprecision::cpp_int;
+/// An integer of any size; up to 512 bits, which conditions on coordinates of like
+/// magnitude need, it lies in the object itself.
+using Integer =
+    boost::multiprecision::number<boost::multiprecision::cpp_int_backend<512, 0>,
+                                  boost::multiprecision::et_off>;
 
 /// @brief Coefficients by ascending power, no zero in the last place; empty is zero.
 class Polynomial {
  public:
+  /// The conditions of a contact have at most this degree.
+  static constexpr int kMaxDegree = 4;
+
   Polynomial() = default;
-  explicit Polynomial(std::vector<Integer> coefficients);
+  Polynomial(std::initializer_list<Integer> coefficients)
+      : c_(coefficients.begin(), coefficients.end()) {
+    trim();
+  }
 
   bool isZero() const { return c_.empty(); }
   int degree() const { return static_cast<int>(c_.size()) - 1; }
   const Integer& operator[](int i) const { return c_[static_cast<std::size_t>(i)]; }
 
-  Polynomial operator+(const Polynomial& other) const;
-  Polynomial operator-(const Polynomial& other) const;
-  Polynomial operator*(const Polynomial& other) const;
+  Polynomial& operator+=(const Polynomial& other);
+  Polynomial& operator-=(const Polynomial& other);
+  friend Polynomial operator+(Polynomial a, const Polynomial& b) { return a += b; }
+  friend Polynomial operator-(Polynomial a, const Polynomial& b) { return a -= b; }
+  friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
 
   Polynomial derivative() const;
   /// @brief Divided by the greatest common divisor of the coefficients.
@@ -44,38 +59,60 @@ class Polynomial {
   int signChanges(const Integer& k, unsigned m) const;
 
  private:
-  std::vector<Integer> c_;
+  using Coefficients = boost::container::static_vector<Integer, kMaxDegree + 1>;
+
+  friend class Root;
+  friend Polynomial remainder(const Polynomial& a, const Polynomial& b);
+
+  /// Bernstein coefficients over [k, k + 1] / 2^m, each with its binomial and times 2^(m
+  /// degree).
+  Coefficients bernstein(const Integer& k, unsigned m) const;
+  void trim() {
+    while (!c_.empty() && c_.back().is_zero()) c_.pop_back();
+  }
+
+  Coefficients c_;
 };
 
 /// @brief Greatest common divisor, primitive; of degree 0 when the two have no common
 /// root.
 Polynomial gcd(Polynomial a, Polynomial b);
 
-/// @brief A root in [0, 1] of a square-free polynomial: the number k / 2^m itself, or the
-/// only root in the open interval (k, k + 1) / 2^m, whose ends are not roots.
+/// @brief A root in [0, 1] of a polynomial: the number k / 2^m itself, or the only root
+/// in the open interval (k, k + 1) / 2^m, simple, and whose ends are not roots.
 class Root {
  public:
-  /// @brief The number 0.
-  Root() = default;
-  Root(Integer k, unsigned m, bool is_dyadic, Polynomial polynomial)
+  /// @brief The number k / 2^m.
+  explicit Root(Integer k = 0, unsigned m = 0) : k_(std::move(k)), m_(m) {}
+  /// @brief The root of a polynomial in (k, k + 1) / 2^m.
+  Root(Integer k, unsigned m, Polynomial polynomial)
       : k_(std::move(k)),
         m_(m),
-        is_dyadic_(is_dyadic),
+        is_dyadic_(false),
+        sign_below_(polynomial.signAt(k_, m_)),
         polynomial_(std::move(polynomial)) {}
 
   /// @brief Sign of g at the root, exact; may narrow the interval.
   int signOf(const Polynomial& g);
+
+  /// @brief A double not above the root.
+  double lowerBound() const;
 
   /// @brief Doubles [lo, hi] around the root, hi - lo <= width or, where that is less
   /// than a few units in the last place, as close as doubles get.
   std::pair<double, double> bracket(double width);
 
  private:
-  void halve();
+  /// Narrows the interval by at most 2^-bits, at least to a half.
+  void narrow(unsigned bits);
+  /// Sign at the inner point k / 2^m, where the root is found to be if it is 0.
+  int probe(const Integer& k, unsigned m);
+  double estimate() const;
 
-  Integer k_{0};
-  unsigned m_{0};
+  Integer k_;
+  unsigned m_;
   bool is_dyadic_{true};
+  int sign_below_{0};
   Polynomial polynomial_;
 };
 

@@ -8,9 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "exact_polynomial.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 
 namespace fcl {
 namespace detail {
@@ -60,7 +64,7 @@ std::array<MovingPoint, 4> toIntegers(const FeaturePoints& x) {
   forEach([&](int i, int k, double a, double b) {
     const Integer from = toInteger(a);
     points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-        Polynomial({from, toInteger(b) - from});
+        Polynomial{from, toInteger(b) - from};
   });
   return points;
 }
@@ -81,80 +85,116 @@ struct PointOnSegment {
 };
 
 /// The conditions of a contact, see insideness() in elementary_test.cpp for the formulas.
+/// Each polynomial is made when it is first asked for: most pairs need few.
 class ExactPair {
  public:
-  ExactPair(FeatureKind kind, const FeaturePoints& x) {
-    const auto [a, b, c, d] = toIntegers(x);
-    if (kind == FeatureKind::kVertexFace) {
-      const MovingPoint u = a - b, v = c - b, w = d - b;
-      const MovingPoint n = cross(v, w);
-      volume_ = dot(u, n);
-      area_ = dot(n, n);
-      inside_ = {dot(cross(u, w), n), dot(cross(v, u), n), dot(cross(c - a, d - a), n)};
-      degenerate_ = {{a, b, c}, {a, c, d}, {a, d, b}};
-    } else {
-      const MovingPoint u = c - a, v = b - a, w = d - c;
-      const MovingPoint n = cross(v, w);
-      volume_ = dot(u, n);
-      area_ = dot(n, n);
-      inside_ = {dot(cross(u, w), n), dot(cross(b - c, w), n), dot(cross(u, v), n),
-                 dot(cross(v, d - a), n)};
-      degenerate_ = {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
-    }
+  ExactPair(FeatureKind kind, const FeaturePoints& x)
+      : kind_(kind), p_(toIntegers(x)), inside_(isVertexFace() ? 3 : 4) {
+    const auto& [a, b, c, d] = p_;
+    u_ = isVertexFace() ? a - b : c - a;
+    v_ = isVertexFace() ? c - b : b - a;
+    w_ = isVertexFace() ? d - b : d - c;
+    n_ = cross(v_, w_);
+    volume_ = dot(u_, n_);
   }
 
   /// Whether the features touch at t.
-  bool touchAt(Root& t) const {
+  bool touchAt(Root& t) {
     if (t.signOf(volume_) != 0) return false;
-    if (t.signOf(area_) != 0)
-      return std::all_of(inside_.begin(), inside_.end(),
-                         [&](const Polynomial& g) { return t.signOf(g) >= 0; });
+    // At a root of the volume one negative condition settles it.
+    bool is_outside = false;
+    for (std::size_t i = 0; i < inside_.size() && !is_outside; ++i)
+      is_outside = t.signOf(inside(i)) < 0;
+    if (is_outside) return false;
+    if (t.signOf(area()) != 0) return true;
     // No normal at t: a triangle without area is the union of its edges; two parallel
     // edges touch in an end of one of them.
-    return std::any_of(degenerate_.begin(), degenerate_.end(),
-                       [&](const PointOnSegment& c) { return c.holdsAt(t); });
+    for (const PointOnSegment& c : degenerate())
+      if (c.holdsAt(t)) return true;
+    return false;
   }
 
-  /// Times one of which is the first contact, if there is any: 0, or a time at which a
+  /// Times one of which is the first contact after 0, if there is any: those at which a
   /// condition begins to hold.
-  std::vector<Root> candidates() const {
-    std::vector<Root> times{Root()};
+  std::vector<Root> candidates() {
+    std::vector<Root> times;
     const auto addRootsOf = [&times](const Polynomial& p) {
       if (p.degree() < 1) return;
       for (Root& root : rootsInUnitInterval(p)) times.push_back(std::move(root));
     };
     if (!volume_.isZero()) {
       addRootsOf(volume_);
-      return times;
-    }
-    addRootsOf(area_);
-    if (!area_.isZero()) {
-      for (const Polynomial& g : inside_) addRootsOf(g);
-      return times;
-    }
-    for (const PointOnSegment& c : degenerate_) {
-      addRootsOf(c.off_line);
-      addRootsOf(c.outside);
+    } else {
+      addRootsOf(area());
+      if (area().isZero()) {
+        for (const PointOnSegment& c : degenerate()) {
+          addRootsOf(c.off_line);
+          addRootsOf(c.outside);
+        }
+      } else {
+        for (std::size_t i = 0; i < inside_.size(); ++i) addRootsOf(inside(i));
+      }
     }
     return times;
   }
 
  private:
+  bool isVertexFace() const { return kind_ == FeatureKind::kVertexFace; }
+
+  const Polynomial& area() {
+    if (!area_) area_ = dot(n_, n_);
+    return *area_;
+  }
+
+  const Polynomial& inside(std::size_t i) {
+    if (inside_[i]) return *inside_[i];
+    const auto& [a, b, c, d] = p_;
+    MovingPoint x;
+    if (isVertexFace())
+      x = i == 0 ? cross(u_, w_) : i == 1 ? cross(v_, u_) : cross(c - a, d - a);
+    else
+      x = i == 0   ? cross(u_, w_)
+          : i == 1 ? cross(b - c, w_)
+          : i == 2 ? cross(u_, v_)
+                   : cross(v_, d - a);
+    inside_[i] = dot(x, n_);
+    return *inside_[i];
+  }
+
+  const std::vector<PointOnSegment>& degenerate() {
+    if (!degenerate_.empty()) return degenerate_;
+    const auto& [a, b, c, d] = p_;
+    if (isVertexFace())
+      degenerate_ = {{a, b, c}, {a, c, d}, {a, d, b}};
+    else
+      degenerate_ = {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
+    return degenerate_;
+  }
+
+  FeatureKind kind_;
+  std::array<MovingPoint, 4> p_;
+  MovingPoint u_, v_, w_, n_;
   Polynomial volume_;
-  Polynomial area_;
-  std::vector<Polynomial> inside_;
+  std::optional<Polynomial> area_;
+  std::vector<std::optional<Polynomial>> inside_;
   std::vector<PointOnSegment> degenerate_;
 };
 
 }  // namespace
 
 ElementaryResult decideExactly(FeatureKind kind, const FeaturePoints& x, double toc_err) {
-  const ExactPair pair(kind, x);
-  Root start;
-  if (pair.touchAt(start)) return {Answer::kYes, 0, 0, DecidedBy::kExact};
+  const bool touch_at_start = kind == FeatureKind::kVertexFace
+                                  ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
+                                  : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
+  if (touch_at_start) return {Answer::kYes, 0, 0, DecidedBy::kExact};
+  ExactPair pair(kind, x);
+  std::vector<Root> times = pair.candidates();
+  std::sort(times.begin(), times.end(),
+            [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
   bool touch = false;
   double lo = 1, hi = 1;
-  for (Root& t : pair.candidates()) {
+  for (Root& t : times) {
+    if (touch && t.lowerBound() > hi) break;
     if (!pair.touchAt(t)) continue;
     const auto [t_lo, t_hi] = t.bracket(toc_err);
     lo = touch ? std::min(lo, t_lo) : t_lo;

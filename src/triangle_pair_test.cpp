@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 
 namespace fcl {
 namespace detail {

@@ -18,7 +18,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
-#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "moving_mesh.h"
 #include "test_models.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "fcl/narrowphase/detail/deformable/crossing_test.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "feature_pair_generators.h"
 #include "rational_geometry.h"
 
