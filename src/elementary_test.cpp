@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
+#include "accurate_cubic.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "plane_test.h"
 
 namespace fcl {
 namespace detail {
@@ -60,8 +64,6 @@ struct Difference {
   Vec t0, t1;
   double norm;
 
-  bool isStill() const { return t0.x == t1.x && t0.y == t1.y && t0.z == t1.z; }
-
   Difference() = default;
   Difference(const VertexPath& p, const VertexPath& q)
       : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
@@ -100,25 +102,21 @@ Quadratic cross(const Segment& a, const Segment& b) {
 /// by u, v, w: Bernstein coefficients, the inner ones times 3.
 struct Cubic {
   double b[4];
-  double size;  // U V W, the scale of the error bounds
+  // Error bounds of the outer and inner coefficients; infinite where there are none.
+  double outer, inner;
 
-  bool isReliable(double normal_size) const {
-    return isInRange(size) && isInRange(normal_size);
-  }
+  bool hasBounds() const { return std::isfinite(outer); }
   /// All coefficients have one sign beyond doubt: no root.
   bool hasNoRoot() const {
-    const double outer = kOuterBound * size, inner = kInnerBound * size;
     return (b[0] > outer && b[1] > inner && b[2] > inner && b[3] > outer) ||
            (b[0] < -outer && b[1] < -inner && b[2] < -inner && b[3] < -outer);
   }
   /// The ends have opposite signs beyond doubt: a root.
   bool changesSign() const {
-    const double outer = kOuterBound * size;
     return (b[0] > outer && b[3] < -outer) || (b[0] < -outer && b[3] > outer);
   }
   /// Nothing but rounding: subdividing will not show a sign.
   bool isLost() const {
-    const double outer = kOuterBound * size, inner = kInnerBound * size;
     return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
            std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
   }
@@ -129,9 +127,23 @@ struct Cubic {
 };
 
 Cubic spannedVolume(const Segment& u, const Quadratic& n) {
+  const double size = u.norm * n.norm;
+  const bool in_range = isInRange(size) && isInRange(n.norm);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
            dot(u.h, n.c1) + dot(u.l, n.c2), dot(u.h, n.c2)},
-          u.norm * n.norm};
+          in_range ? kOuterBound * size : kInfinity,
+          in_range ? kInnerBound * size : kInfinity};
+}
+
+Cubic restrict(const AccurateCubic& f, double lo, double hi) {
+  Cubic g;
+  if (!f.restrict(lo, hi, g.b, g.outer))
+    g.outer = std::numeric_limits<double>::infinity();
+  g.b[1] *= 3;
+  g.b[2] *= 3;
+  g.inner = 4 * g.outer;
+  return g;
 }
 
 enum class Side { kNegative, kPositive, kMixed };
@@ -159,9 +171,6 @@ struct Pair {
   // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
   // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
   Difference u, v, w, r, q, z;
-
-  /// No relative motion: time decides nothing.
-  bool isStill() const { return u.isStill() && v.isStill() && w.isStill(); }
 
   Pair(FeatureKind k, const FeaturePoints& x) : kind(k) {
     if (kind == FeatureKind::kVertexFace) {
@@ -282,23 +291,26 @@ double rootOf(const Cubic& f, double tol) {
   return s;
 }
 
-/// Whether the features provably touch at t = 0, whatever comes later: a vertex on a
-/// vertex (seams of real meshes), or four points that are exactly coplanar and a point
-/// strictly inside (layers at rest). Touching at a border is left to decideExactly().
-bool touchAtStart(const Pair& pair, const FeaturePoints& x) {
-  const auto coincide = [&x](int i, int j) {
-    return x[i].t0[0] == x[j].t0[0] && x[i].t0[1] == x[j].t0[1] &&
-           x[i].t0[2] == x[j].t0[2];
-  };
-  const bool on_vertex =
-      pair.kind == FeatureKind::kVertexFace
-          ? coincide(0, 1) || coincide(0, 2) || coincide(0, 3)
-          : coincide(0, 2) || coincide(0, 3) || coincide(1, 2) || coincide(1, 3);
-  if (on_vertex) return true;
-  const Segment u = restrict(pair.u, 0, 0), v = restrict(pair.v, 0, 0),
-                w = restrict(pair.w, 0, 0);
-  return insideness(pair, 0, 0, u, v, w, cross(v, w)) == Side::kPositive &&
-         orientation(x[0].t0, x[1].t0, x[2].t0, x[3].t0) == 0;
+bool isFinite(const FeaturePoints& x) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k) sum += 0 * x[i].t0[k] + 0 * x[i].t1[k];
+  return sum == 0;
+}
+
+/// Whether the features touch at t = 0, whatever comes later.
+bool touchAtStart(FeatureKind kind, const FeaturePoints& x) {
+  if (!isFinite(x)) return false;
+  return kind == FeatureKind::kVertexFace
+             ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
+             : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
+}
+
+bool isStill(const FeaturePoints& x) {
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (x[i].t0[k] != x[i].t1[k]) return false;
+  return isFinite(x);
 }
 
 /// Intervals still to be looked at, the earliest on top. Each look replaces one by at
@@ -366,7 +378,7 @@ bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_l
                              window_lo, window_hi);
   const Quadratic n = cross(v, w);
   const Cubic f = spannedVolume(u, n);
-  return !(f.isReliable(n.norm) && f.hasNoRoot());
+  return !f.hasNoRoot();
 }
 
 ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
@@ -376,8 +388,22 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
   const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
   // A flat interval (no sign in sight) is cut only while the inside conditions may
   // decide.
-  constexpr double kMinFlatWidth = 0x1p-6;
+  constexpr double kMinFlatWidth = 0x1p-2;
 
+  // What touches at rest touches at the start.
+  if (isStill(x))
+    return {touchAtStart(kind, x) ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kSolver};
+  if (const int axis = axisOfCommonPlane(x); axis >= 0) {
+    if (window_lo == 0 && touchAtStart(kind, x))
+      return {Answer::kYes, 0, 0, DecidedBy::kSolver};
+    const ElementaryResult result =
+        solveInPlane(kind, x, axis, window_lo, window_hi, toc_err);
+    if (result.answer != Answer::kUnsure) return result;
+  }
+
+  // Looks after which doubles alone are not expected to find out.
+  constexpr int kAccurateLook = 6;
+  std::optional<AccurateCubic> accurate;
   const Pair pair(kind, x);
   IntervalStack open;
   open.push(window_lo, window_hi);
@@ -393,10 +419,9 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
                   w = restrict(pair.w, lo, hi);
     const Quadratic n = cross(v, w);
-    const Cubic f = spannedVolume(u, n);
-    const bool reliable = f.isReliable(n.norm);
-    if (reliable && f.hasNoRoot()) continue;
-    const bool crosses = reliable && f.changesSign();
+    const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
+    if (f.hasNoRoot()) continue;
+    const bool crosses = f.changesSign();
 
     const Side side = insideness(pair, lo, hi, u, v, w, n);
     if (side == Side::kNegative) continue;
@@ -405,10 +430,15 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     // A wide interval with a root is first cut close around it.
     if (!(crosses && width > toc_err)) {
       if (areSeparated(pair, lo, hi)) continue;
-      if (look == 0 && lo == 0 && touchAtStart(pair, x))
+      if (look == 0 && lo == 0 && touchAtStart(kind, x))
         return {Answer::kYes, 0, 0, DecidedBy::kSolver};
-      const bool flat = !reliable || f.isLost();
-      if (width <= min_width || (flat && width <= kMinFlatWidth) || pair.isStill()) {
+      if (!accurate && (f.isLost() || look >= kAccurateLook)) {
+        accurate.emplace(kind, x);
+        open.push(lo, hi);
+        continue;
+      }
+      const bool flat = !f.hasBounds() || f.isLost();
+      if (width <= min_width || (flat && width <= kMinFlatWidth)) {
         found.addUnsure(lo, hi);
         continue;
       }

@@ -145,11 +145,11 @@ int Polynomial::signChanges(const Integer& k, unsigned m) const {
 
 Polynomial gcd(Polynomial a, Polynomial b) {
   while (!b.isZero()) {
-    Polynomial rest = remainder(a, b).primitive();
+    Polynomial rest = remainder(a, b);
     a = std::move(b);
     b = std::move(rest);
   }
-  return a.primitive();
+  return a.degree() > 0 ? a.primitive() : a;
 }
 
 std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
@@ -277,6 +277,7 @@ void Root::narrow(unsigned bits) {
 
 int Root::signOf(const Polynomial& g) {
   if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
+  if (!is_dyadic_ && g == polynomial_) return 0;
   // Where g has no root in the interval, its sign is that of any inner point.
   constexpr unsigned kBits = 40;
   bool common_known = false;

@@ -26,7 +26,7 @@ using Integer =
 class Polynomial {
  public:
   /// The conditions of a contact have at most this degree.
-  static constexpr int kMaxDegree = 4;
+  static constexpr int kMaxDegree = 3;
 
   Polynomial() = default;
   Polynomial(std::initializer_list<Integer> coefficients)
@@ -35,6 +35,7 @@ class Polynomial {
   }
 
   bool isZero() const { return c_.empty(); }
+  bool operator==(const Polynomial& other) const { return c_ == other.c_; }
   int degree() const { return static_cast<int>(c_.size()) - 1; }
   const Integer& operator[](int i) const { return c_[static_cast<std::size_t>(i)]; }
 

@@ -8,13 +8,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <utility>
 #include <vector>
 
 #include "exact_polynomial.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "plane_test.h"
 
 namespace fcl {
 namespace detail {
@@ -27,13 +27,13 @@ MovingPoint operator-(const MovingPoint& a, const MovingPoint& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-MovingPoint cross(const MovingPoint& a, const MovingPoint& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-          a[0] * b[1] - a[1] * b[0]};
+Polynomial crossComponent(const MovingPoint& a, const MovingPoint& b, std::size_t k) {
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  return a[i] * b[j] - a[j] * b[i];
 }
 
-Polynomial dot(const MovingPoint& a, const MovingPoint& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+MovingPoint cross(const MovingPoint& a, const MovingPoint& b) {
+  return {crossComponent(a, b, 0), crossComponent(a, b, 1), crossComponent(a, b, 2)};
 }
 
 /// The four paths times 2^-exponent, for the largest exponent that makes them integers
@@ -69,54 +69,37 @@ std::array<MovingPoint, 4> toIntegers(const FeaturePoints& x) {
   return points;
 }
 
-/// Point p and segment qr: they touch when (p-q) x (r-q) = 0 and (p-q).(p-r) <= 0.
-struct PointOnSegment {
-  Polynomial off_line;  // square of the cross product
-  Polynomial outside;
-
-  PointOnSegment(const MovingPoint& p, const MovingPoint& q, const MovingPoint& r) {
-    const MovingPoint n = cross(p - q, r - q);
-    off_line = dot(n, n);
-    outside = dot(p - q, p - r);
-  }
-  bool holdsAt(Root& t) const {
-    return t.signOf(outside) <= 0 && t.signOf(off_line) == 0;
-  }
-};
-
-/// The conditions of a contact, see insideness() in elementary_test.cpp for the formulas.
-/// Each polynomial is made when it is first asked for: most pairs need few.
+/// The conditions of a contact.
+///
+/// With u, v, w, n = v x w as in elementary_test.cpp, the features' points are coplanar
+/// where u . n = 0. Seen along an axis k in which n does not vanish, their plane is seen
+/// one to one, and the weights of the contact are quotients of components k: VF u = beta
+/// v + gamma w with beta = (u x w)_k / n_k, gamma = (v x u)_k / n_k, 1 - beta - gamma =
+/// ((b-p) x (c-p))_k / n_k; EE u = s v - r w with s = (u x w)_k / n_k, 1 - s = ((b-c) x
+/// w)_k / n_k, r = (u x v)_k / n_k, 1 - r = (v x (d-a))_k / n_k. All have to be >= 0.
+///
+/// Where n = 0, a triangle without area is the union of its edges, and two parallel edges
+/// touch in an end of one of them.
 class ExactPair {
  public:
-  ExactPair(FeatureKind kind, const FeaturePoints& x)
-      : kind_(kind), p_(toIntegers(x)), inside_(isVertexFace() ? 3 : 4) {
+  ExactPair(FeatureKind kind, const FeaturePoints& x) : kind_(kind), p_(toIntegers(x)) {
     const auto& [a, b, c, d] = p_;
     u_ = isVertexFace() ? a - b : c - a;
     v_ = isVertexFace() ? c - b : b - a;
     w_ = isVertexFace() ? d - b : d - c;
-    n_ = cross(v_, w_);
-    volume_ = dot(u_, n_);
+    if (const int axis = axisOfCommonPlane(x); axis >= 0) {
+      const auto k = static_cast<std::size_t>(axis);
+      n_[k] = crossComponent(v_, w_, k);
+      return;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      n_[k] = crossComponent(v_, w_, k);
+      volume_ += u_[k] * n_[k];
+    }
   }
 
-  /// Whether the features touch at t.
-  bool touchAt(Root& t) {
-    if (t.signOf(volume_) != 0) return false;
-    // At a root of the volume one negative condition settles it.
-    bool is_outside = false;
-    for (std::size_t i = 0; i < inside_.size() && !is_outside; ++i)
-      is_outside = t.signOf(inside(i)) < 0;
-    if (is_outside) return false;
-    if (t.signOf(area()) != 0) return true;
-    // No normal at t: a triangle without area is the union of its edges; two parallel
-    // edges touch in an end of one of them.
-    for (const PointOnSegment& c : degenerate())
-      if (c.holdsAt(t)) return true;
-    return false;
-  }
-
-  /// Times one of which is the first contact after 0, if there is any: those at which a
-  /// condition begins to hold.
-  std::vector<Root> candidates() {
+  /// Times one of which is the first contact after 0, if there is any.
+  std::vector<Root> candidates() const {
     std::vector<Root> times;
     const auto addRootsOf = [&times](const Polynomial& p) {
       if (p.degree() < 1) return;
@@ -124,60 +107,86 @@ class ExactPair {
     };
     if (!volume_.isZero()) {
       addRootsOf(volume_);
-    } else {
-      addRootsOf(area());
-      if (area().isZero()) {
-        for (const PointOnSegment& c : degenerate()) {
-          addRootsOf(c.off_line);
-          addRootsOf(c.outside);
-        }
-      } else {
-        for (std::size_t i = 0; i < inside_.size(); ++i) addRootsOf(inside(i));
+      return times;
+    }
+    // Always coplanar: contacts begin where a weight changes its sign.
+    for (std::size_t k = 0; k < 3; ++k)
+      if (!n_[k].isZero()) {
+        addRootsOf(n_[k]);
+        for (std::size_t i = 0; i < numWeights(); ++i) addRootsOf(weight(i, k));
+        return times;
+      }
+    // Always parallel, or without area.
+    for (const auto& [p, q, r] : pointsOnSegments()) {
+      const MovingPoint off = cross(p - q, r - q);
+      const auto not_zero =
+          std::find_if(off.begin(), off.end(), [](const auto& o) { return !o.isZero(); });
+      if (not_zero != off.end()) {
+        addRootsOf(*not_zero);
+        continue;
+      }
+      for (std::size_t k = 0; k < 3; ++k) {
+        addRootsOf(p[k] - q[k]);
+        addRootsOf(p[k] - r[k]);
       }
     }
     return times;
   }
 
+  /// Whether the features touch at one of the candidates().
+  bool touchAt(Root& t) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int sign = t.signOf(n_[k]);
+      if (sign == 0) continue;
+      for (std::size_t i = 0; i < numWeights(); ++i)
+        if (sign * t.signOf(weight(i, k)) < 0) return false;
+      return true;
+    }
+    for (const auto& [p, q, r] : pointsOnSegments())
+      if (isOnSegmentAt(t, p, q, r)) return true;
+    return false;
+  }
+
  private:
+  struct PointAndSegment {
+    const MovingPoint &p, &q, &r;
+  };
+
   bool isVertexFace() const { return kind_ == FeatureKind::kVertexFace; }
+  std::size_t numWeights() const { return isVertexFace() ? 3 : 4; }
 
-  const Polynomial& area() {
-    if (!area_) area_ = dot(n_, n_);
-    return *area_;
+  /// Component k of the cross product that gives weight i.
+  Polynomial weight(std::size_t i, std::size_t k) const {
+    const auto& [a, b, c, d] = p_;
+    const auto component = [k](const MovingPoint& x, const MovingPoint& y) {
+      return crossComponent(x, y, k);
+    };
+    if (i == 0) return component(u_, w_);
+    if (isVertexFace()) return i == 1 ? component(v_, u_) : component(c - a, d - a);
+    return i == 1   ? component(b - c, w_)
+           : i == 2 ? component(u_, v_)
+                    : component(v_, d - a);
   }
 
-  const Polynomial& inside(std::size_t i) {
-    if (inside_[i]) return *inside_[i];
+  std::vector<PointAndSegment> pointsOnSegments() const {
     const auto& [a, b, c, d] = p_;
-    MovingPoint x;
-    if (isVertexFace())
-      x = i == 0 ? cross(u_, w_) : i == 1 ? cross(v_, u_) : cross(c - a, d - a);
-    else
-      x = i == 0   ? cross(u_, w_)
-          : i == 1 ? cross(b - c, w_)
-          : i == 2 ? cross(u_, v_)
-                   : cross(v_, d - a);
-    inside_[i] = dot(x, n_);
-    return *inside_[i];
+    if (isVertexFace()) return {{a, b, c}, {a, c, d}, {a, d, b}};
+    return {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
   }
 
-  const std::vector<PointOnSegment>& degenerate() {
-    if (!degenerate_.empty()) return degenerate_;
-    const auto& [a, b, c, d] = p_;
-    if (isVertexFace())
-      degenerate_ = {{a, b, c}, {a, c, d}, {a, d, b}};
-    else
-      degenerate_ = {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
-    return degenerate_;
+  static bool isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,
+                            const MovingPoint& r) {
+    for (std::size_t k = 0; k < 3; ++k)
+      if (t.signOf(p[k] - q[k]) * t.signOf(p[k] - r[k]) > 0) return false;
+    const MovingPoint off = cross(p - q, r - q);
+    return std::all_of(off.begin(), off.end(),
+                       [&t](const Polynomial& o) { return t.signOf(o) == 0; });
   }
 
   FeatureKind kind_;
   std::array<MovingPoint, 4> p_;
   MovingPoint u_, v_, w_, n_;
   Polynomial volume_;
-  std::optional<Polynomial> area_;
-  std::vector<std::optional<Polynomial>> inside_;
-  std::vector<PointOnSegment> degenerate_;
 };
 
 }  // namespace
@@ -187,7 +196,7 @@ ElementaryResult decideExactly(FeatureKind kind, const FeaturePoints& x, double 
                                   ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
                                   : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
   if (touch_at_start) return {Answer::kYes, 0, 0, DecidedBy::kExact};
-  ExactPair pair(kind, x);
+  const ExactPair pair(kind, x);
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });

@@ -3,7 +3,9 @@
 // The exact stages against the definition, evaluated a second time with other formulas.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -166,6 +168,56 @@ TEST(FCL_CROSSING_TEST, orientationIsExact) {
     ASSERT_EQ(t.sign(), -truth) << "seed " << kSeed << ", " << i;
   }
   EXPECT_GT(flat, 1000);
+}
+
+/// Four points, often in degenerate places.
+Tetrahedron degeneratePoints(Random& random, int i) {
+  Tetrahedron t;
+  const double scales[] = {1, 0.1, 0x1p-1070, 0x1p500, 1e-3};
+  const double scale = scales[random.index(5)],
+               offset = random.index(3) ? 0 : 1e8 * scale;
+  for (auto& point : t.p)
+    for (double& c : point)
+      c = i % 2 ? scale * (static_cast<double>(random.index(4)) - 1) + offset
+                : scale * random.uniform(-1, 1);
+  const std::size_t axis = random.index(3);
+  if (i % 3 == 0)
+    for (auto& point : t.p) point[axis] = t.p[0][axis];
+  // A point between two others, up to rounding, or one step beside.
+  if (i % 4 == 0) {
+    const std::size_t a = random.index(4), b = random.index(4), c = random.index(4);
+    const double s = random.index(2) ? 0.5 : random.uniform(0, 1);
+    for (int k = 0; k < 3; ++k) t.p[a][k] = (1 - s) * t.p[b][k] + s * t.p[c][k];
+    if (random.index(2)) t.p[a][axis] = std::nextafter(t.p[a][axis], 1e300);
+  }
+  return t;
+}
+
+TEST(FCL_INSTANT_TEST, touchingIsExact) {
+  constexpr std::uint64_t kSeed = 26;
+  Random random(kSeed);
+  int touch = 0;
+  for (int i = 0; i < 40000; ++i) {
+    const Tetrahedron t = degeneratePoints(random, i);
+    const auto& p = t.p;
+    const std::array<ExactPoint<Rational>, 4> e{t.exactPoint(0), t.exactPoint(1),
+                                                t.exactPoint(2), t.exactPoint(3)};
+    const bool on_triangle = test::doTouch(FeatureKind::kVertexFace, e),
+               segments = test::doTouch(FeatureKind::kEdgeEdge, e);
+    ASSERT_EQ(isOnTriangle(p[0], p[1], p[2], p[3]), on_triangle)
+        << "seed " << kSeed << ", " << i;
+    ASSERT_EQ(doSegmentsTouch(p[0], p[1], p[2], p[3]), segments)
+        << "seed " << kSeed << ", " << i;
+    touch += on_triangle + segments;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto exact_cross =
+          test::cross(test::minus(e[1], e[0]), test::minus(e[3], e[2]));
+      ASSERT_EQ(crossSign(p[0], p[1], p[2], p[3], axis),
+                test::signOf(exact_cross[static_cast<std::size_t>(axis)]))
+          << "seed " << kSeed << ", " << i;
+    }
+  }
+  EXPECT_GT(touch, 3000);
 }
 
 TEST(FCL_CROSSING_TEST, onlyTheInsideCounts) {

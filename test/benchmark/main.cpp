@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include "planar_benchmark.h"
 #include "rigid_benchmark.h"
 #include "scene_benchmark.h"
 #include "stock_benchmark.h"
@@ -28,6 +29,7 @@ int main(int argc, char** argv) {
     const fcl::test::SceneFiles balls{"n-body", scenes + "n-body/", "18.ply", "19.ply"};
     fcl::test::printSceneHeader();
     for (const auto& files : {cloth, balls}) fcl::test::benchmarkScene(files, repeats);
+    fcl::test::benchmarkPlanar(repeats);
     fcl::test::benchmarkRigid(repeats);
     fcl::test::benchmarkAgainstStock(balls, repeats);
   } catch (const std::exception& error) {

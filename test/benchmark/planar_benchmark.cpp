@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "planar_benchmark.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "mesh_generators.h"
+#include "timing.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Model = DeformableBVHModel<>;
+using Place = std::function<Vector3<double>(const Vector3<double>&)>;
+
+/// A scene of one or two meshes in two frames.
+struct Scene {
+  const char* name;
+  TestMesh a;
+  std::vector<Vector3<double>> a_end;
+  TestMesh b;
+  std::vector<Vector3<double>> b_end;
+};
+
+std::vector<Vector3<double>> placed(const std::vector<Vector3<double>>& points,
+                                    const Place& place) {
+  std::vector<Vector3<double>> out;
+  for (const auto& p : points) out.push_back(place(p));
+  return out;
+}
+
+/// Two sheets of 2 x 100 x 100 triangles, the second moved by the map.
+Scene twoSheets(const char* name, const SheetPosition& surface, const Place& beginning,
+                const Place& end) {
+  Scene scene{name, makeSheet(100, 100, surface), {}, makeSheet(100, 100, surface), {}};
+  scene.a_end = scene.a.vertices;
+  scene.b_end = placed(scene.b.vertices, end);
+  scene.b.vertices = placed(scene.b.vertices, beginning);
+  return scene;
+}
+
+Scene tilted(Scene scene) {
+  const Matrix3<double> turn =
+      AngleAxis<double>(0.7, Vector3<double>(1, 2, 3).normalized()).toRotationMatrix();
+  for (auto* points : {&scene.a.vertices, &scene.a_end, &scene.b.vertices, &scene.b_end})
+    for (auto& p : *points) p = turn * p;
+  scene.name = "the same in a tilted plane";
+  return scene;
+}
+
+Scene still(const char* name, TestMesh mesh) {
+  Scene scene{name, std::move(mesh), {}, {}, {}};
+  scene.a_end = scene.a.vertices;
+  return scene;
+}
+
+void makeStep(Model& model, const TestMesh& mesh,
+              const std::vector<Vector3<double>>& end) {
+  model.beginModel();
+  model.addSubModel(mesh.vertices, mesh.triangles);
+  model.endModel();
+  model.updateFrames(mesh.vertices[0].data(), end[0].data(), end.size());
+}
+
+void run(const Scene& scene, int repeats) {
+  Model a, b;
+  makeStep(a, scene.a, scene.a_end);
+  const bool self = scene.b.vertices.empty();
+  if (!self) makeStep(b, scene.b, scene.b_end);
+  const ContinuousContactRequest<double> request;
+  ContinuousContactResult<double> result;
+  const Transform3<double> origin = Transform3<double>::Identity();
+  const double ms = leastMilliseconds(repeats, [&] {
+    if (self)
+      continuousSelfCollide(&a, request, result);
+    else
+      continuousCollide(&a, origin, origin, &b, origin, origin, request, result);
+  });
+  const auto& counts = result.counts;
+  std::printf("%s,%.2f,%llu,%llu,%llu,%zu,%.0f\n", scene.name, ms,
+              static_cast<unsigned long long>(counts.triangle_pairs),
+              static_cast<unsigned long long>(counts.feature_pairs),
+              static_cast<unsigned long long>(counts.exact_tests), result.contacts.size(),
+              1e6 * ms / static_cast<double>(counts.triangle_pairs));
+}
+
+}  // namespace
+
+void benchmarkPlanar(int repeats) {
+  std::printf(
+      "scene,ms_total,triangle_pairs,feature_pairs,exact,contacts,"
+      "ns_per_triangle_pair\n");
+  const auto flat = [](double u, double v) { return Vector3<double>(u, v, 0); };
+  const auto wavy = [](double u, double v) {
+    return Vector3<double>(u, v, 0.03 * std::sin(40 * u) * std::cos(37 * v));
+  };
+  const auto moved = [](double x, double y, double z) -> Place {
+    return [=](const Vector3<double>& p) -> Vector3<double> {
+      return p + Vector3<double>(x, y, z);
+    };
+  };
+  // The general case: waves that pass through each other.
+  run(twoSheets("waves through waves", wavy, moved(0.0123, 0.0071, 0.02),
+                moved(0.0411, 0.0313, -0.01)),
+      repeats);
+  const Scene sliding = twoSheets("flat sheets sliding", flat, moved(0.0123, 0.0071, 0),
+                                  moved(0.0411, 0.0313, 0));
+  run(sliding, repeats);
+  run(tilted(sliding), repeats);
+  const Scene aligned = twoSheets("flat sheets sliding along their edges", flat,
+                                  moved(0, 0, 0), moved(0.0351, 0, 0));
+  run(aligned, repeats);
+  run(tilted(aligned), repeats);
+  const auto folded = [](double u, double v) {
+    return Vector3<double>(u < 0.5 ? u : 1 - u, v, 0);
+  };
+  const Scene fold = still("folded flat sheet at rest", makeSheet(200, 100, folded));
+  run(fold, repeats);
+  run(tilted(fold), repeats);
+  run(still("waves at rest", makeSheet(100, 100, wavy)), repeats);
+}
+
+}  // namespace test
+}  // namespace fcl
