@@ -93,13 +93,20 @@ S roundTimeDown(double t) {
   return static_cast<double>(rounded) > t ? std::nextafter(rounded, S(0)) : rounded;
 }
 
+template <typename S>
+S roundTimeUp(double t) {
+  const auto rounded = static_cast<S>(t);
+  return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
+}
+
 #define FCL_CCD_INSTANTIATE(S)                                                \
   template ContinuousContact<S> toContinuousContact(                          \
       const FeatureContact&, const MeshInstance&, const MeshInstance&, bool); \
   template ContinuousContact<S> toContinuousContact(                          \
       const Crossing&, const MeshInstance&, const MeshInstance&, bool);       \
   template Contact<S> toContact(const ContinuousContact<S>&);                 \
-  template S roundTimeDown<S>(double);
+  template S roundTimeDown<S>(double);                                        \
+  template S roundTimeUp<S>(double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/continuous_collision.h"
 
-#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -11,40 +10,23 @@
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "query_arguments.h"
 #include "stock_fcl.h"
 
 namespace fcl {
 namespace {
 
+using detail::answerOf;
+using detail::isAnsweredHere;
+using detail::kNotAnsweredHere;
+using detail::Placement;
+using detail::require;
+using detail::requireMesh;
 using detail::deformable::MeshKind;
 using detail::deformable::PreparedMesh;
 using detail::deformable::QueryAnswer;
 using detail::deformable::QueryGoal;
 using detail::deformable::QueryOptions;
-
-/// Poses at t = 0 and t = 1.
-template <typename S>
-struct Placement {
-  Transform3<S> beginning;
-  Transform3<S> end;
-
-  bool isRotating() const { return beginning.linear() != end.linear(); }
-};
-
-void require(const void* argument, const char* name) {
-  if (!argument) throw Exception(std::string(name) + " is null");
-}
-
-/// Whether the pair is answered here; if not, FCL's own function is called.
-template <typename S>
-bool isAnsweredHere(const CollisionGeometry<S>& o1, bool rotates1,
-                    const CollisionGeometry<S>& o2, bool rotates2) {
-  const auto accepts = [](const CollisionGeometry<S>& o, bool rotates) {
-    const MeshKind kind = detail::deformable::meshKindOf(o);
-    return kind == MeshKind::kDeforming || (kind == MeshKind::kRigid && !rotates);
-  };
-  return accepts(o1, rotates1) && accepts(o2, rotates2);
-}
 
 template <typename S>
 QueryOptions makeOptions(const ContinuousCollisionRequest<S>& request) {
@@ -136,16 +118,6 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
   if (&scene.mesh1 != &scene.mesh2) result.times.update += scene.mesh2.updateTime();
 }
 
-/// Runs a query; what it finds wrong with a vertex becomes FCL's exception.
-template <typename Query>
-QueryAnswer answerOf(Query&& query) {
-  try {
-    return query();
-  } catch (const std::domain_error& error) {
-    throw Exception(error.what());
-  }
-}
-
 template <typename S, typename Request, typename Result>
 S collideMeshes(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
                 const CollisionGeometry<S>& o2, const Placement<S>& placement2,
@@ -163,8 +135,7 @@ template <typename S, typename Request, typename Result>
 S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& result) {
   require(o, "o");
   const QueryOptions options = makeOptions(request);
-  if (detail::deformable::meshKindOf(*o) == MeshKind::kNotAMesh)
-    throw Exception("continuousSelfCollide: the geometry is not a triangle mesh");
+  requireMesh(*o, "continuousSelfCollide");
   const Placement<S> still{Transform3<S>::Identity(), Transform3<S>::Identity()};
   const PreparedMesh mesh(*o, still.beginning, still.end, "o");
   const QueryAnswer answer =
@@ -224,9 +195,7 @@ template <typename S>
 S collideInFcl(const CollisionGeometry<S>*, const MotionBase<S>*,
                const CollisionGeometry<S>*, const MotionBase<S>*,
                const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
-  throw Exception(
-      "contacts of continuous collision need two triangle meshes that deform or "
-      "translate");
+  throw Exception(std::string("contacts") + kNotAnsweredHere);
 }
 
 template <typename S, typename Request, typename Result>

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 
-#include <stdexcept>
-
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
@@ -160,8 +158,8 @@ template <typename S>
 void DeformableContinuousCollisionTraversalNode<S>::leafTesting(int b1, int b2) const {
   const deformable::DefaultFloatingPoint mode;
   try {
-    test_->test(triangleOf(mesh1(), b1), triangleOf(mesh2(), b2), window(b1, b2));
-  } catch (const std::domain_error& error) {
+    test_->visit(triangleOf(mesh1(), b1), triangleOf(mesh2(), b2), window(b1, b2));
+  } catch (const deformable::NonFiniteVertex& error) {
     throw Exception(error.what());
   }
   report();

@@ -22,38 +22,39 @@ struct TrianglePair {
   TimeWindow window;
 };
 
-/// Triangle pairs are tested in blocks: the tree and the vertices do not push each other
+/// Triangle pairs are visited in blocks: the tree and the vertices do not push each other
 /// out of the cache at every pair, and the clock is read once a block. A first-contact
 /// query uses small blocks, since each contact found prunes what follows.
 constexpr std::size_t kBlock = 1024;
 constexpr std::size_t kFirstBlock = 32;
 
-template <bool kSelf, typename TreeA, typename TreeB>
-void run(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, TrianglePairTest& leaves,
+/// @tparam Leaves  TrianglePairTest or CandidateCollector
+template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
+void run(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, Leaves& leaves,
          std::size_t block_size, StageTimes& times) {
   std::vector<NodePair> open;
   std::vector<TrianglePair> block;
   block.reserve(block_size);
   const auto start = Clock::now();
 
-  const auto testBlock = [&] {
-    const auto test_start = Clock::now();
+  const auto visitBlock = [&] {
+    const auto visit_start = Clock::now();
     for (const TrianglePair& p : block) {
       if (p.window.lo > leaves.latest()) continue;
-      leaves.test(p.a, p.b, p.window);
+      leaves.visit(p.a, p.b, p.window);
       if (leaves.isDone()) break;
     }
     block.clear();
-    times.test += secondsSince(test_start);
+    times.test += secondsSince(visit_start);
     return !leaves.isDone();
   };
   leaves.counts().node_pairs += traverse<kSelf>(
       tree_a, tree_b, shift, open, [&] { return leaves.latest(); },
       [&](int a, int b, TimeWindow window) {
         block.push_back({a, b, window});
-        return block.size() < block_size || testBlock();
+        return block.size() < block_size || visitBlock();
       });
-  if (!leaves.isDone()) testBlock();
+  if (!leaves.isDone()) visitBlock();
   times.traverse += secondsSince(start) - times.test;
 }
 
@@ -64,6 +65,31 @@ void visitTree(const MeshInstance& mesh, Visit&& visit) {
     visit(*mesh.tree);
   else
     visit(RigidTreeReader(mesh.rigid));
+}
+
+template <typename Leaves>
+StageTimes runSelf(const MeshInstance& a, Leaves& leaves, std::size_t block) {
+  StageTimes times;
+  visitTree(a,
+            [&](auto&& tree) { run<true>(tree, tree, nullptr, leaves, block, times); });
+  return times;
+}
+
+template <typename Leaves>
+StageTimes runPair(const MeshInstance& a, const MeshInstance& b, Leaves& leaves,
+                   std::size_t block) {
+  StageTimes times;
+  const KdopShift shift = relativeShift(a, b);
+  visitTree(a, [&](auto&& tree_a) {
+    visitTree(b, [&](auto&& tree_b) {
+      run<false>(tree_a, tree_b, &shift, leaves, block, times);
+    });
+  });
+  return times;
+}
+
+std::size_t blockFor(const QueryOptions& options) {
+  return options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
 }
 
 QueryAnswer collect(TrianglePairTest& leaves, const StageTimes& times) {
@@ -82,10 +108,7 @@ QueryAnswer collect(TrianglePairTest& leaves, const StageTimes& times) {
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
   const DefaultFloatingPoint mode;
   TrianglePairTest leaves(a, a, options);
-  StageTimes times;
-  const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
-  visitTree(a,
-            [&](auto&& tree) { run<true>(tree, tree, nullptr, leaves, block, times); });
+  const StageTimes times = runSelf(a, leaves, blockFor(options));
   return collect(leaves, times);
 }
 
@@ -93,15 +116,25 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
   const DefaultFloatingPoint mode;
   TrianglePairTest leaves(a, b, options);
-  StageTimes times;
-  const std::size_t block = options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
-  const KdopShift shift = relativeShift(a, b);
-  visitTree(a, [&](auto&& tree_a) {
-    visitTree(b, [&](auto&& tree_b) {
-      run<false>(tree_a, tree_b, &shift, leaves, block, times);
-    });
-  });
+  const StageTimes times = runPair(a, b, leaves, blockFor(options));
   return collect(leaves, times);
+}
+
+bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink) {
+  const DefaultFloatingPoint mode;
+  CandidateCollector leaves(a, a, sink);
+  runSelf(a, leaves, kBlock);
+  leaves.finish();
+  return !leaves.isDone();
+}
+
+bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
+                    const CandidateSink& sink) {
+  const DefaultFloatingPoint mode;
+  CandidateCollector leaves(a, b, sink);
+  runPair(a, b, leaves, kBlock);
+  leaves.finish();
+  return !leaves.isDone();
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

@@ -98,7 +98,7 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
 template <typename S>
 PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
                            const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
-                           const std::string& name) {
+                           const std::string& name, FeatureOwners owners) {
   const Pose beginning = toPose<S>(tf_beg, name), end = toPose<S>(tf_end, name);
   for (int k = 0; k < 3; ++k) {
     instance_.translation[0][k] = beginning.translation[k];
@@ -115,17 +115,20 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
     instance_.tree = &mesh->movingTree();
     if (beginning.isTranslation() && end.isTranslation()) return;
     features_ = mesh->features();
+    instance_.prepared = features_.data();
     tree_.setLinks(mesh->movingTree().links());
     refit();
     return;
   }
-  visitModel(geometry,
-             [&](const auto& model) { prepareModel(model, beginning, end, name); });
+  visitModel(geometry, [&](const auto& model) {
+    prepareModel(model, beginning, end, name, owners);
+  });
 }
 
 template <typename BV>
 void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning,
-                                const Pose& end, const std::string& name) {
+                                const Pose& end, const std::string& name,
+                                FeatureOwners owners) {
   const bool deforming =
       model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
   if (!deforming && model.build_state != BVH_BUILD_STATE_PROCESSED)
@@ -144,16 +147,14 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
   if constexpr (kHasSoundTree)
     if (!deforming) {
       instance_.rigid = RigidTree(model, beginning);
+      if (owners == FeatureOwners::kAlways) computeOwners(model, name);
       return;
     }
   prepareDeforming(model, name);
 }
 
 template <typename BV>
-void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name) {
-  if (model.prev_vertices)
-    requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
-  requireFinite(model.vertices, model.num_vertices, name + ", current frame");
+void PreparedMesh::computeOwners(const BVHModel<BV>& model, const std::string& name) {
   const auto count = static_cast<std::size_t>(model.num_vertices);
   for (std::size_t i = 0; i < instance_.num_triangles; ++i)
     for (int k = 0; k < 3; ++k)
@@ -161,6 +162,15 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
         throw Exception(name + ": triangle " + std::to_string(i) +
                         " refers to a vertex that is not there");
   features_ = assignFeatures(model.tri_indices, instance_.num_triangles, count);
+  instance_.prepared = features_.data();
+}
+
+template <typename BV>
+void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name) {
+  if (model.prev_vertices)
+    requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
+  requireFinite(model.vertices, model.num_vertices, name + ", current frame");
+  computeOwners(model, name);
   std::vector<std::int32_t> links(static_cast<std::size_t>(model.getNumBVs()));
   for (int i = 0; i < model.getNumBVs(); ++i)
     links[static_cast<std::size_t>(i)] = model.getBV(i).first_child;
@@ -172,7 +182,6 @@ void PreparedMesh::refit() {
   const auto start = std::chrono::steady_clock::now();
   const DefaultFloatingPoint mode;
   tree_.refit(features_, instance_.frames);
-  instance_.prepared = features_.data();
   instance_.tree = &tree_;
   // The boxes are posed already.
   for (auto& translation : instance_.translation)
@@ -184,7 +193,8 @@ void PreparedMesh::refit() {
 #define FCL_CCD_INSTANTIATE(S)                                                           \
   template MeshKind meshKindOf(const CollisionGeometry<S>&);                             \
   template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Transform3<S>&, \
-                                      const Transform3<S>&, const std::string&);
+                                      const Transform3<S>&, const std::string&,          \
+                                      FeatureOwners);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

@@ -136,7 +136,7 @@ Row runSweptBoxes(const FramePairMesh& mesh, const std::set<PairName>& truth,
           });
     });
     row.test = millisecondsOf([&] {
-      for (const auto& [a, b] : pairs) leaves.test(a, b, {0.f, 1.f});
+      for (const auto& [a, b] : pairs) leaves.visit(a, b, {0.f, 1.f});
     });
     row.counts = leaves.counts();
     std::size_t found = 0;

@@ -29,9 +29,13 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
 template <typename S>
 Contact<S> toContact(const ContinuousContact<S>& contact);
 
-/// @brief A time as S, not later than t.
+/// @brief A time in [0, 1] as S, not later than t.
 template <typename S>
 S roundTimeDown(double t);
+
+/// @brief A time in [0, 1] as S, not earlier than t.
+template <typename S>
+S roundTimeUp(double t);
 
 }  // namespace deformable
 }  // namespace detail

@@ -8,20 +8,14 @@
 #include <set>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
 /// @brief A contact between two features, by ids.
-struct FeatureContact {
-  FeatureKind kind;
-  /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
-  bool first_on_a;
-  std::uint32_t vertices[4];
-  /// Triangle of mesh a and of mesh b.
-  std::int32_t triangles[2];
+struct FeatureContact : FeatureIds {
   double toc_lo;
   double toc_hi;
 };

@@ -25,6 +25,16 @@ class DefaultFloatingPoint {
   std::fenv_t saved_;
 };
 
+/// @brief While it lives, a mode that was saved before is back, for a callback of the
+/// caller's; then the default mode is.
+class CallersFloatingPoint {
+ public:
+  explicit CallersFloatingPoint(const std::fenv_t& mode) { std::fesetenv(&mode); }
+  ~CallersFloatingPoint() { std::fesetenv(FE_DFL_ENV); }
+  CallersFloatingPoint(const CallersFloatingPoint&) = delete;
+  CallersFloatingPoint& operator=(const CallersFloatingPoint&) = delete;
+};
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "fcl/narrowphase/detail/deformable/candidate_collector.h"
 #include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
 
@@ -27,6 +28,17 @@ QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options);
 /// @brief Traverses the trees of a and b and tests what it finds.
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options);
+
+/// @brief Traverses the tree of a with itself and hands the candidates to the sink.
+/// @pre a is prepared
+/// @return whether the sink took them all
+bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink);
+
+/// @brief Traverses the trees of a and b and hands the candidates to the sink.
+/// @pre a and b are prepared
+/// @return whether the sink took them all
+bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
+                    const CandidateSink& sink);
 
 /// @brief What overlapWindow() needs between the trees of two instances.
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b);

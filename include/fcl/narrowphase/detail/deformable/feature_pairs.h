@@ -2,6 +2,8 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_FEATURE_PAIRS_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_FEATURE_PAIRS_H
 
+#include <cstdint>
+
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 
@@ -17,6 +19,17 @@ struct FeaturePair {
   bool first_on_a;
   unsigned first;
   unsigned second;
+};
+
+/// @brief Two features of two meshes a and b, by ids.
+struct FeatureIds {
+  FeatureKind kind;
+  /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
+  bool first_on_a;
+  /// VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
+  std::uint32_t vertices[4];
+  /// Triangle of mesh a and of mesh b.
+  std::int32_t triangles[2];
 };
 
 inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {

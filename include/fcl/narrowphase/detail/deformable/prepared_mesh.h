@@ -19,13 +19,20 @@ enum class MeshKind {
   kDeforming,  ///< a triangle mesh whose two frames differ
 };
 
+/// @brief Whether every mesh must have feature owners.
+enum class FeatureOwners {
+  kIfKept,  ///< not a rigid mesh that brings none
+  kAlways   ///< of such a mesh they are computed, in time and memory linear in its
+            ///< triangles
+};
+
 template <typename S>
 MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
 /// @brief A geometry made ready for one query, with what had to be computed for it:
-/// nothing for a DeformableBVHModel that is only translated and for a rigid mesh; owners
-/// and boxes for a plain BVHModel in FCL's updated state; boxes for a rotated
-/// DeformableBVHModel.
+/// nothing for a DeformableBVHModel that is only translated and for a rigid mesh (but see
+/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state; boxes
+/// for a rotated DeformableBVHModel.
 class PreparedMesh {
  public:
   /// @param name  how errors call the geometry, for example "o1"
@@ -35,7 +42,8 @@ class PreparedMesh {
   /// vertex index out of range
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
-               const Transform3<S>& tf_end, const std::string& name);
+               const Transform3<S>& tf_end, const std::string& name,
+               FeatureOwners owners = FeatureOwners::kIfKept);
 
   PreparedMesh(const PreparedMesh&) = delete;
   PreparedMesh& operator=(const PreparedMesh&) = delete;
@@ -48,7 +56,9 @@ class PreparedMesh {
  private:
   template <typename BV>
   void prepareModel(const BVHModel<BV>& model, const Pose& beginning, const Pose& end,
-                    const std::string& name);
+                    const std::string& name, FeatureOwners owners);
+  template <typename BV>
+  void computeOwners(const BVHModel<BV>& model, const std::string& name);
   template <typename BV>
   void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
   void refit();

@@ -2,14 +2,13 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
-#include "fcl/math/bv/moving_kdop.h"
 #include "fcl/narrowphase/detail/deformable/contact_sink.h"
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
 #include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "fcl/narrowphase/detail/deformable/stage_counts.h"
+#include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 
 namespace fcl {
 namespace detail {
@@ -47,8 +46,8 @@ class TrianglePairTest {
 
   /// @brief Tests triangle i of a against triangle j of b over the window in which their
   /// boxes overlap.
-  /// @throws std::domain_error that names a vertex whose coordinates are not finite
-  void test(int i, int j, TimeWindow window);
+  /// @throws NonFiniteVertex
+  void visit(int i, int j, TimeWindow window);
 
   /// @brief Whether nothing more can change the answer.
   bool isDone() const;
@@ -56,7 +55,6 @@ class TrianglePairTest {
   /// @brief A pair whose window starts after this time cannot change the answer.
   double latest() const;
 
-  bool isSelf() const { return self_; }
   bool hasCrossing() const { return has_crossing_; }
   const Crossing& crossing() const { return crossing_; }
   ContactSink& sink() { return sink_; }
@@ -65,38 +63,16 @@ class TrianglePairTest {
   StageCounts& counts() { return counts_; }
 
  private:
-  /// A triangle's vertices with the ranges of its features.
-  struct Side {
-    std::int32_t index{-1};
-    MeshTriangle triangle;
-    VertexPath x[3];
-    AxisRanges vertex[3];
-    AxisRanges edge[3];
-    AxisRanges face;
-
-    void load(const MeshInstance& mesh, int i);
-  };
-
-  template <bool kSelf>
-  void testFeatures(TimeWindow window);
   void testFeature(const FeaturePair& pair, double lo, double hi);
-  void testCrossing(const Side& edges, const Side& face, bool edges_on_a);
-  FeaturePoints pointsOf(const FeaturePair& pair) const;
-  FeatureContact describe(const FeaturePair& pair) const;
-  /// Puts an EE contact's ids, with its points, in ascending order (edges of two meshes
-  /// stay on their sides), so that a pair has one name and one evaluation.
-  void sortByIds(FeatureContact& contact, FeaturePoints& points) const;
+  void testCrossing(const TriangleSide& edges, const TriangleSide& face, bool edges_on_a);
 
-  const MeshInstance& a_;
-  const MeshInstance& b_;
   QueryOptions options_;
-  bool self_;
+  TrianglePair pair_;
   bool full_window_;
   ContactSink sink_;
   bool has_crossing_{false};
   Crossing crossing_{};
   StageCounts counts_;
-  Side side_a_, side_b_;
 };
 
 }  // namespace deformable

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the public queries of scenes share: their arguments and their errors.
+#ifndef FCL_CCD_SRC_QUERY_ARGUMENTS_H
+#define FCL_CCD_SRC_QUERY_ARGUMENTS_H
+
+#include <string>
+
+#include "fcl/common/exception.h"
+#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "fcl/narrowphase/detail/deformable/triangle_pair.h"
+
+namespace fcl {
+namespace detail {
+
+/// Poses at t = 0 and t = 1.
+template <typename S>
+struct Placement {
+  Transform3<S> beginning;
+  Transform3<S> end;
+
+  bool isRotating() const { return beginning.linear() != end.linear(); }
+};
+
+inline void require(const void* argument, const char* name) {
+  if (!argument) throw Exception(std::string(name) + " is null");
+}
+
+template <typename S>
+void requireMesh(const CollisionGeometry<S>& o, const char* function) {
+  if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
+    throw Exception(std::string(function) + ": the geometry is not a triangle mesh");
+}
+
+/// What errors say of a pair for which isAnsweredHere() is false.
+constexpr const char* kNotAnsweredHere =
+    " of continuous collision need two triangle meshes that deform or translate";
+
+/// Whether the pair is answered by this library and not left to FCL.
+template <typename S>
+bool isAnsweredHere(const CollisionGeometry<S>& o1, bool rotates1,
+                    const CollisionGeometry<S>& o2, bool rotates2) {
+  const auto accepts = [](const CollisionGeometry<S>& o, bool rotates) {
+    const deformable::MeshKind kind = deformable::meshKindOf(o);
+    return kind == deformable::MeshKind::kDeforming ||
+           (kind == deformable::MeshKind::kRigid && !rotates);
+  };
+  return accepts(o1, rotates1) && accepts(o2, rotates2);
+}
+
+/// Runs a query; what it finds wrong with a vertex becomes FCL's exception.
+template <typename Query>
+auto answerOf(Query&& query) {
+  try {
+    return query();
+  } catch (const deformable::NonFiniteVertex& error) {
+    throw Exception(error.what());
+  }
+}
+
+}  // namespace detail
+}  // namespace fcl
+
+#endif
