@@ -140,11 +140,11 @@ TYPED_TEST(ContinuousFeatureTest, TheCallersModeDoesNotMatter) {
   constexpr std::uint64_t kSeed = 42;
   Random random(kSeed);
   // Every second pair consists of subnormal numbers.
-  const int shift = std::numeric_limits<S>::min_exponent - 12;
+  constexpr int kExponent = std::numeric_limits<S>::min_exponent - 12;
   for (int i = 0; i < 2000; ++i) {
     MovingPair pair = i % 2 ? floatPair(randomPair(random)) : gridPair(random, 3);
     if (i % 2 == 0)
-      pair = mapped(pair, [shift](double c) { return std::ldexp(c, shift); });
+      pair = mapped(pair, [](double c) { return std::ldexp(c, kExponent); });
     const auto expected = featureTest<S>(pair, 1e-6);
     std::vector<Vector3<S>> p;
     for (const bool end : {false, true})
