@@ -10,6 +10,7 @@
 #include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
 #include "scene_data.h"
+#include "swept_tree.h"
 #include "timing.h"
 
 namespace fcl {
@@ -47,29 +48,6 @@ void print(const Row& r) {
   else
     std::printf("-,%zu\n", r.extra);
 }
-
-/// A model's moving tree with each pair of boxes replaced by one box around both, which
-/// is what the paper and FCL use.
-class SweptTree {
- public:
-  explicit SweptTree(const deformable::MovingKdopTree& tree) : tree_(tree) {
-    boxes_.reserve(tree.links().size());
-    for (std::size_t i = 0; i < tree.links().size(); ++i) {
-      MovingKdop box = tree.box(static_cast<int>(i));
-      for (int j = 0; j < 16; ++j)
-        box.t0.half[j] = box.t1.half[j] = std::max(box.t0.half[j], box.t1.half[j]);
-      boxes_.push_back(box);
-    }
-  }
-  bool isLeaf(int node) const { return tree_.isLeaf(node); }
-  int leftChild(int node) const { return tree_.leftChild(node); }
-  int triangle(int node) const { return tree_.triangle(node); }
-  const MovingKdop& box(int node) const { return boxes_[static_cast<std::size_t>(node)]; }
-
- private:
-  const deformable::MovingKdopTree& tree_;
-  std::vector<MovingKdop> boxes_;
-};
 
 void buildModel(const FramePairMesh& mesh, FclTree fcl_tree, Model& model) {
   model.beginModel(static_cast<int>(mesh.triangles.size()),

@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "exact_oracle.h"
+
+#include <CGAL/Algebraic_kernel_d_1.h>
+#include <CGAL/Gmpq.h>
+#include <CGAL/Gmpz.h>
+
+#include <algorithm>
+#include <array>
+#include <boost/multiprecision/gmp.hpp>
+#include <climits>
+#include <cmath>
+#include <cstdint>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+namespace fcl {
+namespace test {
+namespace {
+
+using detail::deformable::FeatureKind;
+using detail::deformable::FeaturePoints;
+
+using Integer = CGAL::Gmpz;
+using Fraction = CGAL::Gmpq;
+using Kernel = CGAL::Algebraic_kernel_d_1<Integer>;
+using Polynomial = Kernel::Polynomial_1;
+using Algebraic = Kernel::Algebraic_real_1;
+
+int degreeOf(const Polynomial& p) { return CGAL::is_zero(p) ? -1 : p.degree(); }
+
+Integer coefficient(const Polynomial& p, int i) {
+  return i <= degreeOf(p) ? p[i] : Integer(0);
+}
+
+/// Sign at a time. Without a verdict from the isolating interval the kernel takes a
+/// greatest common divisor, which is slow.
+int signAt(const Polynomial& p, const Algebraic& t) {
+  constexpr int kRounds = 6, kHalvings = 8;
+  const int degree = degreeOf(p);
+  if (degree <= 0) return degree < 0 ? 0 : static_cast<int>(CGAL::sign(p[0]));
+  for (int round = 0; round < kRounds && degree <= 2; ++round) {
+    if (t.is_rational()) break;
+    // Bernstein coefficients over the interval: of one sign, they enclose the value.
+    const Fraction lo = t.low(), hi = t.high();
+    const Fraction c0 = p[0], c1 = p[1];
+    Fraction first = c0 + c1 * lo, last = c0 + c1 * hi;
+    int middle = static_cast<int>(CGAL::sign(first));
+    if (degree == 2) {
+      const Fraction c2 = p[2];
+      middle = static_cast<int>(CGAL::sign(c0 + c1 * (lo + hi) / 2 + c2 * lo * hi));
+      first += c2 * lo * lo;
+      last += c2 * hi * hi;
+    }
+    const int sign = static_cast<int>(CGAL::sign(first));
+    if (sign != 0 && sign == middle && sign == static_cast<int>(CGAL::sign(last)))
+      return sign;
+    for (int i = 0; i < kHalvings; ++i) t.bisect();
+  }
+  if (t.is_rational()) return static_cast<int>(p.sign_at(t.rational()));
+  return static_cast<int>(Kernel().sign_at_1_object()(p, t));
+}
+
+/// A double as digits times 2^exponent, digits odd or 0.
+struct BinaryNumber {
+  std::int64_t digits{0};
+  int exponent{INT_MAX};
+
+  explicit BinaryNumber(double value) {
+    if (value == 0) return;
+    digits = static_cast<std::int64_t>(std::ldexp(std::frexp(value, &exponent), 53));
+    exponent -= 53;
+    while (digits % 2 == 0) {
+      digits /= 2;
+      ++exponent;
+    }
+  }
+  Integer inUnitsOf(int unit_exponent) const {
+    Integer out(static_cast<double>(digits));
+    if (digits != 0)
+      mpz_mul_2exp(out.mpz(), out.mpz(),
+                   static_cast<mp_bitcnt_t>(exponent - unit_exponent));
+    return out;
+  }
+};
+
+/// The four points with coordinates that are polynomials in t of degree 1.
+class MovingPoints {
+ public:
+  explicit MovingPoints(const FeaturePoints& x) {
+    int unit = INT_MAX;
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k)
+        unit = std::min(
+            {unit, BinaryNumber(x[i].t0[k]).exponent, BinaryNumber(x[i].t1[k]).exponent});
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Integer from = BinaryNumber(x[i].t0[k]).inUnitsOf(unit);
+        const Integer to = BinaryNumber(x[i].t1[k]).inUnitsOf(unit);
+        at(i, k) = Polynomial(from, Integer(to - from));
+      }
+  }
+
+  Polynomial difference(int i, int j, int k) const { return at(i, k) - at(j, k); }
+
+  /// Twice the oriented area of points i, j, l with coordinate k left out.
+  Polynomial turn(int i, int j, int l, int k) const {
+    const int m = (k + 1) % 3, n = (k + 2) % 3;
+    return difference(j, i, m) * difference(l, i, n) -
+           difference(j, i, n) * difference(l, i, m);
+  }
+
+  /// Six times the oriented volume of all four.
+  Polynomial volume() const {
+    Polynomial sum(Integer(0));
+    for (int k = 0; k < 3; ++k) sum = sum + difference(0, 1, k) * turn(1, 2, 3, k);
+    return sum;
+  }
+
+ private:
+  const Polynomial& at(int i, int k) const {
+    return coordinates_[static_cast<std::size_t>(3 * i + k)];
+  }
+  Polynomial& at(int i, int k) {
+    return coordinates_[static_cast<std::size_t>(3 * i + k)];
+  }
+  std::array<Polynomial, 12> coordinates_;
+};
+
+/// Three points i, j, l, of which l is judged by its side of the line ij.
+struct Triple {
+  int i, j, l;
+};
+
+/// A point against the end points of a segment.
+struct PointAndSegment {
+  int point, begin, end;
+};
+
+/// What decides whether coplanar features touch: orientations in coordinate planes, and
+/// for borders the order of coordinates.
+class Conditions {
+ public:
+  Conditions(FeatureKind kind, const FeaturePoints& x) : kind_(kind), points_(x) {
+    if (kind == FeatureKind::kVertexFace) {
+      turns_ = {{1, 2, 0}, {2, 3, 0}, {3, 1, 0}};
+      borders_ = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}};
+    } else {
+      turns_ = {{0, 1, 2}, {0, 1, 3}, {2, 3, 0}, {2, 3, 1}};
+      borders_ = {{2, 0, 1}, {3, 0, 1}, {0, 2, 3}, {1, 2, 3}};
+    }
+  }
+
+  Polynomial volume() const { return points_.volume(); }
+
+  /// Whether the features touch at t, a time at which the four points are coplanar.
+  bool touchAt(const Algebraic& t) const {
+    // zero[b]: the point of border b lies on the border's line, seen along every axis.
+    bool on_line[4] = {true, true, true, true};
+    for (int k = 0; k < 3; ++k) {
+      int side[4] = {};
+      for (std::size_t i = 0; i < turns_.size(); ++i) {
+        side[i] = signAt(points_.turn(turns_[i].i, turns_[i].j, turns_[i].l, k), t);
+        if (side[i] != 0) on_line[i] = false;
+      }
+      if (kind_ == FeatureKind::kVertexFace) {
+        // Strictly on one side of all borders: inside a projection that has an area, so
+        // that a coplanar vertex is inside. On different sides of two borders: outside
+        // of the projection, even of one without area, whose three turns have sum 0.
+        const bool left = side[0] > 0 || side[1] > 0 || side[2] > 0;
+        const bool right = side[0] < 0 || side[1] < 0 || side[2] < 0;
+        if (left && right) return false;
+        if (side[0] * side[1] * side[2] != 0) return true;
+      } else {
+        // One edge strictly on one side of the other's line, in a projection: apart.
+        // Each on both sides: the projections cross, and coplanar edges do as well.
+        if (side[0] * side[1] > 0 || side[2] * side[3] > 0) return false;
+        if (side[0] * side[1] < 0 && side[2] * side[3] < 0) return true;
+      }
+    }
+    // What is left touches at a border, or is flat: a union of segments.
+    for (std::size_t b = 0; b < borders_.size(); ++b)
+      if (on_line[b] && isBetween(borders_[b], t)) return true;
+    return false;
+  }
+
+  /// All conditions, whose signs make up touchAt(): between the roots of these nothing
+  /// changes.
+  std::vector<Polynomial> polynomials() const {
+    std::vector<Polynomial> all;
+    for (int k = 0; k < 3; ++k) {
+      for (const Triple& s : turns_) all.push_back(points_.turn(s.i, s.j, s.l, k));
+      for (const PointAndSegment& b : borders_) {
+        all.push_back(points_.difference(b.point, b.begin, k));
+        all.push_back(points_.difference(b.point, b.end, k));
+      }
+    }
+    return all;
+  }
+
+ private:
+  /// Whether a point on the line of a segment is on the segment.
+  bool isBetween(const PointAndSegment& b, const Algebraic& t) const {
+    for (int k = 0; k < 3; ++k)
+      if (signAt(points_.difference(b.point, b.begin, k), t) *
+              signAt(points_.difference(b.point, b.end, k), t) >
+          0)
+        return false;
+    return true;
+  }
+
+  FeatureKind kind_;
+  MovingPoints points_;
+  std::vector<Triple> turns_;
+  /// In the order of turns_ : the border's turn is that of its point.
+  std::vector<PointAndSegment> borders_;
+};
+
+/// Whether some axis separates the features strictly in both frames, hence always.
+bool areSeparatedAlongAxis(FeatureKind kind, const FeaturePoints& x) {
+  const int split = kind == FeatureKind::kVertexFace ? 1 : 2;
+  for (int k = 0; k < 3; ++k) {
+    bool below = true, above = true;
+    for (int i = 0; i < split; ++i)
+      for (int j = split; j < 4; ++j) {
+        below = below && x[i].t0[k] < x[j].t0[k] && x[i].t1[k] < x[j].t1[k];
+        above = above && x[i].t0[k] > x[j].t0[k] && x[i].t1[k] > x[j].t1[k];
+      }
+    if (below || above) return true;
+  }
+  return false;
+}
+
+/// Whether a cubic provably has no root in [0, 1]: its Bernstein coefficients, times 3,
+/// have one sign.
+bool hasNoRootInUnitInterval(const Polynomial& p) {
+  const Integer c0 = coefficient(p, 0), c1 = coefficient(p, 1), c2 = coefficient(p, 2),
+                c3 = coefficient(p, 3);
+  const Integer b1 = c0 * 3 + c1, b2 = c0 * 3 + c1 * 2 + c2, b3 = c0 + c1 + c2 + c3;
+  const CGAL::Sign sign = CGAL::sign(c0);
+  return sign != CGAL::ZERO && sign == CGAL::sign(b1) && sign == CGAL::sign(b2) &&
+         sign == CGAL::sign(b3);
+}
+
+/// The roots of p in (0, 1], ascending.
+std::vector<Algebraic> rootsAfterStart(const Polynomial& p) {
+  std::vector<std::pair<Algebraic, int>> roots;
+  Kernel().solve_1_object()(p, std::back_inserter(roots));
+  std::vector<Algebraic> inside;
+  for (const auto& [root, multiplicity] : roots)
+    if (root > Fraction(0) && root <= Fraction(1)) inside.push_back(root);
+  return inside;
+}
+
+/// Times of which one is the first contact, if there is any after t = 0 and the points
+/// are coplanar at all times.
+std::vector<Algebraic> changesOf(const Conditions& conditions) {
+  std::vector<Algebraic> times;
+  for (const Polynomial& p : conditions.polynomials()) {
+    if (degreeOf(p) < 1) continue;
+    for (Algebraic& root : rootsAfterStart(p)) times.push_back(std::move(root));
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// A number strictly between s < t. (The kernel's own functor needs MPFI.)
+Fraction between(const Algebraic& s, const Algebraic& t) {
+  while (t.low() <= s.high()) {
+    s.bisect();
+    t.bisect();
+  }
+  return (s.high() + t.low()) / 2;
+}
+
+OracleAnswer::Rational toRational(const Fraction& value) {
+  const boost::multiprecision::mpz_int numerator(value.numerator().mpz()),
+      denominator(value.denominator().mpz());
+  using BoostInteger = boost::multiprecision::cpp_int;
+  return {static_cast<BoostInteger>(numerator), static_cast<BoostInteger>(denominator)};
+}
+
+}  // namespace
+
+struct OracleAnswer::FirstTime {
+  Algebraic t;
+};
+
+int OracleAnswer::compareTime(double value) const {
+  const Algebraic& t = time_->t;
+  const Fraction at(value);
+  if (t.is_rational()) return static_cast<int>(CGAL::compare(t.rational(), at));
+  if (at <= t.low()) return 1;
+  if (at >= t.high()) return -1;
+  const int sign = static_cast<int>(t.polynomial().sign_at(at));
+  return sign == 0 ? 0 : sign == static_cast<int>(t.sign_at_low()) ? 1 : -1;
+}
+
+bool OracleAnswer::isExact() const { return time_->t.is_rational(); }
+
+OracleAnswer::Rational OracleAnswer::lower() const { return toRational(time_->t.low()); }
+
+OracleAnswer::Rational OracleAnswer::upper() const { return toRational(time_->t.high()); }
+
+void OracleAnswer::refine(const Rational& width) {
+  while (!isExact() && upper() - lower() > width) time_->t.bisect();
+}
+
+OracleAnswer askOracle(FeatureKind kind, const FeaturePoints& x) {
+  if (areSeparatedAlongAxis(kind, x)) return {};
+  const Conditions conditions(kind, x);
+  const Polynomial volume = conditions.volume();
+  const auto answer = [](const Algebraic& t) {
+    return OracleAnswer(
+        std::make_shared<OracleAnswer::FirstTime>(OracleAnswer::FirstTime{t}));
+  };
+  const Algebraic start(Fraction(0));
+  if (signAt(volume, start) == 0 && conditions.touchAt(start)) return answer(start);
+
+  if (!CGAL::is_zero(volume)) {
+    if (hasNoRootInUnitInterval(volume)) return {};
+    for (const Algebraic& t : rootsAfterStart(volume))
+      if (conditions.touchAt(t)) return answer(t);
+    return {};
+  }
+  // The times of contact are a closed set that changes only at roots of conditions, so
+  // that its first time is one of them; a time before each is looked at all the same.
+  Algebraic previous = start;
+  std::vector<Algebraic> times = changesOf(conditions);
+  const Algebraic end(Fraction(1));
+  if (times.empty() || times.back() != end) times.push_back(end);
+  for (const Algebraic& t : times) {
+    if (conditions.touchAt(Algebraic(between(previous, t))))
+      throw std::logic_error("oracle: a contact begins between two changes");
+    if (conditions.touchAt(t)) return answer(t);
+    previous = t;
+  }
+  return {};
+}
+
+}  // namespace test
+}  // namespace fcl

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The long comparison of the library with the oracle (test_fcl_oracle is the short one).
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <string>
+
+#include "query_check.h"
+#include "query_csv.h"
+#include "scene_check.h"
+
+namespace {
+
+using fcl::detail::deformable::FeatureKind;
+using fcl::test::CheckTally;
+
+/// Prints every disagreement up to a few, then counts on.
+class Complaints {
+ public:
+  void add(const std::string& name, const std::string& text) {
+    if (++count_ <= 10) std::printf("%s\n%s\n", name.c_str(), text.c_str());
+  }
+  std::size_t count() const { return count_; }
+
+ private:
+  std::size_t count_{0};
+};
+
+void print(const CheckTally& tally, const Complaints& complaints) {
+  std::printf(
+      "%zu queries, %zu contacts (%zu at t = 0), decided by box %zu, filter %zu, solver "
+      "%zu, integers %zu: %zu disagreements\n",
+      tally.queries, tally.contacts, tally.contacts_at_start, tally.decided_by[0],
+      tally.decided_by[1], tally.decided_by[2], tally.decided_by[3], complaints.count());
+}
+
+std::size_t checkGenerated(std::uint64_t first, std::uint64_t count) {
+  CheckTally tally;
+  Complaints complaints;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    const std::string text =
+        disagreement(fcl::test::generatedQuery(number), number, tally);
+    if (!text.empty()) complaints.add("query " + std::to_string(number), text);
+  }
+  print(tally, complaints);
+  return complaints.count();
+}
+
+std::size_t checkFiles(const std::string& data) {
+  CheckTally tally;
+  Complaints complaints;
+  for (const auto& folder : std::filesystem::directory_iterator(data + "/queries"))
+    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+      const bool vf = kind == FeatureKind::kVertexFace;
+      const std::string path =
+          folder.path().string() + (vf ? "/vertex-face.csv" : "/edge-edge.csv");
+      if (!std::filesystem::exists(path)) continue;
+      for (const auto& query : fcl_ccd::readQueries({path}).queries) {
+        const std::string text = disagreement({kind, query.x}, tally.queries, tally);
+        if (!text.empty()) complaints.add(path, text);
+      }
+    }
+  print(tally, complaints);
+  return complaints.count();
+}
+
+std::size_t checkScene(const std::string& folder, const std::string& previous,
+                       const std::string& current) {
+  fcl::test::CullCheckOptions options;
+  options.oracle_samples = 25000;
+  options.decide_all = true;
+  const fcl::test::CullReport report = fcl::test::checkCulledPairs(
+      fcl::test::readFramePair(folder + "/" + previous, folder + "/" + current), options);
+  for (const auto& stage : report.stages)
+    std::printf(
+        "%-12s culled %zu, decided exactly %zu, by the oracle %zu: %zu contacts\n",
+        stage.name, stage.culled, stage.decided, stage.asked, stage.contacts);
+  if (!report.example.empty()) std::printf("%s\n", report.example.c_str());
+  return report.contacts();
+}
+
+int usage(const char* program) {
+  std::fprintf(stderr,
+               "usage: %s generated FIRST COUNT\n"
+               "       %s queries DATA_FOLDER\n"
+               "       %s scene FOLDER PREVIOUS.ply CURRENT.ply\n"
+               "Returns 1 if the library and the oracle disagree.\n",
+               program, program, program);
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string what = argc > 1 ? argv[1] : "";
+  try {
+    if (what == "generated" && argc == 4)
+      return checkGenerated(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
+    if (what == "queries" && argc == 3) return checkFiles(argv[2]) != 0;
+    if (what == "scene" && argc == 5) return checkScene(argv[2], argv[3], argv[4]) != 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 2;
+  }
+  return usage(argv[0]);
+}

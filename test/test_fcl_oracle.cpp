@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The oracle against cases worked out by hand, and the library against the oracle: the
+// short version of fcl_ccd_oracle_check.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "oracle/exact_oracle.h"
+#include "oracle/query_check.h"
+#include "oracle/scene_check.h"
+#include "query_csv.h"
+#include "rational_geometry.h"
+#include "shared_data.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using detail::deformable::FeatureKind;
+using detail::deformable::VertexPath;
+
+constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+constexpr double kLargest = std::numeric_limits<double>::max();
+constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
+
+VertexPath at(double x, double y, double z) { return {{x, y, z}, {x, y, z}}; }
+VertexPath falling(double x, double y, double z0, double z1) {
+  return {{x, y, z0}, {x, y, z1}};
+}
+VertexPath path(const double (&a)[3], const double (&b)[3]) {
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+}
+MovingPair onTriangle(const VertexPath& v) {
+  return {kVf, {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
+}
+MovingPair onUnitEdge(const VertexPath& c, const VertexPath& d) {
+  return {kEe, {at(-1, 0, 0), at(1, 0, 0), c, d}};
+}
+
+struct HandCase {
+  const char* name;
+  MovingPair pair;
+  /// Time of the first contact; denominator 0: none.
+  int numerator, denominator;
+};
+
+const HandCase kHandCases[] = {
+    {"through the inside", onTriangle(falling(1, 1, 2, -1)), 2, 3},
+    {"starts inside, parts", onTriangle(falling(1, 1, 0, 1)), 0, 1},
+    {"ends inside", onTriangle(falling(1, 1, 1, 0)), 1, 1},
+    {"ends just above", onTriangle(falling(1, 1, 1, kSmallest)), 0, 0},
+    {"through a corner", onTriangle(falling(0, 4, 1, -6)), 1, 7},
+    {"through a border", onTriangle(falling(2, 2, 1, -6)), 1, 7},
+    {"a hair outside", onTriangle(falling(2, 2 + 0x1p-51, 1, -6)), 0, 0},
+    {"slides in, in the plane", onTriangle(path({-1, 1, 0}, {2, 1, 0})), 1, 3},
+    {"slides past a corner", onTriangle(path({5, -1, 0}, {3, 1, 0})), 1, 2},
+    {"slides past, outside", onTriangle(path({5, 0, 0}, {4, 1, 0})), 0, 0},
+    {"rests in the plane, outside", onTriangle(at(3, 3, 0)), 0, 0},
+    {"rests inside", onTriangle(at(1, 1, 0)), 0, 1},
+    {"triangle turns over",
+     {kVf,
+      {at(1, 1, 0), at(0, 0, 0), path({4, 0, 3}, {4, 0, -1}),
+       path({0, 4, 3}, {0, 4, -1})}},
+     3,
+     4},
+    // Where the moving edge crosses y = 0 it has the height (1 - 2t)^2.
+    {"double root",
+     {kEe,
+      {at(-1, 0, 0), at(1, 0, 0), path({0, 0, 1}, {0, -2, -1}),
+       path({0, 2, -1}, {0, 0, 1})}},
+     1,
+     2},
+    {"double root, missed by a hair",
+     {kEe,
+      {at(-1, 0, 0), at(1, 0, 0), path({0, 0, 1 + 0x1p-52}, {0, -2, -1 + 0x1p-52}),
+       path({0, 2, -1 + 0x1p-52}, {0, 0, 1 + 0x1p-52})}},
+     0,
+     0},
+    // The volume is (1 - 2t)^3.
+    {"triple root",
+     {kVf,
+      {path({0, 0, 1}, {0, 0, -1}), at(0, 0, 0), path({1, 0, 0}, {-1, 0, 0}),
+       path({0, 1, 0}, {0, -1, 0})}},
+     1,
+     2},
+    {"no area, hit at an inner point",
+     {kVf, {falling(3, 0, 1, -2), at(0, 0, 0), at(2, 0, 0), at(4, 0, 0)}},
+     1,
+     3},
+    {"no area, missed in line",
+     {kVf, {falling(5, 0, 1, -2), at(0, 0, 0), at(2, 0, 0), at(4, 0, 0)}},
+     0,
+     0},
+    {"no area, missed beside",
+     {kVf, {falling(1, 1, 1, -2), at(0, 0, 0), at(2, 0, 0), at(4, 0, 0)}},
+     0,
+     0},
+    {"area lost when it matters",
+     {kVf, {falling(1, 0, 1, -1), at(0, 0, 0), at(4, 0, 0), path({0, 4, 0}, {4, -4, 0})}},
+     1,
+     2},
+    {"triangle is a point",
+     {kVf, {falling(1, 1, 1, -1), at(1, 1, 0), at(1, 1, 0), at(1, 1, 0)}},
+     1,
+     2},
+    {"all points the same",
+     {kVf, {at(1, 2, 3), at(1, 2, 3), at(1, 2, 3), at(1, 2, 3)}},
+     0,
+     1},
+    {"edges cross", onUnitEdge(falling(0, -1, 1, -4), falling(0, 1, 1, -4)), 1, 5},
+    {"end on edge", onUnitEdge(falling(0, 0, 1, -4), falling(0, 1, 1, -4)), 1, 5},
+    {"edges pass", onUnitEdge(falling(2, -1, 1, -4), falling(0.5, 1, 1, -4)), 0, 0},
+    {"parallel edges meet", onUnitEdge(falling(0, 0, 1, -2), falling(5, 0, 1, -2)), 1, 3},
+    {"parallel edges pass", onUnitEdge(falling(0, 1, 1, -2), falling(5, 1, 1, -2)), 0, 0},
+    {"collinear edges meet",
+     onUnitEdge(path({3, 0, 0}, {0, 0, 0}), path({4, 0, 0}, {1, 0, 0})), 2, 3},
+    {"collinear edges, one in passing",
+     onUnitEdge(path({-9, 0, 0}, {7, 0, 0}), path({-8, 0, 0}, {8, 0, 0})), 7, 16},
+    {"edge without length on edge",
+     onUnitEdge(falling(0, 0, 2, -1), falling(0, 0, 2, -1)), 2, 3},
+    {"edge without length beside", onUnitEdge(falling(0, 1, 2, -1), falling(0, 1, 2, -1)),
+     0, 0},
+    {"two edges without length",
+     {kEe, {at(1, 1, 0), at(1, 1, 0), falling(1, 1, 1, -1), falling(1, 1, 1, -1)}},
+     1,
+     2},
+    {"the same edge", onUnitEdge(at(-1, 0, 0), at(1, 0, 0)), 0, 1},
+    {"largest doubles", onTriangle(falling(1, 1, kLargest, -kLargest)), 1, 2},
+    {"smallest doubles", onTriangle(falling(1, 1, kSmallest, -3 * kSmallest)), 1, 4},
+    {"both",
+     {kVf,
+      {falling(0, 0, kSmallest, -kSmallest), at(-kLargest, -kLargest, 0),
+       at(kLargest, -kLargest, 0), at(0, kLargest, 0)}},
+     1,
+     2},
+};
+
+TEST(FCL_ORACLE, casesByHand) {
+  for (const HandCase& c : kHandCases) {
+    SCOPED_TRACE(c.name);
+    const OracleAnswer answer = askOracle(c.pair.kind, c.pair.points());
+    ASSERT_EQ(answer.touch(), c.denominator != 0);
+    if (!answer.touch()) continue;
+    const Rational time(c.numerator, c.denominator);
+    EXPECT_LE(answer.lower(), time);
+    EXPECT_GE(answer.upper(), time);
+    OracleAnswer narrow = answer;
+    narrow.refine(Rational(1) / (Rational(1ULL << 62) * Rational(1ULL << 62)));
+    EXPECT_LE(narrow.lower(), time);
+    EXPECT_GE(narrow.upper(), time);
+    EXPECT_LE((narrow.upper() - narrow.lower()) * Rational(1ULL << 62), 1);
+    if (narrow.isExact()) {
+      EXPECT_EQ(narrow.lower(), time);
+    }
+    const double before = static_cast<double>(c.numerator) / c.denominator - 1e-9;
+    EXPECT_EQ(answer.compareTime(before), 1);
+    EXPECT_EQ(answer.compareTime(before + 2e-9), -1);
+    if ((c.denominator & (c.denominator - 1)) == 0) {
+      EXPECT_EQ(answer.compareTime(static_cast<double>(c.numerator) / c.denominator), 0);
+    }
+  }
+}
+
+// Seen along x, the vertex (1 - t, t) lies on the line to (2 - t, 1 - t) when 2 (1 - t)^2
+// = 1.
+TEST(FCL_ORACLE, irrationalTime) {
+  const MovingPair pair{kVf,
+                        {path({0, 1, 0}, {0, 0, 1}), at(-9, 0, 0),
+                         path({9, 0, 0}, {9, 0, 0}), path({0, 2, 1}, {0, 1, 0})}};
+  OracleAnswer answer = askOracle(pair.kind, pair.points());
+  ASSERT_TRUE(answer.touch());
+  answer.refine(Rational(1, 1ULL << 60));
+  EXPECT_FALSE(answer.isExact());
+  const Rational early = 1 - answer.lower(), late = 1 - answer.upper();
+  EXPECT_GT(2 * early * early, 1);
+  EXPECT_LT(2 * late * late, 1);
+}
+
+// Its own instants, by arithmetic on rationals: wherever features touch at one of the
+// times looked at, the first contact is not later.
+TEST(FCL_ORACLE, noContactIsBeforeTheFirst) {
+  constexpr std::uint64_t kSteps = 840;  // divided by 2 ... 8
+  std::size_t contacts = 0;
+  for (std::uint64_t number = 0; number < 2000; number += 2) {
+    const MovingPair pair = generatedQuery(number);
+    const OracleAnswer answer = askOracle(pair.kind, pair.points());
+    for (std::uint64_t k = 0; k <= kSteps; k += 35) {
+      const Rational t(k, kSteps);
+      if (!doTouch(pair.kind, pointsAt<Rational>(pair.x.data(), t, 1))) continue;
+      ASSERT_TRUE(answer.touch()) << pair << "\nat " << t;
+      ASSERT_LE(answer.lower(), t) << pair;
+      ++contacts;
+      break;
+    }
+  }
+  EXPECT_GT(contacts, 300U);
+}
+
+TEST(FCL_ORACLE, generatedQueries) {
+  constexpr std::uint64_t kCount = 24000;
+  CheckTally tally;
+  for (std::uint64_t number = 0; number < kCount; ++number)
+    ASSERT_EQ(disagreement(generatedQuery(number), number, tally), "")
+        << "query " << number;
+  EXPECT_GT(tally.contacts, kCount / 4);
+  EXPECT_GT(tally.contacts_at_start, kCount / 20);
+  for (const std::size_t decided : tally.decided_by) EXPECT_GT(decided, kCount / 50);
+}
+
+TEST(FCL_ORACLE, hardQueries) {
+  const auto root = sharedData("queries");
+  if (!root) return;
+  CheckTally tally;
+  for (const auto& folder : std::filesystem::directory_iterator(*root))
+    for (const FeatureKind kind : {kVf, kEe}) {
+      const std::string path =
+          folder.path().string() + (kind == kVf ? "/vertex-face.csv" : "/edge-edge.csv");
+      if (!std::filesystem::exists(path)) continue;
+      for (const auto& query : fcl_ccd::readQueries({path}).queries) {
+        const MovingPair pair{kind, query.x};
+        EXPECT_EQ(askOracle(kind, pair.points()).touch(), query.truth) << path << pair;
+        EXPECT_EQ(disagreement(pair, tally.queries, tally), "") << path;
+      }
+    }
+  EXPECT_EQ(tally.queries, 4120U);
+  EXPECT_EQ(tally.contacts, 160U);
+}
+
+void expectNoContactCulled(const char* name, const char* previous, const char* current) {
+  const auto folder = sharedData(std::string("scenes/") + name);
+  if (!folder) return;
+  const CullReport report = checkCulledPairs(
+      readFramePair(*folder + "/" + previous, *folder + "/" + current), {});
+  for (const CulledByStage& stage : report.stages) {
+    EXPECT_EQ(stage.contacts, 0U) << stage.name << "\n" << report.example;
+    // Integers are for hard cases, of which a scene may have none.
+    if (&stage != &report.stages.back()) {
+      EXPECT_GT(stage.asked, 0U) << stage.name;
+    }
+  }
+}
+
+TEST(FCL_ORACLE, culledPairsOfClothBall) {
+  expectNoContactCulled("cloth-ball", "92.ply", "93.ply");
+}
+
+TEST(FCL_ORACLE, culledPairsOfNBody) {
+  expectNoContactCulled("n-body", "18.ply", "19.ply");
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
