@@ -9,7 +9,7 @@ fcl_ccd_install_dependencies() {
     g++ make cmake pkg-config
     libfcl-dev libeigen3-dev libboost-dev
     libcli11-dev nlohmann-json3-dev libcgal-dev
-    libgtest-dev libpng-dev zlib1g-dev
+    libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
   )
   # The second compiler and the style checks.
   if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14); fi
