@@ -38,7 +38,8 @@ constexpr double kInsideBound = 2048 * kUnit;
 // sums of size 2 and 3: 20 u DX.
 constexpr double kSideBound = 32 * kUnit;
 // The bounds hold while no product that matters underflows or overflows: an underflow
-// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
+// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range. The norms
+// themselves have to be in it too, because of the products with 1 - t and t.
 constexpr double kTiny = 0x1p-900;
 constexpr double kHuge = 0x1p900;
 
@@ -68,7 +69,10 @@ struct Difference {
   Difference(const VertexPath& p, const VertexPath& q)
       : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
         t1{p.t1[0] - q.t1[0], p.t1[1] - q.t1[1], p.t1[2] - q.t1[2]},
-        norm(std::max(maxNorm(t0), maxNorm(t1))) {}
+        norm(std::max(maxNorm(t0), maxNorm(t1))) {
+    // What underflows in at() is not small beside such a vector: no bound holds.
+    if (norm < kTiny) norm = std::numeric_limits<double>::infinity();
+  }
 
   Vec at(double t) const {
     if (t == 0) return t0;

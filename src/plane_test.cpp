@@ -40,7 +40,7 @@ class Quadratic {
       q.add(k, a.x[i] * b.y[j], a.x[i] != 0 && b.y[j] != 0);
       q.add(k, -a.y[i] * b.x[j], a.y[i] != 0 && b.x[j] != 0);
     }
-    q.halveMiddle();
+    q.finish();
     return q;
   }
   static Quadratic dot(const Difference& a, const Difference& b) {
@@ -49,7 +49,7 @@ class Quadratic {
       q.add(k, a.x[i] * b.x[j], a.x[i] != 0 && b.x[j] != 0);
       q.add(k, a.y[i] * b.y[j], a.y[i] != 0 && b.y[j] != 0);
     }
-    q.halveMiddle();
+    q.finish();
     return q;
   }
 
@@ -91,11 +91,12 @@ class Quadratic {
   /// The terms of a coefficient have been rounded three times (two differences, a
   /// product), their sum at most three times: 6 units of 2^-53 of their size. The weights
   /// are rounded up to four times, the products with them and the sum three times more:
-  /// 13 units, and 16 with room for the rounding of the size and of the bound itself.
+  /// 13 units, and 16 with room for the rounding of the size and of the bound itself. An
+  /// underflow of three terms is below the smallest normal number.
   Bounded blossom(double s, double t) const {
     const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
     return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
-            16 * 0x1p-53 * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2])};
+            16 * 0x1p-53 * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
   }
 
   /// No underflow hides in a product that is not zero, and no overflow is near.
@@ -105,13 +106,15 @@ class Quadratic {
     is_reliable_ &= std::abs(product) < 0x1p900;
     is_reliable_ &= !is_not_zero || std::abs(product) > 0x1p-900;
   }
-  void halveMiddle() {
+  void finish() {
     c_[1] *= 0.5;
     size_[1] *= 0.5;
+    if (!isZero()) underflow_ = std::numeric_limits<double>::min();
   }
 
   double c_[3]{0, 0, 0};
   double size_[3]{0, 0, 0};
+  double underflow_{0};
   bool is_reliable_{true};
 };
 

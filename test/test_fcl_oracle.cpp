@@ -211,6 +211,15 @@ TEST(FCL_ORACLE, generatedQueries) {
   for (const std::size_t decided : tally.decided_by) EXPECT_GT(decided, kCount / 50);
 }
 
+// Found by the long comparison: one difference is so small that its product with 1 - t
+// underflows, the others are so large that the volume does not show it.
+TEST(FCL_ORACLE, tinyDifferencesBesideHugeOnes) {
+  CheckTally tally;
+  for (const std::uint64_t number : {178118U, 858278U})
+    EXPECT_EQ(disagreement(generatedQuery(number), number, tally), "")
+        << "query " << number;
+}
+
 TEST(FCL_ORACLE, hardQueries) {
   const auto root = sharedData("queries");
   if (!root) return;
