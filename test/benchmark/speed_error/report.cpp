@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <thread>
+
+#include "measurement.h"
+#include "methods.h"
+#include "operation_count.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+/// Processor, number of cores and compiler, without commas.
+std::string machineName() {
+  std::string name = "unknown processor";
+  std::ifstream cpu("/proc/cpuinfo");
+  for (std::string line; std::getline(cpu, line);)
+    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
+      name = line.substr(line.find(": ") + 2);
+      break;
+    }
+  name += "; " + std::to_string(std::thread::hardware_concurrency()) + " cores; ";
+#ifdef __clang__
+  name += "clang " + std::to_string(__clang_major__);
+#else
+  name += "gcc " + std::to_string(__GNUC__);
+#endif
+  for (char& c : name)
+    if (c == ',' || c == '"') c = ' ';
+  return name;
+}
+
+std::string number(double value, const char* format = "%.1f") {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string errorFields(const QuerySet& set, const Errors& errors) {
+  return std::to_string(set.queries.size()) + ',' + std::to_string(errors.contacts) +
+         ',' + std::to_string(errors.false_negatives) + ',' +
+         std::to_string(errors.false_positives) + ',' + number(errors.max_late, "%.3g") +
+         ',' + number(errors.max_early, "%.3g") + ',';
+}
+
+std::string timeFields(const Times& times) {
+  return number(times.ns_mean) + ',' + number(times.ns_median) + ',' +
+         number(times.ns_p999) + ',';
+}
+
+/// A filter as a stage: how much of what cannot touch it culls, and how many contacts.
+struct Culling {
+  std::size_t rightly{0};
+  std::size_t wrongly{0};
+  std::size_t rightly_as_plain{0};
+};
+
+Culling cullingOf(const std::vector<MethodAnswer>& answers,
+                  const std::vector<MethodAnswer>& plain, const QuerySet& set) {
+  Culling culling;
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (answers[i].contact) continue;
+    ++(set.truth[i].contact ? culling.wrongly : culling.rightly);
+    culling.rightly_as_plain += !set.truth[i].contact && !plain[i].contact;
+  }
+  return culling;
+}
+
+std::string operationFields(const OperationCount& count) {
+  return number(count.additions) + ',' + number(count.multiplications) + ',' +
+         number(count.divisions);
+}
+
+}  // namespace
+
+Report::Report(const std::string& folder, int repeats)
+    : machine_(machineName()), repeats_(repeats) {
+  std::filesystem::create_directories(folder);
+  methods_.open(folder + "/speed_error.csv");
+  filters_.open(folder + "/filter_ratio.csv");
+  methods_ << "set,method,setting,queries,contacts,false_negatives,false_positives,"
+              "max_late,max_early,ns_mean,ns_median,ns_p999,decided_box,decided_filter,"
+              "decided_solver,decided_exact,machine\n";
+  filters_ << "set,stage,queries,culled_rightly,culled_wrongly,share_of_plain,ns_mean,"
+              "cost_to_plain,additions,multiplications,divisions,machine\n";
+  if (!methods_ || !filters_) throw std::runtime_error(folder + ": cannot be written to");
+}
+
+void Report::add(const QuerySet& set, const std::vector<OutsideSolver>& solvers) {
+  addMethods(set);
+  for (const OutsideSolver& solver : solvers) addSolver(set, solver);
+  addFilters(set);
+}
+
+void Report::finish() {
+  if (!methods_.flush() || !filters_.flush())
+    throw std::runtime_error("the tables cannot be written");
+}
+
+void Report::addMethods(const QuerySet& set) {
+  for (const Method& method : allMethods()) {
+    std::fprintf(stderr, "%s: %s %s\n", set.name.c_str(), method.name.c_str(),
+                 method.setting.c_str());
+    const std::vector<MethodAnswer> answers = answersOf(method, set);
+    methods_ << set.name << ',' << method.name << ',' << method.setting << ','
+             << errorFields(set, errorsOf(answers, set))
+             << timeFields(timesOf(method, set, repeats_));
+    for (const double share : stageShares(answers))
+      methods_ << (method.has_stages ? number(share, "%.6f") : "") << ',';
+    methods_ << machine_ << std::endl;
+  }
+}
+
+void Report::addSolver(const QuerySet& set, const OutsideSolver& solver) {
+  const OutsideAnswers outside = runOutsideSolver(solver, set);
+  methods_ << set.name << ',' << solver.name << ','
+           << (outside.own_clock ? "own clock" : "wall clock") << ','
+           << errorFields(set, errorsOf(outside.answers, set)) << number(outside.ns_mean)
+           << ",,,,,,," << machine_ << std::endl;
+}
+
+void Report::addFilters(const QuerySet& set) {
+  const std::vector<Method> stages = filters();
+  const std::vector<MethodAnswer> plain = answersOf(stages.front(), set);
+  const double plain_rightly = static_cast<double>(cullingOf(plain, plain, set).rightly);
+  double plain_ns = 0;
+  const auto addRow = [&](const Method& method, const std::string& name,
+                          const std::string& operations) {
+    const Culling culling = cullingOf(answersOf(method, set), plain, set);
+    const double ns = timesOf(method, set, repeats_).ns_mean;
+    if (plain_ns == 0) plain_ns = ns;
+    filters_ << set.name << ',' << name << ',' << set.queries.size() << ','
+             << culling.rightly << ',' << culling.wrongly << ','
+             << number(static_cast<double>(culling.rightly_as_plain) / plain_rightly,
+                       "%.6f")
+             << ',' << number(ns) << ',' << number(ns / plain_ns, "%.3f") << ','
+             << operations << ',' << machine_ << std::endl;
+  };
+  for (const Method& stage : stages)
+    addRow(stage, stage.name,
+           stage.name == "plain" ? operationFields(operationsOfFilter(set)) : ",,");
+  // The solvers that the filter saves: what they answer no to counts as culled.
+  for (const Method& method : allMethods()) {
+    const bool newton = method.name == "interval-newton";
+    if (newton || method.name == "cubic")
+      addRow(method, method.name + ' ' + method.setting,
+             newton ? operationFields(operationsOfIntervalNewton(set, method.number))
+                    : ",,");
+  }
+}
+
+}  // namespace test
+}  // namespace fcl
