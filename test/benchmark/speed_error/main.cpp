@@ -62,14 +62,18 @@ int main(int argc, char** argv) {
                  "NAME=COMMAND, another solver; see outside_solver.h for what it reads "
                  "and prints. May be repeated.")
       ->allow_extra_args(false);
-  app.add_option("--generated", options.generated, "Number of generated queries")
-      ->check(CLI::PositiveNumber);
+  auto* generated =
+      app.add_option("--generated", options.generated, "Number of generated queries")
+          ->check(CLI::PositiveNumber);
   app.add_option("--sample", options.sample, "Number of queries of each scene")
       ->check(CLI::PositiveNumber);
-  app.add_option("--repeats", options.repeats, "Each time is the least of so many")
-      ->check(CLI::PositiveNumber);
+  auto* repeats =
+      app.add_option("--repeats", options.repeats, "Each time is the least of so many")
+          ->check(CLI::PositiveNumber);
   app.add_flag("--short", options.is_short,
-               "2,000 generated queries and one repeat: errors, no times to speak of");
+               "2,000 generated queries and one repeat: errors, no times to speak of")
+      ->excludes(generated)
+      ->excludes(repeats);
   CLI11_PARSE(app, argc, argv);
   if (options.is_short) {
     options.generated = 2000;

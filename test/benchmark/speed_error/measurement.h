@@ -30,19 +30,24 @@ struct Times {
   double ns_p999;
 };
 
-std::vector<MethodAnswer> answersOf(const Method& method, const QuerySet& set);
+/// @brief What a method answered and how long it took.
+struct Run {
+  std::vector<MethodAnswer> answers;
+  Times times;
+};
+
+/// @brief ns_mean: a loop over all queries with no clock in it, least of `repeats`, or of
+/// as many as a time budget allows.
+/// Median and 99.9th percentile: over a sample of the queries, of the least of `repeats`
+/// times of that query between two looks at the clock, less what these cost. The least of
+/// several, because what an interrupt costs is not the method's; a query that is slow for
+/// its own sake is slow each time.
+Run run(const Method& method, const QuerySet& set, int repeats);
 
 Errors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set);
 
 /// @brief Share of the queries that each stage decided.
 std::array<double, 4> stageShares(const std::vector<MethodAnswer>& answers);
-
-/// @brief ns_mean: a loop over all queries with no clock in it, least of `repeats`.
-/// Median and 99.9th percentile: over the queries, of the least of `repeats` times of
-/// that query between two looks at the clock, less what these cost. The least of several,
-/// because what an interrupt costs is not the method's; a query that is slow for its own
-/// sake is slow each time.
-Times timesOf(const Method& method, const QuerySet& set, int repeats);
 
 }  // namespace test
 }  // namespace fcl

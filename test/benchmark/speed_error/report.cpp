@@ -85,14 +85,16 @@ Report::Report(const std::string& folder, int repeats)
   methods_ << "set,method,setting,queries,contacts,false_negatives,false_positives,"
               "max_late,max_early,ns_mean,ns_median,ns_p999,decided_box,decided_filter,"
               "decided_solver,decided_exact,machine\n";
-  filters_ << "set,stage,queries,culled_rightly,culled_wrongly,share_of_plain,ns_mean,"
-              "cost_to_plain,additions,multiplications,divisions,machine\n";
+  filters_
+      << "set,stage,setting,queries,culled_rightly,culled_wrongly,share_of_plain,ns_mean,"
+         "cost_to_plain,additions,multiplications,divisions,machine\n";
   if (!methods_ || !filters_) throw std::runtime_error(folder + ": cannot be written to");
 }
 
 void Report::add(const QuerySet& set, const std::vector<OutsideSolver>& solvers) {
-  addMethods(set);
+  // The outside solvers first: if one fails, it is soon.
   for (const OutsideSolver& solver : solvers) addSolver(set, solver);
+  addMethods(set);
   addFilters(set);
 }
 
@@ -105,11 +107,10 @@ void Report::addMethods(const QuerySet& set) {
   for (const Method& method : allMethods()) {
     std::fprintf(stderr, "%s: %s %s\n", set.name.c_str(), method.name.c_str(),
                  method.setting.c_str());
-    const std::vector<MethodAnswer> answers = answersOf(method, set);
+    const Run done = run(method, set, repeats_);
     methods_ << set.name << ',' << method.name << ',' << method.setting << ','
-             << errorFields(set, errorsOf(answers, set))
-             << timeFields(timesOf(method, set, repeats_));
-    for (const double share : stageShares(answers))
+             << errorFields(set, errorsOf(done.answers, set)) << timeFields(done.times);
+    for (const double share : stageShares(done.answers))
       methods_ << (method.has_stages ? number(share, "%.6f") : "") << ',';
     methods_ << machine_ << std::endl;
   }
@@ -124,32 +125,33 @@ void Report::addSolver(const QuerySet& set, const OutsideSolver& solver) {
 }
 
 void Report::addFilters(const QuerySet& set) {
-  const std::vector<Method> stages = filters();
-  const std::vector<MethodAnswer> plain = answersOf(stages.front(), set);
-  const double plain_rightly = static_cast<double>(cullingOf(plain, plain, set).rightly);
-  double plain_ns = 0;
-  const auto addRow = [&](const Method& method, const std::string& name,
-                          const std::string& operations) {
-    const Culling culling = cullingOf(answersOf(method, set), plain, set);
-    const double ns = timesOf(method, set, repeats_).ns_mean;
-    if (plain_ns == 0) plain_ns = ns;
-    filters_ << set.name << ',' << name << ',' << set.queries.size() << ','
-             << culling.rightly << ',' << culling.wrongly << ','
+  std::vector<MethodAnswer> plain;
+  double plain_rightly = 0, plain_ns = 0;
+  const auto addRow = [&](const Method& method, const std::string& operations) {
+    const Run done = run(method, set, repeats_);
+    const double ns = done.times.ns_mean;
+    if (plain.empty()) {
+      plain = done.answers;
+      plain_rightly = static_cast<double>(cullingOf(plain, plain, set).rightly);
+      plain_ns = ns;
+    }
+    const Culling culling = cullingOf(done.answers, plain, set);
+    filters_ << set.name << ',' << method.name << ',' << method.setting << ','
+             << set.queries.size() << ',' << culling.rightly << ',' << culling.wrongly
+             << ','
              << number(static_cast<double>(culling.rightly_as_plain) / plain_rightly,
                        "%.6f")
              << ',' << number(ns) << ',' << number(ns / plain_ns, "%.3f") << ','
              << operations << ',' << machine_ << std::endl;
   };
-  for (const Method& stage : stages)
-    addRow(stage, stage.name,
+  for (const Method& stage : filters())
+    addRow(stage,
            stage.name == "plain" ? operationFields(operationsOfFilter(set)) : ",,");
-  // The solvers that the filter saves: what they answer no to counts as culled.
+  // The solvers that a filter saves: what they answer no to counts as culled.
   for (const Method& method : allMethods()) {
-    const bool newton = method.name == "interval-newton";
-    if (newton || method.name == "cubic")
-      addRow(method, method.name + ' ' + method.setting,
-             newton ? operationFields(operationsOfIntervalNewton(set, method.number))
-                    : ",,");
+    if (method.name == "interval-newton")
+      addRow(method, operationFields(operationsOfIntervalNewton(set, method.number)));
+    if (method.name == "cubic") addRow(method, ",,");
   }
 }
 

@@ -19,7 +19,7 @@ class Report {
   /// @throws std::runtime_error if they cannot be written
   Report(const std::string& folder, int repeats);
 
-  /// @brief Rows of all methods of ours, then of the outside solvers, and of the filters.
+  /// @brief Rows of the outside solvers, of all our methods, and of the filters.
   void add(const QuerySet& set, const std::vector<OutsideSolver>& solvers);
 
   void finish();
