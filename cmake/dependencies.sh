@@ -1,8 +1,8 @@
 # shellcheck shell=bash
 # Installs the Debian packages that the project needs and the system lacks. Sourced by
-# test.sh and demo.sh.
+# test.sh, demo.sh and speed_error.sh.
 
-# fcl_ccd_install_dependencies build|all
+# fcl_ccd_install_dependencies build|all [PACKAGE ...]
 fcl_ccd_install_dependencies() {
   # To build everything and run the tests. pkg-config: a test builds with fcl.pc.
   local packages=(
@@ -13,6 +13,7 @@ fcl_ccd_install_dependencies() {
   )
   # The second compiler and the style checks.
   if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14); fi
+  packages+=("${@:2}")
 
   # On another system CMake says what it cannot find.
   command -v dpkg-query >/dev/null || return 0
