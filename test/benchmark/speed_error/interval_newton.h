@@ -29,6 +29,9 @@ N firstTimeByIntervalNewton(const RelativePair<N>& pair, const CoplanarityCubic<
   const N turn = f.c[3] == zero ? none : (zero - f.c[2]) / three_c3;
   const N derivative_at_turn = f.derivative(turn);
 
+  // Where the values overflow or underflow no interval can be rejected; others take fewer
+  // than a hundred looks.
+  constexpr int kMaxLooks = 1000;
   // Each level of bisection leaves one interval open and at least halves the next.
   constexpr int kMaxOpen = 64;
   struct Interval {
@@ -36,9 +39,10 @@ N firstTimeByIntervalNewton(const RelativePair<N>& pair, const CoplanarityCubic<
   } open[kMaxOpen];
   int num_open = 0;
   open[num_open++] = {N(0), N(1)};
-  while (num_open > 0) {
-    N lo = open[num_open - 1].lo, hi = open[num_open - 1].hi;
+  for (int look = 0; num_open > 0; ++look) {
     --num_open;
+    N lo = open[num_open].lo, hi = open[num_open].hi;
+    if (look == kMaxLooks) return lo;  // given up, on the safe side
     // The range of the derivative.
     const N slope_lo = f.derivative(lo), slope_hi = f.derivative(hi);
     N least = slope_lo < slope_hi ? slope_lo : slope_hi;

@@ -96,7 +96,7 @@ Run run(const Method& method, const QuerySet& set, int repeats) {
   std::vector<double> least(sample.size(), std::numeric_limits<double>::infinity());
   for (int repeat = 0; repeat < repeats; ++repeat)
     for (std::size_t k = 0; k < sample.size(); ++k) {
-      const MovingPair& query = set.queries[sample[k]];
+      const MovingPair query = set.queries[sample[k]];  // a copy: fetched before
       const auto start = Clock::now();
       sink = method.answer(query, method.number).toc;
       least[k] = std::min(least[k], nanosecondsSince(start));

@@ -39,9 +39,10 @@ struct Run {
 /// @brief ns_mean: a loop over all queries with no clock in it, least of `repeats`, or of
 /// as many as a time budget allows.
 /// Median and 99.9th percentile: over a sample of the queries, of the least of `repeats`
-/// times of that query between two looks at the clock, less what these cost. The least of
-/// several, because what an interrupt costs is not the method's; a query that is slow for
-/// its own sake is slow each time.
+/// times of that query between two looks at the clock, less what these cost, with its
+/// points in the cache (in the loop they are fetched ahead). The least of several,
+/// because what an interrupt costs is not the method's; a query that is slow for its own
+/// sake is slow each time.
 Run run(const Method& method, const QuerySet& set, int repeats);
 
 Errors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set);
