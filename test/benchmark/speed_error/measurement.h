@@ -36,8 +36,8 @@ struct Run {
   Times times;
 };
 
-/// @brief ns_mean: a loop over all queries with no clock in it, least of `repeats`, or of
-/// as many as a time budget allows.
+/// @brief ns_mean: loops over a thousand queries each, the least time of `repeats` for
+/// each (or of as many as a time budget allows), summed.
 /// Median and 99.9th percentile: over a sample of the queries, of the least of `repeats`
 /// times of that query between two looks at the clock, less what these cost, with its
 /// points in the cache (in the loop they are fetched ahead). The least of several,
