@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "plain_solvers.h"
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
 #include <utility>
@@ -15,6 +16,10 @@ namespace {
 
 using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePoints;
+
+double size(const Vec<double>& a) {
+  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+}
 
 /// Roots of the derivative inside (0, 1), in order.
 int turningPoints(const PowerCubic<double>& f, double (&t)[2]) {
@@ -64,8 +69,12 @@ SolverAnswer solveCubic(FeatureKind kind, const FeaturePoints& x, double inside_
   const RelativePair<double> pair(kind, x);
   const CoplanarityCubic<double> cubic(pair);
   const PowerCubic<double> f(cubic);
-  // Rounding of the coefficients and of a value.
-  const double zero_tol = 16 * DBL_EPSILON * cubic.size();
+  // About the rounding of a value, by the vectors that it is made of: relative to the
+  // coefficients alone, contacts of bodies at rest are lost, whose coefficients are
+  // nothing but rounding.
+  const double zero_tol = 8 * DBL_EPSILON * (size(pair.u0) + size(pair.u1)) *
+                          (size(pair.v0) + size(pair.v1)) *
+                          (size(pair.w0) + size(pair.w1));
   double t[4] = {0};
   double turns[2];
   int ends = 1;
