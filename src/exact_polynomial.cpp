@@ -25,6 +25,16 @@ double toDouble(const Integer& k, unsigned m, int direction) {
   return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
 }
 
+/// a / b <= 1 rounded likewise.
+double ratioToDouble(const Integer& a, const Integer& b, int direction) {
+  if (a.is_zero()) return 0;
+  const auto bits = static_cast<unsigned>(msb(b) - msb(a)) + 64;
+  Integer quotient, rest;
+  divide_qr(Integer(a << bits), b, quotient, rest);
+  if (direction > 0 && !rest.is_zero()) ++quotient;
+  return toDouble(quotient, bits, direction);
+}
+
 /// p divided by (2^m t - k), a root of it.
 Polynomial withoutRoot(const Polynomial& p, const Integer& k, unsigned m) {
   return p.quotient(Polynomial{-k, Integer(1) << m}).primitive();
@@ -106,14 +116,17 @@ Polynomial Polynomial::quotient(const Polynomial& divisor) const {
 }
 
 int Polynomial::signAt(const Integer& k, unsigned m) const {
+  return valueAt(k, m).sign();
+}
+
+Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
   if (isZero()) return 0;
-  // 2^(m degree) p(k / 2^m) by Horner's rule.
-  Integer value = c_.back();
+  Integer value = c_.back();  // Horner's rule
   for (int i = degree() - 1; i >= 0; --i) {
     value *= k;
     value += (*this)[i] << (m * static_cast<unsigned>(degree() - i));
   }
-  return value.sign();
+  return value;
 }
 
 Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) const {
@@ -154,7 +167,16 @@ Polynomial gcd(Polynomial a, Polynomial b) {
 
 std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
   // A root of higher multiplicity keeps two sign changes at every depth.
-  constexpr unsigned kMaxDepth = 12;
+  constexpr int kMaxCuts = 12;
+  constexpr unsigned kMaxJump = 256;
+  /// The interval (k, k + 1) / 2^m, and how it was reached.
+  struct Interval {
+    Integer k;
+    unsigned m;
+    int changes;
+    int cuts;
+    unsigned jump;
+  };
   Polynomial p = polynomial;
   bool square_free = p.degree() <= 1;
   std::vector<Root> roots;
@@ -173,31 +195,44 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
   takeDyadic(1, 0);
   for (bool again = true; again;) {
     again = false;
-    std::vector<std::pair<Integer, unsigned>> open{{0, 0}};
+    std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
     std::vector<Root> isolated;
     while (!open.empty() && !again) {
-      const auto [k, m] = open.back();
+      const Interval i = std::move(open.back());
       open.pop_back();
-      const int changes = p.signChanges(k, m);
-      if (changes == 1) isolated.emplace_back(k, m, p);
-      if (changes <= 1) continue;
-      if (m == kMaxDepth && !square_free) {
+      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p);
+      if (i.changes <= 1) continue;
+      // Roots that crowd at an end (frames of very different size): a part of the
+      // interval with all its sign changes leaves none for the rest, nor a root between.
+      if (i.jump > 1) {
+        const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
+        bool jumped = false;
+        for (const Integer& k : {first, last})
+          if (!jumped && p.signChanges(k, i.m + i.jump) == i.changes) {
+            open.push_back(
+                {k, i.m + i.jump, i.changes, i.cuts, std::min(2 * i.jump, kMaxJump)});
+            jumped = true;
+          }
+        if (jumped) continue;
+      }
+      if (i.cuts >= kMaxCuts && !square_free) {
         const Polynomial repeated = gcd(p, p.derivative());
         if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
         square_free = again = true;
         break;
       }
-      const Integer mid = 2 * k + 1;
-      again = takeDyadic(mid, m + 1);
-      open.emplace_back(mid, m + 1);
-      open.emplace_back(mid - 1, m + 1);
+      const Integer mid = 2 * i.k + 1;
+      again = takeDyadic(mid, i.m + 1);
+      for (const Integer& k : {mid, Integer(mid - 1)}) {
+        const int changes = again ? 0 : p.signChanges(k, i.m + 1);
+        open.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
+      }
     }
     if (!again) roots.insert(roots.end(), isolated.begin(), isolated.end());
   }
   return roots;
 }
 
-/// Where in the interval, 0 to 1, the root seems to be.
 double Root::estimate() const {
   const Polynomial::Coefficients exact = polynomial_.bernstein(k_, m_);
   std::size_t bits = 0;
@@ -236,6 +271,15 @@ double Root::estimate() const {
   return s;
 }
 
+Integer Root::guessInside(unsigned bits) const {
+  if (bits <= kEstimateBits)
+    return static_cast<std::int64_t>(std::ldexp(estimate(), static_cast<int>(bits)));
+  // False position: in a short interval the polynomial is nearly a line.
+  const Integer lo = abs(polynomial_.valueAt(k_, m_)),
+                hi = abs(polynomial_.valueAt(k_ + 1, m_));
+  return (lo << bits) / (lo + hi);
+}
+
 int Root::probe(const Integer& k, unsigned m) {
   const int sign = polynomial_.signAt(k, m);
   if (sign == 0) {
@@ -246,40 +290,41 @@ int Root::probe(const Integer& k, unsigned m) {
   return sign;
 }
 
-void Root::narrow(unsigned bits) {
+bool Root::narrow(unsigned bits) {
   // The neighbours of the place where the root seems to be.
   if (bits > 1) {
     const Integer first = k_ << bits, end = (k_ + 1) << bits;
-    const Integer guess =
-        first + static_cast<std::int64_t>(std::ldexp(estimate(), static_cast<int>(bits)));
+    const Integer guess = first + guessInside(bits);
     const Integer below = guess > first ? guess - 1 : first,
                   above = guess + 2 < end ? guess + 2 : end;
     const unsigned m = m_ + bits;
     int sign = below == first ? sign_below_ : probe(below, m);
-    if (is_dyadic_) return;
+    if (is_dyadic_) return true;
     if (sign == sign_below_) {
       for (Integer k = below; k < above; ++k) {
         sign = k + 1 == end ? -sign_below_ : probe(k + 1, m);
-        if (is_dyadic_) return;
+        if (is_dyadic_) return true;
         if (sign == sign_below_) continue;
         k_ = k;
         m_ = m;
-        return;
+        return true;
       }
     }
   }
   const Integer mid = 2 * k_ + 1;
   const int sign = probe(mid, m_ + 1);
-  if (is_dyadic_) return;
+  if (is_dyadic_) return true;
   k_ = sign == sign_below_ ? mid : mid - 1;
   ++m_;
+  return bits == 1;
 }
 
 int Root::signOf(const Polynomial& g) {
   if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
   if (!is_dyadic_ && g == polynomial_) return 0;
-  // Where g has no root in the interval, its sign is that of any inner point.
-  constexpr unsigned kBits = 40;
+  // Where g has no root in the interval, its sign is that of any inner point. The number
+  // of bits won by a step doubles while steps succeed.
+  unsigned bits = kEstimateBits;
   bool common_known = false;
   for (bool first = true; !is_dyadic_ && g.signChanges(k_, m_) > 0; first = false) {
     if (!first && !common_known) {
@@ -290,26 +335,46 @@ int Root::signOf(const Polynomial& g) {
         return 0;
       common_known = true;
     }
-    narrow(kBits);
+    bits = narrow(bits) ? 2 * bits : kEstimateBits;
   }
   return is_dyadic_ ? g.signAt(k_, m_) : g.signAt(2 * k_ + 1, m_ + 1);
 }
 
 double Root::lowerBound() const { return toDouble(k_, m_, -1); }
 
-std::pair<double, double> Root::bracket(double width) {
+double Root::upperBound() const {
+  return toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1);
+}
+
+std::pair<double, double> Root::bracket(double width, int clock_exponent) {
+  if (clock_exponent != 0) return bracketOnClock(width, clock_exponent);
   // With more bits than a double has, an interval closer than doubles would not show. A
   // root below 2^-1074 has none.
   const auto hasBitsOfDouble = [this] {
     return !k_.is_zero() && boost::multiprecision::msb(k_) > 54;
   };
-  while (!is_dyadic_ && m_ < 1100 && !hasBitsOfDouble()) {
+  while (!is_dyadic_ && m_ < kMaxBits && !hasBitsOfDouble()) {
     const double excess = std::ldexp(1., -static_cast<int>(m_)) / width;
     if (!(excess > 1)) break;
-    constexpr int kMaxBits = 48;
-    narrow(static_cast<unsigned>(std::min(kMaxBits, std::ilogb(excess) + 1)));
+    narrow(static_cast<unsigned>(std::min<int>(kEstimateBits, std::ilogb(excess) + 1)));
   }
-  return {toDouble(k_, m_, -1), toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1)};
+  return {lowerBound(), upperBound()};
+}
+
+std::pair<double, double> Root::bracketOnClock(double width, int clock_exponent) {
+  const auto shift = static_cast<unsigned>(std::abs(clock_exponent));
+  const auto timeOf = [&](const Integer& k, int direction) {
+    Integer before = (Integer(1) << m_) - k, after = k;
+    (clock_exponent > 0 ? before : after) <<= shift;
+    return ratioToDouble(after, before + after, direction);
+  };
+  for (;;) {
+    const double lo = timeOf(k_, -1), hi = timeOf(is_dyadic_ ? k_ : Integer(k_ + 1), 1);
+    constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
+    if (is_dyadic_ || hi - lo <= width || hi - lo <= kUlps * lo || m_ > kMaxBits + shift)
+      return {lo, hi};
+    narrow(kEstimateBits);
+  }
 }
 
 }  // namespace deformable

@@ -52,6 +52,9 @@ class Polynomial {
   /// factor.
   Polynomial quotient(const Polynomial& divisor) const;
 
+  /// @brief The value at k / 2^m, times 2^(m degree).
+  Integer valueAt(const Integer& k, unsigned m) const;
+
   /// @brief Sign at k / 2^m.
   int signAt(const Integer& k, unsigned m) const;
 
@@ -96,18 +99,31 @@ class Root {
   /// @brief Sign of g at the root, exact; may narrow the interval.
   int signOf(const Polynomial& g);
 
-  /// @brief A double not above the root.
+  /// @brief Doubles not above and not below the root.
   double lowerBound() const;
+  double upperBound() const;
 
-  /// @brief Doubles [lo, hi] around the root, hi - lo <= width or, where that is less
-  /// than a few units in the last place, as close as doubles get.
-  std::pair<double, double> bracket(double width);
+  /// @brief Doubles [lo, hi] around t, the number in [0, 1] with 2^clock_exponent t / (1
+  /// - t) = s / (1 - s) for this root s: t = s for 0. hi - lo <= width or, where that is
+  /// less than a few units in the last place, as close as doubles get.
+  std::pair<double, double> bracket(double width, int clock_exponent);
 
  private:
-  /// Narrows the interval by at most 2^-bits, at least to a half.
-  void narrow(unsigned bits);
+  /// What a double can say of the root's place inside the interval.
+  static constexpr unsigned kEstimateBits = 48;
+
+  /// No double above 0 needs more.
+  static constexpr unsigned kMaxBits = 1100;
+
+  std::pair<double, double> bracketOnClock(double width, int clock_exponent);
+  /// Narrows the interval by 2^-bits if the root is where it seems to be, else to a half.
+  /// @return whether it was
+  bool narrow(unsigned bits);
   /// Sign at the inner point k / 2^m, where the root is found to be if it is 0.
   int probe(const Integer& k, unsigned m);
+  /// Where in the interval, cut in 2^bits parts, the root seems to be.
+  Integer guessInside(unsigned bits) const;
+  /// The same, 0 to 1.
   double estimate() const;
 
   Integer k_;

@@ -36,38 +36,63 @@ MovingPoint cross(const MovingPoint& a, const MovingPoint& b) {
   return {crossComponent(a, b, 0), crossComponent(a, b, 1), crossComponent(a, b, 2)};
 }
 
-/// The four paths times 2^-exponent, for the largest exponent that makes them integers
-/// without loss (all coordinates share it, so that no contact is lost or moved).
-std::array<MovingPoint, 4> toIntegers(const FeaturePoints& x) {
-  int lowest = std::numeric_limits<int>::max();
-  const auto forEach = [&x](auto&& visit) {
-    for (int i = 0; i < 4; ++i)
-      for (int k = 0; k < 3; ++k) visit(i, k, x[i].t0[k], x[i].t1[k]);
-  };
-  const auto exponentOf = [](double value) {
-    int exponent = 0;
-    std::frexp(value, &exponent);
-    return exponent;
-  };
-  forEach([&](int, int, double a, double b) {
-    if (a != 0) lowest = std::min(lowest, exponentOf(a));
-    if (b != 0) lowest = std::min(lowest, exponentOf(b));
-  });
-  const auto toInteger = [&](double value) -> Integer {
-    if (value == 0) return 0;
-    int exponent = 0;
-    const double fraction = std::frexp(value, &exponent);
-    const Integer digits = static_cast<std::int64_t>(std::ldexp(fraction, 53));
-    return digits << static_cast<unsigned>(exponent - lowest);
-  };
+/// Smallest and largest binary exponent of a frame's coordinates that are not 0.
+struct ExponentRange {
+  int lowest{std::numeric_limits<int>::max()};
+  int highest{std::numeric_limits<int>::min()};
+
+  void add(double value) {
+    if (value == 0) return;
+    const int exponent = std::ilogb(value);
+    lowest = std::min(lowest, exponent);
+    highest = std::max(highest, exponent);
+  }
+  bool isEmpty() const { return lowest > highest; }
+};
+
+/// The four paths as integers, and the clock that they run by.
+///
+/// All coordinates of a frame share a power of two. Frames of very different size have
+/// one each: (1 - t) 2^p a + t 2^q b is, up to its length, which decides nothing, (1 - s)
+/// a + s b for s / (1 - s) = 2^(q - p) t / (1 - t), and s runs from 0 to 1 as t does.
+struct IntegerPaths {
   std::array<MovingPoint, 4> points;
-  forEach([&](int i, int k, double a, double b) {
-    const Integer from = toInteger(a);
-    points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-        Polynomial{from, toInteger(b) - from};
-  });
-  return points;
-}
+  /// q - p; 0 where s = t.
+  int clock_exponent{0};
+
+  explicit IntegerPaths(const FeaturePoints& x) {
+    // The larger numbers of one power for both cost less than fractions for t.
+    constexpr int kMaxCommonSpread = 64;
+    ExponentRange range[2];
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        range[0].add(x[i].t0[k]);
+        range[1].add(x[i].t1[k]);
+      }
+    int lowest[2];
+    lowest[0] = lowest[1] = std::min(range[0].lowest, range[1].lowest);
+    if (!range[0].isEmpty() && !range[1].isEmpty() &&
+        std::abs(range[0].highest - range[1].highest) > kMaxCommonSpread) {
+      for (int frame = 0; frame < 2; ++frame) lowest[frame] = range[frame].lowest;
+      clock_exponent = lowest[1] - lowest[0];
+    }
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Integer from = toInteger(x[i].t0[k], lowest[0]);
+        points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
+            Polynomial{from, toInteger(x[i].t1[k], lowest[1]) - from};
+      }
+  }
+
+ private:
+  /// value * 2^(52 - lowest)
+  static Integer toInteger(double value, int lowest) {
+    if (value == 0) return 0;
+    const int exponent = std::ilogb(value);
+    const Integer digits = static_cast<std::int64_t>(std::scalbn(value, 52 - exponent));
+    return digits << static_cast<unsigned>(exponent - lowest);
+  }
+};
 
 /// The conditions of a contact.
 ///
@@ -82,7 +107,8 @@ std::array<MovingPoint, 4> toIntegers(const FeaturePoints& x) {
 /// touch in an end of one of them.
 class ExactPair {
  public:
-  ExactPair(FeatureKind kind, const FeaturePoints& x) : kind_(kind), p_(toIntegers(x)) {
+  ExactPair(FeatureKind kind, const FeaturePoints& x, const IntegerPaths& paths)
+      : kind_(kind), p_(paths.points) {
     const auto& [a, b, c, d] = p_;
     u_ = isVertexFace() ? a - b : c - a;
     v_ = isVertexFace() ? c - b : b - a;
@@ -196,18 +222,20 @@ ElementaryResult decideExactly(FeatureKind kind, const FeaturePoints& x, double 
                                   ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
                                   : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
   if (touch_at_start) return {Answer::kYes, 0, 0, DecidedBy::kExact};
-  const ExactPair pair(kind, x);
+  const IntegerPaths paths(x);
+  const ExactPair pair(kind, x, paths);
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
   bool touch = false;
-  double lo = 1, hi = 1;
+  double lo = 1, hi = 1, latest = 1;
   for (Root& t : times) {
-    if (touch && t.lowerBound() > hi) break;
+    if (t.lowerBound() > latest) break;
     if (!pair.touchAt(t)) continue;
-    const auto [t_lo, t_hi] = t.bracket(toc_err);
+    const auto [t_lo, t_hi] = t.bracket(toc_err, paths.clock_exponent);
     lo = touch ? std::min(lo, t_lo) : t_lo;
     hi = touch ? std::min(hi, t_hi) : t_hi;
+    latest = std::min(latest, t.upperBound());
     touch = true;
   }
   if (!touch) return {Answer::kNo, 0, 0, DecidedBy::kExact};
