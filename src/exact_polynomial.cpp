@@ -20,8 +20,9 @@ double toDouble(const Integer& k, unsigned m, int direction) {
   if (direction > 0 && (head << drop) != k) ++head;
   const double value = std::ldexp(static_cast<double>(head.convert_to<std::int64_t>()),
                                   static_cast<int>(drop) - static_cast<int>(m));
-  // A subnormal has fewer bits, to which ldexp() rounds either way.
-  if (value >= std::numeric_limits<double>::min()) return value;
+  // A subnormal has fewer bits, to which ldexp() rounds either way, up to the smallest
+  // normal number.
+  if (value > std::numeric_limits<double>::min()) return value;
   return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
 }
 

@@ -555,6 +555,20 @@ TEST(FCL_ELEMENTARY_TEST, bracketOfASubnormalTimeIsRoundedOutward) {
   }
 }
 
+// t = 2^-1022 / (1 + 2^-1022), just below the smallest normal number: to 53 bits it is
+// smaller, to those of a subnormal it would round up.
+TEST(FCL_ELEMENTARY_TEST, bracketOfATimeBelowTheSmallestNormal) {
+  for (const double toc_err : {1e-3, 1e-12}) {
+    const ElementaryResult r = exact({kVf,
+                                      {VertexPath{{0.25, 0, 0x1p-1022}, {0.25, 0, -1}},
+                                       at(0, -1, 0), at(0, 1, 0), at(1, 0, 0)}},
+                                     toc_err);
+    EXPECT_EQ(r.answer, Answer::kYes);
+    EXPECT_LT(r.toc_lo, DBL_MIN);
+    EXPECT_GE(r.toc_hi, DBL_MIN);
+  }
+}
+
 TEST(FCL_ELEMENTARY_TEST, unreadableCoordinatesAreNotCulled) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
