@@ -130,6 +130,17 @@ Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
   return value;
 }
 
+int Polynomial::signAtFraction(const Integer& numerator,
+                               const Integer& denominator) const {
+  if (isZero()) return 0;
+  Integer value = c_.back(), power = 1;
+  for (int i = degree() - 1; i >= 0; --i) {
+    power *= denominator;
+    value = value * numerator + (*this)[i] * power;
+  }
+  return value.sign();
+}
+
 Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) const {
   const std::size_t n = c_.size();
   // q(s) = 2^(m degree) p((k + s) / 2^m) by repeated synthetic division.
@@ -166,76 +177,10 @@ Polynomial gcd(Polynomial a, Polynomial b) {
   return a.degree() > 0 ? a.primitive() : a;
 }
 
-std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
-  // A root of higher multiplicity keeps two sign changes at every depth.
-  constexpr int kMaxCuts = 12;
-  constexpr unsigned kMaxJump = 256;
-  /// The interval (k, k + 1) / 2^m, and how it was reached.
-  struct Interval {
-    Integer k;
-    unsigned m;
-    int changes;
-    int cuts;
-    unsigned jump;
-  };
-  Polynomial p = polynomial;
-  bool square_free = p.degree() <= 1;
-  std::vector<Root> roots;
-  // Roots found on the way at dyadic points are divided out, so that ends of intervals
-  // are never roots; the search then starts again.
-  const auto takeDyadic = [&](const Integer& k, unsigned m) {
-    bool taken = false;
-    while (p.degree() >= 1 && p.signAt(k, m) == 0) {
-      if (!taken) roots.emplace_back(k, m);
-      p = withoutRoot(p, k, m);
-      taken = true;
-    }
-    return taken;
-  };
-  takeDyadic(0, 0);
-  takeDyadic(1, 0);
-  for (bool again = true; again;) {
-    again = false;
-    std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
-    std::vector<Root> isolated;
-    while (!open.empty() && !again) {
-      const Interval i = std::move(open.back());
-      open.pop_back();
-      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p);
-      if (i.changes <= 1) continue;
-      // Roots that crowd at an end (frames of very different size): a part of the
-      // interval with all its sign changes leaves none for the rest, nor a root between.
-      if (i.jump > 1) {
-        const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
-        bool jumped = false;
-        for (const Integer& k : {first, last})
-          if (!jumped && p.signChanges(k, i.m + i.jump) == i.changes) {
-            open.push_back(
-                {k, i.m + i.jump, i.changes, i.cuts, std::min(2 * i.jump, kMaxJump)});
-            jumped = true;
-          }
-        if (jumped) continue;
-      }
-      if (i.cuts >= kMaxCuts && !square_free) {
-        const Polynomial repeated = gcd(p, p.derivative());
-        if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
-        square_free = again = true;
-        break;
-      }
-      const Integer mid = 2 * i.k + 1;
-      again = takeDyadic(mid, i.m + 1);
-      for (const Integer& k : {mid, Integer(mid - 1)}) {
-        const int changes = again ? 0 : p.signChanges(k, i.m + 1);
-        open.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
-      }
-    }
-    if (!again) roots.insert(roots.end(), isolated.begin(), isolated.end());
-  }
-  return roots;
-}
-
-double Root::estimate() const {
-  const Polynomial::Coefficients exact = polynomial_.bernstein(k_, m_);
+/// Where in (k, k + 1) / 2^m, 0 to 1, a polynomial of different signs at its ends seems
+/// to be zero.
+double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
+  const Polynomial::Coefficients exact = p.bernstein(k, m);
   std::size_t bits = 0;
   for (const Integer& b : exact)
     if (!b.is_zero()) bits = std::max<std::size_t>(bits, msb(abs(b)));
@@ -272,9 +217,83 @@ double Root::estimate() const {
   return s;
 }
 
+std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
+  // A root of higher multiplicity keeps two sign changes at every depth.
+  constexpr int kMaxCuts = 12, kCutsOfTurn = 4;
+  constexpr unsigned kMaxJump = 256, kMaxTurnJump = 48;
+  /// The interval (k, k + 1) / 2^m, and how it was reached.
+  struct Interval {
+    Integer k;
+    unsigned m;
+    int changes;
+    int cuts;
+    unsigned jump;
+  };
+  Polynomial p = polynomial;
+  bool square_free = p.degree() <= 1;
+  std::vector<Root> roots;
+  // Roots found on the way at dyadic points are divided out, so that ends of intervals
+  // are never roots; the search then starts again.
+  const auto takeDyadic = [&](const Integer& k, unsigned m) {
+    bool taken = false;
+    while (p.degree() >= 1 && p.signAt(k, m) == 0) {
+      if (!taken) roots.emplace_back(k, m);
+      p = withoutRoot(p, k, m);
+      taken = true;
+    }
+    return taken;
+  };
+  takeDyadic(0, 0);
+  takeDyadic(1, 0);
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
+    std::vector<Root> isolated;
+    // Roots that crowd at an end (frames of very different size) or where the polynomial
+    // turns (touching but for a rounding): a part of the interval with all its sign
+    // changes leaves none for the rest, nor a root between.
+    const auto jump = [&](const Interval& i) {
+      const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
+      const auto jumpTo = [&](const Integer& k, int cuts) {
+        if (p.signChanges(k, i.m + i.jump) != i.changes) return false;
+        open.push_back(
+            {k, i.m + i.jump, i.changes, i.cuts + cuts, std::min(2 * i.jump, kMaxJump)});
+        return true;
+      };
+      if (jumpTo(first, 0) || jumpTo(last, 0)) return true;
+      if (i.jump > kMaxTurnJump) return false;
+      const double turn =
+          std::ldexp(estimateRoot(p.derivative(), i.k, i.m), static_cast<int>(i.jump));
+      return jumpTo(first + static_cast<std::int64_t>(turn), kCutsOfTurn);
+    };
+    while (!open.empty() && !again) {
+      const Interval i = std::move(open.back());
+      open.pop_back();
+      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p);
+      if (i.changes <= 1) continue;
+      if (i.jump > 1 && jump(i)) continue;
+      if (i.cuts >= kMaxCuts && !square_free) {
+        const Polynomial repeated = gcd(p, p.derivative());
+        if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
+        square_free = again = true;
+        break;
+      }
+      const Integer mid = 2 * i.k + 1;
+      again = takeDyadic(mid, i.m + 1);
+      for (const Integer& k : {mid, Integer(mid - 1)}) {
+        const int changes = again ? 0 : p.signChanges(k, i.m + 1);
+        open.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
+      }
+    }
+    if (!again) roots.insert(roots.end(), isolated.begin(), isolated.end());
+  }
+  return roots;
+}
+
 Integer Root::guessInside(unsigned bits) const {
   if (bits <= kEstimateBits)
-    return static_cast<std::int64_t>(std::ldexp(estimate(), static_cast<int>(bits)));
+    return static_cast<std::int64_t>(
+        std::ldexp(estimateRoot(polynomial_, k_, m_), static_cast<int>(bits)));
   // False position: in a short interval the polynomial is nearly a line.
   const Integer lo = abs(polynomial_.valueAt(k_, m_)),
                 hi = abs(polynomial_.valueAt(k_ + 1, m_));
@@ -320,9 +339,25 @@ bool Root::narrow(unsigned bits) {
   return bits == 1;
 }
 
+/// Sign of a line at the root: on which side of the root its own, a fraction, lies.
+int Root::signOfLine(const Polynomial& g) const {
+  const int slope = g[1].sign();
+  const Integer numerator = slope > 0 ? -g[0] : g[0], denominator = abs(g[1]);
+  const Integer scaled = numerator << m_;
+  if (scaled <= k_ * denominator) return slope;
+  if (scaled >= (k_ + 1) * denominator) return -slope;
+  return slope * sign_below_ * polynomial_.signAtFraction(numerator, denominator);
+}
+
 int Root::signOf(const Polynomial& g) {
   if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
-  if (!is_dyadic_ && g == polynomial_) return 0;
+  if (is_dyadic_) return g.signAt(k_, m_);
+  if (g == polynomial_) return 0;
+  if (g.degree() == 1) return signOfLine(g);
+  if (polynomial_.degree() == 1) {
+    const int slope = polynomial_[1].sign();
+    return g.signAtFraction(-slope * polynomial_[0], slope * polynomial_[1]);
+  }
   // Where g has no root in the interval, its sign is that of any inner point. The number
   // of bits won by a step doubles while steps succeed.
   unsigned bits = kEstimateBits;

@@ -27,6 +27,7 @@ class Polynomial {
  public:
   /// The conditions of a contact have at most this degree.
   static constexpr int kMaxDegree = 3;
+  using Coefficients = boost::container::static_vector<Integer, kMaxDegree + 1>;
 
   Polynomial() = default;
   Polynomial(std::initializer_list<Integer> coefficients)
@@ -58,19 +59,20 @@ class Polynomial {
   /// @brief Sign at k / 2^m.
   int signAt(const Integer& k, unsigned m) const;
 
+  /// @brief Sign at numerator / denominator, denominator > 0.
+  int signAtFraction(const Integer& numerator, const Integer& denominator) const;
+
+  /// @brief Bernstein coefficients over [k, k + 1] / 2^m, each with its binomial and
+  /// times 2^(m degree).
+  Coefficients bernstein(const Integer& k, unsigned m) const;
+
   /// @brief Descartes' bound on the number of roots in the open interval (k, k + 1) /
   /// 2^m: the sign changes of the Bernstein coefficients; exact when 0 or 1.
   int signChanges(const Integer& k, unsigned m) const;
 
  private:
-  using Coefficients = boost::container::static_vector<Integer, kMaxDegree + 1>;
-
-  friend class Root;
   friend Polynomial remainder(const Polynomial& a, const Polynomial& b);
 
-  /// Bernstein coefficients over [k, k + 1] / 2^m, each with its binomial and times 2^(m
-  /// degree).
-  Coefficients bernstein(const Integer& k, unsigned m) const;
   void trim() {
     while (!c_.empty() && c_.back().is_zero()) c_.pop_back();
   }
@@ -116,6 +118,7 @@ class Root {
   static constexpr unsigned kMaxBits = 1100;
 
   std::pair<double, double> bracketOnClock(double width, int clock_exponent);
+  int signOfLine(const Polynomial& g) const;
   /// Narrows the interval by 2^-bits if the root is where it seems to be, else to a half.
   /// @return whether it was
   bool narrow(unsigned bits);
@@ -123,8 +126,6 @@ class Root {
   int probe(const Integer& k, unsigned m);
   /// Where in the interval, cut in 2^bits parts, the root seems to be.
   Integer guessInside(unsigned bits) const;
-  /// The same, 0 to 1.
-  double estimate() const;
 
   Integer k_;
   unsigned m_;
