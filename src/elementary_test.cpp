@@ -38,10 +38,12 @@ constexpr double kInsideBound = 2048 * kUnit;
 // sums of size 2 and 3: 20 u DX.
 constexpr double kSideBound = 32 * kUnit;
 // The bounds hold while no product that matters underflows or overflows: an underflow
-// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range. The norms
-// themselves have to be in it too, because of the products with 1 - t and t.
+// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
 constexpr double kTiny = 0x1p-900;
 constexpr double kHuge = 0x1p900;
+// A norm counts for no less than this: what underflows in the products with 1 - t and t,
+// 2^-1074 each, is then below the 4 u that the bounds allow for.
+constexpr double kLeastNorm = 0x1p-1010;
 
 bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
 
@@ -69,10 +71,7 @@ struct Difference {
   Difference(const VertexPath& p, const VertexPath& q)
       : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
         t1{p.t1[0] - q.t1[0], p.t1[1] - q.t1[1], p.t1[2] - q.t1[2]},
-        norm(std::max(maxNorm(t0), maxNorm(t1))) {
-    // What underflows in at() is not small beside such a vector: no bound holds.
-    if (norm < kTiny) norm = std::numeric_limits<double>::infinity();
-  }
+        norm(std::max(std::max(maxNorm(t0), maxNorm(t1)), kLeastNorm)) {}
 
   Vec at(double t) const {
     if (t == 0) return t0;
@@ -132,12 +131,13 @@ struct Cubic {
 
 Cubic spannedVolume(const Segment& u, const Quadratic& n) {
   const double size = u.norm * n.norm;
-  const bool in_range = isInRange(size) && isInRange(n.norm);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const double bound = isInRange(size) && isInRange(n.norm)
+                           ? size
+                           : std::numeric_limits<double>::infinity();
   return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
            dot(u.h, n.c1) + dot(u.l, n.c2), dot(u.h, n.c2)},
-          in_range ? kOuterBound * size : kInfinity,
-          in_range ? kInnerBound * size : kInfinity};
+          kOuterBound * bound,
+          kInnerBound * bound};
 }
 
 Cubic restrict(const AccurateCubic& f, double lo, double hi) {
