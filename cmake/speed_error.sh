@@ -4,8 +4,8 @@
 #   bash cmake/speed_error.sh [DATA_FOLDER] [OPTION ...]
 # Tables, picture and page go to build/speed_error. With DATA_FOLDER (scenes/, queries/) and
 # no options they also replace those in doc/results; without it only the generated queries
-# are measured. Options are handed to fcl_ccd_speed_error: --solver NAME=COMMAND, --help.
-# About ten minutes, nearly all of it the million generated queries.
+# are measured. Options are handed to fcl_ccd_speed_error: --solver NAME=COMMAND.
+# About five minutes, nearly all of it the million generated queries.
 set -euo pipefail
 data=
 if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then

@@ -566,6 +566,7 @@ TEST(FCL_ELEMENTARY_TEST, bracketOfATimeBelowTheSmallestNormal) {
     EXPECT_EQ(r.answer, Answer::kYes);
     EXPECT_LT(r.toc_lo, DBL_MIN);
     EXPECT_GE(r.toc_hi, DBL_MIN);
+    EXPECT_LE(r.toc_hi - r.toc_lo, toc_err);
   }
 }
 

@@ -147,11 +147,14 @@ TEST_F(FCL_SPEED_ERROR, figuresAreConsistent) {
                                             {"clocked", 1}};
   EXPECT_EQ(rows_of, expected);
 
+  std::map<std::string, int> rows_of_stage;
   for (Row row : readTable("filter_ratio.csv",
                            "set,stage,setting,queries,culled_rightly,culled_wrongly,"
                            "share_of_plain,ns_mean,cost_to_plain,additions,"
                            "multiplications,divisions,machine")) {
     SCOPED_TRACE(row["stage"]);
+    ++rows_of_stage[row["stage"]];
+    EXPECT_GT(std::stod(row["cost_to_plain"]), 0);
     EXPECT_LE(std::stoi(row["culled_rightly"]) + std::stoi(contacts), 2000);
     if (row["stage"].find("certified") != std::string::npos) {
       EXPECT_EQ(row["culled_wrongly"], "0");
@@ -162,6 +165,12 @@ TEST_F(FCL_SPEED_ERROR, figuresAreConsistent) {
       EXPECT_EQ(row["multiplications"], "36.0");
     }
   }
+  const std::map<std::string, int> expected_stages{{"plain", 1},
+                                                   {"certified", 1},
+                                                   {"boxes+certified", 1},
+                                                   {"cubic", 3},
+                                                   {"interval-newton", 3}};
+  EXPECT_EQ(rows_of_stage, expected_stages);
 }
 
 TEST_F(FCL_SPEED_ERROR, querySetsAreGivenInFull) {
@@ -186,6 +195,8 @@ TEST_F(FCL_SPEED_ERROR, aSolverThatFailsIsNamed) {
                {"echo 0,0,; echo 0,0,", "line 2"},
                {"echo 2000,0,", "line 1"},
                {"echo 0,1,", "line 1"},
+               {"echo 0,1,nan", "line 1"},
+               {"echo 0,1,1.5", "line 1"},
                {"echo 0,maybe", "line 1"}};
   for (const auto& c : cases) {
     SCOPED_TRACE(c.command);

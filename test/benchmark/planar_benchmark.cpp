@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "planar_benchmark.h"
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <functional>
+#include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "mesh_generators.h"
 #include "timing.h"
 
@@ -69,6 +74,40 @@ void makeStep(Model& model, const TestMesh& mesh,
   model.updateFrames(mesh.vertices[0].data(), end[0].data(), end.size());
 }
 
+using Name = std::tuple<ContinuousContactKind, bool, std::array<int, 4>>;
+
+/// The candidates of the scene that touch, by the exact stage alone.
+template <typename HandOut>
+std::set<Name> truthOf(const Scene& scene, HandOut&& handOut) {
+  namespace deformable = detail::deformable;
+  std::set<Name> truth;
+  const bool self = scene.b.vertices.empty();
+  handOut([&](const ContinuousCandidate* candidates, std::size_t count) {
+    for (const auto* c = candidates; c != candidates + count; ++c) {
+      const bool vf = c->kind == ContinuousContactKind::kVertexFace;
+      deformable::VertexPath x[4];
+      for (int i = 0; i < 4; ++i) {
+        const bool first = i < (vf ? 1 : 2), on_a = self || first == c->first_on_o1;
+        const auto id =
+            static_cast<std::size_t>(c->vertices[static_cast<std::size_t>(i)]);
+        const auto& from = (on_a ? scene.a : scene.b).vertices[id];
+        const auto& to = (on_a ? scene.a_end : scene.b_end)[id];
+        for (int k = 0; k < 3; ++k) {
+          x[i].t0[k] = from[k];
+          x[i].t1[k] = to[k];
+        }
+      }
+      const auto kind =
+          vf ? deformable::FeatureKind::kVertexFace : deformable::FeatureKind::kEdgeEdge;
+      if (deformable::decideExactly(kind, {{&x[0], &x[1], &x[2], &x[3]}}, 1).answer ==
+          deformable::Answer::kYes)
+        truth.emplace(c->kind, c->first_on_o1, c->vertices);
+    }
+    return true;
+  });
+  return truth;
+}
+
 void run(const Scene& scene, int repeats) {
   Model a, b;
   makeStep(a, scene.a, scene.a_end);
@@ -83,11 +122,23 @@ void run(const Scene& scene, int repeats) {
     else
       continuousCollide(&a, origin, origin, &b, origin, origin, request, result);
   });
+  const std::set<Name> truth = truthOf(scene, [&](const ContinuousCandidateSink& sink) {
+    if (self)
+      continuousSelfCandidates(&a, sink);
+    else
+      continuousCandidates(&a, origin, origin, &b, origin, origin, sink);
+  });
+  std::size_t right = 0;
+  for (const auto& c : result.contacts)
+    right += truth.count({c.kind,
+                          c.first_on_o1,
+                          {c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]}});
   const auto& counts = result.counts;
-  std::printf("%s,%.2f,%llu,%llu,%llu,%zu,%.0f\n", scene.name, ms,
+  std::printf("%s,%.2f,%llu,%llu,%llu,%zu,%zu,%zu,%.0f\n", scene.name, ms,
               static_cast<unsigned long long>(counts.triangle_pairs),
               static_cast<unsigned long long>(counts.feature_pairs),
               static_cast<unsigned long long>(counts.exact_tests), result.contacts.size(),
+              truth.size() - right, result.contacts.size() - right,
               1e6 * ms / static_cast<double>(counts.triangle_pairs));
 }
 
@@ -95,7 +146,7 @@ void run(const Scene& scene, int repeats) {
 
 void benchmarkPlanar(int repeats) {
   std::printf(
-      "scene,ms_total,triangle_pairs,feature_pairs,exact,contacts,"
+      "scene,ms_total,triangle_pairs,feature_pairs,exact,contacts,missed,extra,"
       "ns_per_triangle_pair\n");
   const auto flat = [](double u, double v) { return Vector3<double>(u, v, 0); };
   const auto wavy = [](double u, double v) {

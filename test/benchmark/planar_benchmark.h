@@ -6,7 +6,8 @@ namespace fcl {
 namespace test {
 
 /// @brief Flat and static scenes, where every volume is zero, beside a general one; one
-/// CSV row each.
+/// CSV row each, with the errors
+/// against the exact stage on every candidate.
 void benchmarkPlanar(int repeats);
 
 }  // namespace test

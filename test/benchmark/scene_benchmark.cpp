@@ -94,7 +94,7 @@ Row runSweptBoxes(const FramePairMesh& mesh, const std::set<PairName>& truth,
                   int repeats) {
   Model model;
   buildModel(mesh, FclTree::kSkip, model);
-  updateModel(mesh, model);
+  const double refit = leastMilliseconds(repeats, [&] { updateModel(mesh, model); });
   const SweptTree tree(model.movingTree());
   deformable::MeshInstance instance;
   instance.frames = model.frames();
@@ -102,6 +102,7 @@ Row runSweptBoxes(const FramePairMesh& mesh, const std::set<PairName>& truth,
   Row best;
   for (int i = 0; i < repeats; ++i) {
     Row row;
+    row.refit = refit;
     deformable::TrianglePairTest leaves(instance, instance, deformable::QueryOptions());
     std::vector<deformable::NodePair> open;
     std::vector<std::pair<int, int>> pairs;

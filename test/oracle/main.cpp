@@ -6,6 +6,7 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 
 #include "query_check.h"
@@ -37,6 +38,10 @@ void print(const CheckTally& tally, const Complaints& complaints) {
       tally.decided_by[1], tally.decided_by[2], tally.decided_by[3], complaints.count());
 }
 
+void requireSome(const CheckTally& tally) {
+  if (tally.queries == 0) throw std::runtime_error("no queries to check");
+}
+
 std::size_t checkGenerated(std::uint64_t first, std::uint64_t count) {
   CheckTally tally;
   Complaints complaints;
@@ -46,6 +51,7 @@ std::size_t checkGenerated(std::uint64_t first, std::uint64_t count) {
     if (!text.empty()) complaints.add("query " + std::to_string(number), text);
   }
   print(tally, complaints);
+  requireSome(tally);
   return complaints.count();
 }
 
@@ -64,6 +70,7 @@ std::size_t checkFiles(const std::string& data) {
       }
     }
   print(tally, complaints);
+  requireSome(tally);
   return complaints.count();
 }
 

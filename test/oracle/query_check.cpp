@@ -93,6 +93,11 @@ void checkWindow(const MovingPair& pair, Random& random, double toc_err, Judge& 
     judge.expect(mayBecomeCoplanar(pair.kind, x, lo, hi), "filter on a window",
                  "culls a contact");
   const ElementaryResult r = solveCoplanarity(pair.kind, x, lo, hi, toc_err);
+  if (r.answer == Answer::kYes) {
+    judge.expect(judge.isFirstTimeIn(0, r.toc_hi), "solver on a window",
+                 "invents a contact");
+    judge.expect(isNarrow(r, toc_err), "solver on a window", "too wide");
+  }
   if (!touch) return;
   judge.expect(r.answer != Answer::kNo, "solver on a window", "culls a contact");
   judge.expect(judge.isFirstTimeIn(r.toc_lo, r.toc_hi), "solver on a window",

@@ -64,6 +64,7 @@ void Errors::add(const Truth& truth, bool contact, double toc) {
   if (truth.contact && !contact) ++false_negatives;
   if (!truth.contact && contact) ++false_positives;
   if (truth.contact && contact) {
+    if (std::isnan(toc)) max_late = max_early = kInfinity;
     max_late = std::max(max_late, toc - truth.toc_hi);
     max_early = std::max(max_early, truth.toc_lo - toc);
   }

@@ -97,7 +97,8 @@ class AnswerReader {
     int answer = 0;
     double toc = 0;
     const int fields = std::sscanf(line, "%zu,%d,%lf", &index, &answer, &toc);
-    const bool is_complete = (fields >= 2 && answer == 0) || (fields == 3 && answer == 1);
+    const bool is_complete = (fields >= 2 && answer == 0) ||
+                             (fields == 3 && answer == 1 && toc >= 0 && toc <= 1);
     if (!is_complete || index >= answers_.size() || is_answered_[index]) return false;
     is_answered_[index] = true;
     ++num_answered_;
