@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/continuous_candidates.h"
 
 #include <cfenv>
+#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -17,7 +17,7 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-struct TrianglePair {
+struct LeafPair {
   std::int32_t a, b;
   TimeWindow window;
 };
@@ -33,13 +33,13 @@ template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 void run(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, Leaves& leaves,
          std::size_t block_size, StageTimes& times) {
   std::vector<NodePair> open;
-  std::vector<TrianglePair> block;
+  std::vector<LeafPair> block;
   block.reserve(block_size);
   const auto start = Clock::now();
 
   const auto visitBlock = [&] {
     const auto visit_start = Clock::now();
-    for (const TrianglePair& p : block) {
+    for (const LeafPair& p : block) {
       if (p.window.lo > leaves.latest()) continue;
       leaves.visit(p.a, p.b, p.window);
       if (leaves.isDone()) break;

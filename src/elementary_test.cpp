@@ -155,7 +155,7 @@ enum class Side { kNegative, kPositive, kMixed };
 /// Sign of the quartic q . n over the whole segment.
 Side sideOf(const Quadratic& q, const Quadratic& n) {
   const double size = q.norm * n.norm;
-  if (!isInRange(size) || !isInRange(q.norm)) return Side::kMixed;
+  if (!isInRange(size) || !isInRange(q.norm) || !isInRange(n.norm)) return Side::kMixed;
   const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
                        dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
                        dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};

@@ -179,7 +179,7 @@ Polynomial gcd(Polynomial a, Polynomial b) {
 
 /// Where in (k, k + 1) / 2^m, 0 to 1, a polynomial of different signs at its ends seems
 /// to be zero.
-double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
+static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
   const Polynomial::Coefficients exact = p.bernstein(k, m);
   std::size_t bits = 0;
   for (const Integer& b : exact)
@@ -274,9 +274,12 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
       if (i.jump > 1 && jump(i)) continue;
       if (i.cuts >= kMaxCuts && !square_free) {
         const Polynomial repeated = gcd(p, p.derivative());
-        if (repeated.degree() > 0) p = p.quotient(repeated).primitive();
-        square_free = again = true;
-        break;
+        square_free = true;
+        if (repeated.degree() > 0) {
+          p = p.quotient(repeated).primitive();
+          again = true;
+          break;
+        }
       }
       const Integer mid = 2 * i.k + 1;
       again = takeDyadic(mid, i.m + 1);
@@ -383,6 +386,8 @@ double Root::upperBound() const {
 }
 
 std::pair<double, double> Root::bracket(double width, int clock_exponent) {
+  // No interval between doubles is shorter, and 1 / width stays finite.
+  width = std::max(width, std::numeric_limits<double>::min());
   if (clock_exponent != 0) return bracketOnClock(width, clock_exponent);
   // With more bits than a double has, an interval closer than doubles would not show. A
   // root below 2^-1074 has none.

@@ -89,7 +89,7 @@ Polynomial gcd(Polynomial a, Polynomial b);
 class Root {
  public:
   /// @brief The number k / 2^m.
-  explicit Root(Integer k = 0, unsigned m = 0) : k_(std::move(k)), m_(m) {}
+  Root(Integer k, unsigned m) : k_(std::move(k)), m_(m) {}
   /// @brief The root of a polynomial in (k, k + 1) / 2^m.
   Root(Integer k, unsigned m, Polynomial polynomial)
       : k_(std::move(k)),

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
+#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -14,6 +14,7 @@
 #include "exact_polynomial.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "integer_coordinates.h"
 #include "plane_test.h"
 
 namespace fcl {
@@ -35,20 +36,6 @@ Polynomial crossComponent(const MovingPoint& a, const MovingPoint& b, std::size_
 MovingPoint cross(const MovingPoint& a, const MovingPoint& b) {
   return {crossComponent(a, b, 0), crossComponent(a, b, 1), crossComponent(a, b, 2)};
 }
-
-/// Smallest and largest binary exponent of a frame's coordinates that are not 0.
-struct ExponentRange {
-  int lowest{std::numeric_limits<int>::max()};
-  int highest{std::numeric_limits<int>::min()};
-
-  void add(double value) {
-    if (value == 0) return;
-    const int exponent = std::ilogb(value);
-    lowest = std::min(lowest, exponent);
-    highest = std::max(highest, exponent);
-  }
-  bool isEmpty() const { return lowest > highest; }
-};
 
 /// The four paths as integers, and the clock that they run by.
 ///
@@ -78,19 +65,10 @@ struct IntegerPaths {
     }
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 3; ++k) {
-        const Integer from = toInteger(x[i].t0[k], lowest[0]);
+        const Integer from = toInteger<Integer>(x[i].t0[k], lowest[0]);
         points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-            Polynomial{from, toInteger(x[i].t1[k], lowest[1]) - from};
+            Polynomial{from, toInteger<Integer>(x[i].t1[k], lowest[1]) - from};
       }
-  }
-
- private:
-  /// value * 2^(52 - lowest)
-  static Integer toInteger(double value, int lowest) {
-    if (value == 0) return 0;
-    const int exponent = std::ilogb(value);
-    const Integer digits = static_cast<std::int64_t>(std::scalbn(value, 52 - exponent));
-    return digits << static_cast<unsigned>(exponent - lowest);
   }
 };
 

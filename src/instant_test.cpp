@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "integer_coordinates.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -22,29 +24,8 @@ using ShortInteger =
     mp::number<mp::cpp_int_backend<512, 512, mp::signed_magnitude, mp::unchecked, void>,
                mp::et_off>;
 
-/// Smallest and largest binary exponent of some numbers that are not 0.
-struct ExponentRange {
-  int lowest{std::numeric_limits<int>::max()};
-  int highest{std::numeric_limits<int>::min()};
-
-  void add(double value) {
-    if (value == 0) return;
-    const int exponent = std::ilogb(value);
-    lowest = std::min(lowest, exponent);
-    highest = std::max(highest, exponent);
-  }
-  bool isEmpty() const { return lowest > highest; }
-  bool isShort() const { return highest - lowest <= kMaxSpread; }
-};
-
-/// value * 2^(52 - lowest), an integer for every value of the range (a subnormal has
-/// fewer bits than its exponent allows for, all zeros below).
-template <typename Integer>
-Integer toInteger(double value, int lowest) {
-  if (value == 0) return 0;
-  const int exponent = std::ilogb(value);
-  const auto digits = static_cast<std::int64_t>(std::scalbn(value, 52 - exponent));
-  return Integer(digits) << (exponent - lowest);
+bool isShort(const ExponentRange& range) {
+  return range.highest - range.lowest <= kMaxSpread;
 }
 
 template <typename Integer>
@@ -68,8 +49,8 @@ int exactOrientation(const double (&p)[3], const double (&a)[3], const double (&
   for (const double* point : points)
     for (int k = 0; k < 3; ++k) range.add(point[k]);
   if (range.isEmpty()) return 0;
-  return range.isShort() ? orientationOfIntegers<ShortInteger>(points, range.lowest)
-                         : orientationOfIntegers<mp::cpp_int>(points, range.lowest);
+  return isShort(range) ? orientationOfIntegers<ShortInteger>(points, range.lowest)
+                        : orientationOfIntegers<mp::cpp_int>(points, range.lowest);
 }
 
 /// Sign of (b0 - a0) (d1 - c1) - (b1 - a1) (d0 - c0).
@@ -86,8 +67,8 @@ int exactCrossSign(const double (&x)[8]) {
   ExponentRange range;
   for (const double value : x) range.add(value);
   if (range.isEmpty()) return 0;
-  const int sign = range.isShort() ? crossSignOfIntegers<ShortInteger>(x, range.lowest)
-                                   : crossSignOfIntegers<mp::cpp_int>(x, range.lowest);
+  const int sign = isShort(range) ? crossSignOfIntegers<ShortInteger>(x, range.lowest)
+                                  : crossSignOfIntegers<mp::cpp_int>(x, range.lowest);
   return sign < 0 ? -1 : sign > 0 ? 1 : 0;
 }
 
@@ -137,13 +118,13 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
                         u[2] * (v[0] * w[1] - v[1] * w[0]);
   // Differences and products rounded once: a component of v x w has an error of 2 (2 + 1)
   // + 2 = 8 units of 2^-53 VW, the volume of 3 (2 + 8 + 2) + 10 = 46 units of UVW.
-  // Nothing underflows while VW and UVW are well above 2^-1022.
+  // Nothing underflows or overflows while VW and UVW are in this range.
   const double size = u_max * (v_max * w_max);
   // Layers in a plane of constant x, y or z.
   for (int k = 0; k < 3; ++k)
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
-  if (v_max * w_max > 0x1p-900 && size > 0x1p-900 && size < 0x1p900 &&
-      std::abs(volume) > 48 * 0x1p-53 * size)
+  if (v_max * w_max > 0x1p-900 && v_max * w_max < 0x1p900 && size > 0x1p-900 &&
+      size < 0x1p900 && std::abs(volume) > 48 * 0x1p-53 * size)
     return volume > 0 ? 1 : -1;
   return exactOrientation(p, a, b, c);
 }

@@ -71,8 +71,8 @@ class Quadratic {
   }
   bool changesSign(double lo, double hi) const {
     const Bounded a = blossom(lo, lo), b = blossom(hi, hi);
-    return (a.value < -a.error && b.value > b.error) ||
-           (a.value > a.error && b.value < -b.error);
+    return is_reliable_ && ((a.value < -a.error && b.value > b.error) ||
+                            (a.value > a.error && b.value < -b.error));
   }
 
  private:
@@ -92,7 +92,7 @@ class Quadratic {
   /// product), their sum at most three times: 6 units of 2^-53 of their size. The weights
   /// are rounded up to four times, the products with them and the sum three times more:
   /// 13 units, and 16 with room for the rounding of the size and of the bound itself. An
-  /// underflow of three terms is below the smallest normal number.
+  /// underflow of weights and terms is below the smallest normal number, times size.
   Bounded blossom(double s, double t) const {
     const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
     return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
@@ -109,7 +109,9 @@ class Quadratic {
   void finish() {
     c_[1] *= 0.5;
     size_[1] *= 0.5;
-    if (!isZero()) underflow_ = std::numeric_limits<double>::min();
+    if (!isZero())
+      underflow_ =
+          std::numeric_limits<double>::min() * (1 + size_[0] + size_[1] + size_[2]);
   }
 
   double c_[3]{0, 0, 0};

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "fcl/common/exception.h"
+#include "fcl/common/types.h"
+#include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>

@@ -117,6 +117,20 @@ TYPED_TEST(ContinuousFeatureTest, UnusableInputIsRefusedByName) {
   }
 }
 
+// A time that no double is: as close as doubles get, whatever is asked for.
+TEST(FCL_CONTINUOUS_FEATURE_TEST, tinyTolerances) {
+  using V = Vector3<double>;
+  const V a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
+  for (const double toc_err : {1e-16, 1e-300, 1e-310, 5e-324}) {
+    const auto third =
+        vertexFace<double>(V(0.2, 0.2, 1), a, b, c, V(0.2, 0.2, -2), a, b, c, toc_err);
+    EXPECT_TRUE(third.is_contact);
+    EXPECT_LE(3 * third.toc_lo, 1);  // the product is exact enough: no double is a third
+    EXPECT_GE(3 * third.toc_hi, 1);
+    EXPECT_LE(third.toc_hi - third.toc_lo, 4 * std::numeric_limits<double>::epsilon());
+  }
+}
+
 /// Rounding upward and, where there are such bits, subnormals read and written as zero.
 class RoughFloatingPoint {
  public:

@@ -220,6 +220,16 @@ TEST(FCL_INSTANT_TEST, touchingIsExact) {
   EXPECT_GT(touch, 900);
 }
 
+// The normal overflows while the volume is an ordinary number.
+TEST(FCL_INSTANT_TEST, hugeTriangleTinyDistance) {
+  constexpr double kSide = 0x1.ap511, kWeight = 0x1p-712;
+  const double a[3] = {0, 0, 0}, b[3] = {kSide / 2, kSide, -kSide},
+               c[3] = {kSide / 2, kSide, kSide},
+               p[3] = {kWeight * kSide, 2 * kWeight * kSide, 0};  // weight (b + c)
+  EXPECT_EQ(orientation(p, a, b, c), 0);
+  EXPECT_TRUE(isOnTriangle(p, a, b, c));
+}
+
 TEST(FCL_CROSSING_TEST, onlyTheInsideCounts) {
   const double a[3] = {0, 0, 0}, b[3] = {4, 0, 0}, c[3] = {0, 4, 0};
   const auto isCrossed = [&](double x, double y, double z0, double z1) {

@@ -43,10 +43,10 @@ using ContinuousFeatureTestResultd = ContinuousFeatureTestResult<double>;
 /// After Tang, Manocha, Tong 2010, section 3, but with decisions that are proved: see
 /// doc/pipeline.md.
 ///
-/// @tparam S  double or float
+/// @tparam S  double or float; deduced from vectors, to be given for expressions of them
 /// @param toc_err  width of [toc_lo, toc_hi] in units of t; > 0. Where less than a few
-/// units in the last place (of S) is asked for, the bracket is that wide. It does not
-/// change the decision.
+/// units in the last place (of S) is asked for, the bracket is that wide; rounding to
+/// float may add a unit. It does not change the decision.
 /// @throws fcl::Exception when a coordinate is not finite (it names the point, as the
 /// parameters are called) or toc_err is not positive.
 /// @{

@@ -33,8 +33,8 @@ enum class DecidedBy { kBox, kFilter, kSolver, kExact };
 
 struct ElementaryResult {
   Answer answer;
-  /// Bracket of the first time of contact; for kUnsure, of every time at which there may
-  /// be one. Without meaning for kNo.
+  /// Bracket of the first time of contact; for kUnsure, of that time if there is one.
+  /// Without meaning for kNo.
   double toc_lo;
   double toc_hi;
   DecidedBy decided_by;
