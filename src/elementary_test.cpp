@@ -8,6 +8,7 @@
 
 #include "accurate_cubic.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "illinois.h"
 #include "plane_test.h"
 
 namespace fcl {
@@ -269,32 +270,6 @@ bool areSeparated(const Pair& pair, double lo, double hi) {
   return true;
 }
 
-/// A root of f in (0, 1), whose ends have opposite signs, to about tol; only a place to
-/// cut, so that its error costs time, never a wrong answer.
-double rootOf(const Cubic& f, double tol) {
-  double lo = 0, hi = 1;
-  double f_lo = f.b[0], f_hi = f.b[3];
-  double s = 0.5;
-  for (int i = 0; i < 24; ++i) {
-    // Illinois: false position that halves the weight of an end that stays.
-    const double previous = s;
-    s = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
-    if (!(s > lo && s < hi)) s = 0.5 * (lo + hi);
-    if (std::abs(s - previous) < tol) break;
-    const double value = f(s);
-    if ((value < 0) == (f_lo < 0)) {
-      lo = s;
-      f_lo = value;
-      f_hi *= 0.5;
-    } else {
-      hi = s;
-      f_hi = value;
-      f_lo *= 0.5;
-    }
-  }
-  return s;
-}
-
 bool isFinite(const FeaturePoints& x) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)
@@ -449,7 +424,8 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     }
     if (crosses) {
       const double half = width > toc_err ? 0.25 * toc_err : width * 0x1p-6;
-      const double t = lo + rootOf(f, 0.125 * half / width) * width;
+      const double t =
+          lo + illinois(f, 0, 1, f.b[0], f.b[3], 0.125 * half / width, 24) * width;
       const double a = std::max(lo, t - half), b = std::min(hi, t + half);
       open.push(b, hi);
       open.push(a, b);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "illinois.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -191,30 +193,15 @@ static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
     const Integer head = abs(exact[i]) >> drop;
     b[i] = static_cast<double>(head.convert_to<std::int64_t>()) * exact[i].sign();
   }
-  // Illinois: false position that halves the weight of an end that stays.
-  double lo = 0, hi = 1, f_lo = b[0], f_hi = b[n - 1], s = 0.5;
-  for (int i = 0; i < 60 && lo < hi; ++i) {
-    const double previous = s;
-    s = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
-    if (!(s > lo && s < hi)) s = 0.5 * (lo + hi);
-    if (s == previous) break;
-    double value = 0, r = 1;
+  const auto value = [&b, n](double s) {
+    double sum = 0, power = 1;
     for (std::size_t j = 0; j < n; ++j) {
-      value = value * (1 - s) + b[j] * r;
-      r *= s;
+      sum = sum * (1 - s) + b[j] * power;
+      power *= s;
     }
-    if (value == 0) break;
-    if ((value < 0) == (f_lo < 0)) {
-      lo = s;
-      f_lo = value;
-      f_hi *= 0.5;
-    } else {
-      hi = s;
-      f_hi = value;
-      f_lo *= 0.5;
-    }
-  }
-  return s;
+    return sum;
+  };
+  return illinois(value, 0, 1, b[0], b[n - 1], 0, 60);
 }
 
 std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "illinois.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -122,30 +124,6 @@ class Quadratic {
 
 constexpr Quadratic::Term Quadratic::kTerms[4];
 
-/// A time at which f, of different signs at lo and hi, is zero, to about tol. Only a
-/// place to cut.
-double rootOf(const Quadratic& f, double lo, double hi, double tol) {
-  double f_lo = f.at(lo), f_hi = f.at(hi), t = lo;
-  for (int i = 0; i < 24; ++i) {
-    // Illinois: false position that halves the weight of an end that stays.
-    const double previous = t;
-    t = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
-    if (!(t > lo && t < hi)) t = lo + 0.5 * (hi - lo);
-    if (std::abs(t - previous) < tol) break;
-    const double value = f.at(t);
-    if ((value < 0) == (f_lo < 0)) {
-      lo = t;
-      f_lo = value;
-      f_hi *= 0.5;
-    } else {
-      hi = t;
-      f_hi = value;
-      f_lo *= 0.5;
-    }
-  }
-  return t;
-}
-
 /// What is known of the first contact: it is not later than hi, if there is a proof of
 /// one, and not earlier than lo.
 struct Findings {
@@ -206,7 +184,8 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
     if (width > toc_err)
       for (const Quadratic* f : {&area, &from_q, &from_r})
         if (f->changesSign(lo, hi)) {
-          const double t = rootOf(*f, lo, hi, 0.0625 * toc_err);
+          const double t = illinois([f](double s) { return f->at(s); }, lo, hi, f->at(lo),
+                                    f->at(hi), 0.0625 * toc_err, 24);
           cut[0] = t - 0.125 * toc_err;
           cut[1] = t + 0.125 * toc_err;
           break;

@@ -21,7 +21,11 @@ namespace detail {
 namespace deformable {
 namespace {
 
+using test::at;
+using test::falling;
 using test::MovingPair;
+using test::onTriangle;
+using test::path;
 using test::Random;
 
 constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
@@ -57,19 +61,6 @@ struct Case {
   std::optional<DecidedBy> decided_by;
 };
 
-/// A point that does not move.
-VertexPath at(double x, double y, double z) { return {{x, y, z}, {x, y, z}}; }
-/// A point that moves from z = z0 to z = z1.
-VertexPath falling(double x, double y, double z0, double z1) {
-  return {{x, y, z0}, {x, y, z1}};
-}
-VertexPath path(const double (&a)[3], const double (&b)[3]) {
-  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
-}
-
-MovingPair onTriangle(const VertexPath& v) {
-  return {kVf, {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
-}
 MovingPair edges(const VertexPath& a, const VertexPath& b, const VertexPath& c,
                  const VertexPath& d) {
   return {kEe, {a, b, c, d}};

@@ -27,16 +27,6 @@ constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEd
 constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 
-VertexPath at(double x, double y, double z) { return {{x, y, z}, {x, y, z}}; }
-VertexPath falling(double x, double y, double z0, double z1) {
-  return {{x, y, z0}, {x, y, z1}};
-}
-VertexPath path(const double (&a)[3], const double (&b)[3]) {
-  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
-}
-MovingPair onTriangle(const VertexPath& v) {
-  return {kVf, {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
-}
 MovingPair onUnitEdge(const VertexPath& c, const VertexPath& d) {
   return {kEe, {at(-1, 0, 0), at(1, 0, 0), c, d}};
 }

@@ -25,6 +25,23 @@ struct MovingPair {
   }
 };
 
+/// @brief A point that does not move.
+inline detail::deformable::VertexPath at(double x, double y, double z) {
+  return {{x, y, z}, {x, y, z}};
+}
+/// @brief A point that moves from z = z0 to z = z1.
+inline detail::deformable::VertexPath falling(double x, double y, double z0, double z1) {
+  return {{x, y, z0}, {x, y, z1}};
+}
+inline detail::deformable::VertexPath path(const double (&a)[3], const double (&b)[3]) {
+  return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
+}
+/// @brief A vertex and the still triangle (0, 0, 0), (4, 0, 0), (0, 4, 0).
+inline MovingPair onTriangle(const detail::deformable::VertexPath& v) {
+  return {detail::deformable::FeatureKind::kVertexFace,
+          {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
+}
+
 /// @brief Every bit of the coordinates, to repeat a failure.
 inline std::ostream& operator<<(std::ostream& out, const MovingPair& pair) {
   out << (pair.kind == detail::deformable::FeatureKind::kVertexFace ? "VF" : "EE")
