@@ -97,6 +97,7 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
                                 const KdopShift* shift) {
   const Float4 zero = {0.f, 0.f, 0.f, 0.f}, one = {1.f, 1.f, 1.f, 1.f};
   Float4 s0[4], s1[4];
+  Mask4 cut = {0, 0, 0, 0};
   for (int q = 0; q < 4; ++q) {
     s0[q] = quad(a.t0, q) + quad(b.t0, q ^ 2);
     s1[q] = quad(a.t1, q) + quad(b.t1, q ^ 2);
@@ -105,8 +106,12 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
       s1[q] += quad(shift->t1, q);
     }
     // Negative at both ends: apart for the whole step. Most pairs end here.
-    if (isAny((s0[q] < zero) & (s1[q] < zero))) return {1.f, 0.f};
+    const Mask4 apart_at_0 = s0[q] < zero, apart_at_1 = s1[q] < zero;
+    if (isAny(apart_at_0 & apart_at_1)) return {1.f, 0.f};
+    cut |= apart_at_0 | apart_at_1;
   }
+  // Negative nowhere: the divisions below would find the whole step too.
+  if (!isAny(cut)) return {0.f, 1.f};
   // s0 and s1 are correctly rounded, so their signs are right; the quotient, between
   // numbers of opposite sign, is within 3 * 2^-24 relative of the true root.
   constexpr float kDown = 1.f - 0x1p-21f;
