@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/detail/deformable/rigid_tree.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -141,6 +142,9 @@ RigidTree::RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of,
   std::copy(pose.rotation, pose.rotation + 9, rotation_);
   const OrientedBox root = rotated(0);
   std::copy(root.center, root.center + 3, origin_);
+  // Twice, so that with a center relative to it it bounds the center itself too.
+  origin_size_ = roundUp(
+      2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
   for (int k = 0; k < 3; ++k)
     reach_ =
         std::max(reach_, std::abs(root.half_axis[0][k]) + std::abs(root.half_axis[1][k]) +
@@ -161,7 +165,7 @@ RigidTree::OrientedBox RigidTree::rotated(int node) const {
   return box;
 }
 
-MovingKdop RigidTree::boxFromSlabs(const Slabs& slabs) const {
+void RigidTree::fromSlabs(const Slabs& slabs, MovingKdop& box) const {
   double origin[8];
   kdopCoordinates(origin_, origin);
   // The bounds along x, y, z are those of coordinates, without error; a sum of two was
@@ -170,42 +174,68 @@ MovingKdop RigidTree::boxFromSlabs(const Slabs& slabs) const {
   for (int k = 0; k < 3; ++k)
     size += std::abs(origin_[k]) + std::max(std::abs(slabs.lo[k]), std::abs(slabs.hi[k]));
   const float pad = roundUp(size * slabs.slack, 0.f);
-  MovingKdop out;
   for (int j = 0; j < 8; ++j) {
-    out.t0.half[j] = roundUp(origin[j] - slabs.lo[j], pad);
-    out.t0.half[j + 8] = roundUp(slabs.hi[j] - origin[j], pad);
+    box.t0.half[j] = roundUp(origin[j] - slabs.lo[j], pad);
+    box.t0.half[j + 8] = roundUp(slabs.hi[j] - origin[j], pad);
   }
-  out.t1 = out.t0;
-  return out;
+  box.t1 = box.t0;
 }
 
-MovingKdop RigidTree::box(int node) const {
-  if (slabs_of_) return boxFromSlabs(slabs_of_(at(node)));
-  OrientedBox box = rotated(node);
-  // Everything that was rounded on the way here is below size; the fit's slack is far
-  // above the few 2^-53 of the rotation and of the sums below.
-  double size = 0;
-  for (int k = 0; k < 3; ++k) {
-    size += std::abs(box.center[k]) + std::abs(origin_[k]);
-    for (const auto& axis : box.half_axis) size += std::abs(axis[k]);
-    box.center[k] -= origin_[k];
-  }
-  const float pad = roundUp(size * box.slack, 0.f);
+namespace {
 
-  double center[8], spread[8], axis[8];
-  kdopCoordinates(box.center, center);
-  std::fill(spread, spread + 8, 0.);
-  for (const auto& half_axis : box.half_axis) {
+constexpr float kFloatUnit = 0x1p-24f;
+
+/// One lane in all four.
+template <int kLane>
+Float4 lane(const Float4& v) {
+  return __builtin_shufflevector(v, v, kLane, kLane, kLane, kLane);
+}
+Float4 abs(const Float4& v) {
+  constexpr int kAllButSign = 0x7fffffff;
+  return Float4(Mask4(v) & kAllButSign);
+}
+
+/// The 8 directions applied to a vector, rounded to float: each entry is within 2 units
+/// of kFloatUnit of the sum of the terms it is made of. What overflows is infinite or
+/// NaN.
+void kdopCoordinates(const double (&p)[3], Float4 (&d)[2]) {
+  const Float4 v = {static_cast<float>(p[0]), static_cast<float>(p[1]),
+                    static_cast<float>(p[2]), 0.f};
+  d[0] = __builtin_shufflevector(v, v, 0, 1, 2, 0) +
+         __builtin_shufflevector(v, v, 3, 3, 3, 1);
+  d[1] = __builtin_shufflevector(v, v, 0, 1, 0, 0) +
+         __builtin_shufflevector(v, -v, 2, 2, 5, 6);
+}
+
+}  // namespace
+
+void RigidTree::makeBox(int node, MovingKdop& box) const {
+  if (slabs_of_) return fromSlabs(slabs_of_(at(node)), box);
+  OrientedBox bv = rotated(node);
+  for (int k = 0; k < 3; ++k) bv.center[k] -= origin_[k];
+
+  Float4 center[2], axis[2], spread[2] = {};
+  kdopCoordinates(bv.center, center);
+  for (const auto& half_axis : bv.half_axis) {
     kdopCoordinates(half_axis, axis);
-    for (int j = 0; j < 8; ++j) spread[j] += std::abs(axis[j]);
+    for (int q = 0; q < 2; ++q) spread[q] += abs(axis[q]);
   }
-  MovingKdop out;
-  for (int j = 0; j < 8; ++j) {
-    out.t0.half[j] = roundUp(spread[j] - center[j], pad);
-    out.t0.half[j + 8] = roundUp(spread[j] + center[j], pad);
+  // Sum of the components of the center and of all half axes. A bound is a sum of such:
+  // 2 units for the directions, 2 for the spread, 1 for the last sum, and 3 more than
+  // cover the rounding of size and pad. The fit's slack is far above the few 2^-53 of the
+  // rotation and of the center.
+  const Float4 reach = spread[0] + abs(center[0]);
+  const Float4 size = lane<0>(reach) + lane<1>(reach) + lane<2>(reach);
+  const Float4 pad = size * (8 * kFloatUnit) +
+                     (size + origin_size_) * static_cast<float>(bv.slack) + FLT_MIN;
+  for (int q = 0; q < 2; ++q) {
+    const Float4 lower = spread[q] - center[q], upper = spread[q] + center[q];
+    const Float4 half[2] = {lower + (abs(lower) * kOutward + pad),
+                            upper + (abs(upper) * kOutward + pad)};
+    for (int side = 0; side < 2; ++side)
+      for (Kdop16* frame : {&box.t0, &box.t1})
+        __builtin_memcpy(frame->half + 8 * side + 4 * q, &half[side], sizeof(Float4));
   }
-  out.t1 = out.t0;
-  return out;
 }
 
 }  // namespace deformable

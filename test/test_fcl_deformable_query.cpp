@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -31,6 +32,7 @@ namespace {
 using test::MovingMesh;
 using test::PreparedMovingMesh;
 using test::Random;
+using test::TestMesh;
 
 using Ids = std::vector<std::uint32_t>;
 /// Kind, whether the vertex of a VF pair is mesh b's, ids of both features.
@@ -401,6 +403,81 @@ TYPED_TEST_SUITE(FCL_DEFORMABLE_QUERY_MODELS, Volumes, );
 
 TYPED_TEST(FCL_DEFORMABLE_QUERY_MODELS, plainModelsAgainstBruteForce) {
   expectRightAnswersOfModels<TypeParam>(3000);
+}
+
+/// Each node's box contains the vertices below it.
+template <typename BV>
+void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& pose) {
+  const auto model = test::makeModel<BVHModel<BV>>(mesh);
+  const RigidTree tree(*model, pose);
+  const double(&origin)[3] = tree.origin();
+  const auto rotated = [&pose](const Vector3<double>& p, int k) {
+    return pose.rotation[3 * k] * p[0] + pose.rotation[3 * k + 1] * p[1] +
+           pose.rotation[3 * k + 2] * p[2];
+  };
+  // A rotation and a sum in double, relative to the coordinates.
+  double size = 0;
+  for (const auto& p : mesh.vertices) size = std::max(size, p.norm());
+  const double rounding = 16 * 0x1p-53 * size;
+  const std::function<void(int, int)> expectInside = [&](int node, int below) {
+    if (!tree.isLeaf(below)) {
+      expectInside(node, tree.leftChild(below));
+      expectInside(node, tree.leftChild(below) + 1);
+      return;
+    }
+    const MovingKdop box = tree.box(node);
+    const Triangle& triangle =
+        mesh.triangles[static_cast<std::size_t>(tree.triangle(below))];
+    for (int i = 0; i < 3; ++i) {
+      const Vector3<double>& p = mesh.vertices[triangle[i]];
+      double q[3], d[8];
+      for (int k = 0; k < 3; ++k) q[k] = rotated(p, k) - origin[k];
+      kdopCoordinates(q, d);
+      for (int j = 0; j < 8; ++j) {
+        for (const Kdop16* frame : {&box.t0, &box.t1}) {  // a NaN is unbounded
+          ASSERT_FALSE(double{frame->half[j]} < -d[j] - rounding) << node << " " << j;
+          ASSERT_FALSE(double{frame->half[j + 8]} < d[j] - rounding) << node << " " << j;
+        }
+      }
+    }
+  };
+  for (int node = 0; node < model->getNumBVs(); ++node) expectInside(node, node);
+}
+
+TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeContainTheirTriangles) {
+  test::Random random(47);
+  Pose turned;
+  const Matrix3<double> rotation =
+      AngleAxis<double>(0.9, Vector3<double>(2, -1, 3).normalized()).toRotationMatrix();
+  for (int k = 0; k < 9; ++k) turned.rotation[k] = rotation(k / 3, k % 3);
+  for (const double scale : {1., 1e-6, 1e6, 1e-42, 1e30, 1e45}) {
+    SCOPED_TRACE(scale);
+    for (const double away : {0., 1e3}) {
+      TestMesh mesh = test::bentSheet(6);
+      const Vector3<double> far = random.point(away);
+      for (auto& p : mesh.vertices) p = scale * (p + far);
+      for (const Pose& pose : {Pose(), turned}) {
+        expectBoxesAroundTheirTriangles<OBBRSS<double>>(mesh, pose);
+        expectBoxesAroundTheirTriangles<AABB<double>>(mesh, pose);
+        expectBoxesAroundTheirTriangles<KDOP<double, 16>>(mesh, pose);
+      }
+    }
+  }
+}
+
+// A box of a rigid tree is not wider than the volume that it is made from by more than a
+// few units of float.
+TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
+  const auto model = test::makeModel<BVHModel<OBB<double>>>(test::bentSheet(12));
+  const RigidTree tree(*model, Pose());
+  for (int node = 0; node < model->getNumBVs(); ++node) {
+    const OBB<double>& obb = model->getBV(node).bv;
+    const MovingKdop box = tree.box(node);
+    for (int k = 0; k < 3; ++k) {
+      const double width = 2 * obb.axis.row(k).cwiseAbs().dot(obb.extent);
+      EXPECT_NEAR(double{box.t0.half[k]} + double{box.t0.half[k + 8]}, width, 1e-5);
+    }
+  }
 }
 
 // The boxes that a reader keeps are those that the tree makes, in whatever order nodes

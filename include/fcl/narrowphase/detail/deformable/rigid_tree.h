@@ -31,8 +31,13 @@ class RigidTree {
   int leftChild(int node) const { return link(node); }
   int triangle(int node) const { return ~link(node); }
 
-  /// @brief Box of the node, the same in both frames; made anew at each call.
-  MovingKdop box(int node) const;
+  /// @brief Makes the box of the node, the same in both frames.
+  void makeBox(int node, MovingKdop& box) const;
+  MovingKdop box(int node) const {
+    MovingKdop made;
+    makeBox(node, made);
+    return made;
+  }
 
   /// @brief Point (rotated frame) that the boxes are relative to.
   const double (&origin() const)[3] { return origin_; }
@@ -74,7 +79,7 @@ class RigidTree {
   }
   int link(int node) const { return at(node)->first_child; }
   OrientedBox rotated(int node) const;
-  MovingKdop boxFromSlabs(const Slabs& slabs) const;
+  void fromSlabs(const Slabs& slabs, MovingKdop& box) const;
 
   const BVNodeBase* nodes_{nullptr};
   std::size_t stride_{0};
@@ -83,6 +88,7 @@ class RigidTree {
   bool is_rotated_{false};
   double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
   double origin_[3]{0, 0, 0};
+  float origin_size_{0};
   double reach_{0};
 };
 
@@ -103,14 +109,14 @@ class RigidTreeReader {
   const MovingKdop& box(int node) {
     const int slot = node % kSlots;
     if (node_[slot] != node) {
-      box_[slot] = tree_.box(node);
+      tree_.makeBox(node, box_[slot]);
       node_[slot] = node;
     }
     return box_[slot];
   }
 
  private:
-  static constexpr int kSlots = 128;  // 16 KiB of boxes; siblings have different slots
+  static constexpr int kSlots = 256;  // 32 KiB of boxes; siblings have different slots
   const RigidTree& tree_;
   int node_[kSlots];
   MovingKdop box_[kSlots];
