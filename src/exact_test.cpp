@@ -120,7 +120,14 @@ class ExactPair {
         for (std::size_t i = 0; i < numWeights(); ++i) addRootsOf(weight(i, k));
         return times;
       }
-    // Always parallel, or without area.
+    // Always parallel, or without area. Parallel edges touch only while a is on the line
+    // of cd, or c is d.
+    if (!isVertexFace())
+      for (const Polynomial& off : cross(u_, w_))
+        if (!off.isZero()) {
+          addRootsOf(off);
+          return times;
+        }
     for (const auto& [p, q, r] : pointsOnSegments()) {
       const MovingPoint off = cross(p - q, r - q);
       const auto not_zero =
