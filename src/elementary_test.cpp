@@ -6,9 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "accurate_cubic.h"
+#include "accurate_pair.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "illinois.h"
+#include "moving_vector.h"
 #include "plane_test.h"
 
 namespace fcl {
@@ -31,10 +32,15 @@ namespace {
 constexpr double kUnit = 0x1p-53;
 constexpr double kOuterBound = 104 * kUnit;
 constexpr double kInnerBound = 344 * kUnit;
-// Inside conditions (x y cross product)(v w cross product), coefficients of degree 4:
-// outer 3 (80 + 4) + 20 = 272 u; next 2 * (3 (168 + 8) + 40) + 48 = 1184 u; middle 2 *
-// 272 + 3 (352 + 16) + 80 + 96 = 1824 u, all of XYVW.
-constexpr double kInsideBound = 2048 * kUnit;
+// A cross product as a Quadratic: half of its inner component is below 2 VW and within 22
+// u VW.
+constexpr double kCrossBound = 22.5 * kUnit;
+// Inside conditions q . n, cross products of sizes Q, N with errors e, d. Of the five
+// coefficients the middle one, q0.n2 + q2.n0 + q1.n1 with c1 of twice the size, is the
+// largest, 18 QN: errors of the factors 18 (Q d + e N + e d), rounding 6 (3 + 5) u QN in
+// the dot products and (6 + 18) u QN in their sums.
+constexpr double kInsideTerms = 18.5;
+constexpr double kInsideRounding = 74 * kUnit;
 // d . x for a direction d taken as exact: three products of size DX, error (4 + 1) u,
 // sums of size 2 and 3: 20 u DX.
 constexpr double kSideBound = 32 * kUnit;
@@ -47,21 +53,6 @@ constexpr double kHuge = 0x1p900;
 constexpr double kLeastNorm = 0x1p-1010;
 
 bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
-
-struct Vec {
-  double x, y, z;
-};
-
-Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(const Vec& a, const Vec& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double maxNorm(const Vec& a) {
-  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
-}
 
 /// The difference of two vertices over the step.
 struct Difference {
@@ -91,15 +82,10 @@ Segment restrict(const Difference& d, double lo, double hi) {
   return {d.at(lo), d.at(hi), d.norm};
 }
 
-/// Cross product of two moving vectors, c0 (1-s)^2 + c1 s (1-s) + c2 s^2.
-struct Quadratic {
-  Vec c0, c1, c2;
-  double norm;
-};
-
 Quadratic cross(const Segment& a, const Segment& b) {
-  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
-          a.norm * b.norm};
+  const double norm = a.norm * b.norm;
+  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h), 2 * norm,
+          kCrossBound * norm};
 }
 
 /// f(s) = b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3] s^3, the volume spanned
@@ -131,8 +117,8 @@ struct Cubic {
 };
 
 Cubic spannedVolume(const Segment& u, const Quadratic& n) {
-  const double size = u.norm * n.norm;
-  const double bound = isInRange(size) && isInRange(n.norm)
+  const double size = u.norm * (0.5 * n.size);
+  const double bound = isInRange(size) && isInRange(n.size)
                            ? size
                            : std::numeric_limits<double>::infinity();
   return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
@@ -141,9 +127,9 @@ Cubic spannedVolume(const Segment& u, const Quadratic& n) {
           kInnerBound * bound};
 }
 
-Cubic restrict(const AccurateCubic& f, double lo, double hi) {
+Cubic restrict(const AccuratePair& pair, double lo, double hi) {
   Cubic g;
-  if (!f.restrict(lo, hi, g.b, g.outer))
+  if (!pair.volume(lo, hi, g.b, g.outer))
     g.outer = std::numeric_limits<double>::infinity();
   g.b[1] *= 3;
   g.b[2] *= 3;
@@ -151,22 +137,27 @@ Cubic restrict(const AccurateCubic& f, double lo, double hi) {
   return g;
 }
 
-enum class Side { kNegative, kPositive, kMixed };
+enum class Side { kNegative, kPositive, kMixed, kLost };
 
-/// Sign of the quartic q . n over the whole segment.
+/// Sign of the quartic q . n over the whole segment; kLost if it is nothing but rounding.
 Side sideOf(const Quadratic& q, const Quadratic& n) {
-  const double size = q.norm * n.norm;
-  if (!isInRange(size) || !isInRange(q.norm) || !isInRange(n.norm)) return Side::kMixed;
+  const double size = q.size * n.size;
+  if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
   const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
                        dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
                        dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
-  const double bound = kInsideBound * size;
+  const double bound = kInsideTerms * (q.size * n.error + q.error * (n.size + n.error)) +
+                       kInsideRounding * size;
   bool positive = true, negative = true;
   for (const double ck : c) {
     positive &= ck > bound;
     negative &= ck < -bound;
   }
-  return positive ? Side::kPositive : negative ? Side::kNegative : Side::kMixed;
+  if (positive) return Side::kPositive;
+  if (negative) return Side::kNegative;
+  for (const double ck : c)
+    if (std::abs(ck) > bound) return Side::kMixed;
+  return Side::kLost;
 }
 
 /// The pair as differences. The volume is u . (v x w); v x w is normal to the triangle
@@ -203,15 +194,23 @@ struct Pair {
 /// (v x u).n and the third barycentric ((b-p) x (c-p)).n; EE u = s v - r w with s n^2 =
 /// (u x w).n, (1-s) n^2 = ((v-u) x w).n, r n^2 = (u x v).n, (1-r) n^2 = (v x (w+u)).n.
 /// One of them strictly negative implies n != 0 and a point outside.
+///
+/// @param accurate  null, or what n comes from; it then has what is lost to doubles
 Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
-                const Segment& v, const Segment& w, const Quadratic& n) {
+                const Segment& v, const Segment& w, const Quadratic& n,
+                AccuratePair* accurate) {
   const Segment r = restrict(pair.r, lo, hi), q = restrict(pair.q, lo, hi);
   const bool vf = pair.kind == FeatureKind::kVertexFace;
   Side side = Side::kPositive;
+  int i = 0;
   const auto require = [&](const Segment& x, const Segment& y) {
-    const Side s = sideOf(cross(x, y), n);
-    if (s == Side::kNegative) side = s;
-    if (s == Side::kMixed && side == Side::kPositive) side = s;
+    Side s = sideOf(cross(x, y), n);
+    if (s == Side::kLost && accurate) s = sideOf(accurate->side(i, lo, hi), n);
+    ++i;
+    if (s == Side::kNegative)
+      side = s;
+    else if (s != Side::kPositive && side == Side::kPositive)
+      side = Side::kMixed;
     return s != Side::kNegative;
   };
   if (vf)
@@ -382,7 +381,7 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
 
   // Looks after which doubles alone are not expected to find out.
   constexpr int kAccurateLook = 6;
-  std::optional<AccurateCubic> accurate;
+  std::optional<AccuratePair> accurate;
   const Pair pair(kind, x);
   IntervalStack open;
   open.push(window_lo, window_hi);
@@ -397,15 +396,22 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     const double width = hi - lo;
     const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
                   w = restrict(pair.w, lo, hi);
-    const Quadratic n = cross(v, w);
+    const Quadratic n = accurate ? accurate->normal(lo, hi) : cross(v, w);
     const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
     if (f.hasNoRoot()) continue;
     const bool crosses = f.changesSign();
 
-    const Side side = insideness(pair, lo, hi, u, v, w, n);
+    const Side side =
+        insideness(pair, lo, hi, u, v, w, n, accurate ? &*accurate : nullptr);
     if (side == Side::kNegative) continue;
     if (side == Side::kPositive && crosses && width <= toc_err)
       return found.withContactIn(lo, hi, toc_err);
+    if (accurate && crosses && side == Side::kMixed) {
+      const AccuratePair::RootContact contact = accurate->contactAtRoot(lo, hi);
+      if (contact.answer == Answer::kNo) continue;
+      if (contact.answer == Answer::kYes)
+        return found.withContactIn(contact.lo, contact.hi, toc_err);
+    }
     // A wide interval with a root is first cut close around it.
     if (!(crosses && width > toc_err)) {
       if (areSeparated(pair, lo, hi)) continue;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "double2.h"
 #include "integer_coordinates.h"
 
 namespace fcl {
@@ -40,6 +41,32 @@ int orientationOfIntegers(const double* const (&points)[4], int lowest) {
                          d[0][1] * (d[1][2] * d[2][0] - d[1][0] * d[2][2]) +
                          d[0][2] * (d[1][0] * d[2][1] - d[1][1] * d[2][0]);
   return volume.sign();
+}
+
+/// Sign of the volume in twice the digits of a double; 0 if that does not tell. norms: of
+/// the differences, in a range in which nothing that matters underflows or overflows.
+int accurateOrientation(const double (&p)[3], const double (&a)[3], const double (&b)[3],
+                        const double (&c)[3], const double (&norms)[3]) {
+  AccurateVector u, v, w, n;
+  bool is_double = true;
+  for (int k = 0; k < 3; ++k) {
+    u[k] = Double2::difference(p[k], a[k]);
+    v[k] = Double2::difference(b[k], a[k]);
+    w[k] = Double2::difference(c[k], a[k]);
+    is_double &= v[k].lo == 0 && w[k].lo == 0;
+  }
+  cross(v, w, n);
+  double size = 0;
+  for (const Double2& component : n) size = std::max(size, std::abs(component.hi));
+  // A component of n has two products, exact for plain doubles, and their difference; the
+  // volume has three products of size UN and sums of 2 and 3 UN: 11 * 2^-104 UN. More
+  // than all that underflows: 2^-1060 each.
+  const double n_error = (is_double ? 0 : 2 * kProductBound * (norms[1] * norms[2])) +
+                         kSumBound * size + 0x1p-1060;
+  const double bound =
+      3.5 * (norms[0] * n_error) + 12 * kSumBound * (norms[0] * size) + 0x1p-1060;
+  const double volume = dot(u, n).hi;
+  return volume > bound ? 1 : volume < -bound ? -1 : 0;
 }
 
 int exactOrientation(const double (&p)[3], const double (&a)[3], const double (&b)[3],
@@ -124,8 +151,11 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
   for (int k = 0; k < 3; ++k)
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
   if (v_max * w_max > 0x1p-900 && v_max * w_max < 0x1p900 && size > 0x1p-900 &&
-      size < 0x1p900 && std::abs(volume) > 48 * 0x1p-53 * size)
-    return volume > 0 ? 1 : -1;
+      size < 0x1p900) {
+    if (std::abs(volume) > 48 * 0x1p-53 * size) return volume > 0 ? 1 : -1;
+    if (const int sign = accurateOrientation(p, a, b, c, {u_max, v_max, w_max}))
+      return sign;
+  }
   return exactOrientation(p, a, b, c);
 }
 

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "feature_pair_generators.h"
+#include "query_generators.h"
 
 namespace fcl {
 namespace detail {
@@ -318,6 +319,73 @@ TEST(FCL_ELEMENTARY_TEST, pairsNearlyInOnePlane) {
     if (HasFailure()) return;
   }
   EXPECT_GT(cheap, kCount * 99 / 100);
+}
+
+/// A feature pair of two sheets in the plane z = 0, the second of which slides: sides and
+/// halves of the cells of a grid. Edges are often parallel, or slide in one line.
+MovingPair slidingFeatures(Random& random, double spacing) {
+  MovingPair pair{random.index(4) ? kEe : kVf, {}};
+  const bool in_line = pair.kind == kEe && random.index(3) == 0;
+  static constexpr double kSides[3][2] = {{1, 0}, {1, 1}, {0, 1}};
+  const auto slide = [&] { return spacing * random.uniform(-2, 2); };
+  const double from[2] = {slide(), in_line ? 0 : slide()},
+               to[2] = {slide(), in_line ? 0 : slide()};
+  const std::size_t half = random.index(2), firsts = pair.kind == kVf ? 1 : 2;
+  for (std::size_t i = 0; i < 4; ++i) {
+    VertexPath& p = pair.x[i];
+    const bool is_corner = i == 0 || i == firsts;
+    const std::size_t which = in_line || is_corner ? 0
+                              : pair.kind == kVf   ? i - 2 + half
+                                                   : random.index(3);
+    for (int k = 0; k < 2; ++k) {
+      const double place = is_corner ? 0 : spacing * kSides[which][k];
+      p.t0[k] = place + (i < firsts ? 0 : from[k]);
+      p.t1[k] = place + (i < firsts ? 0 : to[k]);
+    }
+    p.t0[2] = p.t1[2] = 0;
+  }
+  return pair;
+}
+
+// In a tilted plane parallel edges are so but for rounding, and touch while they are in
+// one line, for less time than doubles can tell.
+TEST(FCL_ELEMENTARY_TEST, sheetsSlidingInATiltedPlane) {
+  constexpr std::uint64_t kSeed = 36;
+  Random random(kSeed);
+  int cheap = 0;
+  constexpr int kCount = 30000;
+  for (int i = 0; i < kCount; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    MovingPair pair = slidingFeatures(random, 0.01);
+    const Matrix3<double> turn =
+        AngleAxis<double>(random.uniform(0.2, 1.2),
+                          (random.point(0.5) + Vector3<double>(1, 1, 1)).normalized())
+            .toRotationMatrix();
+    const Vector3<double> place = random.point(1);
+    for (auto& p : pair.x)
+      for (double(*frame)[3] : {&p.t0, &p.t1}) {
+        const Vector3<double> turned =
+            turn * (Vector3<double>((*frame)[0], (*frame)[1], (*frame)[2]) + place);
+        for (int k = 0; k < 3; ++k) (*frame)[k] = turned[k];
+      }
+    cheap += expectExactAnswer(pair, random);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(cheap, kCount * 90 / 100);
+}
+
+// What the stages before the integers are sure of is so.
+TEST(FCL_ELEMENTARY_TEST, everyFamilyAgreesWithTheExactTest) {
+  constexpr std::uint64_t kSeed = 37;
+  for (const test::QueryFamily& family : test::queryFamilies()) {
+    Random random(kSeed);
+    for (int i = 0; i < 1500; ++i) {
+      SCOPED_TRACE(std::string(family.name) + ", seed " + std::to_string(kSeed) + ", " +
+                   std::to_string(i));
+      expectExactAnswer(family.generate(random), random);
+      if (HasFailure()) return;
+    }
+  }
 }
 
 TEST(FCL_ELEMENTARY_TEST, constructedCasesMovedTurnedAndScaled) {
