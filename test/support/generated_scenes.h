@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Scenes of any size to measure speed with; functions of a size and a seed. Coordinates
+// are multiples of 2^-30, so that a scene moved by 1e6 is the same scene.
+#ifndef FCL_TEST_SUPPORT_GENERATED_SCENES_H
+#define FCL_TEST_SUPPORT_GENERATED_SCENES_H
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "scene_data.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief A waving cloth of about `triangles` triangles and 1.4 m x 1 m. One end is
+/// folded back over it, and the lip sinks onto the layer below: at t = 0 nothing touches,
+/// in the last third of the step less than 1% of the triangles do.
+FramePairMesh makeSmoothCloth(int triangles, std::uint64_t seed = 1);
+
+/// @brief At least `triangles` triangles in tiles of kTileTriangles, each a pair of
+/// waving sheets that come to touch in one place, turned and waved at random: contacts a
+/// triangle do not depend on the size. Nothing touches at t = 0, nor do tiles touch each
+/// other.
+FramePairMesh makeTiles(int triangles, std::uint64_t seed = 1);
+constexpr int kTileTriangles = 1024;
+
+/// @brief Two bumpy spheres of 20 * 4^subdivisions triangles that change their shape and
+/// meet in the second half of the step.
+std::pair<FramePairMesh, FramePairMesh> makeMeetingBodies(int subdivisions);
+
+/// @brief The scene somewhere else.
+void move(FramePairMesh& mesh, const Vector3<double>& by);
+
+/// @brief Frames of one mesh.
+struct FrameSequence {
+  std::vector<Triangle> triangles;
+  std::vector<std::vector<Vector3<double>>> frames;
+
+  /// @brief Frames i and i + 1.
+  FramePairMesh pair(std::size_t i) const {
+    return {frames[i], frames[i + 1], triangles};
+  }
+};
+
+/// @brief A flat sheet of 20,480 triangles that is pushed together into eight pleats,
+/// tighter and tighter, and twisted. Towards the end neighbouring pleats touch here and
+/// there, and, as no simulation keeps them apart, pass a little into each other.
+FrameSequence makeCrumplingSheet(int frames);
+
+/// @brief The smooth cloth, of about 20,000 triangles: a wave runs through it, and the
+/// lip rises and sinks.
+FrameSequence makeWavingCloth(int frames, std::uint64_t seed = 1);
+
+/// @brief 256 balls of 80 triangles on orbits of different speed, which mix them: a tree
+/// that was made for the first frame holds together what has moved apart.
+FrameSequence makeMixingBalls(int frames, std::uint64_t seed = 1);
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
