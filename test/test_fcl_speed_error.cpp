@@ -13,11 +13,13 @@
 #include <string>
 #include <vector>
 
+#include "csv_rows.h"
+
 namespace {
 
 namespace fs = std::filesystem;
-/// A row by the names of its columns.
-using Row = std::map<std::string, std::string>;
+using fcl::test::CsvRow;
+using fcl::test::readCsv;
 
 const std::string kAnswerNo =
     FCL_CCD_SOURCE_DIR "/test/benchmark/speed_error/answer_no.sh";
@@ -39,25 +41,12 @@ class FCL_SPEED_ERROR : public ::testing::Test {
     return text.str();
   }
 
-  std::vector<Row> readTable(const std::string& name, const std::string& columns) const {
-    std::ifstream in(path(name));
-    std::string line;
-    std::getline(in, line);
-    EXPECT_EQ(line, columns);
-    const std::vector<std::string> names = fieldsOf(line);
-    std::vector<Row> rows;
-    while (std::getline(in, line)) {
-      const std::vector<std::string> fields = fieldsOf(line);
-      EXPECT_EQ(fields.size(), names.size()) << line;
-      Row row;
-      for (std::size_t i = 0; i < names.size() && i < fields.size(); ++i)
-        row[names[i]] = fields[i];
-      rows.push_back(row);
-    }
-    return rows;
+  std::vector<CsvRow> readTable(const std::string& name,
+                                const std::string& columns) const {
+    return readCsv(path(name), columns);
   }
 
-  std::vector<Row> readMethods() const {
+  std::vector<CsvRow> readMethods() const {
     return readTable("speed_error.csv",
                      "set,method,setting,queries,contacts,false_negatives,"
                      "false_positives,max_late,max_early,ns_mean,ns_median,ns_p999,"
@@ -73,17 +62,6 @@ class FCL_SPEED_ERROR : public ::testing::Test {
  private:
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  static std::vector<std::string> fieldsOf(const std::string& line) {
-    std::vector<std::string> fields(1);
-    for (const char c : line) {
-      if (c == ',')
-        fields.emplace_back();
-      else
-        fields.back() += c;
-    }
-    return fields;
-  }
-
   void SetUp() override { fs::create_directories(folder_); }
 
   const fs::path folder_ =
@@ -98,7 +76,7 @@ TEST_F(FCL_SPEED_ERROR, figuresAreConsistent) {
       << errors();
   std::map<std::string, int> rows_of;
   std::string contacts;
-  for (Row row : readMethods()) {
+  for (CsvRow row : readMethods()) {
     const std::string name = row["method"] + " " + row["setting"];
     SCOPED_TRACE(name);
     ++rows_of[row["method"]];
@@ -148,10 +126,10 @@ TEST_F(FCL_SPEED_ERROR, figuresAreConsistent) {
   EXPECT_EQ(rows_of, expected);
 
   std::map<std::string, int> rows_of_stage;
-  for (Row row : readTable("filter_ratio.csv",
-                           "set,stage,setting,queries,culled_rightly,culled_wrongly,"
-                           "share_of_plain,ns_mean,cost_to_plain,additions,"
-                           "multiplications,divisions,machine")) {
+  for (CsvRow row : readTable("filter_ratio.csv",
+                              "set,stage,setting,queries,culled_rightly,culled_wrongly,"
+                              "share_of_plain,ns_mean,cost_to_plain,additions,"
+                              "multiplications,divisions,machine")) {
     SCOPED_TRACE(row["stage"]);
     ++rows_of_stage[row["stage"]];
     EXPECT_GT(std::stod(row["cost_to_plain"]), 0);
@@ -179,7 +157,7 @@ TEST_F(FCL_SPEED_ERROR, querySetsAreGivenInFull) {
       "awk -F, '!/^#/ && NF == 26 && ($2 == \"vf\" || $2 == \"ee\") "
       "{ print $1 \",1,1\" }' \"$1\"";
   ASSERT_EQ(run(solver("yes", yes)), 0) << errors();
-  Row row = readMethods().front();
+  CsvRow row = readMethods().front();
   EXPECT_EQ(row["method"], "yes");
   EXPECT_EQ(row["false_negatives"], "0");
   EXPECT_EQ(std::stoi(row["false_positives"]), 2000 - std::stoi(row["contacts"]));

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
-#include <thread>
 
+#include "machine.h"
 #include "measurement.h"
 #include "methods.h"
 #include "operation_count.h"
@@ -13,26 +13,6 @@
 namespace fcl {
 namespace test {
 namespace {
-
-/// Processor, number of cores and compiler, without commas.
-std::string machineName() {
-  std::string name = "unknown processor";
-  std::ifstream cpu("/proc/cpuinfo");
-  for (std::string line; std::getline(cpu, line);)
-    if (line.rfind("model name", 0) == 0 && line.find(": ") != std::string::npos) {
-      name = line.substr(line.find(": ") + 2);
-      break;
-    }
-  name += "; " + std::to_string(std::thread::hardware_concurrency()) + " cores; ";
-#ifdef __clang__
-  name += "clang " + std::to_string(__clang_major__);
-#else
-  name += "gcc " + std::to_string(__GNUC__);
-#endif
-  for (char& c : name)
-    if (c == ',' || c == '"') c = ' ';
-  return name;
-}
 
 std::string number(double value, const char* format = "%.1f") {
   char text[64];

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_BENCHMARK_MACHINE_H
+#define FCL_BENCHMARK_MACHINE_H
+
+#include <string>
+
+namespace fcl {
+namespace test {
+
+/// @brief Processor, number of cores and compiler, without commas.
+std::string machineName();
+
+/// @brief From here on peakMegabytes() counts anew; memory that was freed is given back
+/// to the system first.
+void resetPeakMemory();
+
+/// @brief Largest resident memory of the program since the last reset, in MiB; a negative
+/// number where the system does not tell (both need Linux's /proc).
+double peakMegabytes();
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "machine.h"
+#include "rows.h"
+#include "timing.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Model = DeformableBVHModel<>;
+using Result = ContinuousContactResult<double>;
+
+/// The kernels with which the library was built.
+const char* libraryKernels() { return "vector"; }
+
+/// The threads that its queries use.
+constexpr int kLibraryThreads = 1;
+
+void expect(int code, const Model& model) {
+  if (code != BVH_OK) throw std::runtime_error(model.lastError());
+}
+
+void build(const FramePairMesh& mesh, Model& model) {
+  expect(model.beginModel(static_cast<int>(mesh.triangles.size()),
+                          static_cast<int>(mesh.previous.size())),
+         model);
+  expect(model.addSubModel(mesh.previous, mesh.triangles), model);
+  expect(model.endModel(FclTree::kSkip), model);
+}
+
+void update(const std::vector<Vector3<double>>& previous,
+            const std::vector<Vector3<double>>& current, Model& model) {
+  expect(model.updateFrames(previous[0].data(), current[0].data(), previous.size(),
+                            FclTree::kSkip),
+         model);
+}
+
+ContinuousContactRequest<double> makeRequest(ContinuousQuery query) {
+  ContinuousContactRequest<double> request;
+  request.query = query;
+  request.enable_contact = false;
+  return request;
+}
+
+/// Wall time of the query. The library's own times say where it went; what they leave out
+/// (sorting, handing over) counts as test.
+void query(const Model& a, const Model* b, ContinuousQuery kind, Result& result,
+           StepTimes& times) {
+  const auto request = makeRequest(kind);
+  const Transform3<double> origin = Transform3<double>::Identity();
+  const double ms = millisecondsOf([&] {
+    if (b)
+      continuousCollide(&a, origin, origin, b, origin, origin, request, result);
+    else
+      continuousSelfCollide(&a, request, result);
+  });
+  const StageTimes& own = result.times;
+  const double share = own.traverse / (own.traverse + own.test);
+  times.traverse = std::min(1e3 * own.traverse, ms * share);
+  times.test = ms - times.traverse;
+}
+
+const char* nameOf(ContinuousQuery query) {
+  return query == ContinuousQuery::kAll     ? "all"
+         : query == ContinuousQuery::kFirst ? "first"
+                                            : "any";
+}
+
+/// Of all contacts: names and time brackets. Which other contacts a first-contact query
+/// meets on its way, or which proof comes first, is left to the query.
+std::uint64_t hashOf(const Result& result, ContinuousQuery query) {
+  Hash hash;
+  hash.add(std::uint64_t{result.is_collide});
+  if (query == ContinuousQuery::kAny) return hash.value();
+  hash.add(result.time_of_contact);
+  hash.add(std::uint64_t{result.initially_crossing});
+  if (query == ContinuousQuery::kFirst) return hash.value();
+  std::vector<const ContinuousContact<double>*> sorted;
+  for (const auto& contact : result.contacts) sorted.push_back(&contact);
+  std::sort(sorted.begin(), sorted.end(), [](const auto* x, const auto* y) {
+    return std::tie(x->kind, x->first_on_o1, x->vertices) <
+           std::tie(y->kind, y->first_on_o1, y->vertices);
+  });
+  for (const auto* contact : sorted) {
+    hash.add(static_cast<std::uint64_t>(contact->kind));
+    hash.add(std::uint64_t{contact->first_on_o1});
+    for (const int v : contact->vertices) hash.add(static_cast<std::uint64_t>(v));
+    hash.add(contact->toc_lo);
+    hash.add(contact->toc_hi);
+  }
+  return hash.value();
+}
+
+std::vector<PairName> namesOf(const Result& result) {
+  std::vector<PairName> names;
+  names.reserve(result.contacts.size());
+  for (const auto& contact : result.contacts) names.push_back(pairName(contact));
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query) {
+  return {scene,       triangles,        nameOf(query),  "moving",
+          "certified", libraryKernels(), kLibraryThreads};
+}
+
+Row measureLibrary(const Scene& scene, ContinuousQuery kind, const Effort& effort,
+                   const std::vector<PairName>* truth, std::vector<PairName>* found) {
+  Row row =
+      libraryRow(scene.name, scene.a.triangles.size() + scene.b.triangles.size(), kind);
+  resetPeakMemory();
+  Model a, b;
+  const bool self = scene.isSelf();
+  bool first = true;
+  repeat(effort, [&] {
+    a = Model();
+    b = Model();
+    const double ms = millisecondsOf([&] {
+      build(scene.a, a);
+      if (!self) build(scene.b, b);
+    });
+    if (first || ms < row.build) row.build = ms;
+    first = false;
+  });
+  Result result;
+  first = true;
+  repeat(effort, [&] {
+    StepTimes times;
+    times.update = millisecondsOf([&] {
+      update(scene.a.previous, scene.a.current, a);
+      if (!self) update(scene.b.previous, scene.b.current, b);
+    });
+    query(a, self ? nullptr : &b, kind, result, times);
+    if (first || times.total() < row.times.total()) row.times = times;
+    first = false;
+  });
+  row.peak_mb = peakMegabytes();
+  row.contacts = result.contacts.size();
+  row.hash = hashOf(result, kind);
+  if (!self || (!truth && !found)) return row;
+  std::vector<PairName> names = namesOf(result);
+  if (truth) {
+    const Errors errors = errorsOf(names, *truth);
+    if (kind == ContinuousQuery::kAll) row.missed = errors.missed;
+    row.extra = errors.extra;
+  }
+  if (found) *found = std::move(names);
+  return row;
+}
+
+std::vector<SequenceRow> measureSequence(const std::string& name,
+                                         const FrameSequence& sequence,
+                                         const Effort& effort) {
+  std::vector<SequenceRow> rows;
+  const auto step = [&](std::size_t i, Model& model, Result& result) {
+    StepTimes least;
+    bool first = true;
+    repeat(effort, [&] {
+      StepTimes times;
+      times.update = millisecondsOf(
+          [&] { update(sequence.frames[i], sequence.frames[i + 1], model); });
+      query(model, nullptr, ContinuousQuery::kAll, result, times);
+      if (first || times.total() < least.total()) least = times;
+      first = false;
+    });
+    return least;
+  };
+  Model kept;
+  const double kept_build = millisecondsOf([&] { build(sequence.pair(0), kept); });
+  for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i) {
+    SequenceRow row;
+    row.sequence = name;
+    row.frame = i;
+    row.kept_build = kept_build;
+    Result result;
+    row.kept = step(i, kept, result);
+    row.contacts = result.contacts.size();
+    row.hash = hashOf(namesOf(result)).value();
+    Model fresh;
+    const FramePairMesh pair = sequence.pair(i);
+    row.fresh_build = millisecondsOf([&] { build(pair, fresh); });
+    row.fresh = step(i, fresh, result);
+    if (hashOf(namesOf(result)).value() != row.hash)
+      throw std::logic_error(name + ": the tree changes the answer");
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace test
+}  // namespace fcl

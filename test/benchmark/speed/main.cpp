@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Speed of whole queries: the library's beside the paper's method, on public and on
+// generated scenes. doc/speed.md explains the report.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "rows.h"
+#include "table.h"
+
+namespace {
+
+using namespace fcl::test;
+using Query = fcl::ContinuousQuery;
+
+struct Options {
+  std::string out;
+  std::string data;
+  std::vector<std::string> groups{"data", "smooth", "size", "first", "far", "sequence"};
+  Effort effort;
+  int max_triangles{10000000};
+  bool is_short{false};
+
+  /// The number for a report, or the one for a look whether everything runs.
+  int pick(int full, int brief) const { return is_short ? brief : full; }
+};
+
+Scene smoothCloth(int triangles) {
+  char size[16];
+  if (triangles < 1000000)
+    std::snprintf(size, sizeof size, "%dK", triangles / 1000);
+  else
+    std::snprintf(size, sizeof size, "%.1fM", triangles / 1e6);
+  return {std::string("smooth cloth ") + size, makeSmoothCloth(triangles)};
+}
+
+enum class Baseline { kNone, kPaper, kAblation };
+
+/// The rows of a self-collision. @return the true contacts
+std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& options,
+                              std::initializer_list<Query> queries, Baseline baseline,
+                              const std::vector<PairName>* known_truth = nullptr) {
+  std::vector<PairName> truth;
+  for (const Query query : queries)
+    table.add(measureLibrary(scene, query, options.effort, known_truth,
+                             query == Query::kAll ? &truth : nullptr));
+  if (known_truth) truth = *known_truth;
+  for (const std::string boxes : {"swept", "moving"})
+    for (const std::string filter : {"none", "plain", "certified"})
+      if (baseline == Baseline::kAblation ||
+          (baseline == Baseline::kPaper && boxes == "swept" && filter == "plain"))
+        table.add(measurePaper(scene, boxes, filter, options.effort, truth));
+  return truth;
+}
+
+void runData(Table& table, const Options& options) {
+  if (options.data.empty()) {
+    std::fprintf(stderr, "no data folder: generated scenes only\n");
+    return;
+  }
+  const struct {
+    const char *name, *previous, *current;
+  } scenes[] = {{"cloth-ball", "92.ply", "93.ply"}, {"n-body", "18.ply", "19.ply"}};
+  for (const auto& files : scenes) {
+    const std::string folder = options.data + "/scenes/" + files.name + "/";
+    const auto pairs = readTruePairs(folder + "true_pairs.csv.gz");
+    const std::vector<PairName> truth(pairs.begin(), pairs.end());
+    addSelf(table,
+            {files.name, readFramePair(folder + files.previous, folder + files.current)},
+            options, {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation,
+            &truth);
+  }
+}
+
+void runSmooth(Table& table, const Options& options) {
+  for (const int triangles :
+       {options.pick(20000, 1000), options.pick(80000, 2000), options.pick(200000, 4000)})
+    addSelf(table, smoothCloth(triangles), options,
+            {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation);
+}
+
+void runSize(Table& table, const Options& options) {
+  /// Above, the paper's method says nothing new.
+  constexpr int kMostForPaper = 1000000;
+  for (const int triangles : {10000, 30000, 100000, 300000, 1000000, 3000000, 10000000}) {
+    if (triangles > options.pick(options.max_triangles, 10000)) break;
+    addSelf(table, {"tiles", makeTiles(triangles)}, options, {Query::kAll, Query::kFirst},
+            triangles <= kMostForPaper ? Baseline::kPaper : Baseline::kNone);
+  }
+}
+
+/// Scenes that are free of contact when the step begins.
+void runFirst(Table& table, const Options& options) {
+  auto bodies = makeMeetingBodies(options.pick(6, 2));
+  const Scene pair{"meeting bodies", std::move(bodies.first), std::move(bodies.second)};
+  for (const Query query : {Query::kAll, Query::kFirst, Query::kAny})
+    table.add(measureLibrary(pair, query, options.effort, nullptr));
+  addSelf(table, smoothCloth(options.pick(1600000, 8000)), options,
+          {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kNone);
+}
+
+void runFar(Table& table, const Options& options) {
+  Scene scene{"cloth at the origin", makeSmoothCloth(options.pick(80000, 2000))};
+  const auto queries = {Query::kAll, Query::kFirst};
+  const auto truth = addSelf(table, scene, options, queries, Baseline::kNone);
+  scene.name = "cloth at 1e6";
+  move(scene.a, {1e6, 1e6, 1e6});
+  addSelf(table, scene, options, queries, Baseline::kPaper, &truth);
+}
+
+/// The rows of a sequence, and two in the main table: the means of its steps.
+void addSequence(Table& table, const std::string& name, const FrameSequence& sequence,
+                 const Options& options) {
+  const auto steps = measureSequence(name, sequence, options.effort);
+  const auto n = static_cast<double>(steps.size());
+  for (const bool fresh : {false, true}) {
+    Row row = libraryRow(name + (fresh ? " (fresh tree)" : " (kept tree)"),
+                         sequence.triangles.size(), Query::kAll);
+    Hash hash;
+    for (const SequenceRow& step : steps) {
+      const StepTimes& times = fresh ? step.fresh : step.kept;
+      row.build += (fresh ? step.fresh_build : step.kept_build) / n;
+      row.times.update += times.update / n;
+      row.times.traverse += times.traverse / n;
+      row.times.test += times.test / n;
+      row.contacts += step.contacts;
+      hash.add(step.hash);
+    }
+    row.hash = hash.value();
+    table.add(row);
+  }
+  for (const SequenceRow& step : steps) table.add(step);
+}
+
+void runSequences(Table& table, const Options& options) {
+  const int frames = options.pick(61, 4);
+  addSequence(table, "crumple", makeCrumplingSheet(frames), options);
+  addSequence(table, "wave", makeWavingCloth(frames), options);
+  addSequence(table, "mix", makeMixingBalls(frames), options);
+}
+
+void run(const Options& options) {
+  Table table(options.out);
+  const struct {
+    const char* name;
+    void (*run)(Table&, const Options&);
+  } groups[] = {{"data", runData},   {"smooth", runSmooth}, {"size", runSize},
+                {"first", runFirst}, {"far", runFar},       {"sequence", runSequences}};
+  for (const auto& group : groups)
+    for (const std::string& wanted : options.groups)
+      if (wanted == group.name) group.run(table, options);
+  table.finish();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Speed of whole queries; writes speed.csv and speed_sequence.csv."};
+  app.add_option("out", options.out, "Folder for the tables")->required();
+  app.add_option("--data", options.data,
+                 "Folder with scenes/; without it: generated scenes only");
+  app.add_option("--groups", options.groups, "Which scenes, comma between; all if absent")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"data", "smooth", "size", "first", "far", "sequence"}));
+  auto* repeats = app.add_option("--repeats", options.effort.repeats,
+                                 "Each time is the least of so many")
+                      ->check(CLI::PositiveNumber);
+  app.add_option("--seconds", options.effort.seconds,
+                 "No further repeat of a row once so much time is spent on it")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--max-triangles", options.max_triangles,
+                 "The largest scene of the group size; 10,000,000 need 8 GiB")
+      ->check(CLI::PositiveNumber);
+  app.add_flag("--short", options.is_short,
+               "Small scenes and one repeat: errors, no times to speak of")
+      ->excludes(repeats);
+  CLI11_PARSE(app, argc, argv);
+  if (options.is_short) options.effort.repeats = 1;
+  try {
+    run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
+    return 1;
+  }
+  return 0;
+}

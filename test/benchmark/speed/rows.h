@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What is measured: the library's queries, the paper's method, the library over a
+// sequence of frames.
+#ifndef FCL_BENCHMARK_SPEED_ROWS_H
+#define FCL_BENCHMARK_SPEED_ROWS_H
+
+#include <string>
+#include <vector>
+
+#include "fcl/narrowphase/continuous_contact.h"
+#include "generated_scenes.h"
+#include "scene_data.h"
+#include "table.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief A self-collision, or one between two meshes.
+struct Scene {
+  std::string name;
+  FramePairMesh a;
+  FramePairMesh b{};
+
+  bool isSelf() const { return b.triangles.empty(); }
+};
+
+/// @brief A row for the library, without figures yet.
+Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query);
+
+/// @brief Times of the library for one query, by its public functions; the least total of
+/// the repeats. The model is built for the first frame and updated for each repeat.
+/// @param truth  sorted, or null for a row without errors; self-collisions only
+/// @param found  if not null, gets the contacts of a self-collision, sorted
+Row measureLibrary(const Scene& scene, ContinuousQuery query, const Effort& effort,
+                   const std::vector<PairName>* truth,
+                   std::vector<PairName>* found = nullptr);
+
+/// @brief Times of the paper's method for all self-contacts, on one thread.
+/// @param boxes  "swept" (the paper's) or "moving"
+/// @param filter  "none", "plain" (the paper's) or "certified"
+/// @throws std::invalid_argument for other words
+Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
+                 const Effort& effort, const std::vector<PairName>& truth);
+
+/// @brief All self-contacts in every step of a sequence, with a model that is updated
+/// from frame to frame, and with one that is built anew for each.
+/// @throws std::logic_error if the two differ in their contacts
+std::vector<SequenceRow> measureSequence(const std::string& name,
+                                         const FrameSequence& sequence,
+                                         const Effort& effort);
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "table.h"
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+
+#include "machine.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+std::string number(double value, const char* format = "%.3f") {
+  char text[64];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string fields(const StepTimes& times) {
+  return number(times.update) + ',' + number(times.traverse) + ',' + number(times.test) +
+         ',' + number(times.total()) + ',';
+}
+
+std::string countOrDash(const std::optional<std::size_t>& count) {
+  return count ? std::to_string(*count) : "-";
+}
+
+}  // namespace
+
+Errors errorsOf(const std::vector<PairName>& found, const std::vector<PairName>& truth) {
+  std::size_t right = 0;
+  for (auto f = found.begin(), t = truth.begin(); f != found.end() && t != truth.end();) {
+    right += *f == *t;
+    if (*f < *t)
+      ++f;
+    else if (*t < *f)
+      ++t;
+    else
+      ++f, ++t;
+  }
+  return {truth.size() - right, found.size() - right};
+}
+
+void Hash::add(double number) {
+  std::uint64_t bits;
+  std::memcpy(&bits, &number, sizeof bits);
+  add(bits);
+}
+
+Hash hashOf(const std::vector<PairName>& sorted) {
+  Hash hash;
+  for (const PairName& pair : sorted)
+    for (const int id : pair) hash.add(static_cast<std::uint64_t>(id));
+  return hash;
+}
+
+Table::Table(const std::string& folder) : machine_(machineName()) {
+  std::filesystem::create_directories(folder);
+  rows_.open(folder + "/speed.csv");
+  sequences_.open(folder + "/speed_sequence.csv");
+  rows_ << "scene,triangles,query,boxes,filter,kernels,threads,ms_build,ms_update,"
+           "ms_traverse,ms_test,ms_total,contacts,missed,extra,hash,peak_mb,machine\n";
+  sequences_ << "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,ms_fresh,ratio,"
+                "machine\n";
+  if (!rows_ || !sequences_) throw std::runtime_error(folder + ": cannot be written to");
+}
+
+void Table::add(const Row& row) {
+  char hash[24];
+  std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(row.hash));
+  rows_ << row.scene << ',' << row.triangles << ',' << row.query << ',' << row.boxes
+        << ',' << row.filter << ',' << row.kernels << ',' << row.threads << ','
+        << number(row.build) << ',' << fields(row.times) << row.contacts << ','
+        << countOrDash(row.missed) << ',' << countOrDash(row.extra) << ',' << hash << ','
+        << (row.peak_mb < 0 ? "-" : number(row.peak_mb, "%.0f")) << ',' << machine_
+        << std::endl;
+  std::fprintf(stderr, "%s: %s, %s boxes, %s filter, %s: %.2f ms\n", row.scene.c_str(),
+               row.query.c_str(), row.boxes.c_str(), row.filter.c_str(),
+               row.kernels.c_str(), row.times.total());
+}
+
+void Table::add(const SequenceRow& row) {
+  const double kept = row.kept.traverse + row.kept.test;
+  const double fresh = row.fresh.traverse + row.fresh.test;
+  sequences_ << row.sequence << ',' << row.frame << ',' << row.contacts << ','
+             << number(row.kept.update) << ',' << number(kept) << ','
+             << number(row.fresh_build) << ',' << number(fresh) << ','
+             << number(kept / fresh) << ',' << machine_ << std::endl;
+}
+
+void Table::finish() {
+  if (!rows_.flush() || !sequences_.flush())
+    throw std::runtime_error("the tables cannot be written");
+}
+
+}  // namespace test
+}  // namespace fcl

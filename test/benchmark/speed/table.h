@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_BENCHMARK_SPEED_TABLE_H
+#define FCL_BENCHMARK_SPEED_TABLE_H
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "scene_data.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief How often something is measured.
+struct Effort {
+  int repeats{5};
+  /// no further repeat once so much time is spent on it
+  double seconds{60};
+};
+
+/// @brief Calls measure() as the effort says, once at least.
+template <typename Measure>
+void repeat(const Effort& effort, Measure&& measure) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  int done = 0;
+  do {
+    measure();
+  } while (++done < effort.repeats &&
+           std::chrono::duration<double>(Clock::now() - start).count() < effort.seconds);
+}
+
+/// @brief Differences of a list of contacts to the true one.
+struct Errors {
+  std::size_t missed;
+  std::size_t extra;
+};
+
+/// @brief Both lists sorted.
+Errors errorsOf(const std::vector<PairName>& found, const std::vector<PairName>& truth);
+
+/// @brief FNV-1a, of 64 bits, over 64-bit words.
+class Hash {
+ public:
+  void add(std::uint64_t word) { value_ = (value_ ^ word) * 0x100000001b3u; }
+  void add(double number);
+  std::uint64_t value() const { return value_; }
+
+ private:
+  std::uint64_t value_{0xcbf29ce484222325u};
+};
+
+Hash hashOf(const std::vector<PairName>& sorted);
+
+/// @brief Milliseconds of the stages of one step.
+struct StepTimes {
+  double update{0};
+  double traverse{0};
+  double test{0};
+
+  double total() const { return update + traverse + test; }
+};
+
+/// @brief A row of speed.csv; doc/speed.md explains the columns.
+struct Row {
+  std::string scene;
+  std::size_t triangles{0};
+  std::string query;
+  std::string boxes;
+  std::string filter;
+  std::string kernels;
+  int threads{1};
+  double build{0};
+  StepTimes times{};
+  std::size_t contacts{0};
+  /// Nothing: not comparable.
+  std::optional<std::size_t> missed{};
+  std::optional<std::size_t> extra{};
+  std::uint64_t hash{0};
+  double peak_mb{-1};
+};
+
+/// @brief A row of speed_sequence.csv: a step from one frame to the next, with the tree
+/// made for the first frame and with one made for this.
+struct SequenceRow {
+  std::string sequence;
+  std::size_t frame{0};
+  std::size_t contacts{0};
+  std::uint64_t hash{0};
+  double kept_build{0};
+  double fresh_build{0};
+  StepTimes kept;
+  StepTimes fresh;
+};
+
+/// @brief speed.csv and speed_sequence.csv in a folder.
+class Table {
+ public:
+  /// @throws std::runtime_error if the files cannot be written
+  explicit Table(const std::string& folder);
+
+  void add(const Row& row);
+  void add(const SequenceRow& row);
+
+  /// @throws std::runtime_error if not everything could be written
+  void finish();
+
+ private:
+  std::string machine_;
+  std::ofstream rows_;
+  std::ofstream sequences_;
+};
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
