@@ -3,6 +3,7 @@
 // The generated scenes are what their declarations promise, by the library's own queries.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"

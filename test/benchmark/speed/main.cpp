@@ -174,7 +174,7 @@ int main(int argc, char** argv) {
                  "No further repeat of a row once so much time is spent on it")
       ->check(CLI::PositiveNumber);
   app.add_option("--max-triangles", options.max_triangles,
-                 "The largest scene of the group size; 10,000,000 need 8 GiB")
+                 "The largest scene of the group size; 10,000,000 need 6 GiB")
       ->check(CLI::PositiveNumber);
   app.add_flag("--short", options.is_short,
                "Small scenes and one repeat: errors, no times to speak of")

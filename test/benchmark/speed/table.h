@@ -19,7 +19,7 @@ namespace test {
 struct Effort {
   int repeats{5};
   /// no further repeat once so much time is spent on it
-  double seconds{60};
+  double seconds{20};
 };
 
 /// @brief Calls measure() as the effort says, once at least.

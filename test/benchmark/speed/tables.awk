@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# awk -F, -f tables.awk speed.csv speed_sequence.csv > speed.md
+# The tables as a page to read.
+
+function heading(title) {
+  print "\n## " title "\n"
+  print "| scene | triangles | query | boxes | filter | kernels | threads | build | update " \
+        "| traverse | test | total ms | ns / triangle | contacts | missed | extra | MiB |"
+  print "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+}
+
+FNR == 1 { ++file; next }
+
+file == 1 && NR == 2 {
+  print "# Speed of whole queries\n"
+  print "Made by `cmake/speed.sh`; [the guide](../speed.md) explains it.\n"
+  print "Machine: " $18 ".\n"
+  print "| | |\n|---|---|"
+  print "| ![Time and memory against size](speed_size.png) " \
+        "| ![Stages of each scene](speed_stages.png) |"
+  print "| ![Boxes and filters](speed_ablation.png) " \
+        "| ![Tree quality over time](speed_sequence.png) |"
+  heading("Scenes")
+}
+
+file == 1 {
+  print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | " $7 " | " $8 " | " $9 \
+        " | " $10 " | " $11 " | " $12 " | " sprintf("%.0f", 1e6 * $12 / $2) " | " $13 \
+        " | " $14 " | " $15 " | " $17 " |"
+}
+
+# Sequences: the ratio of both trees' times, in four parts of each.
+file == 2 {
+  if (!($1 in steps)) order[++sequences] = $1
+  ratio[$1, steps[$1]++] = $8
+}
+
+END {
+  if (sequences == 0) exit
+  print "\n## Tree of the first frame against a fresh one\n"
+  print "Mean ratio of the times of a query, over each quarter of the sequence.\n"
+  print "| sequence | steps | 1st | 2nd | 3rd | 4th |\n|---|---|---|---|---|---|"
+  for (i = 1; i <= sequences; ++i) {
+    line = "| " order[i] " | " steps[order[i]] " |"
+    for (q = 0; q < 4; ++q) {
+      sum = count = 0
+      for (k = int(q * steps[order[i]] / 4); k < int((q + 1) * steps[order[i]] / 4); ++k) {
+        sum += ratio[order[i], k]
+        ++count
+      }
+      line = line " " (count ? sprintf("%.2f", sum / count) : "") " |"
+    }
+    print line
+  }
+}
