@@ -5,15 +5,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-void CandidateCollector::visit(int i, int j, TimeWindow window) {
-  pair_.load(i, j);
-  ++counts_.triangle_pairs;
-  pair_.forEachCandidate(window, counts_,
-                         [this](const FeaturePair& pair, double lo, double hi) {
-                           FeaturePoints points = pair_.pointsOf(pair);
-                           block_.push_back({pair_.describe(pair, points), lo, hi});
-                         });
-  if (block_.size() + TrianglePair::kMaxCandidates > kBlock) handOut();
+void CandidateCollector::flush() {
+  batch_.cull(counts_);
+  block_.clear();
+  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
+    for (std::size_t i = 0; i < batch_.codes(kind).size(); ++i)
+      block_.push_back(batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]));
+  batch_.clear();
+  if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());
 }
 
 }  // namespace deformable

@@ -26,9 +26,26 @@ ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   return key;
 }
 
+/// A pair that is kept already, where `place` says.
+bool ContactSink::addAgain(const FeatureContact& contact, std::size_t place) {
+  auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(place);
+  if (cut_) {
+    const PairKey key = keyOf(contact);
+    kept = std::find_if(contacts_.begin(), contacts_.end(),
+                        [&key](const FeatureContact& c) { return keyOf(c) == key; });
+  }
+  if (!isEarlier(contact, *kept)) return false;
+  *kept = contact;
+  if (cut_) std::make_heap(contacts_.begin(), contacts_.end(), isEarlier);
+  return true;
+}
+
 bool ContactSink::add(const FeatureContact& contact) {
-  if (may_repeat_ && seen_.count(keyOf(contact))) return false;
   first_hi_ = std::min(first_hi_, contact.toc_hi);
+  if (may_repeat_) {
+    const auto seen = seen_.find(keyOf(contact));
+    if (seen != seen_.end()) return addAgain(contact, seen->second);
+  }
   if (contacts_.size() < capacity_) {
     contacts_.push_back(contact);
   } else {
@@ -40,7 +57,7 @@ bool ContactSink::add(const FeatureContact& contact) {
     contacts_.back() = contact;
     std::push_heap(contacts_.begin(), contacts_.end(), isEarlier);
   }
-  if (may_repeat_) seen_.insert(keyOf(contact));
+  if (may_repeat_) seen_[keyOf(contact)] = contacts_.size() - 1;
   return true;
 }
 

@@ -49,6 +49,8 @@ QueryOptions makeOptions(const ContinuousContactRequest<S>& request) {
                                                             : QueryGoal::kAny;
   options.max_contacts = request.num_max_contacts;
   options.stop_at_crossing = false;
+  if (request.num_threads < 0) throw Exception("request.num_threads is negative");
+  options.num_threads = request.num_threads;
   return options;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 
+#include <algorithm>
+
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
@@ -9,35 +11,75 @@
 
 namespace fcl {
 namespace detail {
-namespace {
+namespace deformable {
 
-/// Calls visit with the tree that a query uses for the mesh.
-template <typename Visit>
-auto withTree(const deformable::MeshInstance& mesh, Visit&& visit) {
-  return mesh.tree ? visit(*mesh.tree) : visit(mesh.rigid);
-}
+/// A tree of eight children a node, seen as the binary tree that FCL's traversal walks.
+/// Node i stands for 15 binary nodes 16 i + k, k = 1 for all its children, 2 k and 2 k +
+/// 1 for the two halves of k, 8 + lane for one child; such a child, if it is a node, is
+/// the same as its own k = 1. The root is 0.
+class BinaryView {
+ public:
+  explicit BinaryView(const MeshInstance& mesh) : tree_(mesh.tree) {
+    if (!tree_) reader_ = std::make_unique<RigidTreeReader>(mesh.rigid);
+  }
 
-bool isLeaf(const deformable::MeshInstance& mesh, int b) {
-  return withTree(mesh, [b](const auto& tree) { return tree.isLeaf(b); });
-}
+  bool isEmpty(int b) const { return firstLane(b) >= node(b).count; }
 
-int leftChild(const deformable::MeshInstance& mesh, int b) {
-  return withTree(mesh, [b](const auto& tree) { return tree.leftChild(b); });
-}
+  bool isLeaf(int b) const {
+    return placeOf(b) >= 8 && (isEmpty(b) || node(b).isTriangle(firstLane(b)));
+  }
+  int triangle(int b) const { return node(b).triangle(firstLane(b)); }
 
-int triangleOf(const deformable::MeshInstance& mesh, int b) {
-  return withTree(mesh, [b](const auto& tree) { return tree.triangle(b); });
-}
+  int leftChild(int b) const {
+    const int k = placeOf(b);
+    return k < 8 ? 16 * (b / 16) + 2 * k : 16 * node(b).child[firstLane(b)] + 2;
+  }
 
-MovingKdop boxOf(const deformable::MeshInstance& mesh, int b) {
-  return withTree(mesh, [b](const auto& tree) -> MovingKdop { return tree.box(b); });
-}
+  /// The smallest box around the children, of which there is at least one.
+  MovingKdop box(int b) const {
+    const MovingKdopNode& n = node(b);
+    MovingKdop out = n.box(firstLane(b));
+    for (int lane = firstLane(b) + 1; lane < std::min(endLane(b), int{n.count}); ++lane) {
+      const MovingKdop other = n.box(lane);
+      for (int j = 0; j < 16; ++j) {
+        out.t0.half[j] = std::max(out.t0.half[j], other.t0.half[j]);
+        out.t1.half[j] = std::max(out.t1.half[j], other.t1.half[j]);
+      }
+    }
+    return out;
+  }
 
-}  // namespace
+ private:
+  static int placeOf(int b) { return std::max(b % 16, 1); }
+  static int width(int b) {
+    return placeOf(b) >= 8 ? 1 : placeOf(b) >= 4 ? 2 : placeOf(b) >= 2 ? 4 : 8;
+  }
+  static int firstLane(int b) { return placeOf(b) * width(b) - 8; }
+  static int endLane(int b) { return firstLane(b) + width(b); }
+
+  const MovingKdopNode& node(int b) const {
+    return tree_ ? tree_->node(b / 16) : reader_->node(b / 16);
+  }
+
+  const MovingKdopTree* tree_;
+  std::unique_ptr<RigidTreeReader> reader_;
+};
+
+}  // namespace deformable
 
 template <typename S>
 DeformableContinuousCollisionTraversalNode<
     S>::DeformableContinuousCollisionTraversalNode() = default;
+
+template <typename S>
+DeformableContinuousCollisionTraversalNode<
+    S>::~DeformableContinuousCollisionTraversalNode() = default;
+
+template <typename S>
+const deformable::BinaryView& DeformableContinuousCollisionTraversalNode<S>::view2()
+    const {
+  return view2_ ? *view2_ : *view1_;
+}
 
 template <typename S>
 const deformable::MeshInstance& DeformableContinuousCollisionTraversalNode<S>::mesh1()
@@ -94,7 +136,11 @@ void DeformableContinuousCollisionTraversalNode<S>::begin(
   deformable::QueryOptions options;
   options.max_contacts = request.num_max_contacts;
   options.toc_err = static_cast<double>(toc_err);
-  test_ = std::make_unique<deformable::TrianglePairTest>(mesh1(), mesh2(), options);
+  test_ = std::make_unique<deformable::TrianglePairTest>(
+      mesh1(), mesh2(), prepared2_ ? &shift_ : nullptr, options);
+  view1_ = std::make_unique<deformable::BinaryView>(mesh1());
+  view2_.reset();
+  if (prepared2_) view2_ = std::make_unique<deformable::BinaryView>(mesh2());
   earlier_.clear();
   result.getContacts(earlier_);
   reported_ = 0;
@@ -104,51 +150,57 @@ void DeformableContinuousCollisionTraversalNode<S>::begin(
 
 template <typename S>
 bool DeformableContinuousCollisionTraversalNode<S>::isFirstNodeLeaf(int b) const {
-  return isLeaf(mesh1(), b);
+  return view1_->isLeaf(b);
 }
 
 template <typename S>
 bool DeformableContinuousCollisionTraversalNode<S>::isSecondNodeLeaf(int b) const {
-  return isLeaf(mesh2(), b);
+  return view2().isLeaf(b);
 }
 
 template <typename S>
 bool DeformableContinuousCollisionTraversalNode<S>::firstOverSecond(int b1,
                                                                     int b2) const {
   if (isSecondNodeLeaf(b2)) return true;
-  return !isFirstNodeLeaf(b1) &&
-         deformable::extent(boxOf(mesh1(), b1)) > deformable::extent(boxOf(mesh2(), b2));
+  if (isFirstNodeLeaf(b1)) return false;
+  const auto extent = [](const MovingKdop& box) {
+    float sum = 0;
+    for (int k = 0; k < 3; ++k) sum += box.t0.half[k] + box.t0.half[k + 8];
+    return sum;
+  };
+  return extent(view1_->box(b1)) > extent(view2().box(b2));
 }
 
 template <typename S>
 int DeformableContinuousCollisionTraversalNode<S>::getFirstLeftChild(int b) const {
-  return leftChild(mesh1(), b);
+  return view1_->leftChild(b);
 }
 
 template <typename S>
 int DeformableContinuousCollisionTraversalNode<S>::getFirstRightChild(int b) const {
-  return leftChild(mesh1(), b) + 1;
+  return view1_->leftChild(b) + 1;
 }
 
 template <typename S>
 int DeformableContinuousCollisionTraversalNode<S>::getSecondLeftChild(int b) const {
-  return leftChild(mesh2(), b);
+  return view2().leftChild(b);
 }
 
 template <typename S>
 int DeformableContinuousCollisionTraversalNode<S>::getSecondRightChild(int b) const {
-  return leftChild(mesh2(), b) + 1;
+  return view2().leftChild(b) + 1;
 }
 
 template <typename S>
 TimeWindow DeformableContinuousCollisionTraversalNode<S>::window(int b1, int b2) const {
-  const MovingKdop box1 = boxOf(mesh1(), b1), box2 = boxOf(mesh2(), b2);
+  const MovingKdop box1 = view1_->box(b1), box2 = view2().box(b2);
   return prepared2_ ? deformable::overlapWindow<true>(box1, box2, &shift_)
                     : deformable::overlapWindow<false>(box1, box2, nullptr);
 }
 
 template <typename S>
 bool DeformableContinuousCollisionTraversalNode<S>::BVTesting(int b1, int b2) const {
+  if (view1_->isEmpty(b1) || view2().isEmpty(b2)) return true;
   ++test_->counts().node_pairs;
   const TimeWindow w = window(b1, b2);
   return w.isEmpty() || w.lo > test_->latest();
@@ -158,7 +210,8 @@ template <typename S>
 void DeformableContinuousCollisionTraversalNode<S>::leafTesting(int b1, int b2) const {
   const deformable::DefaultFloatingPoint mode;
   try {
-    test_->visit(triangleOf(mesh1(), b1), triangleOf(mesh2(), b2), window(b1, b2));
+    test_->visit(view1_->triangle(b1), view2().triangle(b2), window(b1, b2).lo);
+    test_->flush();
   } catch (const deformable::NonFiniteVertex& error) {
     throw Exception(error.what());
   }

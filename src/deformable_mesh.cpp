@@ -9,13 +9,13 @@ namespace detail {
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
                                const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
-  features_ = deformable::assignFeatures(triangles, num_triangles, frames.size());
-  tree_.build(features_, frames);
+  tree_.build(deformable::assignFeatures(triangles, num_triangles, frames.size()),
+              frames);
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
-  tree_.refit(features_, frames);
+  tree_.refit(frames);
   is_deforming_ = false;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {
     const deformable::VertexPath path = frames[i];
@@ -23,9 +23,7 @@ void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   }
 }
 
-std::size_t DeformableMesh::treeMemUsage() const {
-  return features_.capacity() * sizeof(features_[0]) + tree_.memUsage();
-}
+std::size_t DeformableMesh::treeMemUsage() const { return tree_.memUsage(); }
 
 }  // namespace detail
 }  // namespace fcl

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 
+#include <algorithm>
 #include <chrono>
+#include <type_traits>
 
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "parallel.h"
 
 namespace fcl {
 namespace detail {
@@ -19,122 +22,331 @@ double secondsSince(Clock::time_point start) {
 
 struct LeafPair {
   std::int32_t a, b;
-  TimeWindow window;
+  float earliest;
 };
 
-/// Triangle pairs are visited in blocks: the tree and the vertices do not push each other
-/// out of the cache at every pair, and the clock is read once a block. A first-contact
-/// query uses small blocks, since each contact found prunes what follows.
-constexpr std::size_t kBlock = 1024;
-constexpr std::size_t kFirstBlock = 32;
+/// Triangle pairs are visited in blocks, so that the tree and the vertices do not push
+/// each other out of the cache at every pair. A first-contact query uses small blocks,
+/// since each contact found prunes what follows, and takes the earliest work first.
+struct Schedule {
+  std::size_t block;
+  bool in_order;
+  /// The traversal is cut into about so many tasks, whatever the number of threads.
+  std::size_t tasks;
+};
+constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, false, 256};
+constexpr Schedule kFirstSchedule{32, true, 64};
 
+bool isEarlierWork(const NodePair& x, const NodePair& y) {
+  return x.earliest < y.earliest;
+}
+
+/// Part of a traversal: its work, and what is done to the triangle pairs that it finds.
 /// @tparam Leaves  TrianglePairTest or CandidateCollector
 template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
-void run(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, Leaves& leaves,
-         std::size_t block_size, StageTimes& times) {
-  std::vector<NodePair> open;
-  std::vector<LeafPair> block;
-  block.reserve(block_size);
-  const auto start = Clock::now();
+class Part {
+ public:
+  Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const std::uint8_t* embedded,
+       const Schedule& schedule, Leaves& leaves, StageTimes& times)
+      : traversal_(tree_a, tree_b, shift, embedded, kernels()),
+        schedule_(schedule),
+        leaves_(&leaves),
+        times_(&times),
+        block_(schedule.block + kMaxStep) {}
 
-  const auto visitBlock = [&] {
-    const auto visit_start = Clock::now();
-    for (const LeafPair& p : block) {
-      if (p.window.lo > leaves.latest()) continue;
-      leaves.visit(p.a, p.b, p.window);
-      if (leaves.isDone()) break;
+  /// From here on for another task.
+  void use(Leaves& leaves, StageTimes& times) {
+    leaves_ = &leaves;
+    times_ = &times;
+  }
+
+  /// Opens the whole traversal, level by level, until there is enough work for all tasks.
+  void divide(std::vector<NodePair>& works) {
+    const auto start = Clock::now();
+    const double test_before = times_->test;
+    std::size_t next = 0;
+    WorkList open;
+    traversal_.start(open);
+    for (;
+         next < open.size() && open.size() - next < schedule_.tasks && !leaves_->isDone();
+         ++next) {
+      const NodePair work = open[next];
+      if (work.earliest <= leaves_->latest()) step(work, open);
     }
-    block.clear();
-    times.test += secondsSince(visit_start);
-    return !leaves.isDone();
-  };
-  leaves.counts().node_pairs += traverse<kSelf>(
-      tree_a, tree_b, shift, open, [&] { return leaves.latest(); },
-      [&](int a, int b, TimeWindow window) {
-        block.push_back({a, b, window});
-        return block.size() < block_size || visitBlock();
-      });
-  if (!leaves.isDone()) visitBlock();
-  times.traverse += secondsSince(start) - times.test;
-}
+    finish();
+    if (!leaves_->isDone()) works.assign(open.data() + next, open.data() + open.size());
+    if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
+    times_->traverse += secondsSince(start) - (times_->test - test_before);
+  }
 
-/// Calls visit with the tree to traverse.
+  /// Does a work to its end.
+  void run(const NodePair& work) {
+    const auto start = Clock::now();
+    const double test_before = times_->test;
+    WorkList open;
+    open.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
+    while (open.size() > 0 && !leaves_->isDone()) {
+      const std::size_t first = open.size() - 1;
+      const NodePair& last = open[first];
+      open.cut(first);
+      if (last.earliest > leaves_->latest()) continue;
+      step(last, open);
+      if (schedule_.in_order)
+        std::sort(
+            open.data() + first, open.data() + open.size(),
+            [](const NodePair& x, const NodePair& y) { return isEarlierWork(y, x); });
+    }
+    finish();
+    times_->traverse += secondsSince(start) - (times_->test - test_before);
+  }
+
+ private:
+  /// A step finds at most so many triangle pairs.
+  static constexpr std::size_t kMaxStep = MovingKdopNode::kWidth * MovingKdopNode::kWidth;
+
+  void step(const NodePair& work, WorkList& open) {
+    traversal_.step(work, open, [this](int a, int b, float earliest) {
+      LeafPair& pair = block_[count_++];
+      pair.a = a;
+      pair.b = b;
+      pair.earliest = earliest;
+    });
+    if (count_ >= schedule_.block) visitBlock();
+  }
+
+  void visitBlock() {
+    const auto start = Clock::now();
+    for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
+      const std::size_t last = std::min(first + schedule_.block, count_);
+      for (; first < last; ++first) {
+        const LeafPair& p = block_[first];
+        if (p.earliest <= leaves_->latest()) leaves_->visit(p.a, p.b, p.earliest);
+      }
+      leaves_->flush();
+    }
+    count_ = 0;
+    times_->test += secondsSince(start);
+  }
+
+  void finish() {
+    visitBlock();
+    leaves_->addTraversal(traversal_.compared(), traversal_.fanCulled());
+    traversal_.clearCounts();
+  }
+
+  Traversal<kSelf, TreeA, TreeB> traversal_;
+  const Schedule& schedule_;
+  Leaves* leaves_;
+  StageTimes* times_;
+  std::vector<LeafPair> block_;
+  std::size_t count_{0};
+};
+
+/// Calls visit with the tree to traverse; for one thread.
 template <typename Visit>
 void visitTree(const MeshInstance& mesh, Visit&& visit) {
-  if (mesh.tree)
+  if (mesh.tree) {
     visit(*mesh.tree);
-  else
-    visit(RigidTreeReader(mesh.rigid));
+  } else {
+    RigidTreeReader reader(mesh.rigid);
+    visit(reader);
+  }
 }
 
-template <typename Leaves>
-StageTimes runSelf(const MeshInstance& a, Leaves& leaves, std::size_t block) {
-  StageTimes times;
-  visitTree(a,
-            [&](auto&& tree) { run<true>(tree, tree, nullptr, leaves, block, times); });
-  return times;
-}
+/// Two meshes, or one with itself, as a query traverses them.
+struct Scene {
+  const MeshInstance& a;
+  const MeshInstance& b;
+  const KdopShift* shift;
+  const std::uint8_t* embedded;
 
-template <typename Leaves>
-StageTimes runPair(const MeshInstance& a, const MeshInstance& b, Leaves& leaves,
-                   std::size_t block) {
-  StageTimes times;
-  const KdopShift shift = relativeShift(a, b);
-  visitTree(a, [&](auto&& tree_a) {
-    visitTree(b, [&](auto&& tree_b) {
-      run<false>(tree_a, tree_b, &shift, leaves, block, times);
+  bool isSelf() const { return &a == &b; }
+
+  /// Calls visit(part) with a part of the traversal.
+  template <typename Leaves, typename Visit>
+  void visitPart(const Schedule& schedule, Leaves& leaves, StageTimes& times,
+                 Visit&& visit) const {
+    if (isSelf() && a.tree) {
+      Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
+          *a.tree, *a.tree, shift, embedded, schedule, leaves, times);
+      return visit(part);
+    }
+    visitTree(a, [&](auto& tree_a) {
+      visitTree(b, [&](auto& tree_b) {
+        using A = std::remove_reference_t<decltype(tree_a)>;
+        using B = std::remove_reference_t<decltype(tree_b)>;
+        if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
+          if (isSelf()) {
+            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, schedule,
+                                          leaves, times);
+            return visit(part);
+          }
+        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, schedule, leaves,
+                                       times);
+        visit(part);
+      });
     });
+  }
+};
+
+/// For each vertex of the mesh's tree, whether its fan is embedded; empty if unknown.
+std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads,
+                                       StageTimes& times) {
+  std::vector<std::uint8_t> embedded;
+  if (!mesh.tree || !mesh.isInPlace()) return embedded;
+  const auto start = Clock::now();
+  const MovingKdopTree& tree = *mesh.tree;
+  const std::size_t count = tree.vertices().size();
+  constexpr std::size_t kChunk = 4096;
+  embedded.resize(count);
+  parallelFor((count + kChunk - 1) / kChunk, num_threads, [&](std::size_t chunk) {
+    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+      embedded[i] = kernels().isFanEmbedded(tree.vertices().data(), tree.vertices()[i],
+                                            tree.fans()[i]);
   });
-  return times;
+  times.traverse += secondsSince(start);
+  return embedded;
 }
 
-std::size_t blockFor(const QueryOptions& options) {
-  return options.goal == QueryGoal::kAll ? kBlock : kFirstBlock;
-}
+/// The answer of one task.
+struct TaskAnswer {
+  std::vector<FeatureContact> contacts;
+  bool cut{false};
+  bool has_crossing{false};
+  Crossing crossing{};
+  StageCounts counts;
+  StageTimes times;
 
-QueryAnswer collect(TrianglePairTest& leaves, const StageTimes& times) {
+  void take(TrianglePairTest& leaves) {
+    cut = leaves.sink().isCut();
+    has_crossing = leaves.hasCrossing();
+    crossing = leaves.crossing();
+    contacts = leaves.sink().takeContacts();
+    counts = leaves.counts();
+  }
+};
+
+/// The answers of all tasks as one, which does not depend on how the tasks went: the
+/// first task that has a crossing tells it, a first-contact query keeps only what may be
+/// the first contact, a yes-or-no query only what the first task found.
+/// @param first_hi  upper end of the earliest bracket
+QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
+                  double first_hi, bool may_repeat) {
   QueryAnswer answer;
-  answer.cut = leaves.sink().isCut();
-  answer.has_crossing = leaves.hasCrossing();
-  answer.crossing = leaves.crossing();
-  answer.contacts = leaves.sink().takeSorted();
-  answer.counts = leaves.counts();
-  answer.times = times;
+  const bool first = options.goal == QueryGoal::kFirst;
+  const bool any = options.goal == QueryGoal::kAny;
+  ContactSink sink(any ? 1 : options.max_contacts, may_repeat);
+  for (TaskAnswer& task : tasks) {
+    answer.counts += task.counts;
+    answer.times.traverse += task.times.traverse;
+    answer.times.test += task.times.test;
+    if (any && (answer.has_crossing || !sink.contacts().empty())) continue;
+    if (task.has_crossing && !answer.has_crossing) {
+      answer.has_crossing = true;
+      answer.crossing = task.crossing;
+    }
+    for (const FeatureContact& c : task.contacts)
+      if (!first || c.toc_lo <= first_hi) sink.add(c);
+    answer.cut |= task.cut && !first && !any;
+  }
+  answer.cut |= sink.isCut() && !any;
+  answer.contacts = sink.takeSorted();
   return answer;
+}
+
+QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+                  const QueryOptions& options) {
+  const auto start = Clock::now();
+  const bool all = options.goal == QueryGoal::kAll;
+  const Schedule& schedule = all ? kAllSchedule : kFirstSchedule;
+  QueryOptions task_options = options;
+  // One more, so that it is known whether there were more.
+  if (options.goal == QueryGoal::kFirst && options.max_contacts + 1 != 0)
+    ++task_options.max_contacts;
+
+  StageTimes times;
+  std::vector<std::uint8_t> embedded;
+  if (&a == &b) embedded = embeddedFans(a, options.num_threads, times);
+  const Scene scene{a, b, shift, embedded.empty() ? nullptr : embedded.data()};
+  QueryProgress progress;
+  std::vector<NodePair> works;
+  std::vector<TaskAnswer> answers(1);
+  const bool parallel = numThreads(options.num_threads) > 1;
+  StageTimes first_times;
+  TrianglePairTest first(a, b, shift, task_options, &progress, 0);
+  scene.visitPart(schedule, first, first_times, [&](auto& part) {
+    part.divide(works);
+    answers.resize(1 + works.size());
+    if (parallel) return;
+    // One part for all tasks: what it has read of a rigid tree stays.
+    for (std::size_t i = 0; i < works.size(); ++i) {
+      TrianglePairTest task(a, b, shift, task_options, &progress, i + 1);
+      part.use(task, answers[i + 1].times);
+      part.run(works[i]);
+      answers[i + 1].take(task);
+    }
+  });
+  answers[0].take(first);
+  answers[0].times = first_times;
+  if (parallel)
+    parallelFor(works.size(), options.num_threads, [&](std::size_t i) {
+      TrianglePairTest task(a, b, shift, task_options, &progress, i + 1);
+      scene.visitPart(schedule, task, answers[i + 1].times,
+                      [&](auto& part) { part.run(works[i]); });
+      answers[i + 1].take(task);
+    });
+
+  QueryAnswer answer =
+      merge(answers, options, progress.first_hi.load(), !a.hasOwners() || !b.hasOwners());
+  // Wall time, divided as the tasks' own; what is left is the tests'.
+  const double wall = secondsSince(start);
+  const double sum = answer.times.traverse + answer.times.test;
+  const double share = sum > 0 ? answer.times.traverse / sum : 0;
+  const double in_tasks = std::min(sum, wall - times.traverse);
+  answer.times.traverse = times.traverse + in_tasks * share;
+  answer.times.test = wall - answer.times.traverse;
+  return answer;
+}
+
+bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+                const CandidateSink& sink) {
+  CandidateCollector leaves(a, b, shift, sink);
+  StageTimes times;
+  std::vector<std::uint8_t> embedded;
+  if (&a == &b) embedded = embeddedFans(a, 1, times);
+  const Scene scene{a, b, shift, embedded.empty() ? nullptr : embedded.data()};
+  scene.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
+    std::vector<NodePair> works;
+    part.divide(works);
+    for (const NodePair& work : works) part.run(work);
+  });
+  return !leaves.isDone();
 }
 
 }  // namespace
 
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  TrianglePairTest leaves(a, a, options);
-  const StageTimes times = runSelf(a, leaves, blockFor(options));
-  return collect(leaves, times);
+  return query(a, a, nullptr, options);
 }
 
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  TrianglePairTest leaves(a, b, options);
-  const StageTimes times = runPair(a, b, leaves, blockFor(options));
-  return collect(leaves, times);
+  const KdopShift shift = relativeShift(a, b);
+  return query(a, b, &shift, options);
 }
 
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink) {
   const DefaultFloatingPoint mode;
-  CandidateCollector leaves(a, a, sink);
-  runSelf(a, leaves, kBlock);
-  leaves.finish();
-  return !leaves.isDone();
+  return candidates(a, a, nullptr, sink);
 }
 
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const CandidateSink& sink) {
   const DefaultFloatingPoint mode;
-  CandidateCollector leaves(a, b, sink);
-  runPair(a, b, leaves, kBlock);
-  leaves.finish();
-  return !leaves.isDone();
+  const KdopShift shift = relativeShift(a, b);
+  return candidates(a, b, &shift, sink);
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

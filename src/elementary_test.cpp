@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "accurate_pair.h"
+#include "error_bounds.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "illinois.h"
 #include "moving_vector.h"
@@ -16,41 +17,6 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-// Error analysis. u = 2^-53. A difference of two coordinates is rounded once (relative
-// error u); interpolated at a time t its components have an absolute error of at most 4 u
-// times its norm (the larger max-norm of both frames): difference, weight 1 - t, product,
-// sum. U, V, W below are such norms. Second-order terms are below 2^-40 of the bounds and
-// lie in the room that each constant leaves.
-//
-// A component of v x w: two products of size VW, error (4 + 4 + 1) u VW each, and a sum
-// of size 2 VW: 20 u VW; its size is 2 VW. Of v0 x w1 + v1 x w0: size 4 VW, error 44 u
-// VW. Outer coefficients u.(v x w): three products of size 2 UVW, error (4 * 2 + 20 + 2)
-// u = 30 u, and sums of size 4 and 6: 100 u UVW. Inner ones, u1.(v0 x w0) + u0.(v0 x w1 +
-// v1 x w0): 100 u for the first, 3 (16 + 44 + 4) + 20 = 212 u for the second, 18 u for
-// the sum: 330 u UVW.
-constexpr double kUnit = 0x1p-53;
-constexpr double kOuterBound = 104 * kUnit;
-constexpr double kInnerBound = 344 * kUnit;
-// A cross product as a Quadratic: half of its inner component is below 2 VW and within 22
-// u VW.
-constexpr double kCrossBound = 22.5 * kUnit;
-// Inside conditions q . n, cross products of sizes Q, N with errors e, d. Of the five
-// coefficients the middle one, q0.n2 + q2.n0 + q1.n1 with c1 of twice the size, is the
-// largest, 18 QN: errors of the factors 18 (Q d + e N + e d), rounding 6 (3 + 5) u QN in
-// the dot products and (6 + 18) u QN in their sums.
-constexpr double kInsideTerms = 18.5;
-constexpr double kInsideRounding = 74 * kUnit;
-// d . x for a direction d taken as exact: three products of size DX, error (4 + 1) u,
-// sums of size 2 and 3: 20 u DX.
-constexpr double kSideBound = 32 * kUnit;
-// The bounds hold while no product that matters underflows or overflows: an underflow
-// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
-constexpr double kTiny = 0x1p-900;
-constexpr double kHuge = 0x1p900;
-// A norm counts for no less than this: what underflows in the products with 1 - t and t,
-// 2^-1074 each, is then below the 4 u that the bounds allow for.
-constexpr double kLeastNorm = 0x1p-1010;
 
 bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
 
@@ -388,7 +354,8 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
   Findings found;
   for (int look = 0; !open.isEmpty(); ++look) {
     const auto [lo, hi] = open.pop();
-    if (lo > t_stop) break;
+    // What is unsure so far may end in a contact that begins after t_stop.
+    if (lo > t_stop && !found.unsure) break;
     if (look == IntervalStack::kMaxLooks) {
       found.addUnsure(lo, open.isEmpty() ? hi : std::max(hi, open.latest()));
       break;

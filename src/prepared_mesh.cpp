@@ -110,13 +110,9 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
   if (const DeformableMesh* mesh = deformableMeshOf(geometry)) {
     instance_.frames = mesh->frames();
     instance_.frames.setPoses(beginning, end);
-    instance_.prepared = mesh->features().data();
-    instance_.num_triangles = mesh->features().size();
     instance_.tree = &mesh->movingTree();
     if (beginning.isTranslation() && end.isTranslation()) return;
-    features_ = mesh->features();
-    instance_.prepared = features_.data();
-    tree_.setLinks(mesh->movingTree().links());
+    tree_ = mesh->movingTree();
     refit();
     return;
   }
@@ -140,29 +136,32 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
-  instance_.num_triangles = static_cast<std::size_t>(model.num_tris);
   // FCL 0.7 merges two RSSs into one that can leave points out: a tree of them that was
   // refit is no bound.
   constexpr bool kHasSoundTree = !std::is_same_v<BV, RSS<typename BV::S>>;
   if constexpr (kHasSoundTree)
     if (!deforming) {
       instance_.rigid = RigidTree(model, beginning);
-      if (owners == FeatureOwners::kAlways) computeOwners(model, name);
+      if (owners == FeatureOwners::kAlways) {
+        owners_ = ownersOf(model, name);
+        instance_.prepared = owners_.data();
+      }
       return;
     }
   prepareDeforming(model, name);
 }
 
 template <typename BV>
-void PreparedMesh::computeOwners(const BVHModel<BV>& model, const std::string& name) {
-  const auto count = static_cast<std::size_t>(model.num_vertices);
-  for (std::size_t i = 0; i < instance_.num_triangles; ++i)
+std::vector<MeshTriangle> PreparedMesh::ownersOf(const BVHModel<BV>& model,
+                                                 const std::string& name) {
+  const auto num_vertices = static_cast<std::size_t>(model.num_vertices);
+  const auto num_triangles = static_cast<std::size_t>(model.num_tris);
+  for (std::size_t i = 0; i < num_triangles; ++i)
     for (int k = 0; k < 3; ++k)
-      if (model.tri_indices[i][k] >= count)
+      if (model.tri_indices[i][k] >= num_vertices)
         throw Exception(name + ": triangle " + std::to_string(i) +
                         " refers to a vertex that is not there");
-  features_ = assignFeatures(model.tri_indices, instance_.num_triangles, count);
-  instance_.prepared = features_.data();
+  return assignFeatures(model.tri_indices, num_triangles, num_vertices);
 }
 
 template <typename BV>
@@ -170,18 +169,17 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
   if (model.prev_vertices)
     requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
   requireFinite(model.vertices, model.num_vertices, name + ", current frame");
-  computeOwners(model, name);
   std::vector<std::int32_t> links(static_cast<std::size_t>(model.getNumBVs()));
   for (int i = 0; i < model.getNumBVs(); ++i)
     links[static_cast<std::size_t>(i)] = model.getBV(i).first_child;
-  tree_.setLinks(std::move(links));
+  tree_.build(ownersOf(model, name), static_cast<std::size_t>(model.num_vertices), links);
   refit();
 }
 
 void PreparedMesh::refit() {
   const auto start = std::chrono::steady_clock::now();
   const DefaultFloatingPoint mode;
-  tree_.refit(features_, instance_.frames);
+  tree_.refit(instance_.frames);
   instance_.tree = &tree_;
   // The boxes are posed already.
   for (auto& translation : instance_.translation)

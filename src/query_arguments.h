@@ -9,8 +9,8 @@
 #include "fcl/common/exception.h"
 #include "fcl/common/types.h"
 #include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 
 namespace fcl {
 namespace detail {

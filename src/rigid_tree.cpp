@@ -181,6 +181,18 @@ void RigidTree::fromSlabs(const Slabs& slabs, MovingKdop& box) const {
   box.t1 = box.t0;
 }
 
+void RigidTree::open(int i, MovingKdopNode& out) const {
+  // The boxes are needed of FCL's nodes, the links of what is below them.
+  std::int32_t nodes[MovingKdopNode::kWidth];
+  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
+  out.clearRest();
+  MovingKdop box;
+  for (int lane = 0; lane < out.count; ++lane) {
+    makeBox(nodes[lane], box);
+    out.setBox(lane, box);
+  }
+}
+
 namespace {
 
 constexpr float kFloatUnit = 0x1p-24f;
@@ -193,6 +205,14 @@ Float4 lane(const Float4& v) {
 Float4 abs(const Float4& v) {
   constexpr int kAllButSign = 0x7fffffff;
   return Float4(Mask4(v) & kAllButSign);
+}
+
+/// As roundUp() leaves a half-axis: infinite in place of a NaN, never below kLeastHalf.
+Float4 bounded(const Float4& half) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const Float4 number = half == half ? half : Float4{kInf, kInf, kInf, kInf};
+  return number > kLeastHalf ? number
+                             : Float4{kLeastHalf, kLeastHalf, kLeastHalf, kLeastHalf};
 }
 
 /// The 8 directions applied to a vector, rounded to float: each entry is within 2 units
@@ -230,8 +250,8 @@ void RigidTree::makeBox(int node, MovingKdop& box) const {
                      (size + origin_size_) * static_cast<float>(bv.slack) + FLT_MIN;
   for (int q = 0; q < 2; ++q) {
     const Float4 lower = spread[q] - center[q], upper = spread[q] + center[q];
-    const Float4 half[2] = {lower + (abs(lower) * kOutward + pad),
-                            upper + (abs(upper) * kOutward + pad)};
+    const Float4 half[2] = {bounded(lower + (abs(lower) * kOutward + pad)),
+                            bounded(upper + (abs(upper) * kOutward + pad))};
     for (int side = 0; side < 2; ++side)
       for (Kdop16* frame : {&box.t0, &box.t1})
         __builtin_memcpy(frame->half + 8 * side + 4 * q, &half[side], sizeof(Float4));

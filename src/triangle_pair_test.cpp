@@ -8,89 +8,161 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
+namespace {
+
+/// More than the rounding of a time of contact, and than that of a window.
+constexpr double kRounding = 0x1p-20;
+
+}  // namespace
 
 TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
-                                   const QueryOptions& options)
+                                   const KdopShift* shift, const QueryOptions& options,
+                                   QueryProgress* progress, std::size_t task)
     : options_(options),
-      pair_(a, b),
-      // A pair that is met in several triangle pairs must get one answer: every window
-      // then gives way to the whole step.
-      full_window_(!a.prepared || !b.prepared),
-      sink_(options.goal == QueryGoal::kAny ? 1 : options.max_contacts, full_window_) {}
+      kernels_(kernels()),
+      batch_(a, b, shift, kernels_),
+      sink_(options.goal == QueryGoal::kAny ? 1 : options.max_contacts,
+            !a.hasOwners() || !b.hasOwners()),
+      progress_(progress),
+      task_(task) {}
 
 bool TrianglePairTest::isDone() const {
+  return hasAnswer() ||
+         (progress_ && progress_->answered_by.load(std::memory_order_relaxed) < task_);
+}
+
+bool TrianglePairTest::hasAnswer() const {
   if (has_crossing_ && options_.stop_at_crossing) return true;
   return options_.goal == QueryGoal::kAny && (!sink_.contacts().empty() || has_crossing_);
 }
 
 double TrianglePairTest::latest() const {
-  if (options_.goal == QueryGoal::kFirst)
-    return std::min(sink_.firstHi(), sink_.latestKept());
-  return options_.goal == QueryGoal::kAll ? sink_.latestKept() : 1;
+  if (options_.goal == QueryGoal::kAny) return 1;
+  double latest = sink_.latestKept();
+  if (options_.goal == QueryGoal::kFirst) {
+    latest = std::min(latest, sink_.firstHi());
+    if (progress_)
+      latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
+  }
+  // A contact that is later than this has a bracket that begins later than `latest`.
+  return latest + (options_.toc_err + kRounding);
 }
 
-void TrianglePairTest::visit(int i, int j, TimeWindow window) {
-  pair_.load(i, j);
-  ++counts_.triangle_pairs;
-  if (window.lo <= 0.f && !has_crossing_) {
-    testCrossing(pair_.sideA(), pair_.sideB(), true);
-    if (!has_crossing_) testCrossing(pair_.sideB(), pair_.sideA(), false);
-  }
-  if (full_window_) window = {0.f, 1.f};
-  pair_.forEachCandidate(window, counts_,
-                         [this](const FeaturePair& features, double lo, double hi) {
-                           testFeature(features, lo, hi);
-                         });
+void TrianglePairTest::visit(int i, int j, float earliest) {
+  batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
 }
 
-void TrianglePairTest::testFeature(const FeaturePair& pair, double lo, double hi) {
-  FeaturePoints points = pair_.pointsOf(pair);
-  if (!mayBecomeCoplanar(pair.kind, points, lo, hi)) {
-    ++counts_.filter_culled;
-    return;
+void TrianglePairTest::flush() {
+  batch_.cull(counts_);
+  testCrossings();
+  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    filter(kind);
+    solve();
   }
-  const FeatureIds ids = pair_.describe(pair, points);
+  batch_.clear();
+}
+
+/// Takes as candidates what may become coplanar.
+void TrianglePairTest::filter(FeatureKind kind) {
+  const auto& codes = batch_.codes(kind);
+  const auto& windows = batch_.windows(kind);
+  candidates_.clear();
+  EightPairs eight;
+  eight.kind = kind;
+  for (std::size_t first = 0; first < codes.size(); first += 8) {
+    // The last pair fills up the last eight.
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const std::size_t i = std::min(first + lane, codes.size() - 1);
+      const TreeVertex* x[4];
+      batch_.points(codes[i], x);
+      eight.set(lane, x, windowLo(windows[i]), windowHi(windows[i]));
+    }
+    unsigned left = kernels_.mayBecomeCoplanar(eight);
+    if (codes.size() - first < 8) left &= (1U << (codes.size() - first)) - 1;
+    for (; left != 0; left &= left - 1) {
+      const std::size_t i = first + static_cast<unsigned>(__builtin_ctz(left));
+      candidates_.push_back(batch_.candidate(codes[i], windows[i]));
+    }
+  }
+  counts_.filter_culled += codes.size() - candidates_.size();
+}
+
+void TrianglePairTest::solve() {
+  EightPairs eight;
+  if (!candidates_.empty()) eight.kind = candidates_[0].kind;
+  for (std::size_t first = 0; first < candidates_.size() && !isDone(); first += 8) {
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const FeatureCandidate& c =
+          candidates_[std::min(first + lane, candidates_.size() - 1)];
+      eight.set(lane, c.x, c.window_lo, c.window_hi);
+    }
+    const EightAnswers answers = kernels_.solve(eight, options_.toc_err);
+    const std::size_t count = std::min(candidates_.size() - first, std::size_t{8});
+    for (std::size_t lane = 0; lane < count && !isDone(); ++lane) {
+      const FeatureCandidate& candidate = candidates_[first + lane];
+      if (answers.no >> lane & 1U)
+        ++counts_.solver_culled;
+      else if (answers.yes >> lane & 1U)
+        add(candidate, answers.toc_lo[lane], answers.toc_hi[lane]);
+      else
+        solve(candidate);
+    }
+  }
+}
+
+void TrianglePairTest::add(const FeatureIds& pair, double toc_lo, double toc_hi) {
+  ++counts_.contacts;
+  sink_.add({pair, toc_lo, toc_hi});
+  if (!progress_) return;
+  QueryProgress::lower(progress_->first_hi, toc_hi);
+  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+}
+
+void TrianglePairTest::solve(const FeatureCandidate& candidate) {
+  VertexPath path[4];
+  for (int i = 0; i < 4; ++i) {
+    std::copy(candidate.x[i]->t0, candidate.x[i]->t0 + 3, path[i].t0);
+    std::copy(candidate.x[i]->t1, candidate.x[i]->t1 + 3, path[i].t1);
+  }
+  const FeaturePoints points{{&path[0], &path[1], &path[2], &path[3]}};
   ElementaryResult result =
-      solveCoplanarity(pair.kind, points, lo, hi, options_.toc_err, latest());
+      solveCoplanarity(candidate.kind, points, candidate.window_lo, candidate.window_hi,
+                       options_.toc_err, latest());
   if (result.answer == Answer::kUnsure) {
     ++counts_.exact_tests;
-    result = decideExactly(pair.kind, points, options_.toc_err);
+    result = decideExactly(candidate.kind, points, options_.toc_err);
   }
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled
                                               : counts_.solver_culled);
     return;
   }
-  ++counts_.contacts;
-  sink_.add({ids, result.toc_lo, result.toc_hi});
+  add(candidate, result.toc_lo, result.toc_hi);
 }
 
-void TrianglePairTest::testCrossing(const TriangleSide& edges, const TriangleSide& face,
-                                    bool edges_on_a) {
-  const MeshTriangle &e = edges.triangle, &f = face.triangle;
-  const bool self = pair_.isSelf();
-  for (unsigned k = 0; k < 3; ++k) {
-    const unsigned l = (k + 1) % 3;
-    if (!e.ownsEdge(k)) continue;
-    if (self && (hasVertex(f, e.v[k]) || hasVertex(f, e.v[l]))) continue;
-    bool apart = false;
-    for (int axis = 0; axis < 3; ++axis)
-      apart |= edges.edge[k].hi[axis][0] < face.face.lo[axis][0] ||
-               face.face.hi[axis][0] < edges.edge[k].lo[axis][0];
-    if (apart) continue;
+void TrianglePairTest::testCrossings() {
+  for (std::size_t i = 0; i < batch_.numCrossings() && !has_crossing_; ++i) {
+    const FeatureBatch::EdgeAndFace c = batch_.crossing(i);
+    const auto start = [&c](bool on_a, unsigned k) -> const double(&)[3] {
+      return reinterpret_cast<const double(&)[3]>(c.pair->x[on_a ? k : 3 + k]->t0);
+    };
+    const unsigned k = c.edge, l = (k + 1) % 3;
+    const bool face_on_a = !c.edge_on_a;
     ++counts_.crossing_tests;
-    if (!isCrossing(edges.x[k].t0, edges.x[l].t0, face.x[0].t0, face.x[1].t0,
-                    face.x[2].t0))
+    if (!isCrossing(start(c.edge_on_a, k), start(c.edge_on_a, l), start(face_on_a, 0),
+                    start(face_on_a, 1), start(face_on_a, 2)))
       continue;
     has_crossing_ = true;
-    crossing_.first_on_a = edges_on_a || self;
-    crossing_.edge[0] = e.v[k];
-    crossing_.edge[1] = e.v[l];
-    std::copy(f.v, f.v + 3, crossing_.face);
-    const bool keep_order = edges_on_a || !self;
-    crossing_.triangles[0] = keep_order ? pair_.sideA().index : pair_.sideB().index;
-    crossing_.triangles[1] = keep_order ? pair_.sideB().index : pair_.sideA().index;
-    return;
+    if (progress_ && hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+    const bool self = batch_.isSelf();
+    const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
+                       &face = c.edge_on_a ? *c.pair->b : *c.pair->a;
+    crossing_.first_on_a = c.edge_on_a || self;
+    crossing_.edge[0] = edge.id[k];
+    crossing_.edge[1] = edge.id[l];
+    std::copy(face.id, face.id + 3, crossing_.face);
+    crossing_.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
+    crossing_.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -60,18 +61,30 @@ Ids sorted(Ids ids) {
   return ids;
 }
 
+/// A mesh as a query sees it, with its triangles as the user counts them.
+struct Body {
+  const MeshInstance& instance;
+  const std::vector<Triangle>& triangles;
+
+  Ids ids(std::size_t i) const {
+    const Triangle& t = triangles[i];
+    return {static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
+            static_cast<std::uint32_t>(t[2])};
+  }
+};
+
 /// The distinct features of a mesh, from its triangles' ids alone.
 struct Features {
   std::set<Ids> vertices, edges, faces;
 
-  explicit Features(const MeshInstance& mesh) {
-    for (std::size_t i = 0; i < mesh.num_triangles; ++i) {
-      const MeshTriangle t = mesh.triangle(i);
-      for (unsigned k = 0; k < 3; ++k) {
-        vertices.insert({t.v[k]});
-        if (t.v[k] != t.v[(k + 1) % 3]) edges.insert(sorted({t.v[k], t.v[(k + 1) % 3]}));
+  explicit Features(const Body& body) {
+    for (std::size_t i = 0; i < body.triangles.size(); ++i) {
+      const Ids v = body.ids(i);
+      for (std::size_t k = 0; k < 3; ++k) {
+        vertices.insert({v[k]});
+        if (v[k] != v[(k + 1) % 3]) edges.insert(sorted({v[k], v[(k + 1) % 3]}));
       }
-      faces.insert(sorted({t.v[0], t.v[1], t.v[2]}));
+      faces.insert(sorted(v));
     }
   }
 };
@@ -79,7 +92,7 @@ struct Features {
 /// All contacts between features xs of x and ys of y, by the exact test.
 class BruteForce {
  public:
-  BruteForce(const MeshInstance& a, const MeshInstance& b)
+  BruteForce(const Body& a, const Body& b)
       : a_(a), b_(b), self_(&a == &b), features_a_(a), features_b_(b) {
     test(FeatureKind::kEdgeEdge, features_a_.edges, features_b_.edges, false);
     test(FeatureKind::kVertexFace, features_a_.vertices, features_b_.faces, false);
@@ -106,7 +119,7 @@ class BruteForce {
       }
   }
 
-  void crossings(const MeshInstance& m, const std::set<Ids>& edges, const MeshInstance& n,
+  void crossings(const Body& m, const std::set<Ids>& edges, const Body& n,
                  const std::set<Ids>& faces) {
     for (const Ids& x : edges)
       for (const Ids& y : faces) {
@@ -121,9 +134,9 @@ class BruteForce {
       return std::find(y.begin(), y.end(), id) != y.end();
     });
   }
-  static std::vector<VertexPath> paths(const MeshInstance& mesh, const Ids& ids) {
+  static std::vector<VertexPath> paths(const Body& body, const Ids& ids) {
     std::vector<VertexPath> p;
-    for (const std::uint32_t id : ids) p.push_back(mesh.frames[id]);
+    for (const std::uint32_t id : ids) p.push_back(body.instance.frames[id]);
     return p;
   }
   /// Whether one axis parts all of the first n points from all of the others at both
@@ -141,8 +154,8 @@ class BruteForce {
     return false;
   }
 
-  const MeshInstance& a_;
-  const MeshInstance& b_;
+  const Body& a_;
+  const Body& b_;
   bool self_;
   Features features_a_, features_b_;
   Truth truth_;
@@ -157,15 +170,16 @@ PairName nameOf(const FeatureContact& c, bool self) {
   return {c.kind, false, x, y};
 }
 
-bool hasAll(const MeshTriangle& t, const Ids& ids) {
-  return std::all_of(ids.begin(), ids.end(),
-                     [&t](std::uint32_t id) { return hasVertex(t, id); });
+bool hasAll(const Ids& triangle, const Ids& ids) {
+  return std::all_of(ids.begin(), ids.end(), [&triangle](std::uint32_t id) {
+    return std::find(triangle.begin(), triangle.end(), id) != triangle.end();
+  });
 }
 
 /// Every contact is a true one, named once, with a bracket of its time and the triangles
 /// that it is on; earliest first.
-void expectTrueContacts(const QueryAnswer& answer, const Truth& truth,
-                        const MeshInstance& a, const MeshInstance& b, double toc_err) {
+void expectTrueContacts(const QueryAnswer& answer, const Truth& truth, const Body& a,
+                        const Body& b, double toc_err) {
   const bool self = &a == &b;
   std::set<PairName> met;
   for (const FeatureContact& c : answer.contacts) {
@@ -177,20 +191,20 @@ void expectTrueContacts(const QueryAnswer& answer, const Truth& truth,
     EXPECT_GE(c.toc_hi, found->second.toc_lo);
     EXPECT_LE(c.toc_hi - c.toc_lo, toc_err);
     const auto& [kind, first_on_b, x, y] = name;
-    const MeshTriangle s = a.triangle(static_cast<std::size_t>(c.triangles[0]));
-    const MeshTriangle t = b.triangle(static_cast<std::size_t>(c.triangles[1]));
+    const Ids s = a.ids(static_cast<std::size_t>(c.triangles[0]));
+    const Ids t = b.ids(static_cast<std::size_t>(c.triangles[1]));
     EXPECT_TRUE((hasAll(s, first_on_b ? y : x) && hasAll(t, first_on_b ? x : y)) ||
                 (self && kind == FeatureKind::kEdgeEdge && hasAll(s, y) && hasAll(t, x)));
   }
   EXPECT_TRUE(std::is_sorted(answer.contacts.begin(), answer.contacts.end(), isEarlier));
 }
 
-QueryAnswer query(const MeshInstance& a, const MeshInstance& b,
-                  const QueryOptions& options) {
-  return &a == &b ? querySelf(a, options) : queryPair(a, b, options);
+QueryAnswer query(const Body& a, const Body& b, const QueryOptions& options) {
+  return &a == &b ? querySelf(a.instance, options)
+                  : queryPair(a.instance, b.instance, options);
 }
 
-void expectAll(const MeshInstance& a, const MeshInstance& b, const Truth& truth) {
+void expectAll(const Body& a, const Body& b, const Truth& truth) {
   QueryOptions options;
   options.toc_err = 1e-6;
   const QueryAnswer all = query(a, b, options);
@@ -202,12 +216,12 @@ void expectAll(const MeshInstance& a, const MeshInstance& b, const Truth& truth)
   EXPECT_EQ(n.feature_pairs, n.box_culled + n.filter_culled + n.solver_culled +
                                  n.exact_culled + n.contacts);
   EXPECT_LE(n.exact_culled, n.exact_tests);
-  if (a.prepared && b.prepared) {
+  if (a.instance.hasOwners() && b.instance.hasOwners()) {
     EXPECT_EQ(n.contacts, truth.contacts.size());
   }
 }
 
-void expectEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& truth,
+void expectEarliest(const Body& a, const Body& b, const Truth& truth,
                     std::size_t max_contacts) {
   QueryOptions options;
   options.goal = QueryGoal::kFirst;
@@ -222,8 +236,7 @@ void expectEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& t
   EXPECT_GE(first.contacts.front().toc_lo, truth.earliestLo() - options.toc_err);
 }
 
-void expectKEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& truth,
-                     std::size_t k) {
+void expectKEarliest(const Body& a, const Body& b, const Truth& truth, std::size_t k) {
   SCOPED_TRACE("at most " + std::to_string(k));
   QueryOptions options;
   options.max_contacts = k;
@@ -243,7 +256,7 @@ void expectKEarliest(const MeshInstance& a, const MeshInstance& b, const Truth& 
 }
 
 /// All goals against brute force; returns the number of contacts.
-std::size_t expectRightAnswers(const MeshInstance& a, const MeshInstance& b) {
+std::size_t expectRightAnswers(const Body& a, const Body& b) {
   const Truth truth = BruteForce(a, b).truth();
   expectAll(a, b, truth);
   expectEarliest(a, b, truth, static_cast<std::size_t>(-1));
@@ -313,7 +326,8 @@ TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
             ? smallSoup(random, 20 + random.index(20), 0.4)
             : test::crumpledSheet(random, 3 + static_cast<int>(random.index(2)), 0.25);
     const PreparedMovingMesh prepared(mesh);
-    contacts += expectRightAnswers(prepared.instance(), prepared.instance());
+    const Body body{prepared.instance(), mesh.triangles};
+    contacts += expectRightAnswers(body, body);
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_GT(contacts, 1000U);
@@ -334,7 +348,8 @@ TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
         end.translation[k] = random.uniform(-0.2, 0.2);
       }
     const PreparedMovingMesh pa(a, beginning, end), pb(b);
-    contacts += expectRightAnswers(pa.instance(), pb.instance());
+    contacts +=
+        expectRightAnswers({pa.instance(), a.triangles}, {pb.instance(), b.triangles});
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_GT(contacts, 1000U);
@@ -380,15 +395,18 @@ void expectRightAnswersOfModels(std::uint64_t first_seed) {
     const PreparedMesh pa(*a, a_beg, a_end, "a"), pb(*b, b_beg, b_beg, "b");
     // Nothing is computed for a rigid mesh, but for RSS, whose trees are no bounds.
     constexpr bool kPrepared = std::is_same_v<BV, RSS<S>>;
-    EXPECT_EQ(pa.instance().prepared != nullptr, kPrepared);
+    EXPECT_EQ(pa.instance().hasOwners(), kPrepared);
+    EXPECT_EQ(pa.instance().tree != nullptr, kPrepared);
     for (std::size_t i = 0; i < mesh_a.t0.size(); ++i) {
       const Vector3<double> expected =
           a_end.template cast<double>() * mesh_a.t0[i].cast<S>().template cast<double>();
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(pa.instance().frames[i].t1[k], expected[k], 1e-14);
     }
-    contacts += expectRightAnswers(pa.instance(), pb.instance());
-    contacts += expectRightAnswers(pb.instance(), pa.instance());
+    const Body body_a{pa.instance(), mesh_a.triangles},
+        body_b{pb.instance(), mesh_b.triangles};
+    contacts += expectRightAnswers(body_a, body_b);
+    contacts += expectRightAnswers(body_b, body_a);
     ASSERT_FALSE(testing::Test::HasFailure());
   }
   EXPECT_GT(contacts, 200U);
@@ -403,6 +421,23 @@ TYPED_TEST_SUITE(FCL_DEFORMABLE_QUERY_MODELS, Volumes, );
 
 TYPED_TEST(FCL_DEFORMABLE_QUERY_MODELS, plainModelsAgainstBruteForce) {
   expectRightAnswersOfModels<TypeParam>(3000);
+}
+
+/// Triangles below one of FCL's nodes.
+std::vector<int> trianglesBelow(const std::vector<int>& links, int node) {
+  std::vector<int> triangles, open{node};
+  while (!open.empty()) {
+    const int link = links[static_cast<std::size_t>(open.back())];
+    open.pop_back();
+    if (link < 0) {
+      triangles.push_back(~link);
+    } else {
+      open.push_back(link);
+      open.push_back(link + 1);
+    }
+  }
+  std::sort(triangles.begin(), triangles.end());
+  return triangles;
 }
 
 /// Each node's box contains the vertices below it.
@@ -420,14 +455,14 @@ void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& pose) {
   for (const auto& p : mesh.vertices) size = std::max(size, p.norm());
   const double rounding = 16 * 0x1p-53 * size;
   const std::function<void(int, int)> expectInside = [&](int node, int below) {
-    if (!tree.isLeaf(below)) {
-      expectInside(node, tree.leftChild(below));
-      expectInside(node, tree.leftChild(below) + 1);
+    if (!model->getBV(below).isLeaf()) {
+      expectInside(node, model->getBV(below).leftChild());
+      expectInside(node, model->getBV(below).leftChild() + 1);
       return;
     }
     const MovingKdop box = tree.box(node);
     const Triangle& triangle =
-        mesh.triangles[static_cast<std::size_t>(tree.triangle(below))];
+        mesh.triangles[static_cast<std::size_t>(model->getBV(below).primitiveId())];
     for (int i = 0; i < 3; ++i) {
       const Vector3<double>& p = mesh.vertices[triangle[i]];
       double q[3], d[8];
@@ -480,33 +515,53 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
   }
 }
 
-// The boxes that a reader keeps are those that the tree makes, in whatever order nodes
-// are asked for; two siblings can be held at once.
-TEST(FCL_DEFORMABLE_QUERY, readerKeepsTheBoxesOfARigidTree) {
+// A node of a rigid tree holds up to eight of FCL's that lie below it, together all of
+// it, each with the box that the tree makes; in whatever order nodes are asked for, what
+// the reader keeps is right.
+TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
   using Model = BVHModel<OBBRSS<double>>;
   const auto model = test::makeModel<Model>(test::bentSheet(20));
   const RigidTree tree(*model, Pose());
-  RigidTreeReader reader(tree);
-  test::Random random(31);
-  const auto expectSame = [&tree](const MovingKdop& box, int node) {
-    const MovingKdop made = tree.box(node);
-    for (int k = 0; k < 16; ++k) {
-      ASSERT_EQ(box.t0.half[k], made.t0.half[k]) << node;
-      ASSERT_EQ(box.t1.half[k], made.t1.half[k]) << node;
-    }
-  };
   const int count = model->getNumBVs();
   ASSERT_GT(count, 1000);  // far more than the reader keeps
+  std::vector<int> links, leaf_of(static_cast<std::size_t>(model->num_tris), -1);
+  for (int i = 0; i < count; ++i) {
+    links.push_back(model->getBV(i).first_child);
+    if (links.back() < 0) leaf_of[static_cast<std::size_t>(~links.back())] = i;
+  }
+  const auto expectRight = [&](const MovingKdopNode& node, int i) {
+    std::vector<int> below;
+    for (int lane = 0; lane < node.count; ++lane) {
+      const bool leaf = node.isTriangle(lane);
+      const int bv = leaf ? leaf_of[static_cast<std::size_t>(node.triangle(lane))]
+                          : node.child[lane];
+      ASSERT_EQ(links[static_cast<std::size_t>(bv)] < 0, leaf);
+      const MovingKdop box = node.box(lane), made = tree.box(bv);
+      for (int k = 0; k < 16; ++k) {
+        ASSERT_EQ(box.t0.half[k], made.t0.half[k]) << i;
+        ASSERT_EQ(box.t1.half[k], made.t1.half[k]) << i;
+      }
+      for (const int t : trianglesBelow(links, bv)) below.push_back(t);
+      // Full, unless there is nothing left to open.
+      if (!leaf) {
+        ASSERT_EQ(node.count, MovingKdopNode::kWidth);
+      }
+    }
+    for (int lane = node.count; lane < MovingKdopNode::kWidth; ++lane)
+      for (int k = 0; k < 16; ++k) {
+        ASSERT_EQ(node.box(lane).t0.half[k], kLeastHalf);
+        ASSERT_EQ(node.box(lane).t1.half[k], kLeastHalf);
+      }
+    std::sort(below.begin(), below.end());
+    ASSERT_EQ(below, trianglesBelow(links, i));
+  };
+  RigidTreeReader reader(tree);
+  test::Random random(31);
   for (int i = 0; i < 5000; ++i) {
     // Now and then back to a few nodes, as traversals do.
     const auto node = static_cast<int>(random.uniform(0, i % 3 ? count : 40));
-    expectSame(reader.box(node), node);
-    if (reader.isLeaf(node)) continue;
-    const int left = reader.leftChild(node);
-    const MovingKdop& first = reader.box(left);
-    const MovingKdop& second = reader.box(left + 1);
-    expectSame(first, left);
-    expectSame(second, left + 1);
+    expectRight(reader.node(node), node);
+    ASSERT_FALSE(HasFailure());
   }
 }
 
@@ -523,7 +578,8 @@ std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles
   Transform3<double> end = begin;
   end.translation() = Vector3<double>(-2, 0, -2);
   const PreparedMesh pa(*a, begin, begin, "a"), pb(*b, begin, end, "b");
-  return expectRightAnswers(pa.instance(), pb.instance());
+  return expectRightAnswers({pa.instance(), triangles},
+                            {pb.instance(), needles.triangles});
 }
 
 // What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of

@@ -7,21 +7,31 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cfenv>
+#include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 #ifdef __SSE__
 #include <xmmintrin.h>
 #endif
 
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/kDOP.h"
+#include "fcl/math/bv/kIOS.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "moving_mesh.h"
+#include "test_models.h"
+#include "traverse.h"
 
 namespace fcl {
 namespace detail {
@@ -47,43 +57,139 @@ void coordinatesAt(const VertexPath& p, double t, const double (&origin)[3],
   std::copy(all, all + 8, d);
 }
 
-/// Bound of half-axis j at t; a NaN is no bound.
+/// Bound of half-axis j at t; infinity at one end is no bound at all.
 long double halfAt(const MovingKdop& box, int j, double t) {
-  const long double half = (1 - static_cast<long double>(t)) * box.t0.half[j] +
-                           static_cast<long double>(t) * box.t1.half[j];
-  return std::isnan(half) ? std::numeric_limits<long double>::infinity() : half;
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const float half0 = box.t0.half[j], half1 = box.t1.half[j];
+  if (half0 == kInf || half1 == kInf) return kInf;
+  return (1 - static_cast<long double>(t)) * half0 + static_cast<long double>(t) * half1;
 }
 
-/// Every box of the tree contains the triangles below it.
+/// Where a node hangs.
+struct Place {
+  int node{-1};
+  int lane{0};
+};
+
+/// Every triangle is met once, children come after their parents, triangles and vertices
+/// lie in the order in which the tree meets them and say what the user's say, and lanes
+/// that are not in use overlap nothing.
+/// @return the place of each node
+std::vector<Place> expectStructure(const MovingKdopTree& tree,
+                                   const std::vector<MeshTriangle>& triangles) {
+  const int count = static_cast<int>(tree.numNodes());
+  std::vector<Place> parent(tree.numNodes());
+  std::vector<int> met(triangles.size(), 0);
+  for (int i = 0; i < count; ++i) {
+    const MovingKdopNode& node = tree.node(i);
+    EXPECT_GE(node.count, 1);
+    EXPECT_LE(node.count, MovingKdopNode::kWidth);
+    EXPECT_TRUE(i == 0 || parent[static_cast<std::size_t>(i)].node >= 0) << "no parent";
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (node.isTriangle(lane)) {
+        ++met.at(static_cast<std::size_t>(node.triangle(lane)));
+        continue;
+      }
+      EXPECT_GT(node.child[lane], i);
+      Place& place = parent.at(static_cast<std::size_t>(node.child[lane]));
+      EXPECT_EQ(place.node, -1) << "two parents";
+      place = {i, lane};
+    }
+    for (int lane = node.count; lane < MovingKdopNode::kWidth; ++lane) {
+      const MovingKdop box = node.box(lane);
+      for (int j = 0; j < 16; ++j) {
+        EXPECT_EQ(box.t0.half[j], kLeastHalf);
+        EXPECT_EQ(box.t1.half[j], kLeastHalf);
+      }
+    }
+  }
+  for (const int times : met) EXPECT_EQ(times, 1);
+
+  // The order of a walk, a node's own triangles before its subtrees.
+  int next = 0;
+  std::vector<int> open{0};
+  while (!open.empty()) {
+    const MovingKdopNode& node = tree.node(open.back());
+    open.pop_back();
+    for (int lane = node.count; lane-- > 0;)
+      if (!node.isTriangle(lane)) open.push_back(node.child[lane]);
+    for (int lane = 0; lane < node.count; ++lane)
+      if (node.isTriangle(lane)) {
+        EXPECT_EQ(node.triangle(lane), next++);
+      }
+  }
+
+  EXPECT_EQ(tree.triangles().size(), triangles.size());
+  std::vector<int> named(triangles.size(), 0);
+  std::map<std::uint32_t, std::uint32_t> place_of;
+  for (const TreeTriangle& t : tree.triangles()) {
+    ++named.at(t.index);
+    EXPECT_EQ(t.owned, triangles[t.index].owned);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(t.id[k], triangles[t.index].v[k]);
+      const auto place =
+          place_of.emplace(t.id[k], static_cast<std::uint32_t>(place_of.size())).first;
+      EXPECT_EQ(t.place[k], place->second);
+    }
+  }
+  for (const int times : named) EXPECT_EQ(times, 1);
+  EXPECT_EQ(tree.vertices().size(), place_of.size());
+  return parent;
+}
+
+/// Whether the box contains the vertex at t.
+void expectContained(const VertexPath& path, double t, const double (&origin)[3],
+                     const MovingKdop& box) {
+  long double d[8];
+  coordinatesAt(path, t, origin, d);
+  for (int j = 0; j < 8; ++j) {
+    ASSERT_LE(-d[j], halfAt(box, j, t)) << "half-axis " << j << " at " << t;
+    ASSERT_LE(d[j], halfAt(box, j + 8, t)) << "half-axis " << j + 8 << " at " << t;
+  }
+}
+
+/// Every box of the tree contains the triangles below it, and the vertices' own contain
+/// these.
 void expectContainment(const MovingKdopTree& tree,
                        const std::vector<MeshTriangle>& triangles,
                        const VertexFrames& frames) {
-  const std::size_t count = tree.links().size();
-  ASSERT_EQ(count, 2 * triangles.size() - 1);
-  std::vector<int> parent(count, -1);
-  std::vector<int> seen(triangles.size(), 0);
-  for (int node = 0; node < static_cast<int>(count); ++node) {
-    if (tree.isLeaf(node)) continue;
-    ASSERT_GT(tree.leftChild(node), node);
-    for (int child : {tree.leftChild(node), tree.leftChild(node) + 1})
-      parent[static_cast<std::size_t>(child)] = node;
-  }
-  for (int leaf = 0; leaf < static_cast<int>(count); ++leaf) {
-    if (!tree.isLeaf(leaf)) continue;
-    const auto triangle = static_cast<std::size_t>(tree.triangle(leaf));
-    ++seen[triangle];
-    for (const std::uint32_t v : triangles[triangle].v)
-      for (const double t : kTimes) {
-        long double d[8];
-        coordinatesAt(frames[v], t, tree.origin(), d);
-        for (int node = leaf; node >= 0; node = parent[static_cast<std::size_t>(node)])
-          for (int j = 0; j < 8; ++j) {
-            ASSERT_LE(-d[j], halfAt(tree.box(node), j, t)) << "node " << node;
-            ASSERT_LE(d[j], halfAt(tree.box(node), j + 8, t)) << "node " << node;
-          }
+  const std::vector<Place> parent = expectStructure(tree, triangles);
+  ASSERT_FALSE(testing::Test::HasFailure());
+  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
+    for (int lane = 0; lane < tree.node(i).count; ++lane) {
+      if (!tree.node(i).isTriangle(lane)) continue;
+      const TreeTriangle& triangle =
+          tree.triangles()[static_cast<std::size_t>(tree.node(i).triangle(lane))];
+      for (int k = 0; k < 3; ++k) {
+        const VertexPath path = frames[triangle.id[k]];
+        const TreeVertex& vertex = tree.vertices()[triangle.place[k]];
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(vertex.t0[c], path.t0[c]);
+          ASSERT_EQ(vertex.t1[c], path.t1[c]);
+        }
+        for (const double t : kTimes) {
+          ASSERT_NO_FATAL_FAILURE(expectContained(path, t, tree.origin(), vertex.box));
+          for (Place p{i, lane}; p.node >= 0;
+               p = parent[static_cast<std::size_t>(p.node)])
+            ASSERT_NO_FATAL_FAILURE(
+                expectContained(path, t, tree.origin(), tree.node(p.node).box(p.lane)))
+                << "node " << p.node << ", lane " << p.lane;
+        }
       }
+    }
+}
+
+/// The same boxes to the bit.
+void expectSameBoxes(const MovingKdopTree& x, const MovingKdopTree& y) {
+  ASSERT_EQ(x.numNodes(), y.numNodes());
+  for (int i = 0; i < static_cast<int>(x.numNodes()); ++i) {
+    ASSERT_EQ(x.node(i).count, y.node(i).count);
+    for (int lane = 0; lane < x.node(i).count; ++lane) {
+      ASSERT_EQ(x.node(i).child[lane], y.node(i).child[lane]);
+      const MovingKdop a = x.node(i).box(lane), b = y.node(i).box(lane);
+      ASSERT_EQ(std::memcmp(&a, &b, sizeof(a)), 0) << "node " << i;
+    }
   }
-  for (const int times : seen) ASSERT_EQ(times, 1);
 }
 
 template <typename S>
@@ -111,8 +217,9 @@ void testContainment(std::uint64_t seed) {
           assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size());
       MovingKdopTree tree;
       tree.build(triangles, frames);
-      tree.refit(triangles, frames);
+      tree.refit(frames);
       expectContainment(tree, triangles, frames);
+      const MovingKdopTree before = tree;
 
       Pose turn, move;
       const double rotation[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
@@ -120,15 +227,100 @@ void testContainment(std::uint64_t seed) {
       move.translation[0] = 3 * scale;
       VertexFrames posed = frames;
       posed.setPoses(turn, move);
-      MovingKdopTree same_links;
-      same_links.setLinks(tree.links());
-      same_links.refit(triangles, posed);
-      expectContainment(same_links, triangles, posed);
+      tree.refit(posed);
+      expectContainment(tree, triangles, posed);
+      // Frames the other way round, and then the first ones again.
+      const VertexFrames back(t1.data(), t0.data(), mesh.t0.size());
+      tree.refit(back);
+      expectContainment(tree, triangles, back);
+      tree.refit(frames);
+      expectSameBoxes(tree, before);
+      if (testing::Test::HasFailure()) return;
     }
 }
 
 TEST(FCL_MOVING_KDOP_TREE, boxesContainDoubleFrames) { testContainment<double>(41); }
 TEST(FCL_MOVING_KDOP_TREE, boxesContainFloatFrames) { testContainment<float>(42); }
+
+/// Links of a binary tree over so many leaves, in the order of `leaves`.
+/// @param balance  which part of a range goes to the left: 0, one leaf; 1, half; 2, any
+std::vector<std::int32_t> binaryLinks(Random& random,
+                                      const std::vector<std::int32_t>& leaves,
+                                      int balance) {
+  struct Open {
+    std::size_t node, first, count;
+  };
+  std::vector<std::int32_t> links(1);
+  std::vector<Open> open{{0, 0, leaves.size()}};
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    if (o.count == 1) {
+      links[o.node] = ~leaves[o.first];
+      continue;
+    }
+    const std::size_t left = balance == 0   ? 1
+                             : balance == 1 ? o.count / 2
+                                            : 1 + random.index(o.count - 1);
+    links[o.node] = static_cast<std::int32_t>(links.size());
+    open.push_back({links.size(), o.first, left});
+    open.push_back({links.size() + 1, o.first + left, o.count - left});
+    links.resize(links.size() + 2);
+  }
+  return links;
+}
+
+TEST(FCL_MOVING_KDOP_TREE, structureOfABinaryTree) {
+  constexpr std::uint64_t kSeed = 49;
+  Random random(kSeed);
+  for (int i = 0; i < 60; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t count = i < 20 ? static_cast<std::size_t>(i) + 1 : 150;
+    const MovingMesh mesh = test::randomSoup(random, count, 2 * count + 3, 1, 0.3);
+    const VertexFrames frames(mesh.previous(), mesh.current(), mesh.t0.size());
+    const auto triangles =
+        assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size());
+    std::vector<std::int32_t> leaves(count);
+    std::iota(leaves.begin(), leaves.end(), 0);
+    for (std::size_t k = count; k > 1; --k)
+      std::swap(leaves[k - 1], leaves[random.index(k)]);
+    MovingKdopTree tree;
+    tree.build(triangles, mesh.t0.size(), binaryLinks(random, leaves, i % 3));
+    tree.refit(frames);
+    expectContainment(tree, triangles, frames);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+// Nothing of a tree remains in one that is built in its place.
+TEST(FCL_MOVING_KDOP_TREE, builtTwice) {
+  Random random(50);
+  MovingKdopTree tree;
+  for (const std::size_t count : {1U, 700U, 8U, 9U, 64U, 65U, 2U, 600U, 3U}) {
+    SCOPED_TRACE(count);
+    const MovingMesh mesh = test::randomSoup(random, count, count + 3, 1, 0.3);
+    const VertexFrames frames(mesh.previous(), mesh.current(), mesh.t0.size());
+    const auto triangles =
+        assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size());
+    tree.build(triangles, frames);
+    tree.refit(frames);
+    expectContainment(tree, triangles, frames);
+    MovingKdopTree other;
+    other.build(triangles, frames);
+    other.refit(frames);
+    expectSameBoxes(tree, other);
+    EXPECT_GT(tree.memUsage(), count * (sizeof(TreeTriangle) + 2 * sizeof(MovingKdop)));
+  }
+}
+
+// Most lanes are in use: eight boxes are compared for the price of one.
+TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
+  Random random(51);
+  for (const std::size_t count : {64U, 100U, 513U, 3000U, 20000U}) {
+    const MovingMesh mesh = test::randomSoup(random, count, count, 1, 0.1);
+    EXPECT_LE(PreparedMovingMesh(mesh).tree().numNodes(), count / 5) << count;
+  }
+}
 
 /// A box whose bounds are multiples of a power of two, so that the exact overlap below
 /// is exact.
@@ -206,28 +398,45 @@ TEST(FCL_MOVING_KDOP, unboundedNeverSeparates) {
     for (const bool at_t0 : {true, false}) {
       SCOPED_TRACE("half-axis " + std::to_string(j) + (at_t0 ? " at 0" : " at 1"));
       MovingKdop box = cube(0, 0, 1);
-      (at_t0 ? box.t0 : box.t1).half[j] = std::numeric_limits<float>::quiet_NaN();
+      (at_t0 ? box.t0 : box.t1).half[j] = std::numeric_limits<float>::infinity();
       (at_t0 ? box.t1 : box.t0).half[j] = -99;
       expectNoMiss(box, rest);
       expectNoMiss(rest, box);
     }
 }
 
+/// A mesh as a query sees it, with its triangles as the user counts them.
+struct Body {
+  const MeshInstance& instance;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  Body(const MeshInstance& i, const std::vector<Triangle>& of) : instance(i) {
+    for (const Triangle& t : of)
+      triangles.push_back({static_cast<std::uint32_t>(t[0]),
+                           static_cast<std::uint32_t>(t[1]),
+                           static_cast<std::uint32_t>(t[2])});
+  }
+  /// The user's number of a triangle as the tree counts.
+  int index(int i) const {
+    if (!instance.tree) return i;
+    return static_cast<int>(
+        instance.tree->triangles()[static_cast<std::size_t>(i)].index);
+  }
+};
+
 using Visits = std::map<std::pair<int, int>, int>;
 
 /// Whether the exact ranges of two triangles along the 8 directions meet at t.
-bool doTrianglesOverlapAt(const MeshInstance& a, std::size_t i, const MeshInstance& b,
-                          std::size_t j, double t) {
+bool doTrianglesOverlapAt(const Body& a, std::size_t i, const Body& b, std::size_t j,
+                          double t) {
   long double lo[2][8], hi[2][8];
-  const double origin[3] = {a.frames[a.triangle(i).v[0]].t0[0],
-                            a.frames[a.triangle(i).v[0]].t0[1],
-                            a.frames[a.triangle(i).v[0]].t0[2]};
+  const VertexPath first = a.instance.frames[a.triangles[i][0]];
   for (int side = 0; side < 2; ++side) {
-    const MeshInstance& mesh = side ? b : a;
-    const MeshTriangle triangle = mesh.triangle(side ? j : i);
-    for (int c = 0; c < 3; ++c) {
+    const Body& body = side ? b : a;
+    const auto& triangle = body.triangles[side ? j : i];
+    for (std::size_t c = 0; c < 3; ++c) {
       long double d[8];
-      coordinatesAt(mesh.frames[triangle.v[c]], t, origin, d);
+      coordinatesAt(body.instance.frames[triangle[c]], t, first.t0, d);
       for (int k = 0; k < 8; ++k) {
         lo[side][k] = c ? std::min(lo[side][k], d[k]) : d[k];
         hi[side][k] = c ? std::max(hi[side][k], d[k]) : d[k];
@@ -239,38 +448,51 @@ bool doTrianglesOverlapAt(const MeshInstance& a, std::size_t i, const MeshInstan
   return true;
 }
 
-Visits visitsOf(const MeshInstance& a, const MeshInstance& b, double latest) {
-  Visits visits;
-  std::vector<NodePair> open;
-  const bool self = &a == &b;
-  const auto visit = [&](int i, int j, TimeWindow window) {
-    EXPECT_FALSE(window.isEmpty());
-    EXPECT_LE(window.lo, latest);
-    ++visits[self && j < i ? std::make_pair(j, i) : std::make_pair(i, j)];
-    return true;
-  };
-  if (self) {
-    traverse<true>(
-        *a.tree, *a.tree, nullptr, open, [=] { return latest; }, visit);
+/// Calls visit with the tree to traverse.
+template <typename Visit>
+void withTree(const MeshInstance& mesh, Visit&& visit) {
+  if (mesh.tree) {
+    visit(*mesh.tree);
   } else {
-    const KdopShift shift = relativeShift(a, b);
-    traverse<false>(
-        *a.tree, *b.tree, &shift, open, [=] { return latest; }, visit);
+    RigidTreeReader reader(mesh.rigid);
+    visit(reader);
   }
+}
+
+Visits visitsOf(const Body& a, const Body& b, double latest = 1) {
+  Visits visits;
+  const bool self = &a == &b;
+  const auto visit = [&](int i, int j, float earliest) {
+    EXPECT_GE(earliest, 0);
+    EXPECT_LE(earliest, latest);
+    const int k = a.index(i), l = b.index(j);
+    ++visits[self && l < k ? std::make_pair(l, k) : std::make_pair(k, l)];
+  };
+  const KdopShift shift = relativeShift(a.instance, b.instance);
+  withTree(a.instance, [&](auto& tree_a) {
+    withTree(b.instance, [&](auto& tree_b) {
+      if constexpr (std::is_same_v<decltype(tree_a), decltype(tree_b)>)
+        if (self) {
+          test::traverse<true>(tree_a, tree_b, nullptr, visit, latest);
+          return;
+        }
+      test::traverse<false>(tree_a, tree_b, &shift, visit, latest);
+    });
+  });
   return visits;
 }
 
 /// Every pair that overlaps at a time up to latest is visited, none twice.
 /// @return number of pairs that had to be visited
-int expectVisits(const MeshInstance& a, const MeshInstance& b, double latest = 1) {
+int expectVisits(const Body& a, const Body& b, double latest = 1) {
   const Visits visits = visitsOf(a, b, latest);
   for (const auto& [pair, times] : visits) {
     EXPECT_EQ(times, 1);
     EXPECT_TRUE(&a != &b || pair.first != pair.second);
   }
   int needed = 0;
-  for (std::size_t i = 0; i < a.num_triangles; ++i)
-    for (std::size_t j = &a == &b ? i + 1 : 0; j < b.num_triangles; ++j)
+  for (std::size_t i = 0; i < a.triangles.size(); ++i)
+    for (std::size_t j = &a == &b ? i + 1 : 0; j < b.triangles.size(); ++j)
       for (const double t : kTimes)
         if (t <= latest && doTrianglesOverlapAt(a, i, b, j, t)) {
           ++needed;
@@ -281,6 +503,15 @@ int expectVisits(const MeshInstance& a, const MeshInstance& b, double latest = 1
   return needed;
 }
 
+/// A mesh with a moving tree.
+struct MovingBody : PreparedMovingMesh {
+  Body body;
+
+  explicit MovingBody(const MovingMesh& mesh, const Pose& beginning = Pose(),
+                      const Pose& end = Pose())
+      : PreparedMovingMesh(mesh, beginning, end), body(instance(), mesh.triangles) {}
+};
+
 TEST(FCL_MOVING_KDOP_TREE, traversalVisitsEveryOverlap) {
   constexpr std::uint64_t kSeed = 44;
   Random random(kSeed);
@@ -290,25 +521,98 @@ TEST(FCL_MOVING_KDOP_TREE, traversalVisitsEveryOverlap) {
     const MovingMesh a = i % 2 ? test::crumpledSheet(random, 5, 0.3)
                                : test::randomSoup(random, 40, 120, 3, 0.5);
     const MovingMesh b = test::crumpledSheet(random, 4, 0.5);
-    const PreparedMovingMesh pa(a), pb(b);
+    const MovingBody pa(a), pb(b);
     for (const double latest : {1., 0.5, 0.}) {
-      needed += expectVisits(pa.instance(), pa.instance(), latest);
-      needed += expectVisits(pa.instance(), pb.instance(), latest);
+      needed += expectVisits(pa.body, pa.body, latest);
+      needed += expectVisits(pa.body, pb.body, latest);
     }
-    const std::size_t all = visitsOf(pa.instance(), pa.instance(), 1).size();
+    const std::size_t all = visitsOf(pa.body, pa.body).size();
     EXPECT_LT(all, a.triangles.size() * (a.triangles.size() - 1) / 2);
-    EXPECT_LE(visitsOf(pa.instance(), pa.instance(), 0).size(), all);
+    EXPECT_LE(visitsOf(pa.body, pa.body, 0).size(), all);
   }
   EXPECT_GT(needed, 10000);
+}
+
+// Trees of every small size, where nodes are full, nearly empty or mixed.
+TEST(FCL_MOVING_KDOP_TREE, traversalOfSmallTrees) {
+  constexpr std::uint64_t kSeed = 52;
+  Random random(kSeed);
+  const MovingMesh other = test::randomSoup(random, 11, 30, 1, 0.5);
+  const MovingBody po(other);
+  for (std::size_t count = 1; count < 80; ++count) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(count));
+    const MovingMesh mesh = test::randomSoup(random, count, 3 * count, 1, 0.5);
+    const MovingBody p(mesh);
+    expectVisits(p.body, p.body);
+    expectVisits(p.body, po.body);
+    expectVisits(po.body, p.body, 0.5);
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+/// FCL's own tree, read as one of eight children a node.
+template <typename BV>
+void expectVisitsOfRigidTrees(std::uint64_t seed) {
+  using S = typename BV::S;
+  Random random(seed);
+  int needed = 0;
+  for (int i = 0; i < 6; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(i));
+    const test::TestMesh sheet = test::floatMesh(test::makeSheet(5, 4)),
+                         soup = test::floatMesh(
+                             test::makeTriangleSoup(i % 2 ? 60 : 3, 0.6, 0.3, seed + 1));
+    const auto model_a = test::makeModel<BVHModel<BV>>(sheet),
+               model_b = test::makeModel<BVHModel<BV>>(soup);
+    const auto random_pose = [&](const Matrix3<S>& rotation) {
+      Transform3<S> tf = Transform3<S>::Identity();
+      tf.linear() = rotation;
+      tf.translation() = random.point(0.5).cast<S>();
+      return tf;
+    };
+    const Matrix3<S> turned = AngleAxis<S>(static_cast<S>(random.uniform(0, 3)),
+                                           random.point(1).cast<S>().normalized())
+                                  .toRotationMatrix();
+    const Matrix3<S> rotation = i < 3 ? Matrix3<S>(Matrix3<S>::Identity()) : turned;
+    const PreparedMesh pa(*model_a, random_pose(rotation), random_pose(rotation), "a"),
+        pb(*model_b, random_pose(turned), random_pose(turned), "b");
+    ASSERT_EQ(pa.instance().tree, nullptr);
+    ASSERT_EQ(pb.instance().tree, nullptr);
+    const Body a(pa.instance(), sheet.triangles), b(pb.instance(), soup.triangles);
+    const MovingMesh mesh = test::crumpledSheet(random, 4, 0.3);
+    Pose poses[2];
+    for (Pose& pose : poses) pose.translation[2] = random.uniform(-0.3, 0.3);
+    const MovingBody c(mesh, poses[0], poses[1]);
+    for (const double latest : {1., 0.5, 0.}) {
+      needed += expectVisits(a, b, latest);
+      needed += expectVisits(b, a, latest);
+      needed += expectVisits(a, a, latest);
+      needed += expectVisits(a, c.body, latest);
+      needed += expectVisits(c.body, b, latest);
+    }
+    EXPECT_LT(visitsOf(a, a).size(),
+              a.triangles.size() * (a.triangles.size() - 1) * 2 / 5);
+    EXPECT_LT(visitsOf(a, c.body).size(), a.triangles.size() * c.body.triangles.size());
+    ASSERT_FALSE(testing::Test::HasFailure());
+  }
+  EXPECT_GT(needed, 3000);
+}
+
+TEST(FCL_MOVING_KDOP_TREE, traversalOfRigidTrees) {
+  expectVisitsOfRigidTrees<AABB<double>>(53);
+  expectVisitsOfRigidTrees<OBB<double>>(54);
+  expectVisitsOfRigidTrees<KDOP<double, 16>>(55);
+  expectVisitsOfRigidTrees<KDOP<float, 24>>(56);
+  expectVisitsOfRigidTrees<OBBRSS<float>>(57);
+  expectVisitsOfRigidTrees<kIOS<double>>(58);
 }
 
 TEST(FCL_MOVING_KDOP_TREE, oneTriangleAndNothingToVisit) {
   MovingMesh mesh;
   mesh.t0 = mesh.t1 = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const PreparedMovingMesh one(mesh), other(mesh);
-  EXPECT_TRUE(visitsOf(one.instance(), one.instance(), 1).empty());
-  EXPECT_EQ(visitsOf(one.instance(), other.instance(), 1).size(), 1U);
+  const MovingBody one(mesh), other(mesh);
+  EXPECT_TRUE(visitsOf(one.body, one.body).empty());
+  EXPECT_EQ(visitsOf(one.body, other.body).size(), 1U);
 }
 
 TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
@@ -332,34 +636,39 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
         for (auto* points : {&b.t0, &b.t1})
           for (auto& p : *points) p[k] = size * p[k] + 0.5 * far * (k + 1);
       }
-      const PreparedMovingMesh pa(a, pose_a[0], pose_a[1]), pb(b, pose_b[0], pose_b[1]);
-      EXPECT_GT(expectVisits(pa.instance(), pb.instance()), 100);
-      EXPECT_GT(expectVisits(pb.instance(), pa.instance()), 100);
+      const MovingBody pa(a, pose_a[0], pose_a[1]), pb(b, pose_b[0], pose_b[1]);
+      EXPECT_GT(expectVisits(pa.body, pb.body), 100);
+      EXPECT_GT(expectVisits(pb.body, pa.body), 100);
       // Not by giving up: most pairs are still culled where floats can tell them apart.
       if (far <= 1e6 * size) {
-        EXPECT_LT(visitsOf(pa.instance(), pb.instance(), 1).size(),
+        EXPECT_LT(visitsOf(pa.body, pb.body).size(),
                   a.triangles.size() * b.triangles.size() * 3 / 4);
       }
     }
 }
 
-int depthOf(const MovingKdopTree& tree, int node = 0) {
-  if (tree.isLeaf(node)) return 0;
-  const int left = tree.leftChild(node);
-  return 1 + std::max(depthOf(tree, left), depthOf(tree, left + 1));
+int depthOf(const MovingKdopTree& tree, int i = 0) {
+  const MovingKdopNode& node = tree.node(i);
+  int below = 0;
+  for (int lane = 0; lane < node.count; ++lane)
+    if (!node.isTriangle(lane)) below = std::max(below, depthOf(tree, node.child[lane]));
+  return 1 + below;
 }
 
+// 24 levels by area at most, and then as many as halves need.
 TEST(FCL_MOVING_KDOP_TREE, depthIsBounded) {
   Random random(46);
-  constexpr std::size_t kCount = 3000;
-  for (int shape = 0; shape < 4; ++shape) {
+  constexpr std::size_t kCount = 20000;
+  for (int shape = 0; shape < 5; ++shape) {
     SCOPED_TRACE(shape);
     MovingMesh mesh;
     for (std::size_t i = 0; i < kCount; ++i) {
       const double x = shape == 0   ? 0  // all centroids the same
                        : shape == 1 ? std::ldexp(1, static_cast<int>(i % 250) - 125)
-                       : shape == 2 ? std::pow(1.05, static_cast<double>(i)) * 1e-30
-                                    : 1e300 * random.uniform(-1, 1);
+                       : shape == 2 ? std::pow(1.0075, static_cast<double>(i)) * 1e-30
+                       : shape == 3 ? 1e300 * random.uniform(-1, 1)
+                                    // all but 40 the same
+                                    : std::ldexp(i < 40 ? 1 : 0, static_cast<int>(i));
       for (int k = 0; k < 3; ++k) {
         mesh.t0.emplace_back(x, shape == 3 ? x : 0, 0);
         mesh.t1.emplace_back(x, 0, 1);
@@ -367,9 +676,12 @@ TEST(FCL_MOVING_KDOP_TREE, depthIsBounded) {
       mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
     }
     const PreparedMovingMesh prepared(mesh);
-    ASSERT_EQ(prepared.tree().links().size(), 2 * kCount - 1);
-    EXPECT_LE(depthOf(prepared.tree()), kMaxSahDepth + 32);
-    EXPECT_GE(depthOf(prepared.tree()), 11);
+    expectStructure(prepared.tree(), prepared.features());
+    EXPECT_LE(depthOf(prepared.tree()), 24 + 5);
+    EXPECT_GE(depthOf(prepared.tree()), 5);
+    if (shape == 0) {
+      EXPECT_EQ(depthOf(prepared.tree()), 5);
+    }
   }
 }
 
@@ -381,13 +693,13 @@ TEST(FCL_MOVING_KDOP_TREE, coordinatesBeyondFloat) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(size));
     const MovingMesh a = test::randomSoup(random, 25, 60, size, size);
     const MovingMesh b = test::randomSoup(random, 15, 40, size, 0.1 * size);
-    const PreparedMovingMesh pa(a), pb(b);
+    const MovingBody pa(a), pb(b);
     const std::size_t n = a.triangles.size(), m = b.triangles.size();
-    EXPECT_GT(expectVisits(pa.instance(), pa.instance()), 10);
-    EXPECT_GT(expectVisits(pa.instance(), pb.instance()), 10);
+    EXPECT_GT(expectVisits(pa.body, pa.body), 10);
+    EXPECT_GT(expectVisits(pa.body, pb.body), 10);
     if (size > 1e60) {
-      EXPECT_EQ(visitsOf(pa.instance(), pa.instance(), 1).size(), n * (n - 1) / 2);
-      EXPECT_EQ(visitsOf(pa.instance(), pb.instance(), 1).size(), n * m);
+      EXPECT_EQ(visitsOf(pa.body, pa.body).size(), n * (n - 1) / 2);
+      EXPECT_EQ(visitsOf(pa.body, pb.body).size(), n * m);
     }
   }
 }
@@ -405,8 +717,8 @@ TEST(FCL_MOVING_KDOP_TREE, unboundedInOneFrame) {
   mesh.t0.emplace_back(1e45, 0, 0);  // keeps the origin at 0
   mesh.t1.emplace_back(1e45, 0, 0);
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const PreparedMovingMesh prepared(mesh);
-  EXPECT_EQ(expectVisits(prepared.instance(), prepared.instance()), 1);
+  const MovingBody prepared(mesh);
+  EXPECT_EQ(expectVisits(prepared.body, prepared.body), 1);
 }
 
 /// Runs a self-query in the mode set by the caller, whose control word must survive.

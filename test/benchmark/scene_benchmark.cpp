@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "scene_benchmark.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <set>
 #include <vector>
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
 #include "scene_data.h"
 #include "swept_tree.h"
 #include "timing.h"
+#include "traverse.h"
 
 namespace fcl {
 namespace test {
@@ -98,24 +99,24 @@ Row runSweptBoxes(const FramePairMesh& mesh, const std::set<PairName>& truth,
   const SweptTree tree(model.movingTree());
   deformable::MeshInstance instance;
   instance.frames = model.frames();
-  instance.prepared = model.features().data();
+  instance.tree = &model.movingTree();
   Row best;
   for (int i = 0; i < repeats; ++i) {
     Row row;
     row.refit = refit;
-    deformable::TrianglePairTest leaves(instance, instance, deformable::QueryOptions());
-    std::vector<deformable::NodePair> open;
+    deformable::TrianglePairTest leaves(instance, instance, nullptr,
+                                        deformable::QueryOptions());
     std::vector<std::pair<int, int>> pairs;
     row.traverse = millisecondsOf([&] {
-      leaves.counts().node_pairs = deformable::traverse<true>(
-          tree, tree, nullptr, open, [] { return 1.; },
-          [&](int a, int b, TimeWindow) {
-            pairs.emplace_back(a, b);
-            return true;
-          });
+      leaves.counts().node_pairs = traverse<true>(
+          tree, tree, nullptr, [&](int a, int b, float) { pairs.emplace_back(a, b); });
     });
     row.test = millisecondsOf([&] {
-      for (const auto& [a, b] : pairs) leaves.visit(a, b, {0.f, 1.f});
+      for (std::size_t i = 0; i < pairs.size(); leaves.flush()) {
+        const std::size_t end =
+            std::min(i + deformable::TriangleReader::kStored, pairs.size());
+        for (; i < end; ++i) leaves.visit(pairs[i].first, pairs[i].second, 0.f);
+      }
     });
     row.counts = leaves.counts();
     std::size_t found = 0;

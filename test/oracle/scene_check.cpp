@@ -2,16 +2,20 @@
 #include "scene_check.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <sstream>
 #include <utility>
 #include <vector>
 
 #include "exact_oracle.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "feature_pair_generators.h"
 #include "swept_tree.h"
+#include "traverse.h"
 
 namespace fcl {
 namespace test {
@@ -24,45 +28,69 @@ using deformable::FeaturePair;
 using deformable::MeshTriangle;
 
 using Model = DeformableBVHModel<KDOP<double, 16>>;
-using TrianglePair = std::pair<int, int>;
+using Indices = std::pair<int, int>;
 
-enum StageIndex { kFar, kNear, kAxis, kFilter, kSolver, kIntegers };
+enum StageIndex { kFar, kNear, kFans, kBoxes, kFilter, kSolver, kIntegers };
 
 /// The tolerance of a query that asks for none.
 constexpr double kTocErr = 1e-4;
 
-TrianglePair inOrder(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+Indices inOrder(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// A pair of features whatever the order of its ids.
+using PairKey = std::pair<FeatureKind, std::array<std::uint32_t, 4>>;
+
+PairKey keyOf(FeatureKind kind, std::array<std::uint32_t, 4> v) {
+  if (kind == FeatureKind::kVertexFace) {
+    std::sort(v.begin() + 1, v.end());
+    return {kind, v};
+  }
+  std::sort(v.begin(), v.begin() + 2);
+  std::sort(v.begin() + 2, v.end());
+  if (v[2] < v[0] || (v[2] == v[0] && v[3] < v[1])) std::rotate(&v[0], &v[2], &v[0] + 4);
+  return {kind, v};
+}
+
+deformable::MeshInstance instanceOf(const Model& model) {
+  deformable::MeshInstance instance;
+  instance.frames = model.frames();
+  instance.tree = &model.movingTree();
+  return instance;
+}
 
 class CullCheck {
  public:
   CullCheck(const Model& model, const CullCheckOptions& options)
-      : model_(model), options_(options), random_(options.seed) {}
+      : model_(model),
+        options_(options),
+        random_(options.seed),
+        instance_(instanceOf(model)),
+        batch_(instance_, instance_, nullptr, deformable::kernels()) {}
 
-  /// What the elementary test does to a visited triangle pair, stage by stage.
-  void addVisited(int a, int b, TimeWindow window) {
-    const double lo = std::max(0., window.lo - deformable::kWindowMargin),
-                 hi = std::min(1., window.hi + deformable::kWindowMargin);
-    forEachPair(a, b, [&](const MovingPair& pair) {
-      double pair_lo = lo, pair_hi = hi;
-      if (!narrowWindow(pair.kind, pair.points(), pair_lo, pair_hi)) {
-        addCulled(kAxis, pair);
-      } else if (!mayBecomeCoplanar(pair.kind, pair.points(), pair_lo, pair_hi)) {
-        addCulled(kFilter, pair);
-      } else {
-        const Answer solved =
-            solveCoplanarity(pair.kind, pair.points(), pair_lo, pair_hi, kTocErr).answer;
-        if (solved == Answer::kNo)
-          addCulled(kSolver, pair);
-        else if (solved == Answer::kUnsure &&
-                 decideExactly(pair.kind, pair.points(), kTocErr).answer == Answer::kNo)
-          addCulled(kIntegers, pair);
+  /// What a query does to a visited triangle pair, stage by stage.
+  void addVisited(int a, int b) {
+    std::vector<PairKey> left;
+    StageCounts counts;
+    batch_.add(a, b, false, counts);
+    batch_.cull(counts);
+    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
+      for (std::size_t i = 0; i < batch_.codes(kind).size(); ++i) {
+        const deformable::FeatureCandidate c =
+            batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]);
+        left.push_back(
+            keyOf(c.kind, {c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]}));
+        addCandidate(c);
       }
+    batch_.clear();
+    forEachPair(a, b, [&](const MovingPair& pair, const PairKey& key) {
+      if (std::find(left.begin(), left.end(), key) == left.end()) addCulled(kBoxes, pair);
     });
   }
 
-  /// A triangle pair that the traversal did not visit.
+  /// A triangle pair that is not looked at.
   void addUnvisited(StageIndex stage, int a, int b) {
-    forEachPair(a, b, [&](const MovingPair& pair) { addCulled(stage, pair); });
+    forEachPair(a, b,
+                [&](const MovingPair& pair, const PairKey&) { addCulled(stage, pair); });
   }
 
   CullReport finish() {
@@ -77,25 +105,45 @@ class CullCheck {
   }
 
  private:
+  void addCandidate(const deformable::FeatureCandidate& c) {
+    MovingPair pair{c.kind, {}};
+    deformable::EightPairs eight;
+    eight.kind = c.kind;
+    for (std::size_t i = 0; i < 8; ++i) eight.set(i, c.x, c.window_lo, c.window_hi);
+    for (std::size_t i = 0; i < 4; ++i) pair.x[i] = model_.frames()[c.vertices[i]];
+    if (deformable::kernels().mayBecomeCoplanar(eight) == 0) {
+      addCulled(kFilter, pair);
+      return;
+    }
+    if (deformable::kernels().solve(eight, kTocErr).no != 0) {
+      addCulled(kSolver, pair);
+      return;
+    }
+    const Answer solved =
+        solveCoplanarity(pair.kind, pair.points(), c.window_lo, c.window_hi, kTocErr)
+            .answer;
+    if (solved == Answer::kNo)
+      addCulled(kSolver, pair);
+    else if (solved == Answer::kUnsure &&
+             decideExactly(pair.kind, pair.points(), kTocErr).answer == Answer::kNo)
+      addCulled(kIntegers, pair);
+  }
+
   template <typename Visit>
   void forEachPair(int a, int b, Visit&& visit) const {
-    const MeshTriangle& ta = model_.features()[static_cast<std::size_t>(a)];
-    const MeshTriangle& tb = model_.features()[static_cast<std::size_t>(b)];
+    const MeshTriangle ta = triangleOf(model_.movingTree(), a),
+                       tb = triangleOf(model_.movingTree(), b);
     deformable::forEachFeaturePair<true>(ta, tb, [&](const FeaturePair& f) {
       const MeshTriangle &first = f.first_on_a ? ta : tb, &other = f.first_on_a ? tb : ta;
+      const std::uint32_t vertex = first.v[f.first];
+      const std::array<std::uint32_t, 4> ids =
+          f.kind == FeatureKind::kVertexFace
+              ? std::array<std::uint32_t, 4>{vertex, other.v[0], other.v[1], other.v[2]}
+              : std::array<std::uint32_t, 4>{vertex, ta.v[(f.first + 1) % 3],
+                                             tb.v[f.second], tb.v[(f.second + 1) % 3]};
       MovingPair pair{f.kind, {}};
-      const auto set = [&](std::size_t i, std::uint32_t id) {
-        pair.x[i] = model_.frames()[id];
-      };
-      set(0, first.v[f.first]);
-      if (f.kind == FeatureKind::kVertexFace) {
-        for (std::size_t k = 0; k < 3; ++k) set(k + 1, other.v[k]);
-      } else {
-        set(1, ta.v[(f.first + 1) % 3]);
-        set(2, tb.v[f.second]);
-        set(3, tb.v[(f.second + 1) % 3]);
-      }
-      visit(pair);
+      for (std::size_t i = 0; i < 4; ++i) pair.x[i] = model_.frames()[ids[i]];
+      visit(pair, keyOf(f.kind, ids));
     });
   }
 
@@ -130,8 +178,10 @@ class CullCheck {
   const Model& model_;
   const CullCheckOptions& options_;
   Random random_;
+  deformable::MeshInstance instance_;
+  deformable::FeatureBatch batch_;
   CullReport report_;
-  std::array<std::vector<MovingPair>, 6> samples_;
+  std::array<std::vector<MovingPair>, 7> samples_;
 };
 
 }  // namespace
@@ -152,27 +202,32 @@ CullReport checkCulledPairs(const FramePairMesh& mesh, const CullCheckOptions& o
                      mesh.previous.size(), FclTree::kSkip);
 
   CullCheck check(model, options);
-  std::vector<deformable::NodePair> open;
-  std::vector<TrianglePair> visited;
-  const auto whole_step = [] { return 1.; };
-  deformable::traverse<true>(model.movingTree(), model.movingTree(), nullptr, open,
-                             whole_step, [&](int a, int b, TimeWindow window) {
-                               visited.push_back(inOrder(a, b));
-                               check.addVisited(a, b, window);
-                               return true;
-                             });
+  std::vector<Indices> visited;
+  const deformable::MovingKdopTree& tree = model.movingTree();
+  const std::vector<std::uint8_t> embedded = embeddedFans(tree);
+  const auto visit = [&](int a, int b, float) {
+    visited.push_back(inOrder(a, b));
+    check.addVisited(a, b);
+  };
+  traverse<true>(tree, tree, nullptr, visit, 1, embedded.data());
   std::sort(visited.begin(), visited.end());
   const auto isVisited = [&visited](int a, int b) {
     return std::binary_search(visited.begin(), visited.end(), inOrder(a, b));
   };
+  // Triangle pairs whose boxes meet and that lie in one embedded fan.
+  std::vector<Indices> in_fans;
+  traverse<true>(tree, tree, nullptr, [&](int a, int b, float) {
+    if (!isVisited(a, b)) in_fans.push_back(inOrder(a, b));
+  });
+  for (const Indices& pair : in_fans) check.addUnvisited(kFans, pair.first, pair.second);
+  visited.insert(visited.end(), in_fans.begin(), in_fans.end());
+  std::sort(visited.begin(), visited.end());
 
   // Triangle pairs that only their motion keeps apart.
-  const SweptTree swept(model.movingTree());
-  deformable::traverse<true>(swept, swept, nullptr, open, whole_step,
-                             [&](int a, int b, TimeWindow) {
-                               if (!isVisited(a, b)) check.addUnvisited(kNear, a, b);
-                               return true;
-                             });
+  const SweptTree swept(tree);
+  traverse<true>(swept, swept, nullptr, [&](int a, int b, float) {
+    if (!isVisited(a, b)) check.addUnvisited(kNear, a, b);
+  });
   Random random(options.seed + 1);
   for (std::size_t i = 0; i < options.oracle_samples; ++i) {
     const int a = static_cast<int>(random.index(mesh.triangles.size())),

@@ -37,10 +37,11 @@ struct CullReport {
   /// Far apart: of triangle pairs drawn at random, under node pairs whose boxes never
   /// meet. Near: triangle pairs whose boxes around the whole step meet, while their
   /// moving boxes, or those of nodes above, never do. Then the feature pairs of visited
-  /// triangle pairs, by the stage of the elementary test.
-  std::array<CulledByStage, 6> stages{{{"nodes, far"},
+  /// triangle pairs, by the stage that culls them.
+  std::array<CulledByStage, 7> stages{{{"nodes, far"},
                                        {"nodes, near"},
-                                       {"axis window"},
+                                       {"fans"},
+                                       {"moving boxes"},
                                        {"filter"},
                                        {"solver"},
                                        {"integers"}}};

@@ -80,20 +80,6 @@ Vector3<double> separation(const ContactWeights& where,
 
 }  // namespace
 
-void addCounts(StageCounts& sum, const StageCounts& part) {
-  sum.node_pairs += part.node_pairs;
-  sum.triangle_pairs += part.triangle_pairs;
-  sum.adjacent_pairs += part.adjacent_pairs;
-  sum.feature_pairs += part.feature_pairs;
-  sum.box_culled += part.box_culled;
-  sum.filter_culled += part.filter_culled;
-  sum.solver_culled += part.solver_culled;
-  sum.exact_culled += part.exact_culled;
-  sum.exact_tests += part.exact_tests;
-  sum.contacts += part.contacts;
-  sum.crossing_tests += part.crossing_tests;
-}
-
 int ClothSimulator::addBody(const TestMesh& mesh, bool is_obstacle,
                             ObstacleMotion motion) {
   if (started_) throw Exception("ClothSimulator: bodies come before the first frame");
@@ -253,7 +239,7 @@ ContinuousContactResult<double> ClothSimulator::query(int step_of_frame,
   continuousSelfCollide(&model_, ContinuousContactRequest<double>(), result);
   report.query_seconds += secondsSince(begin);
   ++report.queries;
-  addCounts(report.counts, result.counts);
+  report.counts += result.counts;
   report.crossing = report.crossing || result.initially_crossing;
   for (const auto& c : result.contacts) {
     report.contacts.push_back(

@@ -91,9 +91,6 @@ struct FrameReport {
   bool crossing{false};
 };
 
-/// @brief Adds every count of `part` to `sum`.
-void addCounts(StageCounts& sum, const StageCounts& part);
-
 /// @brief Rigid motion of an obstacle: its pose at a time in seconds.
 using ObstacleMotion = std::function<Transform3<double>(double time)>;
 

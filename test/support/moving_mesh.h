@@ -35,11 +35,9 @@ class PreparedMovingMesh {
     const detail::deformable::VertexFrames own(mesh.previous(), mesh.current(),
                                                mesh.t0.size());
     tree_.build(features_, own);
-    tree_.refit(features_, own);
+    tree_.refit(own);
     instance_.frames = own;
     instance_.frames.setPoses(beginning, end);
-    instance_.prepared = features_.data();
-    instance_.num_triangles = features_.size();
     instance_.tree = &tree_;
     for (int k = 0; k < 3; ++k) {
       instance_.translation[0][k] = beginning.translation[k];

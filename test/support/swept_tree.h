@@ -15,23 +15,22 @@ namespace test {
 /// which is what the paper and FCL use.
 class SweptTree {
  public:
-  explicit SweptTree(const detail::deformable::MovingKdopTree& tree) : tree_(tree) {
-    boxes_.reserve(tree.links().size());
-    for (std::size_t i = 0; i < tree.links().size(); ++i) {
-      MovingKdop box = tree.box(static_cast<int>(i));
-      for (int j = 0; j < 16; ++j)
-        box.t0.half[j] = box.t1.half[j] = std::max(box.t0.half[j], box.t1.half[j]);
-      boxes_.push_back(box);
+  explicit SweptTree(const detail::deformable::MovingKdopTree& tree) {
+    nodes_.reserve(tree.numNodes());
+    for (std::size_t i = 0; i < tree.numNodes(); ++i) {
+      detail::deformable::MovingKdopNode node = tree.node(static_cast<int>(i));
+      for (detail::deformable::MovingKdopNode::Row& row : node.rows)
+        for (int lane = 0; lane < node.count; ++lane)
+          row.t0[lane] = row.t1[lane] = std::max(row.t0[lane], row.t1[lane]);
+      nodes_.push_back(node);
     }
   }
-  bool isLeaf(int node) const { return tree_.isLeaf(node); }
-  int leftChild(int node) const { return tree_.leftChild(node); }
-  int triangle(int node) const { return tree_.triangle(node); }
-  const MovingKdop& box(int node) const { return boxes_[static_cast<std::size_t>(node)]; }
+  const detail::deformable::MovingKdopNode& node(int i) const {
+    return nodes_[static_cast<std::size_t>(i)];
+  }
 
  private:
-  const detail::deformable::MovingKdopTree& tree_;
-  std::vector<MovingKdop> boxes_;
+  std::vector<detail::deformable::MovingKdopNode> nodes_;
 };
 
 }  // namespace test

@@ -90,6 +90,11 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief Whether position and normal of each contact are computed.
   bool enable_contact{true};
+
+  /// @brief Threads that the query may use: 1, the caller's own and no task (the default,
+  /// as in FCL, whose callers run their own queries side by side); n, at most n; 0, as
+  /// many as the oneTBB task arena around has. The answer does not depend on it.
+  int num_threads{1};
 };
 
 using ContinuousContactRequestf = ContinuousContactRequest<float>;
@@ -102,8 +107,8 @@ using ContinuousContactRequestd = ContinuousContactRequest<double>;
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S> {
   /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
-  /// ContinuousQuery::kFirst those found on the way, the earliest among them; with kAny
-  /// at most one.
+  /// ContinuousQuery::kFirst those that may be the first: whose bracket begins before the
+  /// earliest end of a bracket; with kAny at most one.
   std::vector<ContinuousContact<S>> contacts;
 
   /// @brief Whether contacts were dropped because of num_max_contacts.

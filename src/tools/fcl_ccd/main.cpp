@@ -43,7 +43,7 @@ What is tested:
 Output:
   A contact counts as vf (vertex-face) or ee (edge-edge); each is proved, so that the
   table's 'uncertain' is 0. 'vertices' and 'triangles' count those of all meshes. With
-  '--query first' the contacts are those found on the way to the first, with '--query any'
+  '--query first' the contacts are those that may be the first, with '--query any'
   at most one, not always the earliest.
   --contacts: step,kind,i0,i1,i2,i3,toc_lo,toc_hi with kind vf (vertex, face) or ee (edge
   a, edge b); ids count from 0, those of B are prefixed b; the first time of contact lies
@@ -123,6 +123,17 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   run->add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(CLI::CheckedTransformer(kQueries).description(""));
+  run->add_option("--threads", options.settings.num_threads,
+                  "Threads of a query; 0: as many as there are")
+      ->type_name("N")
+      ->check(CLI::Validator(
+          [](const std::string& text) {
+            int value = -1;
+            const bool valid = CLI::detail::lexical_cast(text, value) && value >= 0;
+            return valid ? std::string() : "'" + text + "' is not a number of threads";
+          },
+          ""))
+      ->capture_default_str();
   run->add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
       ->type_name("FILE");
   run->add_option("--paint", options.paint_path,

@@ -117,6 +117,7 @@ void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
   request.query = settings_.query;
   request.toc_err = settings_.toc_err;
   request.enable_contact = false;
+  request.num_threads = settings_.num_threads;
   fcl::ContinuousContactResultd result;
   const fcl::Transform3d identity = fcl::Transform3d::Identity();
   if (&o1 == &o2)

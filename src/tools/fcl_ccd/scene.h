@@ -19,6 +19,7 @@ struct QuerySettings {
   double toc_err{1e-4};
   bool self{true};  ///< whether A is tested against itself
   int repeat{1};
+  int num_threads{1};
 };
 
 /// @brief A vertex of one of the two meshes.

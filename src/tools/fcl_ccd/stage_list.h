@@ -18,6 +18,7 @@ struct StageField {
 constexpr StageField kStages[] = {{"node_pairs", &fcl::StageCounts::node_pairs},
                                   {"triangle_pairs", &fcl::StageCounts::triangle_pairs},
                                   {"adjacent_pairs", &fcl::StageCounts::adjacent_pairs},
+                                  {"fan_culled", &fcl::StageCounts::fan_culled},
                                   {"feature_pairs", &fcl::StageCounts::feature_pairs},
                                   {"box_culled", &fcl::StageCounts::box_culled},
                                   {"filter_culled", &fcl::StageCounts::filter_culled},

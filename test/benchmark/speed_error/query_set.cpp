@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "fcl/narrowphase/detail/deformable/deformable_query.h"
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "query_csv.h"
 #include "query_generators.h"
 #include "scene_data.h"
@@ -55,41 +55,16 @@ std::vector<NamedPair> pairsWhoseBoxesMeet(const FramePairMesh& mesh) {
   model.endModel(FclTree::kSkip);
   model.updateFrames(mesh.previous.front().data(), mesh.current.front().data(),
                      mesh.previous.size(), FclTree::kSkip);
-  const deformable::VertexFrames frames = model.frames();
-
+  deformable::MeshInstance instance;
+  instance.frames = model.frames();
+  instance.tree = &model.movingTree();
   std::vector<NamedPair> found;
-  const auto testWindow = [&](const NamedPair& pair, TimeWindow window) {
-    deformable::VertexPath x[4];
-    for (std::size_t i = 0; i < 4; ++i)
-      x[i] = frames[static_cast<std::size_t>(pair.v[i])];
-    double lo = std::max(0., window.lo - deformable::kWindowMargin),
-           hi = std::min(1., window.hi + deformable::kWindowMargin);
-    if (deformable::narrowWindow(pair.kind, {{&x[0], &x[1], &x[2], &x[3]}}, lo, hi))
-      found.push_back(pair);
-  };
-  std::vector<deformable::NodePair> open;
-  deformable::traverse<true>(
-      model.movingTree(), model.movingTree(), nullptr, open, [] { return 1.; },
-      [&](int i, int j, TimeWindow window) {
-        const deformable::MeshTriangle &a = model.features()[static_cast<std::size_t>(i)],
-                                       &b = model.features()[static_cast<std::size_t>(j)];
-        const auto id = [](const deformable::MeshTriangle& t, unsigned k) {
-          return static_cast<int>(t.v[k % 3]);
-        };
-        deformable::forEachFeaturePair<true>(a, b, [&](const deformable::FeaturePair& p) {
-          if (p.kind == FeatureKind::kEdgeEdge) {
-            testWindow({p.kind,
-                        {id(a, p.first), id(a, p.first + 1), id(b, p.second),
-                         id(b, p.second + 1)}},
-                       window);
-            return;
-          }
-          const deformable::MeshTriangle &vertex = p.first_on_a ? a : b,
-                                         &face = p.first_on_a ? b : a;
-          testWindow(
-              {p.kind, {id(vertex, p.first), id(face, 0), id(face, 1), id(face, 2)}},
-              window);
-        });
+  deformable::candidatesSelf(
+      instance, [&found](const deformable::FeatureCandidate* block, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+          const auto id = [&](int k) { return static_cast<int>(block[i].vertices[k]); };
+          found.push_back({block[i].kind, {id(0), id(1), id(2), id(3)}});
+        }
         return true;
       });
   return found;

@@ -7,14 +7,16 @@
 #ifndef FCL_BV_MOVING_KDOP_H
 #define FCL_BV_MOVING_KDOP_H
 
+#include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <limits>
 
 namespace fcl {
 
 /// @brief Half-axis bounds: entries 0-7 are minus the lower, 8-15 the upper bound along
 /// x, y, z, x+y, x+z, y+z, x-y, x-z; relative to an origin that its owner knows; rounded
-/// outward. A NaN reads as "unbounded".
+/// outward, hence never below kLeastHalf; infinity where a float has no bound. No NaN.
 struct alignas(64) Kdop16 {
   float half[16];
 };
@@ -52,11 +54,17 @@ inline void kdopCoordinates(const double (&p)[3], double (&d)[8]) {
 /// relative, the two operations of roundUp() 2^-24 each; 2^-22 covers them.
 constexpr float kOutward = 0x1p-22f;
 
+/// @brief No half-axis bound is below this, so that the sum of two is finite or plus
+/// infinity.
+constexpr float kLeastHalf = -0.5f * FLT_MAX;
+
 /// @brief A float not less than value + pad, pad >= 0; FLT_MIN keeps it right where a
-/// float would be subnormal.
+/// float would be subnormal. Infinity for a NaN, never below kLeastHalf.
 inline float roundUp(double value, float pad) {
-  const auto f = static_cast<float>(value);
-  return f + (std::fabs(f) * kOutward + (pad + FLT_MIN));
+  const auto f =
+      static_cast<float>(value < double{kLeastHalf} ? double{kLeastHalf} : value);
+  const float up = f + (std::fabs(f) * kOutward + (pad + FLT_MIN));
+  return up == up ? up : std::numeric_limits<float>::infinity();
 }
 
 /// @brief What is added to the sum of two boxes whose origins differ.
@@ -86,50 +94,39 @@ inline bool isAny(const Mask4& mask) {
 #endif
 }
 
+/// The loss of a window: rounded down by more than its own rounding, the quotient's 2^-24
+/// and that of each of the two differences in it.
+constexpr float kLossDown = 1.f - 0x1p-21f;
+/// Minus the loss at the end: 1 and more than the rounding of the subtraction.
+constexpr float kWindowEnd = 1.f + 0x1p-22f;
+
 /// @brief When boxes a and b, which move linearly, overlap in all 8 directions. Never
 /// misses a time of overlap: the window is rounded outward.
 ///
 /// Along half-axis j, a's bound plus b's opposite bound (halves swapped) is the overlap
-/// depth s(t), linear in t; the boxes overlap while all 16 are >= 0. A NaN never
-/// separates.
+/// depth s(t), linear in t; the boxes overlap while all 16 are >= 0. Where s0 = s(0) and
+/// s1 = s(1) have opposite signs, the part least / (least - most) of the step is lost, at
+/// the beginning (s0 < 0) or the end. It is 0 where `most` or the difference is infinite:
+/// what overflows never separates.
 template <bool kShifted>
 inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
                                 const KdopShift* shift) {
-  const Float4 zero = {0.f, 0.f, 0.f, 0.f}, one = {1.f, 1.f, 1.f, 1.f};
-  Float4 s0[4], s1[4];
-  Mask4 cut = {0, 0, 0, 0};
-  for (int q = 0; q < 4; ++q) {
-    s0[q] = quad(a.t0, q) + quad(b.t0, q ^ 2);
-    s1[q] = quad(a.t1, q) + quad(b.t1, q ^ 2);
+  float before = 0.f, after = 0.f;
+  for (int j = 0; j < 16; ++j) {
+    float a0 = a.t0.half[j], a1 = a.t1.half[j];
     if (kShifted) {
-      s0[q] += quad(shift->t0, q);
-      s1[q] += quad(shift->t1, q);
+      a0 = std::max(a0 + shift->t0.half[j], kLeastHalf);
+      a1 = std::max(a1 + shift->t1.half[j], kLeastHalf);
     }
-    // Negative at both ends: apart for the whole step. Most pairs end here.
-    const Mask4 apart_at_0 = s0[q] < zero, apart_at_1 = s1[q] < zero;
-    if (isAny(apart_at_0 & apart_at_1)) return {1.f, 0.f};
-    cut |= apart_at_0 | apart_at_1;
+    const float s0 = a0 + b.t0.half[j ^ 8], s1 = a1 + b.t1.half[j ^ 8];
+    if (s0 < 0 && s1 < 0) return {1.f, 0.f};
+    if (s0 >= 0 && s1 >= 0) continue;
+    const float least = std::min(s0, s1), most = std::max(s0, s1);
+    const float loss = least / (least - most) * kLossDown;
+    (s0 < 0 ? before : after) = std::max(s0 < 0 ? before : after, loss);
   }
-  // Negative nowhere: the divisions below would find the whole step too.
-  if (!isAny(cut)) return {0.f, 1.f};
-  // s0 and s1 are correctly rounded, so their signs are right; the quotient, between
-  // numbers of opposite sign, is within 3 * 2^-24 relative of the true root.
-  constexpr float kDown = 1.f - 0x1p-21f;
-  constexpr float kUp = 1.f + 0x1p-21f;
-  Float4 lo = zero, hi = one;
-  for (int q = 0; q < 4; ++q) {
-    const Float4 change = s0[q] - s1[q];
-    // Where the difference overflows (or is NaN) the quotient would mean nothing.
-    const Mask4 valid = (change <= FLT_MAX) & (change >= -FLT_MAX);
-    const Float4 t = s0[q] / change;
-    const Float4 enter = ((s0[q] < zero) & valid) ? t * kDown : zero;
-    const Float4 leave = ((s1[q] < zero) & valid) ? t * kUp : one;
-    lo = enter > lo ? enter : lo;
-    hi = leave < hi ? leave : hi;
-  }
-  const float lo01 = lo[0] > lo[1] ? lo[0] : lo[1], lo23 = lo[2] > lo[3] ? lo[2] : lo[3];
-  const float hi01 = hi[0] < hi[1] ? hi[0] : hi[1], hi23 = hi[2] < hi[3] ? hi[2] : hi[3];
-  return {lo01 > lo23 ? lo01 : lo23, hi01 < hi23 ? hi01 : hi23};
+  const float hi = kWindowEnd - after;
+  return {before, std::min(hi, 1.f)};
 }
 
 }  // namespace deformable

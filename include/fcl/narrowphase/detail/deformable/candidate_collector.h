@@ -6,19 +6,13 @@
 #include <functional>
 #include <vector>
 
+#include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "fcl/narrowphase/detail/deformable/stage_counts.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-/// @brief Two features that do not touch outside [window_lo, window_hi].
-struct FeatureCandidate : FeatureIds {
-  double window_lo;
-  double window_hi;
-};
 
 /// @brief Takes a block of candidates; false: no more are wanted.
 using CandidateSink =
@@ -29,38 +23,26 @@ class CandidateCollector {
  public:
   /// @param a, b, sink  kept by reference; the same mesh twice for a self-collision.
   /// @pre both meshes are prepared: otherwise pairs would come repeatedly
-  CandidateCollector(const MeshInstance& a, const MeshInstance& b,
+  CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                      const CandidateSink& sink)
-      : pair_(a, b), sink_(sink) {
-    block_.reserve(kBlock);
-  }
+      : batch_(a, b, shift, kernels()), sink_(sink) {}
 
-  /// @brief Collects from triangle i of a and triangle j of b, whose boxes overlap in the
-  /// window.
+  /// @brief Takes triangle i of a and triangle j of b, as their trees count them; at most
+  /// FeatureBatch::kMaxPairs between two calls of flush().
   /// @throws NonFiniteVertex
-  void visit(int i, int j, TimeWindow window);
+  void visit(int i, int j, float) { batch_.add(i, j, false, counts_); }
 
-  /// @brief Hands out what is left.
-  void finish() {
-    if (!stopped_ && !block_.empty()) handOut();
-  }
+  /// @brief Hands out what is there.
+  void flush();
 
   /// @brief Whether the sink wants no more.
   bool isDone() const { return stopped_; }
 
   double latest() const { return 1; }
-  StageCounts& counts() { return counts_; }
+  void addTraversal(std::uint64_t, std::uint64_t) {}
 
  private:
-  /// 48 KiB: a block stays in the cache from here to its reader.
-  static constexpr std::size_t kBlock = 1024;
-
-  void handOut() {
-    stopped_ = !sink_(block_.data(), block_.size());
-    block_.clear();
-  }
-
-  TrianglePair pair_;
+  FeatureBatch batch_;
   const CandidateSink& sink_;
   std::vector<FeatureCandidate> block_;
   bool stopped_{false};

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <set>
+#include <map>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
@@ -28,8 +28,8 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y);
 class ContactSink {
  public:
   /// @param capacity  at least 1
-  /// @param may_repeat  whether add() can be given a pair more than once; the first
-  /// counts.
+  /// @param may_repeat  whether add() can be given a pair more than once; the earliest
+  /// counts, whatever the order.
   ContactSink(std::size_t capacity, bool may_repeat)
       : capacity_(capacity), may_repeat_(may_repeat) {}
 
@@ -49,12 +49,16 @@ class ContactSink {
   /// that some are dropped.
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
+  /// @brief The contacts in no order; leaves the sink empty.
+  std::vector<FeatureContact> takeContacts() { return std::move(contacts_); }
+
   /// @brief The contacts, earliest first; leaves the sink empty.
   std::vector<FeatureContact> takeSorted();
 
  private:
   using PairKey = std::array<std::uint32_t, 5>;
   static PairKey keyOf(const FeatureContact& contact);
+  bool addAgain(const FeatureContact& contact, std::size_t place);
 
   std::size_t capacity_;
   bool may_repeat_;
@@ -62,7 +66,8 @@ class ContactSink {
   double first_hi_{1};
   /// Once cut_, a heap with the latest contact in front.
   std::vector<FeatureContact> contacts_;
-  std::set<PairKey> seen_;
+  /// The kept pairs, and until cut_ where they are.
+  std::map<PairKey, std::size_t> seen_;
 };
 
 }  // namespace deformable

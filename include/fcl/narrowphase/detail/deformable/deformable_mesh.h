@@ -3,7 +3,6 @@
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFORMABLE_MESH_H
 
 #include <cstddef>
-#include <vector>
 
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
@@ -18,7 +17,6 @@ class DeformableMesh {
  public:
   virtual ~DeformableMesh() = default;
 
-  const std::vector<deformable::MeshTriangle>& features() const { return features_; }
   const deformable::MovingKdopTree& movingTree() const { return tree_; }
 
   /// @brief Whether a vertex differs between the two frames.
@@ -53,7 +51,6 @@ class DeformableMesh {
   Open open_{Open::kNone};
 
  private:
-  std::vector<deformable::MeshTriangle> features_;
   deformable::MovingKdopTree tree_;
   bool is_deforming_{false};
 };

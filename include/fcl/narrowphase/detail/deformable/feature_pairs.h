@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "fcl/math/bv/moving_kdop.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 
@@ -36,29 +37,67 @@ inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {
   return t.v[0] == v || t.v[1] == v || t.v[2] == v;
 }
 
+/// @brief The pairs of features of two triangles a and b, a bit each: bit k, vertex k of
+/// a and the face of b; 3 + k, vertex k of b and the face of a; 6 + 3 i + j, edge i of a
+/// and edge j of b.
+constexpr int kNumFeaturePairs = 15;
+
+inline unsigned numBits(unsigned pairs) {
+  unsigned n = 0;
+  for (; pairs != 0; pairs &= pairs - 1) ++n;
+  return n;
+}
+
+inline FeaturePair featurePair(int bit) {
+  const auto k = static_cast<unsigned>(bit);
+  if (k < 3) return {FeatureKind::kVertexFace, true, k, 0};
+  if (k < 6) return {FeatureKind::kVertexFace, false, k - 3, 0};
+  return {FeatureKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
+}
+
+/// @brief Edges (three bits) that end in one of the vertices (three bits).
+inline unsigned edgesAt(unsigned vertices) {
+  return vertices | (vertices >> 1) | (vertices << 2 & 4U);
+}
+
+/// @brief Bits 3 i + j for bit i of rows and bit j of columns.
+inline unsigned product(unsigned rows, unsigned columns) {
+  return ((rows & 1U) | (rows & 2U) << 2 | (rows & 4U) << 4) * columns;
+}
+
+/// @brief Bits 3 i + j for the equal ones among vertices i of a and j of b.
+inline unsigned sharedVertices(const std::uint32_t (&a)[3], const std::uint32_t (&b)[3]) {
+  typedef std::uint32_t Ids __attribute__((vector_size(16)));
+  const Ids ids = {a[0], a[1], a[2], a[2]};
+  if (!isAny((ids == b[0]) | (ids == b[1]) | (ids == b[2]))) return 0;
+  unsigned shared = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j) shared |= unsigned{a[i] == b[j]} << (3 * i + j);
+  return shared;
+}
+
+/// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned) and
+/// that share no vertex (sharedVertices(); 0 for triangles of two meshes).
+inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b, unsigned shared) {
+  const unsigned vertices_a = (owned_b >> 6 & 1U) * (owned_a & 7U);
+  const unsigned vertices_b = (owned_a >> 6 & 1U) * (owned_b & 7U);
+  const unsigned edges = product(owned_a >> 3 & 7U, owned_b >> 3 & 7U);
+  unsigned pairs = vertices_a | vertices_b << 3 | edges << 6;
+  for (; shared != 0; shared &= shared - 1) {
+    const unsigned bit = static_cast<unsigned>(__builtin_ctz(shared));
+    const unsigned i = 1U << bit / 3, j = 1U << bit % 3;
+    pairs &= ~(i | j << 3 | product(edgesAt(i), edgesAt(j)) << 6);
+  }
+  return pairs;
+}
+
 /// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own;
 /// over all triangle pairs of a scene that is every VF and EE pair once.
 /// @tparam kSelf  a and b index the same vertices: pairs that share one are left out.
 template <bool kSelf, typename Visit>
 void forEachFeaturePair(const MeshTriangle& a, const MeshTriangle& b, Visit&& visit) {
-  if (b.ownsFace())
-    for (unsigned k = 0; k < 3; ++k)
-      if (a.ownsVertex(k) && !(kSelf && hasVertex(b, a.v[k])))
-        visit(FeaturePair{FeatureKind::kVertexFace, true, k, 0});
-  if (a.ownsFace())
-    for (unsigned k = 0; k < 3; ++k)
-      if (b.ownsVertex(k) && !(kSelf && hasVertex(a, b.v[k])))
-        visit(FeaturePair{FeatureKind::kVertexFace, false, k, 0});
-  for (unsigned i = 0; i < 3; ++i) {
-    if (!a.ownsEdge(i)) continue;
-    const std::uint32_t a0 = a.v[i], a1 = a.v[(i + 1) % 3];
-    for (unsigned j = 0; j < 3; ++j) {
-      if (!b.ownsEdge(j)) continue;
-      const std::uint32_t b0 = b.v[j], b1 = b.v[(j + 1) % 3];
-      if (kSelf && (a0 == b0 || a0 == b1 || a1 == b0 || a1 == b1)) continue;
-      visit(FeaturePair{FeatureKind::kEdgeEdge, true, i, j});
-    }
-  }
+  unsigned pairs = ownedPairs(a.owned, b.owned, kSelf ? sharedVertices(a.v, b.v) : 0U);
+  for (; pairs != 0; pairs &= pairs - 1) visit(featurePair(__builtin_ctz(pairs)));
 }
 
 }  // namespace deformable

@@ -14,16 +14,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A mesh as one query sees it: vertex paths in the world, triangles, and a tree.
-/// Owns nothing.
+/// @brief A mesh as one query sees it: a tree, vertex paths in the world, and, without a
+/// moving tree, the triangles. Owns nothing.
 struct MeshInstance {
   VertexFrames frames;
-
-  /// Triangles with owned features; null for a mesh that has not been prepared, whose
-  /// triangles then own all their features (a pair of features can be met repeatedly).
-  const MeshTriangle* prepared{nullptr};
-  const Triangle* triangles{nullptr};
-  std::size_t num_triangles{0};
 
   /// The moving tree, whose boxes are still to be moved by `translation`; null: the mesh
   /// only translates and `rigid` is used.
@@ -31,17 +25,20 @@ struct MeshInstance {
   RigidTree rigid;
   double translation[2][3]{{0, 0, 0}, {0, 0, 0}};
 
-  MeshTriangle triangle(std::size_t i) const {
-    if (prepared) return prepared[i];
-    const Triangle& t = triangles[i];
-    MeshTriangle out{{static_cast<std::uint32_t>(t[0]), static_cast<std::uint32_t>(t[1]),
-                      static_cast<std::uint32_t>(t[2])},
-                     kOwnsAll};
-    // As in assignFeatures(), an edge with two equal ids is none.
-    for (unsigned k = 0; k < 3; ++k)
-      if (out.v[k] == out.v[(k + 1) % 3]) out.owned &= ~(1U << (3 + k));
-    return out;
+  /// Without a moving tree: triangles with owned features; null for a mesh that has not
+  /// been prepared, whose triangles then own all their features (a pair of features can
+  /// be met repeatedly).
+  const MeshTriangle* prepared{nullptr};
+  const Triangle* triangles{nullptr};
+
+  /// @brief Whether the paths of the tree's vertices are those in the world.
+  bool isInPlace() const {
+    for (const auto& v : translation)
+      if (v[0] != 0 || v[1] != 0 || v[2] != 0) return false;
+    return tree;
   }
+
+  bool hasOwners() const { return tree || prepared; }
 };
 
 }  // namespace deformable

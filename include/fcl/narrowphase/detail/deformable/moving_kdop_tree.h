@@ -8,37 +8,112 @@
 
 #include "fcl/math/bv/moving_kdop.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
+#include "fcl/narrowphase/detail/deformable/vertex_fans.h"
 #include "fcl/narrowphase/detail/deformable/vertex_frames.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A binary tree of moving 16-DOPs over the triangles of a mesh, one triangle a
-/// leaf. The structure is made once, by build() or from links of another tree; refit()
-/// sets the boxes for a pair of frames.
+/// @brief Up to eight children, each a subtree or a triangle, with their moving boxes. A
+/// row, one cache line, holds one half-axis of all children, so that one box is compared
+/// with eight at once; the two half-axes of a direction follow each other.
+struct alignas(64) MovingKdopNode {
+  static constexpr int kWidth = 8;
+  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
+
+  struct Row {
+    float t0[kWidth];
+    float t1[kWidth];
+  };
+  Row rows[16];
+  /// Vertices of the triangles, as places in the tree's order; kNoPlace for a node.
+  std::uint32_t places[3][kWidth];
+  /// >= 0: a node; < 0: ~triangle. The first `count` are in use.
+  std::int32_t child[kWidth];
+  std::int32_t count;
+
+  bool isTriangle(int lane) const { return child[lane] < 0; }
+  int triangle(int lane) const { return ~child[lane]; }
+
+  /// @brief Lanes that are in use, a bit each.
+  unsigned lanes() const { return (1U << count) - 1; }
+
+  /// @brief Half-axis of Kdop16 that a row holds.
+  static constexpr int halfAxis(int row) { return row / 2 + row % 2 * 8; }
+
+  void setBox(int lane, const MovingKdop& box) {
+    for (int r = 0; r < 16; ++r) {
+      rows[r].t0[lane] = box.t0.half[halfAxis(r)];
+      rows[r].t1[lane] = box.t1.half[halfAxis(r)];
+    }
+  }
+  MovingKdop box(int lane) const {
+    MovingKdop out;
+    for (int r = 0; r < 16; ++r) {
+      out.t0.half[halfAxis(r)] = rows[r].t0[lane];
+      out.t1.half[halfAxis(r)] = rows[r].t1[lane];
+    }
+    return out;
+  }
+  /// @brief Fills the lanes that are not in use with boxes that overlap nothing.
+  void clearRest() {
+    for (int i = count; i < kWidth; ++i) {
+      child[i] = 0;
+      for (Row& row : rows) row.t0[i] = row.t1[i] = kLeastHalf;
+    }
+  }
+};
+
+/// @brief A triangle where the tests read it.
+struct TreeTriangle {
+  /// Places of the vertices in the tree's order.
+  std::uint32_t place[3];
+  std::uint32_t owned;
+  /// The user's ids of the vertices and of the triangle.
+  std::uint32_t id[3];
+  std::uint32_t index;
+};
+
+/// @brief A vertex where the tests read it: its path (the fourth number is not used) and
+/// its moving box.
+struct alignas(64) TreeVertex {
+  double t0[4];
+  double t1[4];
+  MovingKdop box;
+};
+
+/// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
+/// The structure is made once, by build() or from the links of another tree; refit() sets
+/// the boxes for a pair of frames. Triangles and vertices lie in the order in which the
+/// tree meets them, so that neighbours on the surface are neighbours in memory.
 ///
-/// Nodes lie in one array; the children of a node are neighbours and come after it, so
-/// that a refit is one backward pass.
+/// Nodes lie in one array, children after their parents, so that a refit is one backward
+/// pass.
 class MovingKdopTree {
  public:
-  /// @brief Makes the structure by binned surface-area splits of the triangles' centroids
-  /// in frame 0. Depth is at most kMaxSahDepth + 32.
+  /// @brief Makes the structure: surface-area splits of the triangles' centroids in frame
+  /// 0, and halving at the bottom so that the lowest nodes are full.
   void build(const std::vector<MeshTriangle>& triangles, const VertexFrames& frames);
 
-  /// @brief Takes the structure from links: links[i] >= 0 is the left child of node i
-  /// (the right one follows it; both come after i), links[i] < 0 is leaf ~links[i].
-  void setLinks(std::vector<std::int32_t> links);
+  /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
+  /// node i (the right one follows it), links[i] < 0 is leaf ~links[i].
+  void build(const std::vector<MeshTriangle>& triangles, std::size_t num_vertices,
+             const std::vector<std::int32_t>& links);
 
   /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
   /// t, for every t in [0, 1], up to nothing: all rounding is outward.
-  void refit(const std::vector<MeshTriangle>& triangles, const VertexFrames& frames);
+  void refit(const VertexFrames& frames);
 
-  const std::vector<std::int32_t>& links() const { return links_; }
-  bool isLeaf(int node) const { return links_[static_cast<std::size_t>(node)] < 0; }
-  int leftChild(int node) const { return links_[static_cast<std::size_t>(node)]; }
-  int triangle(int node) const { return ~links_[static_cast<std::size_t>(node)]; }
-  const MovingKdop& box(int node) const { return boxes_[static_cast<std::size_t>(node)]; }
+  const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  std::size_t numNodes() const { return nodes_.size(); }
+
+  /// @brief Triangles and vertices in the tree's order.
+  const std::vector<TreeTriangle>& triangles() const { return triangles_; }
+  const std::vector<TreeVertex>& vertices() const { return vertices_; }
+
+  /// @brief The fans of the vertices in the tree's order.
+  const VertexFans& fans() const { return fans_; }
 
   /// @brief World point that the boxes are relative to.
   const double (&origin() const)[3] { return origin_; }
@@ -49,17 +124,54 @@ class MovingKdopTree {
   std::size_t memUsage() const;
 
  private:
-  std::vector<std::int32_t> links_;
-  std::vector<MovingKdop> boxes_;
-  /// Boxes of the vertices, from which a refit makes those of the leaves.
-  std::vector<MovingKdop> vertex_boxes_;
+  /// As child and count of a MovingKdopNode.
+  struct Children {
+    std::int32_t child[MovingKdopNode::kWidth];
+    std::int32_t count;
+  };
+  void number(const std::vector<Children>& nodes,
+              const std::vector<MeshTriangle>& triangles, std::size_t num_vertices);
+
+  std::vector<MovingKdopNode> nodes_;
+  std::vector<TreeTriangle> triangles_;
+  std::vector<TreeVertex> vertices_;
+  /// The user's id of each vertex.
+  std::vector<std::uint32_t> vertex_ids_;
+  VertexFans fans_;
   double origin_[3]{0, 0, 0};
   double reach_{0};
 };
 
-/// From this depth on build() halves instead of searching for a good split, so that no
-/// input makes a deep tree.
-constexpr int kMaxSahDepth = 64;
+/// @brief Opens node i of a binary tree until there are eight nodes or only leaves.
+/// @param link  link(i) >= 0: left child of i (the right one follows it); < 0: ~triangle
+/// @param nodes  the nodes
+/// @param children  the same, or ~triangle for leaves
+/// @return number of entries
+template <typename Link>
+int openBinary(std::int32_t i, std::int32_t (&nodes)[MovingKdopNode::kWidth],
+               std::int32_t (&children)[MovingKdopNode::kWidth], Link&& link) {
+  int n = 1;
+  nodes[0] = i;
+  for (bool grew = true; grew;) {
+    grew = false;
+    const int before = n;
+    for (int k = 0; k < before && n < MovingKdopNode::kWidth; ++k) {
+      const std::int32_t left = link(nodes[k]);
+      if (left < 0) continue;
+      nodes[k] = left;
+      nodes[n++] = left + 1;
+      grew = true;
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    const std::int32_t left = link(nodes[k]);
+    children[k] = left < 0 ? left : nodes[k];
+  }
+  return n;
+}
+
+/// @brief Box of a point relative to an origin, with `pad` for what was rounded before.
+void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out);
 
 /// @brief What to add to the sum of a box of a tree around origin_a and one of a tree
 /// around origin_b, whose meshes are moved by translations on top: outward by the

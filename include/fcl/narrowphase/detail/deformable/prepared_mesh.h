@@ -58,13 +58,14 @@ class PreparedMesh {
   void prepareModel(const BVHModel<BV>& model, const Pose& beginning, const Pose& end,
                     const std::string& name, FeatureOwners owners);
   template <typename BV>
-  void computeOwners(const BVHModel<BV>& model, const std::string& name);
+  static std::vector<MeshTriangle> ownersOf(const BVHModel<BV>& model,
+                                            const std::string& name);
   template <typename BV>
   void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
   void refit();
 
   MeshInstance instance_;
-  std::vector<MeshTriangle> features_;
+  std::vector<MeshTriangle> owners_;
   MovingKdopTree tree_;
   double update_time_{0};
 };

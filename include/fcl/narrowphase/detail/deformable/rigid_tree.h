@@ -7,6 +7,7 @@
 
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/moving_kdop.h"
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "fcl/narrowphase/detail/deformable/vertex_frames.h"
 
 namespace fcl {
@@ -27,11 +28,10 @@ class RigidTree {
   RigidTree(const BVHModel<BV>& model, const Pose& pose)
       : RigidTree(&model.getBV(0), sizeof(BVNode<BV>), &boxOf<BV>, slabsOf<BV>(), pose) {}
 
-  bool isLeaf(int node) const { return link(node) < 0; }
-  int leftChild(int node) const { return link(node); }
-  int triangle(int node) const { return ~link(node); }
+  /// @brief Makes a node of up to eight of FCL's below node i.
+  void open(int i, MovingKdopNode& out) const;
 
-  /// @brief Makes the box of the node, the same in both frames.
+  /// @brief Makes the box of one of FCL's nodes, the same in both frames.
   void makeBox(int node, MovingKdop& box) const;
   MovingKdop box(int node) const {
     MovingKdop made;
@@ -92,34 +92,29 @@ class RigidTree {
   double reach_{0};
 };
 
-/// @brief A RigidTree as one traversal reads it: a node is met in many pairs, and its
-/// box, once made, stays in a small table. For one thread.
+/// @brief A RigidTree as one traversal reads it, eight children a node: what is made from
+/// FCL's nodes stays in a small table, since a node is met in many pairs. For one thread.
 class RigidTreeReader {
  public:
   explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
-    std::fill(node_, node_ + kSlots, -1);
+    std::fill(made_, made_ + kSlots, -1);
   }
 
-  bool isLeaf(int node) const { return tree_.isLeaf(node); }
-  int leftChild(int node) const { return tree_.leftChild(node); }
-  int triangle(int node) const { return tree_.triangle(node); }
-
-  /// @brief Box of the node; valid until the box of another node is asked for, its
-  /// sibling's excepted.
-  const MovingKdop& box(int node) {
-    const int slot = node % kSlots;
-    if (node_[slot] != node) {
-      tree_.makeBox(node, box_[slot]);
-      node_[slot] = node;
+  /// @brief The node; valid until another is asked for.
+  const MovingKdopNode& node(int i) {
+    const int slot = i % kSlots;
+    if (made_[slot] != i) {
+      tree_.open(i, node_[slot]);
+      made_[slot] = i;
     }
-    return box_[slot];
+    return node_[slot];
   }
 
  private:
-  static constexpr int kSlots = 256;  // 32 KiB of boxes; siblings have different slots
+  static constexpr int kSlots = 64;  // 68 KiB of nodes
   const RigidTree& tree_;
-  int node_[kSlots];
-  MovingKdop box_[kSlots];
+  int made_[kSlots];
+  MovingKdopNode node_[kSlots];
 };
 
 }  // namespace deformable

@@ -16,7 +16,10 @@ struct StageCounts {
   std::uint64_t triangle_pairs{0};
   /// of those, the pairs that share a vertex
   std::uint64_t adjacent_pairs{0};
-  /// VF and EE pairs that the triangle pairs own and that share no vertex
+  /// of those, the pairs that provably meet nowhere else: the triangles around the shared
+  /// vertex stay a fan
+  std::uint64_t fan_culled{0};
+  /// VF and EE pairs that the other triangle pairs own and that share no vertex
   std::uint64_t feature_pairs{0};
   /// feature pairs whose ranges along x, y, z never meet all at once
   std::uint64_t box_culled{0};
@@ -32,9 +35,26 @@ struct StageCounts {
   std::uint64_t contacts{0};
   /// edge-face pairs tested for crossing at t = 0
   std::uint64_t crossing_tests{0};
+
+  StageCounts& operator+=(const StageCounts& other) {
+    node_pairs += other.node_pairs;
+    triangle_pairs += other.triangle_pairs;
+    adjacent_pairs += other.adjacent_pairs;
+    fan_culled += other.fan_culled;
+    feature_pairs += other.feature_pairs;
+    box_culled += other.box_culled;
+    filter_culled += other.filter_culled;
+    solver_culled += other.solver_culled;
+    exact_culled += other.exact_culled;
+    exact_tests += other.exact_tests;
+    contacts += other.contacts;
+    crossing_tests += other.crossing_tests;
+    return *this;
+  }
 };
 
-/// @brief Wall time of the parts of a query, in seconds.
+/// @brief Wall time of the parts of a query, in seconds; on several threads divided in
+/// proportion to the time that all of them spent.
 struct StageTimes {
   /// bringing the moving boxes up to date, when the query itself had to do it
   double update{0};

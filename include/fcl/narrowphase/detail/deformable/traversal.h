@@ -4,29 +4,62 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRAVERSAL_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRAVERSAL_H
 
+#include <algorithm>
+#include <cfloat>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "fcl/math/bv/moving_kdop.h"
+#include "fcl/narrowphase/detail/deformable/kernels.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Two nodes still to be looked into, whose boxes overlap during window; the same
-/// node twice stands for a subtree with itself.
+/// @brief Work still to be done: child `lane` of node `parent` of one tree against all
+/// children of node `node` of the other; or, with lane < 0, a node with itself.
 struct NodePair {
-  std::int32_t a;
-  std::int32_t b;
-  TimeWindow window;
+  std::int32_t parent;
+  std::int32_t node;
+  std::int8_t lane;
+  /// The child is tree b's and the node tree a's.
+  bool swapped;
+  /// Before this time they do not overlap.
+  float earliest;
 };
 
-/// @brief Size by which the larger of two nodes is opened: extents along the axes at t =
+/// @brief Work in the order in which it was added. Entries are written where they lie: a
+/// processor waits for what was stored in parts and is loaded as a whole.
+class WorkList {
+ public:
+  std::size_t size() const { return size_; }
+  const NodePair& operator[](std::size_t i) const { return items_[i]; }
+  NodePair* data() { return items_.data(); }
+
+  void add(std::int32_t parent, int lane, std::int32_t node, bool swapped,
+           float earliest) {
+    if (size_ == items_.size()) items_.resize(2 * size_ + 64);
+    NodePair& work = items_[size_++];
+    work.parent = parent;
+    work.node = node;
+    work.lane = static_cast<std::int8_t>(lane);
+    work.swapped = swapped;
+    work.earliest = earliest;
+  }
+  /// @brief Forgets all but the first so many.
+  void cut(std::size_t size) { size_ = size; }
+
+ private:
+  std::vector<NodePair> items_;
+  std::size_t size_{0};
+};
+
+/// @brief Size by which the larger of two boxes is opened: extents along the axes at t =
 /// 0.
-inline float extent(const MovingKdop& box) {
+inline float extent(const MovingKdopNode& node, int lane) {
   float sum = 0;
-  for (int k = 0; k < 3; ++k) sum += box.t0.half[k] + box.t0.half[k + 8];
+  for (int r = 0; r < 6; ++r) sum += node.rows[r].t0[lane];
   return sum;
 }
 
@@ -34,67 +67,132 @@ inline float extent(const MovingKdop& box) {
 ///
 /// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
 /// @tparam kSelf  tree_b is tree_a: each unordered pair of different triangles once
-/// @param shift  between the two trees' origins and translations; null for kSelf
-/// @param open  scratch, reused between calls; grows with the depth of the trees only
-/// @param latest  latest() is a time after which a window is of no interest
-/// @param visit  visit(triangle_a, triangle_b, window) -> false to stop
-/// @return number of node pairs whose boxes were compared
-///
-/// Pairs are opened depth first, the one whose window starts earlier first.
-template <bool kSelf, typename TreeA, typename TreeB, typename Latest, typename Visit>
-std::uint64_t traverse(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
-                       std::vector<NodePair>& open, Latest&& latest, Visit&& visit) {
-  std::uint64_t compared = 0;
-  const auto pushIfOverlapping = [&](int a, const MovingKdop& box_a, int b,
-                                     const MovingKdop& box_b) {
-    ++compared;
-    const TimeWindow window = overlapWindow<!kSelf>(box_a, box_b, shift);
-    if (!window.isEmpty()) open.push_back({a, b, window});
-  };
-
-  open.clear();
-  if (kSelf)
-    open.push_back({0, 0, {0.f, 1.f}});
-  else
-    pushIfOverlapping(0, tree_a.box(0), 0, tree_b.box(0));
-
-  while (!open.empty()) {
-    const NodePair pair = open.back();
-    open.pop_back();
-    if (pair.window.lo > latest()) continue;
-
-    if (kSelf && pair.a == pair.b) {
-      if (tree_a.isLeaf(pair.a)) continue;
-      const int left = tree_a.leftChild(pair.a);
-      open.push_back({left + 1, left + 1, {0.f, 1.f}});
-      open.push_back({left, left, {0.f, 1.f}});
-      pushIfOverlapping(left, tree_a.box(left), left + 1, tree_a.box(left + 1));
-      continue;
+template <bool kSelf, typename TreeA, typename TreeB>
+class Traversal {
+ public:
+  /// @param shift  between the two trees' origins and translations; null for kSelf
+  /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
+  /// (Kernels::isFanEmbedded): pairs of triangles in one are left out; null: unknown
+  Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
+            const std::uint8_t* embedded, const Kernels& kernels)
+      : tree_a_(tree_a), tree_b_(tree_b), embedded_(embedded), kernels_(kernels) {
+    if (!shift) return;
+    // What is added to a box of tree b is the same with the half-axes exchanged.
+    for (int r = 0; r < 16; ++r) {
+      const int j = MovingKdopNode::halfAxis(r);
+      shift_[0][0][r] = shift_[1][0][r ^ 1] = shift->t0.half[j];
+      shift_[0][1][r] = shift_[1][1][r ^ 1] = shift->t1.half[j];
     }
-    const bool leaf_a = tree_a.isLeaf(pair.a), leaf_b = tree_b.isLeaf(pair.b);
-    if (leaf_a && leaf_b) {
-      if (!visit(tree_a.triangle(pair.a), tree_b.triangle(pair.b), pair.window))
-        return compared;
-      continue;
-    }
-    // A box may lie in a table of few (RigidTreeReader): one of a tree at a time.
-    const MovingKdop& box_a = tree_a.box(pair.a);
-    const MovingKdop& box_b = tree_b.box(pair.b);
-    const std::size_t first = open.size();
-    if (leaf_b || (!leaf_a && extent(box_a) > extent(box_b))) {
-      const int left = tree_a.leftChild(pair.a);
-      pushIfOverlapping(left, tree_a.box(left), pair.b, box_b);
-      pushIfOverlapping(left + 1, tree_a.box(left + 1), pair.b, box_b);
-    } else {
-      const int left = tree_b.leftChild(pair.b);
-      pushIfOverlapping(pair.a, box_a, left, tree_b.box(left));
-      pushIfOverlapping(pair.a, box_a, left + 1, tree_b.box(left + 1));
-    }
-    if (open.size() == first + 2 && open[first].window.lo < open[first + 1].window.lo)
-      std::swap(open[first], open[first + 1]);
   }
-  return compared;
-}
+
+  /// @brief The whole of both trees, as the first work.
+  void start(WorkList& open) {
+    if (kSelf)
+      open.add(0, -1, 0, false, 0.f);
+    else
+      for (int lane = tree_a_.node(0).count; lane-- > 0;)
+        open.add(0, lane, 0, false, 0.f);
+  }
+
+  /// @brief Does one piece of work: visit(triangle_a, triangle_b, earliest) for each pair
+  /// of triangles, and what remains to be done is put on `open`.
+  /// @param work  may lie in `open`, behind its end
+  template <typename Visit>
+  void step(const NodePair& work, WorkList& open, Visit&& visit) {
+    const std::int32_t parent = work.parent, node = work.node;
+    const int lane = work.lane;
+    if (kSelf && lane < 0)
+      openSelf(node, open, visit);
+    else if (!kSelf && work.swapped)
+      compare<true>(tree_b_.node(parent), parent, lane, tree_a_.node(node), node,
+                    kAllLanes, open, visit);
+    else
+      compare<false>(tree_a_.node(parent), parent, lane, tree_b_.node(node), node,
+                     kAllLanes, open, visit);
+  }
+
+  /// @brief Number of boxes that were compared.
+  std::uint64_t compared() const { return compared_; }
+
+  /// @brief Pairs of triangles that overlap and lie in an embedded fan.
+  std::uint64_t fanCulled() const { return fan_culled_; }
+
+  void clearCounts() { compared_ = fan_culled_ = 0; }
+
+ private:
+  static constexpr unsigned kAllLanes = (1U << MovingKdopNode::kWidth) - 1;
+
+  template <typename Visit>
+  void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
+    for (int lane = 0; lane < tree_a_.node(i).count; ++lane) {
+      const MovingKdopNode& node = tree_a_.node(i);
+      if (!node.isTriangle(lane)) open.add(0, -1, node.child[lane], false, 0.f);
+      const unsigned later = node.lanes() & ~((2U << lane) - 1);
+      if (later) compare<false>(node, i, lane, node, i, later, open, visit);
+    }
+  }
+
+  /// Child `lane` of `parent`, node number i, against the children `lanes` of `node`,
+  /// number j.
+  template <bool kSwapped, typename Visit>
+  void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
+               const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
+               Visit& visit) {
+    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane],
+                sizeof(MovingKdopNode::Row) / sizeof(float)};
+    float moved[2][16];
+    if (!kSelf) {
+      for (std::size_t r = 0; r < 16; ++r) {
+        moved[0][r] =
+            std::max(box.t0[r * box.stride] + shift_[kSwapped][0][r], kLeastHalf);
+        moved[1][r] =
+            std::max(box.t1[r * box.stride] + shift_[kSwapped][1][r], kLeastHalf);
+      }
+      box = {moved[0], moved[1], 1};
+    }
+    compared_ += static_cast<std::uint64_t>(node.count);
+    float earliest[MovingKdopNode::kWidth];
+    unsigned left = kernels_.overlapChildren(box, node, earliest) & lanes;
+    const bool is_triangle = parent.isTriangle(lane);
+    if (kSelf && is_triangle && embedded_) left = leaveOutFans(parent, lane, node, left);
+    const float size = is_triangle ? 0.f : extent(parent, lane);
+    for (; left != 0; left &= left - 1) {
+      const int k = __builtin_ctz(left);
+      const float w = earliest[k];
+      if (is_triangle && node.isTriangle(k)) {
+        const int mine = parent.triangle(lane), theirs = node.triangle(k);
+        kSwapped ? visit(theirs, mine, w) : visit(mine, theirs, w);
+      } else if (is_triangle || (!node.isTriangle(k) && size < extent(node, k))) {
+        open.add(i, lane, node.child[k], kSwapped, w);
+      } else {
+        open.add(j, k, parent.child[lane], !kSwapped, w);
+      }
+    }
+  }
+
+  /// Of the lanes those that are not in an embedded fan with the triangle.
+  unsigned leaveOutFans(const MovingKdopNode& parent, int lane,
+                        const MovingKdopNode& node, unsigned lanes) {
+    std::uint32_t places[3];
+    std::size_t count = 0;
+    for (int k = 0; k < 3; ++k) {
+      places[count] = parent.places[k][lane];
+      count += embedded_[places[count]];
+    }
+    if (count == 0) return lanes;
+    const unsigned fan = kernels_.trianglesAt(places, count, node) & lanes;
+    fan_culled_ += numBits(fan);
+    return lanes & ~fan;
+  }
+
+  TreeA& tree_a_;
+  TreeB& tree_b_;
+  const std::uint8_t* embedded_;
+  const Kernels& kernels_;
+  float shift_[2][2][16];
+  std::uint64_t compared_{0};
+  std::uint64_t fan_culled_{0};
+};
 
 }  // namespace deformable
 }  // namespace detail

@@ -2,13 +2,15 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "fcl/narrowphase/detail/deformable/contact_sink.h"
+#include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "fcl/narrowphase/detail/deformable/stage_counts.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair.h"
 
 namespace fcl {
 namespace detail {
@@ -23,6 +25,24 @@ struct QueryOptions {
   double toc_err{1e-4};
   /// A crossing at t = 0 answers the query; contacts are of no interest then.
   bool stop_at_crossing{false};
+  /// See parallelFor().
+  int num_threads{1};
+};
+
+/// @brief What the tasks of one query tell each other, so that none does what cannot
+/// change the answer; which task comes first is known whatever the threads do.
+struct QueryProgress {
+  /// Upper end of the earliest bracket so far.
+  std::atomic<double> first_hi{1};
+  /// The lowest task that has the answer on its own.
+  std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
+
+  template <typename T>
+  static void lower(std::atomic<T>& value, T to) {
+    T now = value.load(std::memory_order_relaxed);
+    while (to < now && !value.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+    }
+  }
 };
 
 /// @brief An edge of one mesh that passes through a face of the other at t = 0.
@@ -35,19 +55,28 @@ struct Crossing {
   std::int32_t triangles[2];
 };
 
-/// @brief Everything that is done to a triangle pair whose boxes meet: crossing at t = 0,
-/// feature pairs, elementary tests, contacts into the sink. Holds the state of one query
-/// of one thread.
+/// @brief Everything that is done to the triangle pairs whose boxes meet: crossing at t =
+/// 0, feature pairs, elementary tests, contacts into the sink. Each stage works on the
+/// pairs of a block, eight at a time; what a stage leaves goes on to the next. Holds the
+/// state of one query of one thread.
 class TrianglePairTest {
  public:
   /// @param a, b  kept by reference; the same object twice for a self-collision.
-  TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
-                   const QueryOptions& options);
+  /// @param shift  between their trees; null for a self-collision
+  /// @param progress  of the query; null: this is all of it
+  /// @param task  number of this part of the query
+  TrianglePairTest(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+                   const QueryOptions& options, QueryProgress* progress = nullptr,
+                   std::size_t task = 0);
 
-  /// @brief Tests triangle i of a against triangle j of b over the window in which their
-  /// boxes overlap.
+  /// @brief Takes triangle i of a and triangle j of b (as their trees count them), whose
+  /// boxes overlap from `earliest` on; between two calls of flush() at most
+  /// FeatureBatch::kMaxPairs pairs.
   /// @throws NonFiniteVertex
-  void visit(int i, int j, TimeWindow window);
+  void visit(int i, int j, float earliest);
+
+  /// @brief Tests what visit() has taken.
+  void flush();
 
   /// @brief Whether nothing more can change the answer.
   bool isDone() const;
@@ -62,14 +91,30 @@ class TrianglePairTest {
   const StageCounts& counts() const { return counts_; }
   StageCounts& counts() { return counts_; }
 
+  /// @brief Adds what a traversal counted.
+  void addTraversal(std::uint64_t compared, std::uint64_t fan_culled) {
+    counts_.node_pairs += compared;
+    counts_.triangle_pairs += fan_culled;
+    counts_.adjacent_pairs += fan_culled;
+    counts_.fan_culled += fan_culled;
+  }
+
  private:
-  void testFeature(const FeaturePair& pair, double lo, double hi);
-  void testCrossing(const TriangleSide& edges, const TriangleSide& face, bool edges_on_a);
+  bool hasAnswer() const;
+  void testCrossings();
+  void filter(FeatureKind kind);
+  void solve();
+  void solve(const FeatureCandidate& candidate);
+  void add(const FeatureIds& pair, double toc_lo, double toc_hi);
 
   QueryOptions options_;
-  TrianglePair pair_;
-  bool full_window_;
+  const Kernels& kernels_;
+  FeatureBatch batch_;
+  /// Pairs of one kind that may become coplanar.
+  std::vector<FeatureCandidate> candidates_;
   ContactSink sink_;
+  QueryProgress* progress_;
+  std::size_t task_;
   bool has_crossing_{false};
   Crossing crossing_{};
   StageCounts counts_;

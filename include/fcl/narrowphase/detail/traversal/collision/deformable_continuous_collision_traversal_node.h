@@ -15,6 +15,10 @@
 namespace fcl {
 namespace detail {
 
+namespace deformable {
+class BinaryView;
+}
+
 /// @brief Traversal node for continuous collision between two meshes that deform or
 /// translate, or of one with itself; made by initialize(), driven by FCL's collide(&node)
 /// or selfCollide(&node). The trees are the models' moving 16-DOP trees (a rigid model's
@@ -29,6 +33,7 @@ class FCL_EXPORT DeformableContinuousCollisionTraversalNode
     : public CollisionTraversalNodeBase<S> {
  public:
   DeformableContinuousCollisionTraversalNode();
+  ~DeformableContinuousCollisionTraversalNode() override;
 
   bool isFirstNodeLeaf(int b) const override;
   bool isSecondNodeLeaf(int b) const override;
@@ -69,6 +74,7 @@ class FCL_EXPORT DeformableContinuousCollisionTraversalNode
  private:
   const deformable::MeshInstance& mesh1() const;
   const deformable::MeshInstance& mesh2() const;
+  const deformable::BinaryView& view2() const;
   TimeWindow window(int b1, int b2) const;
   void begin(const CollisionRequest<S>& request, CollisionResult<S>& result);
   void report() const;
@@ -79,6 +85,8 @@ class FCL_EXPORT DeformableContinuousCollisionTraversalNode
   std::unique_ptr<deformable::PreparedMesh> prepared1_;
   std::unique_ptr<deformable::PreparedMesh> prepared2_;  // null: with itself
   std::unique_ptr<deformable::TrianglePairTest> test_;
+  std::unique_ptr<deformable::BinaryView> view1_;
+  std::unique_ptr<deformable::BinaryView> view2_;  // null: with itself
   deformable::KdopShift shift_;
   /// Contacts that the result held before.
   std::vector<Contact<S>> earlier_;

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The inner loops, compiled for every instruction set and chosen at run time. All give
+// the same bits.
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
+
+#include <cstddef>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A moving box, row r of MovingKdopNode at t0[r * stride] and t1[r * stride].
+struct BoxView {
+  const float* t0;
+  const float* t1;
+  std::size_t stride;
+};
+
+/// @brief Two triangles: vertices 0-2 are a's, 3-5 b's.
+struct TrianglePair {
+  const TreeVertex* x[6];
+  const TreeTriangle* a;
+  const TreeTriangle* b;
+};
+
+/// @brief A pair of features of one of many triangle pairs: 16 times the number of the
+/// triangle pair and a bit of feature_pairs.h.
+inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
+  return 16 * pair + static_cast<std::uint32_t>(bit);
+}
+
+/// @brief Eight pairs of features, of one kind: coordinate 3 i + k of point i at both
+/// times, and the windows.
+struct alignas(64) EightPairs {
+  double t0[12][8];
+  double t1[12][8];
+  double lo[8];
+  double hi[8];
+  FeatureKind kind;
+
+  void set(std::size_t lane, const TreeVertex* const (&x)[4], double window_lo,
+           double window_hi) {
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        t0[3 * i + k][lane] = x[i]->t0[k];
+        t1[3 * i + k][lane] = x[i]->t1[k];
+      }
+    lo[lane] = window_lo;
+    hi[lane] = window_hi;
+  }
+};
+
+/// @brief Decided lanes, a bit each, and the brackets of the contacts.
+struct EightAnswers {
+  unsigned no, yes;
+  double toc_lo[8];
+  double toc_hi[8];
+};
+
+struct Kernels {
+  /// The instruction set, as Highway calls it; "plain" without Highway.
+  const char* name;
+
+  /// Which children of the node overlap the box at some time, a bit each, and from when
+  /// on: overlapWindow() of each.
+  unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
+                              float (&earliest)[MovingKdopNode::kWidth]);
+
+  /// Which of the node's triangles have one of `count` vertices (places in the tree).
+  unsigned (*trianglesAt)(const std::uint32_t* places, std::size_t count,
+                          const MovingKdopNode& node);
+
+  /// Leaves, of pairs of features of one kind, those whose moving boxes overlap, with
+  /// their windows: overlapWindow() of each. Returns how many.
+  /// @param shift, turned_shift  added to boxes of a's features, and the same with the
+  /// halves exchanged; null: none
+  std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
+                              const KdopShift* shift, const KdopShift* turned_shift,
+                              std::uint32_t* codes, std::size_t count,
+                              TimeWindow* windows);
+
+  /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2
+  /// of the code for an edge of a, 3-5 of b.
+  std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
+                               const KdopShift* turned_shift, std::uint32_t* codes,
+                               std::size_t count);
+
+  /// Proves that the triangles around a vertex meet nowhere but in what they share, at
+  /// every time of the step; false: not proved. Along a direction d they all keep turning
+  /// the same way, n(t) . d > 0, so that their shadows along d are sectors that follow
+  /// each other and the angle that a closed fan goes through cannot change with t; at t =
+  /// 0 it goes round once, a ray lies in one sector. The sectors of an open fan never
+  /// cover a fixed ray. Then no two sectors overlap.
+  bool (*isFanEmbedded)(const TreeVertex* vertices, const TreeVertex& center,
+                        const VertexFan& fan);
+
+  /// mayBecomeCoplanar() of eight pairs, a bit each.
+  unsigned (*mayBecomeCoplanar)(const EightPairs& pairs);
+
+  /// The plain cases of solveCoplanarity(): a pair that is never inside, or whose volume
+  /// changes sign once, well inside or outside. What is proved keeps the properties (1)
+  /// and (2) there; the rest is left to it.
+  EightAnswers (*solve)(const EightPairs& pairs, double toc_err);
+};
+
+/// @brief The kernels for this machine.
+const Kernels& kernels();
+
+/// @brief The kernels for each instruction set that this machine has, the best first.
+std::vector<const Kernels*> allKernels();
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The triangles around a vertex. Where they provably stay a fan that does not fold over
+// itself during the step, no two of them meet but in what they share, and the pairs of
+// features that they own need no test.
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_VERTEX_FANS_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_VERTEX_FANS_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+struct TreeTriangle;
+
+/// @brief The spokes around one vertex, in order: triangle i lies between spokes i and i
+/// + 1, all triangles turning the same way. A closed fan has as many triangles as spokes,
+/// an open one (a vertex on the border) one less.
+struct VertexFan {
+  const std::uint32_t* spokes;
+  std::uint32_t count;
+  bool is_closed;
+};
+
+/// @brief The fans of a mesh. A vertex whose triangles form no fan (several sheets, edges
+/// with three triangles, opposite windings) and one with more than kMaxSpokes has none.
+class VertexFans {
+ public:
+  static constexpr std::uint32_t kMaxSpokes = 16;
+
+  VertexFans() = default;
+
+  /// @param triangles  in terms of places below num_vertices
+  VertexFans(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices);
+
+  std::size_t size() const { return first_.empty() ? 0 : first_.size() - 1; }
+
+  /// @brief The fan of the vertex at a place; without spokes if it has none.
+  VertexFan operator[](std::size_t place) const {
+    const std::uint32_t first = first_[place];
+    return {spokes_.data() + first, first_[place + 1] - first, closed_[place] != 0};
+  }
+
+  std::size_t memUsage() const {
+    return (first_.capacity() + spokes_.capacity()) * sizeof(std::uint32_t) +
+           closed_.capacity();
+  }
+
+ private:
+  std::vector<std::uint32_t> first_;
+  std::vector<std::uint32_t> spokes_;
+  std::vector<std::uint8_t> closed_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Bounds on the rounding of the elementary test, in doubles rounded to nearest.
+#ifndef FCL_CCD_ERROR_BOUNDS_H
+#define FCL_CCD_ERROR_BOUNDS_H
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+// Error analysis. u = 2^-53. A difference of two coordinates is rounded once (relative
+// error u); interpolated at a time t its components have an absolute error of at most 4 u
+// times its norm (the larger max-norm of both frames): difference, weight 1 - t, product,
+// sum. U, V, W below are such norms. Second-order terms are below 2^-40 of the bounds and
+// lie in the room that each constant leaves.
+//
+// A component of v x w: two products of size VW, error (4 + 4 + 1) u VW each, and a sum
+// of size 2 VW: 20 u VW; its size is 2 VW. Of v0 x w1 + v1 x w0: size 4 VW, error 44 u
+// VW. Outer coefficients u.(v x w): three products of size 2 UVW, error (4 * 2 + 20 + 2)
+// u = 30 u, and sums of size 4 and 6: 100 u UVW. Inner ones, u1.(v0 x w0) + u0.(v0 x w1 +
+// v1 x w0): 100 u for the first, 3 (16 + 44 + 4) + 20 = 212 u for the second, 18 u for
+// the sum: 330 u UVW.
+constexpr double kUnit = 0x1p-53;
+constexpr double kOuterBound = 104 * kUnit;
+constexpr double kInnerBound = 344 * kUnit;
+// Inside conditions (x y cross product)(v w cross product), coefficients of degree 4:
+// outer 3 (80 + 4) + 20 = 272 u; next 2 * (3 (168 + 8) + 40) + 48 = 1184 u; middle 2 *
+// 272 + 3 (352 + 16) + 80 + 96 = 1824 u, all of XYVW.
+constexpr double kInsideBound = 2048 * kUnit;
+// A cross product as a Quadratic: half of its inner component is below 2 VW and within 22
+// u VW.
+constexpr double kCrossBound = 22.5 * kUnit;
+// The same conditions for cross products of sizes Q, N with errors e, d, whatever digits
+// they have. Of the five coefficients the middle one, q0.n2 + q2.n0 + q1.n1 with c1 of
+// twice the size, is the largest, 18 QN: errors of the factors 18 (Q d + e N + e d),
+// rounding 6 (3 + 5) u QN in the dot products and (6 + 18) u QN in their sums.
+constexpr double kInsideTerms = 18.5;
+constexpr double kInsideRounding = 74 * kUnit;
+// d . x for a direction d taken as exact: three products of size DX, error (4 + 1) u,
+// sums of size 2 and 3: 20 u DX.
+constexpr double kSideBound = 32 * kUnit;
+// Normal . d for exact d: components of v x w as above with differences that are rounded
+// once only; the middle one: three products of size 4 VWD, error (44 + 4) u, sums of size
+// 8 and 12: 164 u VWD.
+constexpr double kFanBound = 192 * kUnit;
+// u . (r x d) for exact r and d: components of the cross product of size 2 RD, error 4 u;
+// three products of error (8 + 2 + 2) u... each at most 12 u, sums of size 4 and 6: 46 u
+// URD.
+constexpr double kRayBound = 64 * kUnit;
+// The bounds hold while no product that matters underflows or overflows: an underflow
+// adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
+constexpr double kTiny = 0x1p-900;
+constexpr double kHuge = 0x1p900;
+// A norm counts for no less than this: what underflows in the products with 1 - t and t,
+// 2^-1074 each, is then below the 4 u that the bounds allow for.
+constexpr double kLeastNorm = 0x1p-1010;
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/feature_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+bool isFinite(const TreeVertex& x) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
+  return sum == 0;
+}
+
+}  // namespace
+
+NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
+    : std::domain_error("vertex " + std::to_string(vertex) + " is not finite") {}
+
+TriangleReader::TriangleReader(const MeshInstance& mesh)
+    : mesh_(mesh), direct_(mesh.isInPlace()) {}
+
+void TriangleReader::readIntoStore(int i) {
+  const auto index = static_cast<std::size_t>(i);
+  if (!triangles_) {
+    // Not initialized: written before they are read.
+    triangles_.reset(new TreeTriangle[kStored]);
+    vertices_.reset(new TreeVertex[3 * kStored]);
+  }
+  TreeTriangle& triangle = triangles_[next_];
+  if (mesh_.tree) {
+    triangle = mesh_.tree->triangles()[index];
+  } else {
+    triangle.index = static_cast<std::uint32_t>(i);
+    triangle.owned = kOwnsAll;
+    if (mesh_.prepared) {
+      std::copy(mesh_.prepared[index].v, mesh_.prepared[index].v + 3, triangle.id);
+      triangle.owned = mesh_.prepared[index].owned;
+    } else {
+      for (int k = 0; k < 3; ++k)
+        triangle.id[k] = static_cast<std::uint32_t>(mesh_.triangles[index][k]);
+      // As in assignFeatures(), an edge with two equal ids is none.
+      for (unsigned k = 0; k < 3; ++k)
+        if (triangle.id[k] == triangle.id[(k + 1) % 3])
+          triangle.owned &= ~(1U << (3 + k));
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    TreeVertex& x = vertices_[3 * next_ + k];
+    pose(triangle.id[k], x);
+    if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
+    if (!isFinite(x)) throw NonFiniteVertex(triangle.id[k]);
+    side_.x[k] = &x;
+  }
+  side_.triangle = &triangle;
+  next_ = (next_ + 1) % kStored;
+}
+
+void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
+  const VertexPath path = mesh_.frames[id];
+  std::copy(path.t0, path.t0 + 3, out.t0);
+  std::copy(path.t1, path.t1 + 3, out.t1);
+  if (mesh_.tree) return;
+  // Boxes of a rigid tree are without the translation. Taking it off again rounds by
+  // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all.
+  const auto fit = [&](const double* x, const double(&translation)[3], Kdop16& box) {
+    double p[3], size = 0;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = x[k] - translation[k];
+      size = std::max(size, std::abs(x[k]) + std::abs(translation[k]) +
+                                std::abs(mesh_.rigid.origin()[k]));
+    }
+    fitPoint(p, mesh_.rigid.origin(), roundUp(size * 0x1p-50, 0.f), box);
+  };
+  fit(out.t0, mesh_.translation[0], out.box.t0);
+  fit(out.t1, mesh_.translation[1], out.box.t1);
+}
+
+FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
+                           const KdopShift* shift, const Kernels& kernels)
+    : reader_a_(a), reader_b_(b), self_(&a == &b), shift_(shift), kernels_(kernels) {
+  if (!shift) return;
+  for (int j = 0; j < 16; ++j) {
+    turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
+    turned_shift_.t1.half[j] = shift->t1.half[j ^ 8];
+  }
+}
+
+void FeatureBatch::add(int i, int j, bool with_crossing, StageCounts& counts) {
+  const TriangleSide &a = reader_a_.read(i), &b = reader_b_.read(j);
+  // Members are set one by one: see WorkList.
+  const auto number = static_cast<std::uint32_t>(num_pairs_);
+  if (pairs_.empty()) pairs_.resize(kMaxPairs);
+  TrianglePair& pair = pairs_[num_pairs_++];
+  for (int k = 0; k < 3; ++k) {
+    pair.x[k] = a.x[k];
+    pair.x[3 + k] = b.x[k];
+  }
+  pair.a = a.triangle;
+  pair.b = b.triangle;
+  const unsigned shared = self_ ? sharedVertices(a.triangle->id, b.triangle->id) : 0U;
+  ++counts.triangle_pairs;
+  counts.adjacent_pairs += shared != 0;
+  unsigned owned = ownedPairs(a.triangle->owned, b.triangle->owned, shared);
+  for (; owned != 0; owned &= owned - 1) {
+    const int bit = __builtin_ctz(owned);
+    lists_[bit >= 6].codes.push_back(featureCode(number, bit));
+  }
+  if (with_crossing) addCrossings(number, shared);
+}
+
+/// Only edges that the triangle owns and that share no vertex with the face.
+void FeatureBatch::addCrossings(std::uint32_t pair, unsigned shared) {
+  // Vertices of a that are b's too, and the reverse.
+  const unsigned shared_a =
+      (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
+  const unsigned shared_b = (shared | shared >> 3 | shared >> 6) & 7U;
+  const TrianglePair& p = pairs_[pair];
+  unsigned edges = (p.a->owned >> 3 & 7U & ~edgesAt(shared_a)) |
+                   (p.b->owned >> 3 & 7U & ~edgesAt(shared_b)) << 3;
+  for (; edges != 0; edges &= edges - 1)
+    crossings_.push_back(featureCode(pair, __builtin_ctz(edges)));
+}
+
+void FeatureBatch::clear() {
+  num_pairs_ = 0;
+  crossings_.clear();
+  for (List& list : lists_) list.codes.clear();
+}
+
+void FeatureBatch::cull(StageCounts& counts) {
+  cull(FeatureKind::kVertexFace, lists_[0], counts);
+  cull(FeatureKind::kEdgeEdge, lists_[1], counts);
+  crossings_.resize(kernels_.cullCrossings(pairs_.data(), shift_, &turned_shift_,
+                                           crossings_.data(), crossings_.size()));
+}
+
+void FeatureBatch::cull(FeatureKind kind, List& list, StageCounts& counts) {
+  const std::size_t count = list.codes.size();
+  list.windows.resize(count);
+  const std::size_t left =
+      kernels_.cullFeatures(kind, pairs_.data(), shift_, &turned_shift_,
+                            list.codes.data(), count, list.windows.data());
+  counts.feature_pairs += count;
+  counts.box_culled += count - left;
+  list.codes.resize(left);
+  list.windows.resize(left);
+}
+
+void FeatureBatch::points(std::uint32_t code, const TreeVertex* (&x)[4]) const {
+  const TrianglePair& pair = pairs_[code / 16];
+  const FeaturePair features = featurePair(static_cast<int>(code % 16));
+  const TreeVertex* const* a = pair.x;
+  const TreeVertex* const* b = pair.x + 3;
+  if (features.kind == FeatureKind::kVertexFace) {
+    x[0] = (features.first_on_a ? a : b)[features.first];
+    std::copy(features.first_on_a ? b : a, (features.first_on_a ? b : a) + 3, x + 1);
+  } else {
+    x[0] = a[features.first];
+    x[1] = a[(features.first + 1) % 3];
+    x[2] = b[features.second];
+    x[3] = b[(features.second + 1) % 3];
+  }
+}
+
+FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
+  const std::uint32_t code = crossings_[i], bit = code % 16;
+  return {&pairs_[code / 16], bit % 3, bit < 3};
+}
+
+/// Edges have their ids in ascending order (edges of two meshes stay on their sides) and
+/// the points are in the order of the ids: one name, one evaluation. In a self-collision
+/// the vertex of a VF pair is always mesh a's.
+FeatureCandidate FeatureBatch::candidate(std::uint32_t code,
+                                         const TimeWindow& window) const {
+  const TrianglePair& triangles = pairs_[code / 16];
+  const FeaturePair pair = featurePair(static_cast<int>(code % 16));
+  const TriangleSide a{triangles.a, {triangles.x[0], triangles.x[1], triangles.x[2]}},
+      b{triangles.b, {triangles.x[3], triangles.x[4], triangles.x[5]}};
+  FeatureCandidate out;
+  out.kind = pair.kind;
+  out.first_on_a = pair.first_on_a;
+  out.window_lo = windowLo(window);
+  out.window_hi = windowHi(window);
+  out.triangles[0] = static_cast<std::int32_t>(a.triangle->index);
+  out.triangles[1] = static_cast<std::int32_t>(b.triangle->index);
+  const auto set = [&out](int i, const TriangleSide& side, unsigned k) {
+    out.vertices[i] = side.triangle->id[k];
+    out.x[i] = side.x[k];
+  };
+  if (pair.kind == FeatureKind::kVertexFace) {
+    const TriangleSide &vertex = pair.first_on_a ? a : b, &face = pair.first_on_a ? b : a;
+    set(0, vertex, pair.first);
+    for (unsigned k = 0; k < 3; ++k) set(static_cast<int>(k) + 1, face, k);
+    if (self_ && !pair.first_on_a) {
+      out.first_on_a = true;
+      std::swap(out.triangles[0], out.triangles[1]);
+    }
+    return out;
+  }
+  const auto setEdge = [&](int i, const TriangleSide& side, unsigned k) {
+    const unsigned l = (k + 1) % 3;
+    const bool ascending = side.triangle->id[k] < side.triangle->id[l];
+    set(i, side, ascending ? k : l);
+    set(i + 1, side, ascending ? l : k);
+  };
+  setEdge(0, a, pair.first);
+  setEdge(2, b, pair.second);
+  std::uint32_t(&v)[4] = out.vertices;
+  if (self_ && (v[2] < v[0] || (v[2] == v[0] && v[3] < v[1]))) {
+    for (int i = 0; i < 2; ++i) {
+      std::swap(v[i], v[i + 2]);
+      std::swap(out.x[i], out.x[i + 2]);
+    }
+    std::swap(out.triangles[0], out.triangles[1]);
+  }
+  return out;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

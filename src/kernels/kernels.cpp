@@ -1,0 +1,599 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/detail/deformable/kernels.h"
+
+#include <algorithm>
+#include <cmath>
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/kernels.cpp"
+#include "hwy/foreach_target.h"
+#endif
+
+#include "error_bounds.h"
+#include "kernels/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+/// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and
+/// s1 at its ends, how much of it is lost before and after.
+template <std::size_t N>
+HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
+                        Lanes<float, N>& before, Lanes<float, N>& after) {
+  const Lanes<float, N> least = smaller(s0, s1), most = larger(s0, s1);
+  const Lanes<float, N> loss = least / (least - most) * broadcast<N>(kLossDown);
+  before = larger(before, whereNegative(s0, loss));
+  after = larger(after, whereNegative(s1, loss));
+}
+
+unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+                         float (&earliest)[MovingKdopNode::kWidth]) {
+  constexpr std::size_t kRows = 16, kAtOnce = 4;
+  Floats s0[kRows], s1[kRows];
+  Floats apart = broadcast<kEight>(1.f), cut = apart;
+  unsigned left = 0;
+  for (std::size_t first = 0; first < kRows; first += kAtOnce) {
+    for (std::size_t r = first; r < first + kAtOnce; ++r) {
+      // Row r ^ 1 is the opposite half-axis.
+      s0[r] =
+          broadcast<kEight>(box.t0[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t0);
+      s1[r] =
+          broadcast<kEight>(box.t1[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t1);
+      apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
+      cut = eitherNegative(cut, eitherNegative(s0[r], s1[r]));
+    }
+    left = ~signs(apart) & node.lanes();
+    if (left == 0) return 0;
+  }
+  Floats before = broadcast<kEight>(0.f), after = before;
+  if (signs(cut) & left)
+    for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);
+  const Floats hi = broadcast<kEight>(kWindowEnd) - after;
+  store(before, earliest);
+  return left & bits(before <= hi);
+}
+
+unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
+                     const MovingKdopNode& node) {
+  const auto first = load<kEight>(node.places[0]), second = load<kEight>(node.places[1]),
+             third = load<kEight>(node.places[2]);
+  unsigned found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = broadcast<kEight>(places[i]);
+    found |= bits((first == place) | (second == place) | (third == place));
+  }
+  return found;
+}
+
+/// A moving box at both times.
+struct MovingBox {
+  HalfAxes t0, t1;
+};
+
+HWY_INLINE MovingBox boxOf(const TreeVertex& x) {
+  return {load<16>(x.box.t0.half), load<16>(x.box.t1.half)};
+}
+
+HWY_INLINE MovingBox merge(const MovingBox& a, const MovingBox& b) {
+  return {larger(a.t0, b.t0), larger(a.t1, b.t1)};
+}
+
+/// The overlap depths of a pair of features at both times. Which feature comes first does
+/// not matter but for the shift.
+HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::size_t bit,
+                            const KdopShift* shift, const KdopShift* turned_shift) {
+  // First and second end of edges i and j, for bit 3 i + j.
+  static constexpr unsigned char kEnds[9][4] = {{0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3},
+                                                {1, 2, 3, 4}, {1, 2, 4, 5}, {1, 2, 5, 3},
+                                                {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}};
+  MovingBox first, second;
+  const KdopShift* add = shift;
+  if (kind == FeatureKind::kVertexFace) {
+    // The vertex, and where the other triangle begins.
+    const bool on_a = bit < 3;
+    const TreeVertex* const* face = pair.x + (on_a ? 3 : 0);
+    first = boxOf(*pair.x[bit]);
+    second = merge(merge(boxOf(*face[0]), boxOf(*face[1])), boxOf(*face[2]));
+    add = on_a ? shift : turned_shift;
+  } else {
+    const unsigned char(&ends)[4] = kEnds[bit - 6];
+    first = merge(boxOf(*pair.x[ends[0]]), boxOf(*pair.x[ends[1]]));
+    second = merge(boxOf(*pair.x[ends[2]]), boxOf(*pair.x[ends[3]]));
+  }
+  if (add) {
+    const HalfAxes least = broadcast<16>(kLeastHalf);
+    first.t0 = larger(first.t0 + load<16>(add->t0.half), least);
+    first.t1 = larger(first.t1 + load<16>(add->t1.half), least);
+  }
+  return {first.t0 + swapHalves(second.t0), first.t1 + swapHalves(second.t1)};
+}
+
+template <FeatureKind kind, bool kShifted>
+HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
+                                    const KdopShift* turned_shift, std::uint32_t* codes,
+                                    std::size_t count, TimeWindow* windows) {
+  // Two loops: the first one has no branch that depends on the boxes.
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t code = codes[i];
+    const MovingBox s =
+        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
+               kShifted ? turned_shift : nullptr);
+    codes[left] = code;
+    left += signs(bothNegative(s.t0, s.t1)) == 0;
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < left; ++i) {
+    const std::uint32_t code = codes[i];
+    const MovingBox s =
+        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
+               kShifted ? turned_shift : nullptr);
+    HalfAxes before = broadcast<16>(0.f), after = before;
+    addLoss(s.t0, s.t1, before, after);
+    const float lo = largest(before), hi = kWindowEnd - largest(after);
+    codes[kept] = code;
+    windows[kept] = {lo, hi < 1.f ? hi : 1.f};
+    kept += lo <= hi;
+  }
+  return kept;
+}
+
+std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
+                           const KdopShift* shift, const KdopShift* turned_shift,
+                           std::uint32_t* codes, std::size_t count, TimeWindow* windows) {
+  constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+  const auto cull = kind == kVf
+                        ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
+                        : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
+  return cull(pairs, shift, turned_shift, codes, count, windows);
+}
+
+std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
+                          const KdopShift* turned_shift, std::uint32_t* codes,
+                          std::size_t count) {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t code = codes[i];
+    const std::size_t edge = code % 16, on_b = edge / 3, k = edge % 3;
+    const TreeVertex* const* mine = pairs[code / 16].x + 3 * on_b;
+    const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
+    HalfAxes ends =
+        larger(load<16>(mine[k]->box.t0.half), load<16>(mine[(k + 1) % 3]->box.t0.half));
+    if (shift)
+      ends = larger(ends + load<16>((on_b ? turned_shift : shift)->t0.half),
+                    broadcast<16>(kLeastHalf));
+    const HalfAxes all =
+        larger(larger(load<16>(face[0]->box.t0.half), load<16>(face[1]->box.t0.half)),
+               load<16>(face[2]->box.t0.half));
+    codes[left] = code;
+    left += signs(ends + swapHalves(all)) == 0;
+  }
+  return left;
+}
+
+/// Three coordinates of eight vectors.
+struct Vectors {
+  Doubles x, y, z;
+};
+
+HWY_INLINE Vectors operator+(const Vectors& a, const Vectors& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+HWY_INLINE Doubles dot(const Vectors& a, const Vectors& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// A difference of two points that moves linearly, at the ends of the window, and its
+/// norm over the step.
+struct Segments {
+  Vectors l, h;
+  Doubles norm;
+};
+
+HWY_INLINE Vectors difference(const double (*t)[8], std::size_t p, std::size_t q) {
+  return {load<kEight>(t[3 * p]) - load<kEight>(t[3 * q]),
+          load<kEight>(t[3 * p + 1]) - load<kEight>(t[3 * q + 1]),
+          load<kEight>(t[3 * p + 2]) - load<kEight>(t[3 * q + 2])};
+}
+
+/// As Difference::at(): the ends of the step are taken as they are.
+HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
+  const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.), s = one - t;
+  const auto first = t <= zero, last = t >= one;
+  const Vectors m = {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
+  return {select(first, t0.x, select(last, t1.x, m.x)),
+          select(first, t0.y, select(last, t1.y, m.y)),
+          select(first, t0.z, select(last, t1.z, m.z))};
+}
+
+HWY_INLINE Doubles maxNorm(const Vectors& a) {
+  return max(max(abs(a.x), abs(a.y)), abs(a.z));
+}
+
+/// Differences of two points of each pair over the step, and their norms.
+struct Differences {
+  Vectors t0, t1;
+  Doubles norm;
+};
+
+HWY_INLINE Differences differences(const EightPairs& x, std::size_t p, std::size_t q) {
+  const Vectors t0 = difference(x.t0, p, q), t1 = difference(x.t1, p, q);
+  return {t0, t1, max(max(maxNorm(t0), maxNorm(t1)), broadcast<kEight>(kLeastNorm))};
+}
+
+HWY_INLINE Segments restrict(const Differences& d, const Doubles& lo, const Doubles& hi) {
+  return {at(d.t0, d.t1, lo), at(d.t0, d.t1, hi), d.norm};
+}
+
+/// Coordinates of vectors side by side, with room for whole lanes.
+struct VectorArray {
+  static constexpr std::size_t kSize = VertexFans::kMaxSpokes + kEight;
+  double x[kSize], y[kSize], z[kSize];
+
+  HWY_INLINE void set(std::size_t i, const double* p, const double* q) {
+    x[i] = p[0] - q[0];
+    y[i] = p[1] - q[1];
+    z[i] = p[2] - q[2];
+  }
+  HWY_INLINE void copy(std::size_t from, std::size_t to) {
+    x[to] = x[from];
+    y[to] = y[from];
+    z[to] = z[from];
+  }
+  HWY_INLINE Vectors from(std::size_t i) const {
+    return {load<kEight>(x + i), load<kEight>(y + i), load<kEight>(z + i)};
+  }
+};
+
+struct Vector {
+  double x, y, z;
+};
+
+HWY_INLINE double maxNorm(const Vector& a) {
+  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+}
+
+HWY_INLINE Doubles dot(const Vectors& a, const Vector& b) {
+  return a.x * broadcast<kEight>(b.x) + a.y * broadcast<kEight>(b.y) +
+         a.z * broadcast<kEight>(b.z);
+}
+
+bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
+                   const VertexFan& fan) {
+  if (fan.count < 2) return false;
+  VectorArray u0, u1;
+  for (std::size_t i = 0; i < fan.count; ++i) {
+    const TreeVertex& spoke = vertices[fan.spokes[i]];
+    u0.set(i, spoke.t0, center.t0);
+    u1.set(i, spoke.t1, center.t1);
+  }
+  // The first spoke follows the last, and fills the lanes that are left.
+  const std::size_t num_triangles = fan.is_closed ? fan.count : fan.count - 1;
+  const std::size_t num_blocks = (fan.count + kEight - 1) / kEight;
+  for (std::size_t i = fan.count; i <= num_blocks * kEight; ++i) {
+    u0.copy(0, i);
+    u1.copy(0, i);
+  }
+
+  constexpr std::size_t kMaxBlocks = VertexFans::kMaxSpokes / kEight;
+  Vectors first[kMaxBlocks], middle[kMaxBlocks], last[kMaxBlocks];
+  Vector d = {0, 0, 0};
+  Doubles norm = broadcast<kEight>(kLeastNorm);
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    const Vectors v0 = u0.from(b * kEight), w0 = u0.from(b * kEight + 1);
+    const Vectors v1 = u1.from(b * kEight), w1 = u1.from(b * kEight + 1);
+    norm = max(norm, max(maxNorm(v0), maxNorm(v1)));
+    first[b] = cross(v0, w0);
+    middle[b] = cross(v0, w1) + cross(v1, w0);
+    last[b] = cross(v1, w1);
+    const Vectors sum = first[b] + last[b];
+    double x[kEight], y[kEight], z[kEight];
+    store(sum.x, x);
+    store(sum.y, y);
+    store(sum.z, z);
+    for (std::size_t i = 0; i < kEight && b * kEight + i < num_triangles; ++i) {
+      d.x += x[i];
+      d.y += y[i];
+      d.z += z[i];
+    }
+  }
+  const double u_norm = largest(norm), d_norm = maxNorm(d);
+  const double size = u_norm * u_norm * d_norm;
+  if (!(u_norm * u_norm >= kTiny && size >= kTiny && size <= kHuge)) return false;
+
+  const auto triangles_bits = (1U << num_triangles) - 1;
+  const Doubles turned = broadcast<kEight>(kFanBound * size);
+  unsigned keep = 0;
+  for (std::size_t b = 0; b < num_blocks; ++b)
+    keep |= bits((dot(first[b], d) > turned) & (dot(middle[b], d) > turned) &
+                 (dot(last[b], d) > turned))
+            << (b * kEight);
+  if ((keep & triangles_bits) != triangles_bits) return false;
+
+  // The ray: through the middle of the first sector of a closed fan; away from an open
+  // one.
+  Vector r = {0, 0, 0};
+  if (fan.is_closed) {
+    const double a = maxNorm(Vector{u0.x[0], u0.y[0], u0.z[0]});
+    const double b = maxNorm(Vector{u0.x[1], u0.y[1], u0.z[1]});
+    r = {b * u0.x[0] + a * u0.x[1], b * u0.y[0] + a * u0.y[1], b * u0.z[0] + a * u0.z[1]};
+  } else {
+    for (std::size_t i = 0; i < fan.count; ++i) {
+      r.x -= u0.x[i] + u1.x[i];
+      r.y -= u0.y[i] + u1.y[i];
+      r.z -= u0.z[i] + u1.z[i];
+    }
+  }
+  const Vector e = {r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x};
+  const double r_norm = maxNorm(r), ray_size = u_norm * r_norm * d_norm;
+  if (!(r_norm * d_norm >= kTiny && ray_size >= kTiny && ray_size <= kHuge)) return false;
+  const Doubles bound = broadcast<kEight>(kRayBound * ray_size);
+  const Doubles minus_bound = broadcast<kEight>(-kRayBound * ray_size);
+  // Spokes that lie before and after the ray beyond doubt, turning the fan's way.
+  unsigned before0 = 0, after0 = 0, before1 = 0, after1 = 0;
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    const Doubles g0 = dot(u0.from(b * kEight), e), g1 = dot(u1.from(b * kEight), e);
+    before0 |= bits(g0 > bound) << (b * kEight);
+    after0 |= bits(g0 < minus_bound) << (b * kEight);
+    before1 |= bits(g1 > bound) << (b * kEight);
+    after1 |= bits(g1 < minus_bound) << (b * kEight);
+  }
+  if (fan.is_closed) {
+    if (((before0 | after0) & triangles_bits) != triangles_bits) return false;
+    const unsigned after_next = (after0 & triangles_bits) >> 1 | (after0 & 1U)
+                                                                     << (fan.count - 1);
+    return __builtin_popcount(before0 & after_next & triangles_bits) == 1;
+  }
+  // A sector misses the ray while its first spoke is after it or its last one before.
+  const unsigned misses = (after0 & after1) | (before0 & before1) >> 1;
+  return (misses & triangles_bits) == triangles_bits;
+}
+
+/// Volume and normal over a part of the step, as in solveCoplanarity().
+struct Quadratics {
+  Vectors c0, c1, c2;
+  Doubles norm;
+};
+
+HWY_INLINE Quadratics cross(const Segments& a, const Segments& b) {
+  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
+          a.norm * b.norm};
+}
+
+HWY_INLINE DoubleMask isInRange(const Doubles& size) {
+  return (size >= broadcast<kEight>(kTiny)) & (size <= broadcast<kEight>(kHuge));
+}
+
+struct Cubics {
+  Doubles b0, b1, b2, b3, outer, inner;
+  DoubleMask has_bounds;
+
+  HWY_INLINE Doubles at(const Doubles& s) const {
+    const Doubles r = broadcast<kEight>(1.) - s;
+    return r * r * (b0 * r + b1 * s) + s * s * (b2 * r + b3 * s);
+  }
+  HWY_INLINE DoubleMask hasNoRoot() const {
+    const Doubles zero = broadcast<kEight>(0.), outer_n = zero - outer,
+                  inner_n = zero - inner;
+    return has_bounds &
+           (((b0 > outer) & (b1 > inner) & (b2 > inner) & (b3 > outer)) |
+            ((b0 < outer_n) & (b1 < inner_n) & (b2 < inner_n) & (b3 < outer_n)));
+  }
+  HWY_INLINE DoubleMask changesSign() const {
+    const Doubles outer_n = broadcast<kEight>(0.) - outer;
+    return has_bounds &
+           (((b0 > outer) & (b3 < outer_n)) | ((b0 < outer_n) & (b3 > outer)));
+  }
+};
+
+HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
+  const Doubles size = u.norm * n.norm;
+  return {dot(u.l, n.c0),
+          dot(u.h, n.c0) + dot(u.l, n.c1),
+          dot(u.h, n.c1) + dot(u.l, n.c2),
+          dot(u.h, n.c2),
+          broadcast<kEight>(kOuterBound) * size,
+          broadcast<kEight>(kInnerBound) * size,
+          isInRange(size) & isInRange(n.norm)};
+}
+
+unsigned mayBecomeCoplanarEight(const EightPairs& x) {
+  const bool vf = x.kind == FeatureKind::kVertexFace;
+  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
+  const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
+  const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
+  const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
+  return 0xffU & ~bits(spannedVolume(u, cross(v, w)).hasNoRoot());
+}
+
+/// The differences that the inside conditions use, see Pair in elementary_test.cpp.
+struct Pairs {
+  bool vf;
+  Differences u, v, w, r, q;
+
+  HWY_INLINE explicit Pairs(const EightPairs& x)
+      : vf(x.kind == FeatureKind::kVertexFace),
+        u(vf ? differences(x, 0, 1) : differences(x, 2, 0)),
+        v(vf ? differences(x, 2, 1) : differences(x, 1, 0)),
+        w(vf ? differences(x, 3, 1) : differences(x, 3, 2)),
+        r(vf ? differences(x, 2, 0) : differences(x, 1, 2)),
+        q(differences(x, 3, 0)) {}
+};
+
+/// Where all inside conditions are surely met, and where one is surely not.
+struct Sides {
+  DoubleMask positive, negative;
+
+  HWY_INLINE void require(const Quadratics& q, const Quadratics& n) {
+    const Doubles size = q.norm * n.norm;
+    const DoubleMask valid = isInRange(size) & isInRange(q.norm) & isInRange(n.norm);
+    const Doubles bound = broadcast<kEight>(kInsideBound) * size,
+                  minus = broadcast<kEight>(0.) - bound;
+    const Doubles c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
+                          dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
+                          dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
+    DoubleMask above = valid, below = valid;
+    for (const Doubles& ck : c) {
+      above = above & (ck > bound);
+      below = below & (ck < minus);
+    }
+    positive = positive & above;
+    negative = negative | below;
+  }
+};
+
+HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
+                            const Segments& u, const Segments& v, const Segments& w,
+                            const Quadratics& n) {
+  const Segments r = restrict(pairs.r, lo, hi), q = restrict(pairs.q, lo, hi);
+  const Doubles zero = broadcast<kEight>(0.);
+  Sides sides = {zero <= zero, zero < zero};
+  sides.require(cross(u, w), n);
+  if (pairs.vf) {
+    sides.require(cross(v, u), n);
+    sides.require(cross(r, q), n);
+  } else {
+    sides.require(cross(r, w), n);
+    sides.require(cross(u, v), n);
+    sides.require(cross(v, q), n);
+  }
+  return sides;
+}
+
+/// Where the cubics that change sign are zero, by false position (Illinois), each until
+/// it moves by no more than its tolerance: no lane's answer depends on the others.
+HWY_INLINE Doubles root(const Cubics& f, const Doubles& tolerance) {
+  constexpr int kMaxSteps = 24;
+  const Doubles zero = broadcast<kEight>(0.), half = broadcast<kEight>(0.5);
+  Doubles a = zero, b = broadcast<kEight>(1.), fa = f.b0, fb = f.b3, x = zero;
+  DoubleMask moves = zero <= zero;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const Doubles next = a + (b - a) * (fa / (fa - fb));
+    const Doubles fx = f.at(next);
+    const DoubleMask moved = abs(next - x) > tolerance;
+    x = select(moves, next, x);
+    moves = moves & moved;
+    if (bits(moves) == 0) break;
+    // The end that the root is not at: kept, its value halved.
+    const DoubleMask beyond = ((fx > zero) & (fb > zero)) | ((fx < zero) & (fb < zero));
+    a = select(beyond, a, b);
+    fa = select(beyond, half * fa, fb);
+    b = next;
+    fb = fx;
+  }
+  return x;
+}
+
+EightAnswers solveEight(const EightPairs& x, double toc_err) {
+  const Pairs pairs(x);
+  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
+  EightAnswers answers;
+  answers.yes = 0;
+
+  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
+                 w = restrict(pairs.w, lo, hi);
+  const Quadratics n = cross(v, w);
+  const Cubics f = spannedVolume(u, n);
+  answers.no = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
+  const unsigned open = bits(f.changesSign()) & ~answers.no;
+  if (open == 0) return answers;
+
+  // [a, b] around the root: before it and behind it there is none.
+  const Doubles half = broadcast<kEight>(0.25 * toc_err);
+  const Doubles t = lo + root(f, broadcast<kEight>(0.125) * half / width) * width;
+  const Doubles a = max(lo, t - half), b = min(hi, t + half);
+  const Segments ua = restrict(pairs.u, a, b), va = restrict(pairs.v, a, b),
+                 wa = restrict(pairs.w, a, b);
+  const Quadratics na = cross(va, wa);
+  const Sides sides = insideness(pairs, a, b, ua, va, wa, na);
+  const unsigned crosses = bits(spannedVolume(ua, na).changesSign());
+  const auto isFree = [&](const Doubles& from, const Doubles& to) HWY_ATTR {
+    const Segments us = restrict(pairs.u, from, to), vs = restrict(pairs.v, from, to),
+                   ws = restrict(pairs.w, from, to);
+    return bits(spannedVolume(us, cross(vs, ws)).hasNoRoot() | (from >= to));
+  };
+  const unsigned first = open & isFree(lo, a);
+  answers.yes = first & crosses & bits(sides.positive);
+  const unsigned outside = first & bits(sides.negative);
+  if (outside != 0) answers.no |= outside & isFree(b, hi);
+  store(a, answers.toc_lo);
+  store(b, answers.toc_hi);
+  return answers;
+}
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+extern const Kernels kKernels = {hwy::TargetName(HWY_TARGET),
+                                 &overlapChildren,
+                                 &trianglesAt,
+                                 &cullFeaturesOf,
+                                 &cullCrossings,
+                                 &isFanEmbedded,
+                                 &mayBecomeCoplanarEight,
+                                 &solveEight};
+#else
+extern const Kernels kKernels = {"plain",
+                                 &overlapChildren,
+                                 &trianglesAt,
+                                 &cullFeaturesOf,
+                                 &cullCrossings,
+                                 &isFanEmbedded,
+                                 &mayBecomeCoplanarEight,
+                                 &solveEight};
+#endif
+
+const Kernels* table() { return &kKernels; }
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
+
+#if !defined(FCL_CCD_USE_HIGHWAY) || HWY_ONCE
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+HWY_EXPORT(table);
+#endif
+
+const Kernels& kernels() {
+#if defined(FCL_CCD_USE_HIGHWAY)
+  static const Kernels& best = *HWY_DYNAMIC_DISPATCH(table)();
+  return best;
+#else
+  return HWY_NAMESPACE::kKernels;
+#endif
+}
+
+std::vector<const Kernels*> allKernels() {
+  std::vector<const Kernels*> all;
+#if defined(FCL_CCD_USE_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1)) != 0
+  // A choice of our own: Highway's is the whole process's. The best has the lowest bit;
+  // no bit at all chooses what needs no vector instructions.
+  hwy::ChosenTarget choice;
+  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; true;
+       left &= left - 1) {
+    choice.Update(left & -left);
+    const Kernels* k = HWY_DISPATCH_TABLE(table)[choice.GetIndex()]();
+    if (all.empty() || all.back() != k) all.push_back(k);
+    if (left == 0) return all;
+  }
+#else
+  all.push_back(&kernels());
+  return all;
+#endif
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+#endif

@@ -1,0 +1,384 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Eight or sixteen numbers that are computed together, whatever the machine has: as many
+// of Highway's vectors as that takes, or a plain loop where Highway is switched off.
+// Every operation is IEEE's, lane by lane; none is fused: all machines give the same
+// bits.
+//
+// Included once for each of Highway's targets, hence no ordinary include guard.
+#if defined(FCL_CCD_USE_HIGHWAY)
+#include "hwy/highway.h"
+#else
+#include <cmath>
+#define HWY_BEFORE_NAMESPACE() static_assert(true, "")
+#define HWY_AFTER_NAMESPACE() static_assert(true, "")
+#define HWY_NAMESPACE plain_lanes
+#define HWY_INLINE inline
+#define HWY_ATTR
+#endif
+
+#if !defined(FCL_CCD_USE_HIGHWAY) || \
+    defined(FCL_CCD_LANES_INCLUDED) == defined(HWY_TARGET_TOGGLE)
+#ifdef FCL_CCD_LANES_INCLUDED
+#undef FCL_CCD_LANES_INCLUDED
+#else
+#define FCL_CCD_LANES_INCLUDED
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kEight = 8;
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename T, std::size_t N>
+struct Lanes {
+  using Tag = hn::CappedTag<T, N>;
+  static constexpr std::size_t kWidth = hn::MaxLanes(Tag());
+  static constexpr std::size_t kParts = N / kWidth;
+  hn::Vec<Tag> part[kParts];
+};
+
+template <typename T, std::size_t N>
+struct LaneMask {
+  hn::Mask<typename Lanes<T, N>::Tag> part[Lanes<T, N>::kParts];
+};
+
+#define FCL_CCD_FOR_PARTS for (std::size_t p = 0; p < Lanes<T, N>::kParts; ++p)
+
+template <std::size_t N, typename T>
+HWY_INLINE Lanes<T, N> load(const T* from) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] = hn::LoadU(typename Lanes<T, N>::Tag(), from + p * Lanes<T, N>::kWidth);
+  return out;
+}
+
+template <std::size_t N, typename T>
+HWY_INLINE Lanes<T, N> broadcast(T value) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Set(typename Lanes<T, N>::Tag(), value);
+  return out;
+}
+
+template <typename T, std::size_t N>
+HWY_INLINE void store(const Lanes<T, N>& a, T* to) {
+  FCL_CCD_FOR_PARTS
+  hn::StoreU(a.part[p], typename Lanes<T, N>::Tag(), to + p * Lanes<T, N>::kWidth);
+}
+
+#define FCL_CCD_BINARY(NAME, OP)                                            \
+  template <typename T, std::size_t N>                                      \
+  HWY_INLINE Lanes<T, N> NAME(const Lanes<T, N>& a, const Lanes<T, N>& b) { \
+    Lanes<T, N> out;                                                        \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);           \
+    return out;                                                             \
+  }
+FCL_CCD_BINARY(operator+, Add)
+FCL_CCD_BINARY(operator-, Sub)
+FCL_CCD_BINARY(operator*, Mul)
+FCL_CCD_BINARY(operator/, Div)
+#undef FCL_CCD_BINARY
+
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> abs(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Abs(a.part[p]);
+  return out;
+}
+
+#define FCL_CCD_COMPARISON(NAME, OP)                                           \
+  template <typename T, std::size_t N>                                         \
+  HWY_INLINE LaneMask<T, N> NAME(const Lanes<T, N>& a, const Lanes<T, N>& b) { \
+    LaneMask<T, N> out;                                                        \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);              \
+    return out;                                                                \
+  }
+FCL_CCD_COMPARISON(operator==, Eq)
+FCL_CCD_COMPARISON(operator<, Lt)
+FCL_CCD_COMPARISON(operator>, Gt)
+FCL_CCD_COMPARISON(operator<=, Le)
+FCL_CCD_COMPARISON(operator>=, Ge)
+#undef FCL_CCD_COMPARISON
+
+#define FCL_CCD_LOGICAL(NAME, OP)                                                    \
+  template <typename T, std::size_t N>                                               \
+  HWY_INLINE LaneMask<T, N> NAME(const LaneMask<T, N>& a, const LaneMask<T, N>& b) { \
+    LaneMask<T, N> out;                                                              \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);                    \
+    return out;                                                                      \
+  }
+FCL_CCD_LOGICAL(operator&, And)
+FCL_CCD_LOGICAL(operator|, Or)
+#undef FCL_CCD_LOGICAL
+
+/// a where the mask is set, b elsewhere.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> select(const LaneMask<T, N>& mask, const Lanes<T, N>& a,
+                              const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] = hn::IfThenElse(mask.part[p], a.part[p], b.part[p]);
+  return out;
+}
+
+/// One bit a lane.
+template <typename T, std::size_t N>
+HWY_INLINE unsigned bits(const LaneMask<T, N>& mask) {
+  unsigned out = 0;
+  FCL_CCD_FOR_PARTS {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(typename Lanes<T, N>::Tag(), mask.part[p], bytes);
+    out |= (bytes[0] | unsigned{bytes[1]} << 8) << (p * Lanes<T, N>::kWidth);
+  }
+  return out;
+}
+
+/// The two halves exchanged.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> swapHalves(const Lanes<T, N>& a) {
+  constexpr std::size_t kParts = Lanes<T, N>::kParts;
+  Lanes<T, N> out;
+#if HWY_MAX_BYTES >= 64
+  if constexpr (kParts == 1) {
+    out.part[0] = hn::ConcatLowerUpper(typename Lanes<T, N>::Tag(), a.part[0], a.part[0]);
+    return out;
+  }
+#endif
+  FCL_CCD_FOR_PARTS out.part[p] = a.part[p ^ (kParts / 2)];
+  return out;
+}
+
+/// The larger of two numbers, neither of which is a NaN.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> larger(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Max(a.part[p], b.part[p]);
+  return out;
+}
+
+/// The smaller of two numbers, neither of which is a NaN.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> smaller(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Min(a.part[p], b.part[p]);
+  return out;
+}
+
+/// Negative where both are, for numbers that are neither NaN nor -0.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> bothNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::And(a.part[p], b.part[p]);
+  return out;
+}
+
+/// Negative where one is.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> eitherNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Or(a.part[p], b.part[p]);
+  return out;
+}
+
+/// Where the sign bit is set. As integers, since what bothNegative() leaves is no number
+/// but for its sign.
+template <typename T, std::size_t N>
+HWY_INLINE LaneMask<T, N> isNegative(const Lanes<T, N>& a) {
+  const typename Lanes<T, N>::Tag tag;
+  const hn::RebindToSigned<decltype(tag)> integers;
+  LaneMask<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] =
+      hn::RebindMask(tag, hn::Lt(hn::BitCast(integers, a.part[p]), hn::Zero(integers)));
+  return out;
+}
+
+/// a where s is negative, 0 elsewhere.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> whereNegative(const Lanes<T, N>& s, const Lanes<T, N>& a) {
+  const LaneMask<T, N> mask = isNegative(s);
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::IfThenElseZero(mask.part[p], a.part[p]);
+  return out;
+}
+
+/// One bit a lane: its sign.
+template <typename T, std::size_t N>
+HWY_INLINE unsigned signs(const Lanes<T, N>& a) {
+  return bits(isNegative(a));
+}
+
+/// The largest lane; none is a NaN.
+template <typename T, std::size_t N>
+HWY_INLINE T largest(const Lanes<T, N>& a) {
+  auto most = a.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) most = hn::Max(most, a.part[p]);
+  typename Lanes<T, N>::Tag tag;
+  return hn::GetLane(hn::MaxOfLanes(tag, most));
+}
+
+#undef FCL_CCD_FOR_PARTS
+
+#else  // FCL_CCD_USE_HIGHWAY
+
+template <typename T, std::size_t N>
+struct Lanes {
+  T lane[N];
+};
+
+template <typename T, std::size_t N>
+struct LaneMask {
+  bool lane[N];
+};
+
+#define FCL_CCD_FOR_LANES for (std::size_t i = 0; i < N; ++i)
+
+template <std::size_t N, typename T>
+inline Lanes<T, N> load(const T* from) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = from[i];
+  return out;
+}
+
+template <std::size_t N, typename T>
+inline Lanes<T, N> broadcast(T value) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = value;
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline void store(const Lanes<T, N>& a, T* to) {
+  FCL_CCD_FOR_LANES to[i] = a.lane[i];
+}
+
+#define FCL_CCD_LANEWISE(NAME, RESULT, ARGUMENT, OP)                           \
+  template <typename T, std::size_t N>                                         \
+  inline RESULT<T, N> NAME(const ARGUMENT<T, N>& a, const ARGUMENT<T, N>& b) { \
+    RESULT<T, N> out;                                                          \
+    FCL_CCD_FOR_LANES out.lane[i] = a.lane[i] OP b.lane[i];                    \
+    return out;                                                                \
+  }
+FCL_CCD_LANEWISE(operator+, Lanes, Lanes, +)
+FCL_CCD_LANEWISE(operator-, Lanes, Lanes, -)
+FCL_CCD_LANEWISE(operator*, Lanes, Lanes, *)
+FCL_CCD_LANEWISE(operator/, Lanes, Lanes, /)
+FCL_CCD_LANEWISE(operator==, LaneMask, Lanes, ==)
+FCL_CCD_LANEWISE(operator<, LaneMask, Lanes, <)
+FCL_CCD_LANEWISE(operator>, LaneMask, Lanes, >)
+FCL_CCD_LANEWISE(operator<=, LaneMask, Lanes, <=)
+FCL_CCD_LANEWISE(operator>=, LaneMask, Lanes, >=)
+FCL_CCD_LANEWISE(operator&, LaneMask, LaneMask, &&)
+FCL_CCD_LANEWISE(operator|, LaneMask, LaneMask, ||)
+#undef FCL_CCD_LANEWISE
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> abs(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = std::abs(a.lane[i]);
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> select(const LaneMask<T, N>& mask, const Lanes<T, N>& a,
+                          const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = mask.lane[i] ? a.lane[i] : b.lane[i];
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline unsigned bits(const LaneMask<T, N>& mask) {
+  unsigned out = 0;
+  FCL_CCD_FOR_LANES out |= unsigned{mask.lane[i]} << i;
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> swapHalves(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = a.lane[(i + N / 2) % N];
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> larger(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i];
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> smaller(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = a.lane[i] < b.lane[i] ? a.lane[i] : b.lane[i];
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> bothNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  return larger(a, b);
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> eitherNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  return smaller(a, b);
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> whereNegative(const Lanes<T, N>& s, const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = s.lane[i] < 0 ? a.lane[i] : 0;
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline unsigned signs(const Lanes<T, N>& a) {
+  unsigned out = 0;
+  FCL_CCD_FOR_LANES out |= unsigned{a.lane[i] < 0} << i;
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline T largest(const Lanes<T, N>& a) {
+  T most = a.lane[0];
+  FCL_CCD_FOR_LANES most = a.lane[i] > most ? a.lane[i] : most;
+  return most;
+}
+
+#undef FCL_CCD_FOR_LANES
+
+#endif  // FCL_CCD_USE_HIGHWAY
+
+/// The larger (smaller) of two; b where one is a NaN. Not Highway's, whose answer to a
+/// NaN depends on the target.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> max(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  return select(a > b, a, b);
+}
+
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> min(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+  return select(a < b, a, b);
+}
+
+using Floats = Lanes<float, kEight>;
+using FloatMask = LaneMask<float, kEight>;
+using HalfAxes = Lanes<float, 16>;
+using Doubles = Lanes<double, kEight>;
+using DoubleMask = LaneMask<double, kEight>;
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_PARALLEL_H
+#define FCL_CCD_PARALLEL_H
+
+#include <cstddef>
+#include <functional>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Calls visit(0) ... visit(count - 1), each once, in the default floating-point
+/// mode; on one thread in this order and without a task. An exception of the lowest index
+/// is passed on once no call runs.
+/// @param num_threads  at most so many; 0: as many as the task arena around has. Without
+/// oneTBB always one.
+void parallelFor(std::size_t count, int num_threads,
+                 const std::function<void(std::size_t)>& visit);
+
+/// @brief How many threads parallelFor() uses.
+int numThreads(int num_threads);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

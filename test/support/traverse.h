@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_TEST_SUPPORT_TRAVERSE_H
+#define FCL_TEST_SUPPORT_TRAVERSE_H
+
+#include <cstdint>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/mesh_topology.h"
+#include "fcl/narrowphase/detail/deformable/traversal.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief All steps of a traversal, without a query around them: visit(i, j, earliest)
+/// for triangles i and j as the trees count them.
+/// @param latest  what starts later is left out
+/// @param embedded  as Traversal takes it
+/// @return number of boxes that were compared
+template <bool kSelf, typename TreeA, typename TreeB, typename Visit>
+std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* shift,
+                       Visit&& visit, double latest = 1,
+                       const std::uint8_t* embedded = nullptr) {
+  namespace deformable = detail::deformable;
+  deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, embedded,
+                                                       deformable::kernels());
+  deformable::WorkList open;
+  traversal.start(open);
+  while (open.size() > 0) {
+    const deformable::NodePair work = open[open.size() - 1];
+    open.cut(open.size() - 1);
+    if (work.earliest > latest) continue;
+    traversal.step(work, open, [&](int i, int j, float earliest) {
+      if (earliest <= latest) visit(i, j, earliest);
+    });
+  }
+  return traversal.compared();
+}
+
+/// @brief For each vertex of the tree, whether its fan is embedded, as queries find out.
+inline std::vector<std::uint8_t> embeddedFans(
+    const detail::deformable::MovingKdopTree& tree) {
+  std::vector<std::uint8_t> embedded;
+  embedded.reserve(tree.vertices().size());
+  for (std::size_t i = 0; i < tree.vertices().size(); ++i)
+    embedded.push_back(detail::deformable::kernels().isFanEmbedded(
+        tree.vertices().data(), tree.vertices()[i], tree.fans()[i]));
+  return embedded;
+}
+
+/// @brief The user's ids and the features of triangle i as the tree counts them.
+inline detail::deformable::MeshTriangle triangleOf(
+    const detail::deformable::MovingKdopTree& tree, int i) {
+  const detail::deformable::TreeTriangle& t =
+      tree.triangles()[static_cast<std::size_t>(i)];
+  return {{t.id[0], t.id[1], t.id[2]}, t.owned};
+}
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,946 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The kernels decide as the scalar functions do, on every instruction set of the machine
+// and with the same bits.
+#include "fcl/narrowphase/detail/deformable/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "fcl/narrowphase/detail/deformable/vertex_fans.h"
+#include "feature_pair_generators.h"
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using test::MovingPair;
+using test::Random;
+
+constexpr int kWidth = MovingKdopNode::kWidth;
+
+TEST(FCL_KERNELS, everyInstructionSetOnceTheBestFirst) {
+  const auto all = allKernels();
+  ASSERT_FALSE(all.empty());
+  EXPECT_EQ(all.front(), &kernels());
+  std::set<std::string> names;
+  for (const Kernels* k : all) EXPECT_TRUE(names.insert(k->name).second) << k->name;
+    // The last one needs nothing of the machine, where the compiler may not take anything
+    // for granted.
+#if defined(__x86_64__) && !defined(__SSSE3__)
+  const std::string last = all.back()->name;
+  EXPECT_TRUE(last == "EMU128" || last == "SCALAR" || last == "plain") << last;
+  EXPECT_EQ(all.size() == 1, last == "plain");
+#endif
+}
+
+TEST(FCL_KERNELS, listingChoosesNothing) {
+  const Kernels& before = kernels();
+  allKernels();
+  EXPECT_EQ(&kernels(), &before);
+}
+
+const std::vector<const Kernels*>& allSets() {
+  static const std::vector<const Kernels*> all = allKernels();
+  return all;
+}
+
+/// What the half-axes of a box are like.
+enum class Halves { kOnGrid, kSmooth, kSpecial, kAnyBits };
+
+float randomHalf(Random& random, Halves halves) {
+  static const float kSpecials[] = {0.f,
+                                    -0.f,
+                                    1.f,
+                                    -1.f,
+                                    std::numeric_limits<float>::infinity(),
+                                    std::numeric_limits<float>::quiet_NaN(),
+                                    FLT_MAX,
+                                    -FLT_MAX,
+                                    FLT_MIN,
+                                    -FLT_MIN,
+                                    std::numeric_limits<float>::denorm_min(),
+                                    -std::numeric_limits<float>::denorm_min(),
+                                    -std::numeric_limits<float>::infinity()};
+  switch (halves) {
+    case Halves::kOnGrid:
+      return static_cast<float>(random.index(12)) - 2;
+    case Halves::kSmooth:
+      return static_cast<float>(random.uniform(-0.15, 1));
+    case Halves::kSpecial:
+      // Mostly positive ones, else no pair of boxes would ever overlap.
+      return kSpecials[random.index(4) ? 4 + random.index(3) : random.index(13)];
+    case Halves::kAnyBits:
+      break;
+  }
+  std::uint32_t bits = static_cast<std::uint32_t>(random.next());
+  if (random.index(8)) bits &= 0x7fffffffU;
+  float half;
+  std::memcpy(&half, &bits, sizeof(half));
+  return half;
+}
+
+/// Boxes of one kind, or of several; many move by little.
+MovingKdop randomBox(Random& random, Halves halves, float scale) {
+  MovingKdop box;
+  const bool still = random.index(4) == 0;
+  for (int j = 0; j < 16; ++j) {
+    box.t0.half[j] = scale * randomHalf(random, halves);
+    box.t1.half[j] = still ? box.t0.half[j] : scale * randomHalf(random, halves);
+  }
+  return box;
+}
+
+Halves randomHalves(Random& random) { return static_cast<Halves>(random.index(4)); }
+
+float randomScale(Random& random) {
+  return random.index(2) ? 1.f
+                         : std::ldexp(1.f, static_cast<int>(random.index(260)) - 140);
+}
+
+void expectSameWindow(const TimeWindow& window, const TimeWindow& expected) {
+  EXPECT_EQ(window.lo, expected.lo);
+  EXPECT_EQ(window.hi, expected.hi);
+}
+
+/// As roundUp() makes them: never a NaN, minus infinity or minus zero.
+void makeBounds(MovingKdop& box) {
+  for (Kdop16* frame : {&box.t0, &box.t1})
+    for (float& half : frame->half) {
+      if (std::isnan(half)) half = std::numeric_limits<float>::infinity();
+      half = std::max(half, kLeastHalf) + 0.f;
+    }
+}
+
+MovingKdop randomBounds(Random& random, Halves halves, float scale) {
+  MovingKdop box = randomBox(random, halves, scale);
+  makeBounds(box);
+  return box;
+}
+
+/// The same to the bit, where bits of the mask are set.
+template <typename T, std::size_t kCount>
+void expectSameBits(unsigned mask, const T (&x)[kCount], const T (&y)[kCount]) {
+  for (std::size_t i = 0; i < kCount; ++i)
+    if (mask >> i & 1U) {
+      EXPECT_EQ(std::memcmp(&x[i], &y[i], sizeof(T)), 0) << i;
+    }
+}
+
+struct Tally {
+  int overlaps{0}, apart{0}, cut{0};
+
+  void add(bool overlaps_now, const TimeWindow& window) {
+    ++(overlaps_now ? overlaps : apart);
+    cut += overlaps_now && (window.lo > 0 || window.hi < 1);
+  }
+};
+
+/// A box's half-axes in the order of a node's rows.
+struct Rows {
+  float t0[16], t1[16];
+
+  explicit Rows(const MovingKdop& box) {
+    for (int r = 0; r < 16; ++r) {
+      t0[r] = box.t0.half[MovingKdopNode::halfAxis(r)];
+      t1[r] = box.t1.half[MovingKdopNode::halfAxis(r)];
+    }
+  }
+  BoxView view() const { return {t0, t1, 1}; }
+};
+
+void expectRightChildren(const BoxView& view, const MovingKdop& box,
+                         const MovingKdopNode& node, Tally& tally) {
+  float first[kWidth];
+  const unsigned mask = allSets().front()->overlapChildren(view, node, first);
+  EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
+  for (int lane = 0; lane < node.count; ++lane) {
+    const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
+    ASSERT_EQ(mask >> lane & 1U, unsigned{!expected.isEmpty()}) << lane;
+    if (!expected.isEmpty()) {
+      EXPECT_EQ(first[lane], expected.lo);
+    }
+    tally.add(!expected.isEmpty(), expected);
+  }
+  for (const Kernels* k : allSets()) {
+    float earliest[kWidth];
+    ASSERT_EQ(k->overlapChildren(view, node, earliest), mask) << k->name;
+    expectSameBits(mask, earliest, first);
+    ASSERT_FALSE(testing::Test::HasFailure()) << k->name;
+  }
+}
+
+TEST(FCL_KERNELS, childrenAsOverlapWindow) {
+  constexpr std::uint64_t kSeed = 71;
+  Random random(kSeed);
+  Tally tally;
+  for (int i = 0; i < 20000; ++i) {
+    const float scale = randomScale(random);
+    MovingKdopNode parent, node;
+    parent.count = kWidth;
+    node.count = 1 + static_cast<int>(random.index(kWidth));
+    for (int lane = 0; lane < kWidth; ++lane) {
+      parent.child[lane] = node.child[lane] = 0;
+      parent.setBox(lane, randomBounds(random, randomHalves(random), scale));
+      node.setBox(lane, randomBounds(random, randomHalves(random), scale));
+    }
+    // Whatever lies in lanes that are not in use.
+    if (random.index(2)) node.clearRest();
+    const auto lane = static_cast<int>(random.index(kWidth));
+    const MovingKdop box = parent.box(lane);
+    // A box by itself, and one of eight.
+    const Rows rows(box);
+    expectRightChildren(rows.view(), box, node, tally);
+    expectRightChildren({&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], 2 * kWidth},
+                        box, node, tally);
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(tally.overlaps, 5000);
+  EXPECT_GT(tally.apart, 5000);
+  EXPECT_GT(tally.cut, 2000);
+}
+
+// Boxes that nothing bounds overlap all that is there, and nothing else.
+TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
+  for (const float half : {std::numeric_limits<float>::infinity(), FLT_MAX}) {
+    MovingKdop box;
+    std::fill(box.t0.half, box.t0.half + 16, half);
+    box.t1 = box.t0;
+    for (int count = 0; count <= kWidth; ++count) {
+      MovingKdopNode node;
+      node.count = count;
+      for (int lane = 0; lane < count; ++lane) node.setBox(lane, box);
+      node.clearRest();
+      for (const Kernels* k : allSets()) {
+        float earliest[kWidth];
+        EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, earliest), (1U << count) - 1)
+            << k->name;
+        for (int lane = 0; lane < count; ++lane) EXPECT_EQ(earliest[lane], 0) << k->name;
+      }
+    }
+  }
+}
+
+MovingKdop merged(const MovingKdop& a, const MovingKdop& b) {
+  MovingKdop out;
+  for (int j = 0; j < 16; ++j) {
+    out.t0.half[j] = std::max(a.t0.half[j], b.t0.half[j]);
+    out.t1.half[j] = std::max(a.t1.half[j], b.t1.half[j]);
+  }
+  return out;
+}
+
+MovingKdop shifted(const MovingKdop& original, const KdopShift* shift) {
+  MovingKdop box = original;
+  if (!shift) return box;
+  for (int j = 0; j < 16; ++j) {
+    box.t0.half[j] = std::max(box.t0.half[j] + shift->t0.half[j], kLeastHalf);
+    box.t1.half[j] = std::max(box.t1.half[j] + shift->t1.half[j], kLeastHalf);
+  }
+  return box;
+}
+
+/// Boxes of a triangle's vertices, edges and face.
+struct ScalarBoxes {
+  MovingKdop vertex[3], edge[3], face;
+
+  ScalarBoxes(const TreeVertex (&x)[3], const KdopShift* shift) {
+    for (int k = 0; k < 3; ++k) vertex[k] = x[k].box;
+    for (int k = 0; k < 3; ++k) edge[k] = merged(vertex[k], vertex[(k + 1) % 3]);
+    face = merged(edge[0], vertex[2]);
+    for (int k = 0; k < 3; ++k) {
+      vertex[k] = shifted(vertex[k], shift);
+      edge[k] = shifted(edge[k], shift);
+    }
+    face = shifted(face, shift);
+  }
+};
+
+/// The boxes of the pair of features that a bit stands for, a's first.
+std::pair<MovingKdop, MovingKdop> boxesOf(int bit, const ScalarBoxes& a,
+                                          const ScalarBoxes& b) {
+  const FeaturePair pair = featurePair(bit);
+  if (pair.kind == FeatureKind::kEdgeEdge)
+    return {a.edge[pair.first], b.edge[pair.second]};
+  return pair.first_on_a ? std::make_pair(a.vertex[pair.first], b.face)
+                         : std::make_pair(a.face, b.vertex[pair.first]);
+}
+
+struct TrianglePairBoxes {
+  TreeVertex a[3], b[3];
+  const TreeVertex* pa[3];
+  const TreeVertex* pb[3];
+  KdopShift shift;
+  bool has_shift;
+
+  explicit TrianglePairBoxes(Random& random) : has_shift(random.index(2)) {
+    const float scale = randomScale(random);
+    const bool one_kind = random.index(4);
+    const Halves halves = randomHalves(random);
+    for (int k = 0; k < 3; ++k) {
+      a[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
+      b[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
+      pa[k] = &a[k];
+      pb[k] = &b[k];
+    }
+    // Many come apart along an axis, at the start, at the end or all the time.
+    if (random.index(3)) {
+      const std::size_t j = random.index(16);
+      const double start = random.uniform(-2, 6), end = random.uniform(-2, 6);
+      for (TreeVertex& x : a) {
+        x.box.t0.half[j] -= scale * static_cast<float>(start);
+        x.box.t1.half[j] -= scale * static_cast<float>(end);
+      }
+    }
+    for (int k = 0; k < 3; ++k) {
+      makeBounds(a[k].box);
+      makeBounds(b[k].box);
+    }
+    MovingKdop box = randomBox(
+        random, random.index(3) ? Halves::kSmooth : randomHalves(random), scale);
+    makeBounds(box);
+    shift = {box.t0, box.t1};
+  }
+  const KdopShift* shiftOrNull() const { return has_shift ? &shift : nullptr; }
+
+  /// The same, for boxes of b's features.
+  KdopShift turnedShift() const {
+    KdopShift turned;
+    for (int j = 0; j < 16; ++j) {
+      turned.t0.half[j] = shift.t0.half[j ^ 8];
+      turned.t1.half[j] = shift.t1.half[j ^ 8];
+    }
+    return turned;
+  }
+
+  TrianglePair pair() const {
+    return {{pa[0], pa[1], pa[2], pb[0], pb[1], pb[2]}, nullptr, nullptr};
+  }
+};
+
+// Several triangle pairs at a time; codes and windows of what is left, in order.
+TEST(FCL_KERNELS, featuresAsOverlapWindow) {
+  constexpr std::uint64_t kSeed = 72;
+  constexpr std::uint32_t kPairs = 5;
+  Random random(kSeed);
+  Tally tally[kNumFeaturePairs];
+  for (int i = 0; i < 12000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    std::vector<TrianglePairBoxes> boxes;
+    boxes.reserve(kPairs);  // they point to themselves
+    std::vector<TrianglePair> pairs;
+    for (std::uint32_t k = 0; k < kPairs; ++k) {
+      boxes.emplace_back(random);
+      boxes[k].has_shift = boxes[0].has_shift;
+      boxes[k].shift = boxes[0].shift;
+      pairs.push_back(boxes[k].pair());
+    }
+    const KdopShift turned_shift = boxes[0].turnedShift();
+    const KdopShift* shift = boxes[0].shiftOrNull();
+    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+      std::vector<std::uint32_t> codes, left;
+      std::vector<TimeWindow> left_windows;
+      for (std::uint32_t k = 0; k < kPairs; ++k)
+        for (int bit = kind == FeatureKind::kEdgeEdge ? 6 : 0;
+             bit < (kind == FeatureKind::kEdgeEdge ? kNumFeaturePairs : 6); ++bit) {
+          if (random.index(3) == 0) continue;
+          codes.push_back(featureCode(k, bit));
+          // The shift is added to the vertex, or to edge a.
+          const bool vertex_on_b = bit >= 3 && bit < 6;
+          const ScalarBoxes a(boxes[k].a, vertex_on_b ? nullptr : shift),
+              b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
+          const auto [box_a, box_b] = boxesOf(bit, a, b);
+          const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
+          if (!expected.isEmpty()) {
+            left.push_back(codes.back());
+            left_windows.push_back(expected);
+          }
+          tally[bit].add(!expected.isEmpty(), expected);
+        }
+      std::vector<TimeWindow> first;
+      for (const Kernels* kernels : allSets()) {
+        std::vector<std::uint32_t> mine = codes;
+        std::vector<TimeWindow> windows(codes.size());
+        const std::size_t count =
+            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, mine.data(),
+                                  mine.size(), windows.data());
+        mine.resize(count);
+        windows.resize(count);
+        ASSERT_EQ(mine, left) << kernels->name;
+        for (std::size_t k = 0; k < count; ++k)
+          expectSameWindow(windows[k], left_windows[k]);
+        if (first.empty()) first = windows;
+        for (std::size_t k = 0; k < count; ++k)
+          ASSERT_EQ(std::memcmp(&windows[k], &first[k], sizeof(TimeWindow)), 0)
+              << kernels->name;
+      }
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  for (int bit = 0; bit < kNumFeaturePairs; ++bit) {
+    EXPECT_GT(tally[bit].overlaps, 1000) << bit;
+    EXPECT_GT(tally[bit].apart, 1000) << bit;
+    EXPECT_GT(tally[bit].cut, 300) << bit;
+  }
+}
+
+// Up to three places, among them of vertices that no triangle has; lanes that are not in
+// use and lanes that hold nodes have none.
+TEST(FCL_KERNELS, trianglesAtVertices) {
+  constexpr std::uint64_t kSeed = 83;
+  Random random(kSeed);
+  int found = 0, not_found = 0;
+  for (int i = 0; i < 20000; ++i) {
+    MovingKdopNode node;
+    node.count = 1 + static_cast<int>(random.index(kWidth));
+    // Few vertices, or ids that differ in a high bit alone.
+    const unsigned high = random.index(2) ? 0 : 31;
+    const auto place = [&] {
+      return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
+             static_cast<std::uint32_t>(random.index(high ? 4 : 1));
+    };
+    for (int lane = 0; lane < kWidth; ++lane) {
+      const bool is_triangle = lane < node.count && random.index(4) != 0;
+      node.child[lane] = is_triangle ? -1 - lane : lane;
+      for (auto& row : node.places)
+        row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+    }
+    std::uint32_t places[3];
+    const std::size_t count = random.index(4);
+    for (std::uint32_t& p : places) p = place();
+    unsigned expected = 0;
+    for (int lane = 0; lane < kWidth; ++lane)
+      for (const auto& row : node.places)
+        if (std::find(places, places + count, row[lane]) != places + count)
+          expected |= 1U << lane;
+    for (const Kernels* k : allSets())
+      ASSERT_EQ(k->trianglesAt(places, count, node), expected)
+          << k->name << ", seed " << kSeed << ", " << i;
+    found += __builtin_popcount(expected);
+    not_found += node.count - __builtin_popcount(expected);
+  }
+  EXPECT_GT(found, 10000);
+  EXPECT_GT(not_found, 10000);
+}
+
+/// Whether no half-axis separates the boxes at t = 0.
+bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
+  for (int j = 0; j < 16; ++j)
+    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
+  return true;
+}
+
+TEST(FCL_KERNELS, edgesAndFacesAtStart) {
+  constexpr std::uint64_t kSeed = 73;
+  Random random(kSeed);
+  int overlaps[6] = {}, apart[6] = {};
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const TrianglePairBoxes x(random);
+    const TrianglePair pair = x.pair();
+    const KdopShift turned_shift = x.turnedShift();
+    const ScalarBoxes a(x.a, nullptr), b(x.b, nullptr);
+    const ScalarBoxes moved_a(x.a, x.shiftOrNull()),
+        moved_b(x.b, x.has_shift ? &turned_shift : nullptr);
+    std::vector<std::uint32_t> codes, left;
+    for (int bit = 0; bit < 6; ++bit) {
+      if (random.index(2)) continue;
+      codes.push_back(featureCode(0, bit));
+      const bool overlap = bit < 3 ? doOverlapAtStart(moved_a.edge[bit], b.face)
+                                   : doOverlapAtStart(a.face, moved_b.edge[bit - 3]);
+      if (overlap) left.push_back(codes.back());
+      ++(overlap ? overlaps : apart)[bit];
+    }
+    for (const Kernels* k : allSets()) {
+      std::vector<std::uint32_t> mine = codes;
+      mine.resize(k->cullCrossings(&pair, x.shiftOrNull(), &turned_shift, mine.data(),
+                                   mine.size()));
+      ASSERT_EQ(mine, left) << k->name;
+    }
+  }
+  for (int bit = 0; bit < 6; ++bit) {
+    EXPECT_GT(overlaps[bit], 500) << bit;
+    EXPECT_GT(apart[bit], 500) << bit;
+  }
+}
+
+/// A pair and the window in which it is looked at.
+struct FilterQuery {
+  MovingPair pair;
+  double lo, hi;
+};
+
+EightPairs eightOf(const FilterQuery (&queries)[8]) {
+  EightPairs out;
+  out.kind = queries[0].pair.kind;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    TreeVertex x[4];
+    const TreeVertex* p[4];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const VertexPath& path = queries[lane].pair.x[i];
+      std::copy(path.t0, path.t0 + 3, x[i].t0);
+      std::copy(path.t1, path.t1 + 3, x[i].t1);
+      // The fourth number is nobody's.
+      x[i].t0[3] = x[i].t1[3] = std::numeric_limits<double>::quiet_NaN();
+      p[i] = &x[i];
+    }
+    out.set(lane, p, queries[lane].lo, queries[lane].hi);
+  }
+  return out;
+}
+
+void randomWindow(Random& random, double& lo, double& hi) {
+  switch (random.index(6)) {
+    case 0:
+      lo = 0;
+      hi = 1;
+      return;
+    case 1:
+      lo = hi = static_cast<double>(random.index(2));
+      return;
+    case 2:
+      lo = hi = random.uniform(0, 1);
+      return;
+    case 3:
+      lo = 0;
+      hi = random.uniform(0, 1);
+      return;
+    case 4:
+      lo = random.uniform(0, 1);
+      hi = 1;
+      return;
+    default:
+      lo = random.uniform(0, 1);
+      hi = random.uniform(lo, 1);
+  }
+}
+
+/// Points here and there; many of the pairs stay on one side of each other.
+MovingPair randomPair(Random& random, FeatureKind kind) {
+  MovingPair pair{kind, {}};
+  const double step = random.index(2) ? 0.2 : 1;
+  const bool on_grid = random.index(4) == 0;
+  for (VertexPath& x : pair.x)
+    for (int k = 0; k < 3; ++k) {
+      x.t0[k] = random.uniform(-1, 1);
+      x.t1[k] = x.t0[k] + random.uniform(-step, step);
+      if (on_grid) {
+        x.t0[k] = std::round(2 * x.t0[k]);
+        x.t1[k] = std::round(2 * x.t1[k]);
+      }
+    }
+  return pair;
+}
+
+void scale(MovingPair& pair, double factor) {
+  for (VertexPath& x : pair.x)
+    for (int k = 0; k < 3; ++k) {
+      x.t0[k] *= factor;
+      x.t1[k] *= factor;
+    }
+}
+
+FeatureKind oneOfTwo(Random& random) {
+  return random.index(2) ? FeatureKind::kVertexFace : FeatureKind::kEdgeEdge;
+}
+
+/// The bits of every instruction set, lane by lane as the scalar filter decides.
+/// @return how many lanes may become coplanar
+int expectRightFilter(const FilterQuery (&queries)[8]) {
+  const EightPairs eight = eightOf(queries);
+  unsigned expected = 0;
+  for (unsigned lane = 0; lane < 8; ++lane) {
+    const FilterQuery& q = queries[lane];
+    if (mayBecomeCoplanar(q.pair.kind, q.pair.points(), q.lo, q.hi))
+      expected |= 1U << lane;
+  }
+  for (const Kernels* k : allSets()) {
+    const unsigned mask = k->mayBecomeCoplanar(eight);
+    EXPECT_EQ(mask, expected) << k->name;
+    for (unsigned lane = 0; lane < 8; ++lane)
+      if ((mask ^ expected) >> lane & 1U)
+        ADD_FAILURE() << queries[lane].pair << std::hexfloat << " in ["
+                      << queries[lane].lo << ", " << queries[lane].hi << "]";
+  }
+  return __builtin_popcount(expected);
+}
+
+TEST(FCL_KERNELS, filterAsTheScalarOne) {
+  constexpr std::uint64_t kSeed = 74;
+  Random random(kSeed);
+  int may = 0;
+  constexpr int kBlocks = 20000;
+  for (int i = 0; i < kBlocks; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      randomWindow(random, q.lo, q.hi);
+    }
+    may += expectRightFilter(queries);
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(may, kBlocks);
+  EXPECT_LT(may, 7 * kBlocks);
+}
+
+// Sizes over all of double's range: products that underflow or overflow, and the edges of
+// the range in which the bounds hold.
+TEST(FCL_KERNELS, filterOfAllSizes) {
+  constexpr std::uint64_t kSeed = 75;
+  Random random(kSeed);
+  int may = 0, never = 0;
+  for (int exponent = -1074; exponent <= 1023; ++exponent)
+    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+      FilterQuery queries[8];
+      for (FilterQuery& q : queries) {
+        q.pair = randomPair(random, kind);
+        scale(q.pair, std::ldexp(1, exponent));
+        // One point alone of another size.
+        if (random.index(3) == 0)
+          for (int k = 0; k < 3; ++k)
+            q.pair.x[random.index(4)].t1[k] *= std::ldexp(1, exponent / 2);
+        randomWindow(random, q.lo, q.hi);
+      }
+      const int n = expectRightFilter(queries);
+      may += n;
+      never += 8 - n;
+      ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", 2^" << exponent;
+    }
+  EXPECT_GT(may, 5000);
+  EXPECT_GT(never, 1000);
+}
+
+// Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
+// "may" be so.
+TEST(FCL_KERNELS, filterOfDegeneratePairs) {
+  constexpr std::uint64_t kSeed = 76;
+  Random random(kSeed);
+  for (int i = 0; i < 5000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      auto& x = q.pair.x;
+      switch (random.index(6)) {
+        case 0:  // all in one plane
+          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
+          break;
+        case 1:  // at rest
+          for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
+          break;
+        case 2:  // no normal
+          x[1] = x[random.index(4)];
+          break;
+        case 3:  // a unit in the last place off a plane
+          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
+          x[random.index(4)].t1[2] = std::nextafter(1, 2);
+          break;
+        case 4:  // far away
+          for (VertexPath& p : x)
+            for (int k = 0; k < 3; ++k) {
+              p.t0[k] += 1e9;
+              p.t1[k] += 1e9;
+            }
+          break;
+        default:  // one point for all
+          for (VertexPath& p : x) p = x[0];
+      }
+      randomWindow(random, q.lo, q.hi);
+    }
+    expectRightFilter(queries);
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+}
+
+// What is not finite proves nothing, and leaves the other lanes alone.
+TEST(FCL_KERNELS, filterKeepsWhatIsNotFinite) {
+  constexpr std::uint64_t kSeed = 77;
+  Random random(kSeed);
+  const double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::infinity(),
+                         -std::numeric_limits<double>::infinity()};
+  int never = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    unsigned bad = 0;
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      FilterQuery& q = queries[lane];
+      q.pair = randomPair(random, kind);
+      randomWindow(random, q.lo, q.hi);
+      if (random.index(2)) continue;
+      bad |= 1U << lane;
+      // Both frames enter.
+      q.lo = 0.25;
+      q.hi = 0.75;
+      for (std::size_t n = 1 + random.index(3); n-- > 0;) {
+        VertexPath& x = q.pair.x[random.index(4)];
+        (random.index(2) ? x.t0 : x.t1)[random.index(3)] = kBad[random.index(3)];
+      }
+    }
+    never += 8 - expectRightFilter(queries);
+    for (const Kernels* k : allSets())
+      ASSERT_EQ(k->mayBecomeCoplanar(eightOf(queries)) & bad, bad) << k->name;
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(never, 1000);
+}
+
+/// A vertex and its spokes.
+struct RandomFan {
+  std::vector<TreeVertex> vertices;  // the spokes, then the center
+  std::vector<std::uint32_t> spokes;
+  bool is_closed;
+
+  /// Spokes around a center, `turns` times round, more or less in a plane.
+  RandomFan(Random& random, std::size_t count, bool closed, double turns, double noise)
+      : is_closed(closed) {
+    const Vector3<double> tilt = random.point(1), at = random.point(5);
+    const double motion = random.uniform(0, 1);
+    const auto add = [&](const Vector3<double>& p) {
+      const Vector3<double> a = p + random.point(noise),
+                            b = a + motion * random.point(noise);
+      TreeVertex x{};
+      for (int k = 0; k < 3; ++k) {
+        // A shear, so that the plane is not one of the axes'.
+        x.t0[k] = a[k] + tilt[k] * a[(k + 1) % 3] + at[k];
+        x.t1[k] = b[k] + tilt[k] * b[(k + 1) % 3] + at[k];
+      }
+      vertices.push_back(x);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = 2 * 3.14159265358979 * turns * static_cast<double>(i) /
+                           static_cast<double>(closed ? count : count - 1);
+      const double length = random.uniform(0.5, 1.5);
+      add({length * std::cos(angle), length * std::sin(angle), 0});
+      spokes.push_back(static_cast<std::uint32_t>(i));
+    }
+    add({0, 0, 0});
+  }
+
+  VertexFan fan() const {
+    return {spokes.data(), static_cast<std::uint32_t>(spokes.size()), is_closed};
+  }
+  const TreeVertex& center() const { return vertices.back(); }
+
+  /// Whether features of the triangles that share no vertex touch at some time.
+  bool doTouch() const {
+    std::vector<Triangle> triangles;
+    const std::size_t n = spokes.size();
+    for (std::size_t i = 0; i + (is_closed ? 0 : 1) < n; ++i)
+      triangles.emplace_back(n, i, (i + 1) % n);
+    const auto mesh = assignFeatures(triangles.data(), triangles.size(), n + 1);
+    bool touch = false;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+      for (std::size_t j = i + 1; j < mesh.size(); ++j)
+        forEachFeaturePair<true>(mesh[i], mesh[j], [&](const FeaturePair& f) {
+          const MeshTriangle &a = f.first_on_a ? mesh[i] : mesh[j],
+                             &b = f.first_on_a ? mesh[j] : mesh[i];
+          if (touch) return;
+          const bool vf = f.kind == FeatureKind::kVertexFace;
+          const VertexPath x[4] = {path(a.v[f.first]),
+                                   path(vf ? b.v[0] : a.v[(f.first + 1) % 3]),
+                                   path(vf ? b.v[1] : b.v[f.second]),
+                                   path(vf ? b.v[2] : b.v[(f.second + 1) % 3])};
+          touch = elementaryTest(f.kind, x, 0, 1, 1e-6).answer != Answer::kNo;
+        });
+    return touch;
+  }
+
+ private:
+  VertexPath path(std::uint32_t i) const {
+    const TreeVertex& x = vertices[i];
+    return {{x.t0[0], x.t0[1], x.t0[2]}, {x.t1[0], x.t1[1], x.t1[2]}};
+  }
+};
+
+/// The answer of every instruction set.
+bool isEmbedded(const RandomFan& fan) {
+  const bool answer =
+      allSets().front()->isFanEmbedded(fan.vertices.data(), fan.center(), fan.fan());
+  for (const Kernels* k : allSets())
+    EXPECT_EQ(k->isFanEmbedded(fan.vertices.data(), fan.center(), fan.fan()), answer)
+        << k->name;
+  return answer;
+}
+
+TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
+  constexpr std::uint64_t kSeed = 78;
+  Random random(kSeed);
+  int embedded[2] = {}, not_proved[2] = {}, touching = 0;
+  for (int i = 0; i < 1500; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const bool closed = random.index(2);
+    const std::size_t count = i % 8 ? 3 + random.index(6) : 9 + random.index(8);
+    const double turns = closed ? (random.index(4) ? 1 : 2) : random.uniform(0.2, 1.4);
+    const RandomFan fan(random, count, closed, turns, std::pow(random.uniform(0, 1), 2));
+    const bool proved = isEmbedded(fan);
+    ++(proved ? embedded : not_proved)[closed];
+    const bool touch = fan.doTouch();
+    touching += touch;
+    EXPECT_FALSE(proved && touch) << count << (closed ? ", closed" : ", open");
+  }
+  for (const int c : {0, 1}) {
+    EXPECT_GT(embedded[c], 100) << c;
+    EXPECT_GT(not_proved[c], 100) << c;
+  }
+  EXPECT_GT(touching, 200);
+}
+
+// A flat fan is embedded, one that goes round twice is not; every number of spokes.
+TEST(FCL_KERNELS, flatFans) {
+  Random random(79);
+  for (std::size_t count = 2; count <= VertexFans::kMaxSpokes; ++count) {
+    EXPECT_TRUE(isEmbedded(RandomFan(random, count, false, 0.4, 0))) << count;
+    if (count < 3) continue;
+    EXPECT_TRUE(isEmbedded(RandomFan(random, count, true, 1, 0)) || count == 3) << count;
+    if (count >= 5) {
+      EXPECT_FALSE(isEmbedded(RandomFan(random, count, true, 2, 0))) << count;
+      EXPECT_FALSE(isEmbedded(RandomFan(random, count, false, 1.2, 0))) << count;
+    }
+  }
+  const RandomFan fan(random, 6, true, 1, 0);
+  for (const Kernels* k : allSets())
+    EXPECT_FALSE(k->isFanEmbedded(fan.vertices.data(), fan.center(),
+                                  VertexFan{nullptr, 0, false}));
+}
+
+// What is not finite, or has no size, proves nothing.
+TEST(FCL_KERNELS, fansOfAllSizes) {
+  constexpr std::uint64_t kSeed = 80;
+  Random random(kSeed);
+  const double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::infinity(), 1e300};
+  for (int i = 0; i < 2000; ++i) {
+    const std::size_t count = 3 + random.index(14);
+    RandomFan fan(random, count, random.index(2), 1, 0.05);
+    const int exponent = static_cast<int>(random.index(2098)) - 1074;
+    for (TreeVertex& x : fan.vertices)
+      for (int k = 0; k < 3; ++k) {
+        x.t0[k] = std::ldexp(x.t0[k], exponent);
+        x.t1[k] = std::ldexp(x.t1[k], exponent);
+      }
+    const bool proved = isEmbedded(fan);
+    if (count < 7 && proved) {
+      EXPECT_FALSE(fan.doTouch()) << "seed " << kSeed << ", " << i;
+    }
+    TreeVertex& x = fan.vertices[random.index(count + 1)];
+    (random.index(2) ? x.t0 : x.t1)[random.index(3)] = kBad[random.index(2)];
+    EXPECT_FALSE(isEmbedded(fan)) << "seed " << kSeed << ", " << i;
+  }
+}
+
+struct SolveTally {
+  int yes{0}, no{0}, open{0};
+};
+
+/// What the kernel proves is so, by the exact test.
+void expectRightAnswers(const FilterQuery (&queries)[8], double toc_err,
+                        SolveTally& tally) {
+  const EightPairs eight = eightOf(queries);
+  const EightAnswers first = allSets().front()->solve(eight, toc_err);
+  ASSERT_EQ(first.yes & first.no, 0U);
+  ASSERT_EQ((first.yes | first.no) & ~0xffU, 0U);
+  for (const Kernels* k : allSets()) {
+    const EightAnswers answers = k->solve(eight, toc_err);
+    ASSERT_EQ(answers.yes, first.yes) << k->name;
+    ASSERT_EQ(answers.no, first.no) << k->name;
+    for (int lane = 0; lane < 8; ++lane)
+      if (first.yes >> lane & 1U) {
+        ASSERT_EQ(std::memcmp(&answers.toc_lo[lane], &first.toc_lo[lane], 8), 0);
+        ASSERT_EQ(std::memcmp(&answers.toc_hi[lane], &first.toc_hi[lane], 8), 0);
+      }
+  }
+  for (int lane = 0; lane < 8; ++lane) {
+    const FilterQuery& q = queries[lane];
+    const bool yes = first.yes >> lane & 1U, no = first.no >> lane & 1U;
+    ++(yes ? tally.yes : no ? tally.no : tally.open);
+    if (!yes && !no) continue;
+    const ElementaryResult exact = decideExactly(q.pair.kind, q.pair.points(), 1e-13);
+    const double lo = first.toc_lo[lane], hi = first.toc_hi[lane];
+    // The first contact of the window is the first of all, or one that came later.
+    const bool in_window =
+        exact.answer == Answer::kYes && exact.toc_lo >= q.lo && exact.toc_hi <= q.hi;
+    bool right = true;
+    if (no) right = !in_window;
+    if (yes) {
+      right = exact.answer == Answer::kYes && lo >= q.lo && hi <= q.hi && lo <= hi &&
+              hi - lo <= toc_err && exact.toc_lo <= hi;
+      if (in_window) right &= lo <= exact.toc_hi;
+    }
+    ASSERT_TRUE(right) << (yes ? "yes " : "no ") << q.pair << std::hexfloat << " in ["
+                       << q.lo << ", " << q.hi << "], [" << lo << ", " << hi
+                       << "], exactly [" << exact.toc_lo << ", " << exact.toc_hi << "]";
+  }
+}
+
+TEST(FCL_KERNELS, solvedPairsAreSo) {
+  constexpr std::uint64_t kSeed = 81;
+  Random random(kSeed);
+  SolveTally tally;
+  for (int i = 0; i < 12000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      if (random.index(8) == 0)
+        scale(q.pair, std::ldexp(1, static_cast<int>(random.index(700)) - 350));
+      randomWindow(random, q.lo, q.hi);
+    }
+    const double kErrors[] = {1, 1e-2, 1e-4, 1e-8, 1e-12, 1e-16};
+    expectRightAnswers(queries, kErrors[random.index(6)], tally);
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(tally.yes, 300);
+  EXPECT_GT(tally.no, 10000);
+  EXPECT_GT(tally.open, 300);
+}
+
+// Touches at the end of a window, at rest, all the time, of flat pairs and of points.
+TEST(FCL_KERNELS, solvedDegeneratePairsAreSo) {
+  constexpr std::uint64_t kSeed = 82;
+  Random random(kSeed);
+  SolveTally tally;
+  for (int i = 0; i < 3000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair.kind = kind;
+      for (VertexPath& x : q.pair.x)
+        for (int k = 0; k < 3; ++k) {
+          x.t0[k] = static_cast<double>(random.index(5)) - 2;
+          x.t1[k] = random.index(3) ? x.t0[k] : static_cast<double>(random.index(5)) - 2;
+        }
+      q.lo = 0.125 * static_cast<double>(random.index(9));
+      q.hi = std::min(1., q.lo + 0.125 * static_cast<double>(random.index(9)));
+      if (random.index(2)) {
+        q.lo = 0;
+        q.hi = 1;
+      }
+    }
+    expectRightAnswers(queries, random.index(2) ? 1e-4 : 1e-9, tally);
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(tally.yes, 50);
+  EXPECT_GT(tally.no, 500);
+}
+
+}  // namespace
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

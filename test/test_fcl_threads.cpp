@@ -1,0 +1,414 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Threads change how long a query takes, and nothing else.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cfenv>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+#ifdef FCL_CCD_USE_TBB
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+#include <tbb/task_scheduler_observer.h>
+#endif
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "test_models.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Model = DeformableBVHModel<KDOP<double, 16>>;
+using Plain = BVHModel<OBBRSS<double>>;
+using Request = ContinuousContactRequest<double>;
+using Result = ContinuousContactResult<double>;
+using Geometry = CollisionGeometry<double>;
+using Pose = Transform3<double>;
+
+constexpr ContinuousQuery kQueries[] = {ContinuousQuery::kAll, ContinuousQuery::kFirst,
+                                        ContinuousQuery::kAny};
+constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
+
+/// One mesh with itself, or two of which the first may move.
+struct Scene {
+  std::string name;
+  std::shared_ptr<const Geometry> o1, o2;
+  Pose end = Pose::Identity();
+  bool may_repeat = false;
+
+  Result run(const Request& request) const {
+    Result result;
+    if (!o2) {
+      continuousSelfCollide(o1.get(), request, result);
+    } else {
+      const Pose begin = Pose::Identity();
+      continuousCollide(o1.get(), begin, end, o2.get(), begin, begin, request, result);
+    }
+    return result;
+  }
+};
+
+Request requestOf(ContinuousQuery query, std::size_t max_contacts, double toc_err,
+                  int threads) {
+  Request request;
+  request.query = query;
+  request.num_max_contacts = max_contacts;
+  request.toc_err = toc_err;
+  request.num_threads = threads;
+  return request;
+}
+
+Pose translation(double x, double y, double z) {
+  Pose tf = Pose::Identity();
+  tf.translation() = Vector3<double>(x, y, z);
+  return tf;
+}
+
+/// Scenes with few and many contacts, at different times and all at the same one, with
+/// and without surfaces that cross at the start.
+const std::vector<Scene>& scenes() {
+  static const std::vector<Scene> all = [] {
+    std::vector<Scene> out;
+    const TestMesh sheet = bentSheet(16), tangle = shaken(sheet, 0.08, 9);
+    out.push_back({"crumpling", makeModel<Model>(sheet, tangle), nullptr});
+    out.push_back(
+        {"crossing", makeModel<Model>(tangle, shaken(sheet, 0.08, 10)), nullptr});
+    out.push_back({"plain crumpling", makeModel<Plain>(sheet, tangle), nullptr});
+    const TestMesh above = moved(sheet, 0.03, 0.02, 0.4),
+                   below = moved(sheet, 0, 0, -0.4);
+    const auto falling = makeModel<Model>(shaken(above, 0.01, 1), shaken(below, 0.02, 2));
+    const auto still = makeModel<Model>(sheet, shaken(sheet, 0.01, 3));
+    out.push_back({"sheets", falling, still});
+    // All touch at once, along the axes of the boxes.
+    const TestMesh flat = makeSheet(14, 14), ball = makeIcosphere(2, 0.5);
+    out.push_back({"flat on flat",
+                   makeModel<Model>(moved(flat, 0, 0, 1), moved(flat, 0, 0, -1)),
+                   makeModel<Model>(flat, flat)});
+    out.push_back({"rigid flat on flat", makeModel<Plain>(moved(flat, 0, 0, 1)),
+                   makeModel<Plain>(flat), translation(0, 0, -2), true});
+    out.push_back({"rigid balls", makeModel<Plain>(ball),
+                   makeModel<Plain>(moved(ball, 0, 0, 1.2)), translation(0.1, 0, 1),
+                   true});
+    out.push_back({"rigid and deforming", makeModel<Plain>(moved(ball, 0.5, 0.5, 1)),
+                   still, translation(0, 0.1, -1), true});
+    const TestMesh soup = makeTetrahedronSoup(60, 1, 0.3, 5);
+    out.push_back({"crossing soups", makeModel<Model>(soup, shaken(soup, 0.2, 6)),
+                   makeModel<Model>(makeTetrahedronSoup(60, 1, 0.3, 7))});
+    out.push_back({"apart", falling, makeModel<Plain>(moved(sheet, 9, 0, 0))});
+    return out;
+  }();
+  return all;
+}
+
+void expectSame(const Result& x, const Result& y) {
+  expectIdentical(x, y);
+  EXPECT_EQ(nameOf(x.crossing), nameOf(y.crossing));
+  EXPECT_EQ(x.crossing.b1, y.crossing.b1);
+  EXPECT_EQ(x.crossing.b2, y.crossing.b2);
+}
+
+TEST(FCL_THREADS, scenesHaveWhatTheyShould) {
+  std::size_t contacts = 0, crossing = 0;
+  for (const Scene& scene : scenes()) {
+    const Result all = scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1));
+    if (scene.name != "apart") {
+      EXPECT_GT(all.contacts.size(), 30U) << scene.name;
+    }
+    contacts += all.contacts.size();
+    crossing += all.initially_crossing;
+  }
+  EXPECT_GT(contacts, 2000U);
+  EXPECT_GE(crossing, 2U);
+  EXPECT_LT(crossing, scenes().size() / 2);
+}
+
+TEST(FCL_THREADS, sameAnswerWithAnyNumber) {
+  for (const Scene& scene : scenes())
+    for (const ContinuousQuery query : kQueries)
+      for (const std::size_t max_contacts : {std::size_t{3}, kNoLimit})
+        for (const double toc_err : {1e-2, 1e-4}) {
+          const auto request = [&](int threads) {
+            return requestOf(query, max_contacts, toc_err, threads);
+          };
+          SCOPED_TRACE(scene.name + ", query " + std::to_string(static_cast<int>(query)) +
+                       ", at most " + std::to_string(max_contacts) + ", toc_err " +
+                       std::to_string(toc_err));
+          const Result one = scene.run(request(1));
+          for (const int threads : {2, 4, 0}) {
+            SCOPED_TRACE(std::to_string(threads) + " threads");
+            const Result several = scene.run(request(threads));
+            expectSame(several, one);
+            if (query == ContinuousQuery::kAll && max_contacts == kNoLimit) {
+              EXPECT_EQ(several.counts.feature_pairs, one.counts.feature_pairs);
+              EXPECT_EQ(several.counts.exact_tests, one.counts.exact_tests);
+              EXPECT_EQ(several.counts.node_pairs, one.counts.node_pairs);
+            }
+            ASSERT_FALSE(HasFailure());
+          }
+        }
+}
+
+// A first-contact query returns what the query for all finds that may be the first.
+TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
+  for (const Scene& scene : scenes())
+    for (const double toc_err : {0.3, 1e-2, 1e-4, 1e-9}) {
+      SCOPED_TRACE(scene.name + ", toc_err " + std::to_string(toc_err));
+      Result all = scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, toc_err, 1));
+      double first_hi = 1;
+      for (const auto& c : all.contacts) first_hi = std::min(first_hi, c.toc_hi);
+      const auto end =
+          std::find_if(all.contacts.begin(), all.contacts.end(),
+                       [first_hi](const auto& c) { return c.toc_lo > first_hi; });
+      all.contacts.erase(end, all.contacts.end());
+      // Of a pair that is met repeatedly, brackets that were not kept count, too.
+      const auto expectBeginning = [&](const Result& first, std::size_t max_contacts) {
+        if (scene.may_repeat) {
+          ASSERT_EQ(first.contacts.empty(), all.contacts.empty());
+          ASSERT_LE(first.contacts.size(), all.contacts.size());
+        }
+        Result expected = all;
+        const std::size_t count = scene.may_repeat
+                                      ? first.contacts.size()
+                                      : std::min(max_contacts, all.contacts.size());
+        expected.contacts.resize(count);
+        expected.contacts_cut =
+            scene.may_repeat ? first.contacts_cut : all.contacts.size() > max_contacts;
+        // Another crossing may be told, and other triangles of an unprepared mesh.
+        expectIdentical(first, expected, !scene.may_repeat);
+      };
+      for (const std::size_t max_contacts : {std::size_t{1}, std::size_t{5}, kNoLimit})
+        for (const int threads : {1, 0}) {
+          expectBeginning(scene.run(requestOf(ContinuousQuery::kFirst, max_contacts,
+                                              toc_err, threads)),
+                          max_contacts);
+          ASSERT_FALSE(HasFailure()) << max_contacts << ", " << threads;
+        }
+    }
+}
+
+// The earliest so many are the beginning of all.
+TEST(FCL_THREADS, fewAreTheBeginningOfAll) {
+  for (const Scene& scene : scenes())
+    for (const double toc_err : {0.3, 1e-4}) {
+      SCOPED_TRACE(scene.name + ", toc_err " + std::to_string(toc_err));
+      const Result all =
+          scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, toc_err, 1));
+      for (const std::size_t max_contacts : {1, 2, 30}) {
+        Result expected = all;
+        expected.contacts_cut = all.contacts.size() > max_contacts;
+        if (expected.contacts_cut) expected.contacts.resize(max_contacts);
+        expectSame(scene.run(requestOf(ContinuousQuery::kAll, max_contacts, toc_err, 0)),
+                   expected);
+        ASSERT_FALSE(HasFailure()) << max_contacts;
+      }
+    }
+}
+
+TEST(FCL_THREADS, refusesANegativeNumber) {
+  const Scene& scene = scenes().front();
+  for (const int threads : {-1, std::numeric_limits<int>::min()})
+    expectRefused(
+        [&] { scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads)); },
+        "num_threads");
+  const Result many = scene.run(
+      requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, std::numeric_limits<int>::max()));
+  expectSame(many, scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1)));
+}
+
+// Queries of several threads on the same models.
+TEST(FCL_THREADS, manyCallersOnTheSameModels) {
+  std::vector<Result> expected;
+  for (const Scene& scene : scenes())
+    for (const ContinuousQuery query : kQueries)
+      expected.push_back(scene.run(requestOf(query, kNoLimit, 1e-4, 1)));
+  std::vector<std::vector<Result>> results(4);
+  std::vector<std::thread> callers;
+  for (std::size_t i = 0; i < results.size(); ++i)
+    callers.emplace_back([&, i] {
+      for (const Scene& scene : scenes())
+        for (const ContinuousQuery query : kQueries)
+          results[i].push_back(
+              scene.run(requestOf(query, kNoLimit, 1e-4, static_cast<int>(i) % 3)));
+    });
+  for (std::thread& caller : callers) caller.join();
+  for (const std::vector<Result>& mine : results) {
+    ASSERT_EQ(mine.size(), expected.size());
+    for (std::size_t i = 0; i < mine.size(); ++i) expectSame(mine[i], expected[i]);
+  }
+}
+
+// What a query notices on the way: the first of the vertices that are not finite, the
+// same one whatever threads there are.
+TEST(FCL_THREADS, exceptionsComeThrough) {
+  const TestMesh flat = makeSheet(24, 24);
+  const auto rigid = makeModel<Plain>(moved(flat, 0, 0, 1));
+  for (const int v : {77, 200, 333, 500})
+    rigid->vertices[v][2] = std::numeric_limits<double>::quiet_NaN();
+  const Scene scene{"broken", rigid, makeModel<Plain>(flat), translation(0, 0, -2)};
+  const auto messageOf = [&](int threads) {
+    try {
+      scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads));
+    } catch (const Exception& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing thrown");
+  };
+  const std::string message = messageOf(1);
+  EXPECT_NE(message.find("is not finite"), std::string::npos) << message;
+  for (int i = 0; i < 5; ++i)
+    for (const int threads : {2, 4, 0}) EXPECT_EQ(messageOf(threads), message) << threads;
+  for (const int v : {77, 200, 333, 500}) rigid->vertices[v][2] = 1;
+  EXPECT_EQ(messageOf(0), "nothing thrown");
+}
+
+// The caller's floating-point mode changes no answer, and is the same afterwards.
+TEST(FCL_THREADS, callersFloatingPointMode) {
+  for (const Scene& scene : scenes())
+    for (const int threads : {1, 4, 0}) {
+      SCOPED_TRACE(scene.name + ", " + std::to_string(threads) + " threads");
+      const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads);
+      const Result normal = scene.run(request);
+      // Geometry at a contact is not part of it.
+      std::fesetround(FE_UPWARD);
+      const Result up = scene.run(request);
+      const int after = std::fegetround();
+      std::fesetround(FE_TONEAREST);
+      EXPECT_EQ(after, FE_UPWARD);
+      expectIdentical(up, normal, false);
+#ifdef __SSE__
+      const unsigned csr = _mm_getcsr();
+      _mm_setcsr(csr | 0x8040);  // flush to zero, denormals are zero
+      const Result flushed = scene.run(request);
+      const unsigned csr_after = _mm_getcsr();
+      _mm_setcsr(csr);
+      EXPECT_EQ(csr_after & 0xffc0, (csr | 0x8040) & 0xffc0);  // all but sticky flags
+      expectIdentical(flushed, normal, false);
+#endif
+      ASSERT_FALSE(HasFailure());
+    }
+}
+
+#ifdef FCL_CCD_USE_TBB
+
+/// The threads that work in an arena.
+class Watcher : public tbb::task_scheduler_observer {
+ public:
+  explicit Watcher(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) {
+    observe(true);
+  }
+  ~Watcher() override { observe(false); }
+  void on_scheduler_entry(bool) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    threads_.insert(std::this_thread::get_id());
+    most_ = std::max(most_, ++now_);
+  }
+  void on_scheduler_exit(bool) override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    --now_;
+  }
+  /// All that ever worked there, and how many at the same time.
+  std::set<std::thread::id> threads() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return threads_;
+  }
+  int most() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return most_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::thread::id> threads_;
+  int now_{0}, most_{0};
+};
+
+/// Every scene and query, in an arena.
+void runAll(tbb::task_arena& arena, int num_threads) {
+  for (const Scene& scene : scenes())
+    for (const ContinuousQuery query : kQueries) {
+      Result result;
+      const Request request = requestOf(query, kNoLimit, 1e-4, num_threads);
+      arena.execute([&] { result = scene.run(request); });
+      expectSame(result, scene.run(requestOf(query, kNoLimit, 1e-4, 1)));
+    }
+}
+
+/// The threads that enter an arena of so many meanwhile.
+std::set<std::thread::id> threadsOfQuery(int arena_threads, int num_threads) {
+  tbb::task_arena arena(arena_threads);
+  Watcher watcher(arena);
+  runAll(arena, num_threads);
+  return watcher.threads();
+}
+
+std::set<std::thread::id> justThisOne() { return {std::this_thread::get_id()}; }
+
+TEST(FCL_THREADS, oneThreadMakesNoTasks) {
+  EXPECT_EQ(threadsOfQuery(4, 1), justThisOne());
+}
+
+TEST(FCL_THREADS, arenaOfOneIsRespected) {
+  for (const int threads : {0, 1, 2, 4})
+    EXPECT_EQ(threadsOfQuery(1, threads), justThisOne()) << threads;
+}
+
+TEST(FCL_THREADS, arenaOfTwoIsRespected) {
+  tbb::task_arena arena(2);
+  Watcher watcher(arena);
+  // A worker may come late.
+  for (int i = 0; i < 50 && (i == 0 || watcher.most() < 2); ++i) runAll(arena, 0);
+  EXPECT_LE(watcher.most(), 2);
+  if (std::thread::hardware_concurrency() > 1) {
+    EXPECT_EQ(watcher.most(), 2) << "threads are not used at all";
+  }
+}
+
+// A caller's other tasks are not done while it waits in a query, where it may hold what
+// they want.
+TEST(FCL_THREADS, callersOtherTasksWait) {
+  const Scene& scene = scenes().front();
+  const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 0);
+  tbb::task_arena arena(4);
+  std::mutex mutex;
+  int done = 0;
+  thread_local bool is_querying = false;
+  std::atomic<bool> nested{false};
+  arena.execute([&] {
+    tbb::task_group group;
+    for (int i = 0; i < 24; ++i)
+      group.run([&] {
+        if (is_querying) {
+          nested = true;
+          return;
+        }
+        const std::lock_guard<std::mutex> lock(mutex);
+        is_querying = true;
+        scene.run(request);
+        is_querying = false;
+        ++done;
+      });
+    group.wait();
+  });
+  EXPECT_FALSE(nested);
+  EXPECT_EQ(done, 24);
+}
+
+#endif  // FCL_CCD_USE_TBB
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
