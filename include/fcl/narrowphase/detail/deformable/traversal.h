@@ -22,7 +22,7 @@ namespace deformable {
 struct NodePair {
   std::int32_t parent;
   std::int32_t node;
-  std::int8_t lane;
+  std::int16_t lane;
   /// The child is tree b's and the node tree a's.
   bool swapped;
   /// Before this time they do not overlap.
@@ -43,7 +43,7 @@ class WorkList {
     NodePair& work = items_[size_++];
     work.parent = parent;
     work.node = node;
-    work.lane = static_cast<std::int8_t>(lane);
+    work.lane = static_cast<std::int16_t>(lane);
     work.swapped = swapped;
     work.earliest = earliest;
   }
