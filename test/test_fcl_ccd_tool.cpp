@@ -23,6 +23,7 @@
 #include <utility>
 #include <vector>
 
+#include "csv_rows.h"
 #include "mesh_io.h"
 
 namespace {
@@ -45,17 +46,6 @@ std::vector<std::string> linesOf(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
-}
-
-std::vector<std::string> fieldsOf(const std::string& line) {
-  std::vector<std::string> fields(1);
-  for (const char c : line) {
-    if (c == ',')
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  return fields;
 }
 
 std::set<std::string> keysOf(const Json& object) {
@@ -405,7 +395,7 @@ TEST_F(CcdTool, FindsAVertexFaceContact) {
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi");
-  const std::vector<std::string> fields = fieldsOf(lines[1]);
+  const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
   ASSERT_EQ(fields.size(), 8u);
   EXPECT_EQ(fields[0], "0");
   EXPECT_EQ(fields[1], "vf");
@@ -496,7 +486,7 @@ TEST_F(CcdTool, TestsTwoMeshes) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
   ASSERT_EQ(lines.size(), 2u);
-  const std::vector<std::string> fields = fieldsOf(lines[1]);
+  const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
   ASSERT_EQ(fields.size(), 8u);
   EXPECT_EQ(fields[1], "ee");
   EXPECT_EQ((std::set<std::string>{fields[2], fields[3]}),
@@ -525,7 +515,7 @@ TEST_F(CcdTool, PrefixesTheVertexOfB) {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
     const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
     EXPECT_EQ(lines.size(), 2u);
-    return fieldsOf(lines.back());
+    return fcl::test::csvFields(lines.back());
   };
   std::vector<std::string> fields =
       contactOf("floor.obj floor.obj --against tip0.obj tip1.obj");
@@ -736,7 +726,7 @@ TEST_F(CcdTool, PrintsAnswersOfQueriesWithoutTruth) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = linesOf(outcome.out);
   ASSERT_EQ(lines.size(), 2u);
-  const std::vector<std::string> fields = fieldsOf(lines[0]);
+  const std::vector<std::string> fields = fcl::test::csvFields(lines[0]);
   ASSERT_EQ(fields.size(), 4u);
   EXPECT_EQ(fields[0] + fields[1], "0yes");
   EXPECT_LE(std::stod(fields[2]), 0.5);

@@ -529,16 +529,12 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
 }
 
 #if defined(FCL_CCD_USE_HIGHWAY)
-extern const Kernels kKernels = {hwy::TargetName(HWY_TARGET),
-                                 &overlapChildren,
-                                 &trianglesAt,
-                                 &cullFeaturesOf,
-                                 &cullCrossings,
-                                 &isFanEmbedded,
-                                 &mayBecomeCoplanarEight,
-                                 &solveEight};
+inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 #else
-extern const Kernels kKernels = {"plain",
+inline const char* targetName() { return "plain"; }
+#endif
+
+extern const Kernels kKernels = {targetName(),
                                  &overlapChildren,
                                  &trianglesAt,
                                  &cullFeaturesOf,
@@ -546,7 +542,6 @@ extern const Kernels kKernels = {"plain",
                                  &isFanEmbedded,
                                  &mayBecomeCoplanarEight,
                                  &solveEight};
-#endif
 
 const Kernels* table() { return &kKernels; }
 

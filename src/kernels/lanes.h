@@ -84,6 +84,12 @@ FCL_CCD_BINARY(operator+, Add)
 FCL_CCD_BINARY(operator-, Sub)
 FCL_CCD_BINARY(operator*, Mul)
 FCL_CCD_BINARY(operator/, Div)
+// The larger and the smaller of two numbers, neither of which is a NaN.
+FCL_CCD_BINARY(larger, Max)
+FCL_CCD_BINARY(smaller, Min)
+// Negative where both are, and where one is, for numbers that are neither NaN nor -0.
+FCL_CCD_BINARY(bothNegative, And)
+FCL_CCD_BINARY(eitherNegative, Or)
 #undef FCL_CCD_BINARY
 
 template <typename T, std::size_t N>
@@ -152,38 +158,6 @@ HWY_INLINE Lanes<T, N> swapHalves(const Lanes<T, N>& a) {
   }
 #endif
   FCL_CCD_FOR_PARTS out.part[p] = a.part[p ^ (kParts / 2)];
-  return out;
-}
-
-/// The larger of two numbers, neither of which is a NaN.
-template <typename T, std::size_t N>
-HWY_INLINE Lanes<T, N> larger(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-  Lanes<T, N> out;
-  FCL_CCD_FOR_PARTS out.part[p] = hn::Max(a.part[p], b.part[p]);
-  return out;
-}
-
-/// The smaller of two numbers, neither of which is a NaN.
-template <typename T, std::size_t N>
-HWY_INLINE Lanes<T, N> smaller(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-  Lanes<T, N> out;
-  FCL_CCD_FOR_PARTS out.part[p] = hn::Min(a.part[p], b.part[p]);
-  return out;
-}
-
-/// Negative where both are, for numbers that are neither NaN nor -0.
-template <typename T, std::size_t N>
-HWY_INLINE Lanes<T, N> bothNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-  Lanes<T, N> out;
-  FCL_CCD_FOR_PARTS out.part[p] = hn::And(a.part[p], b.part[p]);
-  return out;
-}
-
-/// Negative where one is.
-template <typename T, std::size_t N>
-HWY_INLINE Lanes<T, N> eitherNegative(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-  Lanes<T, N> out;
-  FCL_CCD_FOR_PARTS out.part[p] = hn::Or(a.part[p], b.part[p]);
   return out;
 }
 

@@ -5,6 +5,7 @@
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "machine.h"
 #include "rows.h"
 #include "timing.h"
@@ -16,8 +17,11 @@ namespace {
 using Model = DeformableBVHModel<>;
 using Result = ContinuousContactResult<double>;
 
-/// The kernels with which the library was built.
-const char* libraryKernels() { return "vector"; }
+/// The kernels that the library uses here.
+const char* libraryKernels() {
+  const std::string name = detail::deformable::kernels().name;
+  return name == "plain" || name == "SCALAR" ? "scalar" : "vector";
+}
 
 /// The threads that its queries use.
 constexpr int kLibraryThreads = 1;
@@ -45,6 +49,7 @@ ContinuousContactRequest<double> makeRequest(ContinuousQuery query) {
   ContinuousContactRequest<double> request;
   request.query = query;
   request.enable_contact = false;
+  request.num_threads = kLibraryThreads;
   return request;
 }
 
