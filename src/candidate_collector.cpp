@@ -9,7 +9,7 @@ void CandidateCollector::flush() {
   batch_.cull(counts_);
   block_.clear();
   for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
-    for (std::size_t i = 0; i < batch_.codes(kind).size(); ++i)
+    for (std::size_t i = 0; i < batch_.size(kind); ++i)
       block_.push_back(batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]));
   batch_.clear();
   if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());

@@ -118,9 +118,10 @@ class Part {
     const auto start = Clock::now();
     for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
       const std::size_t last = std::min(first + schedule_.block, count_);
+      const double latest = leaves_->latest();
       for (; first < last; ++first) {
         const LeafPair& p = block_[first];
-        if (p.earliest <= leaves_->latest()) leaves_->visit(p.a, p.b, p.earliest);
+        if (p.earliest <= latest) leaves_->visit(p.a, p.b, p.earliest);
       }
       leaves_->flush();
     }

@@ -32,7 +32,8 @@ void TriangleReader::readIntoStore(int i) {
     triangles_.reset(new TreeTriangle[kStored]);
     vertices_.reset(new TreeVertex[3 * kStored]);
   }
-  TreeTriangle& triangle = triangles_[next_];
+  const std::size_t next = (stored_ + 1) % kStored;
+  TreeTriangle& triangle = triangles_[next];
   if (mesh_.tree) {
     triangle = mesh_.tree->triangles()[index];
   } else {
@@ -51,14 +52,13 @@ void TriangleReader::readIntoStore(int i) {
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    TreeVertex& x = vertices_[3 * next_ + k];
+    TreeVertex& x = vertices_[3 * next + k];
     pose(triangle.id[k], x);
     if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
     if (!isFinite(x)) throw NonFiniteVertex(triangle.id[k]);
-    side_.x[k] = &x;
   }
-  side_.triangle = &triangle;
-  next_ = (next_ + 1) % kStored;
+  stored_ = next;
+  index_ = i;
 }
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
@@ -83,7 +83,13 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
                            const KdopShift* shift, const Kernels& kernels)
-    : reader_a_(a), reader_b_(b), self_(&a == &b), shift_(shift), kernels_(kernels) {
+    : reader_a_(a),
+      reader_b_(b),
+      self_(&a == &b),
+      shift_(shift),
+      kernels_(kernels),
+      pairs_(new TrianglePair[kMaxPairs]),
+      lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)} {
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
     turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
@@ -91,26 +97,32 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
   }
 }
 
-void FeatureBatch::add(int i, int j, bool with_crossing, StageCounts& counts) {
-  const TriangleSide &a = reader_a_.read(i), &b = reader_b_.read(j);
-  // Members are set one by one: see WorkList.
-  const auto number = static_cast<std::uint32_t>(num_pairs_);
-  if (pairs_.empty()) pairs_.resize(kMaxPairs);
-  TrianglePair& pair = pairs_[num_pairs_++];
-  for (int k = 0; k < 3; ++k) {
-    pair.x[k] = a.x[k];
-    pair.x[3 + k] = b.x[k];
+// add() writes behind the last pair.
+FeatureBatch::List::List(std::size_t pairs_each)
+    : codes(new std::uint32_t[kMaxPairs * pairs_each + 1]),
+      windows(new TimeWindow[kMaxPairs * pairs_each]) {}
+
+/// Without a branch: which bits are set cannot be foreseen.
+void FeatureBatch::List::add(std::uint32_t triangle_pair, unsigned owned, int first,
+                             int last) {
+  for (int bit = first; bit < last; ++bit) {
+    codes[size] = featureCode(triangle_pair, bit);
+    size += owned >> bit & 1U;
   }
-  pair.a = a.triangle;
-  pair.b = b.triangle;
-  const unsigned shared = self_ ? sharedVertices(a.triangle->id, b.triangle->id) : 0U;
+}
+
+void FeatureBatch::add(int i, int j, bool with_crossing, StageCounts& counts) {
+  const auto number = static_cast<std::uint32_t>(num_pairs_);
+  TrianglePair& pair = pairs_[num_pairs_];
+  pair.a = reader_a_.read(i, pair.x);
+  pair.b = reader_b_.read(j, pair.x + 3);
+  ++num_pairs_;
+  const unsigned shared = self_ ? sharedVertices(pair.a->id, pair.b->id) : 0U;
   ++counts.triangle_pairs;
   counts.adjacent_pairs += shared != 0;
-  unsigned owned = ownedPairs(a.triangle->owned, b.triangle->owned, shared);
-  for (; owned != 0; owned &= owned - 1) {
-    const int bit = __builtin_ctz(owned);
-    lists_[bit >= 6].codes.push_back(featureCode(number, bit));
-  }
+  const unsigned owned = ownedPairs(pair.a->owned, pair.b->owned, shared);
+  lists_[0].add(number, owned, 0, kNumVertexFacePairs);
+  lists_[1].add(number, owned, kNumVertexFacePairs, kNumFeaturePairs);
   if (with_crossing) addCrossings(number, shared);
 }
 
@@ -130,26 +142,23 @@ void FeatureBatch::addCrossings(std::uint32_t pair, unsigned shared) {
 void FeatureBatch::clear() {
   num_pairs_ = 0;
   crossings_.clear();
-  for (List& list : lists_) list.codes.clear();
+  for (List& list : lists_) list.size = 0;
 }
 
 void FeatureBatch::cull(StageCounts& counts) {
   cull(FeatureKind::kVertexFace, lists_[0], counts);
   cull(FeatureKind::kEdgeEdge, lists_[1], counts);
-  crossings_.resize(kernels_.cullCrossings(pairs_.data(), shift_, &turned_shift_,
+  crossings_.resize(kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
                                            crossings_.data(), crossings_.size()));
 }
 
 void FeatureBatch::cull(FeatureKind kind, List& list, StageCounts& counts) {
-  const std::size_t count = list.codes.size();
-  list.windows.resize(count);
   const std::size_t left =
-      kernels_.cullFeatures(kind, pairs_.data(), shift_, &turned_shift_,
-                            list.codes.data(), count, list.windows.data());
-  counts.feature_pairs += count;
-  counts.box_culled += count - left;
-  list.codes.resize(left);
-  list.windows.resize(left);
+      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, list.codes.get(),
+                            list.size, list.windows.get());
+  counts.feature_pairs += list.size;
+  counts.box_culled += list.size - left;
+  list.size = left;
 }
 
 void FeatureBatch::points(std::uint32_t code, const TreeVertex* (&x)[4]) const {
@@ -180,37 +189,37 @@ FeatureCandidate FeatureBatch::candidate(std::uint32_t code,
                                          const TimeWindow& window) const {
   const TrianglePair& triangles = pairs_[code / 16];
   const FeaturePair pair = featurePair(static_cast<int>(code % 16));
-  const TriangleSide a{triangles.a, {triangles.x[0], triangles.x[1], triangles.x[2]}},
-      b{triangles.b, {triangles.x[3], triangles.x[4], triangles.x[5]}};
   FeatureCandidate out;
   out.kind = pair.kind;
   out.first_on_a = pair.first_on_a;
   out.window_lo = windowLo(window);
   out.window_hi = windowHi(window);
-  out.triangles[0] = static_cast<std::int32_t>(a.triangle->index);
-  out.triangles[1] = static_cast<std::int32_t>(b.triangle->index);
-  const auto set = [&out](int i, const TriangleSide& side, unsigned k) {
-    out.vertices[i] = side.triangle->id[k];
-    out.x[i] = side.x[k];
+  out.triangles[0] = static_cast<std::int32_t>(triangles.a->index);
+  out.triangles[1] = static_cast<std::int32_t>(triangles.b->index);
+  const auto set = [&](int i, bool on_a, unsigned k) {
+    out.vertices[i] = (on_a ? triangles.a : triangles.b)->id[k];
+    out.x[i] = triangles.x[on_a ? k : 3 + k];
   };
   if (pair.kind == FeatureKind::kVertexFace) {
-    const TriangleSide &vertex = pair.first_on_a ? a : b, &face = pair.first_on_a ? b : a;
-    set(0, vertex, pair.first);
-    for (unsigned k = 0; k < 3; ++k) set(static_cast<int>(k) + 1, face, k);
+    set(0, pair.first_on_a, pair.first);
+    for (unsigned k = 0; k < 3; ++k) set(static_cast<int>(k) + 1, !pair.first_on_a, k);
     if (self_ && !pair.first_on_a) {
       out.first_on_a = true;
       std::swap(out.triangles[0], out.triangles[1]);
     }
     return out;
   }
-  const auto setEdge = [&](int i, const TriangleSide& side, unsigned k) {
+  const auto setEdge = [&](int i, bool on_a, unsigned k) {
     const unsigned l = (k + 1) % 3;
-    const bool ascending = side.triangle->id[k] < side.triangle->id[l];
-    set(i, side, ascending ? k : l);
-    set(i + 1, side, ascending ? l : k);
+    set(i, on_a, k);
+    set(i + 1, on_a, l);
+    if (out.vertices[i + 1] < out.vertices[i]) {
+      std::swap(out.vertices[i], out.vertices[i + 1]);
+      std::swap(out.x[i], out.x[i + 1]);
+    }
   };
-  setEdge(0, a, pair.first);
-  setEdge(2, b, pair.second);
+  setEdge(0, true, pair.first);
+  setEdge(2, false, pair.second);
   std::uint32_t(&v)[4] = out.vertices;
   if (self_ && (v[2] < v[0] || (v[2] == v[0] && v[3] < v[1]))) {
     for (int i = 0; i < 2; ++i) {

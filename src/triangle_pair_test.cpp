@@ -8,12 +8,6 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
-namespace {
-
-/// More than the rounding of a time of contact, and than that of a window.
-constexpr double kRounding = 0x1p-20;
-
-}  // namespace
 
 TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
                                    const KdopShift* shift, const QueryOptions& options,
@@ -25,28 +19,6 @@ TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
             !a.hasOwners() || !b.hasOwners()),
       progress_(progress),
       task_(task) {}
-
-bool TrianglePairTest::isDone() const {
-  return hasAnswer() ||
-         (progress_ && progress_->answered_by.load(std::memory_order_relaxed) < task_);
-}
-
-bool TrianglePairTest::hasAnswer() const {
-  if (has_crossing_ && options_.stop_at_crossing) return true;
-  return options_.goal == QueryGoal::kAny && (!sink_.contacts().empty() || has_crossing_);
-}
-
-double TrianglePairTest::latest() const {
-  if (options_.goal == QueryGoal::kAny) return 1;
-  double latest = sink_.latestKept();
-  if (options_.goal == QueryGoal::kFirst) {
-    latest = std::min(latest, sink_.firstHi());
-    if (progress_)
-      latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
-  }
-  // A contact that is later than this has a bracket that begins later than `latest`.
-  return latest + (options_.toc_err + kRounding);
-}
 
 void TrianglePairTest::visit(int i, int j, float earliest) {
   batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
@@ -64,27 +36,28 @@ void TrianglePairTest::flush() {
 
 /// Takes as candidates what may become coplanar.
 void TrianglePairTest::filter(FeatureKind kind) {
-  const auto& codes = batch_.codes(kind);
-  const auto& windows = batch_.windows(kind);
+  const std::uint32_t* codes = batch_.codes(kind);
+  const TimeWindow* windows = batch_.windows(kind);
+  const std::size_t size = batch_.size(kind);
   candidates_.clear();
   EightPairs eight;
   eight.kind = kind;
-  for (std::size_t first = 0; first < codes.size(); first += 8) {
+  for (std::size_t first = 0; first < size; first += 8) {
     // The last pair fills up the last eight.
     for (std::size_t lane = 0; lane < 8; ++lane) {
-      const std::size_t i = std::min(first + lane, codes.size() - 1);
+      const std::size_t i = std::min(first + lane, size - 1);
       const TreeVertex* x[4];
       batch_.points(codes[i], x);
       eight.set(lane, x, windowLo(windows[i]), windowHi(windows[i]));
     }
     unsigned left = kernels_.mayBecomeCoplanar(eight);
-    if (codes.size() - first < 8) left &= (1U << (codes.size() - first)) - 1;
+    if (size - first < 8) left &= (1U << (size - first)) - 1;
     for (; left != 0; left &= left - 1) {
       const std::size_t i = first + static_cast<unsigned>(__builtin_ctz(left));
       candidates_.push_back(batch_.candidate(codes[i], windows[i]));
     }
   }
-  counts_.filter_culled += codes.size() - candidates_.size();
+  counts_.filter_culled += size - candidates_.size();
 }
 
 void TrianglePairTest::solve() {

@@ -32,23 +32,18 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
 
 unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
                          float (&earliest)[MovingKdopNode::kWidth]) {
-  constexpr std::size_t kRows = 16, kAtOnce = 4;
+  constexpr std::size_t kRows = 16;
   Floats s0[kRows], s1[kRows];
   Floats apart = broadcast<kEight>(1.f), cut = apart;
-  unsigned left = 0;
-  for (std::size_t first = 0; first < kRows; first += kAtOnce) {
-    for (std::size_t r = first; r < first + kAtOnce; ++r) {
-      // Row r ^ 1 is the opposite half-axis.
-      s0[r] =
-          broadcast<kEight>(box.t0[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t0);
-      s1[r] =
-          broadcast<kEight>(box.t1[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t1);
-      apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
-      cut = eitherNegative(cut, eitherNegative(s0[r], s1[r]));
-    }
-    left = ~signs(apart) & node.lanes();
-    if (left == 0) return 0;
+  for (std::size_t r = 0; r < kRows; ++r) {
+    // Row r ^ 1 is the opposite half-axis.
+    s0[r] = broadcast<kEight>(box.t0[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t0);
+    s1[r] = broadcast<kEight>(box.t1[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t1);
+    apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
+    cut = eitherNegative(cut, eitherNegative(s0[r], s1[r]));
   }
+  const unsigned left = ~signs(apart) & node.lanes();
+  if (left == 0) return 0;
   Floats before = broadcast<kEight>(0.f), after = before;
   if (signs(cut) & left)
     for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);

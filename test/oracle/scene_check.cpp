@@ -74,7 +74,7 @@ class CullCheck {
     batch_.add(a, b, false, counts);
     batch_.cull(counts);
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
-      for (std::size_t i = 0; i < batch_.codes(kind).size(); ++i) {
+      for (std::size_t i = 0; i < batch_.size(kind); ++i) {
         const deformable::FeatureCandidate c =
             batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]);
         left.push_back(

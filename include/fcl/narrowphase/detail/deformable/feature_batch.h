@@ -27,12 +27,6 @@ class NonFiniteVertex : public std::domain_error {
   explicit NonFiniteVertex(std::size_t vertex);
 };
 
-/// @brief A triangle as the tests read it.
-struct TriangleSide {
-  const TreeTriangle* triangle;
-  const TreeVertex* x[3];
-};
-
 /// @brief Reads the triangles of one mesh: those of a tree as they lie there, others into
 /// a store of its own.
 class TriangleReader {
@@ -44,18 +38,22 @@ class TriangleReader {
   explicit TriangleReader(const MeshInstance& mesh);
 
   /// @param i  a triangle as the mesh's tree counts them
+  /// @param[out] x  its vertices
   /// @throws NonFiniteVertex
-  const TriangleSide& read(int i) {
-    if (i == index_) return side_;
+  const TreeTriangle* read(int i, const TreeVertex** x) {
+    const TreeTriangle* triangle = nullptr;
+    const TreeVertex* vertices = nullptr;
     if (direct_) {
-      side_.triangle = &mesh_.tree->triangles()[static_cast<std::size_t>(i)];
-      for (int k = 0; k < 3; ++k)
-        side_.x[k] = &mesh_.tree->vertices()[side_.triangle->place[k]];
+      triangle = &mesh_.tree->triangles()[static_cast<std::size_t>(i)];
+      vertices = mesh_.tree->vertices().data();
+      for (int k = 0; k < 3; ++k) x[k] = vertices + triangle->place[k];
     } else {
-      readIntoStore(i);
+      if (i != index_) readIntoStore(i);
+      triangle = &triangles_[stored_];
+      vertices = &vertices_[3 * stored_];
+      for (int k = 0; k < 3; ++k) x[k] = vertices + k;
     }
-    index_ = i;
-    return side_;
+    return triangle;
   }
 
  private:
@@ -64,11 +62,11 @@ class TriangleReader {
 
   const MeshInstance& mesh_;
   bool direct_;
+  /// The triangle that was read last into the store, and where it is.
   int index_{-1};
-  TriangleSide side_;
+  std::size_t stored_{0};
   std::unique_ptr<TreeTriangle[]> triangles_;
   std::unique_ptr<TreeVertex[]> vertices_;
-  std::size_t next_{0};
 };
 
 /// @brief Two features that do not touch outside [window_lo, window_hi].
@@ -105,13 +103,11 @@ class FeatureBatch {
   /// @param counts  box_culled is counted
   void cull(StageCounts& counts);
 
-  /// @brief What is left, pairs of one kind: codes for points() and candidate().
-  const std::vector<std::uint32_t>& codes(FeatureKind kind) const {
-    return lists_[kind == FeatureKind::kEdgeEdge].codes;
-  }
-  const std::vector<TimeWindow>& windows(FeatureKind kind) const {
-    return lists_[kind == FeatureKind::kEdgeEdge].windows;
-  }
+  /// @brief How many pairs of one kind are left.
+  std::size_t size(FeatureKind kind) const { return list(kind).size; }
+  /// @brief Those pairs, for points() and candidate(), and their windows.
+  const std::uint32_t* codes(FeatureKind kind) const { return list(kind).codes.get(); }
+  const TimeWindow* windows(FeatureKind kind) const { return list(kind).windows.get(); }
 
   /// @brief The four vertices of a pair, features in the order of its triangle pair.
   void points(std::uint32_t code, const TreeVertex* (&x)[4]) const;
@@ -130,11 +126,20 @@ class FeatureBatch {
   EdgeAndFace crossing(std::size_t i) const;
 
  private:
+  /// Has room for all pairs that kMaxPairs triangle pairs can own; not initialized.
   struct List {
-    std::vector<std::uint32_t> codes;
-    std::vector<TimeWindow> windows;
+    std::unique_ptr<std::uint32_t[]> codes;
+    std::unique_ptr<TimeWindow[]> windows;
+    std::size_t size{0};
+
+    explicit List(std::size_t pairs_each);
+    /// The pairs that `owned` names, bits first to last - 1.
+    void add(std::uint32_t triangle_pair, unsigned owned, int first, int last);
   };
 
+  const List& list(FeatureKind kind) const {
+    return lists_[kind == FeatureKind::kEdgeEdge];
+  }
   void addCrossings(std::uint32_t pair, unsigned shared);
   void cull(FeatureKind kind, List& list, StageCounts& counts);
 
@@ -143,7 +148,7 @@ class FeatureBatch {
   const KdopShift* shift_;
   KdopShift turned_shift_;
   const Kernels& kernels_;
-  std::vector<TrianglePair> pairs_;
+  std::unique_ptr<TrianglePair[]> pairs_;
   std::size_t num_pairs_{0};
   List lists_[2];
   std::vector<std::uint32_t> crossings_;

@@ -40,6 +40,7 @@ inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {
 /// @brief The pairs of features of two triangles a and b, a bit each: bit k, vertex k of
 /// a and the face of b; 3 + k, vertex k of b and the face of a; 6 + 3 i + j, edge i of a
 /// and edge j of b.
+constexpr int kNumVertexFacePairs = 6;
 constexpr int kNumFeaturePairs = 15;
 
 inline unsigned numBits(unsigned pairs) {

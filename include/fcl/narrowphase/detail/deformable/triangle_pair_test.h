@@ -2,6 +2,7 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_TRIANGLE_PAIR_TEST_H
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -79,10 +80,23 @@ class TrianglePairTest {
   void flush();
 
   /// @brief Whether nothing more can change the answer.
-  bool isDone() const;
+  bool isDone() const {
+    return hasAnswer() ||
+           (progress_ && progress_->answered_by.load(std::memory_order_relaxed) < task_);
+  }
 
   /// @brief A pair whose window starts after this time cannot change the answer.
-  double latest() const;
+  double latest() const {
+    if (options_.goal == QueryGoal::kAny) return 1;
+    double latest = sink_.latestKept();
+    if (options_.goal == QueryGoal::kFirst) {
+      latest = std::min(latest, sink_.firstHi());
+      if (progress_)
+        latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
+    }
+    // A contact that is later than this has a bracket that begins later than `latest`.
+    return latest + (options_.toc_err + kTimeRounding);
+  }
 
   bool hasCrossing() const { return has_crossing_; }
   const Crossing& crossing() const { return crossing_; }
@@ -100,7 +114,14 @@ class TrianglePairTest {
   }
 
  private:
-  bool hasAnswer() const;
+  /// More than the rounding of a time of contact, and than that of a window.
+  static constexpr double kTimeRounding = 0x1p-20;
+
+  bool hasAnswer() const {
+    if (has_crossing_ && options_.stop_at_crossing) return true;
+    return options_.goal == QueryGoal::kAny &&
+           (!sink_.contacts().empty() || has_crossing_);
+  }
   void testCrossings();
   void filter(FeatureKind kind);
   void solve();
