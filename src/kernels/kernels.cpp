@@ -198,14 +198,11 @@ HWY_INLINE Vectors difference(const double (*t)[8], std::size_t p, std::size_t q
           load<kEight>(t[3 * p + 2]) - load<kEight>(t[3 * q + 2])};
 }
 
-/// As Difference::at(): the ends of the step are taken as they are.
+/// As Difference::at(); 0 and 1 need no case of their own, but what is not finite in one
+/// frame shows at all times.
 HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
-  const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.), s = one - t;
-  const auto first = t <= zero, last = t >= one;
-  const Vectors m = {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
-  return {select(first, t0.x, select(last, t1.x, m.x)),
-          select(first, t0.y, select(last, t1.y, m.y)),
-          select(first, t0.z, select(last, t1.z, m.z))};
+  const Doubles s = broadcast<kEight>(1.) - t;
+  return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
 }
 
 HWY_INLINE Doubles maxNorm(const Vectors& a) {
