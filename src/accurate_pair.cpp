@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "error_bounds.h"
 #include "illinois.h"
 
 namespace fcl {
@@ -12,7 +13,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-constexpr double kUnit = 0x1p-53;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// More than all underflows in one of the numbers below.
 constexpr double kUnderflow = 0x1p-1060;
@@ -133,6 +133,14 @@ bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) c
   b[2] = blossom(lo, hi, hi);
   b[3] = blossom(hi, hi, hi);
   return std::isfinite(error) && (volume_size_ == 0 || volume_size_ > 0x1p-900);
+}
+
+bool AccuratePair::hasNoRoot(double lo, double hi) const {
+  double b[4] = {volume_[0].hi, volume_[1].hi, volume_[2].hi, volume_[3].hi};
+  double error = volume_error_;
+  if ((lo > 0 || hi < 1) && !volume(lo, hi, b, error)) return false;
+  return (b[0] > error && b[1] > error && b[2] > error && b[3] > error) ||
+         (b[0] < -error && b[1] < -error && b[2] < -error && b[3] < -error);
 }
 
 Quadratic AccuratePair::normal(double lo, double hi) const {

@@ -27,6 +27,10 @@ class AccuratePair {
   /// on their error; false where the coordinates leave the range in which there is one.
   bool volume(double lo, double hi, double (&b)[4], double& error) const;
 
+  /// @brief Whether all these coefficients have one sign beyond doubt; over the whole
+  /// step they are not even rounded.
+  bool hasNoRoot(double lo, double hi) const;
+
   /// @brief v x w over [lo, hi]; its error is infinite where there is no bound.
   Quadratic normal(double lo, double hi) const;
 

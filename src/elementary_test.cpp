@@ -311,20 +311,6 @@ bool narrowWindow(FeatureKind kind, const FeaturePoints& x, double& lo, double& 
                                           : narrowWindow(AxisRanges(p0, p1), p23, lo, hi);
 }
 
-bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
-                       double window_hi) {
-  const bool vf = kind == FeatureKind::kVertexFace;
-  const Segment u = restrict(vf ? Difference(x[0], x[1]) : Difference(x[2], x[0]),
-                             window_lo, window_hi);
-  const Segment v = restrict(vf ? Difference(x[2], x[1]) : Difference(x[1], x[0]),
-                             window_lo, window_hi);
-  const Segment w = restrict(vf ? Difference(x[3], x[1]) : Difference(x[3], x[2]),
-                             window_lo, window_hi);
-  const Quadratic n = cross(v, w);
-  const Cubic f = spannedVolume(u, n);
-  return !f.hasNoRoot();
-}
-
 ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
                                   double window_lo, double window_hi, double toc_err,
                                   double t_stop) {

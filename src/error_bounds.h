@@ -23,6 +23,15 @@ namespace deformable {
 constexpr double kUnit = 0x1p-53;
 constexpr double kOuterBound = 104 * kUnit;
 constexpr double kInnerBound = 344 * kUnit;
+// The filter takes the largest norm N for all of U, V, W and makes the inner coefficients
+// smaller, so that all four have one bound, kOuterBound N^3. Computing that, and making
+// them smaller, rounds by 4 u of their own size: in the room.
+constexpr double kInnerScale = 0.302;
+static_assert(kInnerScale * kInnerBound < kOuterBound, "the inner bound, made smaller");
+// Between these norms what underflows is below 2^-150 of that bound, and nothing
+// overflows.
+constexpr double kLeastFilterNorm = 0x1p-290;
+constexpr double kMostFilterNorm = 0x1p290;
 // Inside conditions (x y cross product)(v w cross product), coefficients of degree 4:
 // outer 3 (80 + 4) + 20 = 272 u; next 2 * (3 (168 + 8) + 40) + 48 = 1184 u; middle 2 *
 // 272 + 3 (352 + 16) + 80 + 96 = 1824 u, all of XYVW.

@@ -8,6 +8,29 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
+namespace {
+
+/// The points of a candidate as the tests of single pairs read them.
+class CandidatePoints {
+ public:
+  explicit CandidatePoints(const FeatureCandidate& candidate) {
+    for (int i = 0; i < 4; ++i) {
+      std::copy(candidate.x[i]->t0, candidate.x[i]->t0 + 3, path_[i].t0);
+      std::copy(candidate.x[i]->t1, candidate.x[i]->t1 + 3, path_[i].t1);
+    }
+  }
+  FeaturePoints get() const { return {{&path_[0], &path_[1], &path_[2], &path_[3]}}; }
+
+ private:
+  VertexPath path_[4];
+};
+
+bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate) {
+  return mayBecomeCoplanarAccurately(candidate.kind, CandidatePoints(candidate).get(),
+                                     candidate.window_lo, candidate.window_hi);
+}
+
+}  // namespace
 
 TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
                                    const KdopShift* shift, const QueryOptions& options,
@@ -50,11 +73,15 @@ void TrianglePairTest::filter(FeatureKind kind) {
       batch_.points(codes[i], x);
       eight.set(lane, x, windowLo(windows[i]), windowHi(windows[i]));
     }
-    unsigned left = kernels_.mayBecomeCoplanar(eight);
+    const EightCoplanarities found = kernels_.coplanarity(eight);
+    unsigned left = found.possible | found.unclear;
     if (size - first < 8) left &= (1U << (size - first)) - 1;
     for (; left != 0; left &= left - 1) {
-      const std::size_t i = first + static_cast<unsigned>(__builtin_ctz(left));
-      candidates_.push_back(batch_.candidate(codes[i], windows[i]));
+      const auto lane = static_cast<unsigned>(__builtin_ctz(left));
+      const std::size_t i = first + lane;
+      const FeatureCandidate candidate = batch_.candidate(codes[i], windows[i]);
+      if (found.unclear >> lane & 1U && !mayBecomeCoplanarAccurately(candidate)) continue;
+      candidates_.push_back(candidate);
     }
   }
   counts_.filter_culled += size - candidates_.size();
@@ -92,12 +119,8 @@ void TrianglePairTest::add(const FeatureIds& pair, double toc_lo, double toc_hi)
 }
 
 void TrianglePairTest::solve(const FeatureCandidate& candidate) {
-  VertexPath path[4];
-  for (int i = 0; i < 4; ++i) {
-    std::copy(candidate.x[i]->t0, candidate.x[i]->t0 + 3, path[i].t0);
-    std::copy(candidate.x[i]->t1, candidate.x[i]->t1 + 3, path[i].t1);
-  }
-  const FeaturePoints points{{&path[0], &path[1], &path[2], &path[3]}};
+  const CandidatePoints paths(candidate);
+  const FeaturePoints points = paths.get();
   ElementaryResult result =
       solveCoplanarity(candidate.kind, points, candidate.window_lo, candidate.window_hi,
                        options_.toc_err, latest());

@@ -333,6 +333,27 @@ TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
   EXPECT_GT(contacts, 1000U);
 }
 
+// What eight pairs at a time leave unclear is decided before the solver.
+TEST(FCL_DEFORMABLE_QUERY, filterDecidesJustAboveASlope) {
+  // A tip 2^-50 above a slope: the volume, 2^-46, is a twentieth of what doubles may
+  // lose.
+  constexpr double kGap = 0x1p-50;
+  MovingMesh tip, slope;
+  tip.t0 = {{1, 1, 2 + kGap}, {0.5, 1, 9}, {1.5, 1, 9}};
+  tip.t1 = {{1, 1, 2 + 2 * kGap}, {0.5, 1, 9}, {1.5, 1, 9}};
+  slope.t0 = slope.t1 = {{0, 0, 0}, {4, 0, 4}, {0, 4, 4}};
+  tip.triangles = slope.triangles = {Triangle(0, 1, 2)};
+  const auto counts = [&slope](const MovingMesh& mesh) {
+    const PreparedMovingMesh a(mesh), b(slope);
+    return queryPair(a.instance(), b.instance(), QueryOptions()).counts;
+  };
+  const StageCounts above = counts(tip);
+  EXPECT_GE(above.filter_culled, 1U);
+  EXPECT_EQ(above.box_culled + above.filter_culled, above.feature_pairs);
+  tip.t0[0][2] = 2;
+  EXPECT_EQ(counts(tip).contacts, 1U);
+}
+
 TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
   std::size_t contacts = 0;
   for (std::uint64_t seed = 2000; seed < 2300; ++seed) {

@@ -16,6 +16,7 @@
 
 #include "feature_pair_generators.h"
 #include "query_generators.h"
+#include "rational_geometry.h"
 
 namespace fcl {
 namespace detail {
@@ -420,6 +421,74 @@ TEST(FCL_ELEMENTARY_TEST, agreesWithTheExactTest) {
   }
   // Each stage has its share.
   for (const int count : by) EXPECT_GT(count, 100);
+}
+
+/// Whether the volume's Bernstein coefficients over a window have one sign, exactly.
+bool haveOneSign(const MovingPair& pair, double lo, double hi) {
+  using Number = test::Rational;
+  using Point = test::ExactPoint<Number>;
+  const auto difference = [&](std::size_t i, std::size_t j, bool end) {
+    const Number t = end ? hi : lo;
+    Point d;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Number d0 = Number(pair.x[i].t0[k]) - Number(pair.x[j].t0[k]),
+                   d1 = Number(pair.x[i].t1[k]) - Number(pair.x[j].t1[k]);
+      d[k] = d0 + t * (d1 - d0);
+    }
+    return d;
+  };
+  const bool vf = pair.kind == kVf;
+  const auto volume = [&](bool u_end, bool v_end, bool w_end) -> Number {
+    const Point u = vf ? difference(0, 1, u_end) : difference(2, 0, u_end),
+                v = vf ? difference(2, 1, v_end) : difference(1, 0, v_end),
+                w = vf ? difference(3, 1, w_end) : difference(3, 2, w_end);
+    return test::dot(u, test::cross(v, w));
+  };
+  const Number b[4] = {
+      volume(0, 0, 0), volume(1, 0, 0) + volume(0, 1, 0) + volume(0, 0, 1),
+      volume(0, 1, 1) + volume(1, 0, 1) + volume(1, 1, 0), volume(1, 1, 1)};
+  return std::all_of(b, b + 4, [](const Number& c) { return c > 0; }) ||
+         std::all_of(b, b + 4, [](const Number& c) { return c < 0; });
+}
+
+// Signs below the bound on rounding are found out, and none is taken for granted.
+TEST(FCL_ELEMENTARY_TEST, filterSeesTheSignsThatThereAre) {
+  constexpr std::uint64_t kSeed = 38;
+  int all = 0, seen = 0;
+  for (const test::QueryFamily& family : test::queryFamilies()) {
+    if (std::string(family.name) == "extreme-exponents") continue;
+    Random random(kSeed);
+    for (int i = 0; i < 500; ++i) {
+      const MovingPair pair = family.generate(random);
+      const bool is_culled = !mayBecomeCoplanar(pair.kind, pair.points(), 0, 1),
+                 have_one_sign = haveOneSign(pair, 0, 1);
+      ASSERT_LE(is_culled, have_one_sign) << family.name << pair << "\nseed " << kSeed;
+      const double a = random.uniform(0, 1), b = random.uniform(0, 1),
+                   lo = std::min(a, b), hi = std::max(a, b);
+      if (!mayBecomeCoplanar(pair.kind, pair.points(), lo, hi)) {
+        ASSERT_TRUE(haveOneSign(pair, lo, hi))
+            << family.name << pair << " in [" << lo << ", " << hi << "]\nseed " << kSeed;
+      }
+      all += have_one_sign;
+      seen += is_culled;
+    }
+  }
+  EXPECT_GT(all, 1000);
+  EXPECT_GT(seen, all * 95 / 100);  // the rest have different signs once rounded
+}
+
+TEST(FCL_ELEMENTARY_TEST, filterDecidesJustAboveASlope) {
+  // The volume, 2^-46, is a twentieth of what doubles may lose of it.
+  constexpr double kGap = 0x1p-50;
+  const MovingPair pair{kVf,
+                        {path({1, 1, 2 + kGap}, {1, 1, 2 + 2 * kGap}), at(0, 0, 0),
+                         at(4, 0, 4), at(0, 4, 4)}};
+  const ElementaryResult r = test(pair);
+  EXPECT_EQ(r.answer, Answer::kNo);
+  EXPECT_EQ(r.decided_by, DecidedBy::kFilter);
+  MovingPair touching = pair;
+  touching.x[0].t0[2] = 2;
+  EXPECT_EQ(test(touching).answer, Answer::kYes);
 }
 
 TEST(FCL_ELEMENTARY_TEST, everyStageIsProved) {

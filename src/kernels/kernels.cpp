@@ -396,13 +396,26 @@ HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
           isInRange(size) & isInRange(n.norm)};
 }
 
-unsigned mayBecomeCoplanarEight(const EightPairs& x) {
+EightCoplanarities coplanarityOfEight(const EightPairs& x) {
   const bool vf = x.kind == FeatureKind::kVertexFace;
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
   const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
   const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
   const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
-  return 0xffU & ~bits(spannedVolume(u, cross(v, w)).hasNoRoot());
+  const Cubics f = spannedVolume(u, cross(v, w));
+  // min() and max() pick a NaN on the right, as the scalar filter does: there, inner
+  // ones.
+  const Doubles scale = broadcast<kEight>(kInnerScale);
+  const Doubles b1 = scale * f.b1, b2 = scale * f.b2;
+  const Doubles least = min(min(f.b0, b1), min(f.b3, b2)),
+                most = max(max(f.b0, b1), max(f.b3, b2));
+  const Doubles norm = max(max(u.norm, v.norm), w.norm), zero = broadcast<kEight>(0.),
+                bound = broadcast<kEight>(kOuterBound) * (norm * norm * norm);
+  const unsigned signs_agree = bits(((least > zero) | (most < zero)) &
+                                    (norm > broadcast<kEight>(kLeastFilterNorm)) &
+                                    (norm < broadcast<kEight>(kMostFilterNorm)));
+  const unsigned clear = bits((least > bound) | (most < zero - bound));
+  return {0xffU & ~signs_agree, signs_agree & ~clear};
 }
 
 /// The differences that the inside conditions use, see Pair in elementary_test.cpp.
@@ -526,14 +539,9 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {targetName(),
-                                 &overlapChildren,
-                                 &trianglesAt,
-                                 &cullFeaturesOf,
-                                 &cullCrossings,
-                                 &isFanEmbedded,
-                                 &mayBecomeCoplanarEight,
-                                 &solveEight};
+extern const Kernels kKernels = {targetName(),        &overlapChildren, &trianglesAt,
+                                 &cullFeaturesOf,     &cullCrossings,   &isFanEmbedded,
+                                 &coplanarityOfEight, &solveEight};
 
 const Kernels* table() { return &kKernels; }
 

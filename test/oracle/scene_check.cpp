@@ -111,7 +111,10 @@ class CullCheck {
     eight.kind = c.kind;
     for (std::size_t i = 0; i < 8; ++i) eight.set(i, c.x, c.window_lo, c.window_hi);
     for (std::size_t i = 0; i < 4; ++i) pair.x[i] = model_.frames()[c.vertices[i]];
-    if (deformable::kernels().mayBecomeCoplanar(eight) == 0) {
+    const deformable::EightCoplanarities found = deformable::kernels().coplanarity(eight);
+    if (found.possible == 0 &&
+        (found.unclear == 0 || !mayBecomeCoplanarAccurately(pair.kind, pair.points(),
+                                                            c.window_lo, c.window_hi))) {
       addCulled(kFilter, pair);
       return;
     }

@@ -101,10 +101,26 @@ inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
 /// @brief narrowWindow() for a pair given by its points.
 bool narrowWindow(FeatureKind kind, const FeaturePoints& x, double& lo, double& hi);
 
-/// @brief The coplanarity filter over [window_lo, window_hi]: false proves that the four
-/// points are never coplanar in the window, so that the features never touch in it.
-/// (1) Never false for a pair that touches. (2) NaN, infinity and products that could
-/// underflow or overflow give true.
+/// @brief Whether four points become coplanar, as far as doubles can tell.
+enum class Coplanarity {
+  kNever,
+  kPossible,
+  kUnclear  ///< the signs say never, but may be mere rounding
+};
+
+/// @brief The coplanarity filter over [window_lo, window_hi] in doubles. kNever proves
+/// that the four points are never coplanar in the window, so that the features never
+/// touch in it. (1) Never kNever for a pair that touches. (2) NaN, infinity and products
+/// that could underflow or overflow give kPossible.
+Coplanarity coplanarityInDoubles(FeatureKind kind, const FeaturePoints& x,
+                                 double window_lo, double window_hi);
+
+/// @brief The same question in twice the digits, for pairs that are kUnclear: false is a
+/// proof as kNever is.
+bool mayBecomeCoplanarAccurately(FeatureKind kind, const FeaturePoints& x,
+                                 double window_lo, double window_hi);
+
+/// @brief The whole filter: in doubles, and again where they leave it unclear.
 bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
                        double window_hi);
 

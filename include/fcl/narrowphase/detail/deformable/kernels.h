@@ -56,6 +56,12 @@ struct alignas(64) EightPairs {
   }
 };
 
+/// @brief What coplanarityInDoubles() says of eight pairs, a bit each; where neither is
+/// set, kNever.
+struct EightCoplanarities {
+  unsigned possible, unclear;
+};
+
 /// @brief Decided lanes, a bit each, and the brackets of the contacts.
 struct EightAnswers {
   unsigned no, yes;
@@ -100,8 +106,8 @@ struct Kernels {
   bool (*isFanEmbedded)(const TreeVertex* vertices, const TreeVertex& center,
                         const VertexFan& fan);
 
-  /// mayBecomeCoplanar() of eight pairs, a bit each.
-  unsigned (*mayBecomeCoplanar)(const EightPairs& pairs);
+  /// coplanarityInDoubles() of eight pairs.
+  EightCoplanarities (*coplanarity)(const EightPairs& pairs);
 
   /// The plain cases of solveCoplanarity(): a pair that is never inside, or whose volume
   /// changes sign once, well inside or outside. What is proved keeps the properties (1)
