@@ -47,65 +47,59 @@ template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const std::uint8_t* embedded,
-       const Schedule& schedule, Leaves& leaves, StageTimes& times)
-      : traversal_(tree_a, tree_b, shift, embedded, kernels()),
+       const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
+      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels()),
         schedule_(schedule),
         leaves_(&leaves),
-        times_(&times),
         block_(schedule.block + kMaxStep) {}
 
   /// From here on for another task.
-  void use(Leaves& leaves, StageTimes& times) {
-    leaves_ = &leaves;
-    times_ = &times;
-  }
+  void use(Leaves& leaves) { leaves_ = &leaves; }
+
+  /// Seconds in the leaves.
+  double testTime() const { return test_time_; }
 
   /// Opens the whole traversal, level by level, until there is enough work for all tasks.
   void divide(std::vector<NodePair>& works) {
-    const auto start = Clock::now();
-    const double test_before = times_->test;
     std::size_t next = 0;
-    WorkList open;
-    traversal_.start(open);
-    for (;
-         next < open.size() && open.size() - next < schedule_.tasks && !leaves_->isDone();
+    open_.cut(0);
+    traversal_.start(open_);
+    for (; next < open_.size() && open_.size() - next < schedule_.tasks &&
+           !leaves_->isDone();
          ++next) {
-      const NodePair work = open[next];
-      if (work.earliest <= leaves_->latest()) step(work, open);
+      const NodePair work = open_[next];
+      if (work.earliest <= leaves_->latest()) step(work);
     }
     finish();
-    if (!leaves_->isDone()) works.assign(open.data() + next, open.data() + open.size());
+    if (!leaves_->isDone())
+      works.assign(open_.data() + next, open_.data() + open_.size());
     if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
-    times_->traverse += secondsSince(start) - (times_->test - test_before);
   }
 
   /// Does a work to its end.
   void run(const NodePair& work) {
-    const auto start = Clock::now();
-    const double test_before = times_->test;
-    WorkList open;
-    open.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
-    while (open.size() > 0 && !leaves_->isDone()) {
-      const std::size_t first = open.size() - 1;
-      const NodePair& last = open[first];
-      open.cut(first);
+    open_.cut(0);
+    open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
+    while (open_.size() > 0 && !leaves_->isDone()) {
+      const std::size_t first = open_.size() - 1;
+      const NodePair& last = open_[first];
+      open_.cut(first);
       if (last.earliest > leaves_->latest()) continue;
-      step(last, open);
+      step(last);
       if (schedule_.in_order)
         std::sort(
-            open.data() + first, open.data() + open.size(),
+            open_.data() + first, open_.data() + open_.size(),
             [](const NodePair& x, const NodePair& y) { return isEarlierWork(y, x); });
     }
     finish();
-    times_->traverse += secondsSince(start) - (times_->test - test_before);
   }
 
  private:
   /// A step finds at most so many triangle pairs.
   static constexpr std::size_t kMaxStep = MovingKdopNode::kWidth * MovingKdopNode::kWidth;
 
-  void step(const NodePair& work, WorkList& open) {
-    traversal_.step(work, open, [this](int a, int b, float earliest) {
+  void step(const NodePair& work) {
+    traversal_.step(work, open_, [this](int a, int b, float earliest) {
       LeafPair& pair = block_[count_++];
       pair.a = a;
       pair.b = b;
@@ -115,6 +109,7 @@ class Part {
   }
 
   void visitBlock() {
+    if (count_ == 0) return;
     const auto start = Clock::now();
     for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
       const std::size_t last = std::min(first + schedule_.block, count_);
@@ -126,7 +121,7 @@ class Part {
       leaves_->flush();
     }
     count_ = 0;
-    times_->test += secondsSince(start);
+    test_time_ += secondsSince(start);
   }
 
   void finish() {
@@ -138,7 +133,8 @@ class Part {
   Traversal<kSelf, TreeA, TreeB> traversal_;
   const Schedule& schedule_;
   Leaves* leaves_;
-  StageTimes* times_;
+  double test_time_{0};
+  WorkList open_;
   std::vector<LeafPair> block_;
   std::size_t count_{0};
 };
@@ -163,13 +159,24 @@ struct Scene {
 
   bool isSelf() const { return &a == &b; }
 
-  /// Calls visit(part) with a part of the traversal.
+  /// Calls visit(part) with a part of the traversal, and adds the time that it takes.
   template <typename Leaves, typename Visit>
   void visitPart(const Schedule& schedule, Leaves& leaves, StageTimes& times,
                  Visit&& visit) const {
+    const auto start = Clock::now();
+    makePart(schedule, leaves, [&](auto& part) {
+      visit(part);
+      times.test += part.testTime();
+      times.traverse += secondsSince(start) - part.testTime();
+    });
+  }
+
+ private:
+  template <typename Leaves, typename Visit>
+  void makePart(const Schedule& schedule, Leaves& leaves, Visit&& visit) const {
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
-          *a.tree, *a.tree, shift, embedded, schedule, leaves, times);
+          *a.tree, *a.tree, shift, embedded, nullptr, schedule, leaves);
       return visit(part);
     }
     visitTree(a, [&](auto& tree_a) {
@@ -178,12 +185,14 @@ struct Scene {
         using B = std::remove_reference_t<decltype(tree_b)>;
         if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
           if (isSelf()) {
-            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, schedule,
-                                          leaves, times);
+            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, nullptr,
+                                          schedule, leaves);
             return visit(part);
           }
-        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, schedule, leaves,
-                                       times);
+        const SeparatingAxes axes(a, b);
+        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, nullptr,
+                                       a.tree || b.tree ? nullptr : &axes, schedule,
+                                       leaves);
         visit(part);
       });
     });
@@ -282,7 +291,7 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
     // One part for all tasks: what it has read of a rigid tree stays.
     for (std::size_t i = 0; i < works.size(); ++i) {
       TrianglePairTest task(a, b, shift, task_options, &progress, i + 1);
-      part.use(task, answers[i + 1].times);
+      part.use(task);
       part.run(works[i]);
       answers[i + 1].take(task);
     }

@@ -19,110 +19,247 @@ namespace {
 template <typename S>
 constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
 
+/// The OBB that a bounding volume consists of, or has beside other volumes.
 template <typename S>
-void set(double (&out)[3], const Vector3<S>& v, double scale = 1) {
-  for (int k = 0; k < 3; ++k) out[k] = scale * double{v[k]};
+const OBB<S>& obbOf(const OBB<S>& bv) {
+  return bv;
+}
+template <typename S>
+const OBB<S>& obbOf(const OBBRSS<S>& bv) {
+  return bv.obb;
+}
+template <typename S>
+const OBB<S>& obbOf(const kIOS<S>& bv) {
+  return bv.obb;
 }
 
-}  // namespace
-
-// An axis-aligned box from the first three slabs of an AABB or a KDOP.
+/// Whether a volume has bounds along our directions ready.
 template <typename BV>
-RigidTree::OrientedBox RigidTree::boxOf(const void* node) {
-  using S = typename BV::S;
-  const BV& bv = static_cast<const BVNode<BV>*>(node)->bv;
-  OrientedBox box{};
-  const Vector3<S> center = bv.center();
-  const double size[3] = {double{bv.width()}, double{bv.height()}, double{bv.depth()}};
-  set<S>(box.center, center);
-  for (int k = 0; k < 3; ++k) box.half_axis[k][k] = 0.5 * size[k];
-  box.slack = kFitSlack<S>;
-  return box;
-}
-
-namespace {
-
-template <typename Box, typename S>
-Box fromObb(const OBB<S>& obb) {
-  Box box{};
-  set<S>(box.center, obb.To);
-  for (int k = 0; k < 3; ++k)
-    set<S>(box.half_axis[k], obb.axis.col(k), double{obb.extent[k]});
-  box.slack = kFitSlack<S>;
-  return box;
-}
-
-}  // namespace
-
-#define FCL_CCD_BOX_OF(BV, EXPRESSION)                                       \
-  template <>                                                                \
-  RigidTree::OrientedBox RigidTree::boxOf<BV<double>>(const void* node) {    \
-    const BV<double>& bv = static_cast<const BVNode<BV<double>>*>(node)->bv; \
-    return EXPRESSION;                                                       \
-  }                                                                          \
-  template <>                                                                \
-  RigidTree::OrientedBox RigidTree::boxOf<BV<float>>(const void* node) {     \
-    const BV<float>& bv = static_cast<const BVNode<BV<float>>*>(node)->bv;   \
-    return EXPRESSION;                                                       \
-  }
-FCL_CCD_BOX_OF(OBB, fromObb<OrientedBox>(bv))
-FCL_CCD_BOX_OF(OBBRSS, fromObb<OrientedBox>(bv.obb))
-FCL_CCD_BOX_OF(kIOS, fromObb<OrientedBox>(bv.obb))
-#undef FCL_CCD_BOX_OF
-
+constexpr bool kHasSlabs = false;
+template <typename S>
+constexpr bool kHasSlabs<AABB<S>> = true;
 template <typename S, std::size_t N>
-constexpr std::size_t halfSlabCount(const KDOP<S, N>*) {
-  return N / 2;
-}
+constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
-// The first 8 directions of every KDOP of FCL's are ours.
-template <typename BV>
-RigidTree::SlabsOf RigidTree::slabsOf() {
-  using S = typename BV::S;
-  return [](const void* node) {
-    const BV& bv = static_cast<const BVNode<BV>*>(node)->bv;
-    Slabs slabs;
-    if constexpr (std::is_same_v<BV, AABB<S>>) {
-      const double lo[3] = {double{bv.min_[0]}, double{bv.min_[1]}, double{bv.min_[2]}};
-      const double hi[3] = {double{bv.max_[0]}, double{bv.max_[1]}, double{bv.max_[2]}};
-      kdopCoordinates(lo, slabs.lo);
-      kdopCoordinates(hi, slabs.hi);
-      for (int k = 1; k < 3; ++k) {  // x - y and x - z
-        slabs.lo[5 + k] = lo[0] - hi[k];
-        slabs.hi[5 + k] = hi[0] - lo[k];
-      }
-    } else {
-      constexpr std::size_t kHalf = halfSlabCount(static_cast<const BV*>(nullptr));
-      for (std::size_t j = 0; j < 8; ++j) {
-        slabs.lo[j] = double{bv.dist(j)};
-        slabs.hi[j] = double{bv.dist(j + kHalf)};
-      }
-    }
-    slabs.slack = kFitSlack<S>;
-    return slabs;
-  };
-}
+/// Bounds along our directions.
+struct Slabs {
+  double lo[8];
+  double hi[8];
+};
 
-#define FCL_CCD_NO_SLABS(BV)                            \
-  template <>                                           \
-  RigidTree::SlabsOf RigidTree::slabsOf<BV<double>>() { \
-    return nullptr;                                     \
-  }                                                     \
-  template <>                                           \
-  RigidTree::SlabsOf RigidTree::slabsOf<BV<float>>() {  \
-    return nullptr;                                     \
+template <typename S>
+Slabs slabsOf(const AABB<S>& bv) {
+  const double lo[3] = {double{bv.min_[0]}, double{bv.min_[1]}, double{bv.min_[2]}};
+  const double hi[3] = {double{bv.max_[0]}, double{bv.max_[1]}, double{bv.max_[2]}};
+  Slabs slabs;
+  kdopCoordinates(lo, slabs.lo);
+  kdopCoordinates(hi, slabs.hi);
+  for (int k = 1; k < 3; ++k) {  // x - y and x - z
+    slabs.lo[5 + k] = lo[0] - hi[k];
+    slabs.hi[5 + k] = hi[0] - lo[k];
   }
-FCL_CCD_NO_SLABS(OBB)
-FCL_CCD_NO_SLABS(OBBRSS)
-FCL_CCD_NO_SLABS(kIOS)
-#undef FCL_CCD_NO_SLABS
+  return slabs;
+}
 
-#define FCL_CCD_INSTANTIATE(BV)                                      \
-  template RigidTree::OrientedBox RigidTree::boxOf<BV>(const void*); \
-  template RigidTree::SlabsOf RigidTree::slabsOf<BV>();
+/// The first 8 directions of every KDOP of FCL's are ours. Its bounds are private, and
+/// reading one a call; they are all that it consists of.
+template <typename S, std::size_t N>
+Slabs slabsOf(const KDOP<S, N>& bv) {
+  static_assert(std::is_standard_layout_v<KDOP<S, N>> && sizeof(bv) == N * sizeof(S));
+  const S* bounds = reinterpret_cast<const S*>(&bv);
+  Slabs slabs;
+  for (std::size_t j = 0; j < 8; ++j) {
+    slabs.lo[j] = double{bounds[j]};
+    slabs.hi[j] = double{bounds[j + N / 2]};
+  }
+  return slabs;
+}
+
+constexpr float kFloatUnit = 0x1p-24f;
+
+Float4 load(const float* from) {
+  Float4 v;
+  __builtin_memcpy(&v, from, sizeof(v));
+  return v;
+}
+void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
+Float4 abs(const Float4& v) {
+  constexpr int kAllButSign = 0x7fffffff;
+  return Float4(Mask4(v) & kAllButSign);
+}
+Float4 larger(const Float4& x, const Float4& y) { return x > y ? x : y; }
+
+/// As roundUp() leaves a half-axis: infinite in place of a NaN, never below kLeastHalf.
+Float4 bounded(const Float4& half) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const Float4 number = half == half ? half : Float4{kInf, kInf, kInf, kInf};
+  return larger(number, Float4{kLeastHalf, kLeastHalf, kLeastHalf, kLeastHalf});
+}
+
+/// Eight boxes in lanes, rounded to float; centers relative to the tree's origin.
+struct EightBoxes {
+  float center[3][MovingKdopNode::kWidth];
+  float half_axis[3][3][MovingKdopNode::kWidth];
+};
+
+/// Half-axes of 16-DOPs around the boxes, but for rounding: a direction d meets a box as
+/// far from its center as the sum of |d . half axis|.
+void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
+  for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
+    const auto alongDirections = [q](const float(&v)[3][MovingKdopNode::kWidth],
+                                     Float4(&d)[8]) {
+      const Float4 p[3] = {load(v[0] + q), load(v[1] + q), load(v[2] + q)};
+      kdopCoordinates(p, d);
+    };
+    Float4 center[8], axis[3][8];
+    alongDirections(boxes.center, center);
+    for (int k = 0; k < 3; ++k) alongDirections(boxes.half_axis[k], axis[k]);
+    for (int j = 0; j < 8; ++j) {
+      const Float4 spread = abs(axis[0][j]) + abs(axis[1][j]) + abs(axis[2][j]);
+      store(spread - center[j], out.rows[2 * j].t0 + q);
+      store(spread + center[j], out.rows[2 * j + 1].t0 + q);
+    }
+  }
+}
+
+}  // namespace
+
+template <typename BV>
+RigidTree::Volumes RigidTree::volumesOf() {
+  return {sizeof(BVNode<BV>), kFitSlack<typename BV::S>, kHasSlabs<BV>,
+          &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
+}
+
+RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose)
+    : nodes_(nodes), volumes_(volumes), is_rotated_(!pose.isTranslation()) {
+  std::copy(pose.rotation, pose.rotation + 9, rotation_);
+  OrientedBox box;
+  orientedBox(0, box);
+  std::copy(box.center, box.center + 3, origin_);
+  // Twice, so that with a center relative to it it bounds the center itself too.
+  origin_size_ = roundUp(
+      2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
+  for (int k = 0; k < 3; ++k) {
+    double spread = 0;
+    for (int i = 0; i < 3; ++i) spread += std::abs(box.axis[i][k] * box.extent[i]);
+    reach_ = std::max(reach_, spread);
+  }
+  reach_ *= 1 + slack();
+}
+
+void RigidTree::rotate(OrientedBox& box) const {
+  const auto turn = [this](double(&v)[3]) {
+    const double x = v[0], y = v[1], z = v[2];
+    for (int k = 0; k < 3; ++k)
+      v[k] = rotation_[3 * k] * x + rotation_[3 * k + 1] * y + rotation_[3 * k + 2] * z;
+  };
+  turn(box.center);
+  for (auto& axis : box.axis) turn(axis);
+}
+
+// Of an AABB or a KDOP the box of the first three slabs.
+template <typename BV>
+void RigidTree::setBox(int node, OrientedBox& box) const {
+  const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
+  if constexpr (kHasSlabs<BV>) {
+    const Slabs slabs = slabsOf(bv);
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = 0.5 * (slabs.lo[k] + slabs.hi[k]);
+      for (int i = 0; i < 3; ++i) box.axis[i][k] = i == k;
+      box.extent[k] = 0.5 * (slabs.hi[k] - slabs.lo[k]);
+    }
+  } else {
+    const auto& obb = obbOf(bv);
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = double{obb.To[k]};
+      for (int i = 0; i < 3; ++i) box.axis[i][k] = double{obb.axis(k, i)};
+      box.extent[k] = double{obb.extent[k]};
+    }
+  }
+  if (is_rotated_) rotate(box);
+}
+
+template <typename BV>
+void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const {
+  if constexpr (kHasSlabs<BV>)
+    if (!is_rotated_) {
+      double origin[8];
+      kdopCoordinates(origin_, origin);
+      for (int lane = 0; lane < kWidth; ++lane) {
+        const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
+        for (int j = 0; j < 8; ++j) {
+          out.rows[2 * j].t0[lane] = static_cast<float>(origin[j] - slabs.lo[j]);
+          out.rows[2 * j + 1].t0[lane] = static_cast<float>(slabs.hi[j] - origin[j]);
+        }
+      }
+      // The bounds along x, y, z are those of coordinates, without error; a sum of two
+      // was rounded to within the slack of its terms.
+      return roundOutward(0.f, out);
+    }
+  EightBoxes boxes;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    OrientedBox box;
+    setBox<BV>(nodes[lane], box);
+    for (int k = 0; k < 3; ++k) {
+      boxes.center[k][lane] = static_cast<float>(box.center[k] - origin_[k]);
+      for (int i = 0; i < 3; ++i)
+        boxes.half_axis[i][k][lane] = static_cast<float>(box.axis[i][k] * box.extent[i]);
+    }
+  }
+  fitBoxes(boxes, out);
+  // A half-axis is a sum of components of the center and of the half axes: rounding these
+  // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1, and 3
+  // more than cover the rounding of the padding itself. The fit's slack is far above the
+  // few 2^-53 of the rotation and of the center.
+  roundOutward(8 * kFloatUnit, out);
+}
+
+/// Completes rows whose half-axes at t = 0 are right but for `rounding`, relative to the
+/// sum of the components, and for the fit of the volumes.
+void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
+  const auto slack = static_cast<float>(volumes_.slack);
+  for (int q = 0; q < kWidth; q += 4) {
+    // Along x, y and z: the center's distance from the origin and half the width.
+    Float4 size{};
+    for (int r = 0; r < 6; r += 2)
+      size += larger(abs(load(out.rows[r].t0 + q)), abs(load(out.rows[r + 1].t0 + q)));
+    const Float4 pad = size * rounding + (size + origin_size_) * slack + FLT_MIN;
+    for (MovingKdopNode::Row& row : out.rows) {
+      const Float4 half = load(row.t0 + q);
+      const Float4 up = bounded(half + (abs(half) * kOutward + pad));
+      store(up, row.t0 + q);
+      store(up, row.t1 + q);
+    }
+  }
+}
+
+void RigidTree::open(int i, MovingKdopNode& out) const {
+  // The boxes are needed of FCL's nodes, the links of what is below them.
+  std::int32_t nodes[kWidth];
+  std::fill(nodes, nodes + kWidth, i);
+  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
+  (this->*volumes_.set_rows)(nodes, out);
+  out.clearRest();
+}
+
+MovingKdop RigidTree::box(int node) const {
+  std::int32_t nodes[kWidth];
+  std::fill(nodes, nodes + kWidth, node);
+  MovingKdopNode out;
+  (this->*volumes_.set_rows)(nodes, out);
+  return out.box(0);
+}
+
+#define FCL_CCD_INSTANTIATE(BV) template RigidTree::Volumes RigidTree::volumesOf<BV>();
 #define FCL_CCD_COMMA ,
 FCL_CCD_INSTANTIATE(AABB<double>)
 FCL_CCD_INSTANTIATE(AABB<float>)
+FCL_CCD_INSTANTIATE(OBB<double>)
+FCL_CCD_INSTANTIATE(OBB<float>)
+FCL_CCD_INSTANTIATE(OBBRSS<double>)
+FCL_CCD_INSTANTIATE(OBBRSS<float>)
+FCL_CCD_INSTANTIATE(kIOS<double>)
+FCL_CCD_INSTANTIATE(kIOS<float>)
 FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 16>)
 FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 16>)
 FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 18>)
@@ -131,132 +268,6 @@ FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 24>)
 FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 24>)
 #undef FCL_CCD_COMMA
 #undef FCL_CCD_INSTANTIATE
-
-RigidTree::RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of,
-                     SlabsOf slabs_of, const Pose& pose)
-    : nodes_(nodes),
-      stride_(stride),
-      box_of_(box_of),
-      is_rotated_(!pose.isTranslation()) {
-  if (!is_rotated_) slabs_of_ = slabs_of;
-  std::copy(pose.rotation, pose.rotation + 9, rotation_);
-  const OrientedBox root = rotated(0);
-  std::copy(root.center, root.center + 3, origin_);
-  // Twice, so that with a center relative to it it bounds the center itself too.
-  origin_size_ = roundUp(
-      2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
-  for (int k = 0; k < 3; ++k)
-    reach_ =
-        std::max(reach_, std::abs(root.half_axis[0][k]) + std::abs(root.half_axis[1][k]) +
-                             std::abs(root.half_axis[2][k]));
-  reach_ *= 1 + root.slack;
-}
-
-RigidTree::OrientedBox RigidTree::rotated(int node) const {
-  OrientedBox box = box_of_(at(node));
-  if (!is_rotated_) return box;
-  const auto turn = [this](double(&v)[3]) {
-    const double x = v[0], y = v[1], z = v[2];
-    for (int k = 0; k < 3; ++k)
-      v[k] = rotation_[3 * k] * x + rotation_[3 * k + 1] * y + rotation_[3 * k + 2] * z;
-  };
-  turn(box.center);
-  for (auto& axis : box.half_axis) turn(axis);
-  return box;
-}
-
-void RigidTree::fromSlabs(const Slabs& slabs, MovingKdop& box) const {
-  double origin[8];
-  kdopCoordinates(origin_, origin);
-  // The bounds along x, y, z are those of coordinates, without error; a sum of two was
-  // rounded to within the slack of its terms.
-  double size = 0;
-  for (int k = 0; k < 3; ++k)
-    size += std::abs(origin_[k]) + std::max(std::abs(slabs.lo[k]), std::abs(slabs.hi[k]));
-  const float pad = roundUp(size * slabs.slack, 0.f);
-  for (int j = 0; j < 8; ++j) {
-    box.t0.half[j] = roundUp(origin[j] - slabs.lo[j], pad);
-    box.t0.half[j + 8] = roundUp(slabs.hi[j] - origin[j], pad);
-  }
-  box.t1 = box.t0;
-}
-
-void RigidTree::open(int i, MovingKdopNode& out) const {
-  // The boxes are needed of FCL's nodes, the links of what is below them.
-  std::int32_t nodes[MovingKdopNode::kWidth];
-  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
-  out.clearRest();
-  MovingKdop box;
-  for (int lane = 0; lane < out.count; ++lane) {
-    makeBox(nodes[lane], box);
-    out.setBox(lane, box);
-  }
-}
-
-namespace {
-
-constexpr float kFloatUnit = 0x1p-24f;
-
-/// One lane in all four.
-template <int kLane>
-Float4 lane(const Float4& v) {
-  return __builtin_shufflevector(v, v, kLane, kLane, kLane, kLane);
-}
-Float4 abs(const Float4& v) {
-  constexpr int kAllButSign = 0x7fffffff;
-  return Float4(Mask4(v) & kAllButSign);
-}
-
-/// As roundUp() leaves a half-axis: infinite in place of a NaN, never below kLeastHalf.
-Float4 bounded(const Float4& half) {
-  constexpr float kInf = std::numeric_limits<float>::infinity();
-  const Float4 number = half == half ? half : Float4{kInf, kInf, kInf, kInf};
-  return number > kLeastHalf ? number
-                             : Float4{kLeastHalf, kLeastHalf, kLeastHalf, kLeastHalf};
-}
-
-/// The 8 directions applied to a vector, rounded to float: each entry is within 2 units
-/// of kFloatUnit of the sum of the terms it is made of. What overflows is infinite or
-/// NaN.
-void kdopCoordinates(const double (&p)[3], Float4 (&d)[2]) {
-  const Float4 v = {static_cast<float>(p[0]), static_cast<float>(p[1]),
-                    static_cast<float>(p[2]), 0.f};
-  d[0] = __builtin_shufflevector(v, v, 0, 1, 2, 0) +
-         __builtin_shufflevector(v, v, 3, 3, 3, 1);
-  d[1] = __builtin_shufflevector(v, v, 0, 1, 0, 0) +
-         __builtin_shufflevector(v, -v, 2, 2, 5, 6);
-}
-
-}  // namespace
-
-void RigidTree::makeBox(int node, MovingKdop& box) const {
-  if (slabs_of_) return fromSlabs(slabs_of_(at(node)), box);
-  OrientedBox bv = rotated(node);
-  for (int k = 0; k < 3; ++k) bv.center[k] -= origin_[k];
-
-  Float4 center[2], axis[2], spread[2] = {};
-  kdopCoordinates(bv.center, center);
-  for (const auto& half_axis : bv.half_axis) {
-    kdopCoordinates(half_axis, axis);
-    for (int q = 0; q < 2; ++q) spread[q] += abs(axis[q]);
-  }
-  // Sum of the components of the center and of all half axes. A bound is a sum of such:
-  // 2 units for the directions, 2 for the spread, 1 for the last sum, and 3 more than
-  // cover the rounding of size and pad. The fit's slack is far above the few 2^-53 of the
-  // rotation and of the center.
-  const Float4 reach = spread[0] + abs(center[0]);
-  const Float4 size = lane<0>(reach) + lane<1>(reach) + lane<2>(reach);
-  const Float4 pad = size * (8 * kFloatUnit) +
-                     (size + origin_size_) * static_cast<float>(bv.slack) + FLT_MIN;
-  for (int q = 0; q < 2; ++q) {
-    const Float4 lower = spread[q] - center[q], upper = spread[q] + center[q];
-    const Float4 half[2] = {bounded(lower + (abs(lower) * kOutward + pad)),
-                            bounded(upper + (abs(upper) * kOutward + pad))};
-    for (int side = 0; side < 2; ++side)
-      for (Kdop16* frame : {&box.t0, &box.t1})
-        __builtin_memcpy(frame->half + 8 * side + 4 * q, &half[side], sizeof(Float4));
-  }
-}
 
 }  // namespace deformable
 }  // namespace detail

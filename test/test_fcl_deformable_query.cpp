@@ -22,6 +22,7 @@
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "fcl/narrowphase/detail/deformable/separating_axes.h"
 #include "moving_mesh.h"
 #include "test_models.h"
 
@@ -516,6 +517,8 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeContainTheirTriangles) {
         expectBoxesAroundTheirTriangles<OBBRSS<double>>(mesh, pose);
         expectBoxesAroundTheirTriangles<AABB<double>>(mesh, pose);
         expectBoxesAroundTheirTriangles<KDOP<double, 16>>(mesh, pose);
+        expectBoxesAroundTheirTriangles<KDOP<double, 24>>(mesh, pose);
+        expectBoxesAroundTheirTriangles<kIOS<double>>(mesh, pose);
       }
     }
   }
@@ -584,6 +587,138 @@ TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
     expectRight(reader.node(node), node);
     ASSERT_FALSE(HasFailure());
   }
+}
+
+/// Two copies of a rigid mesh, the second of which moves.
+template <typename BV>
+struct RigidPair {
+  using S = typename BV::S;
+  std::shared_ptr<BVHModel<BV>> model;
+  PreparedMesh a, b;
+  SeparatingAxes axes;
+
+  static Transform3<S> at(const Matrix3<S>& rotation, const Vector3<S>& translation) {
+    Transform3<S> tf = Transform3<S>::Identity();
+    tf.linear() = rotation;
+    tf.translation() = translation;
+    return tf;
+  }
+  RigidPair(const std::shared_ptr<BVHModel<BV>>& mesh, const Matrix3<S>& rotation,
+            const Vector3<S>& from, const Vector3<S>& to)
+      : model(mesh),
+        a(*model, at(rotation, Vector3<S>::Zero()), at(rotation, Vector3<S>::Zero()),
+          "a"),
+        b(*model, at(rotation, from), at(rotation, to), "b"),
+        axes(a.instance(), b.instance()) {}
+
+  /// FCL's nodes above a vertex.
+  std::vector<int> nodesAbove(std::size_t vertex) const {
+    std::vector<int> nodes;
+    const std::function<bool(int)> collect = [&](int node) {
+      const auto& bv = model->getBV(node);
+      bool above = false;
+      if (bv.isLeaf()) {
+        const Triangle& t = model->tri_indices[bv.primitiveId()];
+        for (int k = 0; k < 3; ++k) above |= t[k] == vertex;
+      } else {
+        above = collect(bv.leftChild());
+        above |= collect(bv.leftChild() + 1);
+      }
+      if (above) nodes.push_back(node);
+      return above;
+    };
+    collect(0);
+    return nodes;
+  }
+};
+
+template <typename S>
+Matrix3<S> someRotation() {
+  return AngleAxis<S>(S(0.9), Vector3<S>(2, -1, 3).normalized()).toRotationMatrix();
+}
+
+/// Where a vertex of one copy meets a vertex of the other at some time, no boxes above
+/// the two are apart.
+template <typename BV>
+void expectTouchingBoxesAreNotApart(std::uint64_t seed) {
+  using S = typename BV::S;
+  Random random(seed);
+  std::size_t apart = 0;
+  for (const double scale : {1., 1e-6, 1e6})
+    for (const double away : {0., 1e3}) {
+      SCOPED_TRACE(std::to_string(scale) + ", " + std::to_string(away));
+      TestMesh mesh = test::bentSheet(6);
+      const Vector3<double> far = random.point(away);
+      for (auto& p : mesh.vertices) p = scale * (p + far);
+      const auto model = test::makeModel<BVHModel<BV>>(mesh);
+      for (int i = 0; i < 40; ++i) {
+        const Matrix3<S> rotation =
+            i % 2 ? someRotation<S>() : Matrix3<S>(Matrix3<S>::Identity());
+        const std::size_t va = random.index(mesh.vertices.size()),
+                          vb = random.index(mesh.vertices.size());
+        const Vector3<S> together =
+            rotation * model->vertices[va] - rotation * model->vertices[vb];
+        const Vector3<S> motion = random.point(scale).template cast<S>();
+        const S t = S(random.index(5)) / 4;
+        const RigidPair<BV> pair(model, rotation, together - t * motion,
+                                 together + (1 - t) * motion);
+        for (const int a : pair.nodesAbove(va))
+          for (const int b : pair.nodesAbove(vb))
+            ASSERT_FALSE(pair.axes.areApart(a, b)) << a << " " << b;
+        for (int a = 0; a < model->getNumBVs(); a += 7)
+          for (int b = 0; b < model->getNumBVs(); b += 5)
+            apart += pair.axes.areApart(a, b);
+      }
+    }
+  EXPECT_GT(apart, 1000U);
+}
+
+TEST(FCL_DEFORMABLE_QUERY, touchingBoxesAreNotApart) {
+  expectTouchingBoxesAreNotApart<OBBRSS<double>>(71);
+  expectTouchingBoxesAreNotApart<OBB<float>>(72);
+  expectTouchingBoxesAreNotApart<kIOS<double>>(73);
+  expectTouchingBoxesAreNotApart<AABB<double>>(74);
+  expectTouchingBoxesAreNotApart<KDOP<float, 18>>(75);
+}
+
+// Boxes side by side with hardly a gap are apart, those that overlap by as little are
+// not, nor those that pass through each other, nor what is not a number.
+TEST(FCL_DEFORMABLE_QUERY, boxesSideBySide) {
+  using Vec = Vector3<double>;
+  const auto model = test::makeModel<BVHModel<OBBRSS<double>>>(test::bentSheet(12));
+  const Matrix3<double> rotation = someRotation<double>();
+  const OBB<double>& obb = model->getBV(0).bv.obb;
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {-1., 1.}) {
+      const Vec across = side * 2 * obb.extent[k] * (rotation * obb.axis.col(k));
+      const Vec outside = across * (1 + 1e-9), inside = across * (1 - 1e-9);
+      const auto areApart = [&](const Vec& from, const Vec& to) {
+        return RigidPair<OBBRSS<double>>(model, rotation, from, to).axes.areApart(0, 0);
+      };
+      EXPECT_TRUE(areApart(outside, outside));
+      EXPECT_TRUE(areApart(outside, 2 * outside));
+      EXPECT_FALSE(areApart(inside, inside));
+      EXPECT_FALSE(areApart(outside, inside));
+      EXPECT_FALSE(areApart(inside, outside));
+      EXPECT_FALSE(areApart(outside, -outside));
+      EXPECT_FALSE(areApart(Vec(1e308, 1e308, 1e308), Vec(-1e308, -1e308, -1e308)));
+    }
+}
+
+TEST(FCL_DEFORMABLE_QUERY, whenSeparatingAxesMayHelp) {
+  using Vec = Vector3<double>;
+  const Matrix3<double> identity = Matrix3<double>::Identity(),
+                        rotation = someRotation<double>();
+  const Vec from(1, 2, 3), to(1, 2.5, 3);
+  const auto mesh = test::bentSheet(4);
+  const auto obbs = test::makeModel<BVHModel<OBB<double>>>(mesh);
+  const auto dops = test::makeModel<BVHModel<KDOP<double, 16>>>(mesh);
+  EXPECT_TRUE((RigidPair<OBB<double>>(obbs, identity, from, from).axes.mayHelp(0)));
+  EXPECT_TRUE((RigidPair<OBB<double>>(obbs, identity, from, to).axes.mayHelp(10)));
+  EXPECT_FALSE((RigidPair<OBB<double>>(obbs, identity, from, to).axes.mayHelp(0.5)));
+  using Dops = RigidPair<KDOP<double, 16>>;
+  EXPECT_FALSE(Dops(dops, identity, from, to).axes.mayHelp(10));
+  EXPECT_TRUE(Dops(dops, rotation, from, to).axes.mayHelp(10));
 }
 
 /// A rigid mesh of the given triangles, and two triangles that fall through it.

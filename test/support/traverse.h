@@ -14,14 +14,15 @@ namespace test {
 /// @brief All steps of a traversal, without a query around them: visit(i, j, earliest)
 /// for triangles i and j as the trees count them.
 /// @param latest  what starts later is left out
-/// @param embedded  as Traversal takes it
+/// @param embedded, axes  as Traversal takes them
 /// @return number of boxes that were compared
 template <bool kSelf, typename TreeA, typename TreeB, typename Visit>
 std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* shift,
                        Visit&& visit, double latest = 1,
-                       const std::uint8_t* embedded = nullptr) {
+                       const std::uint8_t* embedded = nullptr,
+                       const detail::deformable::SeparatingAxes* axes = nullptr) {
   namespace deformable = detail::deformable;
-  deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, embedded,
+  deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, embedded, axes,
                                                        deformable::kernels());
   deformable::WorkList open;
   traversal.start(open);

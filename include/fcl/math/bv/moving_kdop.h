@@ -38,8 +38,9 @@ struct TimeWindow {
 namespace detail {
 namespace deformable {
 
-/// @brief The 8 directions applied to a point.
-inline void kdopCoordinates(const double (&p)[3], double (&d)[8]) {
+/// @brief The 8 directions applied to a point, or to points in the lanes of vectors.
+template <typename T>
+inline void kdopCoordinates(const T (&p)[3], T (&d)[8]) {
   d[0] = p[0];
   d[1] = p[1];
   d[2] = p[2];

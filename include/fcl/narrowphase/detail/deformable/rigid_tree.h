@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/moving_kdop.h"
@@ -13,6 +14,14 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
+
+/// @brief A box around one of FCL's bounding volumes; every point of it is center + sum
+/// of c_i axis_i with |c_i| <= extent_i.
+struct OrientedBox {
+  double center[3];
+  double axis[3][3];
+  double extent[3];
+};
 
 /// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs: the
 /// box of a node is made from FCL's bounding volume when a traversal asks for it, so that
@@ -26,18 +35,24 @@ class RigidTree {
   /// relativeShift().
   template <typename BV>
   RigidTree(const BVHModel<BV>& model, const Pose& pose)
-      : RigidTree(&model.getBV(0), sizeof(BVNode<BV>), &boxOf<BV>, slabsOf<BV>(), pose) {}
+      : RigidTree(&model.getBV(0), volumesOf<BV>(), pose) {}
 
   /// @brief Makes a node of up to eight of FCL's below node i.
   void open(int i, MovingKdopNode& out) const;
 
-  /// @brief Makes the box of one of FCL's nodes, the same in both frames.
-  void makeBox(int node, MovingKdop& box) const;
-  MovingKdop box(int node) const {
-    MovingKdop made;
-    makeBox(node, made);
-    return made;
+  /// @brief The box of one of FCL's nodes, the same in both frames.
+  MovingKdop box(int node) const;
+
+  /// @brief The box that the node's 16-DOP is made from, in the rotated frame, or around
+  /// what it is made from. Points of the mesh stand out by slack() times the size of
+  /// their coordinates at most.
+  void orientedBox(int node, OrientedBox& box) const {
+    (this->*volumes_.set_box)(node, box);
   }
+  double slack() const { return volumes_.slack; }
+
+  /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
+  bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
 
   /// @brief Point (rotated frame) that the boxes are relative to.
   const double (&origin() const)[3] { return origin_; }
@@ -46,45 +61,41 @@ class RigidTree {
   double reach() const { return reach_; }
 
  private:
-  /// A box in the model frame that contains a bounding volume: half axes as columns.
-  struct OrientedBox {
-    double center[3];
-    double half_axis[3][3];
-    /// Relative rounding of the volume's own numbers, see boxOf().
-    double slack;
-  };
-  using BoxOf = OrientedBox (*)(const void* node);
+  static constexpr int kWidth = MovingKdopNode::kWidth;
 
-  /// Bounds along the 8 directions, which AABBs and FCL's KDOPs have ready; null for
-  /// others.
-  struct Slabs {
-    double lo[8];
-    double hi[8];
+  /// How bounding volumes of one kind are read.
+  struct Volumes {
+    std::size_t stride;
+    /// By how much points can stand out of them, relative to the coordinates.
     double slack;
+    /// Whether they have bounds along our directions ready.
+    bool has_slabs;
+    void (RigidTree::*set_box)(int node, OrientedBox& box) const;
+    /// Fills the rows with the 16-DOPs of FCL's nodes.
+    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth],
+                                MovingKdopNode& out) const;
   };
-  using SlabsOf = Slabs (*)(const void* node);
+  template <typename BV>
+  static Volumes volumesOf();
+
+  RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose);
 
   template <typename BV>
-  static OrientedBox boxOf(const void* node);
-
+  void setBox(int node, OrientedBox& box) const;
   template <typename BV>
-  static SlabsOf slabsOf();
-
-  RigidTree(const BVNodeBase* nodes, std::size_t stride, BoxOf box_of, SlabsOf slabs_of,
-            const Pose& pose);
+  void setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
+  void roundOutward(float rounding, MovingKdopNode& out) const;
+  void rotate(OrientedBox& box) const;
 
   const BVNodeBase* at(int node) const {
     return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
-                                               static_cast<std::size_t>(node) * stride_);
+                                               static_cast<std::size_t>(node) *
+                                                   volumes_.stride);
   }
   int link(int node) const { return at(node)->first_child; }
-  OrientedBox rotated(int node) const;
-  void fromSlabs(const Slabs& slabs, MovingKdop& box) const;
 
   const BVNodeBase* nodes_{nullptr};
-  std::size_t stride_{0};
-  BoxOf box_of_{nullptr};
-  SlabsOf slabs_of_{nullptr};  // null when rotated
+  Volumes volumes_{};
   bool is_rotated_{false};
   double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
   double origin_[3]{0, 0, 0};

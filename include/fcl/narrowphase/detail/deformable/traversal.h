@@ -12,6 +12,7 @@
 
 #include "fcl/math/bv/moving_kdop.h"
 #include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "fcl/narrowphase/detail/deformable/separating_axes.h"
 
 namespace fcl {
 namespace detail {
@@ -73,9 +74,15 @@ class Traversal {
   /// @param shift  between the two trees' origins and translations; null for kSelf
   /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
   /// (Kernels::isFanEmbedded): pairs of triangles in one are left out; null: unknown
+  /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
-            const std::uint8_t* embedded, const Kernels& kernels)
-      : tree_a_(tree_a), tree_b_(tree_b), embedded_(embedded), kernels_(kernels) {
+            const std::uint8_t* embedded, const SeparatingAxes* axes,
+            const Kernels& kernels)
+      : tree_a_(tree_a),
+        tree_b_(tree_b),
+        embedded_(embedded),
+        axes_(axes),
+        kernels_(kernels) {
     if (!shift) return;
     // What is added to a box of tree b is the same with the half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
@@ -162,10 +169,17 @@ class Traversal {
       if (is_triangle && node.isTriangle(k)) {
         const int mine = parent.triangle(lane), theirs = node.triangle(k);
         kSwapped ? visit(theirs, mine, w) : visit(mine, theirs, w);
-      } else if (is_triangle || (!node.isTriangle(k) && size < extent(node, k))) {
-        open.add(i, lane, node.child[k], kSwapped, w);
       } else {
-        open.add(j, k, parent.child[lane], !kSwapped, w);
+        const bool both_nodes = !is_triangle && !node.isTriangle(k);
+        const float other = both_nodes ? extent(node, k) : 0.f;
+        if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
+            axes_->areApart(kSwapped ? node.child[k] : parent.child[lane],
+                            kSwapped ? parent.child[lane] : node.child[k]))
+          continue;
+        if (is_triangle || (both_nodes && size < other))
+          open.add(i, lane, node.child[k], kSwapped, w);
+        else
+          open.add(j, k, parent.child[lane], !kSwapped, w);
       }
     }
   }
@@ -188,6 +202,7 @@ class Traversal {
   TreeA& tree_a_;
   TreeB& tree_b_;
   const std::uint8_t* embedded_;
+  const SeparatingAxes* axes_;
   const Kernels& kernels_;
   float shift_[2][2][16];
   std::uint64_t compared_{0};
