@@ -10,6 +10,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <set>
 #include <string>
 #include <thread>
@@ -18,6 +19,7 @@
 #include <xmmintrin.h>
 #endif
 #ifdef FCL_CCD_USE_TBB
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <tbb/task_group.h>
 #include <tbb/task_scheduler_observer.h>
@@ -303,6 +305,21 @@ TEST(FCL_THREADS, callersFloatingPointMode) {
 }
 
 #ifdef FCL_CCD_USE_TBB
+
+/// Ends oneTBB's workers with the tests: one that still rests in an arena when the
+/// process ends keeps what oneTBB has made for a watcher of that arena (a leak to
+/// sanitizers).
+class Workers : public ::testing::Environment {
+ public:
+  void SetUp() override { handle_ = tbb::task_scheduler_handle(tbb::attach{}); }
+  void TearDown() override { EXPECT_TRUE(tbb::finalize(handle_, std::nothrow)); }
+
+ private:
+  tbb::task_scheduler_handle handle_;
+};
+
+const ::testing::Environment* const kWorkers =
+    ::testing::AddGlobalTestEnvironment(new Workers);
 
 /// The threads that work in an arena.
 class Watcher : public tbb::task_scheduler_observer {
