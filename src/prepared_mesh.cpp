@@ -156,11 +156,10 @@ std::vector<MeshTriangle> PreparedMesh::ownersOf(const BVHModel<BV>& model,
                                                  const std::string& name) {
   const auto num_vertices = static_cast<std::size_t>(model.num_vertices);
   const auto num_triangles = static_cast<std::size_t>(model.num_tris);
-  for (std::size_t i = 0; i < num_triangles; ++i)
-    for (int k = 0; k < 3; ++k)
-      if (model.tri_indices[i][k] >= num_vertices)
-        throw Exception(name + ": triangle " + std::to_string(i) +
-                        " refers to a vertex that is not there");
+  const std::size_t bad = findOutOfRange(model.tri_indices, num_triangles, num_vertices);
+  if (bad < 3 * num_triangles)
+    throw Exception(name + ": triangle " + std::to_string(bad / 3) +
+                    " refers to a vertex that is not there");
   return assignFeatures(model.tri_indices, num_triangles, num_vertices);
 }
 

@@ -15,37 +15,48 @@ struct Corner {
   std::uint32_t next, last;
 };
 
-/// Brings the corners of one vertex into the order of a fan; false if they form none.
-bool sortIntoFan(Corner* corners, std::uint32_t count, bool& is_closed) {
-  const auto startsAt = [&](std::uint32_t vertex, std::uint32_t from) {
-    return std::find_if(corners + from, corners + count,
-                        [vertex](const Corner& c) { return c.next == vertex; });
+constexpr std::uint32_t kMaxSpokes = VertexFans::kMaxSpokes;
+
+/// The spokes of corners that form a fan, in order; without spokes if they form none.
+struct Spokes {
+  std::uint32_t vertices[kMaxSpokes + 1];
+  std::uint32_t count{0};
+  bool is_closed{false};
+};
+
+/// @param count  1 ... kMaxSpokes
+Spokes sortIntoFan(Corner* corners, std::uint32_t count) {
+  // From any corner forward, as long as a triangle begins where the last one ends; then
+  // from the same corner backward.
+  Corner* const end = corners + count;
+  Corner* sorted = corners + 1;
+  const auto follow = [&](auto&& isNeighbour) {
+    Corner* found = std::find_if(sorted, end, isNeighbour);
+    if (found == end) return false;
+    std::swap(*sorted++, *found);
+    return true;
   };
-  // An open fan begins where no triangle ends; a closed one anywhere.
-  std::uint32_t begin = 0, num_begins = 0;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::uint32_t num_same = 0;
-    bool is_begin = true;
-    for (std::uint32_t k = 0; k < count; ++k) {
-      num_same +=
-          (corners[k].next == corners[i].next) + (corners[k].last == corners[i].last);
-      is_begin &= corners[k].last != corners[i].next;
-    }
-    if (num_same != 2) return false;
-    if (is_begin) {
-      begin = i;
-      ++num_begins;
-    }
+  while (follow([&](const Corner& c) { return c.next == sorted[-1].last; })) {
   }
-  if (num_begins > 1) return false;
-  is_closed = num_begins == 0;
-  std::swap(corners[0], corners[begin]);
-  for (std::uint32_t i = 1; i < count; ++i) {
-    Corner* following = startsAt(corners[i - 1].last, i);
-    if (following == corners + count) return false;  // a second sheet
-    std::swap(corners[i], *following);
-  }
-  return is_closed ? count >= 3 && corners[count - 1].last == corners[0].next : true;
+  Corner* const forward = sorted;
+  std::uint32_t begin = corners[0].next;
+  while (sorted != end && follow([&](const Corner& c) { return c.last == begin; }))
+    begin = sorted[-1].next;
+
+  Spokes spokes;
+  if (sorted != end) return spokes;
+  for (const Corner* c = end; c-- != forward;) spokes.vertices[spokes.count++] = c->next;
+  for (const Corner* c = corners; c != forward; ++c)
+    spokes.vertices[spokes.count++] = c->next;
+  spokes.is_closed = forward[-1].last == begin;
+  if (!spokes.is_closed) spokes.vertices[spokes.count++] = forward[-1].last;
+  // A spoke that is met twice belongs to three triangles or to two sheets.
+  bool is_fan = spokes.count <= kMaxSpokes && !(spokes.is_closed && count < 3);
+  for (std::uint32_t i = 0; i < spokes.count; ++i)
+    for (std::uint32_t k = 0; k < i; ++k)
+      is_fan &= spokes.vertices[k] != spokes.vertices[i];
+  if (!is_fan) spokes.count = 0;
+  return spokes;
 }
 
 }  // namespace
@@ -67,15 +78,11 @@ VertexFans::VertexFans(const std::vector<TreeTriangle>& triangles,
   spokes_.reserve(corners.size() + num_vertices / 8);
   for (std::size_t i = 0; i < num_vertices; ++i) {
     first_[i] = static_cast<std::uint32_t>(spokes_.size());
-    Corner* mine = corners.data() + begin[i];
     const std::uint32_t count = end[i] - begin[i];
-    bool is_closed = false;
-    if (count == 0 || count > kMaxSpokes || !sortIntoFan(mine, count, is_closed))
-      continue;
-    if (!is_closed && count == kMaxSpokes) continue;
-    for (std::uint32_t k = 0; k < count; ++k) spokes_.push_back(mine[k].next);
-    if (!is_closed) spokes_.push_back(mine[count - 1].last);
-    closed_[i] = is_closed;
+    if (count == 0 || count > kMaxSpokes) continue;
+    const Spokes fan = sortIntoFan(corners.data() + begin[i], count);
+    spokes_.insert(spokes_.end(), fan.vertices, fan.vertices + fan.count);
+    closed_[i] = fan.count > 0 && fan.is_closed;
   }
   first_[num_vertices] = static_cast<std::uint32_t>(spokes_.size());
 }

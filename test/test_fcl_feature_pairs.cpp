@@ -196,6 +196,77 @@ TEST(FCL_FEATURE_PAIRS, theLowestTriangleOwns) {
   EXPECT_EQ(mesh[2].owned, 0U);
 }
 
+/// What each triangle owns, by definition: the features that none before it has.
+std::vector<std::uint32_t> expectedOwned(const std::vector<Triangle>& triangles) {
+  std::set<Ids> taken;
+  std::vector<std::uint32_t> owned;
+  for (const Triangle& t : triangles) {
+    Ids v;
+    for (int k = 0; k < 3; ++k) v.push_back(static_cast<std::uint32_t>(t[k]));
+    std::uint32_t bits = 0;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t next = v[(k + 1) % 3];
+      bits |= std::uint32_t{taken.insert({v[k]}).second} << k;
+      if (v[k] != next)
+        bits |= std::uint32_t{taken.insert(sorted({v[k], next})).second} << (3 + k);
+    }
+    bits |= std::uint32_t{taken.insert(sorted(v)).second} << 6;
+    owned.push_back(bits);
+  }
+  return owned;
+}
+
+void expectOwners(const std::vector<Triangle>& triangles, std::size_t num_vertices) {
+  const auto mesh = assignFeatures(triangles.data(), triangles.size(), num_vertices);
+  const std::vector<std::uint32_t> expected = expectedOwned(triangles);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    ASSERT_EQ(mesh[i].owned, expected[i]) << "triangle " << i;
+    for (std::size_t k = 0; k < 3; ++k)
+      ASSERT_EQ(mesh[i].v[k], triangles[i][static_cast<int>(k)]);
+  }
+}
+
+TEST(FCL_FEATURE_PAIRS, ownersByDefinition) {
+  constexpr std::uint64_t kSeed = 32;
+  test::Random random(kSeed);
+  for (int i = 0; i < 300; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", mesh " + std::to_string(i));
+    const std::size_t vertices = 1 + random.index(30);
+    std::vector<Triangle> triangles;
+    for (std::size_t k = 1 + random.index(200); k-- > 0;) {
+      const std::size_t a = random.index(vertices), b = random.index(vertices);
+      triangles.emplace_back(a, b, random.index(vertices));
+    }
+    ASSERT_NO_FATAL_FAILURE(expectOwners(triangles, vertices));
+  }
+}
+
+// All around one vertex or one edge, and one face again and again.
+TEST(FCL_FEATURE_PAIRS, ownersOfCrowdedFeatures) {
+  constexpr std::size_t kCount = 50000;
+  std::vector<Triangle> wheel, book, same;
+  for (std::size_t i = 2; i < kCount; ++i) {
+    wheel.emplace_back(0, i - 1, i);
+    book.emplace_back(i % 2, 1 - i % 2, i);
+    same.emplace_back(2, i % 2, 1 - i % 2);
+  }
+  expectOwners(wheel, kCount);
+  expectOwners(book, kCount);
+  expectOwners(same, 3);
+  // The crowded vertex last.
+  for (Triangle& t : wheel)
+    t.set(kCount - 1 - t[0], kCount - 1 - t[1], kCount - 1 - t[2]);
+  expectOwners(wheel, kCount);
+}
+
+TEST(FCL_FEATURE_PAIRS, findsWhatIsOutOfRange) {
+  const std::vector<Triangle> triangles = {{0, 1, 2}, {3, 2, 1}, {0, 4, 3}};
+  EXPECT_EQ(findOutOfRange(triangles.data(), triangles.size(), 5), 9U);
+  EXPECT_EQ(findOutOfRange(triangles.data(), triangles.size(), 4), 7U);
+  EXPECT_EQ(findOutOfRange(triangles.data(), triangles.size(), 3), 3U);
+  EXPECT_EQ(findOutOfRange(triangles.data(), 1, 3), 3U);
+}
+
 }  // namespace
 }  // namespace deformable
 }  // namespace detail

@@ -322,6 +322,143 @@ TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
   }
 }
 
+// No box is larger than what it bounds needs: a vertex's is its rounded coordinates, a
+// triangle's the largest of its vertices', a subtree's the largest of its children's.
+TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
+  constexpr std::uint64_t kSeed = 60;
+  Random random(kSeed);
+  for (const double size : {1., 1e-40, 1e30, 1e37, 1e38, 3e38, 1e300}) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(size));
+    const MovingMesh mesh = test::randomSoup(random, 700, 500, size, size);
+    const PreparedMovingMesh prepared(mesh);
+    const MovingKdopTree& tree = prepared.tree();
+    const float pad = roundUp(tree.reach() * 0x1p-50, 0.f);
+    for (const TreeVertex& v : tree.vertices())
+      for (int frame = 0; frame < 2; ++frame) {
+        const double* p = frame ? v.t1 : v.t0;
+        const Kdop16& box = frame ? v.box.t1 : v.box.t0;
+        const double offset[3] = {p[0] - tree.origin()[0], p[1] - tree.origin()[1],
+                                  p[2] - tree.origin()[2]};
+        double d[8];
+        kdopCoordinates(offset, d);
+        for (int j = 0; j < 8; ++j) {
+          ASSERT_EQ(box.half[j], roundUp(-d[j], pad));
+          ASSERT_EQ(box.half[j + 8], roundUp(d[j], pad));
+        }
+      }
+    const auto largest = [](const std::vector<MovingKdop>& boxes) {
+      MovingKdop out = boxes[0];
+      for (const MovingKdop& box : boxes)
+        for (int j = 0; j < 16; ++j) {
+          out.t0.half[j] = std::max(out.t0.half[j], box.t0.half[j]);
+          out.t1.half[j] = std::max(out.t1.half[j], box.t1.half[j]);
+        }
+      return out;
+    };
+    for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
+      for (int lane = 0; lane < tree.node(i).count; ++lane) {
+        const MovingKdopNode& node = tree.node(i);
+        std::vector<MovingKdop> inside;
+        if (node.isTriangle(lane))
+          for (const auto& places : node.places)
+            inside.push_back(tree.vertices()[places[lane]].box);
+        else
+          for (int k = 0; k < tree.node(node.child[lane]).count; ++k)
+            inside.push_back(tree.node(node.child[lane]).box(k));
+        const MovingKdop expected = largest(inside), box = node.box(lane);
+        ASSERT_EQ(std::memcmp(&expected, &box, sizeof(box)), 0) << "node " << i;
+      }
+  }
+}
+
+TEST(FCL_MOVING_KDOP_TREE, boxOfWhatIsNotANumber) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const double origin[3] = {0, 0, 0}, point[3] = {1, kNan, 1};
+  Kdop16 box;
+  fitPoint(point, origin, 0.f, box);
+  for (const int half : {1, 3, 5, 6, 9, 11, 13, 14})
+    EXPECT_EQ(box.half[half], std::numeric_limits<float>::infinity()) << half;
+  for (const int half : {0, 2, 4, 8, 10, 12}) EXPECT_LT(box.half[half], 3) << half;
+}
+
+/// Triangles at places of the x axis, each a point.
+MovingMesh pointsAt(const std::vector<double>& places) {
+  MovingMesh mesh;
+  for (const double x : places) {
+    for (int k = 0; k < 3; ++k) mesh.t0.emplace_back(x, 0, 0);
+    const std::size_t n = mesh.t0.size();
+    mesh.triangles.emplace_back(n - 3, n - 2, n - 1);
+  }
+  mesh.t1 = mesh.t0;
+  return mesh;
+}
+
+// A few hundred triangles are halved exactly, however unevenly they lie: each node has
+// all that lie between its ends, and the lowest nodes but the last are full.
+TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
+  constexpr std::uint64_t kSeed = 61;
+  Random random(kSeed);
+  for (int shape = 0; shape < 5; ++shape)
+    for (const std::size_t count : {9U, 64U, 65U, 200U, 511U, 512U}) {
+      SCOPED_TRACE("seed " + std::to_string(kSeed) + ", shape " + std::to_string(shape) +
+                   ", " + std::to_string(count));
+      std::vector<double> places;
+      for (std::size_t i = 0; i < count; ++i) {
+        const double x = random.uniform(0, 1);
+        places.push_back(shape == 0   ? x
+                         : shape == 1 ? std::ldexp(x, static_cast<int>(i % 100))
+                         : shape == 2 ? (i == 7 ? 1e30 : x)
+                         : shape == 3 ? (i % 3 ? 1e-30 * x : x)
+                                      : -std::ldexp(1, -static_cast<int>(i % 16)));
+      }
+      for (std::size_t i = count; i > 1; --i)
+        std::swap(places[i - 1], places[random.index(i)]);
+      const MovingMesh mesh = pointsAt(places);
+      const PreparedMovingMesh prepared(mesh);
+      const MovingKdopTree& tree = prepared.tree();
+      expectStructure(tree, prepared.features());
+      // Lowest nodes, by their places on the axis.
+      std::vector<std::pair<float, float>> ranges;
+      std::size_t full = 0;
+      for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
+        const MovingKdopNode& node = tree.node(i);
+        if (!node.isTriangle(0)) continue;
+        full += node.count == MovingKdopNode::kWidth;
+        std::pair<float, float> range(FLT_MAX, -FLT_MAX);
+        for (int lane = 0; lane < node.count; ++lane) {
+          const std::uint32_t t =
+              tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index;
+          // As the tree sees it: relative to a vertex, three vertices together.
+          const auto x = static_cast<float>(places[t] - places[0]);
+          range.first = std::min(range.first, x + x + x);
+          range.second = std::max(range.second, x + x + x);
+        }
+        ranges.push_back(range);
+      }
+      std::sort(ranges.begin(), ranges.end());
+      EXPECT_EQ(full, count / MovingKdopNode::kWidth);
+      for (std::size_t i = 1; i < ranges.size(); ++i)
+        EXPECT_LE(ranges[i - 1].second, ranges[i].first);
+    }
+}
+
+// The same tree wherever the mesh is.
+TEST(FCL_MOVING_KDOP_TREE, structureFarFromTheOrigin) {
+  constexpr std::uint64_t kSeed = 62;
+  Random random(kSeed);
+  MovingMesh mesh = test::crumpledSheet(random, 40, 0.1);
+  for (auto& p : mesh.t0)
+    for (int k = 0; k < 3; ++k) p[k] = std::ldexp(std::round(std::ldexp(p[k], 20)), -20);
+  const PreparedMovingMesh here(mesh);
+  MovingMesh moved = mesh;
+  for (auto& p : moved.t0)
+    for (int k = 0; k < 3; ++k) p[k] += std::ldexp(k + 1, 28);
+  const PreparedMovingMesh there(moved);
+  ASSERT_EQ(here.tree().triangles().size(), there.tree().triangles().size());
+  for (std::size_t i = 0; i < here.tree().triangles().size(); ++i)
+    ASSERT_EQ(here.tree().triangles()[i].index, there.tree().triangles()[i].index);
+}
+
 /// A box whose bounds are multiples of a power of two, so that the exact overlap below
 /// is exact.
 MovingKdop gridBox(Random& random, int exponent) {

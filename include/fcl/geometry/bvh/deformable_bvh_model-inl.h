@@ -157,14 +157,16 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
   if (this->num_tris == 0 || this->num_vertices == 0)
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
-  const auto count = static_cast<std::size_t>(this->num_vertices);
-  for (int i = 0; i < this->num_tris; ++i)
-    for (int k = 0; k < 3; ++k)
-      if (this->tri_indices[i][k] >= count)
-        return refuse(BVH_ERR_INCORRECT_DATA,
-                      "triangle " + std::to_string(i) + " refers to vertex " +
-                          std::to_string(this->tri_indices[i][k]) + " of " +
-                          std::to_string(count));
+  const auto count = static_cast<std::size_t>(this->num_vertices),
+             num_triangles = static_cast<std::size_t>(this->num_tris);
+  const std::size_t bad =
+      detail::deformable::findOutOfRange(this->tri_indices, num_triangles, count);
+  if (bad < 3 * num_triangles)
+    return refuse(
+        BVH_ERR_INCORRECT_DATA,
+        "triangle " + std::to_string(bad / 3) + " refers to vertex " +
+            std::to_string(this->tri_indices[bad / 3][static_cast<int>(bad % 3)]) +
+            " of " + std::to_string(count));
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
   if (fcl_tree == FclTree::kUpdate) {
@@ -176,7 +178,7 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   this->prev_vertices = new Vector3<S>[count];
   std::copy(this->vertices, this->vertices + count, this->prev_vertices);
   open_ = Open::kNone;
-  buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
+  buildTree(this->tri_indices, num_triangles, frames());
   finish();
   return accept();
 }
@@ -400,7 +402,10 @@ void DeformableBVHModel<BV>::computeLocalAABB() {
       if (this->prev_vertices) visit(this->prev_vertices[i]);
     }
   };
-  forEachPoint([&box](const Vector3<S>& p) { box += p; });
+  forEachPoint([&box](const Vector3<S>& p) {
+    box.min_ = box.min_.cwiseMin(p);
+    box.max_ = box.max_.cwiseMax(p);
+  });
   S squared_radius = 0;
   const Vector3<S> center = box.center();
   forEachPoint([&](const Vector3<S>& p) {

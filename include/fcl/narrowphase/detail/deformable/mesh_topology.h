@@ -29,6 +29,11 @@ struct MeshTriangle {
 /// All six border features and the face.
 constexpr std::uint32_t kOwnsAll = 0x7f;
 
+/// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;
+/// 3 * num_triangles if there is none.
+std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,
+                           std::size_t num_vertices);
+
 /// @brief The lowest-numbered triangle that has a feature owns it. A vertex without a
 /// triangle is not a feature; of several faces with the same vertex set only the first
 /// owns its face; an edge whose two ids are equal is owned by nobody.

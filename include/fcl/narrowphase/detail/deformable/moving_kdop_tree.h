@@ -8,6 +8,7 @@
 
 #include "fcl/math/bv/moving_kdop.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
+#include "fcl/narrowphase/detail/deformable/uninitialized_vector.h"
 #include "fcl/narrowphase/detail/deformable/vertex_fans.h"
 #include "fcl/narrowphase/detail/deformable/vertex_frames.h"
 
@@ -41,6 +42,9 @@ struct alignas(64) MovingKdopNode {
 
   /// @brief Half-axis of Kdop16 that a row holds.
   static constexpr int halfAxis(int row) { return row / 2 + row % 2 * 8; }
+
+  /// @brief Row that holds a half-axis of Kdop16.
+  static constexpr int rowOf(int half_axis) { return half_axis % 8 * 2 + half_axis / 8; }
 
   void setBox(int lane, const MovingKdop& box) {
     for (int r = 0; r < 16; ++r) {
@@ -83,6 +87,8 @@ struct alignas(64) TreeVertex {
   MovingKdop box;
 };
 
+struct TreeChildren;
+
 /// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
 /// The structure is made once, by build() or from the links of another tree; refit() sets
 /// the boxes for a pair of frames. Triangles and vertices lie in the order in which the
@@ -110,7 +116,7 @@ class MovingKdopTree {
 
   /// @brief Triangles and vertices in the tree's order.
   const std::vector<TreeTriangle>& triangles() const { return triangles_; }
-  const std::vector<TreeVertex>& vertices() const { return vertices_; }
+  const UninitializedVector<TreeVertex>& vertices() const { return vertices_; }
 
   /// @brief The fans of the vertices in the tree's order.
   const VertexFans& fans() const { return fans_; }
@@ -124,20 +130,27 @@ class MovingKdopTree {
   std::size_t memUsage() const;
 
  private:
-  /// As child and count of a MovingKdopNode.
-  struct Children {
-    std::int32_t child[MovingKdopNode::kWidth];
-    std::int32_t count;
+  /// A part of the tree: nodes [first_node, last_node) below its root, and the vertices
+  /// that are met there first.
+  struct Subtree {
+    std::uint32_t root, first_node, last_node, first_vertex, last_vertex;
   };
-  void number(const std::vector<Children>& nodes,
+  void number(const std::vector<TreeChildren>& nodes,
               const std::vector<MeshTriangle>& triangles, std::size_t num_vertices);
+  void setOrigin(const VertexFrames& frames);
+  void fitVertices(const Subtree& subtree, const VertexFrames& frames, float pad);
+  void refit(MovingKdopNode& node);
+  void refit(const Subtree& subtree);
 
-  std::vector<MovingKdopNode> nodes_;
+  UninitializedVector<MovingKdopNode> nodes_;
   std::vector<TreeTriangle> triangles_;
-  std::vector<TreeVertex> vertices_;
+  UninitializedVector<TreeVertex> vertices_;
   /// The user's id of each vertex.
   std::vector<std::uint32_t> vertex_ids_;
   VertexFans fans_;
+  /// What is refit independently, and the nodes above, parents first.
+  std::vector<Subtree> subtrees_;
+  std::vector<std::uint32_t> top_;
   double origin_[3]{0, 0, 0};
   double reach_{0};
 };

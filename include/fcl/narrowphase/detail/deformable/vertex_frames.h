@@ -61,6 +61,16 @@ class VertexFrames {
     return path;
   }
 
+  /// @brief Brings vertex i near, which is about to be read.
+  void prefetch(std::size_t i) const {
+    for (int frame = 0; frame < 2; ++frame) {
+      if (double_[frame])
+        __builtin_prefetch(double_[frame] + 3 * i);
+      else
+        __builtin_prefetch(float_[frame] + 3 * i);
+    }
+  }
+
   /// @brief Position of vertex i in one frame.
   void at(int frame, std::size_t i, double (&out)[3]) const {
     for (std::size_t k = 0; k < 3; ++k)

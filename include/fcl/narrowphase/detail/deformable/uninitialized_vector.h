@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_UNINITIALIZED_VECTOR_H
+#define FCL_NARROWPHASE_DETAIL_DEFORMABLE_UNINITIALIZED_VECTOR_H
+
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Leaves elements that are given no value without one.
+template <typename T>
+struct DefaultInitAllocator : std::allocator<T> {
+  static_assert(std::is_trivial_v<T>);
+
+  template <typename U>
+  struct rebind {
+    using other = DefaultInitAllocator<U>;
+  };
+
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <typename U, typename... Args>
+  void construct(U* place, Args&&... args) {
+    ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+  }
+};
+
+/// @brief A vector whose resize() writes nothing: for arrays that are filled afterwards.
+template <typename T>
+using UninitializedVector = std::vector<T, DefaultInitAllocator<T>>;
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tree_builder.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+
+/// Three times the centroid of a triangle. As a vector of four numbers the last one means
+/// nothing.
+struct alignas(16) Item {
+  float centroid[3];
+  std::uint32_t triangle;
+};
+
+Float4 vectorOf(const Item& item) {
+  Float4 v;
+  __builtin_memcpy(&v, &item, sizeof(v));
+  return v;
+}
+
+struct Bounds {
+  Float4 lo{kInf, kInf, kInf, kInf};
+  Float4 hi{-kInf, -kInf, -kInf, -kInf};
+
+  void add(const Float4& p) { add({p, p}); }
+  void add(const Bounds& b) {
+    lo = lo < b.lo ? lo : b.lo;
+    hi = hi > b.hi ? hi : b.hi;
+  }
+  float halfArea() const {
+    const Float4 d = hi - lo;
+    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+  }
+};
+
+/// Cuts the longest extent of items, of which every stride-th is looked at, into slabs of
+/// one width.
+class Slabs {
+ public:
+  Slabs(const Item* items, std::size_t count, std::size_t stride, int num_slabs)
+      : last_(num_slabs - 1) {
+    Bounds all;
+    for (std::size_t i = 0; i < count; i += stride) all.add(vectorOf(items[i]));
+    const Float4 width = all.hi - all.lo;
+    for (int k = 1; k < 3; ++k)
+      if (width[k] > width[axis_]) axis_ = k;
+    lo_ = all.lo[axis_];
+    // 64 / 2^-120 is still a float; what is less wide counts as one place.
+    if (width[axis_] >= 0x1p-120f) scale_ = static_cast<float>(num_slabs) / width[axis_];
+  }
+
+  int axis() const { return axis_; }
+
+  /// Whether all items that were looked at fall together.
+  bool isOne() const { return scale_ == 0; }
+
+  /// The slab of an item that was looked at.
+  int operator()(const Item& item) const {
+    return std::min(static_cast<int>(coordinate(item)), last_);
+  }
+
+  /// Whether an item lies before a slab, which is neither the first nor beyond the last.
+  bool isBefore(const Item& item, int slab) const {
+    return coordinate(item) < static_cast<float>(slab);
+  }
+
+ private:
+  float coordinate(const Item& item) const {
+    return (item.centroid[axis_] - lo_) * scale_;
+  }
+
+  int axis_{0};
+  int last_;
+  float lo_;
+  float scale_{0};
+};
+
+/// Splits ranges of items, which are brought into order.
+class Splitter {
+ public:
+  explicit Splitter(std::vector<Item> items)
+      : items_(std::move(items)), scratch_(items_.size()) {}
+
+  struct Range {
+    std::size_t first, count;
+  };
+
+  std::uint32_t triangle(std::size_t i) const { return items_[i].triangle; }
+
+  /// Splits a range into at most eight. None is empty.
+  std::size_t splitInEight(Range all, int depth, Range (&out)[MovingKdopNode::kWidth]) {
+    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+    std::size_t n = 1;
+    out[0] = all;
+    if (all.count <= kWidth) {
+      for (; n < all.count; ++n) out[n] = {all.first + n, 1};
+      out[0].count = 1;
+      return n;
+    }
+    const bool by_area = all.count > kMaxHalved && depth < kMaxAreaDepth;
+    // The lowest level that holds all: each child is one unit.
+    std::size_t unit = 1;
+    while (unit * kWidth < all.count) unit *= kWidth;
+    while (n < kWidth) {
+      Range* largest = std::max_element(
+          out, out + n, [](const Range& a, const Range& b) { return a.count < b.count; });
+      const Range r = *largest;
+      if (r.count <= (by_area ? 1 : unit)) break;
+      const std::size_t first = by_area ? splitByArea(r) : splitInUnits(r, unit);
+      *largest = {r.first, first};
+      out[n++] = {r.first + first, r.count - first};
+    }
+    // In the order of the items: neighbours in the tree are neighbours in memory.
+    std::sort(out, out + n,
+              [](const Range& a, const Range& b) { return a.first < b.first; });
+    return n;
+  }
+
+ private:
+  /// Up to so many triangles are halved, which is faster than looking for the best place
+  /// and fills the nodes; above, area decides (objects of a scene come apart).
+  static constexpr std::size_t kMaxHalved = 512;
+
+  /// Area is estimated from about so many triangles.
+  static constexpr std::size_t kMaxSample = 512;
+
+  /// From this depth on everything is halved: no input makes a deep tree.
+  static constexpr int kMaxAreaDepth = 24;
+
+  /// Moves the items before a slab to the front, in the order that they have, and returns
+  /// how many there are.
+  std::size_t partition(Range r, const Slabs& slabs, int slab) {
+    Item* items = items_.data() + r.first;
+    Item* scratch = scratch_.data() + r.first;
+    std::size_t before = 0, after = 0;
+    for (std::size_t i = 0; i < r.count; ++i) {
+      // No branch: nobody could foretell it.
+      const Item item = items[i];
+      const bool is_before = slabs.isBefore(item, slab);
+      items[before] = item;
+      scratch[after] = item;
+      before += is_before;
+      after += !is_before;
+    }
+    std::copy(scratch, scratch + after, items + before);
+    return before;
+  }
+
+  /// Moves the `first` items that lie lowest along the axis to the front.
+  void splitAt(Range r, std::size_t first) {
+    constexpr int kSlabs = 64;
+    const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
+    if (slabs.isOne()) return;
+    std::uint32_t count[kSlabs] = {};
+    for (std::size_t i = r.first; i < r.first + r.count; ++i) ++count[slabs(items_[i])];
+    // The slab where the cut is.
+    std::size_t before = 0;
+    int slab = 0;
+    for (; before + count[slab] <= first; ++slab) before += count[slab];
+    if (slab > 0) partition(r, slabs, slab);
+    if (before == first) return;
+    Range rest{r.first + before, r.count - before};
+    if (slab + 1 < kSlabs) rest.count = partition(rest, slabs, slab + 1);
+    Item* items = items_.data() + rest.first;
+    std::nth_element(items, items + (first - before), items + rest.count,
+                     [axis = slabs.axis()](const Item& a, const Item& b) {
+                       return a.centroid[axis] != b.centroid[axis]
+                                  ? a.centroid[axis] < b.centroid[axis]
+                                  : a.triangle < b.triangle;
+                     });
+  }
+
+  /// Splits a range where area times count of the parts' centroid boxes, along the
+  /// longest axis, is least; in the middle where all centroids fall together. Returns the
+  /// size of the first part; none is empty.
+  std::size_t splitByArea(Range r) {
+    constexpr int kSlabs = 8;
+    const std::size_t stride = 1 + r.count / kMaxSample;
+    const Slabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
+    if (slabs.isOne()) return r.count / 2;
+    Bounds bounds[kSlabs];
+    std::size_t count[kSlabs] = {};
+    for (std::size_t i = r.first; i < r.first + r.count; i += stride) {
+      const int s = slabs(items_[i]);
+      bounds[s].add(vectorOf(items_[i]));
+      ++count[s];
+    }
+    // The first and the last slab are not empty.
+    float cost_after[kSlabs];
+    Bounds side;
+    std::size_t n = 0;
+    for (int s = kSlabs - 1; s > 0; --s) {
+      side.add(bounds[s]);
+      n += count[s];
+      cost_after[s] = side.halfArea() * static_cast<float>(n);
+    }
+    side = Bounds();
+    n = 0;
+    int best = 1;
+    float best_cost = kInf;
+    for (int s = 1; s < kSlabs; ++s) {
+      side.add(bounds[s - 1]);
+      n += count[s - 1];
+      const float cost = side.halfArea() * static_cast<float>(n) + cost_after[s];
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = s;
+      }
+    }
+    return partition(r, slabs, best);
+  }
+
+  /// Splits a range near the middle, the first part a multiple of `unit`, so that units
+  /// of the lower levels come out full.
+  std::size_t splitInUnits(Range r, std::size_t unit) {
+    const std::size_t units = (r.count + unit - 1) / unit;
+    const std::size_t first = units / 2 * unit;
+    splitAt(r, first);
+    return first;
+  }
+
+  std::vector<Item> items_;
+  std::vector<Item> scratch_;
+};
+
+/// Centroids relative to a vertex, so that far from the origin nothing is lost.
+std::vector<Item> itemsOf(const std::vector<MeshTriangle>& triangles,
+                          const VertexFrames& frames) {
+  // Sums and widths of sums must not overflow.
+  constexpr double kFarthest = 1e37;
+  double first[3];
+  frames.at(0, triangles[0].v[0], first);
+  std::vector<Float4> places(frames.size());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    double p[3];
+    frames.at(0, i, p);
+    for (int k = 0; k < 3; ++k)
+      places[i][k] =
+          static_cast<float>(std::max(-kFarthest, std::min(kFarthest, p[k] - first[k])));
+  }
+  std::vector<Item> items(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const std::uint32_t(&v)[3] = triangles[i].v;
+    const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
+    items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
+  }
+  return items;
+}
+
+}  // namespace
+
+std::vector<TreeChildren> splitTriangles(const std::vector<MeshTriangle>& triangles,
+                                         const VertexFrames& frames) {
+  Splitter splitter(itemsOf(triangles, frames));
+  struct Open {
+    Splitter::Range range;
+    std::size_t node;
+    int depth;
+  };
+  std::vector<TreeChildren> nodes(1);
+  std::vector<Open> open{{{0, triangles.size()}, 0, 0}};
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    Splitter::Range parts[MovingKdopNode::kWidth];
+    const std::size_t n = splitter.splitInEight(o.range, o.depth, parts);
+    nodes[o.node].count = static_cast<std::int32_t>(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      std::int32_t& child = nodes[o.node].child[i];
+      if (parts[i].count == 1) {
+        child = ~static_cast<std::int32_t>(splitter.triangle(parts[i].first));
+        continue;
+      }
+      child = static_cast<std::int32_t>(nodes.size());
+      open.push_back({parts[i], nodes.size(), o.depth + 1});
+      nodes.emplace_back();
+    }
+  }
+  return nodes;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
