@@ -15,7 +15,7 @@ namespace deformable {
 /// @brief Leaves elements that are given no value without one.
 template <typename T>
 struct DefaultInitAllocator : std::allocator<T> {
-  static_assert(std::is_trivial_v<T>);
+  static_assert(std::is_trivial<T>::value, "what is left without a value");
 
   template <typename U>
   struct rebind {
