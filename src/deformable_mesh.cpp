@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
 
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "parallel.h"
 
 namespace fcl {
 namespace detail {
@@ -15,7 +16,7 @@ void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triang
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
-  tree_.refit(frames);
+  tree_.refit(frames, num_threads_);
   is_deforming_ = false;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {
     const deformable::VertexPath path = frames[i];

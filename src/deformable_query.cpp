@@ -207,10 +207,10 @@ std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   const std::size_t count = tree.vertices().size();
-  constexpr std::size_t kChunk = 4096;
+  constexpr std::size_t kBlock = 4096;
   embedded.resize(count);
-  parallelFor((count + kChunk - 1) / kChunk, num_threads, [&](std::size_t chunk) {
-    for (std::size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i)
+  parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
+    for (; i < last; ++i)
       embedded[i] = kernels().isFanEmbedded(tree.vertices().data(), tree.vertices()[i],
                                             tree.fans()[i]);
   });

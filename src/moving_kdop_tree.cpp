@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "parallel.h"
 #include "tree_builder.h"
 
 namespace fcl {
@@ -15,6 +16,9 @@ constexpr int kWidth = MovingKdopNode::kWidth;
 
 /// What is refit together, while its vertices are near: 80 KB of nodes.
 constexpr std::uint32_t kMaxSubtree = 64;
+
+/// A task: so many vertices, or so many subtrees.
+constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 8;
 
 Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
 
@@ -229,21 +233,35 @@ void MovingKdopTree::number(const std::vector<TreeChildren>& nodes,
 }
 
 /// The origin, in the middle of both frames, and the reach.
-void MovingKdopTree::setOrigin(const VertexFrames& frames) {
-  double lo[3], hi[3];
-  std::fill(lo, lo + 3, std::numeric_limits<double>::infinity());
-  std::fill(hi, hi + 3, -std::numeric_limits<double>::infinity());
-  for (const std::uint32_t id : vertex_ids_) {
-    const VertexPath path = frames[id];
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], std::min(path.t0[k], path.t1[k]));
-      hi[k] = std::max(hi[k], std::max(path.t0[k], path.t1[k]));
-    }
-  }
+void MovingKdopTree::setOrigin(const VertexFrames& frames, int num_threads) {
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  struct Range {
+    double lo[3]{kInf, kInf, kInf}, hi[3]{-kInf, -kInf, -kInf};
+  };
+  std::vector<Range> ranges(vertex_ids_.size() / kVertexBlock + 1);
+  parallelForBlocks(vertex_ids_.size(), kVertexBlock, num_threads,
+                    [&](std::size_t first, std::size_t last) {
+                      Range range;
+                      for (std::size_t i = first; i < last; ++i) {
+                        const VertexPath path = frames[vertex_ids_[i]];
+                        for (int k = 0; k < 3; ++k) {
+                          range.lo[k] =
+                              std::min(range.lo[k], std::min(path.t0[k], path.t1[k]));
+                          range.hi[k] =
+                              std::max(range.hi[k], std::max(path.t0[k], path.t1[k]));
+                        }
+                      }
+                      ranges[first / kVertexBlock] = range;
+                    });
+  Range& all = ranges[0];
   reach_ = 0;
   for (int k = 0; k < 3; ++k) {
-    origin_[k] = 0.5 * lo[k] + 0.5 * hi[k];
-    reach_ = std::max(reach_, std::max(hi[k] - origin_[k], origin_[k] - lo[k]));
+    for (const Range& range : ranges) {
+      all.lo[k] = std::min(all.lo[k], range.lo[k]);
+      all.hi[k] = std::max(all.hi[k], range.hi[k]);
+    }
+    origin_[k] = 0.5 * all.lo[k] + 0.5 * all.hi[k];
+    reach_ = std::max(reach_, std::max(all.hi[k] - origin_[k], origin_[k] - all.lo[k]));
   }
 }
 
@@ -298,14 +316,26 @@ void MovingKdopTree::refit(const Subtree& subtree) {
   refit(nodes_[subtree.root]);
 }
 
-void MovingKdopTree::refit(const VertexFrames& frames) {
-  setOrigin(frames);
+void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
+  setOrigin(frames, num_threads);
   // A coordinate relative to the origin is rounded by 2^-53 of itself, a sum of two by as
   // much again of the sum: together less than 2^-50 of the reach.
   const float pad = roundUp(reach_ * 0x1p-50, 0.f);
-  for (const Subtree& subtree : subtrees_) {
-    fitVertices(subtree, frames, pad);
-    refit(subtree);
+  const auto forEachSubtree = [&](auto&& visit) {
+    parallelForBlocks(subtrees_.size(), kSubtreeBlock, num_threads,
+                      [&](std::size_t i, std::size_t last) {
+                        for (; i < last; ++i) visit(subtrees_[i]);
+                      });
+  };
+  if (numThreads(num_threads) > 1) {
+    // A subtree has vertices that others were the first to meet.
+    forEachSubtree([&](const Subtree& s) { fitVertices(s, frames, pad); });
+    forEachSubtree([&](const Subtree& s) { refit(s); });
+  } else {
+    forEachSubtree([&](const Subtree& s) {
+      fitVertices(s, frames, pad);
+      refit(s);
+    });
   }
   for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]]);
 }

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_PARALLEL_H
 #define FCL_CCD_PARALLEL_H
 
+#include <algorithm>
 #include <cstddef>
 #include <functional>
 
@@ -19,6 +20,17 @@ void parallelFor(std::size_t count, int num_threads,
 
 /// @brief How many threads parallelFor() uses.
 int numThreads(int num_threads);
+
+/// @brief parallelFor() over the blocks of 0 ... count - 1, all of one length but for the
+/// last: calls visit(first, last) for each. The blocks are the same for any number of
+/// threads.
+template <typename Visit>
+void parallelForBlocks(std::size_t count, std::size_t length, int num_threads,
+                       Visit&& visit) {
+  parallelFor((count + length - 1) / length, num_threads, [&](std::size_t block) {
+    visit(block * length, std::min(count, (block + 1) * length));
+  });
+}
 
 }  // namespace deformable
 }  // namespace detail

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Threads change how long a query takes, and nothing else.
+// Threads change how long a build, an update and a query take, and nothing else.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <atomic>
 #include <cfenv>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -304,6 +305,153 @@ TEST(FCL_THREADS, callersFloatingPointMode) {
     }
 }
 
+/// A mesh in two frames, large enough for many tasks.
+struct Step {
+  std::string name;
+  TestMesh from, to;
+
+  std::shared_ptr<Model> model(int num_threads) const {
+    auto model = std::make_shared<Model>();
+    EXPECT_EQ(model->setNumThreads(num_threads), BVH_OK);
+    EXPECT_EQ(model->numThreads(), num_threads);
+    model->beginModel();
+    model->addSubModel(from.vertices, from.triangles);
+    EXPECT_EQ(model->endModel(FclTree::kSkip), BVH_OK);
+    return model;
+  }
+  int update(Model& model) const {
+    return model.updateFrames(from.vertices[0].data(), to.vertices[0].data(),
+                              from.vertices.size());
+  }
+};
+
+const std::vector<Step>& steps() {
+  static const std::vector<Step> all = [] {
+    std::vector<Step> out;
+    const TestMesh sheet = bentSheet(130);
+    out.push_back({"sheet", sheet, shaken(sheet, 0.004, 21)});
+    TestMesh mixed = sheet;
+    Random random(22);
+    for (std::size_t i = mixed.triangles.size(); i > 1; --i)
+      std::swap(mixed.triangles[i - 1], mixed.triangles[random.index(i)]);
+    out.push_back({"mixed sheet at rest", mixed, mixed});
+    // Triangles around a vertex without an order, some with a vertex twice.
+    TestMesh tangle = sheet;
+    for (Triangle& t : tangle.triangles) {
+      std::size_t& v = t[static_cast<int>(random.index(3))];
+      v = std::min(v + random.index(4), tangle.vertices.size() - 9);
+    }
+    out.push_back({"tangle", tangle, shaken(tangle, 0.001, 24)});
+    const TestMesh soup = makeTetrahedronSoup(3000, 1, 0.05, 25);
+    out.push_back({"soup", soup, shaken(soup, 0.01, 26)});
+    out.push_back({"few", bentSheet(2), shaken(bentSheet(2), 0.2, 27)});
+    return out;
+  }();
+  return all;
+}
+
+template <typename T>
+bool areSame(const T& x, const T& y) {
+  return std::memcmp(&x, &y, sizeof(T)) == 0;
+}
+
+/// To the bit, structure and boxes.
+void expectSameModel(const Model& x, const Model& y) {
+  const auto &a = x.movingTree(), &b = y.movingTree();
+  EXPECT_TRUE(areSame(a.origin(), b.origin()));
+  EXPECT_EQ(a.reach(), b.reach());
+  ASSERT_EQ(a.numNodes(), b.numNodes());
+  for (int i = 0; i < static_cast<int>(a.numNodes()); ++i) {
+    const auto &p = a.node(i), &q = b.node(i);
+    ASSERT_TRUE(areSame(p.rows, q.rows) && areSame(p.places, q.places) &&
+                areSame(p.child, q.child) && p.count == q.count)
+        << "node " << i;
+  }
+  ASSERT_EQ(a.triangles().size(), b.triangles().size());
+  for (std::size_t i = 0; i < a.triangles().size(); ++i)
+    ASSERT_TRUE(areSame(a.triangles()[i], b.triangles()[i])) << "triangle " << i;
+  ASSERT_EQ(a.vertices().size(), b.vertices().size());
+  ASSERT_EQ(a.fans().size(), b.fans().size());
+  for (std::size_t i = 0; i < a.vertices().size(); ++i) {
+    ASSERT_TRUE(areSame(a.vertices()[i], b.vertices()[i])) << "vertex " << i;
+    const auto fan_a = a.fans()[i], fan_b = b.fans()[i];
+    ASSERT_TRUE(std::equal(fan_a.spokes, fan_a.spokes + fan_a.count, fan_b.spokes,
+                           fan_b.spokes + fan_b.count))
+        << "vertex " << i;
+    ASSERT_EQ(fan_a.is_closed, fan_b.is_closed) << "vertex " << i;
+  }
+  EXPECT_TRUE(x.aabb_local.min_ == y.aabb_local.min_);
+  EXPECT_TRUE(x.aabb_local.max_ == y.aabb_local.max_);
+  EXPECT_EQ(x.aabb_radius, y.aabb_radius);
+  EXPECT_EQ(x.isDeforming(), y.isDeforming());
+}
+
+TEST(FCL_THREADS, sameModelWithAnyNumber) {
+  for (const Step& step : steps()) {
+    const auto one = step.model(1), still = step.model(1);
+    ASSERT_EQ(step.update(*one), BVH_OK);
+    const Scene scene{step.name, one, nullptr};
+    const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1);
+    const Result expected = scene.run(request);
+    for (const int threads : {2, 3, 4, 0, std::numeric_limits<int>::max()}) {
+      SCOPED_TRACE(step.name + ", " + std::to_string(threads) + " threads");
+      const auto several = step.model(threads);
+      expectSameModel(*several, *still);
+      ASSERT_EQ(step.update(*several), BVH_OK);
+      expectSameModel(*several, *one);
+      ASSERT_EQ(step.update(*several), BVH_OK);
+      expectSameModel(*several, *one);
+      ASSERT_FALSE(HasFailure());
+      if (threads == 2) expectSame(Scene{step.name, several, nullptr}.run(request), expected);
+    }
+  }
+}
+
+TEST(FCL_THREADS, modelRefusesANegativeNumber) {
+  const auto model = steps().back().model(2);
+  for (const int threads : {-1, std::numeric_limits<int>::min()}) {
+    EXPECT_EQ(model->setNumThreads(threads), BVH_ERR_INCORRECT_DATA);
+    EXPECT_EQ(model->lastError(), std::to_string(threads) + " is not a number of threads");
+    EXPECT_EQ(model->numThreads(), 2);
+  }
+  EXPECT_EQ(model->setNumThreads(0), BVH_OK);
+  EXPECT_EQ(model->lastError(), "");
+}
+
+// The first of several vertices is told, whichever thread finds one.
+TEST(FCL_THREADS, firstVertexThatIsNotFinite) {
+  Step step = steps().front();
+  for (const int threads : {1, 2, 4, 0}) {
+    const auto model = step.model(threads);
+    TestMesh& to = step.to;
+    for (const std::size_t first : {16000U, 9001U, 8192U, 8191U, 5000U, 0U}) {
+      to.vertices[first][first % 3] = std::numeric_limits<double>::quiet_NaN();
+      EXPECT_EQ(step.update(*model), BVH_ERR_INCORRECT_DATA);
+      EXPECT_EQ(model->lastError(), "vertex " + std::to_string(first) +
+                                        " of the current frame is not finite");
+    }
+    to = steps().front().to;
+    EXPECT_EQ(step.update(*model), BVH_OK);
+  }
+}
+
+TEST(FCL_THREADS, modelInCallersFloatingPointMode) {
+  for (const Step& step : steps())
+    for (const int threads : {1, 4}) {
+      SCOPED_TRACE(step.name + ", " + std::to_string(threads) + " threads");
+      const auto normal = step.model(threads);
+      ASSERT_EQ(step.update(*normal), BVH_OK);
+      std::fesetround(FE_UPWARD);
+      const auto up = step.model(threads);
+      const int code = step.update(*up), after = std::fegetround();
+      std::fesetround(FE_TONEAREST);
+      EXPECT_EQ(code, BVH_OK);
+      EXPECT_EQ(after, FE_UPWARD);
+      expectSameModel(*up, *normal);
+      ASSERT_FALSE(HasFailure());
+    }
+}
+
 #ifdef FCL_CCD_USE_TBB
 
 /// Ends oneTBB's workers with the tests: one that still rests in an arena when the
@@ -372,15 +520,40 @@ std::set<std::thread::id> threadsOfQuery(int arena_threads, int num_threads) {
   return watcher.threads();
 }
 
+/// The same while models are built and updated.
+std::set<std::thread::id> threadsOfModels(int arena_threads, int num_threads) {
+  tbb::task_arena arena(arena_threads);
+  Watcher watcher(arena);
+  arena.execute([&] {
+    for (const Step& step : steps()) {
+      const auto model = step.model(num_threads);
+      EXPECT_EQ(step.update(*model), BVH_OK);
+    }
+  });
+  return watcher.threads();
+}
+
 std::set<std::thread::id> justThisOne() { return {std::this_thread::get_id()}; }
 
 TEST(FCL_THREADS, oneThreadMakesNoTasks) {
   EXPECT_EQ(threadsOfQuery(4, 1), justThisOne());
+  EXPECT_EQ(threadsOfModels(4, 1), justThisOne());
 }
 
 TEST(FCL_THREADS, arenaOfOneIsRespected) {
-  for (const int threads : {0, 1, 2, 4})
+  for (const int threads : {0, 1, 2, 4}) {
     EXPECT_EQ(threadsOfQuery(1, threads), justThisOne()) << threads;
+    EXPECT_EQ(threadsOfModels(1, threads), justThisOne()) << threads;
+  }
+}
+
+TEST(FCL_THREADS, modelsUseThreads) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  // A worker may come late.
+  std::size_t most = 0;
+  for (int i = 0; i < 50 && most < 2; ++i)
+    most = std::max(most, threadsOfModels(2, 0).size());
+  EXPECT_EQ(most, 2U);
 }
 
 TEST(FCL_THREADS, arenaOfTwoIsRespected) {

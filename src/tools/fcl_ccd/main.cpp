@@ -124,7 +124,7 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
       ->type_name("WHAT")
       ->transform(CLI::CheckedTransformer(kQueries).description(""));
   run->add_option("--threads", options.settings.num_threads,
-                  "Threads of a query; 0: as many as there are")
+                  "Threads of a build, an update or a query; 0: as many as there are")
       ->type_name("N")
       ->check(CLI::Validator(
           [](const std::string& text) {

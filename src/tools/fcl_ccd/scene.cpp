@@ -35,8 +35,9 @@ void requireSuccess(int code, const std::string& error, const char* mesh) {
 template <typename Model>
 std::unique_ptr<Model> buildModel(const std::vector<fcl::Vector3d>& points,
                                   const std::vector<fcl::Triangle>& triangles,
-                                  const char* mesh) {
+                                  const char* mesh, int num_threads) {
   auto model = std::make_unique<Model>();
+  requireSuccess(model->setNumThreads(num_threads), model->lastError(), mesh);
   requireSuccess(model->beginModel(static_cast<int>(triangles.size()),
                                    static_cast<int>(points.size())),
                  model->lastError(), mesh);
@@ -48,7 +49,8 @@ std::unique_ptr<Model> buildModel(const std::vector<fcl::Vector3d>& points,
 
 /// @brief Builds a model from FCL's own types, so that their conversion is not timed.
 template <typename Model>
-std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, double& seconds) {
+std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, int num_threads,
+                                 double& seconds) {
   std::vector<fcl::Vector3d> points;
   points.reserve(mesh.vertices.size());
   for (const auto& p : mesh.vertices) points.emplace_back(p[0], p[1], p[2]);
@@ -58,7 +60,7 @@ std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, double& sec
     triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
                            static_cast<std::size_t>(t[2]));
   const Stopwatch watch;
-  auto model = buildModel<Model>(points, triangles, name);
+  auto model = buildModel<Model>(points, triangles, name, num_threads);
   seconds += watch.seconds();
   return model;
 }
@@ -107,8 +109,9 @@ Scene::Scene(const SceneFrame& frame, const QuerySettings& settings)
 
 void Scene::build(const SceneFrame& frame) {
   double seconds = 0;
-  a_ = timeBuild<Model>(*frame.a, "A", seconds);
-  if (frame.b != nullptr) b_ = timeBuild<Model>(*frame.b, "B", seconds);
+  a_ = timeBuild<Model>(*frame.a, "A", settings_.num_threads, seconds);
+  if (frame.b != nullptr)
+    b_ = timeBuild<Model>(*frame.b, "B", settings_.num_threads, seconds);
   build_time_ = std::min(build_time_, seconds);
 }
 

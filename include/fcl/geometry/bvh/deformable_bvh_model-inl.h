@@ -3,7 +3,6 @@
 #define FCL_BVH_DEFORMABLE_BVH_MODEL_INL_H
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <string>
 #include <type_traits>
@@ -13,6 +12,7 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
+#include "fcl/narrowphase/detail/deformable/coordinate_arrays.h"
 
 namespace fcl {
 
@@ -143,12 +143,20 @@ detail::deformable::VertexFrames DeformableBVHModel<BV>::frames() const {
 template <typename BV>
 int DeformableBVHModel<BV>::checkFinite(const S* coordinates, std::size_t count,
                                         const char* frame) {
-  for (std::size_t i = 0; i < 3 * count; ++i)
-    if (!std::isfinite(coordinates[i]))
-      return refuse(BVH_ERR_INCORRECT_DATA, "vertex " + std::to_string(i / 3) +
-                                                " of the " + frame +
-                                                " frame is not finite");
-  return BVH_OK;
+  const std::size_t bad =
+      detail::deformable::findNotFinite(coordinates, count, num_threads_);
+  if (bad == count) return BVH_OK;
+  return refuse(BVH_ERR_INCORRECT_DATA, "vertex " + std::to_string(bad) + " of the " +
+                                            frame + " frame is not finite");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::setNumThreads(int num_threads) {
+  if (num_threads < 0)
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  std::to_string(num_threads) + " is not a number of threads");
+  num_threads_ = num_threads;
+  return accept();
 }
 
 template <typename BV>
@@ -395,25 +403,14 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
 
 template <typename BV>
 void DeformableBVHModel<BV>::computeLocalAABB() {
-  AABB<S> box;
-  const auto forEachPoint = [this](auto&& visit) {
-    for (int i = 0; i < this->num_vertices; ++i) {
-      visit(this->vertices[i]);
-      if (this->prev_vertices) visit(this->prev_vertices[i]);
-    }
-  };
-  forEachPoint([&box](const Vector3<S>& p) {
-    box.min_ = box.min_.cwiseMin(p);
-    box.max_ = box.max_.cwiseMax(p);
-  });
-  S squared_radius = 0;
-  const Vector3<S> center = box.center();
-  forEachPoint([&](const Vector3<S>& p) {
-    squared_radius = std::max(squared_radius, (center - p).squaredNorm());
-  });
-  this->aabb_local = box;
-  this->aabb_center = center;
-  this->aabb_radius = std::sqrt(squared_radius);
+  const S* current = this->vertices->data();
+  const auto bounds = detail::deformable::boundFrames(
+      this->prev_vertices ? this->prev_vertices->data() : current, current,
+      static_cast<std::size_t>(this->num_vertices), num_threads_);
+  this->aabb_local.min_ = Vector3<S>(bounds.lo);
+  this->aabb_local.max_ = Vector3<S>(bounds.hi);
+  this->aabb_center = Vector3<S>(bounds.center);
+  this->aabb_radius = bounds.radius;
 }
 
 }  // namespace fcl

@@ -46,7 +46,9 @@ enum class FclTree {
 /// to BVHModel<BV> is noticed: continuous queries then read the base's frames and refit
 /// per call, as for a plain BVHModel, until the next update through this class.
 ///
-/// Thread-safety: concurrent const access is safe; copies are deep and independent.
+/// Thread-safety: concurrent const access is safe; copies are deep and independent. A
+/// build or an update runs on the caller's thread alone unless setNumThreads() allows
+/// more.
 template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:
@@ -57,6 +59,14 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   DeformableBVHModel(const DeformableBVHModel& other);
   DeformableBVHModel& operator=(const DeformableBVHModel& other);
   ~DeformableBVHModel();
+
+  /// @brief Allows builds and updates, from the next one on, so many threads: 1, the
+  /// caller's own and no task (the default); n, at most n; 0, as many as the oneTBB task
+  /// arena around has. The model that results does not depend on it. FCL's own tree is
+  /// always made on one thread. Queries have a number of their own,
+  /// ContinuousContactRequest::num_threads. Refuses a negative number
+  /// (BVH_ERR_INCORRECT_DATA).
+  int setNumThreads(int num_threads);
 
   /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
   /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), coordinates that are not finite and vertex

@@ -22,6 +22,9 @@ class DeformableMesh {
   /// @brief Whether a vertex differs between the two frames.
   bool isDeforming() const { return is_deforming_; }
 
+  /// @brief As given to setNumThreads().
+  int numThreads() const { return num_threads_; }
+
   /// @brief Whether an update or replacement has begun and not ended.
   bool isUpdateOpen() const { return open_ != Open::kNone; }
 
@@ -49,6 +52,7 @@ class DeformableMesh {
   std::size_t treeMemUsage() const;
 
   Open open_{Open::kNone};
+  int num_threads_{1};
 
  private:
   deformable::MovingKdopTree tree_;

@@ -109,7 +109,8 @@ class MovingKdopTree {
 
   /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
   /// t, for every t in [0, 1], up to nothing: all rounding is outward.
-  void refit(const VertexFrames& frames);
+  /// @param num_threads  as in parallelFor(); the boxes do not depend on it
+  void refit(const VertexFrames& frames, int num_threads = 1);
 
   const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   std::size_t numNodes() const { return nodes_.size(); }
@@ -137,7 +138,7 @@ class MovingKdopTree {
   };
   void number(const std::vector<TreeChildren>& nodes,
               const std::vector<MeshTriangle>& triangles, std::size_t num_vertices);
-  void setOrigin(const VertexFrames& frames);
+  void setOrigin(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames, float pad);
   void refit(MovingKdopNode& node);
   void refit(const Subtree& subtree);
