@@ -10,8 +10,7 @@ namespace detail {
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
                                const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
-  tree_.build(deformable::assignFeatures(triangles, num_triangles, frames.size()),
-              frames);
+  tree_.build(triangles, num_triangles, frames, num_threads_);
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {

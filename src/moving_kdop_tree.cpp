@@ -6,6 +6,7 @@
 
 #include "parallel.h"
 #include "tree_builder.h"
+#include "vertex_corners.h"
 
 namespace fcl {
 namespace detail {
@@ -17,8 +18,14 @@ constexpr int kWidth = MovingKdopNode::kWidth;
 /// What is refit together, while its vertices are near: 80 KB of nodes.
 constexpr std::uint32_t kMaxSubtree = 64;
 
-/// A task: so many vertices, or so many subtrees.
-constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 8;
+/// A task: so many vertices, or so many subtrees, which come in groups of 4 MB of nodes.
+constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64;
+
+/// What is read in any order is brought near so many steps before.
+constexpr std::size_t kAhead = 8;
+
+/// The same while the tree is made.
+constexpr std::size_t kTriangleBlock = 8192;
 
 Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
 
@@ -121,115 +128,163 @@ void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16&
   fitOffset(point[0] - origin[0], point[1] - origin[1], point[2] - origin[2], pad, out);
 }
 
-void MovingKdopTree::build(const std::vector<MeshTriangle>& triangles,
-                           const VertexFrames& frames) {
-  number(splitTriangles(triangles, frames), triangles, frames.size());
+void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
+                           const VertexFrames& frames, int num_threads) {
+  arrange(splitTriangles(triangles, num_triangles, frames, num_threads), triangles,
+          frames.size(), num_threads);
 }
 
-void MovingKdopTree::build(const std::vector<MeshTriangle>& triangles,
+void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
                            std::size_t num_vertices,
                            const std::vector<std::int32_t>& links) {
   struct Open {
     std::int32_t link;
     std::size_t node;
   };
-  std::vector<TreeChildren> nodes(1);
+  TreeStructure structure;
+  structure.leaves.reserve(num_triangles);
+  structure.nodes.resize(1);
   std::vector<Open> open{{0, 0}};
   while (!open.empty()) {
     const Open o = open.back();
     open.pop_back();
     std::int32_t binary[kWidth];
-    const int n = openBinary(o.link, binary, nodes[o.node].child, [&](std::int32_t i) {
+    TreeChildren node{};
+    node.count = openBinary(o.link, binary, node.child, [&](std::int32_t i) {
       return links[static_cast<std::size_t>(i)];
     });
-    nodes[o.node].count = n;
-    for (int i = 0; i < n; ++i) {
-      const std::int32_t child = nodes[o.node].child[i];
-      if (child < 0) continue;
-      nodes[o.node].child[i] = static_cast<std::int32_t>(nodes.size());
-      open.push_back({child, nodes.size()});
-      nodes.emplace_back();
+    const std::size_t num_open = open.size();
+    for (int i = 0; i < node.count; ++i) {
+      std::int32_t& child = node.child[i];
+      if (child < 0) {
+        structure.leaves.push_back(static_cast<std::uint32_t>(~child));
+        child = ~static_cast<std::int32_t>(structure.leaves.size() - 1);
+      } else {
+        open.push_back({child, structure.nodes.size()});
+        child = static_cast<std::int32_t>(structure.nodes.size());
+        structure.nodes.emplace_back();
+      }
     }
+    std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
+    structure.nodes[o.node] = node;
   }
-  number(nodes, triangles, num_vertices);
+  arrange(structure, triangles, num_vertices, 1);
 }
 
-/// Gives nodes, triangles and vertices their places: in the order of a walk through the
-/// tree, in which the children of a node follow each other.
-void MovingKdopTree::number(const std::vector<TreeChildren>& nodes,
-                            const std::vector<MeshTriangle>& triangles,
-                            std::size_t num_vertices) {
-  constexpr std::uint32_t kNoPlace = MovingKdopNode::kNoPlace;
-  std::vector<std::uint32_t> place_of(num_vertices, kNoPlace);
-  UninitializedVector<MovingKdopNode>(nodes.size()).swap(nodes_);
-  triangles_.clear();
-  triangles_.reserve(triangles.size());
-  // One more, which is written and not counted.
-  vertex_ids_.resize(num_vertices + 1);
-  std::uint32_t num_places = 0;
+/// Takes a structure, and gives the vertices their places.
+void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* triangles,
+                             std::size_t num_vertices, int num_threads) {
+  const std::vector<std::uint32_t>& leaves = structure.leaves;
+  triangles_.resize(leaves.size());
+  parallelForBlocks(leaves.size(), kTriangleBlock, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i) {
+                        if (i + kAhead < last)
+                          __builtin_prefetch(&triangles[leaves[i + kAhead]]);
+                        triangles_[i].index = leaves[i];
+                        vertexIds(triangles[leaves[i]], triangles_[i].id);
+                      }
+                    });
+ findSubtrees(structure);
+  placeVertices(num_vertices);
+  setNodes(structure, num_threads);
+  UninitializedVector<TreeVertex>(vertex_ids_.size()).swap(vertices_);
+  const VertexCorners corners(triangles_, vertex_ids_.size(), num_threads);
+  fans_ = VertexFans(corners, num_threads);
+  assignOwners(corners, num_threads, triangles_);
+}
+
+/// Finds the largest parts of the tree that are refit together.
+void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
+  const auto& nodes = structure.nodes;
+  const auto isNode = [](std::int32_t child) { return child > 0; };
   // Children come after their parents.
   std::vector<std::uint32_t> size(nodes.size(), 1);
   for (std::size_t i = nodes.size(); i-- > 0;)
-    for (int k = 0; k < nodes[i].count; ++k)
-      if (nodes[i].child[k] >= 0)
-        size[i] += size[static_cast<std::size_t>(nodes[i].child[k])];
+    for (const std::int32_t child : nodes[i].child)
+      if (isNode(child)) size[i] += size[static_cast<std::size_t>(child)];
   top_.clear();
   subtrees_.clear();
-
-  struct Open {
-    std::uint32_t from, to;
-    bool in_subtree;
-  };
-  std::vector<Open> open{{0, 0, false}};
-  std::uint32_t num_nodes = 1;
+  std::vector<std::uint32_t> open{0};
   while (!open.empty()) {
-    Open o = open.back();
+    const std::uint32_t i = open.back();
     open.pop_back();
-    if (!o.in_subtree && size[o.from] <= kMaxSubtree) {
-      o.in_subtree = true;
-      if (!subtrees_.empty()) subtrees_.back().last_vertex = num_places;
-      subtrees_.push_back({o.to, num_nodes, num_nodes + size[o.from] - 1,
-                           subtrees_.empty() ? 0 : num_places, 0});
-    } else if (!o.in_subtree) {
-      top_.push_back(o.to);
+    const TreeChildren& node = nodes[i];
+    const auto end = node.child + node.count;
+    const std::int32_t* first = std::find_if(node.child, end, isNode);
+    if (size[i] > kMaxSubtree) {
+      top_.push_back(i);
+      for (const std::int32_t* child = end; child-- != first;)
+        if (isNode(*child)) open.push_back(static_cast<std::uint32_t>(*child));
+      continue;
     }
-    if (!open.empty())
-      for (const std::int32_t child : nodes[open.back().from].child)
-        if (child < 0) __builtin_prefetch(&triangles[static_cast<std::uint32_t>(~child)]);
-    const TreeChildren& from = nodes[o.from];
-    MovingKdopNode& node = nodes_[o.to];
-    node.count = from.count;
-    std::fill(node.child, node.child + kWidth, 0);
-    std::fill(node.places[0], node.places[0] + 3 * kWidth, kNoPlace);
-    for (int i = 0; i < from.count; ++i) {
-      if (from.child[i] >= 0) {
-        node.child[i] = static_cast<std::int32_t>(num_nodes++);
-        continue;
-      }
-      const auto index = static_cast<std::uint32_t>(~from.child[i]);
-      const MeshTriangle& t = triangles[index];
-      TreeTriangle out{{}, t.owned, {t.v[0], t.v[1], t.v[2]}, index};
+    Subtree subtree{};
+    subtree.root = i;
+    if (size[i] > 1) subtree.first_node = static_cast<std::uint32_t>(*first);
+    subtree.last_node = subtree.first_node + size[i] - 1;
+    // The first leaf is the node's own, or that of the first child.
+    const std::int32_t* leaf = node.child;
+    for (const TreeChildren* at = &node;;
+         at = &nodes[static_cast<std::size_t>(at->child[0])]) {
+      leaf = std::find_if_not(at->child, at->child + at->count, isNode);
+      if (leaf != at->child + at->count) break;
+    }
+    subtree.first_triangle = static_cast<std::uint32_t>(~*leaf);
+    subtrees_.push_back(subtree);
+  }
+}
+
+/// Gives the vertices places in the order in which triangles have them, and each to the
+/// subtree that is the first to meet it.
+void MovingKdopTree::placeVertices(std::size_t num_vertices) {
+  constexpr std::uint32_t kNoPlace = MovingKdopNode::kNoPlace;
+  std::vector<std::uint32_t> place_of(num_vertices, kNoPlace);
+  // One more, which is written and not counted.
+  vertex_ids_.resize(num_vertices + 1);
+  std::uint32_t num_places = 0;
+  std::size_t i = 0;
+  for (std::size_t s = 0; s < subtrees_.size(); ++s) {
+    subtrees_[s].first_vertex = num_places;
+    // What nodes above have between two subtrees goes with the first of them.
+    const bool is_last = s + 1 == subtrees_.size();
+    const std::size_t end = is_last ? triangles_.size() : subtrees_[s + 1].first_triangle;
+    for (; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
-        std::uint32_t& place = place_of[t.v[k]];
+        const std::uint32_t id = triangles_[i].id[k];
+        std::uint32_t& place = place_of[id];
         // No branch: nobody could foretell it.
         const bool is_new = place == kNoPlace;
         place = is_new ? num_places : place;
-        vertex_ids_[num_places] = t.v[k];
+        vertex_ids_[num_places] = id;
         num_places += is_new;
-        out.place[k] = node.places[k][i] = place;
+        triangles_[i].place[k] = place;
       }
-      node.child[i] = ~static_cast<std::int32_t>(triangles_.size());
-      triangles_.push_back(out);
-    }
-    for (int i = from.count; i-- > 0;)
-      if (from.child[i] >= 0)
-        open.push_back({static_cast<std::uint32_t>(from.child[i]),
-                        static_cast<std::uint32_t>(node.child[i]), o.in_subtree});
+    subtrees_[s].last_vertex = num_places;
   }
-  subtrees_.back().last_vertex = num_places;
   vertex_ids_.resize(num_places);
-  UninitializedVector<TreeVertex>(num_places).swap(vertices_);
-  fans_ = VertexFans(triangles_, num_places);
+}
+
+/// Sets all of the nodes but the boxes.
+void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
+  constexpr std::size_t kBlock = 1024;
+  UninitializedVector<MovingKdopNode>(structure.nodes.size()).swap(nodes_);
+  parallelForBlocks(
+      nodes_.size(), kBlock, num_threads, [&](std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
+          const TreeChildren& from = structure.nodes[i];
+          MovingKdopNode& node = nodes_[i];
+          node.count = from.count;
+          std::copy(from.child, from.child + kWidth, node.child);
+          for (int lane = 0; lane < kWidth; ++lane) {
+            const bool is_triangle = lane < node.count && node.isTriangle(lane);
+            for (int k = 0; k < 3; ++k)
+              node.places[k][lane] =
+                  is_triangle
+                      ? triangles_[static_cast<std::size_t>(node.triangle(lane))].place[k]
+                      : MovingKdopNode::kNoPlace;
+          }
+        }
+      });
 }
 
 /// The origin, in the middle of both frames, and the reach.
@@ -243,6 +298,7 @@ void MovingKdopTree::setOrigin(const VertexFrames& frames, int num_threads) {
                     [&](std::size_t first, std::size_t last) {
                       Range range;
                       for (std::size_t i = first; i < last; ++i) {
+                        if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
                         const VertexPath path = frames[vertex_ids_[i]];
                         for (int k = 0; k < 3; ++k) {
                           range.lo[k] =
@@ -289,7 +345,6 @@ void MovingKdopTree::refit(MovingKdopNode& node) {
 /// Sets paths and boxes of the vertices of a subtree.
 void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& frames,
                                  float pad) {
-  constexpr std::size_t kAhead = 8;
   for (std::size_t i = subtree.first_vertex; i < subtree.last_vertex; ++i) {
     if (i + kAhead < subtree.last_vertex) frames.prefetch(vertex_ids_[i + kAhead]);
     TreeVertex& v = vertices_[i];
@@ -321,23 +376,32 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   // A coordinate relative to the origin is rounded by 2^-53 of itself, a sum of two by as
   // much again of the sum: together less than 2^-50 of the reach.
   const float pad = roundUp(reach_ * 0x1p-50, 0.f);
-  const auto forEachSubtree = [&](auto&& visit) {
-    parallelForBlocks(subtrees_.size(), kSubtreeBlock, num_threads,
-                      [&](std::size_t i, std::size_t last) {
-                        for (; i < last; ++i) visit(subtrees_[i]);
-                      });
-  };
   if (numThreads(num_threads) > 1) {
-    // A subtree has vertices that others were the first to meet.
-    forEachSubtree([&](const Subtree& s) { fitVertices(s, frames, pad); });
-    forEachSubtree([&](const Subtree& s) { refit(s); });
+    refitGroups(frames, pad, num_threads);
   } else {
-    forEachSubtree([&](const Subtree& s) {
-      fitVertices(s, frames, pad);
-      refit(s);
-    });
+    for (const Subtree& subtree : subtrees_) {
+      fitVertices(subtree, frames, pad);
+      refit(subtree);
+    }
   }
   for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]]);
+}
+
+/// Refits the subtrees, which have vertices that those before them were the first to meet:
+/// of a group the vertices come first, which are still near for the nodes.
+void MovingKdopTree::refitGroups(const VertexFrames& frames, float pad, int num_threads) {
+  for (std::size_t first = 0; first < subtrees_.size(); first += kSubtreeGroup) {
+    const Subtree* subtrees = &subtrees_[first];
+    const std::size_t count = std::min(kSubtreeGroup, subtrees_.size() - first);
+    parallelForBlocks(count, kSubtreeBlock, num_threads,
+                      [&](std::size_t i, std::size_t last) {
+                        for (; i < last; ++i) fitVertices(subtrees[i], frames, pad);
+                      });
+    parallelForBlocks(count, kSubtreeBlock, num_threads,
+                      [&](std::size_t i, std::size_t last) {
+                        for (; i < last; ++i) refit(subtrees[i]);
+                      });
+  }
 }
 
 std::size_t MovingKdopTree::memUsage() const {

@@ -143,7 +143,9 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
     if (!deforming) {
       instance_.rigid = RigidTree(model, beginning);
       if (owners == FeatureOwners::kAlways) {
-        owners_ = ownersOf(model, name);
+        requireIndices(model, name);
+        owners_ = assignFeatures(model.tri_indices,
+                                 static_cast<std::size_t>(model.num_tris), count);
         instance_.prepared = owners_.data();
       }
       return;
@@ -152,15 +154,13 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
 }
 
 template <typename BV>
-std::vector<MeshTriangle> PreparedMesh::ownersOf(const BVHModel<BV>& model,
-                                                 const std::string& name) {
+void PreparedMesh::requireIndices(const BVHModel<BV>& model, const std::string& name) {
   const auto num_vertices = static_cast<std::size_t>(model.num_vertices);
   const auto num_triangles = static_cast<std::size_t>(model.num_tris);
   const std::size_t bad = findOutOfRange(model.tri_indices, num_triangles, num_vertices);
   if (bad < 3 * num_triangles)
     throw Exception(name + ": triangle " + std::to_string(bad / 3) +
                     " refers to a vertex that is not there");
-  return assignFeatures(model.tri_indices, num_triangles, num_vertices);
 }
 
 template <typename BV>
@@ -171,7 +171,9 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
   std::vector<std::int32_t> links(static_cast<std::size_t>(model.getNumBVs()));
   for (int i = 0; i < model.getNumBVs(); ++i)
     links[static_cast<std::size_t>(i)] = model.getBV(i).first_child;
-  tree_.build(ownersOf(model, name), static_cast<std::size_t>(model.num_vertices), links);
+  requireIndices(model, name);
+  tree_.build(model.tri_indices, static_cast<std::size_t>(model.num_tris),
+              static_cast<std::size_t>(model.num_vertices), links);
   refit();
 }
 

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "parallel.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -83,10 +85,10 @@ class Slabs {
   float scale_{0};
 };
 
-/// Splits ranges of items, which are brought into order.
+/// Splits ranges of items, which are brought into order; different ranges at the same time.
 class Splitter {
  public:
-  explicit Splitter(std::vector<Item> items)
+  explicit Splitter(UninitializedVector<Item> items)
       : items_(std::move(items)), scratch_(items_.size()) {}
 
   struct Range {
@@ -143,8 +145,8 @@ class Splitter {
     std::size_t before = 0, after = 0;
     for (std::size_t i = 0; i < r.count; ++i) {
       // No branch: nobody could foretell it.
+      const bool is_before = slabs.isBefore(items[i], slab);
       const Item item = items[i];
-      const bool is_before = slabs.isBefore(item, slab);
       items[before] = item;
       scratch[after] = item;
       before += is_before;
@@ -227,64 +229,151 @@ class Splitter {
     return first;
   }
 
-  std::vector<Item> items_;
-  std::vector<Item> scratch_;
+  UninitializedVector<Item> items_;
+  UninitializedVector<Item> scratch_;
 };
 
 /// Centroids relative to a vertex, so that far from the origin nothing is lost.
-std::vector<Item> itemsOf(const std::vector<MeshTriangle>& triangles,
-                          const VertexFrames& frames) {
+UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_triangles,
+                                  const VertexFrames& frames, int num_threads) {
+  constexpr std::size_t kBlock = 8192;
   // Sums and widths of sums must not overflow.
   constexpr double kFarthest = 1e37;
+  std::uint32_t ids[3];
+  vertexIds(triangles[0], ids);
   double first[3];
-  frames.at(0, triangles[0].v[0], first);
-  std::vector<Float4> places(frames.size());
-  for (std::size_t i = 0; i < frames.size(); ++i) {
-    double p[3];
-    frames.at(0, i, p);
-    for (int k = 0; k < 3; ++k)
-      places[i][k] =
-          static_cast<float>(std::max(-kFarthest, std::min(kFarthest, p[k] - first[k])));
-  }
-  std::vector<Item> items(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    const std::uint32_t(&v)[3] = triangles[i].v;
-    const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
-    items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
-  }
+  frames.at(0, ids[0], first);
+  UninitializedVector<Float4> places(frames.size());
+  parallelForBlocks(frames.size(), kBlock, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i) {
+                        double p[3];
+                        frames.at(0, i, p);
+                        Float4 place{};
+                        for (int k = 0; k < 3; ++k)
+                          place[k] = static_cast<float>(std::max(
+                              -kFarthest, std::min(kFarthest, p[k] - first[k])));
+                        places[i] = place;
+                      }
+                    });
+  UninitializedVector<Item> items(num_triangles);
+  parallelForBlocks(num_triangles, kBlock, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i) {
+                        std::uint32_t v[3];
+                        vertexIds(triangles[i], v);
+                        const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
+                        items[i] = {{sum[0], sum[1], sum[2]},
+                                    static_cast<std::uint32_t>(i)};
+                      }
+                    });
   return items;
+}
+
+/// A range of items, the node that it becomes, and the first leaf of that.
+struct Open {
+  Splitter::Range range;
+  std::size_t node, first_leaf;
+  int depth;
+};
+
+/// Splits a range, down to ranges of which none is larger than max_left.
+/// @param nodes  the range's own is there; those below are added
+/// @return the ranges that are left, in the order of a walk
+std::vector<Open> split(Splitter& splitter, const Open& root, std::size_t max_left,
+                        std::vector<TreeChildren>& nodes,
+                        std::vector<std::uint32_t>& leaves) {
+  constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+  std::vector<Open> open{root}, left;
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    if (o.range.count <= max_left) {
+      left.push_back(o);
+      continue;
+    }
+    Splitter::Range parts[kWidth];
+    const std::size_t n = splitter.splitInEight(o.range, o.depth, parts);
+    TreeChildren node{};
+    node.count = static_cast<std::int32_t>(n);
+    std::size_t leaf = o.first_leaf;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (parts[i].count > 1) continue;
+      leaves[leaf] = splitter.triangle(parts[i].first);
+      node.child[i] = ~static_cast<std::int32_t>(leaf++);
+    }
+    // The first child is the first to go on with.
+    const std::size_t num_nodes = nodes.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      if (parts[i].count == 1) continue;
+      node.child[i] = static_cast<std::int32_t>(nodes.size());
+      open.push_back({parts[i], nodes.size(), leaf, o.depth + 1});
+      leaf += parts[i].count;
+      nodes.emplace_back();
+    }
+    std::reverse(open.end() - static_cast<std::ptrdiff_t>(nodes.size() - num_nodes),
+                 open.end());
+    nodes[o.node] = node;
+  }
+  return left;
 }
 
 }  // namespace
 
-std::vector<TreeChildren> splitTriangles(const std::vector<MeshTriangle>& triangles,
-                                         const VertexFrames& frames) {
-  Splitter splitter(itemsOf(triangles, frames));
-  struct Open {
-    Splitter::Range range;
-    std::size_t node;
-    int depth;
+TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
+                             const VertexFrames& frames, int num_threads) {
+  // A task: so many triangles at most.
+  constexpr std::size_t kMaxTask = 8192;
+  TreeStructure tree;
+  tree.leaves.resize(num_triangles);
+  Splitter splitter(itemsOf(triangles, num_triangles, frames, num_threads));
+ std::vector<TreeChildren> top(1);
+  const std::vector<Open> roots =
+      split(splitter, {{0, num_triangles}, 0, 0, 0}, kMaxTask, top, tree.leaves);
+ std::vector<std::vector<TreeChildren>> subtrees(roots.size());
+  parallelFor(roots.size(), num_threads, [&](std::size_t i) {
+    subtrees[i].reserve(roots[i].range.count / 4);
+    subtrees[i].emplace_back();
+    Open root = roots[i];
+    root.node = 0;
+    split(splitter, root, 0, subtrees[i], tree.leaves);
+  });
+
+ // The nodes of a subtree below its root go where the walk comes to it.
+  std::size_t num_nodes = top.size() - roots.size();
+  for (const std::vector<TreeChildren>& subtree : subtrees) num_nodes += subtree.size();
+  tree.nodes.resize(num_nodes);
+  struct Numbered {
+    std::size_t from, to;
   };
-  std::vector<TreeChildren> nodes(1);
-  std::vector<Open> open{{{0, triangles.size()}, 0, 0}};
+  std::vector<Numbered> open{{0, 0}};
+  std::size_t next = 1, num_met = 0;
   while (!open.empty()) {
-    const Open o = open.back();
+    const Numbered o = open.back();
     open.pop_back();
-    Splitter::Range parts[MovingKdopNode::kWidth];
-    const std::size_t n = splitter.splitInEight(o.range, o.depth, parts);
-    nodes[o.node].count = static_cast<std::int32_t>(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      std::int32_t& child = nodes[o.node].child[i];
-      if (parts[i].count == 1) {
-        child = ~static_cast<std::int32_t>(splitter.triangle(parts[i].first));
-        continue;
-      }
-      child = static_cast<std::int32_t>(nodes.size());
-      open.push_back({parts[i], nodes.size(), o.depth + 1});
-      nodes.emplace_back();
+    const bool is_root = num_met < roots.size() && roots[num_met].node == o.from;
+    const std::vector<TreeChildren>& from = is_root ? subtrees[num_met] : top;
+    tree.nodes[o.to] = from[is_root ? 0 : o.from];
+    const std::size_t num_open = open.size();
+    const auto shift = static_cast<std::int32_t>(next) - 1;
+    for (std::int32_t& child : tree.nodes[o.to].child) {
+      if (child <= 0) continue;
+      const auto to = is_root ? child + shift : static_cast<std::int32_t>(next++);
+      if (!is_root) open.push_back({static_cast<std::size_t>(child),
+                                    static_cast<std::size_t>(to)});
+      child = to;
     }
+    std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
+    if (!is_root) continue;
+    for (std::size_t i = 1; i < from.size(); ++i) {
+      tree.nodes[next] = from[i];
+      for (std::int32_t& child : tree.nodes[next].child)
+        if (child > 0) child += shift;
+      ++next;
+    }
+    ++num_met;
   }
-  return nodes;
+  return tree;
 }
 
 }  // namespace deformable

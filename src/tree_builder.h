@@ -7,23 +7,33 @@
 
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "fcl/narrowphase/detail/deformable/uninitialized_vector.h"
 #include "fcl/narrowphase/detail/deformable/vertex_frames.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The children of a node, as in MovingKdopNode, with the user's triangles.
+/// @brief The children of a node: >= 0 a node, < 0 ~leaf.
 struct TreeChildren {
   std::int32_t child[MovingKdopNode::kWidth];
   std::int32_t count;
 };
 
+/// @brief A tree without boxes. Nodes and leaves lie in the order of a walk from the root,
+/// node 0: the nodes of a node's children follow each other, its leaves come before those
+/// of its children.
+struct TreeStructure {
+  UninitializedVector<TreeChildren> nodes;
+  /// The user's number of each leaf's triangle.
+  std::vector<std::uint32_t> leaves;
+};
+
 /// @brief Splits the triangles into a tree by their centroids in frame 0: by surface area
-/// at the top, and into halves at the bottom, so that the lowest nodes are full. Node 0
-/// is the root.
-std::vector<TreeChildren> splitTriangles(const std::vector<MeshTriangle>& triangles,
-                                         const VertexFrames& frames);
+/// at the top, and into halves at the bottom, so that the lowest nodes are full.
+/// @param num_threads  as in parallelFor(); the tree does not depend on it
+TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
+                             const VertexFrames& frames, int num_threads);
 
 }  // namespace deformable
 }  // namespace detail

@@ -216,7 +216,7 @@ void testContainment(std::uint64_t seed) {
       const auto triangles =
           assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size());
       MovingKdopTree tree;
-      tree.build(triangles, frames);
+      tree.build(mesh.triangles.data(), mesh.triangles.size(), frames);
       tree.refit(frames);
       expectContainment(tree, triangles, frames);
       const MovingKdopTree before = tree;
@@ -285,7 +285,8 @@ TEST(FCL_MOVING_KDOP_TREE, structureOfABinaryTree) {
     for (std::size_t k = count; k > 1; --k)
       std::swap(leaves[k - 1], leaves[random.index(k)]);
     MovingKdopTree tree;
-    tree.build(triangles, mesh.t0.size(), binaryLinks(random, leaves, i % 3));
+    tree.build(mesh.triangles.data(), count, mesh.t0.size(),
+               binaryLinks(random, leaves, i % 3));
     tree.refit(frames);
     expectContainment(tree, triangles, frames);
     ASSERT_FALSE(HasFailure());
@@ -302,11 +303,11 @@ TEST(FCL_MOVING_KDOP_TREE, builtTwice) {
     const VertexFrames frames(mesh.previous(), mesh.current(), mesh.t0.size());
     const auto triangles =
         assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size());
-    tree.build(triangles, frames);
+    tree.build(mesh.triangles.data(), mesh.triangles.size(), frames);
     tree.refit(frames);
     expectContainment(tree, triangles, frames);
     MovingKdopTree other;
-    other.build(triangles, frames);
+    other.build(mesh.triangles.data(), mesh.triangles.size(), frames);
     other.refit(frames);
     expectSameBoxes(tree, other);
     EXPECT_GT(tree.memUsage(), count * (sizeof(TreeTriangle) + 2 * sizeof(MovingKdop)));

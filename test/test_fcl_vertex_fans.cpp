@@ -104,7 +104,7 @@ TEST(FCL_VERTEX_FANS, theOtherWayRound) {
 TEST(FCL_VERTEX_FANS, vertexWithoutTriangles) {
   EXPECT_TRUE(fanOf({{1, 2, 3}}, 0, 4).spokes.empty());
   EXPECT_EQ(VertexFans().size(), 0U);
-  EXPECT_EQ(VertexFans({}, 0).size(), 0U);
+  EXPECT_EQ(VertexFans(treeTriangles({}), 0).size(), 0U);
 }
 
 TEST(FCL_VERTEX_FANS, oneTriangle) {

@@ -34,7 +34,7 @@ class PreparedMovingMesh {
             mesh.triangles.data(), mesh.triangles.size(), mesh.t0.size())) {
     const detail::deformable::VertexFrames own(mesh.previous(), mesh.current(),
                                                mesh.t0.size());
-    tree_.build(features_, own);
+    tree_.build(mesh.triangles.data(), mesh.triangles.size(), own);
     tree_.refit(own);
     instance_.frames = own;
     instance_.frames.setPoses(beginning, end);

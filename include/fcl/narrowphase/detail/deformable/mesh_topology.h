@@ -7,6 +7,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "fcl/math/triangle.h"
@@ -28,6 +30,16 @@ struct MeshTriangle {
 
 /// All six border features and the face.
 constexpr std::uint32_t kOwnsAll = 0x7f;
+
+/// @brief The vertex ids of a triangle, which are below 2^32; FCL's operator[] is a call
+/// into its library for each.
+inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
+  std::size_t ids[3];
+  static_assert(std::is_trivially_copyable_v<Triangle> &&
+                sizeof(Triangle) == sizeof(ids));
+  std::memcpy(ids, &triangle, sizeof(ids));
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
+}
 
 /// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;
 /// 3 * num_triangles if there is none.

@@ -87,7 +87,7 @@ struct alignas(64) TreeVertex {
   MovingKdop box;
 };
 
-struct TreeChildren;
+struct TreeStructure;
 
 /// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
 /// The structure is made once, by build() or from the links of another tree; refit() sets
@@ -100,12 +100,15 @@ class MovingKdopTree {
  public:
   /// @brief Makes the structure: surface-area splits of the triangles' centroids in frame
   /// 0, and halving at the bottom so that the lowest nodes are full.
-  void build(const std::vector<MeshTriangle>& triangles, const VertexFrames& frames);
+  /// @param triangles  at least one, indices below frames.size() (not checked here)
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  void build(const Triangle* triangles, std::size_t num_triangles,
+             const VertexFrames& frames, int num_threads = 1);
 
   /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
   /// node i (the right one follows it), links[i] < 0 is leaf ~links[i].
-  void build(const std::vector<MeshTriangle>& triangles, std::size_t num_vertices,
-             const std::vector<std::int32_t>& links);
+  void build(const Triangle* triangles, std::size_t num_triangles,
+             std::size_t num_vertices, const std::vector<std::int32_t>& links);
 
   /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
   /// t, for every t in [0, 1], up to nothing: all rounding is outward.
@@ -134,14 +137,18 @@ class MovingKdopTree {
   /// A part of the tree: nodes [first_node, last_node) below its root, and the vertices
   /// that are met there first.
   struct Subtree {
-    std::uint32_t root, first_node, last_node, first_vertex, last_vertex;
+    std::uint32_t root, first_node, last_node, first_triangle, first_vertex, last_vertex;
   };
-  void number(const std::vector<TreeChildren>& nodes,
-              const std::vector<MeshTriangle>& triangles, std::size_t num_vertices);
+  void arrange(const TreeStructure& structure, const Triangle* triangles,
+               std::size_t num_vertices, int num_threads);
+  void findSubtrees(const TreeStructure& structure);
+  void placeVertices(std::size_t num_vertices);
+  void setNodes(const TreeStructure& structure, int num_threads);
   void setOrigin(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames, float pad);
   void refit(MovingKdopNode& node);
   void refit(const Subtree& subtree);
+  void refitGroups(const VertexFrames& frames, float pad, int num_threads);
 
   UninitializedVector<MovingKdopNode> nodes_;
   std::vector<TreeTriangle> triangles_;

@@ -58,8 +58,7 @@ class PreparedMesh {
   void prepareModel(const BVHModel<BV>& model, const Pose& beginning, const Pose& end,
                     const std::string& name, FeatureOwners owners);
   template <typename BV>
-  static std::vector<MeshTriangle> ownersOf(const BVHModel<BV>& model,
-                                            const std::string& name);
+  static void requireIndices(const BVHModel<BV>& model, const std::string& name);
   template <typename BV>
   void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
   void refit();

@@ -10,10 +10,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "fcl/narrowphase/detail/deformable/uninitialized_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
 
+class VertexCorners;
 struct TreeTriangle;
 
 /// @brief The spokes around one vertex, in order: triangle i lies between spokes i and i
@@ -36,6 +39,9 @@ class VertexFans {
   /// @param triangles  in terms of places below num_vertices
   VertexFans(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices);
 
+  /// @param num_threads  as in parallelFor()
+  VertexFans(const VertexCorners& corners, int num_threads);
+
   std::size_t size() const { return first_.empty() ? 0 : first_.size() - 1; }
 
   /// @brief The fan of the vertex at a place; without spokes if it has none.
@@ -50,9 +56,9 @@ class VertexFans {
   }
 
  private:
-  std::vector<std::uint32_t> first_;
-  std::vector<std::uint32_t> spokes_;
-  std::vector<std::uint8_t> closed_;
+  UninitializedVector<std::uint32_t> first_;
+  UninitializedVector<std::uint32_t> spokes_;
+  UninitializedVector<std::uint8_t> closed_;
 };
 
 }  // namespace deformable
