@@ -11,10 +11,12 @@ void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triang
                                const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
   tree_.build(triangles, num_triangles, frames, num_threads_);
+  num_restructurings_ = 0;
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
+  num_restructurings_ += tree_.restructure();
   tree_.refit(frames, num_threads_);
   is_deforming_ = false;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {

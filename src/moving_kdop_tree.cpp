@@ -104,9 +104,12 @@ void prefetchRows(const MovingKdopNode& node) {
 }
 
 /// Sets the boxes of all children.
-void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node) {
-  for (int q = 0; q < 4; ++q)
-    for (int lane = 0; lane < kWidth; lane += 4) {
+/// @param extents  along all directions, in both frames
+void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node,
+              float (&extents)[kWidth]) {
+  for (int lane = 0; lane < kWidth; lane += 4) {
+    Float4 sum{};
+    for (int q = 0; q < 4; ++q) {
       Float4 t0[4], t1[4];
       for (int i = 0; i < 4; ++i) {
         t0[i] = quad(boxes[lane + i].t0, q);
@@ -118,8 +121,11 @@ void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node) {
         MovingKdopNode::Row& row = node.rows[MovingKdopNode::rowOf(4 * q + i)];
         store(t0[i], row.t0 + lane);
         store(t1[i], row.t1 + lane);
+        sum += t0[i] + t1[i];
       }
     }
+    store(sum, extents + lane);
+  }
 }
 
 }  // namespace
@@ -185,7 +191,7 @@ void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* tri
                         vertexIds(triangles[leaves[i]], triangles_[i].id);
                       }
                     });
- findSubtrees(structure);
+  findSubtrees(structure);
   placeVertices(num_vertices);
   setNodes(structure, num_threads);
   UninitializedVector<TreeVertex>(vertex_ids_.size()).swap(vertices_);
@@ -267,24 +273,31 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
 /// Sets all of the nodes but the boxes.
 void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
   constexpr std::size_t kBlock = 1024;
-  UninitializedVector<MovingKdopNode>(structure.nodes.size()).swap(nodes_);
-  parallelForBlocks(
-      nodes_.size(), kBlock, num_threads, [&](std::size_t i, std::size_t last) {
-        for (; i < last; ++i) {
-          const TreeChildren& from = structure.nodes[i];
-          MovingKdopNode& node = nodes_[i];
-          node.count = from.count;
-          std::copy(from.child, from.child + kWidth, node.child);
-          for (int lane = 0; lane < kWidth; ++lane) {
-            const bool is_triangle = lane < node.count && node.isTriangle(lane);
-            for (int k = 0; k < 3; ++k)
-              node.places[k][lane] =
-                  is_triangle
-                      ? triangles_[static_cast<std::size_t>(node.triangle(lane))].place[k]
+  const std::size_t count = structure.nodes.size();
+  // Restructured trees have a few more.
+  UninitializedVector<MovingKdopNode> nodes;
+  nodes.reserve(count + count / 16);
+  nodes.resize(count);
+  nodes_.swap(nodes);
+  parallelForBlocks(nodes_.size(), kBlock, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i) setNode(structure.nodes[i], nodes_[i]);
+                    });
+  sizes_.assign(nodes_.size(), {});
+  first_sizes_.assign(nodes_.size(), {});
+}
+
+/// Sets all of a node but the boxes.
+void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) const {
+  node.count = from.count;
+  std::copy(from.child, from.child + kWidth, node.child);
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const bool is_triangle = lane < node.count && node.isTriangle(lane);
+    for (int k = 0; k < 3; ++k)
+      node.places[k][lane] =
+          is_triangle ? triangles_[static_cast<std::size_t>(node.triangle(lane))].place[k]
                       : MovingKdopNode::kNoPlace;
-          }
-        }
-      });
+  }
 }
 
 /// The origin, in the middle of both frames, and the reach.
@@ -294,21 +307,20 @@ void MovingKdopTree::setOrigin(const VertexFrames& frames, int num_threads) {
     double lo[3]{kInf, kInf, kInf}, hi[3]{-kInf, -kInf, -kInf};
   };
   std::vector<Range> ranges(vertex_ids_.size() / kVertexBlock + 1);
-  parallelForBlocks(vertex_ids_.size(), kVertexBlock, num_threads,
-                    [&](std::size_t first, std::size_t last) {
-                      Range range;
-                      for (std::size_t i = first; i < last; ++i) {
-                        if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
-                        const VertexPath path = frames[vertex_ids_[i]];
-                        for (int k = 0; k < 3; ++k) {
-                          range.lo[k] =
-                              std::min(range.lo[k], std::min(path.t0[k], path.t1[k]));
-                          range.hi[k] =
-                              std::max(range.hi[k], std::max(path.t0[k], path.t1[k]));
-                        }
-                      }
-                      ranges[first / kVertexBlock] = range;
-                    });
+  parallelForBlocks(
+      vertex_ids_.size(), kVertexBlock, num_threads,
+      [&](std::size_t first, std::size_t last) {
+        Range range;
+        for (std::size_t i = first; i < last; ++i) {
+          if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
+          const VertexPath path = frames[vertex_ids_[i]];
+          for (int k = 0; k < 3; ++k) {
+            range.lo[k] = std::min(range.lo[k], std::min(path.t0[k], path.t1[k]));
+            range.hi[k] = std::max(range.hi[k], std::max(path.t0[k], path.t1[k]));
+          }
+        }
+        ranges[first / kVertexBlock] = range;
+      });
   Range& all = ranges[0];
   reach_ = 0;
   for (int k = 0; k < 3; ++k) {
@@ -339,7 +351,19 @@ void MovingKdopTree::refit(MovingKdopNode& node) {
       bound(nodes_[static_cast<std::size_t>(node.child[lane])], box);
     }
   }
-  setBoxes(boxes, node);
+  float extents[kWidth];
+  setBoxes(boxes, node, extents);
+  float triangles = 0;
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (node.isTriangle(lane)) {
+      triangles += extents[lane];
+      continue;
+    }
+    NodeSize& child = sizes_[static_cast<std::size_t>(node.child[lane])];
+    child.box = extents[lane];
+    triangles += child.triangles;
+  }
+  sizes_[static_cast<std::size_t>(&node - nodes_.data())].triangles = triangles;
 }
 
 /// Sets paths and boxes of the vertices of a subtree.
@@ -387,8 +411,8 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]]);
 }
 
-/// Refits the subtrees, which have vertices that those before them were the first to meet:
-/// of a group the vertices come first, which are still near for the nodes.
+/// Refits the subtrees, which have vertices that those before them were the first to
+/// meet: of a group the vertices come first, which are still near for the nodes.
 void MovingKdopTree::refitGroups(const VertexFrames& frames, float pad, int num_threads) {
   for (std::size_t first = 0; first < subtrees_.size(); first += kSubtreeGroup) {
     const Subtree* subtrees = &subtrees_[first];
@@ -408,7 +432,9 @@ std::size_t MovingKdopTree::memUsage() const {
   return nodes_.capacity() * sizeof(nodes_[0]) +
          triangles_.capacity() * sizeof(triangles_[0]) +
          vertices_.capacity() * sizeof(vertices_[0]) +
-         vertex_ids_.capacity() * sizeof(vertex_ids_[0]) + fans_.memUsage();
+         vertex_ids_.capacity() * sizeof(vertex_ids_[0]) +
+         (sizes_.capacity() + first_sizes_.capacity()) * sizeof(NodeSize) +
+         fans_.memUsage();
 }
 
 KdopShift relativeShift(const double (&origin_a)[3], const double (&translation_a)[2][3],

@@ -15,12 +15,7 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// Three times the centroid of a triangle. As a vector of four numbers the last one means
-/// nothing.
-struct alignas(16) Item {
-  float centroid[3];
-  std::uint32_t triangle;
-};
+using Item = TreeItem;
 
 Float4 vectorOf(const Item& item) {
   Float4 v;
@@ -75,9 +70,7 @@ class Slabs {
   }
 
  private:
-  float coordinate(const Item& item) const {
-    return (item.centroid[axis_] - lo_) * scale_;
-  }
+  float coordinate(const Item& item) const { return (item.place[axis_] - lo_) * scale_; }
 
   int axis_{0};
   int last_;
@@ -85,7 +78,8 @@ class Slabs {
   float scale_{0};
 };
 
-/// Splits ranges of items, which are brought into order; different ranges at the same time.
+/// Splits ranges of items, which are brought into order; different ranges at the same
+/// time.
 class Splitter {
  public:
   explicit Splitter(UninitializedVector<Item> items)
@@ -95,14 +89,17 @@ class Splitter {
     std::size_t first, count;
   };
 
-  std::uint32_t triangle(std::size_t i) const { return items_[i].triangle; }
+  std::uint32_t index(std::size_t i) const { return items_[i].index; }
 
-  /// Splits a range into at most eight. None is empty.
-  std::size_t splitInEight(Range all, int depth, Range (&out)[MovingKdopNode::kWidth]) {
+  /// Splits a range into at most `max_parts`, which are no more than eight. None is
+  /// empty.
+  std::size_t split(Range all, std::size_t max_parts, int depth,
+                    Range (&out)[MovingKdopNode::kWidth]) {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
     std::size_t n = 1;
     out[0] = all;
-    if (all.count <= kWidth) {
+    max_parts = std::min(max_parts, kWidth);
+    if (all.count <= max_parts) {
       for (; n < all.count; ++n) out[n] = {all.first + n, 1};
       out[0].count = 1;
       return n;
@@ -111,7 +108,7 @@ class Splitter {
     // The lowest level that holds all: each child is one unit.
     std::size_t unit = 1;
     while (unit * kWidth < all.count) unit *= kWidth;
-    while (n < kWidth) {
+    while (n < max_parts) {
       Range* largest = std::max_element(
           out, out + n, [](const Range& a, const Range& b) { return a.count < b.count; });
       const Range r = *largest;
@@ -174,9 +171,9 @@ class Splitter {
     Item* items = items_.data() + rest.first;
     std::nth_element(items, items + (first - before), items + rest.count,
                      [axis = slabs.axis()](const Item& a, const Item& b) {
-                       return a.centroid[axis] != b.centroid[axis]
-                                  ? a.centroid[axis] < b.centroid[axis]
-                                  : a.triangle < b.triangle;
+                       return a.place[axis] != b.place[axis]
+                                  ? a.place[axis] < b.place[axis]
+                                  : a.index < b.index;
                      });
   }
 
@@ -251,22 +248,21 @@ UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_tri
                         frames.at(0, i, p);
                         Float4 place{};
                         for (int k = 0; k < 3; ++k)
-                          place[k] = static_cast<float>(std::max(
-                              -kFarthest, std::min(kFarthest, p[k] - first[k])));
+                          place[k] = static_cast<float>(
+                              std::max(-kFarthest, std::min(kFarthest, p[k] - first[k])));
                         places[i] = place;
                       }
                     });
   UninitializedVector<Item> items(num_triangles);
-  parallelForBlocks(num_triangles, kBlock, num_threads,
-                    [&](std::size_t i, std::size_t last) {
-                      for (; i < last; ++i) {
-                        std::uint32_t v[3];
-                        vertexIds(triangles[i], v);
-                        const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
-                        items[i] = {{sum[0], sum[1], sum[2]},
-                                    static_cast<std::uint32_t>(i)};
-                      }
-                    });
+  parallelForBlocks(
+      num_triangles, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
+          std::uint32_t v[3];
+          vertexIds(triangles[i], v);
+          const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
+          items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
+        }
+      });
   return items;
 }
 
@@ -278,10 +274,11 @@ struct Open {
 };
 
 /// Splits a range, down to ranges of which none is larger than max_left.
+/// @param max_parts  of the range itself
 /// @param nodes  the range's own is there; those below are added
 /// @return the ranges that are left, in the order of a walk
 std::vector<Open> split(Splitter& splitter, const Open& root, std::size_t max_left,
-                        std::vector<TreeChildren>& nodes,
+                        std::size_t max_parts, std::vector<TreeChildren>& nodes,
                         std::vector<std::uint32_t>& leaves) {
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
   std::vector<Open> open{root}, left;
@@ -293,13 +290,14 @@ std::vector<Open> split(Splitter& splitter, const Open& root, std::size_t max_le
       continue;
     }
     Splitter::Range parts[kWidth];
-    const std::size_t n = splitter.splitInEight(o.range, o.depth, parts);
+    const std::size_t n =
+        splitter.split(o.range, o.node == root.node ? max_parts : kWidth, o.depth, parts);
     TreeChildren node{};
     node.count = static_cast<std::int32_t>(n);
     std::size_t leaf = o.first_leaf;
     for (std::size_t i = 0; i < n; ++i) {
       if (parts[i].count > 1) continue;
-      leaves[leaf] = splitter.triangle(parts[i].first);
+      leaves[leaf] = splitter.index(parts[i].first);
       node.child[i] = ~static_cast<std::int32_t>(leaf++);
     }
     // The first child is the first to go on with.
@@ -320,26 +318,39 @@ std::vector<Open> split(Splitter& splitter, const Open& root, std::size_t max_le
 
 }  // namespace
 
+TreeStructure splitItems(UninitializedVector<TreeItem> items, std::size_t max_parts,
+                         int depth) {
+  TreeStructure tree;
+  const std::size_t count = items.size();
+  tree.leaves.resize(count);
+  Splitter splitter(std::move(items));
+  std::vector<TreeChildren> nodes(1);
+  split(splitter, {{0, count}, 0, 0, depth}, 0, max_parts, nodes, tree.leaves);
+  tree.nodes.assign(nodes.begin(), nodes.end());
+  return tree;
+}
+
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads) {
   // A task: so many triangles at most.
   constexpr std::size_t kMaxTask = 8192;
+  constexpr std::size_t kWidth = MovingKdopNode::kWidth;
   TreeStructure tree;
   tree.leaves.resize(num_triangles);
   Splitter splitter(itemsOf(triangles, num_triangles, frames, num_threads));
- std::vector<TreeChildren> top(1);
+  std::vector<TreeChildren> top(1);
   const std::vector<Open> roots =
-      split(splitter, {{0, num_triangles}, 0, 0, 0}, kMaxTask, top, tree.leaves);
- std::vector<std::vector<TreeChildren>> subtrees(roots.size());
+      split(splitter, {{0, num_triangles}, 0, 0, 0}, kMaxTask, kWidth, top, tree.leaves);
+  std::vector<std::vector<TreeChildren>> subtrees(roots.size());
   parallelFor(roots.size(), num_threads, [&](std::size_t i) {
     subtrees[i].reserve(roots[i].range.count / 4);
     subtrees[i].emplace_back();
     Open root = roots[i];
     root.node = 0;
-    split(splitter, root, 0, subtrees[i], tree.leaves);
+    split(splitter, root, 0, kWidth, subtrees[i], tree.leaves);
   });
 
- // The nodes of a subtree below its root go where the walk comes to it.
+  // The nodes of a subtree below its root go where the walk comes to it.
   std::size_t num_nodes = top.size() - roots.size();
   for (const std::vector<TreeChildren>& subtree : subtrees) num_nodes += subtree.size();
   tree.nodes.resize(num_nodes);
@@ -359,8 +370,8 @@ TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangle
     for (std::int32_t& child : tree.nodes[o.to].child) {
       if (child <= 0) continue;
       const auto to = is_root ? child + shift : static_cast<std::int32_t>(next++);
-      if (!is_root) open.push_back({static_cast<std::size_t>(child),
-                                    static_cast<std::size_t>(to)});
+      if (!is_root)
+        open.push_back({static_cast<std::size_t>(child), static_cast<std::size_t>(to)});
       child = to;
     }
     std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());

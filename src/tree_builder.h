@@ -20,17 +20,31 @@ struct TreeChildren {
   std::int32_t count;
 };
 
-/// @brief A tree without boxes. Nodes and leaves lie in the order of a walk from the root,
-/// node 0: the nodes of a node's children follow each other, its leaves come before those
-/// of its children.
+/// @brief A tree without boxes. Nodes and leaves lie in the order of a walk from the
+/// root, node 0: the nodes of a node's children follow each other, its leaves come before
+/// those of its children.
 struct TreeStructure {
   UninitializedVector<TreeChildren> nodes;
   /// The user's number of each leaf's triangle.
   std::vector<std::uint32_t> leaves;
 };
 
-/// @brief Splits the triangles into a tree by their centroids in frame 0: by surface area
-/// at the top, and into halves at the bottom, so that the lowest nodes are full.
+/// @brief What is put into a tree: a name and a place. Of the place as a vector of four
+/// numbers the last one means nothing.
+struct alignas(16) TreeItem {
+  float place[3];
+  std::uint32_t index;
+};
+
+/// @brief Splits items into a tree, whose leaves are their indices: by surface area at
+/// the top, and into halves at the bottom, so that the lowest nodes are full.
+/// @param max_parts  the root has at most so many children
+/// @param depth  of the root in the tree that it is for: deep down all is halved
+TreeStructure splitItems(UninitializedVector<TreeItem> items, std::size_t max_parts,
+                         int depth);
+
+/// @brief Splits the triangles into a tree by their centroids in frame 0, as splitItems()
+/// does.
 /// @param num_threads  as in parallelFor(); the tree does not depend on it
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads);

@@ -36,6 +36,19 @@ VertexFans::VertexFans(const VertexCorners& corners, int num_threads)
       });
 }
 
+void VertexFans::renumber(const VertexFans& before,
+                          const std::vector<std::uint32_t>& new_places,
+                          const std::vector<std::uint32_t>& old_places) {
+  std::uint32_t num_spokes = 0;
+  for (std::size_t i = 0; i < old_places.size(); ++i) {
+    const VertexFan fan = before[old_places[i]];
+    first_[i] = num_spokes;
+    closed_[i] = fan.is_closed;
+    for (std::uint32_t k = 0; k < fan.count; ++k)
+      spokes_[num_spokes++] = new_places[fan.spokes[k]];
+  }
+}
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

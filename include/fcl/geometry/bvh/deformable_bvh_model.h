@@ -26,7 +26,9 @@ enum class FclTree {
 /// both frames equal. Each step then gives the next frame, through beginUpdateModel /
 /// updateVertex / updateSubModel / endUpdateModel (the current frame becomes the previous
 /// one), or both frames at once through updateFrames. A step refits the boxes; topology
-/// and tree stay.
+/// stays, and so does the tree until motion has made its boxes poor: then a step makes
+/// the aged parts anew (numRestructurings() counts these steps), which changes the time
+/// of queries and nothing else. What decides is the boxes of the step before.
 ///
 /// Errors: functions return FCL's BVHReturnCode; on any error the model is what it was
 /// before the call (before the begin... call, for a begin/end sequence), nothing is

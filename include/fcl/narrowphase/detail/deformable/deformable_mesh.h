@@ -25,6 +25,9 @@ class DeformableMesh {
   /// @brief As given to setNumThreads().
   int numThreads() const { return num_threads_; }
 
+  /// @brief How many updates since the build have made parts of the tree anew.
+  std::size_t numRestructurings() const { return num_restructurings_; }
+
   /// @brief Whether an update or replacement has begun and not ended.
   bool isUpdateOpen() const { return open_ != Open::kNone; }
 
@@ -46,7 +49,7 @@ class DeformableMesh {
   void buildTree(const Triangle* triangles, std::size_t num_triangles,
                  const deformable::VertexFrames& frames);
 
-  /// @brief Boxes for a pair of frames.
+  /// @brief Boxes for a pair of frames, in a tree whose aged parts are made anew.
   void refitTree(const deformable::VertexFrames& frames);
 
   std::size_t treeMemUsage() const;
@@ -56,6 +59,7 @@ class DeformableMesh {
 
  private:
   deformable::MovingKdopTree tree_;
+  std::size_t num_restructurings_{0};
   bool is_deforming_{false};
 };
 

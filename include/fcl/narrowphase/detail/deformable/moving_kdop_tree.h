@@ -87,12 +87,14 @@ struct alignas(64) TreeVertex {
   MovingKdop box;
 };
 
+struct TreeChildren;
 struct TreeStructure;
 
 /// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
-/// The structure is made once, by build() or from the links of another tree; refit() sets
-/// the boxes for a pair of frames. Triangles and vertices lie in the order in which the
-/// tree meets them, so that neighbours on the surface are neighbours in memory.
+/// The structure is made by build() or from the links of another tree; refit() sets the
+/// boxes for a pair of frames; restructure() renews what has aged. Triangles and vertices
+/// lie in the order in which the tree meets them, so that neighbours on the surface are
+/// neighbours in memory.
 ///
 /// Nodes lie in one array, children after their parents, so that a refit is one backward
 /// pass.
@@ -114,6 +116,13 @@ class MovingKdopTree {
   /// t, for every t in [0, 1], up to nothing: all rounding is outward.
   /// @param num_threads  as in parallelFor(); the boxes do not depend on it
   void refit(const VertexFrames& frames, int num_threads = 1);
+
+  /// @brief Makes those parts of the structure anew that have aged, that is, whose boxes
+  /// motion has made larger beside their triangles' than they were when the part was
+  /// made; if all boxes together have become much larger. To be called before a refit,
+  /// since it looks at the boxes of the last one and leaves none behind.
+  /// @return whether the structure has changed; not if there is no memory for it
+  bool restructure();
 
   const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   std::size_t numNodes() const { return nodes_.size(); }
@@ -139,11 +148,25 @@ class MovingKdopTree {
   struct Subtree {
     std::uint32_t root, first_node, last_node, first_triangle, first_vertex, last_vertex;
   };
+  /// Extents of a node's box, and of all triangles' boxes below together: along all eight
+  /// directions, in both frames.
+  struct NodeSize {
+    float box, triangles;
+  };
+  class Restructuring;
+
+  /// The box as it would be had it only grown as its triangles have.
+  static float expectedBox(const NodeSize& first, const NodeSize& now) {
+    return first.box * (now.triangles / first.triangles);
+  }
+
+  void adopt(const Restructuring& restructuring);
   void arrange(const TreeStructure& structure, const Triangle* triangles,
                std::size_t num_vertices, int num_threads);
   void findSubtrees(const TreeStructure& structure);
   void placeVertices(std::size_t num_vertices);
   void setNodes(const TreeStructure& structure, int num_threads);
+  void setNode(const TreeChildren& from, MovingKdopNode& node) const;
   void setOrigin(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames, float pad);
   void refit(MovingKdopNode& node);
@@ -159,6 +182,9 @@ class MovingKdopTree {
   /// What is refit independently, and the nodes above, parents first.
   std::vector<Subtree> subtrees_;
   std::vector<std::uint32_t> top_;
+  /// Of each node as it is, and as it was when it was made; 0 as long as unknown.
+  std::vector<NodeSize> sizes_;
+  std::vector<NodeSize> first_sizes_;
   double origin_[3]{0, 0, 0};
   double reach_{0};
 };

@@ -42,6 +42,13 @@ class VertexFans {
   /// @param num_threads  as in parallelFor()
   VertexFans(const VertexCorners& corners, int num_threads);
 
+  /// @brief Follows the vertices to other places; needs no memory.
+  /// @param before  a copy of these fans
+  /// @param new_places  of the vertex at each place
+  /// @param old_places  of the vertex at each new place
+  void renumber(const VertexFans& before, const std::vector<std::uint32_t>& new_places,
+                const std::vector<std::uint32_t>& old_places);
+
   std::size_t size() const { return first_.empty() ? 0 : first_.size() - 1; }
 
   /// @brief The fan of the vertex at a place; without spokes if it has none.

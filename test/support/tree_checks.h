@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What holds of every moving tree: its structure, and that its boxes contain what is
+// below them.
+#ifndef FCL_TEST_SUPPORT_TREE_CHECKS_H
+#define FCL_TEST_SUPPORT_TREE_CHECKS_H
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+
+namespace fcl {
+namespace test {
+
+using detail::deformable::kLeastHalf;
+using detail::deformable::MeshTriangle;
+using detail::deformable::MovingKdopNode;
+using detail::deformable::MovingKdopTree;
+using detail::deformable::TreeTriangle;
+using detail::deformable::TreeVertex;
+using detail::deformable::VertexFrames;
+using detail::deformable::VertexPath;
+
+constexpr double kTimes[] = {0, 1e-9, 0.125, 1. / 3, 0.5, 0.7, 0.9375, 1};
+
+/// The 8 coordinates of a vertex at t, relative to origin, with 11 bits more than double.
+inline void coordinatesAt(const VertexPath& p, double t, const double (&origin)[3],
+                          long double (&d)[8]) {
+  long double x[3];
+  for (int k = 0; k < 3; ++k)
+    x[k] = (1 - static_cast<long double>(t)) *
+               (static_cast<long double>(p.t0[k]) - origin[k]) +
+           static_cast<long double>(t) * (static_cast<long double>(p.t1[k]) - origin[k]);
+  const long double all[8] = {x[0],        x[1],        x[2],        x[0] + x[1],
+                              x[0] + x[2], x[1] + x[2], x[0] - x[1], x[0] - x[2]};
+  std::copy(all, all + 8, d);
+}
+
+/// Bound of half-axis j at t; infinity at one end is no bound at all.
+inline long double halfAt(const MovingKdop& box, int j, double t) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const float half0 = box.t0.half[j], half1 = box.t1.half[j];
+  if (half0 == kInf || half1 == kInf) return kInf;
+  return (1 - static_cast<long double>(t)) * half0 + static_cast<long double>(t) * half1;
+}
+
+/// Where a node hangs.
+struct Place {
+  int node{-1};
+  int lane{0};
+};
+
+/// Every triangle is met once, children come after their parents, triangles and vertices
+/// lie in the order in which the tree meets them and say what the user's say, and lanes
+/// that are not in use overlap nothing.
+/// @return the place of each node
+inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
+                                          const std::vector<MeshTriangle>& triangles) {
+  const int count = static_cast<int>(tree.numNodes());
+  std::vector<Place> parent(tree.numNodes());
+  std::vector<int> met(triangles.size(), 0);
+  for (int i = 0; i < count; ++i) {
+    const MovingKdopNode& node = tree.node(i);
+    EXPECT_GE(node.count, 1);
+    EXPECT_LE(node.count, MovingKdopNode::kWidth);
+    EXPECT_TRUE(i == 0 || parent[static_cast<std::size_t>(i)].node >= 0) << "no parent";
+    for (int lane = 0; lane < node.count; ++lane) {
+      if (node.isTriangle(lane)) {
+        ++met.at(static_cast<std::size_t>(node.triangle(lane)));
+        continue;
+      }
+      EXPECT_GT(node.child[lane], i);
+      Place& place = parent.at(static_cast<std::size_t>(node.child[lane]));
+      EXPECT_EQ(place.node, -1) << "two parents";
+      place = {i, lane};
+    }
+    for (int lane = node.count; lane < MovingKdopNode::kWidth; ++lane) {
+      const MovingKdop box = node.box(lane);
+      for (int j = 0; j < 16; ++j) {
+        EXPECT_EQ(box.t0.half[j], kLeastHalf);
+        EXPECT_EQ(box.t1.half[j], kLeastHalf);
+      }
+    }
+  }
+  for (const int times : met) EXPECT_EQ(times, 1);
+
+  // The order of a walk, a node's own triangles before its subtrees.
+  int next = 0;
+  std::vector<int> open{0};
+  while (!open.empty()) {
+    const MovingKdopNode& node = tree.node(open.back());
+    open.pop_back();
+    for (int lane = node.count; lane-- > 0;)
+      if (!node.isTriangle(lane)) open.push_back(node.child[lane]);
+    for (int lane = 0; lane < node.count; ++lane)
+      if (node.isTriangle(lane)) {
+        EXPECT_EQ(node.triangle(lane), next++);
+      }
+  }
+
+  EXPECT_EQ(tree.triangles().size(), triangles.size());
+  std::vector<int> named(triangles.size(), 0);
+  std::map<std::uint32_t, std::uint32_t> place_of;
+  for (const TreeTriangle& t : tree.triangles()) {
+    ++named.at(t.index);
+    EXPECT_EQ(t.owned, triangles[t.index].owned);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_EQ(t.id[k], triangles[t.index].v[k]);
+      const auto place =
+          place_of.emplace(t.id[k], static_cast<std::uint32_t>(place_of.size())).first;
+      EXPECT_EQ(t.place[k], place->second);
+    }
+  }
+  for (const int times : named) EXPECT_EQ(times, 1);
+  EXPECT_EQ(tree.vertices().size(), place_of.size());
+  return parent;
+}
+
+/// Whether the box contains the vertex at t.
+inline void expectContained(const VertexPath& path, double t, const double (&origin)[3],
+                            const MovingKdop& box) {
+  long double d[8];
+  coordinatesAt(path, t, origin, d);
+  for (int j = 0; j < 8; ++j) {
+    ASSERT_LE(-d[j], halfAt(box, j, t)) << "half-axis " << j << " at " << t;
+    ASSERT_LE(d[j], halfAt(box, j + 8, t)) << "half-axis " << j + 8 << " at " << t;
+  }
+}
+
+/// Every box of the tree contains the triangles below it, and the vertices' own contain
+/// these.
+inline void expectContainment(const MovingKdopTree& tree,
+                              const std::vector<MeshTriangle>& triangles,
+                              const VertexFrames& frames) {
+  const std::vector<Place> parent = expectStructure(tree, triangles);
+  ASSERT_FALSE(testing::Test::HasFailure());
+  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
+    for (int lane = 0; lane < tree.node(i).count; ++lane) {
+      if (!tree.node(i).isTriangle(lane)) continue;
+      const TreeTriangle& triangle =
+          tree.triangles()[static_cast<std::size_t>(tree.node(i).triangle(lane))];
+      for (int k = 0; k < 3; ++k) {
+        const VertexPath path = frames[triangle.id[k]];
+        const TreeVertex& vertex = tree.vertices()[triangle.place[k]];
+        for (int c = 0; c < 3; ++c) {
+          ASSERT_EQ(vertex.t0[c], path.t0[c]);
+          ASSERT_EQ(vertex.t1[c], path.t1[c]);
+        }
+        for (const double t : kTimes) {
+          ASSERT_NO_FATAL_FAILURE(expectContained(path, t, tree.origin(), vertex.box));
+          for (Place p{i, lane}; p.node >= 0;
+               p = parent[static_cast<std::size_t>(p.node)])
+            ASSERT_NO_FATAL_FAILURE(
+                expectContained(path, t, tree.origin(), tree.node(p.node).box(p.lane)))
+                << "node " << p.node << ", lane " << p.lane;
+        }
+      }
+    }
+}
+
+/// The same boxes to the bit.
+inline void expectSameBoxes(const MovingKdopTree& x, const MovingKdopTree& y) {
+  ASSERT_EQ(x.numNodes(), y.numNodes());
+  for (int i = 0; i < static_cast<int>(x.numNodes()); ++i) {
+    ASSERT_EQ(x.node(i).count, y.node(i).count);
+    for (int lane = 0; lane < x.node(i).count; ++lane) {
+      ASSERT_EQ(x.node(i).child[lane], y.node(i).child[lane]);
+      const MovingKdop a = x.node(i).box(lane), b = y.node(i).box(lane);
+      ASSERT_EQ(std::memcmp(&a, &b, sizeof(a)), 0) << "node " << i;
+    }
+  }
+}
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A tree that has aged is made anew in part, and in nothing but the time of a query can
+// this be seen.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "generated_scenes.h"
+#include "moving_mesh.h"
+#include "tree_checks.h"
+
+namespace {
+
+/// So many allocations succeed before one fails; none does if negative.
+int allocations_left = -1;
+
+void* allocate(std::size_t size, std::size_t alignment) {
+  if (allocations_left == 0) throw std::bad_alloc();
+  if (allocations_left > 0) --allocations_left;
+  size = (std::max(size, std::size_t{1}) + alignment - 1) / alignment * alignment;
+  void* memory = std::aligned_alloc(alignment, size);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return allocate(size, alignof(std::max_align_t)); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocate(size, static_cast<std::size_t>(alignment));
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
+  std::free(memory);
+}
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Model = DeformableBVHModel<>;
+using Result = ContinuousContactResult<double>;
+using Points = std::vector<Vector3<double>>;
+using detail::deformable::assignFeatures;
+
+FrameSequence reversed(FrameSequence sequence) {
+  std::reverse(sequence.frames.begin(), sequence.frames.end());
+  return sequence;
+}
+
+/// A tree and what it is made for.
+struct MovingTree {
+  explicit MovingTree(const FrameSequence& sequence)
+      : triangles(assignFeatures(sequence.triangles.data(), sequence.triangles.size(),
+                                 sequence.frames[0].size())) {
+    const VertexFrames frames = framesOf(sequence.frames[0], sequence.frames[0]);
+    tree.build(sequence.triangles.data(), sequence.triangles.size(), frames);
+    tree.refit(frames);
+  }
+  static VertexFrames framesOf(const Points& t0, const Points& t1) {
+    return {t0[0].data(), t1[0].data(), t0.size()};
+  }
+  /// @return whether the tree was restructured
+  bool step(const Points& t0, const Points& t1) {
+    const bool has_changed = tree.restructure();
+    tree.refit(framesOf(t0, t1));
+    return has_changed;
+  }
+
+  std::vector<MeshTriangle> triangles;
+  MovingKdopTree tree;
+};
+
+/// Goes through a sequence.
+/// @return how many steps restructured the tree
+int countRestructurings(const FrameSequence& sequence) {
+  MovingTree moving(sequence);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i)
+    count += moving.step(sequence.frames[i], sequence.frames[i + 1]);
+  return count;
+}
+
+double comparedBoxes(const Model& model) {
+  Result result;
+  continuousSelfCollide(&model, ContinuousContactRequest<double>(), result);
+  return static_cast<double>(result.counts.node_pairs);
+}
+
+void build(const FrameSequence& sequence, std::size_t frame, Model& model) {
+  ASSERT_EQ(model.beginModel(), BVH_OK);
+  ASSERT_EQ(model.addSubModel(sequence.frames[frame], sequence.triangles), BVH_OK);
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+}
+
+void update(const FrameSequence& sequence, std::size_t i, Model& model) {
+  ASSERT_EQ(
+      model.updateFrames(sequence.frames[i][0].data(), sequence.frames[i + 1][0].data(),
+                         sequence.frames[i].size()),
+      BVH_OK);
+}
+
+/// All that a user sees of the contacts, to the bit and in order.
+void expectSameContacts(const Model& x, const Model& y) {
+  Result a, b;
+  continuousSelfCollide(&x, ContinuousContactRequest<double>(), a);
+  continuousSelfCollide(&y, ContinuousContactRequest<double>(), b);
+  EXPECT_EQ(a.is_collide, b.is_collide);
+  EXPECT_EQ(a.initially_crossing, b.initially_crossing);
+  EXPECT_EQ(a.time_of_contact, b.time_of_contact);
+  ASSERT_EQ(a.contacts.size(), b.contacts.size());
+  for (std::size_t i = 0; i < a.contacts.size(); ++i) {
+    const auto &c = a.contacts[i], &d = b.contacts[i];
+    ASSERT_EQ(c.kind, d.kind);
+    ASSERT_EQ(c.vertices, d.vertices);
+    ASSERT_EQ(c.b1, d.b1);
+    ASSERT_EQ(c.b2, d.b2);
+    ASSERT_EQ(c.first_on_o1, d.first_on_o1);
+    ASSERT_EQ(c.toc_lo, d.toc_lo);
+    ASSERT_EQ(c.toc_hi, d.toc_hi);
+    ASSERT_EQ(c.pos, d.pos);
+    ASSERT_EQ(c.normal, d.normal);
+  }
+}
+
+TEST(FCL_TREE_RESTRUCTURING, onlyWhereBoxesGrow) {
+  const int mix = countRestructurings(makeMixingBalls(61));
+  EXPECT_GE(mix, 3);
+  EXPECT_LE(mix, 10);
+  const int unfold = countRestructurings(reversed(makeCrumplingSheet(61)));
+  EXPECT_GE(unfold, 1);
+  EXPECT_LE(unfold, 4);
+  EXPECT_EQ(countRestructurings(makeWavingCloth(61)), 0);
+  EXPECT_EQ(countRestructurings(makeCrumplingSheet(61)), 0);
+}
+
+// A whole turn about three axes, far away and back, and to another size.
+TEST(FCL_TREE_RESTRUCTURING, notByRigidMotionOrSize) {
+  const FramePairMesh cloth = makeSmoothCloth(5000);
+  for (const TestMesh& mesh :
+       {makeSheet(40, 40), makeSheet(80, 20), makeIcosphere(3, 1), makeBox({1, 1, 1}, 12),
+        makeTriangleSoup(2000, 1, 0.1, 5), TestMesh{cloth.previous, cloth.triangles}})
+    for (int axis = 0; axis < 4; ++axis) {
+      FrameSequence sequence{mesh.triangles, {}};
+      for (int frame = 0; frame <= 24; ++frame) {
+        Transform3<double> tf = Transform3<double>::Identity();
+        const Vector3<double> about =
+            axis < 3 ? Vector3<double>::Unit(axis) : Vector3<double>(0.6, 0.64, 0.48);
+        tf.linear() =
+            AngleAxis<double>(std::acos(-1.) * frame / 12, about).toRotationMatrix();
+        tf.linear() *= std::pow(1.5, frame % 12);
+        tf.translation()[axis % 3] = 1e3 * (frame % 5);
+        sequence.frames.push_back(transformed(mesh, tf).vertices);
+      }
+      EXPECT_EQ(countRestructurings(sequence), 0) << "axis " << axis;
+    }
+}
+
+TEST(FCL_TREE_RESTRUCTURING, structureAndBoxes) {
+  for (const auto& sequence : {makeMixingBalls(16), reversed(makeCrumplingSheet(13))}) {
+    MovingTree moving(sequence);
+    int count = 0;
+    for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i) {
+      const Points &t0 = sequence.frames[i], &t1 = sequence.frames[i + 1];
+      if (!moving.step(t0, t1)) continue;
+      ++count;
+      expectContainment(moving.tree, moving.triangles, MovingTree::framesOf(t0, t1));
+      EXPECT_EQ(moving.tree.fans().size(), moving.tree.vertices().size());
+    }
+    EXPECT_GE(count, 1);
+  }
+}
+
+// Everything may have moved anywhere; a scene that was scattered without end is not
+// restructured without end.
+TEST(FCL_TREE_RESTRUCTURING, randomJumps) {
+  constexpr std::uint64_t kSeed = 70;
+  Random random(kSeed);
+  for (const std::size_t count : {1U, 2U, 8U, 9U, 64U, 65U, 700U, 3000U}) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(count));
+    TestMesh soup = makeTriangleSoup(static_cast<int>(count), 1, 0.01, 7);
+    MovingTree moving({soup.triangles, {soup.vertices}});
+    int changes = 0;
+    for (int step = 0; step < 12; ++step) {
+      TestMesh next = soup;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Vector3<double> by = random.point(step % 3 ? 0.3 : 2);
+        for (std::size_t k = 0; k < 3; ++k) next.vertices[3 * i + k] += by;
+      }
+      if (moving.step(soup.vertices, next.vertices)) {
+        ++changes;
+        expectContainment(moving.tree, moving.triangles,
+                          MovingTree::framesOf(soup.vertices, next.vertices));
+      }
+      soup = next;
+    }
+    EXPECT_EQ(changes > 0, count > 8);
+    EXPECT_LE(changes, 8);
+  }
+}
+
+TEST(FCL_TREE_RESTRUCTURING, boxesWithoutBounds) {
+  const TestMesh soup = makeTriangleSoup(500, 1, 0.01, 7);
+  for (const double size : {1e-310, 1e-40, 1e36, 1e37, 1e38, 1e39, 1e300}) {
+    Random random(71);
+    TestMesh mesh = soup;
+    MovingTree moving({mesh.triangles, {mesh.vertices}});
+    for (int step = 0; step < 4; ++step) {
+      const Points before = mesh.vertices;
+      for (auto& p : mesh.vertices) p = random.point(size);
+      moving.step(before, mesh.vertices);
+      expectContainment(moving.tree, moving.triangles,
+                        MovingTree::framesOf(before, mesh.vertices));
+    }
+  }
+}
+
+// A calm cloth beside balls that mix: its part of the tree stays.
+TEST(FCL_TREE_RESTRUCTURING, onlyTheAgedPart) {
+  const FrameSequence balls = makeMixingBalls(12), cloth = makeWavingCloth(12);
+  FrameSequence both = balls;
+  const std::size_t num_ball_vertices = balls.frames[0].size();
+  for (const Triangle& t : cloth.triangles)
+    both.triangles.emplace_back(t[0] + num_ball_vertices, t[1] + num_ball_vertices,
+                                t[2] + num_ball_vertices);
+  for (std::size_t i = 0; i < both.frames.size(); ++i)
+    for (const auto& p : cloth.frames[i])
+      both.frames[i].push_back(p + Vector3<double>(5, 0, 0));
+  /// The triangle that follows each triangle in the tree.
+  const auto followers = [&both](const MovingKdopTree& tree) {
+    std::vector<std::uint32_t> next(both.triangles.size(), 0);
+    for (std::size_t i = 0; i + 1 < next.size(); ++i)
+      next[tree.triangles()[i].index] = tree.triangles()[i + 1].index;
+    return next;
+  };
+  MovingTree moving(both);
+  const auto first = followers(moving.tree);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < both.frames.size(); ++i)
+    count += moving.step(both.frames[i], both.frames[i + 1]);
+  EXPECT_GE(count, 1);
+  const auto last = followers(moving.tree);
+  std::size_t changed_balls = 0, changed_cloth = 0;
+  for (std::size_t i = 0; i < first.size(); ++i)
+    (i < balls.triangles.size() ? changed_balls : changed_cloth) += first[i] != last[i];
+  EXPECT_LT(changed_cloth, cloth.triangles.size() / 100);
+  EXPECT_GT(changed_balls, balls.triangles.size() / 20);
+}
+
+TEST(FCL_TREE_RESTRUCTURING, contactsStayTheSame) {
+  const FrameSequence sequence = makeMixingBalls(41);
+  Model kept;
+  build(sequence, 0, kept);
+  EXPECT_EQ(kept.numRestructurings(), 0u);
+  for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i) {
+    const std::size_t before = kept.numRestructurings();
+    if (i % 2 == 0) {
+      update(sequence, i, kept);
+    } else {
+      ASSERT_EQ(kept.beginUpdateModel(), BVH_OK);
+      ASSERT_EQ(kept.updateSubModel(sequence.frames[i + 1]), BVH_OK);
+      ASSERT_EQ(kept.endUpdateModel(), BVH_OK);
+    }
+    Model fresh;
+    build(sequence, i, fresh);
+    update(sequence, i, fresh);
+    expectSameContacts(kept, fresh);
+    EXPECT_LT(comparedBoxes(kept), 1.4 * comparedBoxes(fresh)) << "step " << i;
+    if (kept.numRestructurings() > before) {
+      EXPECT_LT(comparedBoxes(kept), 1.15 * comparedBoxes(fresh)) << "step " << i;
+    }
+  }
+  EXPECT_GE(kept.numRestructurings(), 2u);
+  EXPECT_LE(kept.numRestructurings(), 8u);
+}
+
+TEST(FCL_TREE_RESTRUCTURING, copiesAreIndependent) {
+  const FrameSequence sequence = makeMixingBalls(11);
+  Model model;
+  build(sequence, 0, model);
+  std::size_t i = 0;
+  Model before = model;
+  for (; i + 1 < sequence.frames.size() && model.numRestructurings() == 0; ++i) {
+    before = model;
+    update(sequence, i, model);
+  }
+  ASSERT_EQ(model.numRestructurings(), 1u);
+  EXPECT_EQ(before.numRestructurings(), 0u);
+  Model copy = before;
+  update(sequence, i - 1, copy);
+  EXPECT_EQ(copy.numRestructurings(), 1u);
+  expectSameBoxes(copy.movingTree(), model.movingTree());
+  expectStructure(before.movingTree(),
+                  assignFeatures(sequence.triangles.data(), sequence.triangles.size(),
+                                 sequence.frames[0].size()));
+  update(sequence, i, copy);
+  update(sequence, i, model);
+  expectSameBoxes(copy.movingTree(), model.movingTree());
+  expectSameContacts(copy, model);
+}
+
+// Wherever memory ends, the tree is what it was.
+TEST(FCL_TREE_RESTRUCTURING, withoutMemory) {
+  const FrameSequence sequence = reversed(makeCrumplingSheet(3));
+  MovingTree moving(sequence);
+  ASSERT_FALSE(moving.step(sequence.frames[1], sequence.frames[2]));
+  const MovingKdopTree before = moving.tree;
+  int failures = 0;
+  for (bool has_changed = false; !has_changed; ++failures) {
+    allocations_left = failures;
+    has_changed = moving.tree.restructure();
+    allocations_left = -1;
+    if (!has_changed) {
+      expectSameBoxes(moving.tree, before);
+      expectStructure(moving.tree, moving.triangles);
+    }
+    ASSERT_FALSE(HasFailure());
+    ASSERT_LT(failures, 200);
+  }
+  EXPECT_GT(failures, 20);
+  moving.tree.refit(MovingTree::framesOf(sequence.frames[1], sequence.frames[2]));
+  expectContainment(moving.tree, moving.triangles,
+                    MovingTree::framesOf(sequence.frames[1], sequence.frames[2]));
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
