@@ -53,6 +53,7 @@ TEST(FCL_SPEED, figuresAreConsistent) {
       {"meeting bodies", 3},      {"smooth cloth 8K", 3},
       {"cloth at the origin", 2}, {"cloth at 1e6", 3},
       {"crumple (kept tree)", 1}, {"crumple (fresh tree)", 1},
+      {"unfold (kept tree)", 1},  {"unfold (fresh tree)", 1},
       {"wave (kept tree)", 1},    {"wave (fresh tree)", 1},
       {"mix (kept tree)", 1},     {"mix (fresh tree)", 1}};
   EXPECT_EQ(rows_of, expected);
@@ -62,12 +63,12 @@ TEST(FCL_SPEED, figuresAreConsistent) {
   std::map<std::string, int> steps_of;
   for (CsvRow row : readCsv(folder + "/speed_sequence.csv",
                             "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,"
-                            "ms_fresh,ratio,machine")) {
+                            "ms_fresh,ratio,ms_fresh_update,restructured,machine")) {
     EXPECT_EQ(std::stoi(row["frame"]), steps_of[row["sequence"]]++);
     EXPECT_GT(std::stod(row["ratio"]), 0);
   }
   const std::map<std::string, int> expected_steps{
-      {"crumple", 3}, {"wave", 3}, {"mix", 3}};
+      {"crumple", 3}, {"unfold", 3}, {"wave", 3}, {"mix", 3}};
   EXPECT_EQ(steps_of, expected_steps);
 }
 

@@ -3,6 +3,7 @@
 // Speed of whole queries: the library's beside the paper's method, on public and on
 // generated scenes. doc/speed.md explains the report.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <initializer_list>
@@ -138,7 +139,10 @@ void addSequence(Table& table, const std::string& name, const FrameSequence& seq
 
 void runSequences(Table& table, const Options& options) {
   const int frames = options.pick(61, 4);
-  addSequence(table, "crumple", makeCrumplingSheet(frames), options);
+  FrameSequence sheet = makeCrumplingSheet(frames);
+  addSequence(table, "crumple", sheet, options);
+  std::reverse(sheet.frames.begin(), sheet.frames.end());
+  addSequence(table, "unfold", sheet, options);
   addSequence(table, "wave", makeWavingCloth(frames), options);
   addSequence(table, "mix", makeMixingBalls(frames), options);
 }

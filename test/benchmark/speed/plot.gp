@@ -99,7 +99,7 @@ if (words(names) > 0) {
   set key inside top left maxrows 1
   set xlabel 'frame'
   set yrange [0:*]
-  set ylabel 'time of query: kept / fresh tree'
+  set ylabel 'time of update and query: kept / fresh tree'
   plot for [i=1:words(names)] \
          "< grep '^".word(names, i).",' '".sequences."'" using 2:8 with lines ls i \
          title word(names, i), 1 with lines lc rgb '#bbbbbb' notitle

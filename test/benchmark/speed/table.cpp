@@ -63,7 +63,7 @@ Table::Table(const std::string& folder) : machine_(machineName()) {
   rows_ << "scene,triangles,query,boxes,filter,kernels,threads,ms_build,ms_update,"
            "ms_traverse,ms_test,ms_total,contacts,missed,extra,hash,peak_mb,machine\n";
   sequences_ << "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,ms_fresh,ratio,"
-                "machine\n";
+                "ms_fresh_update,restructured,machine\n";
   if (!rows_ || !sequences_) throw std::runtime_error(folder + ": cannot be written to");
 }
 
@@ -87,7 +87,9 @@ void Table::add(const SequenceRow& row) {
   sequences_ << row.sequence << ',' << row.frame << ',' << row.contacts << ','
              << number(row.kept.update) << ',' << number(kept) << ','
              << number(row.fresh_build) << ',' << number(fresh) << ','
-             << number(kept / fresh) << ',' << machine_ << std::endl;
+             << number(row.kept.total() / row.fresh.total()) << ','
+             << number(row.fresh.update) << ',' << row.is_restructured << ',' << machine_
+             << std::endl;
 }
 
 void Table::finish() {

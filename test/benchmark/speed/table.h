@@ -95,6 +95,8 @@ struct SequenceRow {
   double fresh_build{0};
   StepTimes kept;
   StepTimes fresh;
+  /// Whether parts of the kept tree were made anew.
+  bool is_restructured{false};
 };
 
 /// @brief speed.csv and speed_sequence.csv in a folder.

@@ -34,13 +34,18 @@ file == 1 {
 file == 2 {
   if (!($1 in steps)) order[++sequences] = $1
   ratio[$1, steps[$1]++] = $8
+  if ($8 > worst[$1]) worst[$1] = $8
+  restructured[$1] += $10
 }
 
 END {
   if (sequences == 0) exit
   print "\n## Tree of the first frame against a fresh one\n"
-  print "Mean ratio of the times of a query, over each quarter of the sequence.\n"
-  print "| sequence | steps | 1st | 2nd | 3rd | 4th |\n|---|---|---|---|---|---|"
+  print "Ratio of the times of an update with its query: mean over each quarter of the " \
+        "sequence, and the worst step. Restructured: steps in which parts of the first " \
+        "tree were made anew.\n"
+  print "| sequence | steps | 1st | 2nd | 3rd | 4th | worst | restructured |"
+  print "|---|---|---|---|---|---|---|---|"
   for (i = 1; i <= sequences; ++i) {
     line = "| " order[i] " | " steps[order[i]] " |"
     for (q = 0; q < 4; ++q) {
@@ -51,6 +56,6 @@ END {
       }
       line = line " " (count ? sprintf("%.2f", sum / count) : "") " |"
     }
-    print line
+    print line sprintf(" %.2f | %d |", worst[order[i]], restructured[order[i]])
   }
 }
