@@ -161,22 +161,6 @@ void FeatureBatch::cull(FeatureKind kind, List& list, StageCounts& counts) {
   list.size = left;
 }
 
-void FeatureBatch::points(std::uint32_t code, const TreeVertex* (&x)[4]) const {
-  const TrianglePair& pair = pairs_[code / 16];
-  const FeaturePair features = featurePair(static_cast<int>(code % 16));
-  const TreeVertex* const* a = pair.x;
-  const TreeVertex* const* b = pair.x + 3;
-  if (features.kind == FeatureKind::kVertexFace) {
-    x[0] = (features.first_on_a ? a : b)[features.first];
-    std::copy(features.first_on_a ? b : a, (features.first_on_a ? b : a) + 3, x + 1);
-  } else {
-    x[0] = a[features.first];
-    x[1] = a[(features.first + 1) % 3];
-    x[2] = b[features.second];
-    x[3] = b[(features.second + 1) % 3];
-  }
-}
-
 FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
   const std::uint32_t code = crossings_[i], bit = code % 16;
   return {&pairs_[code / 16], bit % 3, bit < 3};

@@ -87,27 +87,65 @@ void TrianglePairTest::filter(FeatureKind kind) {
   counts_.filter_culled += size - candidates_.size();
 }
 
-void TrianglePairTest::solve() {
-  EightPairs eight;
-  if (!candidates_.empty()) eight.kind = candidates_[0].kind;
-  for (std::size_t first = 0; first < candidates_.size() && !isDone(); first += 8) {
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      const FeatureCandidate& c =
-          candidates_[std::min(first + lane, candidates_.size() - 1)];
-      eight.set(lane, c.x, c.window_lo, c.window_hi);
-    }
-    const EightAnswers answers = kernels_.solve(eight, options_.toc_err);
-    const std::size_t count = std::min(candidates_.size() - first, std::size_t{8});
-    for (std::size_t lane = 0; lane < count && !isDone(); ++lane) {
-      const FeatureCandidate& candidate = candidates_[first + lane];
+/// Decides pieces eight at a time, but for those that are no plain case.
+template <typename OnNo, typename OnOpen>
+void TrianglePairTest::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
+                             OnOpen&& on_open) {
+  for (std::size_t first = 0; first < pieces.size() && !isDone(); first += 8) {
+    const EightAnswers answers = kernels_.solve(eightOf(pieces, first), options_.toc_err);
+    const std::size_t last = std::min(pieces.size(), first + 8);
+    for (std::size_t i = first; i < last && !isDone(); ++i) {
+      const std::size_t lane = i - first;
       if (answers.no >> lane & 1U)
-        ++counts_.solver_culled;
+        on_no(pieces[i]);
       else if (answers.yes >> lane & 1U)
-        add(candidate, answers.toc_lo[lane], answers.toc_hi[lane]);
+        add(candidates_[pieces[i].candidate], answers.toc_lo[lane], answers.toc_hi[lane]);
       else
-        solve(candidate);
+        on_open(pieces[i]);
     }
   }
+}
+
+/// The pieces that begin at `first`; the last one fills up the last eight.
+EightPairs TrianglePairTest::eightOf(const std::vector<Piece>& pieces,
+                                     std::size_t first) const {
+  EightPairs eight;
+  eight.kind = candidates_.front().kind;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    const Piece& piece = pieces[std::min(first + lane, pieces.size() - 1)];
+    eight.set(lane, candidates_[piece.candidate].x, piece.lo, piece.hi);
+  }
+  return eight;
+}
+
+void TrianglePairTest::solve() {
+  const auto isNo = [this](const Piece&) { ++counts_.solver_culled; };
+  const auto solveAlone = [this](const Piece& p) { solve(candidates_[p.candidate]); };
+  std::vector<Piece>&pieces = pieces_[0], &open = pieces_[1], &later = pieces_[2];
+  for (std::vector<Piece>& list : pieces_) list.clear();
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    pieces.push_back({i, candidates_[i].window_lo, candidates_[i].window_hi});
+  solve(pieces, isNo, [&open](const Piece& p) { open.push_back(p); });
+
+  // The first part of a window, and the second if the first one holds no contact.
+  pieces.clear();
+  for (std::size_t first = 0; first < open.size() && !isDone(); first += 8) {
+    const EightDivisions found = kernels_.divide(eightOf(open, first));
+    for (std::size_t i = first; i < std::min(open.size(), first + 8); ++i) {
+      const Piece& p = open[i];
+      if (found.never_inside >> (i - first) & 1U)
+        isNo(p);
+      else
+        pieces.push_back({p.candidate, p.lo, found.at[i - first]});
+    }
+  }
+  solve(
+      pieces,
+      [this, &later](const Piece& p) {
+        later.push_back({p.candidate, p.hi, candidates_[p.candidate].window_hi});
+      },
+      solveAlone);
+  solve(later, isNo, solveAlone);
 }
 
 void TrianglePairTest::add(const FeatureIds& pair, double toc_lo, double toc_hi) {

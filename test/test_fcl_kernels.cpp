@@ -484,24 +484,36 @@ struct FilterQuery {
   double lo, hi;
 };
 
-EightPairs eightOf(const FilterQuery (&queries)[8]) {
-  EightPairs out;
-  out.kind = queries[0].pair.kind;
-  for (std::size_t lane = 0; lane < 8; ++lane) {
-    TreeVertex x[4];
-    const TreeVertex* p[4];
-    for (std::size_t i = 0; i < 4; ++i) {
-      const VertexPath& path = queries[lane].pair.x[i];
-      std::copy(path.t0, path.t0 + 3, x[i].t0);
-      std::copy(path.t1, path.t1 + 3, x[i].t1);
-      // The fourth number is nobody's.
-      x[i].t0[3] = x[i].t1[3] = std::numeric_limits<double>::quiet_NaN();
-      p[i] = &x[i];
-    }
-    out.set(lane, p, queries[lane].lo, queries[lane].hi);
+/// Eight pairs as the kernels take them; keeps the vertices.
+class EightPoints {
+ public:
+  explicit EightPoints(const FilterQuery (&queries)[8]) {
+    for (std::size_t lane = 0; lane < 8; ++lane)
+      for (std::size_t i = 0; i < 4; ++i) {
+        const VertexPath& path = queries[lane].pair.x[i];
+        TreeVertex& x = x_[lane][i];
+        std::copy(path.t0, path.t0 + 3, x.t0);
+        std::copy(path.t1, path.t1 + 3, x.t1);
+        // The fourth number is nobody's.
+        x.t0[3] = x.t1[3] = std::numeric_limits<double>::quiet_NaN();
+      }
   }
-  return out;
-}
+
+  /// @param queries  the same pairs, in any windows
+  EightPairs pairs(const FilterQuery (&queries)[8]) const {
+    EightPairs out;
+    out.kind = queries[0].pair.kind;
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const TreeVertex* const x[4] = {&x_[lane][0], &x_[lane][1], &x_[lane][2],
+                                      &x_[lane][3]};
+      out.set(lane, x, queries[lane].lo, queries[lane].hi);
+    }
+    return out;
+  }
+
+ private:
+  TreeVertex x_[8][4];
+};
 
 void randomWindow(Random& random, double& lo, double& hi) {
   switch (random.index(6)) {
@@ -567,7 +579,8 @@ struct FilterCounts {
 /// Every instruction set finds what the scalar filter finds, lane by lane, and comes to
 /// the same decision where both go on in twice the digits.
 FilterCounts expectRightFilter(const FilterQuery (&queries)[8]) {
-  const EightPairs eight = eightOf(queries);
+  const EightPoints points(queries);
+  const EightPairs eight = points.pairs(queries);
   unsigned possible = 0, unclear = 0, may = 0, may_accurately = 0;
   for (unsigned lane = 0; lane < 8; ++lane) {
     const FilterQuery& q = queries[lane];
@@ -746,8 +759,9 @@ TEST(FCL_KERNELS, filterKeepsWhatIsNotFinite) {
       }
     }
     never += 8 - expectRightFilter(queries).may;
+    const EightPoints points(queries);
     for (const Kernels* k : allSets())
-      ASSERT_EQ(k->coplanarity(eightOf(queries)).possible & bad, bad) << k->name;
+      ASSERT_EQ(k->coplanarity(points.pairs(queries)).possible & bad, bad) << k->name;
     ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
   }
   EXPECT_GT(never, 1000);
@@ -898,46 +912,87 @@ TEST(FCL_KERNELS, fansOfAllSizes) {
 }
 
 struct SolveTally {
-  int yes{0}, no{0}, open{0};
+  int yes{0}, no{0}, open{0}, divided{0};
 };
 
-/// What the kernel proves is so, by the exact test.
-void expectRightAnswers(const FilterQuery (&queries)[8], double toc_err,
-                        SolveTally& tally) {
-  const EightPairs eight = eightOf(queries);
+/// solve(), the same on every instruction set.
+EightAnswers solveAll(const EightPairs& eight, double toc_err) {
   const EightAnswers first = allSets().front()->solve(eight, toc_err);
-  ASSERT_EQ(first.yes & first.no, 0U);
-  ASSERT_EQ((first.yes | first.no) & ~0xffU, 0U);
+  EXPECT_EQ(first.yes & first.no, 0U);
+  EXPECT_EQ((first.yes | first.no) & ~0xffU, 0U);
   for (const Kernels* k : allSets()) {
     const EightAnswers answers = k->solve(eight, toc_err);
-    ASSERT_EQ(answers.yes, first.yes) << k->name;
-    ASSERT_EQ(answers.no, first.no) << k->name;
-    for (int lane = 0; lane < 8; ++lane)
-      if (first.yes >> lane & 1U) {
-        ASSERT_EQ(std::memcmp(&answers.toc_lo[lane], &first.toc_lo[lane], 8), 0);
-        ASSERT_EQ(std::memcmp(&answers.toc_hi[lane], &first.toc_hi[lane], 8), 0);
-      }
+    EXPECT_EQ(answers.yes, first.yes) << k->name;
+    EXPECT_EQ(answers.no, first.no) << k->name;
+    expectSameBits(first.yes, answers.toc_lo, first.toc_lo);
+    expectSameBits(first.yes, answers.toc_hi, first.toc_hi);
   }
+  return first;
+}
+
+/// divide(), the same on every instruction set.
+EightDivisions divideAll(const EightPairs& eight) {
+  const EightDivisions first = allSets().front()->divide(eight);
+  EXPECT_EQ(first.never_inside & ~0xffU, 0U);
+  for (const Kernels* k : allSets()) {
+    const EightDivisions found = k->divide(eight);
+    EXPECT_EQ(found.never_inside, first.never_inside) << k->name;
+    expectSameBits(0xffU, found.at, first.at);
+  }
+  return first;
+}
+
+/// What the kernel proves of a pair is so, by the exact test.
+void expectRightAnswer(const FilterQuery& q, const ElementaryResult& exact, bool yes,
+                       bool no, double lo, double hi, double toc_err) {
+  // The first contact of the window is the first of all, or one that came later.
+  const bool in_window =
+      exact.answer == Answer::kYes && exact.toc_lo >= q.lo && exact.toc_hi <= q.hi;
+  bool right = true;
+  if (no) right = !in_window;
+  if (yes) {
+    right = exact.answer == Answer::kYes && lo >= q.lo && hi <= q.hi && lo <= hi &&
+            hi - lo <= toc_err && exact.toc_lo <= hi;
+    if (in_window) right &= lo <= exact.toc_hi;
+  }
+  ASSERT_TRUE(right) << (yes ? "yes " : "no ") << q.pair << std::hexfloat << " in ["
+                     << q.lo << ", " << q.hi << "], [" << lo << ", " << hi
+                     << "], exactly [" << exact.toc_lo << ", " << exact.toc_hi << "]";
+}
+
+/// Eight pairs in their windows, and those that are left in both parts of them.
+void expectRightAnswers(const FilterQuery (&queries)[8], double toc_err,
+                        SolveTally& tally) {
+  const EightPoints points(queries);
+  const EightAnswers whole = solveAll(points.pairs(queries), toc_err);
+  const EightDivisions divided = divideAll(points.pairs(queries));
+  FilterQuery early[8], late[8];
+  for (int lane = 0; lane < 8; ++lane) {
+    early[lane] = late[lane] = queries[lane];
+    early[lane].hi = late[lane].lo = divided.at[lane];
+    ASSERT_GE(divided.at[lane], queries[lane].lo);
+    ASSERT_LE(divided.at[lane], queries[lane].hi);
+  }
+  const EightAnswers first = solveAll(points.pairs(early), toc_err),
+                     second = solveAll(points.pairs(late), toc_err);
   for (int lane = 0; lane < 8; ++lane) {
     const FilterQuery& q = queries[lane];
-    const bool yes = first.yes >> lane & 1U, no = first.no >> lane & 1U;
-    ++(yes ? tally.yes : no ? tally.no : tally.open);
-    if (!yes && !no) continue;
     const ElementaryResult exact = decideExactly(q.pair.kind, q.pair.points(), 1e-13);
-    const double lo = first.toc_lo[lane], hi = first.toc_hi[lane];
-    // The first contact of the window is the first of all, or one that came later.
-    const bool in_window =
-        exact.answer == Answer::kYes && exact.toc_lo >= q.lo && exact.toc_hi <= q.hi;
-    bool right = true;
-    if (no) right = !in_window;
-    if (yes) {
-      right = exact.answer == Answer::kYes && lo >= q.lo && hi <= q.hi && lo <= hi &&
-              hi - lo <= toc_err && exact.toc_lo <= hi;
-      if (in_window) right &= lo <= exact.toc_hi;
-    }
-    ASSERT_TRUE(right) << (yes ? "yes " : "no ") << q.pair << std::hexfloat << " in ["
-                       << q.lo << ", " << q.hi << "], [" << lo << ", " << hi
-                       << "], exactly [" << exact.toc_lo << ", " << exact.toc_hi << "]";
+    const auto expectRight = [&](const FilterQuery& part, const EightAnswers& answers) {
+      const bool yes = answers.yes >> lane & 1U, no = answers.no >> lane & 1U;
+      expectRightAnswer(part, exact, yes, no, answers.toc_lo[lane], answers.toc_hi[lane],
+                        toc_err);
+    };
+    expectRight(q, whole);
+    expectRight(early[lane], first);
+    expectRight(late[lane], second);
+    const bool never_inside = divided.never_inside >> lane & 1U;
+    expectRightAnswer(q, exact, false, never_inside, 0, 0, toc_err);
+    const bool yes = whole.yes >> lane & 1U, no = whole.no >> lane & 1U;
+    ++(yes ? tally.yes : no ? tally.no : tally.open);
+    const unsigned decided =
+        divided.never_inside | first.yes | (first.no & (second.yes | second.no));
+    tally.divided += !yes && !no && (decided >> lane & 1U);
   }
 }
 
@@ -961,6 +1016,7 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   EXPECT_GT(tally.yes, 300);
   EXPECT_GT(tally.no, 10000);
   EXPECT_GT(tally.open, 300);
+  EXPECT_GT(tally.divided, 300);
 }
 
 // Touches at the end of a window, at rest, all the time, of flat pairs and of points.

@@ -81,10 +81,6 @@ HWY_INLINE MovingBox merge(const MovingBox& a, const MovingBox& b) {
 /// not matter but for the shift.
 HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::size_t bit,
                             const KdopShift* shift, const KdopShift* turned_shift) {
-  // First and second end of edges i and j, for bit 3 i + j.
-  static constexpr unsigned char kEnds[9][4] = {{0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3},
-                                                {1, 2, 3, 4}, {1, 2, 4, 5}, {1, 2, 5, 3},
-                                                {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}};
   MovingBox first, second;
   const KdopShift* add = shift;
   if (kind == FeatureKind::kVertexFace) {
@@ -95,7 +91,7 @@ HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::siz
     second = merge(merge(boxOf(*face[0]), boxOf(*face[1])), boxOf(*face[2]));
     add = on_a ? shift : turned_shift;
   } else {
-    const unsigned char(&ends)[4] = kEnds[bit - 6];
+    const unsigned char(&ends)[4] = kFeaturePoints[bit];
     first = merge(boxOf(*pair.x[ends[0]]), boxOf(*pair.x[ends[1]]));
     second = merge(boxOf(*pair.x[ends[2]]), boxOf(*pair.x[ends[3]]));
   }
@@ -192,11 +188,26 @@ struct Segments {
   Doubles norm;
 };
 
-HWY_INLINE Vectors difference(const double (*t)[8], std::size_t p, std::size_t q) {
-  return {load<kEight>(t[3 * p]) - load<kEight>(t[3 * q]),
-          load<kEight>(t[3 * p + 1]) - load<kEight>(t[3 * q + 1]),
-          load<kEight>(t[3 * p + 2]) - load<kEight>(t[3 * q + 2])};
+HWY_INLINE Vectors operator-(const Vectors& a, const Vectors& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+
+/// The points of eight pairs at both times.
+struct Points {
+  Vectors t0[4], t1[4];
+
+  HWY_INLINE explicit Points(const EightPairs& pairs) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double *rows0[kEight], *rows1[kEight];
+      for (std::size_t lane = 0; lane < kEight; ++lane) {
+        rows0[lane] = pairs.x[i][lane]->t0;
+        rows1[lane] = pairs.x[i][lane]->t1;
+      }
+      loadColumns(rows0, t0[i].x, t0[i].y, t0[i].z);
+      loadColumns(rows1, t1[i].x, t1[i].y, t1[i].z);
+    }
+  }
+};
 
 /// As Difference::at(); 0 and 1 need no case of their own, but what is not finite in one
 /// frame shows at all times.
@@ -215,8 +226,8 @@ struct Differences {
   Doubles norm;
 };
 
-HWY_INLINE Differences differences(const EightPairs& x, std::size_t p, std::size_t q) {
-  const Vectors t0 = difference(x.t0, p, q), t1 = difference(x.t1, p, q);
+HWY_INLINE Differences differences(const Points& x, std::size_t p, std::size_t q) {
+  const Vectors t0 = x.t0[p] - x.t0[q], t1 = x.t1[p] - x.t1[q];
   return {t0, t1, max(max(maxNorm(t0), maxNorm(t1)), broadcast<kEight>(kLeastNorm))};
 }
 
@@ -396,9 +407,10 @@ HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
           isInRange(size) & isInRange(n.norm)};
 }
 
-EightCoplanarities coplanarityOfEight(const EightPairs& x) {
-  const bool vf = x.kind == FeatureKind::kVertexFace;
-  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
+EightCoplanarities coplanarityOfEight(const EightPairs& pairs) {
+  const bool vf = pairs.kind == FeatureKind::kVertexFace;
+  const Points x(pairs);
+  const Doubles lo = load<kEight>(pairs.lo), hi = load<kEight>(pairs.hi);
   const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
   const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
   const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
@@ -423,8 +435,12 @@ struct Pairs {
   bool vf;
   Differences u, v, w, r, q;
 
-  HWY_INLINE explicit Pairs(const EightPairs& x)
-      : vf(x.kind == FeatureKind::kVertexFace),
+  HWY_INLINE explicit Pairs(const EightPairs& pairs)
+      : Pairs(Points(pairs), pairs.kind == FeatureKind::kVertexFace) {}
+
+ private:
+  HWY_INLINE Pairs(const Points& x, bool is_vf)
+      : vf(is_vf),
         u(vf ? differences(x, 0, 1) : differences(x, 2, 0)),
         v(vf ? differences(x, 2, 1) : differences(x, 1, 0)),
         w(vf ? differences(x, 3, 1) : differences(x, 3, 2)),
@@ -499,15 +515,13 @@ HWY_INLINE Doubles root(const Cubics& f, const Doubles& tolerance) {
 EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
-  EightAnswers answers;
-  answers.yes = 0;
-
   const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
                  w = restrict(pairs.w, lo, hi);
-  const Quadratics n = cross(v, w);
-  const Cubics f = spannedVolume(u, n);
-  answers.no = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
-  const unsigned open = bits(f.changesSign()) & ~answers.no;
+  const Cubics f = spannedVolume(u, cross(v, w));
+  EightAnswers answers;
+  answers.yes = 0;
+  answers.no = bits(f.hasNoRoot());
+  const unsigned open = bits(f.changesSign());
   if (open == 0) return answers;
 
   // [a, b] around the root: before it and behind it there is none.
@@ -533,6 +547,39 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   return answers;
 }
 
+/// Where the cubics that have one sign at 0 and at 1 come nearest to zero in between, as
+/// far as doubles tell: of b0's sign, the lowest point; 1/2 where there is none.
+HWY_INLINE Doubles nearestToZero(const Cubics& f) {
+  const Doubles zero = broadcast<kEight>(0.), three = broadcast<kEight>(3.),
+                half = broadcast<kEight>(0.5);
+  // The slope has Bernstein coefficients e0, e1, e2; it rises through zero at s / (1 - s)
+  // = (q - e1) / e2 = -e0 / (q + e1), q^2 = e1^2 - e0 e2.
+  const DoubleMask below = f.b0 < zero;
+  const auto turned = [&](const Doubles& e)
+                          HWY_ATTR { return select(below, zero - e, e); };
+  const Doubles e0 = turned(f.b1 - three * f.b0), e1 = turned(f.b2 - f.b1),
+                e2 = turned(three * f.b3 - f.b2);
+  const Doubles q = squareRoot(e1 * e1 - e0 * e2);
+  const DoubleMask is_late = e1 < zero;
+  const Doubles part = select(is_late, q - e1, zero - e0),
+                rest = select(is_late, e2, q + e1);
+  const Doubles s = part / (part + rest);
+  return select((s > zero) & (s < broadcast<kEight>(1.)), s, half);
+}
+
+EightDivisions divideEight(const EightPairs& x) {
+  const Pairs pairs(x);
+  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
+  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
+                 w = restrict(pairs.w, lo, hi);
+  const Quadratics n = cross(v, w);
+  EightDivisions out;
+  out.never_inside = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
+  const Doubles s = nearestToZero(spannedVolume(u, n));
+  store(min(hi, lo + s * (hi - lo)), out.at);
+  return out;
+}
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 #else
@@ -541,7 +588,7 @@ inline const char* targetName() { return "plain"; }
 
 extern const Kernels kKernels = {targetName(),        &overlapChildren, &trianglesAt,
                                  &cullFeaturesOf,     &cullCrossings,   &isFanEmbedded,
-                                 &coplanarityOfEight, &solveEight};
+                                 &coplanarityOfEight, &solveEight,      &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

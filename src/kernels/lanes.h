@@ -99,6 +99,13 @@ HWY_INLINE Lanes<T, N> abs(const Lanes<T, N>& a) {
   return out;
 }
 
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> squareRoot(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Sqrt(a.part[p]);
+  return out;
+}
+
 #define FCL_CCD_COMPARISON(NAME, OP)                                           \
   template <typename T, std::size_t N>                                         \
   HWY_INLINE LaneMask<T, N> NAME(const Lanes<T, N>& a, const Lanes<T, N>& b) { \
@@ -198,6 +205,41 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
   return hn::GetLane(hn::MaxOfLanes(tag, most));
 }
 
+#if HWY_TARGET != HWY_SCALAR
+/// Columns k and k + 1 of every second row, row after row.
+template <typename Tag, typename T>
+HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const T* const* rows, std::size_t k) {
+  if constexpr (hn::MaxLanes(Tag()) == 2) {
+    return hn::LoadU(tag, rows[0] + k);
+  } else {
+    const hn::Half<Tag> half;
+    return hn::Combine(tag, loadTwos(half, rows + hn::MaxLanes(half), k),
+                       loadTwos(half, rows, k));
+  }
+}
+#endif
+
+/// Columns 0, 1 and 2 of rows of four.
+template <typename T, std::size_t N>
+HWY_INLINE void loadColumns(const T* const (&rows)[N], Lanes<T, N>& x, Lanes<T, N>& y,
+                            Lanes<T, N>& z) {
+  const typename Lanes<T, N>::Tag tag;
+  FCL_CCD_FOR_PARTS {
+    const T* const* first = rows + p * Lanes<T, N>::kWidth;
+#if HWY_TARGET == HWY_SCALAR
+    x.part[p] = hn::LoadU(tag, first[0]);
+    y.part[p] = hn::LoadU(tag, first[0] + 1);
+    z.part[p] = hn::LoadU(tag, first[0] + 2);
+#else
+    const auto even = loadTwos(tag, first, 0), odd = loadTwos(tag, first + 1, 0);
+    x.part[p] = hn::InterleaveLower(tag, even, odd);
+    y.part[p] = hn::InterleaveUpper(tag, even, odd);
+    z.part[p] =
+        hn::InterleaveLower(tag, loadTwos(tag, first, 2), loadTwos(tag, first + 1, 2));
+#endif
+  }
+}
+
 #undef FCL_CCD_FOR_PARTS
 
 #else  // FCL_CCD_USE_HIGHWAY
@@ -257,6 +299,13 @@ template <typename T, std::size_t N>
 inline Lanes<T, N> abs(const Lanes<T, N>& a) {
   Lanes<T, N> out;
   FCL_CCD_FOR_LANES out.lane[i] = std::abs(a.lane[i]);
+  return out;
+}
+
+template <typename T, std::size_t N>
+inline Lanes<T, N> squareRoot(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = std::sqrt(a.lane[i]);
   return out;
 }
 
@@ -325,6 +374,16 @@ inline T largest(const Lanes<T, N>& a) {
   T most = a.lane[0];
   FCL_CCD_FOR_LANES most = a.lane[i] > most ? a.lane[i] : most;
   return most;
+}
+
+template <typename T, std::size_t N>
+inline void loadColumns(const T* const (&rows)[N], Lanes<T, N>& x, Lanes<T, N>& y,
+                        Lanes<T, N>& z) {
+  FCL_CCD_FOR_LANES {
+    x.lane[i] = rows[i][0];
+    y.lane[i] = rows[i][1];
+    z.lane[i] = rows[i][2];
+  }
 }
 
 #undef FCL_CCD_FOR_LANES

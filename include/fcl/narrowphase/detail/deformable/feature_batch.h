@@ -5,6 +5,7 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_FEATURE_BATCH_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_FEATURE_BATCH_H
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -110,7 +111,10 @@ class FeatureBatch {
   const TimeWindow* windows(FeatureKind kind) const { return list(kind).windows.get(); }
 
   /// @brief The four vertices of a pair, features in the order of its triangle pair.
-  void points(std::uint32_t code, const TreeVertex* (&x)[4]) const;
+  void points(std::uint32_t code, const TreeVertex* (&x)[4]) const {
+    const unsigned char(&places)[4] = kFeaturePoints[code % 16];
+    for (int i = 0; i < 4; ++i) x[i] = pairs_[code / 16].x[places[i]];
+  }
 
   /// @brief The pair's one name, whatever triangles it is met in.
   FeatureCandidate candidate(std::uint32_t code, const TimeWindow& window) const;
@@ -159,10 +163,10 @@ class FeatureBatch {
 constexpr double kFeatureMargin = 0x1p-18;
 
 inline double windowLo(const TimeWindow& w) {
-  return w.lo > kFeatureMargin ? w.lo - kFeatureMargin : 0;
+  return std::max(w.lo - kFeatureMargin, 0.);
 }
 inline double windowHi(const TimeWindow& w) {
-  return w.hi < 1 - kFeatureMargin ? w.hi + kFeatureMargin : 1;
+  return std::min(w.hi + kFeatureMargin, 1.);
 }
 
 }  // namespace deformable

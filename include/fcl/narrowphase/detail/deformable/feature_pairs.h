@@ -56,6 +56,13 @@ inline FeaturePair featurePair(int bit) {
   return {FeatureKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
 }
 
+/// @brief The four points of each pair of features, the vertices of a counted 0-2 and b's
+/// 3-5: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
+constexpr unsigned char kFeaturePoints[kNumFeaturePairs][4] = {
+    {0, 3, 4, 5}, {1, 3, 4, 5}, {2, 3, 4, 5}, {3, 0, 1, 2}, {4, 0, 1, 2},
+    {5, 0, 1, 2}, {0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3}, {1, 2, 3, 4},
+    {1, 2, 4, 5}, {1, 2, 5, 3}, {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}};
+
 /// @brief Edges (three bits) that end in one of the vertices (three bits).
 inline unsigned edgesAt(unsigned vertices) {
   return vertices | (vertices >> 1) | (vertices << 2 & 4U);

@@ -35,22 +35,17 @@ inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 
-/// @brief Eight pairs of features, of one kind: coordinate 3 i + k of point i at both
-/// times, and the windows.
-struct alignas(64) EightPairs {
-  double t0[12][8];
-  double t1[12][8];
+/// @brief Eight pairs of features, of one kind: their points and windows.
+struct EightPairs {
+  /// Point i of pair k is x[i][k].
+  const TreeVertex* x[4][8];
   double lo[8];
   double hi[8];
   FeatureKind kind;
 
-  void set(std::size_t lane, const TreeVertex* const (&x)[4], double window_lo,
+  void set(std::size_t lane, const TreeVertex* const (&points)[4], double window_lo,
            double window_hi) {
-    for (std::size_t i = 0; i < 4; ++i)
-      for (std::size_t k = 0; k < 3; ++k) {
-        t0[3 * i + k][lane] = x[i]->t0[k];
-        t1[3 * i + k][lane] = x[i]->t1[k];
-      }
+    for (std::size_t i = 0; i < 4; ++i) x[i][lane] = points[i];
     lo[lane] = window_lo;
     hi[lane] = window_hi;
   }
@@ -67,6 +62,13 @@ struct EightAnswers {
   unsigned no, yes;
   double toc_lo[8];
   double toc_hi[8];
+};
+
+/// @brief Lanes whose features touch at no time of the window at which the points are
+/// coplanar, a bit each, and where to divide the windows of the others.
+struct EightDivisions {
+  unsigned never_inside;
+  double at[8];
 };
 
 struct Kernels {
@@ -109,10 +111,14 @@ struct Kernels {
   /// coplanarityInDoubles() of eight pairs.
   EightCoplanarities (*coplanarity)(const EightPairs& pairs);
 
-  /// The plain cases of solveCoplanarity(): a pair that is never inside, or whose volume
-  /// changes sign once, well inside or outside. What is proved keeps the properties (1)
-  /// and (2) there; the rest is left to it.
+  /// The plain cases of solveCoplanarity(): a pair whose volume has one sign, or changes
+  /// it once, well inside or outside. What is proved keeps the properties (1) and (2)
+  /// there.
   EightAnswers (*solve)(const EightPairs& pairs, double toc_err);
+
+  /// For what solve() leaves, which mostly has a volume of one sign at the ends of the
+  /// window: divided where the volume comes nearest to zero, each part is a plain case.
+  EightDivisions (*divide)(const EightPairs& pairs);
 };
 
 /// @brief The kernels for this machine.

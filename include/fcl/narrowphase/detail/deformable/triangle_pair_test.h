@@ -122,9 +122,18 @@ class TrianglePairTest {
     return options_.goal == QueryGoal::kAny &&
            (!sink_.contacts().empty() || has_crossing_);
   }
+  /// A candidate in a part of its window.
+  struct Piece {
+    std::size_t candidate;
+    double lo, hi;
+  };
+
   void testCrossings();
   void filter(FeatureKind kind);
   void solve();
+  template <typename OnNo, typename OnOpen>
+  void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
+  EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureIds& pair, double toc_lo, double toc_hi);
 
@@ -133,6 +142,8 @@ class TrianglePairTest {
   FeatureBatch batch_;
   /// Pairs of one kind that may become coplanar.
   std::vector<FeatureCandidate> candidates_;
+  /// Scratch of solve().
+  std::vector<Piece> pieces_[3];
   ContactSink sink_;
   QueryProgress* progress_;
   std::size_t task_;
