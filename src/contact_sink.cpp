@@ -61,24 +61,27 @@ bool ContactSink::add(const FeatureContact& contact) {
   return true;
 }
 
-std::vector<FeatureContact> ContactSink::takeSorted() {
-  const std::size_t count = contacts_.size();
+UninitializedVector<FeatureContact> sortedByTime(
+    const std::vector<std::vector<FeatureContact>>& lists) {
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
   // As many buckets of equal time as contacts; most hold one or two.
   const auto bucketOf = [count](const FeatureContact& c) {
     return std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(count)),
                     count - 1);
   };
   std::vector<std::size_t> ends(count + 1, 0);
-  for (const FeatureContact& c : contacts_) ++ends[bucketOf(c) + 1];
+  for (const auto& list : lists)
+    for (const FeatureContact& c : list) ++ends[bucketOf(c) + 1];
   for (std::size_t i = 1; i <= count; ++i) ends[i] += ends[i - 1];
-  std::vector<FeatureContact> sorted(count);
+  UninitializedVector<FeatureContact> sorted(count);
   // Leaves the end of each bucket where its beginning was.
-  for (const FeatureContact& c : contacts_) sorted[ends[bucketOf(c)]++] = c;
+  for (const auto& list : lists)
+    for (const FeatureContact& c : list) sorted[ends[bucketOf(c)]++] = c;
   for (std::size_t i = 0, first = 0; i < count; first = ends[i], ++i)
-    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first),
-              sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]), isEarlier);
-  contacts_ = {};
-  seen_.clear();
+    if (ends[i] - first > 1)
+      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first),
+                sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]), isEarlier);
   return sorted;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <type_traits>
+#include <utility>
 
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
@@ -245,6 +246,11 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   QueryAnswer answer;
   const bool first = options.goal == QueryGoal::kFirst;
   const bool any = options.goal == QueryGoal::kAny;
+  std::size_t count = 0;
+  for (const TaskAnswer& task : tasks) count += task.contacts.size();
+  // A sink only where something may have to be left out.
+  const bool keeps_all = !first && !any && !may_repeat && count <= options.max_contacts;
+  std::vector<std::vector<FeatureContact>> lists;
   ContactSink sink(any ? 1 : options.max_contacts, may_repeat);
   for (TaskAnswer& task : tasks) {
     answer.counts += task.counts;
@@ -255,12 +261,17 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
       answer.has_crossing = true;
       answer.crossing = task.crossing;
     }
+    answer.cut |= task.cut && !first && !any;
+    if (keeps_all) {
+      lists.push_back(std::move(task.contacts));
+      continue;
+    }
     for (const FeatureContact& c : task.contacts)
       if (!first || c.toc_lo <= first_hi) sink.add(c);
-    answer.cut |= task.cut && !first && !any;
   }
   answer.cut |= sink.isCut() && !any;
-  answer.contacts = sink.takeSorted();
+  if (!keeps_all) lists.push_back(sink.takeContacts());
+  answer.contacts = sortedByTime(lists);
   return answer;
 }
 

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "fcl/narrowphase/detail/deformable/uninitialized_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -52,9 +54,6 @@ class ContactSink {
   /// @brief The contacts in no order; leaves the sink empty.
   std::vector<FeatureContact> takeContacts() { return std::move(contacts_); }
 
-  /// @brief The contacts, earliest first; leaves the sink empty.
-  std::vector<FeatureContact> takeSorted();
-
  private:
   using PairKey = std::array<std::uint32_t, 5>;
   static PairKey keyOf(const FeatureContact& contact);
@@ -69,6 +68,10 @@ class ContactSink {
   /// The kept pairs, and until cut_ where they are.
   std::map<PairKey, std::size_t> seen_;
 };
+
+/// @brief The contacts of some lists, earliest first.
+UninitializedVector<FeatureContact> sortedByTime(
+    const std::vector<std::vector<FeatureContact>>& lists);
 
 }  // namespace deformable
 }  // namespace detail

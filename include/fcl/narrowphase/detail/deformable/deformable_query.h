@@ -14,7 +14,7 @@ namespace deformable {
 
 struct QueryAnswer {
   /// Earliest first.
-  std::vector<FeatureContact> contacts;
+  UninitializedVector<FeatureContact> contacts;
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};
