@@ -89,6 +89,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
+      owned_(new std::uint16_t[kMaxPairs]),
       lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)} {
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
@@ -97,34 +98,10 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
   }
 }
 
-// add() writes behind the last pair.
+// listFeatures() writes behind the last pair.
 FeatureBatch::List::List(std::size_t pairs_each)
-    : codes(new std::uint32_t[kMaxPairs * pairs_each + 1]),
+    : codes(new std::uint32_t[kMaxPairs * pairs_each + 16]),
       windows(new TimeWindow[kMaxPairs * pairs_each]) {}
-
-/// Without a branch: which bits are set cannot be foreseen.
-void FeatureBatch::List::add(std::uint32_t triangle_pair, unsigned owned, int first,
-                             int last) {
-  for (int bit = first; bit < last; ++bit) {
-    codes[size] = featureCode(triangle_pair, bit);
-    size += owned >> bit & 1U;
-  }
-}
-
-void FeatureBatch::add(int i, int j, bool with_crossing, StageCounts& counts) {
-  const auto number = static_cast<std::uint32_t>(num_pairs_);
-  TrianglePair& pair = pairs_[num_pairs_];
-  pair.a = reader_a_.read(i, pair.x);
-  pair.b = reader_b_.read(j, pair.x + 3);
-  ++num_pairs_;
-  const unsigned shared = self_ ? sharedVertices(pair.a->id, pair.b->id) : 0U;
-  ++counts.triangle_pairs;
-  counts.adjacent_pairs += shared != 0;
-  const unsigned owned = ownedPairs(pair.a->owned, pair.b->owned, shared);
-  lists_[0].add(number, owned, 0, kNumVertexFacePairs);
-  lists_[1].add(number, owned, kNumVertexFacePairs, kNumFeaturePairs);
-  if (with_crossing) addCrossings(number, shared);
-}
 
 /// Only edges that the triangle owns and that share no vertex with the face.
 void FeatureBatch::addCrossings(std::uint32_t pair, unsigned shared) {
@@ -153,12 +130,14 @@ void FeatureBatch::cull(StageCounts& counts) {
 }
 
 void FeatureBatch::cull(FeatureKind kind, List& list, StageCounts& counts) {
-  const std::size_t left =
-      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, list.codes.get(),
-                            list.size, list.windows.get());
-  counts.feature_pairs += list.size;
-  counts.box_culled += list.size - left;
-  list.size = left;
+  constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
+  const std::size_t size = kernels_.listFeatures(
+      owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
+      list.codes.get());
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                                    list.codes.get(), size, list.windows.get());
+  counts.feature_pairs += size;
+  counts.box_culled += size - list.size;
 }
 
 FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {

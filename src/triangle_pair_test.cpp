@@ -43,10 +43,6 @@ TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
       progress_(progress),
       task_(task) {}
 
-void TrianglePairTest::visit(int i, int j, float earliest) {
-  batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
-}
-
 void TrianglePairTest::flush() {
   batch_.cull(counts_);
   testCrossings();

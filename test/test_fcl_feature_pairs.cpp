@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "mesh_generators.h"
 
 namespace fcl {
@@ -183,6 +184,64 @@ TEST(FCL_FEATURE_PAIRS, randomMeshes) {
     if (i % 4 == 0) expectMeshPairs(a, m, b, n);
     ASSERT_FALSE(HasFailure());
   }
+}
+
+TEST(FCL_FEATURE_PAIRS, ownedPairsByDefinition) {
+  for (unsigned a = 0; a <= kOwnsAll; ++a)
+    for (unsigned b = 0; b <= kOwnsAll; ++b) {
+      const MeshTriangle ta{{0, 1, 2}, a}, tb{{3, 4, 5}, b};
+      unsigned expected = 0;
+      for (int bit = 0; bit < kNumFeaturePairs; ++bit) {
+        const FeaturePair pair = featurePair(bit);
+        const MeshTriangle &first = pair.first_on_a ? ta : tb,
+                           &second = pair.first_on_a ? tb : ta;
+        const bool owned = pair.kind == FeatureKind::kEdgeEdge
+                               ? ta.ownsEdge(pair.first) && tb.ownsEdge(pair.second)
+                               : first.ownsVertex(pair.first) && second.ownsFace();
+        expected |= unsigned{owned} << bit;
+      }
+      ASSERT_EQ(ownedPairs(a, b, 0), expected) << a << ' ' << b;
+    }
+}
+
+TEST(FCL_FEATURE_PAIRS, pointsOfPairs) {
+  for (int bit = 0; bit < kNumFeaturePairs; ++bit) {
+    const FeaturePair pair = featurePair(bit);
+    const unsigned mine = pair.first_on_a ? 0 : 3, other = 3 - mine;
+    const unsigned i = pair.first, j = pair.second;
+    const std::array<unsigned, 4> expected =
+        pair.kind == FeatureKind::kVertexFace
+            ? std::array<unsigned, 4>{mine + i, other, other + 1, other + 2}
+            : std::array<unsigned, 4>{i, (i + 1) % 3, 3 + j, 3 + (j + 1) % 3};
+    for (std::size_t k = 0; k < 4; ++k)
+      EXPECT_EQ(kFeaturePoints[bit][k], expected[k]) << bit;
+  }
+}
+
+// Triangles in which every number but the vertices' is the same, or none is.
+TEST(FCL_FEATURE_PAIRS, sharedVerticesByDefinition) {
+  constexpr std::uint64_t kSeed = 4;
+  test::Random random(kSeed);
+  int sharing = 0;
+  for (int n = 0; n < 20000; ++n) {
+    TreeTriangle a{}, b{};
+    a.index = static_cast<std::uint32_t>(random.index(8));
+    b.index = random.index(2) ? a.index : static_cast<std::uint32_t>(random.index(8));
+    unsigned expected = 0;
+    const unsigned high = random.index(2) ? 0 : 29;
+    for (std::uint32_t& id : a.id)
+      id = static_cast<std::uint32_t>(random.index(8)) << high;
+    for (std::uint32_t& id : b.id)
+      id = static_cast<std::uint32_t>(random.index(8)) << high;
+    for (unsigned i = 0; i < 3; ++i)
+      for (unsigned j = 0; j < 3; ++j)
+        expected |= unsigned{a.id[i] == b.id[j]} << (3 * i + j);
+    ASSERT_EQ(sharedVertices(a.id, b.id), expected) << "seed " << kSeed << ", " << n;
+    ASSERT_EQ(doShareVertex(idsOf(a), idsOf(b)), expected != 0) << n;
+    sharing += expected != 0;
+  }
+  EXPECT_GT(sharing, 5000);
+  EXPECT_LT(sharing, 18000);
 }
 
 TEST(FCL_FEATURE_PAIRS, theLowestTriangleOwns) {

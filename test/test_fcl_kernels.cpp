@@ -332,6 +332,31 @@ struct TrianglePairBoxes {
   }
 };
 
+TEST(FCL_KERNELS, featuresOfMasks) {
+  constexpr std::uint64_t kSeed = 84;
+  Random random(kSeed);
+  for (int i = 0; i < 3000; ++i) {
+    std::vector<std::uint16_t> masks(random.index(20));
+    for (std::uint16_t& mask : masks) {
+      mask = static_cast<std::uint16_t>(random.next() & 0xffffU);
+      if (random.index(2)) mask &= static_cast<std::uint16_t>(random.next() & 0xffffU);
+      if (random.index(8) == 0) mask = random.index(2) ? 0 : 0xffff;
+    }
+    const auto kept = static_cast<unsigned>(random.index(2) ? random.next() : ~0U);
+    std::vector<std::uint32_t> expected;
+    for (std::size_t k = 0; k < masks.size(); ++k)
+      for (int bit = 0; bit < 16; ++bit)
+        if (masks[k] & kept & 1U << bit)
+          expected.push_back(featureCode(static_cast<std::uint32_t>(k), bit));
+    for (const Kernels* k : allSets()) {
+      // The room that it asks for, and no more.
+      std::vector<std::uint32_t> codes(expected.size() + 16);
+      codes.resize(k->listFeatures(masks.data(), masks.size(), kept, codes.data()));
+      ASSERT_EQ(codes, expected) << k->name << ", seed " << kSeed << ", " << i;
+    }
+  }
+}
+
 // Several triangle pairs at a time; codes and windows of what is left, in order.
 TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 72;

@@ -30,15 +30,16 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
-unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
-                         float (&earliest)[MovingKdopNode::kWidth]) {
+template <std::size_t kStride>
+HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+                                    float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kRows = 16;
   Floats s0[kRows], s1[kRows];
   Floats apart = broadcast<kEight>(1.f), cut = apart;
   for (std::size_t r = 0; r < kRows; ++r) {
     // Row r ^ 1 is the opposite half-axis.
-    s0[r] = broadcast<kEight>(box.t0[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t0);
-    s1[r] = broadcast<kEight>(box.t1[r * box.stride]) + load<kEight>(node.rows[r ^ 1].t1);
+    s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
+    s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.rows[r ^ 1].t1);
     apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
     cut = eitherNegative(cut, eitherNegative(s0[r], s1[r]));
   }
@@ -52,6 +53,12 @@ unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
   return left & bits(before <= hi);
 }
 
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
+                           float (&earliest)[MovingKdopNode::kWidth]) {
+  return box.stride == 1 ? overlapChildren<1>(box, node, earliest)
+                         : overlapChildren<BoxView::kInNode>(box, node, earliest);
+}
+
 unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
                      const MovingKdopNode& node) {
   const auto first = load<kEight>(node.places[0]), second = load<kEight>(node.places[1]),
@@ -62,6 +69,17 @@ unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
     found |= bits((first == place) | (second == place) | (third == place));
   }
   return found;
+}
+
+std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
+                         std::uint32_t* codes) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const unsigned mask = masks[i] & kept;
+    storeCounted(mask, featureCode(static_cast<std::uint32_t>(i), 0), codes + size);
+    size += static_cast<std::size_t>(__builtin_popcount(mask));
+  }
+  return size;
 }
 
 /// A moving box at both times.
@@ -115,7 +133,7 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
         depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
                kShifted ? turned_shift : nullptr);
     codes[left] = code;
-    left += signs(bothNegative(s.t0, s.t1)) == 0;
+    left += !isAnyNegative(bothNegative(s.t0, s.t1));
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < left; ++i) {
@@ -161,7 +179,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
         larger(larger(load<16>(face[0]->box.t0.half), load<16>(face[1]->box.t0.half)),
                load<16>(face[2]->box.t0.half));
     codes[left] = code;
-    left += signs(ends + swapHalves(all)) == 0;
+    left += !isAnyNegative(ends + swapHalves(all));
   }
   return left;
 }
@@ -586,9 +604,10 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {targetName(),        &overlapChildren, &trianglesAt,
-                                 &cullFeaturesOf,     &cullCrossings,   &isFanEmbedded,
-                                 &coplanarityOfEight, &solveEight,      &divideEight};
+extern const Kernels kKernels = {targetName(),   &overlapChildrenOf,  &trianglesAt,
+                                 &listFeatures,  &cullFeaturesOf,     &cullCrossings,
+                                 &isFanEmbedded, &coplanarityOfEight, &solveEight,
+                                 &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

@@ -196,6 +196,34 @@ HWY_INLINE unsigned signs(const Lanes<T, N>& a) {
   return bits(isNegative(a));
 }
 
+/// Whether the sign bit of a lane is set.
+template <typename T, std::size_t N>
+HWY_INLINE bool isAnyNegative(const Lanes<T, N>& a) {
+  auto any = a.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) any = hn::Or(any, a.part[p]);
+  const typename Lanes<T, N>::Tag tag;
+  const hn::RebindToSigned<decltype(tag)> integers;
+  return !hn::AllFalse(integers, hn::Lt(hn::BitCast(integers, any), hn::Zero(integers)));
+}
+
+/// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
+/// are written.
+HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  static constexpr std::uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                 8, 9, 10, 11, 12, 13, 14, 15};
+  const hn::CappedTag<std::uint32_t, 16> tag;
+  constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
+  for (std::size_t i = 0; i < 16; i += kWidth) {
+    // Eight bytes may be read.
+    const std::uint64_t part = mask >> i;
+    std::uint8_t bytes[8];
+    __builtin_memcpy(bytes, &part, sizeof(bytes));
+    const auto counted = hn::Add(hn::Set(tag, first), hn::LoadU(tag, kNumbers + i));
+    hn::StoreU(hn::Compress(counted, hn::LoadMaskBits(tag, bytes)), tag, to);
+    to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
+  }
+}
+
 /// The largest lane; none is a NaN.
 template <typename T, std::size_t N>
 HWY_INLINE T largest(const Lanes<T, N>& a) {
@@ -367,6 +395,16 @@ inline unsigned signs(const Lanes<T, N>& a) {
   unsigned out = 0;
   FCL_CCD_FOR_LANES out |= unsigned{a.lane[i] < 0} << i;
   return out;
+}
+
+template <typename T, std::size_t N>
+inline bool isAnyNegative(const Lanes<T, N>& a) {
+  return signs(a) != 0;
+}
+
+inline void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  for (; mask != 0; mask &= mask - 1)
+    *to++ = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
 }
 
 template <typename T, std::size_t N>

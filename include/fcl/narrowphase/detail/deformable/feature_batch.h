@@ -95,7 +95,20 @@ class FeatureBatch {
   /// @param with_crossing  whether they may cross at t = 0
   /// @param counts  triangle_pairs, adjacent_pairs and feature_pairs are counted
   /// @throws NonFiniteVertex
-  void add(int i, int j, bool with_crossing, StageCounts& counts);
+  void add(int i, int j, bool with_crossing, StageCounts& counts) {
+    TrianglePair& pair = pairs_[num_pairs_];
+    pair.a = reader_a_.read(i, pair.x);
+    pair.b = reader_b_.read(j, pair.x + 3);
+    const bool do_share = self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b));
+    const unsigned shared = do_share ? sharedVertices(pair.a->id, pair.b->id) : 0U;
+    const unsigned owned = ownedPairs(pair.a->owned, pair.b->owned, shared);
+    ++counts.triangle_pairs;
+    counts.adjacent_pairs += do_share;
+    owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
+    if (with_crossing) addCrossings(static_cast<std::uint32_t>(num_pairs_), shared);
+    // Three pairs of ten own nothing together: no branch, nobody could foretell it.
+    num_pairs_ += (owned != 0) | with_crossing;
+  }
 
   void clear();
 
@@ -137,8 +150,6 @@ class FeatureBatch {
     std::size_t size{0};
 
     explicit List(std::size_t pairs_each);
-    /// The pairs that `owned` names, bits first to last - 1.
-    void add(std::uint32_t triangle_pair, unsigned owned, int first, int last);
   };
 
   const List& list(FeatureKind kind) const {
@@ -153,6 +164,8 @@ class FeatureBatch {
   KdopShift turned_shift_;
   const Kernels& kernels_;
   std::unique_ptr<TrianglePair[]> pairs_;
+  /// The pairs of features of each triangle pair that are to be looked at.
+  std::unique_ptr<std::uint16_t[]> owned_;
   std::size_t num_pairs_{0};
   List lists_[2];
   std::vector<std::uint32_t> crossings_;

@@ -69,28 +69,51 @@ inline unsigned edgesAt(unsigned vertices) {
 }
 
 /// @brief Bits 3 i + j for bit i of rows and bit j of columns.
-inline unsigned product(unsigned rows, unsigned columns) {
+constexpr unsigned product(unsigned rows, unsigned columns) {
   return ((rows & 1U) | (rows & 2U) << 2 | (rows & 4U) << 4) * columns;
+}
+
+/// @brief Whether one of the vertices of a is one of b's.
+inline bool doShareVertex(const ThreeIds& a, const ThreeIds& b) {
+  const auto equal = (a == __builtin_shufflevector(b, b, 0, 0, 0, 0)) |
+                     (a == __builtin_shufflevector(b, b, 1, 1, 1, 1)) |
+                     (a == __builtin_shufflevector(b, b, 2, 2, 2, 2));
+  return isAny(equal & Mask4{-1, -1, -1, 0});
 }
 
 /// @brief Bits 3 i + j for the equal ones among vertices i of a and j of b.
 inline unsigned sharedVertices(const std::uint32_t (&a)[3], const std::uint32_t (&b)[3]) {
-  typedef std::uint32_t Ids __attribute__((vector_size(16)));
-  const Ids ids = {a[0], a[1], a[2], a[2]};
-  if (!isAny((ids == b[0]) | (ids == b[1]) | (ids == b[2]))) return 0;
   unsigned shared = 0;
   for (unsigned i = 0; i < 3; ++i)
     for (unsigned j = 0; j < 3; ++j) shared |= unsigned{a[i] == b[j]} << (3 * i + j);
   return shared;
 }
 
+/// @brief For each mask of MeshTriangle::owned the pairs of features of two triangles
+/// whose part is owned that is a's, or b's.
+struct OwnedParts {
+  std::uint16_t of_a[kOwnsAll + 1];
+  std::uint16_t of_b[kOwnsAll + 1];
+};
+
+constexpr OwnedParts makeOwnedParts() {
+  OwnedParts parts{};
+  for (unsigned owned = 0; owned <= kOwnsAll; ++owned) {
+    const unsigned vertices = owned & 7U, edges = owned >> 3 & 7U, face = owned >> 6 & 1U;
+    parts.of_a[owned] =
+        static_cast<std::uint16_t>(vertices | face * 7U << 3 | product(edges, 7U) << 6);
+    parts.of_b[owned] =
+        static_cast<std::uint16_t>(face * 7U | vertices << 3 | product(7U, edges) << 6);
+  }
+  return parts;
+}
+
+constexpr OwnedParts kOwnedParts = makeOwnedParts();
+
 /// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned) and
 /// that share no vertex (sharedVertices(); 0 for triangles of two meshes).
 inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b, unsigned shared) {
-  const unsigned vertices_a = (owned_b >> 6 & 1U) * (owned_a & 7U);
-  const unsigned vertices_b = (owned_a >> 6 & 1U) * (owned_b & 7U);
-  const unsigned edges = product(owned_a >> 3 & 7U, owned_b >> 3 & 7U);
-  unsigned pairs = vertices_a | vertices_b << 3 | edges << 6;
+  unsigned pairs = kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
   for (; shared != 0; shared &= shared - 1) {
     const unsigned bit = static_cast<unsigned>(__builtin_ctz(shared));
     const unsigned i = 1U << bit / 3, j = 1U << bit % 3;

@@ -6,6 +6,7 @@
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
@@ -15,8 +16,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A moving box, row r of MovingKdopNode at t0[r * stride] and t1[r * stride].
+/// @brief A moving box, row r of MovingKdopNode at t0[r * stride] and t1[r * stride]; the
+/// stride is 1, or that of a box in a node.
 struct BoxView {
+  static constexpr std::size_t kInNode = sizeof(MovingKdopNode::Row) / sizeof(float);
   const float* t0;
   const float* t1;
   std::size_t stride;
@@ -83,6 +86,12 @@ struct Kernels {
   /// Which of the node's triangles have one of `count` vertices (places in the tree).
   unsigned (*trianglesAt)(const std::uint32_t* places, std::size_t count,
                           const MovingKdopNode& node);
+
+  /// Lists the pairs of features that bits of masks stand for, a mask for each triangle
+  /// pair: codes, in ascending order. Returns how many; writes up to 16 more.
+  /// @param kept  bits that count
+  std::size_t (*listFeatures)(const std::uint16_t* masks, std::size_t count,
+                              unsigned kept, std::uint32_t* codes);
 
   /// Leaves, of pairs of features of one kind, those whose moving boxes overlap, with
   /// their windows: overlapWindow() of each. Returns how many.

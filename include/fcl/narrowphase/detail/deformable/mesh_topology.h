@@ -28,6 +28,9 @@ struct MeshTriangle {
   bool ownsFace() const { return (owned >> 6) & 1U; }
 };
 
+/// @brief Three vertices; the fourth number does not count.
+typedef std::uint32_t ThreeIds __attribute__((vector_size(16)));
+
 /// All six border features and the face.
 constexpr std::uint32_t kOwnsAll = 0x7f;
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "fcl/math/bv/moving_kdop.h"
@@ -78,6 +79,14 @@ struct TreeTriangle {
   std::uint32_t id[3];
   std::uint32_t index;
 };
+
+inline ThreeIds idsOf(const TreeTriangle& t) {
+  static_assert(offsetof(TreeTriangle, id) + sizeof(ThreeIds) == sizeof(TreeTriangle));
+  ThreeIds ids;
+  std::memcpy(&ids, reinterpret_cast<const char*>(&t) + offsetof(TreeTriangle, id),
+              sizeof(ids));
+  return ids;
+}
 
 /// @brief A vertex where the tests read it: its path (the fourth number is not used) and
 /// its moving box.

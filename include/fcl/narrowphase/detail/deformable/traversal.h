@@ -145,8 +145,7 @@ class Traversal {
   void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
                const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
                Visit& visit) {
-    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane],
-                sizeof(MovingKdopNode::Row) / sizeof(float)};
+    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], BoxView::kInNode};
     float moved[2][16];
     if (!kSelf) {
       for (std::size_t r = 0; r < 16; ++r) {

@@ -74,7 +74,9 @@ class TrianglePairTest {
   /// boxes overlap from `earliest` on; between two calls of flush() at most
   /// FeatureBatch::kMaxPairs pairs.
   /// @throws NonFiniteVertex
-  void visit(int i, int j, float earliest);
+  void visit(int i, int j, float earliest) {
+    batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
+  }
 
   /// @brief Tests what visit() has taken.
   void flush();
