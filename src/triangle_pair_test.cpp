@@ -127,12 +127,15 @@ void TrianglePairTest::solve() {
   pieces.clear();
   for (std::size_t first = 0; first < open.size() && !isDone(); first += 8) {
     const EightDivisions found = kernels_.divide(eightOf(open, first));
-    for (std::size_t i = first; i < std::min(open.size(), first + 8); ++i) {
-      const Piece& p = open[i];
-      if (found.never_inside >> (i - first) & 1U)
-        isNo(p);
+    const std::size_t last = std::min(open.size(), first + 8);
+    for (std::size_t i = first; i < last && !isDone(); ++i) {
+      const std::size_t lane = i - first;
+      if (found.never_inside >> lane & 1U)
+        isNo(open[i]);
+      else if (found.divisible >> lane & 1U)
+        pieces.push_back({open[i].candidate, open[i].lo, found.at[lane]});
       else
-        pieces.push_back({p.candidate, p.lo, found.at[i - first]});
+        solveAlone(open[i]);
     }
   }
   solve(

@@ -593,7 +593,9 @@ EightDivisions divideEight(const EightPairs& x) {
   const Quadratics n = cross(v, w);
   EightDivisions out;
   out.never_inside = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
-  const Doubles s = nearestToZero(spannedVolume(u, n));
+  const Cubics f = spannedVolume(u, n);
+  out.divisible = bits(f.has_bounds & (abs(f.b0) > f.outer) & (abs(f.b3) > f.outer));
+  const Doubles s = nearestToZero(f);
   store(min(hi, lo + s * (hi - lo)), out.at);
   return out;
 }

@@ -68,9 +68,10 @@ struct EightAnswers {
 };
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
-/// coplanar, a bit each, and where to divide the windows of the others.
+/// coplanar, and lanes that may be plain cases in two parts, a bit each; where to divide
+/// the windows.
 struct EightDivisions {
-  unsigned never_inside;
+  unsigned never_inside, divisible;
   double at[8];
 };
 
@@ -125,8 +126,8 @@ struct Kernels {
   /// there.
   EightAnswers (*solve)(const EightPairs& pairs, double toc_err);
 
-  /// For what solve() leaves, which mostly has a volume of one sign at the ends of the
-  /// window: divided where the volume comes nearest to zero, each part is a plain case.
+  /// For what solve() leaves. Most of it has a volume that is clear of zero at both ends
+  /// of the window: divided where it comes nearest to zero, each part is a plain case.
   EightDivisions (*divide)(const EightPairs& pairs);
 };
 
