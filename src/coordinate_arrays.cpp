@@ -88,14 +88,14 @@ FrameBounds<S> boundFrames(const S* previous, const S* current, std::size_t num_
                            int num_threads) {
   const DefaultFloatingPoint mode;
   WideBounds<S> all;
-  for (const WideBounds<S>& bounds :
-       ofBlocks(num_vertices, num_threads, WideBounds<S>(),
-                [&](std::size_t first, std::size_t last) {
-                  WideBounds<S> block;
-                  for (const S* frame : {previous, current})
-                    block.add(frame + 3 * first, 3 * (last - first));
-                  return block;
-                }))
+  for (const WideBounds<S>&bounds : ofBlocks(num_vertices, num_threads, WideBounds<S>(),
+                                             [&](std::size_t first, std::size_t last) {
+                                               WideBounds<S> block;
+                                               for (const S* frame : {previous, current})
+                                                 block.add(frame + 3 * first,
+                                                           3 * (last - first));
+                                               return block;
+                                             }))
     all.add(bounds);
   FrameBounds<S> out;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -119,7 +119,7 @@ FrameBounds<S> boundFrames(const S* previous, const S* current, std::size_t num_
   return out;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                    \
+#define FCL_CCD_INSTANTIATE(S)                                    \
   template std::size_t findNotFinite(const S*, std::size_t, int); \
   template FrameBounds<S> boundFrames(const S*, const S*, std::size_t, int);
 FCL_CCD_INSTANTIATE(double)

@@ -41,8 +41,8 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   std::memcpy(after, found, sizeof(found));
   after[kWidth] = 0;
 
-  // A spoke that is met twice belongs to three triangles or to two sheets: at most one may
-  // follow each, and each may follow one.
+  // A spoke that is met twice belongs to three triangles or to two sheets: at most one
+  // may follow each, and each may follow one.
   std::uint32_t followers = 0, surplus = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     surplus |= (after[i] & (after[i] - 1)) | (followers & after[i]);
@@ -85,8 +85,8 @@ class Owned {
       const std::uint32_t after = i + 1 < count_ ? nextEdge(corners_[i + 1]) : end;
       const bool below_next = vertex_ < c.next, below_last = vertex_ < c.last;
       owned_[c.slot] = bit(below_next & (nextEdge(c) < before), 3 + nextEdge(c) % 4) |
-                         bit(below_last & (lastEdge(c) < after), 3 + lastEdge(c) % 4) |
-                         bit(below_next & below_last, 6);
+                       bit(below_last & (lastEdge(c) < after), 3 + lastEdge(c) % 4) |
+                       bit(below_next & below_last, 6);
       before = lastEdge(c);
     }
     owned_[lowest->slot] |= bit(true, lowest->number % 4);
@@ -101,7 +101,8 @@ class Owned {
       for (const bool next : {true, false}) {
         const std::uint32_t other = next ? c->next : c->last,
                             edge = next ? nextEdge(*c) : lastEdge(*c);
-        if (vertex_ < other) claims.push_back({other, kNone, edge, c->slot, 3 + edge % 4});
+        if (vertex_ < other)
+          claims.push_back({other, kNone, edge, c->slot, 3 + edge % 4});
       }
       if (vertex_ <= c->next && vertex_ <= c->last)
         claims.push_back({std::min(c->next, c->last), std::max(c->next, c->last),
@@ -151,10 +152,10 @@ VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
         for (; v < last; ++v) {
           const std::uint32_t count = first_[v + 1] - first_[v];
           Corner* corners = corners_.data() + first_[v];
-          kinds_[v] = count == 0 || count > VertexFans::kMaxSpokes
-                          ? CornersAtVertex::kNoFan
-                      : count <= 8 ? sortIntoFan<2>(corners, count)
-                                   : sortIntoFan<VertexFans::kMaxSpokes / 4>(corners, count);
+          kinds_[v] =
+              count == 0 || count > VertexFans::kMaxSpokes ? CornersAtVertex::kNoFan
+              : count <= 8 ? sortIntoFan<2>(corners, count)
+                           : sortIntoFan<VertexFans::kMaxSpokes / 4>(corners, count);
         }
       });
 }
@@ -162,18 +163,18 @@ VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
 void assignOwners(const VertexCorners& corners, int num_threads,
                   std::vector<TreeTriangle>& triangles) {
   UninitializedVector<std::uint8_t> owned(4 * triangles.size());
-  parallelForBlocks(
-      corners.size(), kBlock, num_threads, [&](std::size_t v, std::size_t last) {
-        std::vector<std::array<std::uint32_t, 5>> claims;
-        for (; v < last; ++v) {
-          const CornersAtVertex at = corners[v];
-          const Owned here(static_cast<std::uint32_t>(v), at, owned.data());
-          if (at.kind == CornersAtVertex::kNoFan)
-            here.ofAny(claims);
-          else
-            here.ofFan(at.kind == CornersAtVertex::kClosedFan);
-        }
-      });
+  parallelForBlocks(corners.size(), kBlock, num_threads,
+                    [&](std::size_t v, std::size_t last) {
+                      std::vector<std::array<std::uint32_t, 5>> claims;
+                      for (; v < last; ++v) {
+                        const CornersAtVertex at = corners[v];
+                        const Owned here(static_cast<std::uint32_t>(v), at, owned.data());
+                        if (at.kind == CornersAtVertex::kNoFan)
+                          here.ofAny(claims);
+                        else
+                          here.ofFan(at.kind == CornersAtVertex::kClosedFan);
+                      }
+                    });
   parallelForBlocks(triangles.size(), 4 * kBlock, num_threads,
                     [&](std::size_t i, std::size_t last) {
                       for (; i < last; ++i) {

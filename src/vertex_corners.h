@@ -26,8 +26,8 @@ struct alignas(16) Corner {
   std::uint32_t slot;
 };
 
-/// @brief The corners at one vertex. Those of a fan are in order: each but the first, of a
-/// closed fan each, begins where the one before ends.
+/// @brief The corners at one vertex. Those of a fan are in order: each but the first, of
+/// a closed fan each, begins where the one before ends.
 struct CornersAtVertex {
   enum Kind : std::uint8_t { kNoFan, kOpenFan, kClosedFan };
 

@@ -24,16 +24,18 @@ VertexFans::VertexFans(const VertexCorners& corners, int num_threads)
   first_[corners.size()] = num_spokes;
   spokes_.resize(num_spokes);
   constexpr std::size_t kBlock = 4096;
-  parallelForBlocks(
-      corners.size(), kBlock, num_threads, [&](std::size_t v, std::size_t last) {
-        for (; v < last; ++v) {
-          const CornersAtVertex at = corners[v];
-          std::uint32_t* to = spokes_.data() + first_[v];
-          if (at.kind == CornersAtVertex::kNoFan) continue;
-          for (std::uint32_t i = 0; i < at.count; ++i) *to++ = at.corners[i].next;
-          if (at.kind == CornersAtVertex::kOpenFan) *to = at.corners[at.count - 1].last;
-        }
-      });
+  parallelForBlocks(corners.size(), kBlock, num_threads,
+                    [&](std::size_t v, std::size_t last) {
+                      for (; v < last; ++v) {
+                        const CornersAtVertex at = corners[v];
+                        std::uint32_t* to = spokes_.data() + first_[v];
+                        if (at.kind == CornersAtVertex::kNoFan) continue;
+                        for (std::uint32_t i = 0; i < at.count; ++i)
+                          *to++ = at.corners[i].next;
+                        if (at.kind == CornersAtVertex::kOpenFan)
+                          *to = at.corners[at.count - 1].last;
+                      }
+                    });
 }
 
 void VertexFans::renumber(const VertexFans& before,

@@ -402,7 +402,8 @@ TEST(FCL_THREADS, sameModelWithAnyNumber) {
       ASSERT_EQ(step.update(*several), BVH_OK);
       expectSameModel(*several, *one);
       ASSERT_FALSE(HasFailure());
-      if (threads == 2) expectSame(Scene{step.name, several, nullptr}.run(request), expected);
+      if (threads == 2)
+        expectSame(Scene{step.name, several, nullptr}.run(request), expected);
     }
   }
 }
@@ -411,7 +412,8 @@ TEST(FCL_THREADS, modelRefusesANegativeNumber) {
   const auto model = steps().back().model(2);
   for (const int threads : {-1, std::numeric_limits<int>::min()}) {
     EXPECT_EQ(model->setNumThreads(threads), BVH_ERR_INCORRECT_DATA);
-    EXPECT_EQ(model->lastError(), std::to_string(threads) + " is not a number of threads");
+    EXPECT_EQ(model->lastError(),
+              std::to_string(threads) + " is not a number of threads");
     EXPECT_EQ(model->numThreads(), 2);
   }
   EXPECT_EQ(model->setNumThreads(0), BVH_OK);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a model asks of its frames as a whole: arrays of float or double, x y z per vertex.
+// What a model asks of its frames as a whole: arrays of float or double, x y z per
+// vertex.
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_COORDINATE_ARRAYS_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_COORDINATE_ARRAYS_H
 
