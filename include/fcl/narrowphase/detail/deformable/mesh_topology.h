@@ -38,8 +38,9 @@ constexpr std::uint32_t kOwnsAll = 0x7f;
 /// into its library for each.
 inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
   std::size_t ids[3];
-  static_assert(std::is_trivially_copyable_v<Triangle> &&
-                sizeof(Triangle) == sizeof(ids));
+  static_assert(
+      std::is_trivially_copyable<Triangle>::value && sizeof(Triangle) == sizeof(ids),
+      "a triangle is its three ids");
   std::memcpy(ids, &triangle, sizeof(ids));
   for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
 }

@@ -81,7 +81,8 @@ struct TreeTriangle {
 };
 
 inline ThreeIds idsOf(const TreeTriangle& t) {
-  static_assert(offsetof(TreeTriangle, id) + sizeof(ThreeIds) == sizeof(TreeTriangle));
+  static_assert(offsetof(TreeTriangle, id) + sizeof(ThreeIds) == sizeof(TreeTriangle),
+                "one more number may be read");
   ThreeIds ids;
   std::memcpy(&ids, reinterpret_cast<const char*>(&t) + offsetof(TreeTriangle, id),
               sizeof(ids));
