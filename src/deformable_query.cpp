@@ -49,7 +49,7 @@ class Part {
  public:
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const std::uint8_t* embedded,
        const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels()),
+      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels(), schedule.in_order),
         schedule_(schedule),
         leaves_(&leaves),
         block_(schedule.block + kMaxStep) {}
@@ -97,7 +97,7 @@ class Part {
 
  private:
   /// A step finds at most so many triangle pairs.
-  static constexpr std::size_t kMaxStep = MovingKdopNode::kWidth * MovingKdopNode::kWidth;
+  static constexpr std::size_t kMaxStep = LanePairs::kMax;
 
   void step(const NodePair& work) {
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
@@ -208,12 +208,14 @@ std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   const std::size_t count = tree.vertices().size();
-  constexpr std::size_t kBlock = 4096;
+  constexpr std::size_t kBlock = 4096, kAhead = 64;
   embedded.resize(count);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
-    for (; i < last; ++i)
+    for (; i < last; ++i) {
+      __builtin_prefetch(&tree.vertices()[std::min(i + kAhead, count - 1)]);
       embedded[i] = kernels().isFanEmbedded(tree.vertices().data(), tree.vertices()[i],
                                             tree.fans()[i]);
+    }
   });
   times.traverse += secondsSince(start);
   return embedded;

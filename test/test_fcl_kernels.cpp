@@ -163,10 +163,25 @@ struct Rows {
   BoxView view() const { return {t0, t1, 1}; }
 };
 
+/// Whether no half-axis separates the boxes at t = 0.
+bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
+  for (int j = 0; j < 16; ++j)
+    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
+  return true;
+}
+
+/// What is said without times of boxes that overlap from `lo` on.
+void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, float lo) {
+  if (doOverlapAtStart(a, b))
+    EXPECT_EQ(earliest, 0);
+  else
+    EXPECT_TRUE(earliest == FLT_MIN || earliest == lo) << earliest << " " << lo;
+}
+
 void expectRightChildren(const BoxView& view, const MovingKdop& box,
                          const MovingKdopNode& node, Tally& tally) {
   float first[kWidth];
-  const unsigned mask = allSets().front()->overlapChildren(view, node, first);
+  const unsigned mask = allSets().front()->overlapChildren(view, node, true, first);
   EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
   for (int lane = 0; lane < node.count; ++lane) {
     const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
@@ -176,10 +191,17 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
     }
     tally.add(!expected.isEmpty(), expected);
   }
+  float first_untimed[kWidth];
+  allSets().front()->overlapChildren(view, node, false, first_untimed);
+  for (int lane = 0; lane < node.count; ++lane)
+    if (mask >> lane & 1U)
+      expectUntimed(first_untimed[lane], box, node.box(lane), first[lane]);
   for (const Kernels* k : allSets()) {
     float earliest[kWidth];
-    ASSERT_EQ(k->overlapChildren(view, node, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, true, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first);
+    ASSERT_EQ(k->overlapChildren(view, node, false, earliest), mask) << k->name;
+    expectSameBits(mask, earliest, first_untimed);
     ASSERT_FALSE(testing::Test::HasFailure()) << k->name;
   }
 }
@@ -227,9 +249,13 @@ TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
       node.clearRest();
       for (const Kernels* k : allSets()) {
         float earliest[kWidth];
-        EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, earliest), (1U << count) - 1)
-            << k->name;
-        for (int lane = 0; lane < count; ++lane) EXPECT_EQ(earliest[lane], 0) << k->name;
+        for (const bool timed : {true, false}) {
+          EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, timed, earliest),
+                    (1U << count) - 1)
+              << k->name;
+          for (int lane = 0; lane < count; ++lane)
+            EXPECT_EQ(earliest[lane], 0) << k->name;
+        }
       }
     }
   }
@@ -363,6 +389,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint32_t kPairs = 5;
   Random random(kSeed);
   Tally tally[kNumFeaturePairs];
+  int late = 0;
   for (int i = 0; i < 12000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     std::vector<TrianglePairBoxes> boxes;
@@ -376,6 +403,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     }
     const KdopShift turned_shift = boxes[0].turnedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
+    const float latest =
+        random.index(2) ? 1.f : static_cast<float>(random.uniform(-0.1, 1));
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
       std::vector<TimeWindow> left_windows;
@@ -390,10 +419,11 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
               b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
           const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
-          if (!expected.isEmpty()) {
+          if (!expected.isEmpty() && expected.lo <= latest) {
             left.push_back(codes.back());
             left_windows.push_back(expected);
           }
+          late += !expected.isEmpty() && expected.lo > latest;
           tally[bit].add(!expected.isEmpty(), expected);
         }
       std::vector<TimeWindow> first;
@@ -401,8 +431,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
         std::vector<std::uint32_t> mine = codes;
         std::vector<TimeWindow> windows(codes.size());
         const std::size_t count =
-            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, mine.data(),
-                                  mine.size(), windows.data());
+            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, latest,
+                                  mine.data(), mine.size(), windows.data());
         mine.resize(count);
         windows.resize(count);
         ASSERT_EQ(mine, left) << kernels->name;
@@ -421,52 +451,128 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     EXPECT_GT(tally[bit].apart, 1000) << bit;
     EXPECT_GT(tally[bit].cut, 300) << bit;
   }
+  EXPECT_GT(late, 1000);
 }
 
-// Up to three places, among them of vertices that no triangle has; lanes that are not in
-// use and lanes that hold nodes have none.
-TEST(FCL_KERNELS, trianglesAtVertices) {
+/// A node with triangles of few vertices and, here and there, a node among them.
+MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
+  MovingKdopNode node;
+  node.count = 1 + static_cast<int>(random.index(kWidth));
+  // Few vertices, or places that differ in a high bit alone.
+  const unsigned high = random.index(2) ? 0 : 31;
+  const auto place = [&] {
+    return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
+           static_cast<std::uint32_t>(random.index(high ? 4 : 1));
+  };
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const bool is_triangle = lane < node.count && random.index(8) != 0;
+    node.child[lane] = is_triangle ? -1 - lane : lane;
+    for (auto& row : node.places)
+      row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+    node.setBox(lane, randomBounds(random, halves, scale));
+  }
+  return node;
+}
+
+bool doShareEmbedded(const MovingKdopNode& a, int i, const MovingKdopNode& b, int j,
+                     const std::set<std::uint32_t>& embedded) {
+  for (const auto& mine : a.places)
+    for (const auto& theirs : b.places)
+      if (mine[i] == theirs[j] && embedded.count(mine[i])) return true;
+  return false;
+}
+
+struct ExpectedPair {
+  int a, b;
+  float lo;
+};
+
+// Two leaves or one with itself, moved against each other or not, with and without fans;
+// pairs come in ascending order.
+TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
-  int found = 0, not_found = 0;
-  for (int i = 0; i < 20000; ++i) {
-    MovingKdopNode node;
-    node.count = 1 + static_cast<int>(random.index(kWidth));
-    // Few vertices, or ids that differ in a high bit alone.
-    const unsigned high = random.index(2) ? 0 : 31;
-    const auto place = [&] {
-      return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
-             static_cast<std::uint32_t>(random.index(high ? 4 : 1));
-    };
-    for (int lane = 0; lane < kWidth; ++lane) {
-      const bool is_triangle = lane < node.count && random.index(4) != 0;
-      node.child[lane] = is_triangle ? -1 - lane : lane;
-      for (auto& row : node.places)
-        row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+  int overlaps = 0, apart = 0, fans = 0, late = 0;
+  for (int i = 0; i < 6000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const Halves halves = randomHalves(random);
+    const float scale = randomScale(random);
+    MovingKdopNode a = randomLeaf(random, halves, scale),
+                   other = randomLeaf(random, halves, scale);
+    const bool same = random.index(3) == 0;
+    const MovingKdopNode& b = same ? a : other;
+    const bool has_shift = !same && random.index(2);
+    const MovingKdop box = randomBounds(random, randomHalves(random), scale);
+    const KdopShift shift = {box.t0, box.t1};
+    float rows[2][16];
+    for (int r = 0; r < 16; ++r) {
+      rows[0][r] = shift.t0.half[MovingKdopNode::halfAxis(r)];
+      rows[1][r] = shift.t1.half[MovingKdopNode::halfAxis(r)];
     }
-    std::uint32_t places[3];
-    const std::size_t count = random.index(4);
-    for (std::uint32_t& p : places) p = place();
-    unsigned expected = 0;
-    for (int lane = 0; lane < kWidth; ++lane)
-      for (const auto& row : node.places)
-        if (std::find(places, places + count, row[lane]) != places + count)
-          expected |= 1U << lane;
-    for (const Kernels* k : allSets())
-      ASSERT_EQ(k->trianglesAt(places, count, node), expected)
-          << k->name << ", seed " << kSeed << ", " << i;
-    found += __builtin_popcount(expected);
-    not_found += node.count - __builtin_popcount(expected);
-  }
-  EXPECT_GT(found, 10000);
-  EXPECT_GT(not_found, 10000);
-}
+    // A table of what is embedded reaches as far as the places.
+    const bool has_fans = !has_shift && random.index(2);
+    std::set<std::uint32_t> embedded;
+    std::vector<std::uint8_t> table(20);
+    if (has_fans) {
+      for (MovingKdopNode* node : {&a, &other})
+        for (auto& row : node->places)
+          for (std::uint32_t& p : row)
+            if (p != MovingKdopNode::kNoPlace) p %= 20;
+      for (std::uint32_t p = 0; p < 20; ++p)
+        if (random.index(3) == 0) {
+          table[p] = 1;
+          embedded.insert(p);
+        }
+    }
+    const auto lanes = static_cast<unsigned>(random.next()) & a.triangles();
 
-/// Whether no half-axis separates the boxes at t = 0.
-bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
-  for (int j = 0; j < 16; ++j)
-    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
-  return true;
+    std::vector<ExpectedPair> expected;
+    std::size_t expected_fans = 0;
+    for (int x = 0; x < a.count; ++x)
+      for (int y = same ? x + 1 : 0; y < b.count; ++y) {
+        if (!(lanes >> x & 1U) || !b.isTriangle(y)) continue;
+        const MovingKdop moved = shifted(a.box(x), has_shift ? &shift : nullptr);
+        const TimeWindow window = overlapWindow<false>(moved, b.box(y), nullptr);
+        if (window.isEmpty())
+          ++apart;
+        else if (doShareEmbedded(a, x, b, y, embedded))
+          ++expected_fans;
+        else
+          expected.push_back({x, y, window.lo});
+      }
+    for (const bool timed : {true, false}) {
+      LanePairs first;
+      for (const Kernels* k : allSets()) {
+        LanePairs pairs;
+        k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
+                             has_fans ? table.data() : nullptr, timed},
+                            pairs);
+        ASSERT_EQ(pairs.size, expected.size()) << k->name;
+        EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
+        if (k == allSets().front()) first = pairs;
+        for (std::size_t n = 0; n < pairs.size; ++n) {
+          EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
+          EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
+          if (timed)
+            EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
+          else
+            expectUntimed(pairs.earliest[n],
+                          shifted(a.box(expected[n].a), has_shift ? &shift : nullptr),
+                          b.box(expected[n].b), expected[n].lo);
+          EXPECT_EQ(std::memcmp(&pairs.earliest[n], &first.earliest[n], sizeof(float)), 0)
+              << k->name;
+        }
+        ASSERT_FALSE(HasFailure()) << k->name;
+      }
+    }
+    fans += static_cast<int>(expected_fans);
+    overlaps += static_cast<int>(expected.size());
+    for (const ExpectedPair& p : expected) late += p.lo > 0;
+  }
+  EXPECT_GT(overlaps, 5000);
+  EXPECT_GT(apart, 5000);
+  EXPECT_GT(fans, 1000);
+  EXPECT_GT(late, 1000);
 }
 
 TEST(FCL_KERNELS, edgesAndFacesAtStart) {

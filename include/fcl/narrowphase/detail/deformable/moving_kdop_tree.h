@@ -41,6 +41,13 @@ struct alignas(64) MovingKdopNode {
   /// @brief Lanes that are in use, a bit each.
   unsigned lanes() const { return (1U << count) - 1; }
 
+  /// @brief Those of them that are triangles.
+  unsigned triangles() const {
+    unsigned found = 0;
+    for (unsigned i = 0; i < kWidth; ++i) found |= unsigned{child[i] < 0} << i;
+    return found & lanes();
+  }
+
   /// @brief Half-axis of Kdop16 that a row holds.
   static constexpr int halfAxis(int row) { return row / 2 + row % 2 * 8; }
 
