@@ -273,7 +273,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   }
   answer.cut |= sink.isCut() && !any;
   if (!keeps_all) lists.push_back(sink.takeContacts());
-  answer.contacts = sortedByTime(lists);
+  answer.contacts = SortedContacts(std::move(lists));
   return answer;
 }
 

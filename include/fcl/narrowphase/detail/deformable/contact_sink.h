@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -69,9 +70,51 @@ class ContactSink {
   std::map<PairKey, std::size_t> seen_;
 };
 
-/// @brief The contacts of some lists, earliest first.
-UninitializedVector<FeatureContact> sortedByTime(
-    const std::vector<std::vector<FeatureContact>>& lists);
+/// @brief The contacts of some lists, earliest first. They stay in the lists, since there
+/// may be many.
+class SortedContacts {
+ public:
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = FeatureContact;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const FeatureContact*;
+    using reference = const FeatureContact&;
+
+    Iterator() = default;
+    explicit Iterator(const FeatureContact* const* at) : at_(at) {}
+    reference operator*() const { return **at_; }
+    pointer operator->() const { return *at_; }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    Iterator operator++(int) { return Iterator(at_++); }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const FeatureContact* const* at_{nullptr};
+  };
+
+  SortedContacts() = default;
+  explicit SortedContacts(std::vector<std::vector<FeatureContact>> lists);
+  SortedContacts(SortedContacts&&) = default;
+  SortedContacts& operator=(SortedContacts&&) = default;
+
+  std::size_t size() const { return sorted_.size(); }
+  bool empty() const { return sorted_.empty(); }
+  const FeatureContact& operator[](std::size_t i) const { return *sorted_[i]; }
+  const FeatureContact& front() const { return *sorted_.front(); }
+  const FeatureContact& back() const { return *sorted_.back(); }
+  Iterator begin() const { return Iterator(sorted_.data()); }
+  Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
+
+ private:
+  std::vector<std::vector<FeatureContact>> lists_;
+  UninitializedVector<const FeatureContact*> sorted_;
+};
 
 }  // namespace deformable
 }  // namespace detail
