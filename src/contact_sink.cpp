@@ -61,7 +61,7 @@ bool ContactSink::add(const FeatureContact& contact) {
   return true;
 }
 
-SortedContacts::SortedContacts(std::vector<std::vector<FeatureContact>> lists)
+SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     : lists_(std::move(lists)) {
   std::size_t count = 0;
   for (const auto& list : lists_) count += list.size();

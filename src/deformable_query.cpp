@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <type_traits>
 #include <utility>
 
@@ -223,7 +224,7 @@ std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads
 
 /// The answer of one task.
 struct TaskAnswer {
-  std::vector<FeatureContact> contacts;
+  std::deque<FeatureContact> contacts;
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};
@@ -252,7 +253,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   for (const TaskAnswer& task : tasks) count += task.contacts.size();
   // A sink only where something may have to be left out.
   const bool keeps_all = !first && !any && !may_repeat && count <= options.max_contacts;
-  std::vector<std::vector<FeatureContact>> lists;
+  std::vector<std::deque<FeatureContact>> lists;
   ContactSink sink(any ? 1 : options.max_contacts, may_repeat);
   for (TaskAnswer& task : tasks) {
     answer.counts += task.counts;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -40,7 +41,7 @@ class ContactSink {
   bool add(const FeatureContact& contact);
 
   /// @brief The kept contacts, in the order of add() until isCut(), then in none.
-  const std::vector<FeatureContact>& contacts() const { return contacts_; }
+  const std::deque<FeatureContact>& contacts() const { return contacts_; }
 
   /// @brief Whether contacts were dropped for want of capacity.
   bool isCut() const { return cut_; }
@@ -53,7 +54,7 @@ class ContactSink {
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
   /// @brief The contacts in no order; leaves the sink empty.
-  std::vector<FeatureContact> takeContacts() { return std::move(contacts_); }
+  std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 
  private:
   using PairKey = std::array<std::uint32_t, 5>;
@@ -65,7 +66,7 @@ class ContactSink {
   bool cut_{false};
   double first_hi_{1};
   /// Once cut_, a heap with the latest contact in front.
-  std::vector<FeatureContact> contacts_;
+  std::deque<FeatureContact> contacts_;
   /// The kept pairs, and until cut_ where they are.
   std::map<PairKey, std::size_t> seen_;
 };
@@ -99,7 +100,7 @@ class SortedContacts {
   };
 
   SortedContacts() = default;
-  explicit SortedContacts(std::vector<std::vector<FeatureContact>> lists);
+  explicit SortedContacts(std::vector<std::deque<FeatureContact>> lists);
   SortedContacts(SortedContacts&&) = default;
   SortedContacts& operator=(SortedContacts&&) = default;
 
@@ -112,7 +113,7 @@ class SortedContacts {
   Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
 
  private:
-  std::vector<std::vector<FeatureContact>> lists_;
+  std::vector<std::deque<FeatureContact>> lists_;
   UninitializedVector<const FeatureContact*> sorted_;
 };
 
