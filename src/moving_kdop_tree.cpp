@@ -21,11 +21,11 @@ constexpr std::uint32_t kMaxSubtree = 64;
 /// A task: so many vertices, or so many subtrees, which come in groups of 4 MB of nodes.
 constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64;
 
+/// A task while the tree is made: so many triangles.
+constexpr std::size_t kTriangleBlock = 8192;
+
 /// What is read in any order is brought near so many steps before.
 constexpr std::size_t kAhead = 8;
-
-/// The same while the tree is made.
-constexpr std::size_t kTriangleBlock = 8192;
 
 Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
 
