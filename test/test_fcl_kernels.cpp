@@ -630,26 +630,33 @@ FilterCounts expectRightFilter(const FilterQuery (&queries)[8]) {
   return {__builtin_popcount(may), __builtin_popcount(unclear)};
 }
 
-TEST(FCL_KERNELS, filterAsTheScalarOne) {
-  constexpr std::uint64_t kSeed = 74;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
-  constexpr int kBlocks = 20000;
-  for (int i = 0; i < kBlocks; ++i) {
+/// The same for blocks of random pairs and windows.
+/// @param make_pair  from the random numbers and a kind
+template <typename MakePair>
+FilterCounts expectRightFilter(std::uint64_t seed, int num_blocks, MakePair&& make_pair) {
+  Random random(seed);
+  FilterCounts sum;
+  for (int i = 0; i < num_blocks && !testing::Test::HasFailure(); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(i));
     const FeatureKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
+      q.pair = make_pair(random, kind);
       randomWindow(random, q.lo, q.hi);
     }
     const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+    sum.may += n.may;
+    sum.unclear += n.unclear;
   }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_LT(unclear, kBlocks / 1000);  // doubles are enough for most
+  return sum;
+}
+
+TEST(FCL_KERNELS, filterAsTheScalarOne) {
+  constexpr int kBlocks = 20000;
+  const FilterCounts n = expectRightFilter(74, kBlocks, randomPair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_LT(n.unclear, kBlocks / 1000);  // doubles are enough for most
 }
 
 // Sizes over all of double's range: products that underflow or overflow, and the edges of
@@ -682,77 +689,59 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
 // Signs that agree, by much less than what doubles may lose or by nearly that: around the
 // bound every instruction set is on the same side of it.
 TEST(FCL_KERNELS, filterOfNarrowSigns) {
-  constexpr std::uint64_t kSeed = 78;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
   constexpr int kBlocks = 5000;
-  for (int i = 0; i < kBlocks; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      // A slope z = a x + b y, and the first feature a little above it.
-      const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
-      const double gap =
-          random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
-      q.pair = randomPair(random, kind);
-      for (int n = 0; n < 4; ++n) {
-        VertexPath& p = q.pair.x[n];
-        const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
-        p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
-        p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
-      }
-      randomWindow(random, q.lo, q.hi);
+  const auto makePair = [](Random& random, FeatureKind kind) {
+    // A slope z = a x + b y, and the first feature a little above it.
+    const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
+    const double gap =
+        random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
+    MovingPair pair = randomPair(random, kind);
+    for (int n = 0; n < 4; ++n) {
+      VertexPath& p = pair.x[n];
+      const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
+      p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
+      p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
     }
-    const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_GT(unclear, kBlocks);
+    return pair;
+  };
+  const FilterCounts n = expectRightFilter(78, kBlocks, makePair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_GT(n.unclear, kBlocks);
 }
 
 // Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
 // "may" be so.
 TEST(FCL_KERNELS, filterOfDegeneratePairs) {
-  constexpr std::uint64_t kSeed = 76;
-  Random random(kSeed);
-  for (int i = 0; i < 5000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
-      auto& x = q.pair.x;
-      switch (random.index(6)) {
-        case 0:  // all in one plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
-          break;
-        case 1:  // at rest
-          for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
-          break;
-        case 2:  // no normal
-          x[1] = x[random.index(4)];
-          break;
-        case 3:  // a unit in the last place off a plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
-          x[random.index(4)].t1[2] = std::nextafter(1, 2);
-          break;
-        case 4:  // far away
-          for (VertexPath& p : x)
-            for (int k = 0; k < 3; ++k) {
-              p.t0[k] += 1e9;
-              p.t1[k] += 1e9;
-            }
-          break;
-        default:  // one point for all
-          for (VertexPath& p : x) p = x[0];
-      }
-      randomWindow(random, q.lo, q.hi);
+  expectRightFilter(76, 5000, [](Random& random, FeatureKind kind) {
+    MovingPair pair = randomPair(random, kind);
+    auto& x = pair.x;
+    switch (random.index(6)) {
+      case 0:  // all in one plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
+        break;
+      case 1:  // at rest
+        for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
+        break;
+      case 2:  // no normal
+        x[1] = x[random.index(4)];
+        break;
+      case 3:  // a unit in the last place off a plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
+        x[random.index(4)].t1[2] = std::nextafter(1, 2);
+        break;
+      case 4:  // far away
+        for (VertexPath& p : x)
+          for (int k = 0; k < 3; ++k) {
+            p.t0[k] += 1e9;
+            p.t1[k] += 1e9;
+          }
+        break;
+      default:  // one point for all
+        for (VertexPath& p : x) p = x[0];
     }
-    expectRightFilter(queries);
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
+    return pair;
+  });
 }
 
 // What is not finite proves nothing, even where the window ends before it counts, and
