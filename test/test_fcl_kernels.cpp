@@ -1034,6 +1034,73 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   EXPECT_GT(tally.divided, 300);
 }
 
+/// Volume of the four points at t, by the vectors that the kernels take.
+long double volumeAt(const MovingPair& pair, double t) {
+  long double p[4][3];
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      p[i][k] = (1 - static_cast<long double>(t)) * pair.x[i].t0[k] +
+                static_cast<long double>(t) * pair.x[i].t1[k];
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const int from[3] = {vf ? 0 : 2, vf ? 2 : 1, 3},
+            to[3] = {vf ? 1 : 0, vf ? 1 : 0, vf ? 1 : 2};
+  long double e[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) e[i][k] = p[from[i]][k] - p[to[i]][k];
+  long double volume = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    volume += e[0][k] * (e[1][l] * e[2][m] - e[1][m] * e[2][l]);
+  }
+  return volume;
+}
+
+// Where a volume goes through zero and back, the window is divided at the farthest point
+// beyond, so that each part has one root; and not where it begins or ends at zero.
+TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
+  constexpr std::uint64_t kSeed = 83;
+  Random random(kSeed);
+  int returning = 0, touching = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
+      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
+    }
+    const EightPoints points(queries);
+    const EightDivisions divided = divideAll(points.pairs(queries));
+    for (int lane = 0; lane < 8; ++lane) {
+      const FilterQuery& q = queries[lane];
+      const long double first = volumeAt(q.pair, q.lo), last = volumeAt(q.pair, q.hi);
+      if (first == 0 || last == 0) {
+        ++touching;
+        EXPECT_FALSE(divided.divisible >> lane & 1U) << q.pair;
+        continue;
+      }
+      // Clear of zero on both sides.
+      long double farthest = 0, size = 0;
+      for (int k = 0; k <= 64; ++k) {
+        const long double volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
+        farthest = std::max(farthest, first > 0 ? -volume : volume);
+        size = std::max(size, std::abs(volume));
+      }
+      const long double clear = 1e-6L * size;
+      if (first * last < 0 || size < 1e-3L || farthest < clear ||
+          std::abs(first) < clear || std::abs(last) < clear)
+        continue;
+      ++returning;
+      const long double there = volumeAt(q.pair, divided.at[lane]);
+      EXPECT_TRUE(divided.divisible >> lane & 1U) << q.pair;
+      EXPECT_GE(first > 0 ? -there : there, farthest - 1e-12L * size) << q.pair;
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(returning, 1000);
+  EXPECT_GT(touching, 100);
+}
+
 // Touches at the end of a window, at rest, all the time, of flat pairs and of points.
 TEST(FCL_KERNELS, solvedDegeneratePairsAreSo) {
   constexpr std::uint64_t kSeed = 82;
