@@ -736,26 +736,33 @@ FilterCounts expectRightFilter(const FilterQuery (&queries)[8]) {
   return {__builtin_popcount(may), __builtin_popcount(unclear)};
 }
 
-TEST(FCL_KERNELS, filterAsTheScalarOne) {
-  constexpr std::uint64_t kSeed = 74;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
-  constexpr int kBlocks = 20000;
-  for (int i = 0; i < kBlocks; ++i) {
+/// The same for blocks of random pairs and windows.
+/// @param make_pair  from the random numbers and a kind
+template <typename MakePair>
+FilterCounts expectRightFilter(std::uint64_t seed, int num_blocks, MakePair&& make_pair) {
+  Random random(seed);
+  FilterCounts sum;
+  for (int i = 0; i < num_blocks && !testing::Test::HasFailure(); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(i));
     const FeatureKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
+      q.pair = make_pair(random, kind);
       randomWindow(random, q.lo, q.hi);
     }
     const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+    sum.may += n.may;
+    sum.unclear += n.unclear;
   }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_LT(unclear, kBlocks / 1000);  // doubles are enough for most
+  return sum;
+}
+
+TEST(FCL_KERNELS, filterAsTheScalarOne) {
+  constexpr int kBlocks = 20000;
+  const FilterCounts n = expectRightFilter(74, kBlocks, randomPair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_LT(n.unclear, kBlocks / 1000);  // doubles are enough for most
 }
 
 // Sizes over all of double's range: products that underflow or overflow, and the edges of
@@ -788,77 +795,59 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
 // Signs that agree, by much less than what doubles may lose or by nearly that: around the
 // bound every instruction set is on the same side of it.
 TEST(FCL_KERNELS, filterOfNarrowSigns) {
-  constexpr std::uint64_t kSeed = 78;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
   constexpr int kBlocks = 5000;
-  for (int i = 0; i < kBlocks; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      // A slope z = a x + b y, and the first feature a little above it.
-      const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
-      const double gap =
-          random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
-      q.pair = randomPair(random, kind);
-      for (int n = 0; n < 4; ++n) {
-        VertexPath& p = q.pair.x[n];
-        const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
-        p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
-        p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
-      }
-      randomWindow(random, q.lo, q.hi);
+  const auto makePair = [](Random& random, FeatureKind kind) {
+    // A slope z = a x + b y, and the first feature a little above it.
+    const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
+    const double gap =
+        random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
+    MovingPair pair = randomPair(random, kind);
+    for (int n = 0; n < 4; ++n) {
+      VertexPath& p = pair.x[n];
+      const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
+      p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
+      p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
     }
-    const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_GT(unclear, kBlocks);
+    return pair;
+  };
+  const FilterCounts n = expectRightFilter(78, kBlocks, makePair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_GT(n.unclear, kBlocks);
 }
 
 // Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
 // "may" be so.
 TEST(FCL_KERNELS, filterOfDegeneratePairs) {
-  constexpr std::uint64_t kSeed = 76;
-  Random random(kSeed);
-  for (int i = 0; i < 5000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
-      auto& x = q.pair.x;
-      switch (random.index(6)) {
-        case 0:  // all in one plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
-          break;
-        case 1:  // at rest
-          for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
-          break;
-        case 2:  // no normal
-          x[1] = x[random.index(4)];
-          break;
-        case 3:  // a unit in the last place off a plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
-          x[random.index(4)].t1[2] = std::nextafter(1, 2);
-          break;
-        case 4:  // far away
-          for (VertexPath& p : x)
-            for (int k = 0; k < 3; ++k) {
-              p.t0[k] += 1e9;
-              p.t1[k] += 1e9;
-            }
-          break;
-        default:  // one point for all
-          for (VertexPath& p : x) p = x[0];
-      }
-      randomWindow(random, q.lo, q.hi);
+  expectRightFilter(76, 5000, [](Random& random, FeatureKind kind) {
+    MovingPair pair = randomPair(random, kind);
+    auto& x = pair.x;
+    switch (random.index(6)) {
+      case 0:  // all in one plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
+        break;
+      case 1:  // at rest
+        for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
+        break;
+      case 2:  // no normal
+        x[1] = x[random.index(4)];
+        break;
+      case 3:  // a unit in the last place off a plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
+        x[random.index(4)].t1[2] = std::nextafter(1, 2);
+        break;
+      case 4:  // far away
+        for (VertexPath& p : x)
+          for (int k = 0; k < 3; ++k) {
+            p.t0[k] += 1e9;
+            p.t1[k] += 1e9;
+          }
+        break;
+      default:  // one point for all
+        for (VertexPath& p : x) p = x[0];
     }
-    expectRightFilter(queries);
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
+    return pair;
+  });
 }
 
 // What is not finite proves nothing, even where the window ends before it counts, and
@@ -1149,6 +1138,73 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   EXPECT_GT(tally.no, 10000);
   EXPECT_GT(tally.open, 300);
   EXPECT_GT(tally.divided, 300);
+}
+
+/// Volume of the four points at t, by the vectors that the kernels take.
+long double volumeAt(const MovingPair& pair, double t) {
+  long double p[4][3];
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      p[i][k] = (1 - static_cast<long double>(t)) * pair.x[i].t0[k] +
+                static_cast<long double>(t) * pair.x[i].t1[k];
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const int from[3] = {vf ? 0 : 2, vf ? 2 : 1, 3},
+            to[3] = {vf ? 1 : 0, vf ? 1 : 0, vf ? 1 : 2};
+  long double e[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) e[i][k] = p[from[i]][k] - p[to[i]][k];
+  long double volume = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    volume += e[0][k] * (e[1][l] * e[2][m] - e[1][m] * e[2][l]);
+  }
+  return volume;
+}
+
+// Where a volume goes through zero and back, the window is divided at the farthest point
+// beyond, so that each part has one root; and not where it begins or ends at zero.
+TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
+  constexpr std::uint64_t kSeed = 83;
+  Random random(kSeed);
+  int returning = 0, touching = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
+      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
+    }
+    const EightPoints points(queries);
+    const EightDivisions divided = divideAll(points.pairs(queries));
+    for (int lane = 0; lane < 8; ++lane) {
+      const FilterQuery& q = queries[lane];
+      const long double first = volumeAt(q.pair, q.lo), last = volumeAt(q.pair, q.hi);
+      if (first == 0 || last == 0) {
+        ++touching;
+        EXPECT_FALSE(divided.divisible >> lane & 1U) << q.pair;
+        continue;
+      }
+      // Clear of zero on both sides.
+      long double farthest = 0, size = 0;
+      for (int k = 0; k <= 64; ++k) {
+        const long double volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
+        farthest = std::max(farthest, first > 0 ? -volume : volume);
+        size = std::max(size, std::abs(volume));
+      }
+      const long double clear = 1e-6L * size;
+      if (first * last < 0 || size < 1e-3L || farthest < clear ||
+          std::abs(first) < clear || std::abs(last) < clear)
+        continue;
+      ++returning;
+      const long double there = volumeAt(q.pair, divided.at[lane]);
+      EXPECT_TRUE(divided.divisible >> lane & 1U) << q.pair;
+      EXPECT_GE(first > 0 ? -there : there, farthest - 1e-12L * size) << q.pair;
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(returning, 1000);
+  EXPECT_GT(touching, 100);
 }
 
 // Touches at the end of a window, at rest, all the time, of flat pairs and of points.

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <algorithm>
 #include <memory>
 #include <stdexcept>
 
@@ -21,23 +20,16 @@ void measure(const FramePairMesh& mesh, const Effort& effort, Row& row,
              std::vector<PairName>& found) {
   using Tree = FeatureTree<Box>;
   std::unique_ptr<Tree> tree;
-  bool first = true;
-  repeat(effort, [&] {
+  measureBuild(effort, row, [&] {
     tree.reset();
-    const double ms = millisecondsOf([&] { tree = std::make_unique<Tree>(mesh); });
-    if (first || ms < row.build) row.build = ms;
-    first = false;
+    return millisecondsOf([&] { tree = std::make_unique<Tree>(mesh); });
   });
-  first = true;
-  repeat(effort, [&] {
-    StepTimes times;
+  measureStep(effort, row, [&](StepTimes& times) {
     times.update = millisecondsOf([&] { tree->refit(mesh); });
     SelfContacts contacts =
         SelfQuery<kFilter, Box, IntervalNewton>(*tree, IntervalNewton{kResolution}).run();
     times.traverse = contacts.ms_traverse;
     times.test = contacts.ms_test;
-    if (first || times.total() < row.times.total()) row.times = times;
-    first = false;
     found = std::move(contacts.pairs);
   });
 }
@@ -59,7 +51,7 @@ void measure(const std::string& filter, const FramePairMesh& mesh, const Effort&
 
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
                  const Effort& effort, const std::vector<PairName>& truth) {
-  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, "scalar", 1};
+  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, kPaperKernels, 1};
   std::vector<PairName> found;
   resetPeakMemory();
   if (boxes == "swept")
@@ -69,12 +61,7 @@ Row measurePaper(const Scene& scene, const std::string& boxes, const std::string
   else
     throw std::invalid_argument(boxes + ": no boxes");
   row.peak_mb = peakMegabytes();
-  std::sort(found.begin(), found.end());
-  row.contacts = found.size();
-  const Errors errors = errorsOf(found, truth);
-  row.missed = errors.missed;
-  row.extra = errors.extra;
-  row.hash = hashOf(found).value();
+  setContacts(found, truth, row);
   return row;
 }
 

@@ -6,8 +6,9 @@
 function heading(title) {
   print "\n## " title "\n"
   print "| scene | triangles | query | boxes | filter | kernels | threads | build | update " \
-        "| traverse | test | total ms | ns / triangle | contacts | missed | extra | MiB |"
-  print "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+        "| traverse | test | total ms | ns / triangle | contacts | ns / contact | missed " \
+        "| extra | MiB |"
+  print "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
 }
 
 FNR == 1 { ++file; next }
@@ -27,7 +28,7 @@ file == 1 && NR == 2 {
 file == 1 {
   print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | " $7 " | " $8 " | " $9 \
         " | " $10 " | " $11 " | " $12 " | " sprintf("%.0f", 1e6 * $12 / $2) " | " $13 \
-        " | " $14 " | " $15 " | " $17 " |"
+        " | " ($3 == "all" && $13 ? sprintf("%.0f", 1e6 * $12 / $13) : "-") " | " $14 " | " $15 " | " $17 " |"
 }
 
 # Sequences: the ratio of both trees' times, in four parts of each.

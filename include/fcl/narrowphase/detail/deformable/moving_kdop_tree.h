@@ -113,8 +113,8 @@ struct TreeStructure;
 /// lie in the order in which the tree meets them, so that neighbours on the surface are
 /// neighbours in memory.
 ///
-/// Nodes lie in one array, children after their parents, so that a refit is one backward
-/// pass.
+/// Nodes lie in one array in the order of a walk, children after their parents: what is
+/// below a node lies together and is refit in one backward pass.
 class MovingKdopTree {
  public:
   /// @brief Makes the structure: surface-area splits of the triangles' centroids in frame
