@@ -9,12 +9,14 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "fcl/math/bv/OBBRSS.h"
@@ -747,7 +749,7 @@ TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
   constexpr std::uint64_t kSeed = 73;
   Random random(kSeed);
   for (int round = 0; round < 200; ++round) {
-    std::vector<std::vector<FeatureContact>> lists(random.index(6));
+    std::vector<std::deque<FeatureContact>> lists(random.index(6));
     std::vector<decltype(keyOf(FeatureContact()))> expected;
     for (auto& list : lists) {
       list.resize(random.index(3) * random.index(40));
@@ -763,7 +765,7 @@ TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
       }
     }
     std::sort(expected.begin(), expected.end());
-    const auto sorted = sortedByTime(lists);
+    const SortedContacts sorted(std::move(lists));
     ASSERT_EQ(sorted.size(), expected.size());
     for (std::size_t i = 0; i < sorted.size(); ++i)
       ASSERT_EQ(keyOf(sorted[i]), expected[i]) << "seed " << kSeed << ", " << round;
