@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/continuous_collision.h"
 
+#include <algorithm>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -109,11 +110,15 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
     return out;
   };
   result.contacts.resize(answer.contacts.size());
-  constexpr std::size_t kBlock = 1024;
+  constexpr std::size_t kBlock = 1024, kAhead = 16;
   detail::deformable::parallelForBlocks(
       answer.contacts.size(), kBlock, request.num_threads,
       [&](std::size_t i, std::size_t last) {
-        for (; i < last; ++i) result.contacts[i] = convert(answer.contacts[i]);
+        for (; i < last; ++i) {
+          // Contacts that follow each other in time lie anywhere in memory.
+          __builtin_prefetch(&answer.contacts[std::min(i + kAhead, last - 1)]);
+          result.contacts[i] = convert(answer.contacts[i]);
+        }
       });
   result.contacts_cut = answer.cut;
   result.initially_crossing = answer.has_crossing;
