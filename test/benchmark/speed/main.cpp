@@ -21,7 +21,8 @@ using Query = fcl::ContinuousQuery;
 struct Options {
   std::string out;
   std::string data;
-  std::vector<std::string> groups{"data", "smooth", "size", "first", "far", "sequence"};
+  std::vector<std::string> groups{"data", "smooth",   "size",     "first",
+                                  "far",  "sequence", "baselines"};
   Effort effort;
   int max_triangles{10000000};
   bool is_short{false};
@@ -58,23 +59,35 @@ std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& o
   return truth;
 }
 
-void runData(Table& table, const Options& options) {
+/// A scene of the data folder and its true contacts.
+struct DataScene {
+  Scene scene;
+  std::vector<PairName> truth;
+};
+
+std::vector<DataScene> readDataScenes(const Options& options) {
+  std::vector<DataScene> scenes;
   if (options.data.empty()) {
     std::fprintf(stderr, "no data folder: generated scenes only\n");
-    return;
+    return scenes;
   }
   const struct {
     const char *name, *previous, *current;
-  } scenes[] = {{"cloth-ball", "92.ply", "93.ply"}, {"n-body", "18.ply", "19.ply"}};
-  for (const auto& files : scenes) {
+  } sources[] = {{"cloth-ball", "92.ply", "93.ply"}, {"n-body", "18.ply", "19.ply"}};
+  for (const auto& files : sources) {
     const std::string folder = options.data + "/scenes/" + files.name + "/";
     const auto pairs = readTruePairs(folder + "true_pairs.csv.gz");
-    const std::vector<PairName> truth(pairs.begin(), pairs.end());
-    addSelf(table,
-            {files.name, readFramePair(folder + files.previous, folder + files.current)},
-            options, {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation,
-            &truth);
+    scenes.push_back(
+        {{files.name, readFramePair(folder + files.previous, folder + files.current)},
+         {pairs.begin(), pairs.end()}});
   }
+  return scenes;
+}
+
+void runData(Table& table, const Options& options) {
+  for (const DataScene& data : readDataScenes(options))
+    addSelf(table, data.scene, options, {Query::kAll, Query::kFirst, Query::kAny},
+            Baseline::kAblation, &data.truth);
 }
 
 void runSmooth(Table& table, const Options& options) {
@@ -147,13 +160,29 @@ void runSequences(Table& table, const Options& options) {
   addSequence(table, "mix", makeMixingBalls(frames), options);
 }
 
+void runBaselines(Table& table, const Options& options) {
+  const auto add = [&](const Scene& scene, const std::vector<PairName>& truth) {
+    for (const BaselineRow& row : measureBaselines(scene, options.effort, truth))
+      table.add(row);
+  };
+  for (const DataScene& data : readDataScenes(options)) add(data.scene, data.truth);
+  for (const Scene& scene : {smoothCloth(options.pick(80000, 2000)),
+                             Scene{"tiles", makeTiles(options.pick(100000, 2000))}}) {
+    std::vector<PairName> truth;
+    measureLibrary(scene, Query::kAll, {1, 0}, nullptr, &truth);
+    add(scene, truth);
+  }
+}
+
 void run(const Options& options) {
   Table table(options.out);
   const struct {
     const char* name;
     void (*run)(Table&, const Options&);
-  } groups[] = {{"data", runData},   {"smooth", runSmooth}, {"size", runSize},
-                {"first", runFirst}, {"far", runFar},       {"sequence", runSequences}};
+  } groups[] = {
+      {"data", runData},          {"smooth", runSmooth}, {"size", runSize},
+      {"first", runFirst},        {"far", runFar},       {"sequence", runSequences},
+      {"baselines", runBaselines}};
   for (const auto& group : groups)
     for (const std::string& wanted : options.groups)
       if (wanted == group.name) group.run(table, options);
@@ -164,13 +193,16 @@ void run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Speed of whole queries; writes speed.csv and speed_sequence.csv."};
+  CLI::App app{
+      "Speed of whole queries; writes speed.csv, speed_sequence.csv and "
+      "speed_baselines.csv."};
   app.add_option("out", options.out, "Folder for the tables")->required();
   app.add_option("--data", options.data,
                  "Folder with scenes/; without it: generated scenes only");
   app.add_option("--groups", options.groups, "Which scenes, comma between; all if absent")
       ->delimiter(',')
-      ->check(CLI::IsMember({"data", "smooth", "size", "first", "far", "sequence"}));
+      ->check(CLI::IsMember(
+          {"data", "smooth", "size", "first", "far", "sequence", "baselines"}));
   auto* repeats = app.add_option("--repeats", options.effort.repeats,
                                  "Each time is the least of so many")
                       ->check(CLI::PositiveNumber);

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The paper's method, which the benchmark of speed compares with, in all its variants:
-// the same contacts as every pair of features tested one by one.
+// The methods of earlier papers, which the benchmark of speed compares with, in all their
+// variants: the same contacts as every pair of features tested one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "baselines/baseline.h"
+#include "baselines/feature_tree.h"
+#include "baselines/normal_cones.h"
 #include "fcl/narrowphase/continuous_feature_test.h"
 #include "generated_scenes.h"
 #include "mesh_generators.h"
-#include "paper_method/self_query.h"
+#include "speed_error/interval_newton.h"
 
 namespace fcl {
 namespace test {
@@ -35,12 +38,16 @@ bool touch(FeatureKind kind, const FeaturePoints& x) {
   return result.is_contact;
 }
 
-struct ExactSolver {
-  bool operator()(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
-                  const CoplanarityCubic<double>&) const {
-    return touch(kind, x);
-  }
-};
+bool touchExactly(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
+                  const CoplanarityCubic<double>&) {
+  return touch(kind, x);
+}
+
+/// Of a resolution at which it finds exactly what touches in general position.
+bool touchFinely(FeatureKind, const FeaturePoints&, const RelativePair<double>& pair,
+                 const CoplanarityCubic<double>& cubic) {
+  return firstTimeByIntervalNewton(pair, cubic, 1e-9, 1e-9) >= 0;
+}
 
 std::vector<PairName> bruteForce(const FramePairMesh& mesh) {
   std::vector<VertexPath> paths;
@@ -74,25 +81,51 @@ std::vector<PairName> bruteForce(const FramePairMesh& mesh) {
   return found;
 }
 
-template <typename Box, Filter kFilter, typename Solver>
-std::vector<PairName> contacts(const FramePairMesh& mesh, const Solver& solver) {
-  FeatureTree<Box> tree(mesh);
-  tree.refit(mesh);
-  std::vector<PairName> found = SelfQuery<kFilter, Box, Solver>(tree, solver).run().pairs;
+std::vector<PairName> contacts(const FramePairMesh& mesh, const BaselineMethod& method,
+                               TouchTest touches = touchExactly) {
+  std::vector<PairName> found = makeBaseline(mesh, method, touches)->step(mesh).contacts;
   std::sort(found.begin(), found.end());
   EXPECT_EQ(std::adjacent_find(found.begin(), found.end()), found.end())
       << "a pair was met twice";
   return found;
 }
 
-template <typename Solver, typename Compare>
-void forEachVariant(const FramePairMesh& mesh, const Solver& solver, Compare&& compare) {
-  compare("swept, none", contacts<SweptBox, Filter::kNone>(mesh, solver));
-  compare("swept, plain", contacts<SweptBox, Filter::kPlain>(mesh, solver));
-  compare("swept, certified", contacts<SweptBox, Filter::kCertified>(mesh, solver));
-  compare("moving, none", contacts<MovingKdop, Filter::kNone>(mesh, solver));
-  compare("moving, plain", contacts<MovingKdop, Filter::kPlain>(mesh, solver));
-  compare("moving, certified", contacts<MovingKdop, Filter::kCertified>(mesh, solver));
+/// Calls compare(name, contacts) for every method there is.
+template <typename Compare>
+void forEachMethod(const FramePairMesh& mesh, TouchTest touches, Compare&& compare) {
+  const struct {
+    const char* name;
+    Filter filter;
+    KernelSet kernels;
+    Boxes boxes;
+  } variants[] = {
+      {"swept, none", Filter::kNone, KernelSet::kScalar, Boxes::kSwept},
+      {"swept, plain", Filter::kPlain, KernelSet::kScalar, Boxes::kSwept},
+      {"swept, certified", Filter::kCertified, KernelSet::kScalar, Boxes::kSwept},
+      {"moving, none", Filter::kNone, KernelSet::kScalar, Boxes::kMoving},
+      {"moving, plain", Filter::kPlain, KernelSet::kScalar, Boxes::kMoving},
+      {"moving, certified", Filter::kCertified, KernelSet::kScalar, Boxes::kMoving},
+      {"vector, none", Filter::kNone, KernelSet::kVector, Boxes::kSwept},
+      {"vector, certified", Filter::kCertified, KernelSet::kVector, Boxes::kSwept}};
+  const struct {
+    const char* name;
+    Technique technique;
+  } techniques[] = {{"feature boxes, ", Technique::kFeatureBoxes},
+                    {"representatives, ", Technique::kRepresentatives},
+                    {"connectivity, ", Technique::kConnectivity}};
+  for (const auto& technique : techniques)
+    for (const auto& v : variants)
+      compare(
+          std::string(technique.name) + v.name,
+          contacts(mesh, {technique.technique, v.filter, v.kernels, v.boxes}, touches));
+}
+
+void expectFromAllMethods(const FramePairMesh& mesh, const std::vector<PairName>& truth,
+                          TouchTest touches = touchExactly) {
+  forEachMethod(mesh, touches,
+                [&](const std::string& method, const std::vector<PairName>& found) {
+                  EXPECT_EQ(found, truth) << method;
+                });
 }
 
 /// A sheet thrown about: general position, many contacts.
@@ -124,59 +157,47 @@ FramePairMesh liftedSheet() {
   return mesh;
 }
 
-TEST(FCL_PAPER_METHOD, generalPositionIsAnsweredRightByAllVariants) {
+TEST(FCL_BASELINES, generalPositionIsAnsweredRightByAllMethods) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const FramePairMesh mesh = thrownSheet(seed);
     const auto truth = bruteForce(mesh);
     EXPECT_GT(truth.size(), 100u);
-    const auto compare = [&](const char* variant, const std::vector<PairName>& found) {
-      EXPECT_EQ(found, truth) << variant;
-    };
-    forEachVariant(mesh, ExactSolver(), compare);
-    forEachVariant(mesh, IntervalNewton{1e-9}, compare);
+    expectFromAllMethods(mesh, truth);
+    expectFromAllMethods(mesh, truth, touchFinely);
   }
 }
 
-TEST(FCL_PAPER_METHOD, placeDoesNotMatter) {
+TEST(FCL_BASELINES, placeDoesNotMatter) {
   FramePairMesh mesh = makeTiles(1);
-  const auto truth = contacts<SweptBox, Filter::kNone>(mesh, ExactSolver());
+  const auto truth = contacts(mesh, {Technique::kRepresentatives});
   EXPECT_GT(truth.size(), 10u);
   move(mesh, {1e6, -1e6, 1e6});
-  forEachVariant(mesh, ExactSolver(),
-                 [&](const char* variant, const std::vector<PairName>& found) {
-                   EXPECT_EQ(found, truth) << variant;
-                 });
+  expectFromAllMethods(mesh, truth);
 }
 
-TEST(FCL_PAPER_METHOD, sharedAndRepeatedFeaturesAreOneFeature) {
+TEST(FCL_BASELINES, sharedAndRepeatedFeaturesAreOneFeature) {
   FramePairMesh mesh = thrownSheet(4);
   const auto truth = bruteForce(mesh);
   const std::size_t n = mesh.triangles.size();
   for (std::size_t i = 0; i < n; i += 3)
     mesh.triangles.emplace_back(mesh.triangles[i][1], mesh.triangles[i][2],
                                 mesh.triangles[i][0]);
-  forEachVariant(mesh, ExactSolver(),
-                 [&](const char* variant, const std::vector<PairName>& found) {
-                   EXPECT_EQ(found, truth) << variant;
-                 });
+  expectFromAllMethods(mesh, truth);
 }
 
 /// Where no number is rounded, zero has no sign, and no filter culls a touch.
-TEST(FCL_PAPER_METHOD, exactTouchesAtTheStartAreFound) {
+TEST(FCL_BASELINES, exactTouchesAtTheStartAreFound) {
   const FramePairMesh mesh = liftedSheet();
   const auto truth = bruteForce(mesh);
   EXPECT_GT(truth.size(), 100u);
-  forEachVariant(mesh, ExactSolver(),
-                 [&](const char* variant, const std::vector<PairName>& found) {
-                   EXPECT_EQ(found, truth) << variant;
-                 });
+  expectFromAllMethods(mesh, truth);
 }
 
 /// Turned out of the coordinate planes, which rounds it, the same is not for the plain
 /// filter: it takes the sign of a rounding for a proof, and no solver brings back what it
 /// culls.
-TEST(FCL_PAPER_METHOD, thePlainFilterCullsRoundedTouchesAtTheStart) {
+TEST(FCL_BASELINES, thePlainFilterCullsRoundedTouchesAtTheStart) {
   FramePairMesh mesh = liftedSheet();
   const Matrix3<double> turn =
       AngleAxis<double>(0.7, Vector3<double>(1, 2, 3).normalized()).toRotationMatrix();
@@ -184,8 +205,8 @@ TEST(FCL_PAPER_METHOD, thePlainFilterCullsRoundedTouchesAtTheStart) {
     for (auto& p : *points) p = turn * p;
   const auto truth = bruteForce(mesh);
   EXPECT_GT(truth.size(), 10u);
-  forEachVariant(
-      mesh, ExactSolver(),
+  forEachMethod(
+      mesh, touchExactly,
       [&](const std::string& variant, const std::vector<PairName>& found) {
         EXPECT_TRUE(std::includes(truth.begin(), truth.end(), found.begin(), found.end()))
             << variant;

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which triangles have a feature, which of them owns it (Curtis, Tamstorf, Manocha 2008),
+// and what adjacent triangles need not test because other triangles do (Tang, Curtis,
+// Yoon, Manocha 2009).
+#ifndef FCL_BENCHMARK_BASELINES_CONNECTIVITY_H
+#define FCL_BENCHMARK_BASELINES_CONNECTIVITY_H
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+
+namespace fcl {
+namespace test {
+
+/// @brief Two triangles and the pairs of their features that are meant, a bit each, as
+/// feature_pairs.h counts them.
+struct TrianglePairMask {
+  int a, b;
+  std::uint16_t pairs;
+};
+
+/// @brief Triangles as a tree counts them, and their features.
+class MeshConnectivity {
+ public:
+  using Edge = std::array<std::uint32_t, 2>;
+  using MeshTriangle = detail::deformable::MeshTriangle;
+
+  /// @param triangles  in the tree's order; owners are found here. The first triangle
+  /// that has a feature owns it, as assignFeatures() has it.
+  MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> triangles,
+                   std::size_t num_vertices);
+
+  std::size_t size() const { return triangles_.size(); }
+  const MeshTriangle& triangle(int i) const {
+    return triangles_[static_cast<std::size_t>(i)];
+  }
+  /// @brief Each edge once, in the order of its owners.
+  const std::vector<Edge>& edges() const { return edges_; }
+  /// @brief The edge of triangle i from its vertex k to the next.
+  std::uint32_t edgeOf(int i, unsigned k) const {
+    return edge_of_[3 * static_cast<std::size_t>(i) + k];
+  }
+
+  bool areAdjacent(int i, int j) const { return shared(i, j) != 0; }
+
+  /// @brief Of two triangles every pair of features without a common vertex.
+  unsigned allPairs(int i, int j) const {
+    return detail::deformable::ownedPairs(present(i), present(j), shared(i, j));
+  }
+  /// @brief Those of them that they own: over all triangles, each pair of features once.
+  unsigned ownedPairs(int i, int j) const {
+    return detail::deformable::ownedPairs(triangle(i).owned, triangle(j).owned,
+                                          shared(i, j));
+  }
+
+  /// @brief Whether they own a pair.
+  bool ownPair(int i, int j, int bit) const {
+    using detail::deformable::kOwnedParts;
+    return ((kOwnedParts.of_a[triangle(i).owned] & kOwnedParts.of_b[triangle(j).owned]) >>
+                bit &
+            1U) != 0;
+  }
+
+  /// @brief Whether triangles i and j, not adjacent, are the ones that test a pair of
+  /// their features: the first ones that are not adjacent, in the order of the triangles
+  /// around one feature, then around the other. Decided when it is asked for (procedural
+  /// representative triangles), since it depends on both features.
+  bool isRepresentative(int i, int j, int bit) const;
+
+  /// @brief Pairs of features which only adjacent triangles have: each pair once, with
+  /// the triangles that own it.
+  std::vector<TrianglePairMask> findOrphans() const;
+
+ private:
+  /// The triangles around one feature, in ascending order.
+  struct Range {
+    const int *first, *last;
+    const int* begin() const { return first; }
+    const int* end() const { return last; }
+  };
+  Range around(const std::vector<std::uint32_t>& starts, const std::vector<int>& list,
+               std::uint32_t feature) const {
+    return {list.data() + starts[feature], list.data() + starts[feature + 1]};
+  }
+  Range aroundVertex(std::uint32_t v) const {
+    return around(vertex_starts_, vertex_triangles_, v);
+  }
+  Range aroundEdge(std::uint32_t e) const {
+    return around(edge_starts_, edge_triangles_, e);
+  }
+
+  unsigned shared(int i, int j) const {
+    return detail::deformable::sharedVertices(triangle(i).v, triangle(j).v);
+  }
+  unsigned present(int i) const { return present_[static_cast<std::size_t>(i)]; }
+
+  /// The first two triangles that have the features of a pair of i and j and are not
+  /// adjacent.
+  /// @return whether there are any
+  bool findRepresentative(int i, int j, int bit, int& first, int& second) const;
+
+  std::vector<MeshTriangle> triangles_;
+  /// As MeshTriangle::owned, the features that the triangle has: all but edges from a
+  /// vertex to itself, and faces that repeat another.
+  std::vector<std::uint8_t> present_;
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> edge_of_;
+  std::vector<std::uint32_t> vertex_starts_, edge_starts_;
+  std::vector<int> vertex_triangles_, edge_triangles_;
+};
+
+}  // namespace test
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// All self-contacts of a mesh, on one thread, by any of the methods to compare with. One
+// driver: a tree hands out pairs of triangles, the technique says which of their features
+// are meant, the tree compares the features' boxes, the filter drops pairs that are never
+// coplanar, the solver decides.
+#ifndef FCL_BENCHMARK_BASELINES_SELF_QUERY_H
+#define FCL_BENCHMARK_BASELINES_SELF_QUERY_H
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "baselines/baseline.h"
+#include "baselines/candidates.h"
+#include "baselines/connectivity.h"
+#include "baselines/method.h"
+#include "baselines/normal_cones.h"
+#include "baselines/wide_tree.h"
+#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "scene_data.h"
+#include "speed_error/coplanarity_cubic.h"
+#include "timing.h"
+
+namespace fcl {
+namespace test {
+
+/// @tparam Tree  FeatureTree or WideTree
+template <typename Tree>
+class SelfQuery final : public Baseline {
+ public:
+  SelfQuery(const FramePairMesh& mesh, Technique technique, Filter filter,
+            TouchTest touches)
+      : technique_(technique),
+        filter_(filter),
+        touches_(touches),
+        tree_(mesh),
+        mesh_(tree_.connectivity()) {
+    if (technique_ != Technique::kConnectivity) return;
+    regions_ = tree_.regions();
+    cones_ = std::make_unique<NormalCones>(regions_, mesh_);
+    orphans_ = mesh_.findOrphans();
+  }
+
+  BaselineStep step(const FramePairMesh& mesh) override {
+    step_ = {};
+    step_.ms_update = millisecondsOf([&] {
+      tree_.refit(mesh);
+      if (cones_) cones_->update(tree_.paths());
+    });
+    const double ms = millisecondsOf([&] {
+      for (const TrianglePairMask& orphan : orphans_) add(orphan);
+      tree_.traverse([&](int region) { return isLeftOut(region); },
+                     [&](int i, int j) { visit(i, j); });
+      testBlock();
+      if (technique_ == Technique::kFeatureBoxes) forgetRepeated();
+    });
+    step_.ms_traverse = ms - step_.ms_test;
+    return std::move(step_);
+  }
+
+ private:
+  using Kind = detail::deformable::FeatureKind;
+
+  /// Pairs are tested in blocks: the clock is read once a block, and nodes and vertices
+  /// do not push each other out of the cache at every pair.
+  static constexpr std::size_t kBlock = 1024;
+
+  /// A node has two triangles at least. Below this many children's triangles the contour
+  /// is not worth a look: all of them are adjacent, as a rule.
+  bool isLeftOut(int region) {
+    if (!cones_) return false;
+    const bool is_free = cones_->isFreeOfSelfContact(static_cast<std::size_t>(region));
+    step_.regions_left_out += is_free;
+    return is_free;
+  }
+
+  void visit(int i, int j) {
+    ++step_.triangle_pairs;
+    unsigned pairs = 0;
+    if (technique_ == Technique::kRepresentatives)
+      pairs = mesh_.ownedPairs(i, j);
+    else if (technique_ == Technique::kFeatureBoxes || !mesh_.areAdjacent(i, j))
+      pairs = mesh_.allPairs(i, j);
+    if (pairs != 0) add({i, j, static_cast<std::uint16_t>(pairs)});
+  }
+
+  void add(const TrianglePairMask& pair) {
+    block_.push_back(pair);
+    if (block_.size() == kBlock) testBlock();
+  }
+
+  void testBlock() {
+    step_.ms_test += millisecondsOf([&] {
+      candidates_.clear();
+      tree_.findOverlaps(block_, candidates_);
+      if (technique_ == Technique::kConnectivity) keepRepresentatives();
+      step_.feature_pairs += candidates_.size();
+      test(tree_);
+      block_.clear();
+    });
+  }
+
+  /// Of pairs that are not adjacent (orphans have an owner, and no representative).
+  void keepRepresentatives() {
+    const auto isOthers = [&](const Candidate& c) {
+      const TrianglePairMask& pair = block_[c.pair];
+      // Nearly always the owners are not adjacent, and represent their features.
+      return !mesh_.ownPair(pair.a, pair.b, c.bit) &&
+             !mesh_.isRepresentative(pair.a, pair.b, c.bit);
+    };
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), isOthers),
+                      candidates_.end());
+  }
+
+  struct PointIds {
+    Kind kind;
+    std::array<std::uint32_t, 4> v;
+  };
+  PointIds pointsOf(const Candidate& c) const {
+    const TrianglePairMask& pair = block_[c.pair];
+    const auto &a = mesh_.triangle(pair.a).v, &b = mesh_.triangle(pair.b).v;
+    const unsigned char(&places)[4] = detail::deformable::kFeaturePoints[c.bit];
+    PointIds points;
+    points.kind = c.bit < detail::deformable::kNumVertexFacePairs ? Kind::kVertexFace
+                                                                  : Kind::kEdgeEdge;
+    for (std::size_t i = 0; i < 4; ++i)
+      points.v[i] = places[i] < 3 ? a[places[i]] : b[places[i] - 3];
+    return points;
+  }
+
+  /// One pair at a time.
+  template <typename AnyTree>
+  void test(const AnyTree&) {
+    for (const Candidate& c : candidates_) {
+      const PointIds points = pointsOf(c);
+      if (filter_ == Filter::kCertified &&
+          !detail::deformable::mayBecomeCoplanar(
+              points.kind, pathsOf(points), double{c.window.lo}, double{c.window.hi}))
+        continue;
+      solve(points);
+    }
+  }
+
+  /// Eight pairs of one kind at a time through the filter.
+  void test(const WideTree& tree) {
+    if (filter_ == Filter::kNone) {
+      for (const Candidate& c : candidates_) solve(pointsOf(c));
+      return;
+    }
+    // A tree of kernels lists the pairs of a vertex and a face first.
+    for (std::size_t i = 0; i < candidates_.size();) {
+      detail::deformable::EightPairs eight;
+      PointIds points[8];
+      std::size_t count = 0;
+      eight.kind = pointsOf(candidates_[i]).kind;
+      for (; count < 8 && i < candidates_.size(); ++i, ++count) {
+        points[count] = pointsOf(candidates_[i]);
+        if (points[count].kind != eight.kind) break;
+      }
+      for (std::size_t lane = 0; lane < 8; ++lane) {
+        const auto& v = points[std::min(lane, count - 1)].v;
+        const auto at = [&](std::size_t k) { return &tree.vertices()[v[k]]; };
+        eight.set(lane, {at(0), at(1), at(2), at(3)}, 0, 1);
+      }
+      const auto may = detail::deformable::kernels().coplanarity(eight);
+      for (std::size_t lane = 0; lane < count; ++lane)
+        if (((may.possible | may.unclear) >> lane & 1U) != 0) solve(points[lane]);
+    }
+  }
+
+  detail::deformable::FeaturePoints pathsOf(const PointIds& points) const {
+    const auto& paths = tree_.paths();
+    return {{&paths[points.v[0]], &paths[points.v[1]], &paths[points.v[2]],
+             &paths[points.v[3]]}};
+  }
+
+  void solve(const PointIds& points) {
+    const detail::deformable::FeaturePoints x = pathsOf(points);
+    const RelativePair<double> pair(points.kind, x);
+    const CoplanarityCubic<double> cubic(pair);
+    if (filter_ == Filter::kPlain && cubic.hasOneSign()) return;
+    ++step_.elementary_tests;
+    if (!touches_(points.kind, x, pair, cubic)) return;
+    std::array<int, 4> ids{};
+    for (std::size_t i = 0; i < 4; ++i) ids[i] = tree_.originalVertex(points.v[i]);
+    step_.contacts.push_back(pairName(points.kind == Kind::kVertexFace
+                                          ? ContinuousContactKind::kVertexFace
+                                          : ContinuousContactKind::kEdgeEdge,
+                                      ids));
+  }
+
+  void forgetRepeated() {
+    auto& contacts = step_.contacts;
+    std::sort(contacts.begin(), contacts.end());
+    contacts.erase(std::unique(contacts.begin(), contacts.end()), contacts.end());
+  }
+
+  Technique technique_;
+  Filter filter_;
+  TouchTest touches_;
+  Tree tree_;
+  const MeshConnectivity& mesh_;
+  Regions regions_;
+  std::unique_ptr<NormalCones> cones_;
+  std::vector<TrianglePairMask> orphans_;
+  std::vector<TrianglePairMask> block_;
+  std::vector<Candidate> candidates_;
+  BaselineStep step_;
+};
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
