@@ -65,6 +65,13 @@ MeshConnectivity::MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> tri
     }
     edge_of_[c] = number[group];
   }
+
+  owners_vertices_.resize(n);
+  for (std::size_t c = 0; c < 3 * n; ++c)
+    for (const int owner :
+         {*aroundVertex(triangles[c / 3][c % 3]).first, *aroundEdge(edge_of_[c]).first})
+      for (const std::uint32_t v : triangles[static_cast<std::size_t>(owner)])
+        owners_vertices_[c / 3].add(v);
 }
 
 bool MeshConnectivity::findRepresentative(int i, int j, int bit, int& first,
@@ -95,6 +102,34 @@ bool MeshConnectivity::findRepresentative(int i, int j, int bit, int& first,
 bool MeshConnectivity::isRepresentative(int i, int j, int bit) const {
   int first = -1, second = -1;
   return findRepresentative(i, j, bit, first, second) && first == i && second == j;
+}
+
+unsigned MeshConnectivity::representedPairs(int i, int j) const {
+  using detail::deformable::kOwnedParts;
+  unsigned represented =
+      kOwnedParts.of_a[triangle(i).owned] & kOwnedParts.of_b[triangle(j).owned];
+  if (!owners_vertices_[static_cast<std::size_t>(i)].mayMeet(
+          owners_vertices_[static_cast<std::size_t>(j)]))
+    return represented;
+  unsigned others =
+      kOwnedParts.of_a[present(i)] & kOwnedParts.of_b[present(j)] & ~represented;
+  for (; others != 0; others &= others - 1) {
+    const int bit = __builtin_ctz(others);
+    const FeaturePair pair = featurePair(bit);
+    int owner = i, other_owner = j;
+    if (pair.kind == FeatureKind::kEdgeEdge) {
+      owner = *aroundEdge(edgeOf(i, pair.first)).first;
+      other_owner = *aroundEdge(edgeOf(j, pair.second)).first;
+    } else if (pair.first_on_a) {
+      owner = *aroundVertex(triangle(i).v[pair.first]).first;
+    } else {
+      other_owner = *aroundVertex(triangle(j).v[pair.first]).first;
+    }
+    // Nearly always the owners are not adjacent, and represent their features.
+    if (areAdjacent(owner, other_owner) && isRepresentative(i, j, bit))
+      represented |= 1U << bit;
+  }
+  return represented;
 }
 
 std::vector<TrianglePairMask> MeshConnectivity::findOrphans() const {

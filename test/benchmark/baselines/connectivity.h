@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
@@ -45,7 +46,9 @@ class MeshConnectivity {
     return edge_of_[3 * static_cast<std::size_t>(i) + k];
   }
 
-  bool areAdjacent(int i, int j) const { return shared(i, j) != 0; }
+  bool areAdjacent(int i, int j) const {
+    return detail::deformable::doShareVertex(ids(i), ids(j));
+  }
 
   /// @brief Of two triangles every pair of features without a common vertex.
   unsigned allPairs(int i, int j) const {
@@ -57,19 +60,11 @@ class MeshConnectivity {
                                           shared(i, j));
   }
 
-  /// @brief Whether they own a pair.
-  bool ownPair(int i, int j, int bit) const {
-    using detail::deformable::kOwnedParts;
-    return ((kOwnedParts.of_a[triangle(i).owned] & kOwnedParts.of_b[triangle(j).owned]) >>
-                bit &
-            1U) != 0;
-  }
-
-  /// @brief Whether triangles i and j, not adjacent, are the ones that test a pair of
-  /// their features: the first ones that are not adjacent, in the order of the triangles
-  /// around one feature, then around the other. Decided when it is asked for (procedural
-  /// representative triangles), since it depends on both features.
-  bool isRepresentative(int i, int j, int bit) const;
+  /// @brief Of two triangles that are not adjacent the pairs of features that they test
+  /// for all triangles that have them: as the first ones that are not adjacent, in the
+  /// order of the triangles around one feature, then around the other. Decided when they
+  /// meet (procedural representative triangles), since it depends on both features.
+  unsigned representedPairs(int i, int j) const;
 
   /// @brief Pairs of features which only adjacent triangles have: each pair once, with
   /// the triangles that own it.
@@ -93,17 +88,40 @@ class MeshConnectivity {
     return around(edge_starts_, edge_triangles_, e);
   }
 
+  detail::deformable::ThreeIds ids(int i) const {
+    static_assert(sizeof(MeshTriangle) == sizeof(detail::deformable::ThreeIds),
+                  "one more number is read");
+    detail::deformable::ThreeIds ids;
+    std::memcpy(&ids, &triangle(i), sizeof(ids));
+    return ids;
+  }
   unsigned shared(int i, int j) const {
     return detail::deformable::sharedVertices(triangle(i).v, triangle(j).v);
   }
   unsigned present(int i) const { return present_[static_cast<std::size_t>(i)]; }
+  bool isRepresentative(int i, int j, int bit) const;
 
   /// The first two triangles that have the features of a pair of i and j and are not
   /// adjacent.
   /// @return whether there are any
   bool findRepresentative(int i, int j, int bit, int& first, int& second) const;
 
+  /// The vertices of the owners of a triangle's features, hashed to a bit each. Owners
+  /// whose sets have no bit in common are not adjacent; with seven vertices on average
+  /// one of six other pairs has one.
+  struct OwnersVertices {
+    std::uint64_t bits[4];
+
+    void add(std::uint32_t v) { bits[v % 4] |= std::uint64_t{1} << v / 4 % 64; }
+    bool mayMeet(const OwnersVertices& other) const {
+      std::uint64_t common = 0;
+      for (int k = 0; k < 4; ++k) common |= bits[k] & other.bits[k];
+      return common != 0;
+    }
+  };
+
   std::vector<MeshTriangle> triangles_;
+  std::vector<OwnersVertices> owners_vertices_;
   /// As MeshTriangle::owned, the features that the triangle has: all but edges from a
   /// vertex to itself, and faces that repeat another.
   std::vector<std::uint8_t> present_;

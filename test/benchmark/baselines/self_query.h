@@ -54,9 +54,12 @@ class SelfQuery final : public Baseline {
       if (cones_) cones_->update(tree_.paths());
     });
     const double ms = millisecondsOf([&] {
-      for (const TrianglePairMask& orphan : orphans_) add(orphan);
+      for (const TrianglePairMask& o : orphans_) add(o.a, o.b, o.pairs);
       tree_.traverse([&](int region) { return isLeftOut(region); },
-                     [&](int i, int j) { visit(i, j); });
+                     [&](int i, int j) {
+                       ++step_.triangle_pairs;
+                       add(i, j, 0);
+                     });
       testBlock();
       if (technique_ == Technique::kFeatureBoxes) forgetRepeated();
     });
@@ -80,42 +83,29 @@ class SelfQuery final : public Baseline {
     return is_free;
   }
 
-  void visit(int i, int j) {
-    ++step_.triangle_pairs;
-    unsigned pairs = 0;
-    if (technique_ == Technique::kRepresentatives)
-      pairs = mesh_.ownedPairs(i, j);
-    else if (technique_ == Technique::kFeatureBoxes || !mesh_.areAdjacent(i, j))
-      pairs = mesh_.allPairs(i, j);
-    if (pairs != 0) add({i, j, static_cast<std::uint16_t>(pairs)});
-  }
-
-  void add(const TrianglePairMask& pair) {
-    block_.push_back(pair);
+  /// @param pairs  of features; 0: as the technique says
+  void add(int i, int j, std::uint16_t pairs) {
+    block_.push_back({i, j, pairs});
     if (block_.size() == kBlock) testBlock();
   }
 
   void testBlock() {
     step_.ms_test += millisecondsOf([&] {
+      for (TrianglePairMask& pair : block_)
+        if (pair.pairs == 0)
+          pair.pairs = static_cast<std::uint16_t>(pairsOf(pair.a, pair.b));
       candidates_.clear();
       tree_.findOverlaps(block_, candidates_);
-      if (technique_ == Technique::kConnectivity) keepRepresentatives();
       step_.feature_pairs += candidates_.size();
       test(tree_);
       block_.clear();
     });
   }
 
-  /// Of pairs that are not adjacent (orphans have an owner, and no representative).
-  void keepRepresentatives() {
-    const auto isOthers = [&](const Candidate& c) {
-      const TrianglePairMask& pair = block_[c.pair];
-      // Nearly always the owners are not adjacent, and represent their features.
-      return !mesh_.ownPair(pair.a, pair.b, c.bit) &&
-             !mesh_.isRepresentative(pair.a, pair.b, c.bit);
-    };
-    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(), isOthers),
-                      candidates_.end());
+  unsigned pairsOf(int i, int j) const {
+    if (technique_ == Technique::kFeatureBoxes) return mesh_.allPairs(i, j);
+    if (technique_ == Technique::kRepresentatives) return mesh_.ownedPairs(i, j);
+    return mesh_.areAdjacent(i, j) ? 0 : mesh_.representedPairs(i, j);
   }
 
   struct PointIds {
