@@ -5,13 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "baselines/baseline.h"
-#include "baselines/feature_tree.h"
-#include "baselines/normal_cones.h"
-#include "fcl/narrowphase/continuous_feature_test.h"
+#include "brute_force.h"
 #include "generated_scenes.h"
 #include "mesh_generators.h"
 #include "speed_error/interval_newton.h"
@@ -22,63 +22,16 @@ namespace {
 
 using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePoints;
-using detail::deformable::VertexPath;
-
-/// The library's exact decision in place of Interval-Newton.
-bool touch(FeatureKind kind, const FeaturePoints& x) {
-  Vector3<double> p[4], q[4];
-  for (int i = 0; i < 4; ++i) {
-    p[i] = Vector3<double>(x[i].t0);
-    q[i] = Vector3<double>(x[i].t1);
-  }
-  const auto result =
-      kind == FeatureKind::kVertexFace
-          ? vertexFace<double>(p[0], p[1], p[2], p[3], q[0], q[1], q[2], q[3], 1)
-          : edgeEdge<double>(p[0], p[1], p[2], p[3], q[0], q[1], q[2], q[3], 1);
-  return result.is_contact;
-}
 
 bool touchExactly(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
                   const CoplanarityCubic<double>&) {
-  return touch(kind, x);
+  return doTouch(kind, x);
 }
 
 /// Of a resolution at which it finds exactly what touches in general position.
 bool touchFinely(FeatureKind, const FeaturePoints&, const RelativePair<double>& pair,
                  const CoplanarityCubic<double>& cubic) {
   return firstTimeByIntervalNewton(pair, cubic, 1e-9, 1e-9) >= 0;
-}
-
-std::vector<PairName> bruteForce(const FramePairMesh& mesh) {
-  std::vector<VertexPath> paths;
-  for (std::size_t i = 0; i < mesh.previous.size(); ++i) {
-    const auto &p = mesh.previous[i], &q = mesh.current[i];
-    paths.push_back({{p[0], p[1], p[2]}, {q[0], q[1], q[2]}});
-  }
-  std::vector<PairName> found;
-  const auto test = [&](FeatureKind kind, std::array<int, 4> v) {
-    for (std::size_t i = 0; i < (kind == FeatureKind::kVertexFace ? 1 : 2); ++i)
-      for (std::size_t j = i + 1; j < 4; ++j)
-        if (v[i] == v[j] && (kind == FeatureKind::kVertexFace || j >= 2)) return;
-    const auto path = [&](std::size_t i) {
-      return &paths[static_cast<std::size_t>(v[i])];
-    };
-    if (touch(kind, {{path(0), path(1), path(2), path(3)}}))
-      found.push_back(pairName(kind == FeatureKind::kVertexFace
-                                   ? ContinuousContactKind::kVertexFace
-                                   : ContinuousContactKind::kEdgeEdge,
-                               v));
-  };
-  for (const Triangle& t : mesh.triangles)
-    for (int v = 0; v < static_cast<int>(paths.size()); ++v)
-      test(FeatureKind::kVertexFace,
-           {v, static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2])});
-  const auto edges = uniqueEdges(mesh.triangles);
-  for (std::size_t i = 0; i < edges.size(); ++i)
-    for (std::size_t j = i + 1; j < edges.size(); ++j)
-      test(FeatureKind::kEdgeEdge, {edges[i][0], edges[i][1], edges[j][0], edges[j][1]});
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 std::vector<PairName> contacts(const FramePairMesh& mesh, const BaselineMethod& method,
@@ -157,11 +110,171 @@ FramePairMesh liftedSheet() {
   return mesh;
 }
 
+/// A mesh and its motion: each vertex goes to where `to` takes it.
+template <typename To>
+FramePairMesh moving(const TestMesh& mesh, To&& to) {
+  FramePairMesh pair{mesh.vertices, {}, mesh.triangles};
+  for (const auto& p : mesh.vertices) pair.current.push_back(to(p));
+  return pair;
+}
+
+/// A sheet bent over itself whose upper end falls through the lower one.
+FramePairMesh foldedCloth() {
+  const auto position = [](double u, double v, double gap) {
+    const double s = 3 * u - 1.5, turn = std::min(1.5, std::max(-1.5, 3 * s));
+    const double x = std::cos(turn) - std::max(0., std::abs(3 * s) - 1.5);
+    return Vector3<double>(x, v + 0.03 * std::sin(9 * u), gap * std::sin(turn));
+  };
+  const auto at = [&](double gap) {
+    return makeSheet(24, 6, [&, gap](double u, double v) { return position(u, v, gap); });
+  };
+  FramePairMesh mesh{at(0.3).vertices, at(0.3).vertices, at(0.3).triangles};
+  for (auto& p : mesh.current)
+    if (p[0] < 0 && p[2] > 0) p[2] -= 0.9 * std::min(1., -2 * p[0]);
+  return mesh;
+}
+
+/// Two spheres that meet, and shrink.
+FramePairMesh meetingSpheres() {
+  TestMesh spheres = makeIcosphere(1, 1);
+  append(spheres, transformed(makeIcosphere(1, 1),
+                              Transform3<double>(Translation3<double>(2.3, 0.1, 0.2))));
+  return moving(spheres, [](const Vector3<double>& p) {
+    return Vector3<double>(0.8 * p[0] + (p[0] > 1.2 ? -0.6 : 0.3), 0.9 * p[1], p[2]);
+  });
+}
+
+/// Three sheets that share an edge, and close like a book.
+FramePairMesh closingBook() {
+  Random random(8);
+  FramePairMesh mesh;
+  constexpr int kCells = 5;
+  for (const double angle : {0., 0.5, 1.1}) {
+    const std::size_t first = mesh.previous.size();
+    const TestMesh page = makeSheet(kCells, kCells);
+    const auto id = [&](std::size_t v) {
+      // The vertices of the back, x = 0, are the first page's.
+      return v % (kCells + 1) == 0 ? v : first + v;
+    };
+    for (const auto& p : page.vertices) {
+      const auto at = [&](double a) {
+        return Vector3<double>(p[0] * std::cos(a), p[1], p[0] * std::sin(a));
+      };
+      mesh.previous.push_back(at(angle) + random.point(0.01));
+      mesh.current.push_back(at(angle * (0.2 - p[1])) + random.point(0.01));
+    }
+    for (const Triangle& t : page.triangles)
+      mesh.triangles.emplace_back(id(t[0]), id(t[1]), id(t[2]));
+  }
+  return mesh;
+}
+
+/// Shapes of so few triangles that most of them are adjacent, and all pairs of features
+/// of a tetrahedron are orphans.
+FramePairMesh thrownTetrahedra(std::uint64_t seed) {
+  Random random(seed);
+  return moving(makeTetrahedronSoup(12, 0.5, 0.4, seed),
+                [&](const Vector3<double>& p) { return p + random.point(0.4); });
+}
+
+TEST(FCL_BASELINES, surfacesOfAllKindsAreAnsweredRightByAllMethods) {
+  FramePairMesh degenerate = thrownSheet(7);
+  for (std::size_t i = 0; i < degenerate.triangles.size(); i += 9) {
+    Triangle& t = degenerate.triangles[i];
+    t = Triangle(t[0], t[0], t[1]);
+  }
+  const struct {
+    const char* name;
+    FramePairMesh mesh;
+  } scenes[] = {{"folded cloth", foldedCloth()},
+                {"spheres", meetingSpheres()},
+                {"book", closingBook()},
+                {"tetrahedra", thrownTetrahedra(5)},
+                {"triangles that are edges", degenerate}};
+  for (const auto& scene : scenes) {
+    SCOPED_TRACE(scene.name);
+    const auto truth = bruteForceSelfContacts(scene.mesh);
+    EXPECT_GT(truth.size(), 20u);
+    expectFromAllMethods(scene.mesh, truth);
+  }
+}
+
+TEST(FCL_BASELINES, normalConesLeaveOutWhatIsSmooth) {
+  const FramePairMesh mesh =
+      moving(makeSheet(16, 16,
+                       [](double u, double v) {
+                         return Vector3<double>(u, v, 0.1 * std::sin(5 * u + v));
+                       }),
+             [](const Vector3<double>& p) {
+               return Vector3<double>(p[0] - 0.1 * p[1], p[1], p[2] + 0.2 * p[0] * p[1]);
+             });
+  for (const KernelSet kernels : {KernelSet::kScalar, KernelSet::kVector}) {
+    const BaselineStep step =
+        makeBaseline(mesh, {Technique::kConnectivity, Filter::kNone, kernels})
+            ->step(mesh);
+    EXPECT_TRUE(step.contacts.empty());
+    EXPECT_EQ(step.triangle_pairs, 0u);
+    EXPECT_GE(step.regions_left_out, 1u);
+  }
+}
+
+/// Which stage culls what: owners and representatives meet the same pairs of features,
+/// boxes of features alone meet them again and again, the filter leaves fewer.
+TEST(FCL_BASELINES, countsAreThoseOfTheStages) {
+  for (const KernelSet kernels : {KernelSet::kScalar, KernelSet::kVector}) {
+    const FramePairMesh mesh = thrownSheet(6);
+    const auto stepOf = [&](Technique technique, Filter filter) {
+      return makeBaseline(mesh, {technique, filter, kernels})->step(mesh);
+    };
+    const Filter filter =
+        kernels == KernelSet::kScalar ? Filter::kPlain : Filter::kCertified;
+    const BaselineStep boxes = stepOf(Technique::kFeatureBoxes, Filter::kNone),
+                       owners = stepOf(Technique::kRepresentatives, Filter::kNone),
+                       connected = stepOf(Technique::kConnectivity, Filter::kNone),
+                       filtered = stepOf(Technique::kRepresentatives, filter);
+    EXPECT_EQ(connected.regions_left_out, 0u);
+    EXPECT_EQ(connected.feature_pairs, owners.feature_pairs);
+    EXPECT_GT(boxes.feature_pairs, 2 * owners.feature_pairs);
+    EXPECT_EQ(owners.elementary_tests, owners.feature_pairs);
+    EXPECT_EQ(filtered.feature_pairs, owners.feature_pairs);
+    EXPECT_LT(filtered.elementary_tests, filtered.feature_pairs);
+    EXPECT_EQ(filtered.contacts.size(), owners.contacts.size());
+  }
+}
+
+TEST(FCL_BASELINES, aKeptTreeAnswersAsAFreshOne) {
+  const FrameSequence sequence = makeMixingBalls(3);
+  for (const BaselineMethod method :
+       {BaselineMethod{Technique::kConnectivity, Filter::kPlain},
+        BaselineMethod{Technique::kConnectivity, Filter::kCertified,
+                       KernelSet::kVector}}) {
+    const auto kept = makeBaseline(sequence.pair(0), method);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const FramePairMesh mesh = sequence.pair(i);
+      std::vector<PairName> found = kept->step(mesh).contacts;
+      std::vector<PairName> fresh = makeBaseline(mesh, method)->step(mesh).contacts;
+      std::sort(found.begin(), found.end());
+      std::sort(fresh.begin(), fresh.end());
+      EXPECT_EQ(found, fresh);
+    }
+  }
+}
+
+TEST(FCL_BASELINES, vectorKernelsHaveNeitherThePlainFilterNorMovingBoxes) {
+  const FramePairMesh mesh = thrownSheet(1);
+  EXPECT_THROW(makeBaseline(mesh, {Technique::kRepresentatives, Filter::kPlain,
+                                   KernelSet::kVector}),
+               std::invalid_argument);
+  EXPECT_THROW(makeBaseline(mesh, {Technique::kRepresentatives, Filter::kNone,
+                                   KernelSet::kVector, Boxes::kMoving}),
+               std::invalid_argument);
+}
+
 TEST(FCL_BASELINES, generalPositionIsAnsweredRightByAllMethods) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const FramePairMesh mesh = thrownSheet(seed);
-    const auto truth = bruteForce(mesh);
+    const auto truth = bruteForceSelfContacts(mesh);
     EXPECT_GT(truth.size(), 100u);
     expectFromAllMethods(mesh, truth);
     expectFromAllMethods(mesh, truth, touchFinely);
@@ -178,7 +291,7 @@ TEST(FCL_BASELINES, placeDoesNotMatter) {
 
 TEST(FCL_BASELINES, sharedAndRepeatedFeaturesAreOneFeature) {
   FramePairMesh mesh = thrownSheet(4);
-  const auto truth = bruteForce(mesh);
+  const auto truth = bruteForceSelfContacts(mesh);
   const std::size_t n = mesh.triangles.size();
   for (std::size_t i = 0; i < n; i += 3)
     mesh.triangles.emplace_back(mesh.triangles[i][1], mesh.triangles[i][2],
@@ -189,7 +302,7 @@ TEST(FCL_BASELINES, sharedAndRepeatedFeaturesAreOneFeature) {
 /// Where no number is rounded, zero has no sign, and no filter culls a touch.
 TEST(FCL_BASELINES, exactTouchesAtTheStartAreFound) {
   const FramePairMesh mesh = liftedSheet();
-  const auto truth = bruteForce(mesh);
+  const auto truth = bruteForceSelfContacts(mesh);
   EXPECT_GT(truth.size(), 100u);
   expectFromAllMethods(mesh, truth);
 }
@@ -203,7 +316,7 @@ TEST(FCL_BASELINES, thePlainFilterCullsRoundedTouchesAtTheStart) {
       AngleAxis<double>(0.7, Vector3<double>(1, 2, 3).normalized()).toRotationMatrix();
   for (auto* points : {&mesh.previous, &mesh.current})
     for (auto& p : *points) p = turn * p;
-  const auto truth = bruteForce(mesh);
+  const auto truth = bruteForceSelfContacts(mesh);
   EXPECT_GT(truth.size(), 10u);
   forEachMethod(
       mesh, touchExactly,

@@ -25,8 +25,21 @@ MeshConnectivity::MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> tri
   }
   triangles_ = detail::deformable::assignFeatures(plain.data(), n, num_vertices);
   constexpr std::uint32_t kBorder = 0x3f;
-  for (std::size_t i = 0; i < n; ++i)
-    present_[i] = static_cast<std::uint8_t>(triangles_[i].owned | kBorder);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& v = triangles[i];
+    const std::uint32_t owned = triangles_[i].owned;
+    std::uint32_t present = owned | kBorder;
+    // Of a triangle that repeats a vertex, that vertex and the edge that is left once.
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t next = (k + 1) % 3, after = (k + 2) % 3;
+      if (v[k] != v[next]) continue;
+      present &= ~(8U << k);
+      for (const auto& twice : {std::array<std::uint32_t, 2>{1U << k, 1U << next},
+                                std::array<std::uint32_t, 2>{8U << next, 8U << after}})
+        present &= ~((owned & twice[0]) != 0 ? twice[1] : twice[0]);
+    }
+    present_[i] = static_cast<std::uint8_t>(present);
+  }
 
   for (std::size_t v = 0; v < num_vertices; ++v)
     vertex_starts_[v + 1] += vertex_starts_[v];
@@ -41,7 +54,6 @@ MeshConnectivity::MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> tri
     const auto& v = triangles[c / 3];
     const auto ends = std::minmax(v[c % 3], v[(c + 1) % 3]);
     met[c] = {{ends.first, ends.second}, c};
-    if (ends.first == ends.second) present_[c / 3] ^= std::uint8_t(8U << c % 3);
   }
   std::sort(met.begin(), met.end());
   std::vector<std::size_t> group_of(3 * n), group_starts;

@@ -52,12 +52,13 @@ class MeshConnectivity {
 
   /// @brief Of two triangles every pair of features without a common vertex.
   unsigned allPairs(int i, int j) const {
-    return detail::deformable::ownedPairs(present(i), present(j), shared(i, j));
+    return detail::deformable::ownedPairs(present(i), present(j),
+                                          areAdjacent(i, j) ? shared(i, j) : 0U);
   }
   /// @brief Those of them that they own: over all triangles, each pair of features once.
   unsigned ownedPairs(int i, int j) const {
     return detail::deformable::ownedPairs(triangle(i).owned, triangle(j).owned,
-                                          shared(i, j));
+                                          areAdjacent(i, j) ? shared(i, j) : 0U);
   }
 
   /// @brief Of two triangles that are not adjacent the pairs of features that they test
@@ -122,8 +123,8 @@ class MeshConnectivity {
 
   std::vector<MeshTriangle> triangles_;
   std::vector<OwnersVertices> owners_vertices_;
-  /// As MeshTriangle::owned, the features that the triangle has: all but edges from a
-  /// vertex to itself, and faces that repeat another.
+  /// As MeshTriangle::owned, the features that the triangle has: each once, and no face
+  /// that repeats another.
   std::vector<std::uint8_t> present_;
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> edge_of_;

@@ -104,10 +104,12 @@ NormalCone merged(const NormalCone& a, const NormalCone& b) {
   return {scaled(axis, 1 / std::sqrt(dot(axis, axis))), angle + 2 * kAngleMargin};
 }
 
-NormalCones::NormalCones(const Regions& regions, const MeshConnectivity& mesh)
+NormalCones::NormalCones(const Regions& regions, const MeshConnectivity& mesh,
+                         std::size_t least_triangles)
     : regions_(regions), mesh_(mesh), cones_(regions.size()), contours_(1) {
   // Children first, as their contours are needed; stored parents first.
   std::vector<std::vector<DirectedEdge>> contours(regions.size());
+  std::vector<std::size_t> count(regions.size(), 0);
   for (std::size_t i = regions.size(); i-- > 0;) {
     std::vector<DirectedEdge> all;
     for (auto c = regions.starts[i]; c < regions.starts[i + 1]; ++c) {
@@ -115,8 +117,10 @@ NormalCones::NormalCones(const Regions& regions, const MeshConnectivity& mesh)
       if (child >= 0) {
         const auto& of_child = contours[static_cast<std::size_t>(child)];
         all.insert(all.end(), of_child.begin(), of_child.end());
+        count[i] += count[static_cast<std::size_t>(child)];
         continue;
       }
+      ++count[i];
       const auto& v = mesh.triangle(~child).v;
       for (std::size_t k = 0; k < 3; ++k) {
         const std::uint32_t from = v[k], to = v[(k + 1) % 3];
@@ -135,7 +139,8 @@ NormalCones::NormalCones(const Regions& regions, const MeshConnectivity& mesh)
       if (edge.turns != 0) left.push_back(edge);
     }
   }
-  for (const auto& contour : contours) addContour(contour);
+  for (std::size_t i = 0; i < regions.size(); ++i)
+    addContour(count[i] < least_triangles ? std::vector<DirectedEdge>() : contours[i]);
 }
 
 void NormalCones::addContour(const std::vector<DirectedEdge>& edges) {

@@ -74,8 +74,6 @@ class SelfQuery final : public Baseline {
   /// do not push each other out of the cache at every pair.
   static constexpr std::size_t kBlock = 1024;
 
-  /// A node has two triangles at least. Below this many children's triangles the contour
-  /// is not worth a look: all of them are adjacent, as a rule.
   bool isLeftOut(int region) {
     if (!cones_) return false;
     const bool is_free = cones_->isFreeOfSelfContact(static_cast<std::size_t>(region));
