@@ -54,7 +54,7 @@ NormalCone continuousNormalCone(const detail::deformable::VertexPath& a,
                                 const detail::deformable::VertexPath& b,
                                 const detail::deformable::VertexPath& c);
 
-/// @brief The smallest cone around two.
+/// @brief A cone around two, nearly the smallest.
 NormalCone merged(const NormalCone& a, const NormalCone& b);
 
 class NormalCones {
