@@ -40,11 +40,11 @@ Scene smoothCloth(int triangles) {
   return {std::string("smooth cloth ") + size, makeSmoothCloth(triangles)};
 }
 
-enum class Baseline { kNone, kPaper, kAblation };
+enum class PaperRows { kNone, kPublished, kAblation };
 
 /// The rows of a self-collision. @return the true contacts
 std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& options,
-                              std::initializer_list<Query> queries, Baseline baseline,
+                              std::initializer_list<Query> queries, PaperRows paper,
                               const std::vector<PairName>* known_truth = nullptr) {
   std::vector<PairName> truth;
   for (const Query query : queries)
@@ -53,8 +53,8 @@ std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& o
   if (known_truth) truth = *known_truth;
   for (const std::string boxes : {"swept", "moving"})
     for (const std::string filter : {"none", "plain", "certified"})
-      if (baseline == Baseline::kAblation ||
-          (baseline == Baseline::kPaper && boxes == "swept" && filter == "plain"))
+      if (paper == PaperRows::kAblation ||
+          (paper == PaperRows::kPublished && boxes == "swept" && filter == "plain"))
         table.add(measurePaper(scene, boxes, filter, options.effort, truth));
   return truth;
 }
@@ -87,14 +87,14 @@ std::vector<DataScene> readDataScenes(const Options& options) {
 void runData(Table& table, const Options& options) {
   for (const DataScene& data : readDataScenes(options))
     addSelf(table, data.scene, options, {Query::kAll, Query::kFirst, Query::kAny},
-            Baseline::kAblation, &data.truth);
+            PaperRows::kAblation, &data.truth);
 }
 
 void runSmooth(Table& table, const Options& options) {
   for (const int triangles :
        {options.pick(20000, 1000), options.pick(80000, 2000), options.pick(200000, 4000)})
     addSelf(table, smoothCloth(triangles), options,
-            {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation);
+            {Query::kAll, Query::kFirst, Query::kAny}, PaperRows::kAblation);
 }
 
 void runSize(Table& table, const Options& options) {
@@ -103,7 +103,7 @@ void runSize(Table& table, const Options& options) {
   for (const int triangles : {10000, 30000, 100000, 300000, 1000000, 3000000, 10000000}) {
     if (triangles > options.pick(options.max_triangles, 10000)) break;
     addSelf(table, {"tiles", makeTiles(triangles)}, options, {Query::kAll, Query::kFirst},
-            triangles <= kMostForPaper ? Baseline::kPaper : Baseline::kNone);
+            triangles <= kMostForPaper ? PaperRows::kPublished : PaperRows::kNone);
   }
 }
 
@@ -114,16 +114,16 @@ void runFirst(Table& table, const Options& options) {
   for (const Query query : {Query::kAll, Query::kFirst, Query::kAny})
     table.add(measureLibrary(pair, query, options.effort, nullptr));
   addSelf(table, smoothCloth(options.pick(1600000, 8000)), options,
-          {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kNone);
+          {Query::kAll, Query::kFirst, Query::kAny}, PaperRows::kNone);
 }
 
 void runFar(Table& table, const Options& options) {
   Scene scene{"cloth at the origin", makeSmoothCloth(options.pick(80000, 2000))};
   const auto queries = {Query::kAll, Query::kFirst};
-  const auto truth = addSelf(table, scene, options, queries, Baseline::kNone);
+  const auto truth = addSelf(table, scene, options, queries, PaperRows::kNone);
   scene.name = "cloth at 1e6";
   move(scene.a, {1e6, 1e6, 1e6});
-  addSelf(table, scene, options, queries, Baseline::kPaper, &truth);
+  addSelf(table, scene, options, queries, PaperRows::kPublished, &truth);
 }
 
 /// The rows of a sequence, and two in the main table: the means of its steps.
