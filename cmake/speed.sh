@@ -5,7 +5,7 @@
 # Tables, pictures and page go to build/speed. With DATA_FOLDER (scenes/) and no options
 # they also replace those in doc/results; without it the generated scenes are measured
 # alone. Options are handed to fcl_ccd_speed: --groups smooth,size --repeats 3
-# About ten minutes; the largest scene needs 6 GiB of memory.
+# About a quarter of an hour; the largest scene needs 6 GiB of memory.
 set -euo pipefail
 data=
 if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then

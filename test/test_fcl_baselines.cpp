@@ -173,8 +173,9 @@ FramePairMesh closingBook() {
 /// of a tetrahedron are orphans.
 FramePairMesh thrownTetrahedra(std::uint64_t seed) {
   Random random(seed);
-  return moving(makeTetrahedronSoup(12, 0.5, 0.4, seed),
-                [&](const Vector3<double>& p) { return p + random.point(0.4); });
+  return moving(
+      makeTetrahedronSoup(12, 0.5, 0.4, seed),
+      [&](const Vector3<double>& p) -> Vector3<double> { return p + random.point(0.4); });
 }
 
 TEST(FCL_BASELINES, surfacesOfAllKindsAreAnsweredRightByAllMethods) {
