@@ -272,7 +272,7 @@ TEST(FCL_BASELINES, vectorKernelsHaveNeitherThePlainFilterNorMovingBoxes) {
 }
 
 TEST(FCL_BASELINES, generalPositionIsAnsweredRightByAllMethods) {
-  for (const std::uint64_t seed : {1, 2, 3}) {
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     const FramePairMesh mesh = thrownSheet(seed);
     const auto truth = bruteForceSelfContacts(mesh);
