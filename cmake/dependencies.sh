@@ -1,6 +1,6 @@
 # shellcheck shell=bash
 # Installs the Debian packages that the project needs and the system lacks. Sourced by
-# test.sh, demo.sh, speed.sh and speed_error.sh.
+# test.sh, demo.sh and report.sh.
 
 # fcl_ccd_install_dependencies build|all [PACKAGE ...]
 fcl_ccd_install_dependencies() {

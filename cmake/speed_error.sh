@@ -7,31 +7,11 @@
 # are measured. Options are handed to fcl_ccd_speed_error: --solver NAME=COMMAND.
 # About five minutes, nearly all of it the million generated queries.
 set -euo pipefail
-data=
-if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
-  data=$(cd "$1" && pwd)
-  shift
-fi
-cd "$(dirname "$0")/.."
-# shellcheck source=cmake/dependencies.sh
-source cmake/dependencies.sh
-
-fcl_ccd_install_dependencies build gnuplot-nox
-cmake --preset release
-cmake --build --preset release -j "$(nproc)" --target fcl_ccd_speed_error
-
-out=build/speed_error
-sources=test/benchmark/speed_error
-build/release/test/fcl_ccd_speed_error "$out" ${data:+--data "$data"} "$@"
+# shellcheck source=cmake/report.sh
+source "$(dirname "$0")/report.sh"
+fcl_ccd_begin_report speed_error "$@"
 gnuplot -e "table='$out/speed_error.csv'; picture='$out/speed_error.png'" \
   "$sources/plot.gp"
 awk -F, -f "$sources/tables.awk" "$out/speed_error.csv" "$out/filter_ratio.csv" \
   >"$out/README.md"
-if [ -z "$data" ]; then
-  echo "Without a data folder: the generated queries only. doc/results stays as it is."
-elif [ $# -eq 0 ]; then
-  mkdir -p doc/results
-  cp "$out"/{speed_error.csv,filter_ratio.csv,speed_error.png,README.md} doc/results/
-  out=doc/results
-fi
-echo "Tables and picture: $out/README.md"
+fcl_ccd_end_report README.md speed_error.csv filter_ratio.csv speed_error.png

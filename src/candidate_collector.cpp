@@ -6,7 +6,7 @@ namespace detail {
 namespace deformable {
 
 void CandidateCollector::flush() {
-  batch_.cull(counts_);
+  batch_.cull(latest(), counts_);
   block_.clear();
   for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
     for (std::size_t i = 0; i < batch_.size(kind); ++i)

@@ -61,28 +61,32 @@ bool ContactSink::add(const FeatureContact& contact) {
   return true;
 }
 
-UninitializedVector<FeatureContact> sortedByTime(
-    const std::vector<std::vector<FeatureContact>>& lists) {
+SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
+    : lists_(std::move(lists)) {
   std::size_t count = 0;
-  for (const auto& list : lists) count += list.size();
+  for (const auto& list : lists_) count += list.size();
   // As many buckets of equal time as contacts; most hold one or two.
   const auto bucketOf = [count](const FeatureContact& c) {
     return std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(count)),
                     count - 1);
   };
   std::vector<std::size_t> ends(count + 1, 0);
-  for (const auto& list : lists)
+  for (const auto& list : lists_)
     for (const FeatureContact& c : list) ++ends[bucketOf(c) + 1];
   for (std::size_t i = 1; i <= count; ++i) ends[i] += ends[i - 1];
-  UninitializedVector<FeatureContact> sorted(count);
+  sorted_.resize(count);
   // Leaves the end of each bucket where its beginning was.
-  for (const auto& list : lists)
-    for (const FeatureContact& c : list) sorted[ends[bucketOf(c)]++] = c;
+  for (const auto& list : lists_)
+    for (const FeatureContact& c : list) sorted_[ends[bucketOf(c)]++] = &c;
+  const auto at = [this](std::size_t i) {
+    return sorted_.begin() + static_cast<std::ptrdiff_t>(i);
+  };
   for (std::size_t i = 0, first = 0; i < count; first = ends[i], ++i)
     if (ends[i] - first > 1)
-      std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(first),
-                sorted.begin() + static_cast<std::ptrdiff_t>(ends[i]), isEarlier);
-  return sorted;
+      std::sort(at(first), at(ends[i]),
+                [](const FeatureContact* x, const FeatureContact* y) {
+                  return isEarlier(*x, *y);
+                });
 }
 
 }  // namespace deformable

@@ -10,6 +10,7 @@
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "parallel.h"
 #include "query_arguments.h"
 #include "stock_fcl.h"
 
@@ -107,9 +108,13 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
     out.o2 = &scene.o2;
     return out;
   };
-  result.contacts.clear();
-  result.contacts.reserve(answer.contacts.size());
-  for (const auto& contact : answer.contacts) result.contacts.push_back(convert(contact));
+  result.contacts.resize(answer.contacts.size());
+  constexpr std::size_t kBlock = 1024;
+  detail::deformable::parallelForBlocks(
+      answer.contacts.size(), kBlock, request.num_threads,
+      [&](std::size_t i, std::size_t last) {
+        for (; i < last; ++i) result.contacts[i] = convert(answer.contacts[i]);
+      });
   result.contacts_cut = answer.cut;
   result.initially_crossing = answer.has_crossing;
   result.crossing =

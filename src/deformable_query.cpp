@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <type_traits>
 #include <utility>
 
@@ -49,7 +50,7 @@ class Part {
  public:
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const std::uint8_t* embedded,
        const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels()),
+      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels(), schedule.in_order),
         schedule_(schedule),
         leaves_(&leaves),
         block_(schedule.block + kMaxStep) {}
@@ -97,7 +98,7 @@ class Part {
 
  private:
   /// A step finds at most so many triangle pairs.
-  static constexpr std::size_t kMaxStep = MovingKdopNode::kWidth * MovingKdopNode::kWidth;
+  static constexpr std::size_t kMaxStep = LanePairs::kMax;
 
   void step(const NodePair& work) {
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
@@ -208,12 +209,14 @@ std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   const std::size_t count = tree.vertices().size();
-  constexpr std::size_t kBlock = 4096;
+  constexpr std::size_t kBlock = 4096, kAhead = 64;
   embedded.resize(count);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
-    for (; i < last; ++i)
+    for (; i < last; ++i) {
+      __builtin_prefetch(&tree.vertices()[std::min(i + kAhead, count - 1)]);
       embedded[i] = kernels().isFanEmbedded(tree.vertices().data(), tree.vertices()[i],
                                             tree.fans()[i]);
+    }
   });
   times.traverse += secondsSince(start);
   return embedded;
@@ -221,7 +224,7 @@ std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads
 
 /// The answer of one task.
 struct TaskAnswer {
-  std::vector<FeatureContact> contacts;
+  std::deque<FeatureContact> contacts;
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};
@@ -250,7 +253,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   for (const TaskAnswer& task : tasks) count += task.contacts.size();
   // A sink only where something may have to be left out.
   const bool keeps_all = !first && !any && !may_repeat && count <= options.max_contacts;
-  std::vector<std::vector<FeatureContact>> lists;
+  std::vector<std::deque<FeatureContact>> lists;
   ContactSink sink(any ? 1 : options.max_contacts, may_repeat);
   for (TaskAnswer& task : tasks) {
     answer.counts += task.counts;
@@ -271,7 +274,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   }
   answer.cut |= sink.isCut() && !any;
   if (!keeps_all) lists.push_back(sink.takeContacts());
-  answer.contacts = sortedByTime(lists);
+  answer.contacts = SortedContacts(std::move(lists));
   return answer;
 }
 

@@ -122,19 +122,20 @@ void FeatureBatch::clear() {
   for (List& list : lists_) list.size = 0;
 }
 
-void FeatureBatch::cull(StageCounts& counts) {
-  cull(FeatureKind::kVertexFace, lists_[0], counts);
-  cull(FeatureKind::kEdgeEdge, lists_[1], counts);
+void FeatureBatch::cull(double latest, StageCounts& counts) {
+  const float last = roundUp(latest, 0.f);
+  cull(FeatureKind::kVertexFace, last, lists_[0], counts);
+  cull(FeatureKind::kEdgeEdge, last, lists_[1], counts);
   crossings_.resize(kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
                                            crossings_.data(), crossings_.size()));
 }
 
-void FeatureBatch::cull(FeatureKind kind, List& list, StageCounts& counts) {
+void FeatureBatch::cull(FeatureKind kind, float latest, List& list, StageCounts& counts) {
   constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, latest,
                                     list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;

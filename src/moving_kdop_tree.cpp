@@ -21,11 +21,11 @@ constexpr std::uint32_t kMaxSubtree = 64;
 /// A task: so many vertices, or so many subtrees, which come in groups of 4 MB of nodes.
 constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64;
 
+/// A task while the tree is made: so many triangles.
+constexpr std::size_t kTriangleBlock = 8192;
+
 /// What is read in any order is brought near so many steps before.
 constexpr std::size_t kAhead = 8;
-
-/// The same while the tree is made.
-constexpr std::size_t kTriangleBlock = 8192;
 
 Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
 
@@ -143,38 +143,15 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
                            std::size_t num_vertices,
                            const std::vector<std::int32_t>& links) {
-  struct Open {
-    std::int32_t link;
-    std::size_t node;
-  };
-  TreeStructure structure;
-  structure.leaves.reserve(num_triangles);
-  structure.nodes.resize(1);
-  std::vector<Open> open{{0, 0}};
-  while (!open.empty()) {
-    const Open o = open.back();
-    open.pop_back();
-    std::int32_t binary[kWidth];
-    TreeChildren node{};
-    node.count = openBinary(o.link, binary, node.child, [&](std::int32_t i) {
+  const auto children = [&links](std::int32_t link, std::size_t) {
+    std::int32_t nodes[kWidth];
+    TreeChildren out{};
+    out.count = openBinary(link, nodes, out.child, [&links](std::int32_t i) {
       return links[static_cast<std::size_t>(i)];
     });
-    const std::size_t num_open = open.size();
-    for (int i = 0; i < node.count; ++i) {
-      std::int32_t& child = node.child[i];
-      if (child < 0) {
-        structure.leaves.push_back(static_cast<std::uint32_t>(~child));
-        child = ~static_cast<std::int32_t>(structure.leaves.size() - 1);
-      } else {
-        open.push_back({child, structure.nodes.size()});
-        child = static_cast<std::int32_t>(structure.nodes.size());
-        structure.nodes.emplace_back();
-      }
-    }
-    std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
-    structure.nodes[o.node] = node;
-  }
-  arrange(structure, triangles, num_vertices, 1);
+    return out;
+  };
+  arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, 1);
 }
 
 /// Takes a structure, and gives the vertices their places.

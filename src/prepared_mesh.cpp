@@ -79,6 +79,25 @@ void requireFinite(const Vector3<S>* vertices, int count, const std::string& wha
       throw Exception(what + ": vertex " + std::to_string(i) + " is not finite");
 }
 
+/// What is finite can be posed out of range. Boxes of that are unbounded, the root's too:
+/// where this one has bounds no vertex is looked at.
+void requireFinite(const MovingKdopTree& tree, const std::string& name) {
+  const MovingKdopNode& root = tree.node(0);
+  float most = 0;
+  for (const MovingKdopNode::Row& row : root.rows)
+    for (int lane = 0; lane < root.count; ++lane)
+      most = std::max(most, std::max(row.t0[lane], row.t1[lane]));
+  if (std::isfinite(most)) return;
+  for (const TreeTriangle& triangle : tree.triangles())
+    for (int k = 0; k < 3; ++k) {
+      const TreeVertex& x = tree.vertices()[triangle.place[k]];
+      for (int i = 0; i < 3; ++i)
+        if (!std::isfinite(x.t0[i]) || !std::isfinite(x.t1[i]))
+          throw Exception(name + ": vertex " + std::to_string(triangle.id[k]) +
+                          ", posed, is not finite");
+    }
+}
+
 }  // namespace
 
 template <typename S>
@@ -113,7 +132,7 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
     instance_.tree = &mesh->movingTree();
     if (beginning.isTranslation() && end.isTranslation()) return;
     tree_ = mesh->movingTree();
-    refit();
+    refit(name);
     return;
   }
   visitModel(geometry, [&](const auto& model) {
@@ -174,13 +193,14 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
   requireIndices(model, name);
   tree_.build(model.tri_indices, static_cast<std::size_t>(model.num_tris),
               static_cast<std::size_t>(model.num_vertices), links);
-  refit();
+  refit(name);
 }
 
-void PreparedMesh::refit() {
+void PreparedMesh::refit(const std::string& name) {
   const auto start = std::chrono::steady_clock::now();
   const DefaultFloatingPoint mode;
   tree_.refit(instance_.frames);
+  requireFinite(tree_, name);
   instance_.tree = &tree_;
   // The boxes are posed already.
   for (auto& translation : instance_.translation)

@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_TREE_BUILDER_H
 #define FCL_CCD_TREE_BUILDER_H
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -28,6 +30,42 @@ struct TreeStructure {
   /// The user's number of each leaf's triangle.
   std::vector<std::uint32_t> leaves;
 };
+
+/// @brief Numbers the nodes and leaves of a tree in the order of a walk from node 0.
+/// @param children  children(node, place): the children, by their old numbers, of a node
+/// that gets this place
+template <typename Children>
+TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
+  struct Open {
+    std::int32_t node;
+    std::size_t place;
+  };
+  TreeStructure tree;
+  tree.leaves.reserve(num_leaves);
+  tree.nodes.emplace_back();
+  std::vector<Open> open{{0, 0}};
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    TreeChildren node = children(o.node, o.place);
+    // The first child is the first to go on with.
+    const std::size_t num_open = open.size();
+    for (int i = 0; i < node.count; ++i) {
+      std::int32_t& child = node.child[i];
+      if (child < 0) {
+        tree.leaves.push_back(static_cast<std::uint32_t>(~child));
+        child = ~static_cast<std::int32_t>(tree.leaves.size() - 1);
+      } else {
+        open.push_back({child, tree.nodes.size()});
+        child = static_cast<std::int32_t>(tree.nodes.size());
+        tree.nodes.emplace_back();
+      }
+    }
+    std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
+    tree.nodes[o.place] = node;
+  }
+  return tree;
+}
 
 /// @brief What is put into a tree: a name and a place. Of the place as a vector of four
 /// numbers the last one means nothing.

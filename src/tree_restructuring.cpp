@@ -45,35 +45,13 @@ class MovingKdopTree::Restructuring {
   /// In the order of a walk; leaves are triangles of the tree.
   /// @param first_sizes  of each node; of a new one not yet known
   TreeStructure structure(std::vector<NodeSize>& first_sizes) const {
-    TreeStructure out;
-    out.leaves.reserve(tree_.triangles_.size());
-    struct Numbered {
-      std::size_t from, to;
-    };
-    std::vector<Numbered> open{{0, 0}};
-    out.nodes.resize(nodes_.size());
     first_sizes.resize(nodes_.size());
-    std::size_t next = 1;
-    while (!open.empty()) {
-      const Numbered o = open.back();
-      open.pop_back();
-      first_sizes[o.to] = first_sizes_[o.from];
-      TreeChildren node = nodes_[o.from];
-      const std::size_t num_open = open.size();
-      for (int i = 0; i < node.count; ++i) {
-        std::int32_t& child = node.child[i];
-        if (child < 0) {
-          out.leaves.push_back(static_cast<std::uint32_t>(~child));
-          child = ~static_cast<std::int32_t>(out.leaves.size() - 1);
-        } else {
-          open.push_back({static_cast<std::size_t>(child), next});
-          child = static_cast<std::int32_t>(next++);
-        }
-      }
-      std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
-      out.nodes[o.to] = node;
-    }
-    return out;
+    const auto children = [&](std::int32_t i, std::size_t place) {
+      const auto from = static_cast<std::size_t>(i);
+      first_sizes[place] = first_sizes_[from];
+      return nodes_[from];
+    };
+    return inWalkOrder(tree_.triangles_.size(), children);
   }
 
  private:

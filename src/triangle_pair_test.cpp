@@ -25,9 +25,10 @@ class CandidatePoints {
   VertexPath path_[4];
 };
 
-bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate) {
+bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate, double latest) {
   return mayBecomeCoplanarAccurately(candidate.kind, CandidatePoints(candidate).get(),
-                                     candidate.window_lo, candidate.window_hi);
+                                     candidate.window_lo,
+                                     std::min(candidate.window_hi, latest));
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
       task_(task) {}
 
 void TrianglePairTest::flush() {
-  batch_.cull(counts_);
+  batch_.cull(latest(), counts_);
   testCrossings();
   for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
     filter(kind);
@@ -53,11 +54,13 @@ void TrianglePairTest::flush() {
   batch_.clear();
 }
 
-/// Takes as candidates what may become coplanar.
+/// Takes as candidates what may become coplanar, and not too late. They keep their whole
+/// windows, so that a contact's bracket is the same whatever was found before it.
 void TrianglePairTest::filter(FeatureKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);
+  const double latest = this->latest();
   candidates_.clear();
   EightPairs eight;
   eight.kind = kind;
@@ -67,7 +70,7 @@ void TrianglePairTest::filter(FeatureKind kind) {
       const std::size_t i = std::min(first + lane, size - 1);
       const TreeVertex* x[4];
       batch_.points(codes[i], x);
-      eight.set(lane, x, windowLo(windows[i]), windowHi(windows[i]));
+      eight.set(lane, x, windowLo(windows[i]), std::min(windowHi(windows[i]), latest));
     }
     const EightCoplanarities found = kernels_.coplanarity(eight);
     unsigned left = found.possible | found.unclear;
@@ -76,7 +79,8 @@ void TrianglePairTest::filter(FeatureKind kind) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(left));
       const std::size_t i = first + lane;
       const FeatureCandidate candidate = batch_.candidate(codes[i], windows[i]);
-      if (found.unclear >> lane & 1U && !mayBecomeCoplanarAccurately(candidate)) continue;
+      if (found.unclear >> lane & 1U && !mayBecomeCoplanarAccurately(candidate, latest))
+        continue;
       candidates_.push_back(candidate);
     }
   }

@@ -364,6 +364,36 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   expectRefused([&] { pairContacts<double>(*mesh, Plain()); }, "o2");
 }
 
+// Finite coordinates and a finite pose, and yet what the pose makes of them is not.
+TEST(ContinuousContacts, VerticesPosedOutOfRangeAreRefused) {
+  constexpr double kLarge = 1.6e308;
+  TestMesh large = kA0;
+  for (Vector3<double>& p : large.vertices) p *= 1e-6 * kLarge;
+  large.vertices[5] = Vector3<double>(kLarge, kLarge, 0);
+  Pose turned = Pose::Identity();
+  turned.linear() = AngleAxis<double>(0.5, Vector3<double>::UnitZ()).toRotationMatrix();
+  const Pose here = Pose::Identity();
+  const auto check = [&](const CollisionGeometry<double>& o1,
+                         const CollisionGeometry<double>& o2) {
+    for (const ContinuousQuery query :
+         {ContinuousQuery::kAll, ContinuousQuery::kFirst, ContinuousQuery::kAny})
+      for (const bool late : {false, true}) {
+        Request request;
+        request.query = query;
+        Result result;
+        expectRefused(
+            [&] {
+              continuousCollide(&o1, late ? here : turned, late ? turned : here, &o2,
+                                here, here, request, result);
+            },
+            "o1: vertex 5, posed, is not finite");
+      }
+  };
+  const TestMesh next = moved(large, 0, 0, 1e300);
+  check(*makeModel<Model>(large, next), *makeModel<Model>(kA0, kA1));
+  check(*makeModel<BVHModel<AABB<double>>>(large, next), *makeModel<Model>(kA0, kA1));
+}
+
 template <typename Request, typename Result, typename = void>
 struct Compiles : std::false_type {};
 template <typename Request, typename Result>

@@ -99,6 +99,18 @@ TYPED_TEST_SUITE(DeformableModel, BVs, );
   (void)sizeof(Plain);                       \
   (void)sizeof(S)
 
+TYPED_TEST(DeformableModel, emptyHasFclsBox) {
+  USING_FIXTURE;
+  Model model;
+  Plain plain;
+  model.computeLocalAABB();
+  plain.computeLocalAABB();
+  EXPECT_TRUE(model.aabb_local.min_ == plain.aabb_local.min_);
+  EXPECT_TRUE(model.aabb_local.max_ == plain.aabb_local.max_);
+  EXPECT_TRUE(model.aabb_center == plain.aabb_center);
+  EXPECT_EQ(model.aabb_radius, plain.aabb_radius);
+}
+
 TYPED_TEST(DeformableModel, BuildUpdateReplace) {
   USING_FIXTURE;
   const auto model = makeModel<Model>(kSheet);

@@ -9,12 +9,14 @@
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "fcl/math/bv/OBBRSS.h"
@@ -736,6 +738,38 @@ std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles
   const PreparedMesh pa(*a, begin, begin, "a"), pb(*b, begin, end, "b");
   return expectRightAnswers({pa.instance(), triangles},
                             {pb.instance(), needles.triangles});
+}
+
+// Lists of any length, some empty; times at both ends, all alike, and in crowds.
+TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
+  const auto keyOf = [](const FeatureContact& c) {
+    return std::make_tuple(c.toc_lo, c.kind, !c.first_on_a,
+                           Ids(c.vertices, c.vertices + 4), c.toc_hi);
+  };
+  constexpr std::uint64_t kSeed = 73;
+  Random random(kSeed);
+  for (int round = 0; round < 200; ++round) {
+    std::vector<std::deque<FeatureContact>> lists(random.index(6));
+    std::vector<decltype(keyOf(FeatureContact()))> expected;
+    for (auto& list : lists) {
+      list.resize(random.index(3) * random.index(40));
+      for (FeatureContact& c : list) {
+        c.kind = random.index(2) ? FeatureKind::kVertexFace : FeatureKind::kEdgeEdge;
+        c.first_on_a = random.index(2) != 0;
+        for (auto& v : c.vertices) v = static_cast<std::uint32_t>(random.index(4));
+        const double crowd = random.uniform(0.5, 0.5 + 1e-6);
+        const double times[] = {0, 1, 0.25, crowd, random.uniform(0, 1)};
+        c.toc_lo = times[round % 3 ? random.index(5) : 2];
+        c.toc_hi = c.toc_lo + 1e-4 * static_cast<double>(c.vertices[0]);
+        expected.push_back(keyOf(c));
+      }
+    }
+    std::sort(expected.begin(), expected.end());
+    const SortedContacts sorted(std::move(lists));
+    ASSERT_EQ(sorted.size(), expected.size());
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+      ASSERT_EQ(keyOf(sorted[i]), expected[i]) << "seed " << kSeed << ", " << round;
+  }
 }
 
 // What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of

@@ -163,10 +163,25 @@ struct Rows {
   BoxView view() const { return {t0, t1, 1}; }
 };
 
+/// Whether no half-axis separates the boxes at t = 0.
+bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
+  for (int j = 0; j < 16; ++j)
+    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
+  return true;
+}
+
+/// What is said without times of boxes that overlap from `lo` on.
+void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, float lo) {
+  if (doOverlapAtStart(a, b))
+    EXPECT_EQ(earliest, 0);
+  else
+    EXPECT_TRUE(earliest == FLT_MIN || earliest == lo) << earliest << " " << lo;
+}
+
 void expectRightChildren(const BoxView& view, const MovingKdop& box,
                          const MovingKdopNode& node, Tally& tally) {
   float first[kWidth];
-  const unsigned mask = allSets().front()->overlapChildren(view, node, first);
+  const unsigned mask = allSets().front()->overlapChildren(view, node, true, first);
   EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
   for (int lane = 0; lane < node.count; ++lane) {
     const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
@@ -176,10 +191,17 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
     }
     tally.add(!expected.isEmpty(), expected);
   }
+  float first_untimed[kWidth];
+  allSets().front()->overlapChildren(view, node, false, first_untimed);
+  for (int lane = 0; lane < node.count; ++lane)
+    if (mask >> lane & 1U)
+      expectUntimed(first_untimed[lane], box, node.box(lane), first[lane]);
   for (const Kernels* k : allSets()) {
     float earliest[kWidth];
-    ASSERT_EQ(k->overlapChildren(view, node, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, true, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first);
+    ASSERT_EQ(k->overlapChildren(view, node, false, earliest), mask) << k->name;
+    expectSameBits(mask, earliest, first_untimed);
     ASSERT_FALSE(testing::Test::HasFailure()) << k->name;
   }
 }
@@ -227,9 +249,13 @@ TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
       node.clearRest();
       for (const Kernels* k : allSets()) {
         float earliest[kWidth];
-        EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, earliest), (1U << count) - 1)
-            << k->name;
-        for (int lane = 0; lane < count; ++lane) EXPECT_EQ(earliest[lane], 0) << k->name;
+        for (const bool timed : {true, false}) {
+          EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, timed, earliest),
+                    (1U << count) - 1)
+              << k->name;
+          for (int lane = 0; lane < count; ++lane)
+            EXPECT_EQ(earliest[lane], 0) << k->name;
+        }
       }
     }
   }
@@ -363,6 +389,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint32_t kPairs = 5;
   Random random(kSeed);
   Tally tally[kNumFeaturePairs];
+  int late = 0;
   for (int i = 0; i < 12000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     std::vector<TrianglePairBoxes> boxes;
@@ -376,6 +403,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     }
     const KdopShift turned_shift = boxes[0].turnedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
+    const float latest =
+        random.index(2) ? 1.f : static_cast<float>(random.uniform(-0.1, 1));
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
       std::vector<TimeWindow> left_windows;
@@ -390,10 +419,11 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
               b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
           const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
-          if (!expected.isEmpty()) {
+          if (!expected.isEmpty() && expected.lo <= latest) {
             left.push_back(codes.back());
             left_windows.push_back(expected);
           }
+          late += !expected.isEmpty() && expected.lo > latest;
           tally[bit].add(!expected.isEmpty(), expected);
         }
       std::vector<TimeWindow> first;
@@ -401,8 +431,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
         std::vector<std::uint32_t> mine = codes;
         std::vector<TimeWindow> windows(codes.size());
         const std::size_t count =
-            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, mine.data(),
-                                  mine.size(), windows.data());
+            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, latest,
+                                  mine.data(), mine.size(), windows.data());
         mine.resize(count);
         windows.resize(count);
         ASSERT_EQ(mine, left) << kernels->name;
@@ -421,52 +451,128 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     EXPECT_GT(tally[bit].apart, 1000) << bit;
     EXPECT_GT(tally[bit].cut, 300) << bit;
   }
+  EXPECT_GT(late, 1000);
 }
 
-// Up to three places, among them of vertices that no triangle has; lanes that are not in
-// use and lanes that hold nodes have none.
-TEST(FCL_KERNELS, trianglesAtVertices) {
+/// A node with triangles of few vertices and, here and there, a node among them.
+MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
+  MovingKdopNode node;
+  node.count = 1 + static_cast<int>(random.index(kWidth));
+  // Few vertices, or places that differ in a high bit alone.
+  const unsigned high = random.index(2) ? 0 : 31;
+  const auto place = [&] {
+    return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
+           static_cast<std::uint32_t>(random.index(high ? 4 : 1));
+  };
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const bool is_triangle = lane < node.count && random.index(8) != 0;
+    node.child[lane] = is_triangle ? -1 - lane : lane;
+    for (auto& row : node.places)
+      row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+    node.setBox(lane, randomBounds(random, halves, scale));
+  }
+  return node;
+}
+
+bool doShareEmbedded(const MovingKdopNode& a, int i, const MovingKdopNode& b, int j,
+                     const std::set<std::uint32_t>& embedded) {
+  for (const auto& mine : a.places)
+    for (const auto& theirs : b.places)
+      if (mine[i] == theirs[j] && embedded.count(mine[i])) return true;
+  return false;
+}
+
+struct ExpectedPair {
+  int a, b;
+  float lo;
+};
+
+// Two leaves or one with itself, moved against each other or not, with and without fans;
+// pairs come in ascending order.
+TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
-  int found = 0, not_found = 0;
-  for (int i = 0; i < 20000; ++i) {
-    MovingKdopNode node;
-    node.count = 1 + static_cast<int>(random.index(kWidth));
-    // Few vertices, or ids that differ in a high bit alone.
-    const unsigned high = random.index(2) ? 0 : 31;
-    const auto place = [&] {
-      return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
-             static_cast<std::uint32_t>(random.index(high ? 4 : 1));
-    };
-    for (int lane = 0; lane < kWidth; ++lane) {
-      const bool is_triangle = lane < node.count && random.index(4) != 0;
-      node.child[lane] = is_triangle ? -1 - lane : lane;
-      for (auto& row : node.places)
-        row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+  int overlaps = 0, apart = 0, fans = 0, late = 0;
+  for (int i = 0; i < 6000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const Halves halves = randomHalves(random);
+    const float scale = randomScale(random);
+    MovingKdopNode a = randomLeaf(random, halves, scale),
+                   other = randomLeaf(random, halves, scale);
+    const bool same = random.index(3) == 0;
+    const MovingKdopNode& b = same ? a : other;
+    const bool has_shift = !same && random.index(2);
+    const MovingKdop box = randomBounds(random, randomHalves(random), scale);
+    const KdopShift shift = {box.t0, box.t1};
+    float rows[2][16];
+    for (int r = 0; r < 16; ++r) {
+      rows[0][r] = shift.t0.half[MovingKdopNode::halfAxis(r)];
+      rows[1][r] = shift.t1.half[MovingKdopNode::halfAxis(r)];
     }
-    std::uint32_t places[3];
-    const std::size_t count = random.index(4);
-    for (std::uint32_t& p : places) p = place();
-    unsigned expected = 0;
-    for (int lane = 0; lane < kWidth; ++lane)
-      for (const auto& row : node.places)
-        if (std::find(places, places + count, row[lane]) != places + count)
-          expected |= 1U << lane;
-    for (const Kernels* k : allSets())
-      ASSERT_EQ(k->trianglesAt(places, count, node), expected)
-          << k->name << ", seed " << kSeed << ", " << i;
-    found += __builtin_popcount(expected);
-    not_found += node.count - __builtin_popcount(expected);
-  }
-  EXPECT_GT(found, 10000);
-  EXPECT_GT(not_found, 10000);
-}
+    // A table of what is embedded reaches as far as the places.
+    const bool has_fans = !has_shift && random.index(2);
+    std::set<std::uint32_t> embedded;
+    std::vector<std::uint8_t> table(20);
+    if (has_fans) {
+      for (MovingKdopNode* node : {&a, &other})
+        for (auto& row : node->places)
+          for (std::uint32_t& p : row)
+            if (p != MovingKdopNode::kNoPlace) p %= 20;
+      for (std::uint32_t p = 0; p < 20; ++p)
+        if (random.index(3) == 0) {
+          table[p] = 1;
+          embedded.insert(p);
+        }
+    }
+    const auto lanes = static_cast<unsigned>(random.next()) & a.triangles();
 
-/// Whether no half-axis separates the boxes at t = 0.
-bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
-  for (int j = 0; j < 16; ++j)
-    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
-  return true;
+    std::vector<ExpectedPair> expected;
+    std::size_t expected_fans = 0;
+    for (int x = 0; x < a.count; ++x)
+      for (int y = same ? x + 1 : 0; y < b.count; ++y) {
+        if (!(lanes >> x & 1U) || !b.isTriangle(y)) continue;
+        const MovingKdop moved = shifted(a.box(x), has_shift ? &shift : nullptr);
+        const TimeWindow window = overlapWindow<false>(moved, b.box(y), nullptr);
+        if (window.isEmpty())
+          ++apart;
+        else if (doShareEmbedded(a, x, b, y, embedded))
+          ++expected_fans;
+        else
+          expected.push_back({x, y, window.lo});
+      }
+    for (const bool timed : {true, false}) {
+      LanePairs first;
+      for (const Kernels* k : allSets()) {
+        LanePairs pairs;
+        k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
+                             has_fans ? table.data() : nullptr, timed},
+                            pairs);
+        ASSERT_EQ(pairs.size, expected.size()) << k->name;
+        EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
+        if (k == allSets().front()) first = pairs;
+        for (std::size_t n = 0; n < pairs.size; ++n) {
+          EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
+          EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
+          if (timed)
+            EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
+          else
+            expectUntimed(pairs.earliest[n],
+                          shifted(a.box(expected[n].a), has_shift ? &shift : nullptr),
+                          b.box(expected[n].b), expected[n].lo);
+          EXPECT_EQ(std::memcmp(&pairs.earliest[n], &first.earliest[n], sizeof(float)), 0)
+              << k->name;
+        }
+        ASSERT_FALSE(HasFailure()) << k->name;
+      }
+    }
+    fans += static_cast<int>(expected_fans);
+    overlaps += static_cast<int>(expected.size());
+    for (const ExpectedPair& p : expected) late += p.lo > 0;
+  }
+  EXPECT_GT(overlaps, 5000);
+  EXPECT_GT(apart, 5000);
+  EXPECT_GT(fans, 1000);
+  EXPECT_GT(late, 1000);
 }
 
 TEST(FCL_KERNELS, edgesAndFacesAtStart) {
@@ -630,26 +736,33 @@ FilterCounts expectRightFilter(const FilterQuery (&queries)[8]) {
   return {__builtin_popcount(may), __builtin_popcount(unclear)};
 }
 
-TEST(FCL_KERNELS, filterAsTheScalarOne) {
-  constexpr std::uint64_t kSeed = 74;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
-  constexpr int kBlocks = 20000;
-  for (int i = 0; i < kBlocks; ++i) {
+/// The same for blocks of random pairs and windows.
+/// @param make_pair  from the random numbers and a kind
+template <typename MakePair>
+FilterCounts expectRightFilter(std::uint64_t seed, int num_blocks, MakePair&& make_pair) {
+  Random random(seed);
+  FilterCounts sum;
+  for (int i = 0; i < num_blocks && !testing::Test::HasFailure(); ++i) {
+    SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(i));
     const FeatureKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
+      q.pair = make_pair(random, kind);
       randomWindow(random, q.lo, q.hi);
     }
     const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+    sum.may += n.may;
+    sum.unclear += n.unclear;
   }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_LT(unclear, kBlocks / 1000);  // doubles are enough for most
+  return sum;
+}
+
+TEST(FCL_KERNELS, filterAsTheScalarOne) {
+  constexpr int kBlocks = 20000;
+  const FilterCounts n = expectRightFilter(74, kBlocks, randomPair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_LT(n.unclear, kBlocks / 1000);  // doubles are enough for most
 }
 
 // Sizes over all of double's range: products that underflow or overflow, and the edges of
@@ -682,77 +795,59 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
 // Signs that agree, by much less than what doubles may lose or by nearly that: around the
 // bound every instruction set is on the same side of it.
 TEST(FCL_KERNELS, filterOfNarrowSigns) {
-  constexpr std::uint64_t kSeed = 78;
-  Random random(kSeed);
-  int may = 0, unclear = 0;
   constexpr int kBlocks = 5000;
-  for (int i = 0; i < kBlocks; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      // A slope z = a x + b y, and the first feature a little above it.
-      const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
-      const double gap =
-          random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
-      q.pair = randomPair(random, kind);
-      for (int n = 0; n < 4; ++n) {
-        VertexPath& p = q.pair.x[n];
-        const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
-        p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
-        p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
-      }
-      randomWindow(random, q.lo, q.hi);
+  const auto makePair = [](Random& random, FeatureKind kind) {
+    // A slope z = a x + b y, and the first feature a little above it.
+    const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
+    const double gap =
+        random.uniform(0x1p-54, 0x1p-53) * static_cast<double>(1U << random.index(16));
+    MovingPair pair = randomPair(random, kind);
+    for (int n = 0; n < 4; ++n) {
+      VertexPath& p = pair.x[n];
+      const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
+      p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
+      p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
     }
-    const FilterCounts n = expectRightFilter(queries);
-    may += n.may;
-    unclear += n.unclear;
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
-  EXPECT_GT(may, kBlocks);
-  EXPECT_LT(may, 7 * kBlocks);
-  EXPECT_GT(unclear, kBlocks);
+    return pair;
+  };
+  const FilterCounts n = expectRightFilter(78, kBlocks, makePair);
+  EXPECT_GT(n.may, kBlocks);
+  EXPECT_LT(n.may, 7 * kBlocks);
+  EXPECT_GT(n.unclear, kBlocks);
 }
 
 // Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
 // "may" be so.
 TEST(FCL_KERNELS, filterOfDegeneratePairs) {
-  constexpr std::uint64_t kSeed = 76;
-  Random random(kSeed);
-  for (int i = 0; i < 5000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
-    FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
-      auto& x = q.pair.x;
-      switch (random.index(6)) {
-        case 0:  // all in one plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
-          break;
-        case 1:  // at rest
-          for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
-          break;
-        case 2:  // no normal
-          x[1] = x[random.index(4)];
-          break;
-        case 3:  // a unit in the last place off a plane
-          for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
-          x[random.index(4)].t1[2] = std::nextafter(1, 2);
-          break;
-        case 4:  // far away
-          for (VertexPath& p : x)
-            for (int k = 0; k < 3; ++k) {
-              p.t0[k] += 1e9;
-              p.t1[k] += 1e9;
-            }
-          break;
-        default:  // one point for all
-          for (VertexPath& p : x) p = x[0];
-      }
-      randomWindow(random, q.lo, q.hi);
+  expectRightFilter(76, 5000, [](Random& random, FeatureKind kind) {
+    MovingPair pair = randomPair(random, kind);
+    auto& x = pair.x;
+    switch (random.index(6)) {
+      case 0:  // all in one plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 0.25;
+        break;
+      case 1:  // at rest
+        for (VertexPath& p : x) std::copy(p.t0, p.t0 + 3, p.t1);
+        break;
+      case 2:  // no normal
+        x[1] = x[random.index(4)];
+        break;
+      case 3:  // a unit in the last place off a plane
+        for (VertexPath& p : x) p.t0[2] = p.t1[2] = 1;
+        x[random.index(4)].t1[2] = std::nextafter(1, 2);
+        break;
+      case 4:  // far away
+        for (VertexPath& p : x)
+          for (int k = 0; k < 3; ++k) {
+            p.t0[k] += 1e9;
+            p.t1[k] += 1e9;
+          }
+        break;
+      default:  // one point for all
+        for (VertexPath& p : x) p = x[0];
     }
-    expectRightFilter(queries);
-    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
-  }
+    return pair;
+  });
 }
 
 // What is not finite proves nothing, even where the window ends before it counts, and
@@ -1043,6 +1138,73 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   EXPECT_GT(tally.no, 10000);
   EXPECT_GT(tally.open, 300);
   EXPECT_GT(tally.divided, 300);
+}
+
+/// Volume of the four points at t, by the vectors that the kernels take.
+long double volumeAt(const MovingPair& pair, double t) {
+  long double p[4][3];
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      p[i][k] = (1 - static_cast<long double>(t)) * pair.x[i].t0[k] +
+                static_cast<long double>(t) * pair.x[i].t1[k];
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const int from[3] = {vf ? 0 : 2, vf ? 2 : 1, 3},
+            to[3] = {vf ? 1 : 0, vf ? 1 : 0, vf ? 1 : 2};
+  long double e[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) e[i][k] = p[from[i]][k] - p[to[i]][k];
+  long double volume = 0;
+  for (int k = 0; k < 3; ++k) {
+    const int l = (k + 1) % 3, m = (k + 2) % 3;
+    volume += e[0][k] * (e[1][l] * e[2][m] - e[1][m] * e[2][l]);
+  }
+  return volume;
+}
+
+// Where a volume goes through zero and back, the window is divided at the farthest point
+// beyond, so that each part has one root; and not where it begins or ends at zero.
+TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
+  constexpr std::uint64_t kSeed = 83;
+  Random random(kSeed);
+  int returning = 0, touching = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
+      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
+    }
+    const EightPoints points(queries);
+    const EightDivisions divided = divideAll(points.pairs(queries));
+    for (int lane = 0; lane < 8; ++lane) {
+      const FilterQuery& q = queries[lane];
+      const long double first = volumeAt(q.pair, q.lo), last = volumeAt(q.pair, q.hi);
+      if (first == 0 || last == 0) {
+        ++touching;
+        EXPECT_FALSE(divided.divisible >> lane & 1U) << q.pair;
+        continue;
+      }
+      // Clear of zero on both sides.
+      long double farthest = 0, size = 0;
+      for (int k = 0; k <= 64; ++k) {
+        const long double volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
+        farthest = std::max(farthest, first > 0 ? -volume : volume);
+        size = std::max(size, std::abs(volume));
+      }
+      const long double clear = 1e-6L * size;
+      if (first * last < 0 || size < 1e-3L || farthest < clear ||
+          std::abs(first) < clear || std::abs(last) < clear)
+        continue;
+      ++returning;
+      const long double there = volumeAt(q.pair, divided.at[lane]);
+      EXPECT_TRUE(divided.divisible >> lane & 1U) << q.pair;
+      EXPECT_GE(first > 0 ? -there : there, farthest - 1e-12L * size) << q.pair;
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(returning, 1000);
+  EXPECT_GT(touching, 100);
 }
 
 // Touches at the end of a window, at rest, all the time, of flat pairs and of points.

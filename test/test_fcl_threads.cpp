@@ -558,6 +558,21 @@ TEST(FCL_THREADS, modelsUseThreads) {
   EXPECT_EQ(most, 2U);
 }
 
+// Of so few vertices all but the tree is one task.
+TEST(FCL_THREADS, updatesOfTreesUseThreads) {
+  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  const TestMesh sheet = bentSheet(80);
+  const Step step{"sheet", sheet, shaken(sheet, 0.004, 28)};
+  const auto model = step.model(1);
+  EXPECT_EQ(model->setNumThreads(2), BVH_OK);
+  tbb::task_arena arena(2);
+  Watcher watcher(arena);
+  // A worker may come late.
+  for (int i = 0; i < 500 && watcher.most() < 2; ++i)
+    arena.execute([&] { EXPECT_EQ(step.update(*model), BVH_OK); });
+  EXPECT_EQ(watcher.most(), 2);
+}
+
 TEST(FCL_THREADS, arenaOfTwoIsRespected) {
   tbb::task_arena arena(2);
   Watcher watcher(arena);

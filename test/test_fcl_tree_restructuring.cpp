@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +55,8 @@ using Model = DeformableBVHModel<>;
 using Result = ContinuousContactResult<double>;
 using Points = std::vector<Vector3<double>>;
 using detail::deformable::assignFeatures;
+using detail::deformable::VertexFan;
+using detail::deformable::VertexFans;
 
 FrameSequence reversed(FrameSequence sequence) {
   std::reverse(sequence.frames.begin(), sequence.frames.end());
@@ -134,6 +138,36 @@ void expectSameContacts(const Model& x, const Model& y) {
   }
 }
 
+/// Each vertex has the fan that its triangles form, wherever a closed one begins.
+void expectFans(const MovingKdopTree& tree) {
+  const VertexFans expected(tree.triangles(), tree.vertices().size());
+  ASSERT_EQ(tree.fans().size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v) {
+    const VertexFan mine = tree.fans()[v], its = expected[v];
+    ASSERT_EQ(mine.count, its.count);
+    ASSERT_EQ(mine.is_closed, its.is_closed);
+    std::vector<std::uint32_t> spokes(mine.spokes, mine.spokes + mine.count);
+    if (mine.is_closed)
+      std::rotate(spokes.begin(), std::find(spokes.begin(), spokes.end(), its.spokes[0]),
+                  spokes.end());
+    ASSERT_TRUE(std::equal(spokes.begin(), spokes.end(), its.spokes)) << "vertex " << v;
+  }
+}
+
+/// The triangles of the nodes that have only triangles, by the user's numbers.
+std::set<std::vector<std::uint32_t>> lowestNodes(const MovingKdopTree& tree) {
+  std::set<std::vector<std::uint32_t>> nodes;
+  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
+    const auto& node = tree.node(i);
+    std::vector<std::uint32_t> triangles;
+    for (int lane = 0; lane < node.count && node.isTriangle(lane); ++lane)
+      triangles.push_back(
+          tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index);
+    if (triangles.size() == static_cast<std::size_t>(node.count)) nodes.insert(triangles);
+  }
+  return nodes;
+}
+
 TEST(FCL_TREE_RESTRUCTURING, onlyWhereBoxesGrow) {
   const int mix = countRestructurings(makeMixingBalls(61));
   EXPECT_GE(mix, 3);
@@ -176,7 +210,7 @@ TEST(FCL_TREE_RESTRUCTURING, structureAndBoxes) {
       if (!moving.step(t0, t1)) continue;
       ++count;
       expectContainment(moving.tree, moving.triangles, MovingTree::framesOf(t0, t1));
-      EXPECT_EQ(moving.tree.fans().size(), moving.tree.vertices().size());
+      ASSERT_NO_FATAL_FAILURE(expectFans(moving.tree));
     }
     EXPECT_GE(count, 1);
   }
@@ -256,6 +290,73 @@ TEST(FCL_TREE_RESTRUCTURING, onlyTheAgedPart) {
     (i < balls.triangles.size() ? changed_balls : changed_cloth) += first[i] != last[i];
   EXPECT_LT(changed_cloth, cloth.triangles.size() / 100);
   EXPECT_GT(changed_balls, balls.triangles.size() / 20);
+}
+
+// Balls that mix keep their shape: what is split anew are their patches.
+TEST(FCL_TREE_RESTRUCTURING, lowestNodesStay) {
+  const FrameSequence sequence = makeMixingBalls(16);
+  MovingTree moving(sequence);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i) {
+    const auto before = lowestNodes(moving.tree);
+    if (!moving.step(sequence.frames[i], sequence.frames[i + 1])) continue;
+    ++count;
+    const auto after = lowestNodes(moving.tree);
+    std::size_t num_kept = 0;
+    for (const auto& node : before) num_kept += after.count(node);
+    EXPECT_GT(num_kept, before.size() * 2 / 3);
+  }
+  EXPECT_GE(count, 1);
+}
+
+// What is made anew in every other step lets nothing else look new: balls mix meanwhile,
+// little by little.
+TEST(FCL_TREE_RESTRUCTURING, whatStaysKeepsItsAge) {
+  constexpr std::uint64_t kSeed = 72;
+  constexpr std::size_t kPerFrame = 8;
+  Random random(kSeed);
+  const FrameSequence balls = makeMixingBalls(9);
+  const TestMesh soup = makeTriangleSoup(512, 1, 0.01, 8);
+  FrameSequence step{balls.triangles, {{}, {}}};
+  const std::size_t num_ball_vertices = balls.frames[0].size();
+  for (const Triangle& t : soup.triangles)
+    step.triangles.emplace_back(t[0] + num_ball_vertices, t[1] + num_ball_vertices,
+                                t[2] + num_ball_vertices);
+  /// Where the triangles beside the balls jump to, far from each other.
+  const auto scattered = [&] {
+    Points points = soup.vertices;
+    for (std::size_t i = 0; i < points.size(); i += 3) {
+      const Vector3<double> by = Vector3<double>(1e4, 0, 0) + random.point(1e3);
+      for (std::size_t k = 0; k < 3; ++k) points[i + k] += by;
+    }
+    return points;
+  };
+  const auto ballsAt = [&](std::size_t i) {
+    const std::size_t frame = i / kPerFrame;
+    const double t = static_cast<double>(i % kPerFrame) / kPerFrame;
+    Points points = balls.frames[frame];
+    if (t > 0)
+      for (std::size_t k = 0; k < points.size(); ++k)
+        points[k] += t * (balls.frames[frame + 1][k] - points[k]);
+    return points;
+  };
+  Model kept;
+  Points jumped;
+  const std::size_t num_steps = kPerFrame * (balls.frames.size() - 1);
+  for (std::size_t i = 0; i < num_steps; ++i) {
+    if (i % 2 == 0) jumped = scattered();
+    for (std::size_t k = 0; k < 2; ++k) {
+      step.frames[k] = ballsAt(i + k);
+      step.frames[k].insert(step.frames[k].end(), jumped.begin(), jumped.end());
+    }
+    if (i == 0) build(step, 0, kept);
+    update(step, 0, kept);
+  }
+  EXPECT_GT(kept.numRestructurings(), num_steps / 4) << "seed " << kSeed;
+  Model fresh;
+  build(step, 0, fresh);
+  update(step, 0, fresh);
+  EXPECT_LT(comparedBoxes(kept), 1.35 * comparedBoxes(fresh)) << "seed " << kSeed;
 }
 
 TEST(FCL_TREE_RESTRUCTURING, contactsStayTheSame) {

@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/detail/deformable/kernels.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 
 #if defined(FCL_CCD_USE_HIGHWAY)
@@ -32,35 +33,42 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
 
 template <std::size_t kStride>
 HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+                                    bool timed,
                                     float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kRows = 16;
   Floats s0[kRows], s1[kRows];
-  Floats apart = broadcast<kEight>(1.f), cut = apart;
+  Floats apart = broadcast<kEight>(1.f), cut0 = apart, cut1 = apart;
   for (std::size_t r = 0; r < kRows; ++r) {
     // Row r ^ 1 is the opposite half-axis.
     s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
     s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.rows[r ^ 1].t1);
     apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
-    cut = eitherNegative(cut, eitherNegative(s0[r], s1[r]));
+    cut0 = eitherNegative(cut0, s0[r]);
+    cut1 = eitherNegative(cut1, s1[r]);
   }
   const unsigned left = ~signs(apart) & node.lanes();
   if (left == 0) return 0;
+  // A window that is cut at one end only is not empty.
+  if ((signs(timed ? cut0 : bothNegative(cut0, cut1)) & left) == 0) {
+    store(whereNegative(cut0, broadcast<kEight>(FLT_MIN)), earliest);
+    return left;
+  }
   Floats before = broadcast<kEight>(0.f), after = before;
-  if (signs(cut) & left)
-    for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);
+  for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);
   const Floats hi = broadcast<kEight>(kWindowEnd) - after;
   store(before, earliest);
   return left & bits(before <= hi);
 }
 
-unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node, bool timed,
                            float (&earliest)[MovingKdopNode::kWidth]) {
-  return box.stride == 1 ? overlapChildren<1>(box, node, earliest)
-                         : overlapChildren<BoxView::kInNode>(box, node, earliest);
+  return box.stride == 1 ? overlapChildren<1>(box, node, timed, earliest)
+                         : overlapChildren<BoxView::kInNode>(box, node, timed, earliest);
 }
 
-unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
-                     const MovingKdopNode& node) {
+/// Which of the node's triangles have one of `count` vertices (places in the tree).
+HWY_INLINE unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
+                                const MovingKdopNode& node) {
   const auto first = load<kEight>(node.places[0]), second = load<kEight>(node.places[1]),
              third = load<kEight>(node.places[2]);
   unsigned found = 0;
@@ -69,6 +77,60 @@ unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
     found |= bits((first == place) | (second == place) | (third == place));
   }
   return found;
+}
+
+/// The triangles of a node that lie in an embedded fan with a triangle of another.
+HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
+                                    const MovingKdopNode& b,
+                                    const std::uint8_t* embedded) {
+  std::uint32_t places[3];
+  std::size_t count = 0;
+  for (const auto& row : a.places) {
+    places[count] = row[lane];
+    count += embedded[row[lane]];
+  }
+  return trianglesAt(places, count, b);
+}
+
+template <bool kShifted>
+HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
+  const MovingKdopNode &a = leaves.a, &b = leaves.b;
+  const unsigned triangles = b.triangles();
+  for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    float earliest[MovingKdopNode::kWidth];
+    unsigned left = triangles;
+    if (&a == &b) left &= ~((2U << lane) - 1);
+    if (left == 0) continue;
+    if constexpr (kShifted) {
+      float moved[2][16];
+      for (std::size_t r = 0; r < 16; ++r) {
+        moved[0][r] = std::max(a.rows[r].t0[lane] + leaves.shift[0][r], kLeastHalf);
+        moved[1][r] = std::max(a.rows[r].t1[lane] + leaves.shift[1][r], kLeastHalf);
+      }
+      left &= overlapChildren<1>({moved[0], moved[1], 1}, b, leaves.timed, earliest);
+    } else {
+      const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode};
+      left &= overlapChildren<BoxView::kInNode>(box, b, leaves.timed, earliest);
+    }
+    if (left != 0 && leaves.embedded) {
+      const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
+      out.fan_culled += static_cast<std::size_t>(__builtin_popcount(fan));
+      left &= ~fan;
+    }
+    for (; left != 0; left &= left - 1, ++out.size) {
+      const int other = __builtin_ctz(left);
+      out.a[out.size] = static_cast<std::uint8_t>(lane);
+      out.b[out.size] = static_cast<std::uint8_t>(other);
+      out.earliest[out.size] = earliest[other];
+    }
+  }
+}
+
+void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
+  out.size = out.fan_culled = 0;
+  leaves.shift ? overlapTriangles<true>(leaves, out)
+               : overlapTriangles<false>(leaves, out);
 }
 
 std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
@@ -123,8 +185,9 @@ HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::siz
 
 template <FeatureKind kind, bool kShifted>
 HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
-                                    const KdopShift* turned_shift, std::uint32_t* codes,
-                                    std::size_t count, TimeWindow* windows) {
+                                    const KdopShift* turned_shift, float latest,
+                                    std::uint32_t* codes, std::size_t count,
+                                    TimeWindow* windows) {
   // Two loops: the first one has no branch that depends on the boxes.
   std::size_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -146,19 +209,20 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
     const float lo = largest(before), hi = kWindowEnd - largest(after);
     codes[kept] = code;
     windows[kept] = {lo, hi < 1.f ? hi : 1.f};
-    kept += lo <= hi;
+    kept += lo <= (hi < latest ? hi : latest);
   }
   return kept;
 }
 
 std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
-                           std::uint32_t* codes, std::size_t count, TimeWindow* windows) {
+                           float latest, std::uint32_t* codes, std::size_t count,
+                           TimeWindow* windows) {
   constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
   const auto cull = kind == kVf
                         ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
                         : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
-  return cull(pairs, shift, turned_shift, codes, count, windows);
+  return cull(pairs, shift, turned_shift, latest, codes, count, windows);
 }
 
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
@@ -253,26 +317,6 @@ HWY_INLINE Segments restrict(const Differences& d, const Doubles& lo, const Doub
   return {at(d.t0, d.t1, lo), at(d.t0, d.t1, hi), d.norm};
 }
 
-/// Coordinates of vectors side by side, with room for whole lanes.
-struct VectorArray {
-  static constexpr std::size_t kSize = VertexFans::kMaxSpokes + kEight;
-  double x[kSize], y[kSize], z[kSize];
-
-  HWY_INLINE void set(std::size_t i, const double* p, const double* q) {
-    x[i] = p[0] - q[0];
-    y[i] = p[1] - q[1];
-    z[i] = p[2] - q[2];
-  }
-  HWY_INLINE void copy(std::size_t from, std::size_t to) {
-    x[to] = x[from];
-    y[to] = y[from];
-    z[to] = z[from];
-  }
-  HWY_INLINE Vectors from(std::size_t i) const {
-    return {load<kEight>(x + i), load<kEight>(y + i), load<kEight>(z + i)};
-  }
-};
-
 struct Vector {
   double x, y, z;
 };
@@ -281,54 +325,71 @@ HWY_INLINE double maxNorm(const Vector& a) {
   return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
 }
 
+HWY_INLINE Vector difference(const double* p, const double* q) {
+  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
+}
+
 HWY_INLINE Doubles dot(const Vectors& a, const Vector& b) {
   return a.x * broadcast<kEight>(b.x) + a.y * broadcast<kEight>(b.y) +
          a.z * broadcast<kEight>(b.z);
 }
 
+HWY_INLINE Vector sumOfLanes(const Vectors& a) {
+  return {sumOfLanes(a.x), sumOfLanes(a.y), sumOfLanes(a.z)};
+}
+
+/// The spokes of a fan as differences to its center at one time, with room for whole
+/// lanes: a closed fan is followed by its first spoke, an open one by its last, so that
+/// what follows spans no triangle.
+class Spokes {
+ public:
+  HWY_INLINE void set(std::size_t i, const double* spoke) { rows_[i] = spoke; }
+
+  /// Eight from spoke i on.
+  HWY_INLINE Vectors from(std::size_t i, const double* center) const {
+    Vectors p;
+    loadColumns(rows_ + i, p.x, p.y, p.z);
+    return {p.x - broadcast<kEight>(center[0]), p.y - broadcast<kEight>(center[1]),
+            p.z - broadcast<kEight>(center[2])};
+  }
+
+ private:
+  const double* rows_[VertexFans::kMaxSpokes + kEight];
+};
+
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan) {
   if (fan.count < 2) return false;
-  VectorArray u0, u1;
-  for (std::size_t i = 0; i < fan.count; ++i) {
-    const TreeVertex& spoke = vertices[fan.spokes[i]];
-    u0.set(i, spoke.t0, center.t0);
-    u1.set(i, spoke.t1, center.t1);
-  }
-  // The first spoke follows the last, and fills the lanes that are left.
-  const std::size_t num_triangles = fan.is_closed ? fan.count : fan.count - 1;
   const std::size_t num_blocks = (fan.count + kEight - 1) / kEight;
-  for (std::size_t i = fan.count; i <= num_blocks * kEight; ++i) {
-    u0.copy(0, i);
-    u1.copy(0, i);
+  Spokes spokes0, spokes1;
+  for (std::size_t i = 0; i <= num_blocks * kEight; ++i) {
+    const std::size_t k = i < fan.count ? i : fan.is_closed ? 0 : fan.count - 1;
+    spokes0.set(i, vertices[fan.spokes[k]].t0);
+    spokes1.set(i, vertices[fan.spokes[k]].t1);
   }
 
   constexpr std::size_t kMaxBlocks = VertexFans::kMaxSpokes / kEight;
+  Vectors u0[kMaxBlocks], u1[kMaxBlocks];
   Vectors first[kMaxBlocks], middle[kMaxBlocks], last[kMaxBlocks];
   Vector d = {0, 0, 0};
   Doubles norm = broadcast<kEight>(kLeastNorm);
   for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Vectors v0 = u0.from(b * kEight), w0 = u0.from(b * kEight + 1);
-    const Vectors v1 = u1.from(b * kEight), w1 = u1.from(b * kEight + 1);
+    const Vectors v0 = u0[b] = spokes0.from(b * kEight, center.t0),
+                  v1 = u1[b] = spokes1.from(b * kEight, center.t1),
+                  w0 = spokes0.from(b * kEight + 1, center.t0),
+                  w1 = spokes1.from(b * kEight + 1, center.t1);
     norm = max(norm, max(maxNorm(v0), maxNorm(v1)));
     first[b] = cross(v0, w0);
     middle[b] = cross(v0, w1) + cross(v1, w0);
     last[b] = cross(v1, w1);
-    const Vectors sum = first[b] + last[b];
-    double x[kEight], y[kEight], z[kEight];
-    store(sum.x, x);
-    store(sum.y, y);
-    store(sum.z, z);
-    for (std::size_t i = 0; i < kEight && b * kEight + i < num_triangles; ++i) {
-      d.x += x[i];
-      d.y += y[i];
-      d.z += z[i];
-    }
+    const Vector sum = sumOfLanes(first[b] + last[b]);
+    d = {d.x + sum.x, d.y + sum.y, d.z + sum.z};
   }
   const double u_norm = largest(norm), d_norm = maxNorm(d);
   const double size = u_norm * u_norm * d_norm;
   if (!(u_norm * u_norm >= kTiny && size >= kTiny && size <= kHuge)) return false;
 
+  const std::size_t num_triangles = fan.is_closed ? fan.count : fan.count - 1;
   const auto triangles_bits = (1U << num_triangles) - 1;
   const Doubles turned = broadcast<kEight>(kFanBound * size);
   unsigned keep = 0;
@@ -342,14 +403,16 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
   // one.
   Vector r = {0, 0, 0};
   if (fan.is_closed) {
-    const double a = maxNorm(Vector{u0.x[0], u0.y[0], u0.z[0]});
-    const double b = maxNorm(Vector{u0.x[1], u0.y[1], u0.z[1]});
-    r = {b * u0.x[0] + a * u0.x[1], b * u0.y[0] + a * u0.y[1], b * u0.z[0] + a * u0.z[1]};
+    const Vector p = difference(vertices[fan.spokes[0]].t0, center.t0),
+                 q = difference(vertices[fan.spokes[1]].t0, center.t0);
+    const double a = maxNorm(p), b = maxNorm(q);
+    r = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
   } else {
     for (std::size_t i = 0; i < fan.count; ++i) {
-      r.x -= u0.x[i] + u1.x[i];
-      r.y -= u0.y[i] + u1.y[i];
-      r.z -= u0.z[i] + u1.z[i];
+      const TreeVertex& spoke = vertices[fan.spokes[i]];
+      const Vector p = difference(center.t0, spoke.t0),
+                   q = difference(center.t1, spoke.t1);
+      r = {r.x + (p.x + q.x), r.y + (p.y + q.y), r.z + (p.z + q.z)};
     }
   }
   const Vector e = {r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x};
@@ -360,7 +423,7 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
   // Spokes that lie before and after the ray beyond doubt, turning the fan's way.
   unsigned before0 = 0, after0 = 0, before1 = 0, after1 = 0;
   for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Doubles g0 = dot(u0.from(b * kEight), e), g1 = dot(u1.from(b * kEight), e);
+    const Doubles g0 = dot(u0[b], e), g1 = dot(u1[b], e);
     before0 |= bits(g0 > bound) << (b * kEight);
     after0 |= bits(g0 < minus_bound) << (b * kEight);
     before1 |= bits(g1 > bound) << (b * kEight);
@@ -606,7 +669,7 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {targetName(),   &overlapChildrenOf,  &trianglesAt,
+extern const Kernels kKernels = {targetName(),   &overlapChildrenOf,  &overlapTrianglesOf,
                                  &listFeatures,  &cullFeaturesOf,     &cullCrossings,
                                  &isFanEmbedded, &coplanarityOfEight, &solveEight,
                                  &divideEight};

@@ -247,9 +247,9 @@ HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const T* const* rows, std::size_t k) {
 }
 #endif
 
-/// Columns 0, 1 and 2 of rows of four.
+/// Columns 0, 1 and 2 of N rows of four.
 template <typename T, std::size_t N>
-HWY_INLINE void loadColumns(const T* const (&rows)[N], Lanes<T, N>& x, Lanes<T, N>& y,
+HWY_INLINE void loadColumns(const T* const* rows, Lanes<T, N>& x, Lanes<T, N>& y,
                             Lanes<T, N>& z) {
   const typename Lanes<T, N>::Tag tag;
   FCL_CCD_FOR_PARTS {
@@ -415,7 +415,7 @@ inline T largest(const Lanes<T, N>& a) {
 }
 
 template <typename T, std::size_t N>
-inline void loadColumns(const T* const (&rows)[N], Lanes<T, N>& x, Lanes<T, N>& y,
+inline void loadColumns(const T* const* rows, Lanes<T, N>& x, Lanes<T, N>& y,
                         Lanes<T, N>& z) {
   FCL_CCD_FOR_LANES {
     x.lane[i] = rows[i][0];
@@ -438,6 +438,13 @@ HWY_INLINE Lanes<T, N> max(const Lanes<T, N>& a, const Lanes<T, N>& b) {
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> min(const Lanes<T, N>& a, const Lanes<T, N>& b) {
   return select(a < b, a, b);
+}
+
+/// In the same order everywhere.
+HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
+  double x[kEight];
+  store(a, x);
+  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
 
 using Floats = Lanes<float, kEight>;

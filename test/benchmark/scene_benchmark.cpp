@@ -8,18 +8,15 @@
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
 #include "scene_data.h"
-#include "swept_tree.h"
+#include "swept_query.h"
 #include "timing.h"
-#include "traverse.h"
 
 namespace fcl {
 namespace test {
 namespace {
 
 using Model = DeformableBVHModel<KDOP<double, 16>>;
-namespace deformable = detail::deformable;
 
 struct Row {
   std::string scene;
@@ -96,38 +93,17 @@ Row runSweptBoxes(const FramePairMesh& mesh, const std::set<PairName>& truth,
   Model model;
   buildModel(mesh, FclTree::kSkip, model);
   const double refit = leastMilliseconds(repeats, [&] { updateModel(mesh, model); });
-  const SweptTree tree(model.movingTree());
-  deformable::MeshInstance instance;
-  instance.frames = model.frames();
-  instance.tree = &model.movingTree();
   Row best;
   for (int i = 0; i < repeats; ++i) {
     Row row;
     row.refit = refit;
-    deformable::TrianglePairTest leaves(instance, instance, nullptr,
-                                        deformable::QueryOptions());
-    std::vector<std::pair<int, int>> pairs;
-    row.traverse = millisecondsOf([&] {
-      leaves.counts().node_pairs = traverse<true>(
-          tree, tree, nullptr, [&](int a, int b, float) { pairs.emplace_back(a, b); });
-    });
-    row.test = millisecondsOf([&] {
-      for (std::size_t i = 0; i < pairs.size(); leaves.flush()) {
-        const std::size_t end =
-            std::min(i + deformable::TriangleReader::kStored, pairs.size());
-        for (; i < end; ++i) leaves.visit(pairs[i].first, pairs[i].second, 0.f);
-      }
-    });
-    row.counts = leaves.counts();
+    const SweptContacts contacts = sweptSelfContacts(model, false);
+    row.traverse = contacts.ms_traverse;
+    row.test = contacts.ms_test;
+    row.counts = contacts.counts;
+    row.contacts = contacts.pairs.size();
     std::size_t found = 0;
-    for (const auto& c : leaves.sink().contacts()) {
-      const auto id = [&c](int k) { return static_cast<int>(c.vertices[k]); };
-      found += truth.count(pairName(c.kind == deformable::FeatureKind::kVertexFace
-                                        ? ContinuousContactKind::kVertexFace
-                                        : ContinuousContactKind::kEdgeEdge,
-                                    {id(0), id(1), id(2), id(3)}));
-    }
-    row.contacts = leaves.sink().contacts().size();
+    for (const PairName& pair : contacts.pairs) found += truth.count(pair);
     row.extra = row.contacts - found;
     row.missed = static_cast<long>(truth.size() - found);
     if (i == 0 || row.total() < best.total()) best = row;

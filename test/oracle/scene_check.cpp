@@ -72,7 +72,7 @@ class CullCheck {
     std::vector<PairKey> left;
     StageCounts counts;
     batch_.add(a, b, false, counts);
-    batch_.cull(counts);
+    batch_.cull(1, counts);
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
       for (std::size_t i = 0; i < batch_.size(kind); ++i) {
         const deformable::FeatureCandidate c =

@@ -23,7 +23,7 @@ std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* 
                        const detail::deformable::SeparatingAxes* axes = nullptr) {
   namespace deformable = detail::deformable;
   deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, embedded, axes,
-                                                       deformable::kernels());
+                                                       deformable::kernels(), true);
   deformable::WorkList open;
   traversal.start(open);
   while (open.size() > 0) {

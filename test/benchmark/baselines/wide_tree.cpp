@@ -99,7 +99,7 @@ void WideTree::findOverlaps(const std::vector<TrianglePairMask>& pairs,
         masks_.data(), pairs.size(),
         kind == FeatureKind::kVertexFace ? kVertexFace : kEdgeEdge, codes_.data());
     const std::size_t kept =
-        kernels().cullFeatures(kind, triangle_pairs_.data(), nullptr, nullptr,
+        kernels().cullFeatures(kind, triangle_pairs_.data(), nullptr, nullptr, 1,
                                codes_.data(), listed, windows_.data());
     for (std::size_t i = 0; i < kept; ++i)
       found.push_back(

@@ -45,7 +45,7 @@ class WideTree {
   void traverse(IsLeftOut&& isLeftOut, Visit&& visit) const {
     namespace deformable = detail::deformable;
     deformable::Traversal<true, const SweptTree, const SweptTree> traversal(
-        swept_, swept_, nullptr, nullptr, nullptr, deformable::kernels());
+        swept_, swept_, nullptr, nullptr, nullptr, deformable::kernels(), false);
     deformable::WorkList open;
     traversal.start(open);
     while (open.size() > 0) {

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <thread>
 #include <tuple>
+#if defined(FCL_CCD_USE_HIGHWAY)
+#include <hwy/targets.h>
+#endif
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "machine.h"
 #include "rows.h"
+#include "swept_query.h"
 #include "timing.h"
 
 namespace fcl {
@@ -17,20 +23,12 @@ namespace {
 using Model = DeformableBVHModel<>;
 using Result = ContinuousContactResult<double>;
 
-/// The kernels that the library uses here.
-const char* libraryKernels() {
-  const std::string name = detail::deformable::kernels().name;
-  return name == "plain" || name == "SCALAR" ? "scalar" : "vector";
-}
-
-/// The threads that its queries use.
-constexpr int kLibraryThreads = 1;
-
 void expect(int code, const Model& model) {
   if (code != BVH_OK) throw std::runtime_error(model.lastError());
 }
 
-void build(const FramePairMesh& mesh, Model& model) {
+void build(const FramePairMesh& mesh, int threads, Model& model) {
+  expect(model.setNumThreads(threads), model);
   expect(model.beginModel(static_cast<int>(mesh.triangles.size()),
                           static_cast<int>(mesh.previous.size())),
          model);
@@ -45,19 +43,19 @@ void update(const std::vector<Vector3<double>>& previous,
          model);
 }
 
-ContinuousContactRequest<double> makeRequest(ContinuousQuery query) {
+ContinuousContactRequest<double> makeRequest(ContinuousQuery query, int threads) {
   ContinuousContactRequest<double> request;
   request.query = query;
   request.enable_contact = false;
-  request.num_threads = kLibraryThreads;
+  request.num_threads = threads;
   return request;
 }
 
 /// Wall time of the query. The library's own times say where it went; what they leave out
 /// (sorting, handing over) counts as test.
-void query(const Model& a, const Model* b, ContinuousQuery kind, Result& result,
-           StepTimes& times) {
-  const auto request = makeRequest(kind);
+void query(const Model& a, const Model* b, ContinuousQuery kind, int threads,
+           Result& result, StepTimes& times) {
+  const auto request = makeRequest(kind, threads);
   const Transform3<double> origin = Transform3<double>::Identity();
   const double ms = millisecondsOf([&] {
     if (b)
@@ -66,7 +64,7 @@ void query(const Model& a, const Model* b, ContinuousQuery kind, Result& result,
       continuousSelfCollide(&a, request, result);
   });
   const StageTimes& own = result.times;
-  const double share = own.traverse / (own.traverse + own.test);
+  const double sum = own.traverse + own.test, share = sum > 0 ? own.traverse / sum : 0;
   times.traverse = std::min(1e3 * own.traverse, ms * share);
   times.test = ms - times.traverse;
 }
@@ -112,40 +110,54 @@ std::vector<PairName> namesOf(const Result& result) {
 
 }  // namespace
 
-Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query) {
-  return {scene,       triangles,        nameOf(query),  "moving",
-          "certified", libraryKernels(), kLibraryThreads};
+int allThreads() {
+#if defined(FCL_CCD_USE_TBB)
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+#else
+  return 1;
+#endif
 }
 
-Row measureLibrary(const Scene& scene, ContinuousQuery kind, const Effort& effort,
-                   const std::vector<PairName>* truth, std::vector<PairName>* found) {
-  Row row =
-      libraryRow(scene.name, scene.a.triangles.size() + scene.b.triangles.size(), kind);
+std::string libraryKernels() {
+  const std::string name = detail::deformable::kernels().name;
+  return name == "plain" || name == "SCALAR" || name == "EMU128" ? "scalar" : "vector";
+}
+
+void useScalarKernels() {
+#if defined(FCL_CCD_USE_HIGHWAY)
+  hwy::SetSupportedTargetsForTest(HWY_EMU128 | HWY_SCALAR);
+#endif
+}
+
+Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query,
+               int threads) {
+  return {scene,       triangles,        nameOf(query), "moving",
+          "certified", libraryKernels(), threads};
+}
+
+Row measureLibrary(const Scene& scene, ContinuousQuery kind, int threads,
+                   const Effort& effort, const std::vector<PairName>* truth,
+                   std::vector<PairName>* found) {
+  Row row = libraryRow(scene.name, scene.a.triangles.size() + scene.b.triangles.size(),
+                       kind, threads);
   resetPeakMemory();
   Model a, b;
   const bool self = scene.isSelf();
-  bool first = true;
-  repeat(effort, [&] {
+  measureBuild(effort, row, [&] {
     a = Model();
     b = Model();
-    const double ms = millisecondsOf([&] {
-      build(scene.a, a);
-      if (!self) build(scene.b, b);
+    return millisecondsOf([&] {
+      build(scene.a, threads, a);
+      if (!self) build(scene.b, threads, b);
     });
-    if (first || ms < row.build) row.build = ms;
-    first = false;
   });
   Result result;
-  first = true;
-  repeat(effort, [&] {
-    StepTimes times;
+  measureStep(effort, row, [&](StepTimes& times) {
     times.update = millisecondsOf([&] {
       update(scene.a.previous, scene.a.current, a);
       if (!self) update(scene.b.previous, scene.b.current, b);
     });
-    query(a, self ? nullptr : &b, kind, result, times);
-    if (first || times.total() < row.times.total()) row.times = times;
-    first = false;
+    query(a, self ? nullptr : &b, kind, threads, result, times);
   });
   row.peak_mb = peakMegabytes();
   row.contacts = result.contacts.size();
@@ -161,6 +173,30 @@ Row measureLibrary(const Scene& scene, ContinuousQuery kind, const Effort& effor
   return row;
 }
 
+Row measureSwept(const Scene& scene, const Effort& effort,
+                 const std::vector<PairName>& truth) {
+  Row row = libraryRow(scene.name, scene.a.triangles.size(), ContinuousQuery::kAll, 1);
+  row.boxes = "swept";
+  resetPeakMemory();
+  Model model;
+  measureBuild(effort, row, [&] {
+    model = Model();
+    return millisecondsOf([&] { build(scene.a, 1, model); });
+  });
+  std::vector<PairName> found;
+  measureStep(effort, row, [&](StepTimes& times) {
+    times.update =
+        millisecondsOf([&] { update(scene.a.previous, scene.a.current, model); });
+    SweptContacts contacts = sweptSelfContacts(model, true);
+    times.traverse = contacts.ms_traverse;
+    times.test = contacts.ms_test;
+    found = std::move(contacts.pairs);
+  });
+  row.peak_mb = peakMegabytes();
+  setContacts(found, truth, row);
+  return row;
+}
+
 std::vector<SequenceRow> measureSequence(const std::string& name,
                                          const FrameSequence& sequence,
                                          const Effort& effort) {
@@ -169,11 +205,11 @@ std::vector<SequenceRow> measureSequence(const std::string& name,
     StepTimes times;
     times.update = millisecondsOf(
         [&] { update(sequence.frames[i], sequence.frames[i + 1], model); });
-    query(model, nullptr, ContinuousQuery::kAll, result, times);
+    query(model, nullptr, ContinuousQuery::kAll, 1, result, times);
     if (least.total() == 0 || times.total() < least.total()) least = times;
   };
   const auto built = [](const FramePairMesh& mesh, Model& model, double& least) {
-    const double ms = millisecondsOf([&] { build(mesh, model); });
+    const double ms = millisecondsOf([&] { build(mesh, 1, model); });
     if (least == 0 || ms < least) least = ms;
   };
   repeat(effort, [&] {

@@ -2,6 +2,8 @@
 //
 // Speed of whole queries: the library's beside the paper's method, on public and on
 // generated scenes. doc/speed.md explains the report.
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -26,6 +28,8 @@ struct Options {
   Effort effort;
   int max_triangles{10000000};
   bool is_short{false};
+  /// Only what the ablation has of the library, without vector instructions.
+  bool is_scalar{false};
 
   /// The number for a report, or the one for a look whether everything runs.
   int pick(int full, int brief) const { return is_short ? brief : full; }
@@ -42,15 +46,29 @@ Scene smoothCloth(int triangles) {
 
 enum class PaperRows { kNone, kPublished, kAblation };
 
-/// The rows of a self-collision. @return the true contacts
+/// One thread, and all where there are more.
+std::vector<int> threadNumbers() {
+  std::vector<int> numbers{1};
+  if (allThreads() > 1) numbers.push_back(allThreads());
+  return numbers;
+}
+
+/// The rows of a self-collision, all contacts first.
+/// @param queries  of the library
+/// @return the true contacts, or else what is found
 std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& options,
                               std::initializer_list<Query> queries, PaperRows paper,
                               const std::vector<PairName>* known_truth = nullptr) {
   std::vector<PairName> truth;
-  for (const Query query : queries)
-    table.add(measureLibrary(scene, query, options.effort, known_truth,
-                             query == Query::kAll ? &truth : nullptr));
+  table.add(measureLibrary(scene, Query::kAll, 1, options.effort, known_truth, &truth));
   if (known_truth) truth = *known_truth;
+  if (paper == PaperRows::kAblation)
+    table.add(measureSwept(scene, options.effort, truth));
+  if (options.is_scalar) return truth;
+  for (const Query query : queries)
+    for (const int threads : threadNumbers())
+      if (query != Query::kAll || threads != 1)
+        table.add(measureLibrary(scene, query, threads, options.effort, &truth));
   for (const std::string boxes : {"swept", "moving"})
     for (const std::string filter : {"none", "plain", "certified"})
       if (paper == PaperRows::kAblation ||
@@ -112,7 +130,8 @@ void runFirst(Table& table, const Options& options) {
   auto bodies = makeMeetingBodies(options.pick(6, 2));
   const Scene pair{"meeting bodies", std::move(bodies.first), std::move(bodies.second)};
   for (const Query query : {Query::kAll, Query::kFirst, Query::kAny})
-    table.add(measureLibrary(pair, query, options.effort, nullptr));
+    for (const int threads : threadNumbers())
+      table.add(measureLibrary(pair, query, threads, options.effort, nullptr));
   addSelf(table, smoothCloth(options.pick(1600000, 8000)), options,
           {Query::kAll, Query::kFirst, Query::kAny}, PaperRows::kNone);
 }
@@ -133,7 +152,7 @@ void addSequence(Table& table, const std::string& name, const FrameSequence& seq
   const auto n = static_cast<double>(steps.size());
   for (const bool fresh : {false, true}) {
     Row row = libraryRow(name + (fresh ? " (fresh tree)" : " (kept tree)"),
-                         sequence.triangles.size(), Query::kAll);
+                         sequence.triangles.size(), Query::kAll, 1);
     Hash hash;
     for (const SequenceRow& step : steps) {
       const StepTimes& times = fresh ? step.fresh : step.kept;
@@ -169,24 +188,41 @@ void runBaselines(Table& table, const Options& options) {
   for (const Scene& scene : {smoothCloth(options.pick(80000, 2000)),
                              Scene{"tiles", makeTiles(options.pick(100000, 2000))}}) {
     std::vector<PairName> truth;
-    measureLibrary(scene, Query::kAll, {1, 0}, nullptr, &truth);
+    measureLibrary(scene, Query::kAll, 1, {1, 0}, nullptr, &truth);
     add(scene, truth);
   }
 }
 
 void run(const Options& options) {
-  Table table(options.out);
+  Table table(options.out, options.is_scalar);
   const struct {
     const char* name;
     void (*run)(Table&, const Options&);
-  } groups[] = {
-      {"data", runData},          {"smooth", runSmooth}, {"size", runSize},
-      {"first", runFirst},        {"far", runFar},       {"sequence", runSequences},
-      {"baselines", runBaselines}};
+    bool has_ablation;
+  } groups[] = {{"data", runData, true},
+                {"smooth", runSmooth, true},
+                {"size", runSize, false},
+                {"first", runFirst, false},
+                {"far", runFar, false},
+                {"sequence", runSequences, false},
+                {"baselines", runBaselines, false}};
   for (const auto& group : groups)
     for (const std::string& wanted : options.groups)
-      if (wanted == group.name) group.run(table, options);
+      if (wanted == group.name && (group.has_ablation || !options.is_scalar))
+        group.run(table, options);
   table.finish();
+}
+
+/// Goes on as a run for the scalar rows: kernels are chosen once in a process.
+/// @return only if that fails
+int runAgain(int argc, char** argv) {
+  std::vector<char*> arguments(argv, argv + argc);
+  char option[] = "--scalar";
+  arguments.push_back(option);
+  arguments.push_back(nullptr);
+  execvp(argv[0], arguments.data());
+  std::perror(argv[0]);
+  return 1;
 }
 
 }  // namespace
@@ -215,13 +251,21 @@ int main(int argc, char** argv) {
   app.add_flag("--short", options.is_short,
                "Small scenes and one repeat: errors, no times to speak of")
       ->excludes(repeats);
+  app.add_flag("--scalar", options.is_scalar,
+               "Adds to the tables what the ablation has of the library, without vector "
+               "instructions; the program ends with this by itself");
   CLI11_PARSE(app, argc, argv);
   if (options.is_short) options.effort.repeats = 1;
+  if (options.is_scalar) {
+    useScalarKernels();
+    // Built for a processor with vector instructions it has none.
+    if (libraryKernels() != "scalar") return 0;
+  }
   try {
     run(options);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return 1;
   }
-  return 0;
+  return libraryKernels() == "scalar" ? 0 : runAgain(argc, argv);
 }

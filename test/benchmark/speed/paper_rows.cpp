@@ -28,19 +28,14 @@ BaselineMethod methodOf(const std::string& boxes, const std::string& filter) {
 
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
                  const Effort& effort, const std::vector<PairName>& truth) {
-  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, "scalar", 1};
+  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, kPaperKernels, 1};
   const BaselineMethod method = methodOf(boxes, filter);
   resetPeakMemory();
-  const BaselineFigures figures = measureBaseline(scene.a, method, effort);
-  const std::vector<PairName>& found = figures.step.contacts;
+  BaselineFigures figures = measureBaseline(scene.a, method, effort);
   row.build = figures.ms_build;
   row.times = {figures.step.ms_update, figures.step.ms_traverse, figures.step.ms_test};
   row.peak_mb = peakMegabytes();
-  row.contacts = found.size();
-  const Errors errors = errorsOf(found, truth);
-  row.missed = errors.missed;
-  row.extra = errors.extra;
-  row.hash = hashOf(found).value();
+  setContacts(figures.step.contacts, truth, row);
   return row;
 }
 

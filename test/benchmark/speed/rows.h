@@ -25,16 +25,37 @@ struct Scene {
   bool isSelf() const { return b.triangles.empty(); }
 };
 
+/// @brief What rows of the paper's method have as kernels: scalar code of its own.
+constexpr const char* kPaperKernels = "scalar (paper)";
+
+/// @brief So many threads the library uses where all are allowed.
+int allThreads();
+
+/// @brief "vector" or "scalar".
+std::string libraryKernels();
+
+/// @brief From here on the library's kernels are those that need no vector instructions,
+/// if it has any. To be called before all else here, which chooses the kernels for the
+/// process.
+void useScalarKernels();
+
 /// @brief A row for the library, without figures yet.
-Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query);
+Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery query,
+               int threads);
 
 /// @brief Times of the library for one query, by its public functions; the least total of
 /// the repeats. The model is built for the first frame and updated for each repeat.
+/// @param threads  of builds, updates and queries
 /// @param truth  sorted, or null for a row without errors; self-collisions only
 /// @param found  if not null, gets the contacts of a self-collision, sorted
-Row measureLibrary(const Scene& scene, ContinuousQuery query, const Effort& effort,
-                   const std::vector<PairName>* truth,
+Row measureLibrary(const Scene& scene, ContinuousQuery query, int threads,
+                   const Effort& effort, const std::vector<PairName>* truth,
                    std::vector<PairName>* found = nullptr);
+
+/// @brief Times of the library for all self-contacts, on one thread, with swept boxes in
+/// its tree, by its inner functions.
+Row measureSwept(const Scene& scene, const Effort& effort,
+                 const std::vector<PairName>& truth);
 
 /// @brief Times of the paper's method for all self-contacts, on one thread.
 /// @param boxes  "swept" (the paper's) or "moving"

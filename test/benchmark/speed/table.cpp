@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "table.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -42,11 +43,25 @@ Hash hashOf(const std::vector<PairName>& sorted) {
   return hash;
 }
 
-Table::Table(const std::string& folder) : machine_(machineName()) {
+void setContacts(std::vector<PairName>& found, const std::vector<PairName>& truth,
+                 Row& row) {
+  std::sort(found.begin(), found.end());
+  row.contacts = found.size();
+  const Errors errors = errorsOf(found, truth);
+  row.missed = errors.missed;
+  row.extra = errors.extra;
+  row.hash = hashOf(found).value();
+}
+
+Table::Table(const std::string& folder, bool add) : machine_(machineName()) {
   std::filesystem::create_directories(folder);
-  rows_.open(folder + "/speed.csv");
-  sequences_.open(folder + "/speed_sequence.csv");
-  baselines_.open(folder + "/speed_baselines.csv");
+  const auto mode = add ? std::ios::app : std::ios::trunc;
+  rows_.open(folder + "/speed.csv", mode);
+  sequences_.open(folder + "/speed_sequence.csv", mode);
+  baselines_.open(folder + "/speed_baselines.csv", mode);
+  if (!rows_ || !sequences_ || !baselines_)
+    throw std::runtime_error(folder + ": cannot be written to");
+  if (add) return;
   rows_ << "scene,triangles,query,boxes,filter,kernels,threads,ms_build,ms_update,"
            "ms_traverse,ms_test,ms_total,contacts,missed,extra,hash,peak_mb,machine\n";
   sequences_ << "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,ms_fresh,ratio,"
@@ -54,8 +69,6 @@ Table::Table(const std::string& folder) : machine_(machineName()) {
   baselines_ << "scene,triangles,technique,filter,kernels,ms_build,ms_update,ms_traverse,"
                 "ms_test,ms_total,triangle_pairs,feature_pairs,elementary_tests,contacts,"
                 "missed,extra,machine\n";
-  if (!rows_ || !sequences_ || !baselines_)
-    throw std::runtime_error(folder + ": cannot be written to");
 }
 
 void Table::add(const Row& row) {
@@ -67,9 +80,9 @@ void Table::add(const Row& row) {
         << countOrDash(row.missed) << ',' << countOrDash(row.extra) << ',' << hash << ','
         << (row.peak_mb < 0 ? "-" : number(row.peak_mb, "%.0f")) << ',' << machine_
         << std::endl;
-  std::fprintf(stderr, "%s: %s, %s boxes, %s filter, %s: %.2f ms\n", row.scene.c_str(),
-               row.query.c_str(), row.boxes.c_str(), row.filter.c_str(),
-               row.kernels.c_str(), row.times.total());
+  std::fprintf(stderr, "%s: %s, %s boxes, %s filter, %s, %d threads: %.2f ms\n",
+               row.scene.c_str(), row.query.c_str(), row.boxes.c_str(),
+               row.filter.c_str(), row.kernels.c_str(), row.threads, row.times.total());
 }
 
 void Table::add(const SequenceRow& row) {

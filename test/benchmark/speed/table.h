@@ -2,9 +2,11 @@
 #ifndef FCL_BENCHMARK_SPEED_TABLE_H
 #define FCL_BENCHMARK_SPEED_TABLE_H
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -57,6 +59,30 @@ struct Row {
   double peak_mb{-1};
 };
 
+/// @brief Sets the row's time of a build: the least that build() returns.
+template <typename Build>
+void measureBuild(const Effort& effort, Row& row, Build&& build) {
+  row.build = std::numeric_limits<double>::infinity();
+  repeat(effort, [&] { row.build = std::min(row.build, double{build()}); });
+}
+
+/// @brief Sets the row's times of a step: those of the repeat with the least total.
+/// @param step  step(times) sets the times
+template <typename Step>
+void measureStep(const Effort& effort, Row& row, Step&& step) {
+  bool first = true;
+  repeat(effort, [&] {
+    StepTimes times;
+    step(times);
+    if (first || times.total() < row.times.total()) row.times = times;
+    first = false;
+  });
+}
+
+/// @brief Sets number, errors and hash of the contacts, and sorts them.
+void setContacts(std::vector<PairName>& found, const std::vector<PairName>& truth,
+                 Row& row);
+
 /// @brief A row of speed_baselines.csv; doc/baselines.md explains the columns.
 struct BaselineRow {
   std::string scene;
@@ -91,8 +117,9 @@ struct SequenceRow {
 /// @brief speed.csv, speed_sequence.csv and speed_baselines.csv in a folder.
 class Table {
  public:
+  /// @param add  to the files that are there
   /// @throws std::runtime_error if the files cannot be written
-  explicit Table(const std::string& folder);
+  Table(const std::string& folder, bool add);
 
   void add(const Row& row);
   void add(const SequenceRow& row);

@@ -403,7 +403,8 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
 
 template <typename BV>
 void DeformableBVHModel<BV>::computeLocalAABB() {
-  const S* current = this->vertices->data();
+  // A model that was never begun has no array.
+  const S* current = this->vertices ? this->vertices->data() : nullptr;
   const auto bounds = detail::deformable::boundFrames(
       this->prev_vertices ? this->prev_vertices->data() : current, current,
       static_cast<std::size_t>(this->num_vertices), num_threads_);

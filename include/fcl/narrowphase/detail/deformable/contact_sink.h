@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <iterator>
 #include <map>
 #include <utility>
 #include <vector>
@@ -39,7 +41,7 @@ class ContactSink {
   bool add(const FeatureContact& contact);
 
   /// @brief The kept contacts, in the order of add() until isCut(), then in none.
-  const std::vector<FeatureContact>& contacts() const { return contacts_; }
+  const std::deque<FeatureContact>& contacts() const { return contacts_; }
 
   /// @brief Whether contacts were dropped for want of capacity.
   bool isCut() const { return cut_; }
@@ -52,7 +54,7 @@ class ContactSink {
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
   /// @brief The contacts in no order; leaves the sink empty.
-  std::vector<FeatureContact> takeContacts() { return std::move(contacts_); }
+  std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 
  private:
   using PairKey = std::array<std::uint32_t, 5>;
@@ -64,14 +66,56 @@ class ContactSink {
   bool cut_{false};
   double first_hi_{1};
   /// Once cut_, a heap with the latest contact in front.
-  std::vector<FeatureContact> contacts_;
+  std::deque<FeatureContact> contacts_;
   /// The kept pairs, and until cut_ where they are.
   std::map<PairKey, std::size_t> seen_;
 };
 
-/// @brief The contacts of some lists, earliest first.
-UninitializedVector<FeatureContact> sortedByTime(
-    const std::vector<std::vector<FeatureContact>>& lists);
+/// @brief The contacts of some lists, earliest first. They stay in the lists, since there
+/// may be many.
+class SortedContacts {
+ public:
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = FeatureContact;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const FeatureContact*;
+    using reference = const FeatureContact&;
+
+    Iterator() = default;
+    explicit Iterator(const FeatureContact* const* at) : at_(at) {}
+    reference operator*() const { return **at_; }
+    pointer operator->() const { return *at_; }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    Iterator operator++(int) { return Iterator(at_++); }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const FeatureContact* const* at_{nullptr};
+  };
+
+  SortedContacts() = default;
+  explicit SortedContacts(std::vector<std::deque<FeatureContact>> lists);
+  SortedContacts(SortedContacts&&) = default;
+  SortedContacts& operator=(SortedContacts&&) = default;
+
+  std::size_t size() const { return sorted_.size(); }
+  bool empty() const { return sorted_.empty(); }
+  const FeatureContact& operator[](std::size_t i) const { return *sorted_[i]; }
+  const FeatureContact& front() const { return *sorted_.front(); }
+  const FeatureContact& back() const { return *sorted_.back(); }
+  Iterator begin() const { return Iterator(sorted_.data()); }
+  Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
+
+ private:
+  std::vector<std::deque<FeatureContact>> lists_;
+  UninitializedVector<const FeatureContact*> sorted_;
+};
 
 }  // namespace deformable
 }  // namespace detail

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/candidate_collector.h"
+#include "fcl/narrowphase/detail/deformable/contact_sink.h"
 #include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
 
@@ -13,8 +14,7 @@ namespace detail {
 namespace deformable {
 
 struct QueryAnswer {
-  /// Earliest first.
-  UninitializedVector<FeatureContact> contacts;
+  SortedContacts contacts;
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};

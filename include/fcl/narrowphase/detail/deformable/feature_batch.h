@@ -114,8 +114,9 @@ class FeatureBatch {
 
   /// @brief Leaves the pairs of features whose moving boxes overlap, with their windows,
   /// and the edges and faces whose boxes overlap at t = 0.
+  /// @param latest  pairs that overlap only later are of no interest
   /// @param counts  box_culled is counted
-  void cull(StageCounts& counts);
+  void cull(double latest, StageCounts& counts);
 
   /// @brief How many pairs of one kind are left.
   std::size_t size(FeatureKind kind) const { return list(kind).size; }
@@ -156,7 +157,7 @@ class FeatureBatch {
     return lists_[kind == FeatureKind::kEdgeEdge];
   }
   void addCrossings(std::uint32_t pair, unsigned shared);
-  void cull(FeatureKind kind, List& list, StageCounts& counts);
+  void cull(FeatureKind kind, float latest, List& list, StageCounts& counts);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;

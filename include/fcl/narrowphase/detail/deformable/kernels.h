@@ -25,6 +25,34 @@ struct BoxView {
   std::size_t stride;
 };
 
+/// @brief Two nodes whose triangles are compared, or one twice: then each pair of
+/// different triangles once.
+struct LeafPairing {
+  const MovingKdopNode& a;
+  const MovingKdopNode& b;
+  /// Triangles of a that count.
+  unsigned lanes;
+  /// Added to the boxes of a: row r in frame k, shift[k][r]; null: none.
+  const float (*shift)[16];
+  /// For each vertex of the tree, whether its fan is embedded: pairs of triangles in one
+  /// are left out; null: unknown.
+  const std::uint8_t* embedded;
+  /// As overlapChildren() takes it.
+  bool timed;
+};
+
+/// @brief Pairs of children of two nodes, and from when on they overlap.
+struct LanePairs {
+  static constexpr std::size_t kMax =
+      std::size_t{MovingKdopNode::kWidth} * MovingKdopNode::kWidth;
+  std::size_t size;
+  /// Pairs that overlap and lie in an embedded fan.
+  std::size_t fan_culled;
+  std::uint8_t a[kMax];
+  std::uint8_t b[kMax];
+  float earliest[kMax];
+};
+
 /// @brief Two triangles: vertices 0-2 are a's, 3-5 b's.
 struct TrianglePair {
   const TreeVertex* x[6];
@@ -81,12 +109,14 @@ struct Kernels {
 
   /// Which children of the node overlap the box at some time, a bit each, and from when
   /// on: overlapWindow() of each.
-  unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
+  /// @param timed  false: `earliest` only tells which overlap at t = 0; it is 0 for
+  /// these, and FLT_MIN or what it would be for others
+  unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node, bool timed,
                               float (&earliest)[MovingKdopNode::kWidth]);
 
-  /// Which of the node's triangles have one of `count` vertices (places in the tree).
-  unsigned (*trianglesAt)(const std::uint32_t* places, std::size_t count,
-                          const MovingKdopNode& node);
+  /// Pairs of triangles among the children of two nodes, or of one, that overlap at some
+  /// time.
+  void (*overlapTriangles)(const LeafPairing& leaves, LanePairs& out);
 
   /// Lists the pairs of features that bits of masks stand for, a mask for each triangle
   /// pair: codes, in ascending order. Returns how many; writes up to 16 more.
@@ -98,9 +128,10 @@ struct Kernels {
   /// their windows: overlapWindow() of each. Returns how many.
   /// @param shift, turned_shift  added to boxes of a's features, and the same with the
   /// halves exchanged; null: none
+  /// @param latest  windows that begin later are left out
   std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
-                              std::uint32_t* codes, std::size_t count,
+                              float latest, std::uint32_t* codes, std::size_t count,
                               TimeWindow* windows);
 
   /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2

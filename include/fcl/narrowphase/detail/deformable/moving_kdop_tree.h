@@ -41,6 +41,13 @@ struct alignas(64) MovingKdopNode {
   /// @brief Lanes that are in use, a bit each.
   unsigned lanes() const { return (1U << count) - 1; }
 
+  /// @brief Those of them that are triangles.
+  unsigned triangles() const {
+    unsigned found = 0;
+    for (unsigned i = 0; i < kWidth; ++i) found |= unsigned{child[i] < 0} << i;
+    return found & lanes();
+  }
+
   /// @brief Half-axis of Kdop16 that a row holds.
   static constexpr int halfAxis(int row) { return row / 2 + row % 2 * 8; }
 
@@ -106,8 +113,8 @@ struct TreeStructure;
 /// lie in the order in which the tree meets them, so that neighbours on the surface are
 /// neighbours in memory.
 ///
-/// Nodes lie in one array, children after their parents, so that a refit is one backward
-/// pass.
+/// Nodes lie in one array in the order of a walk, children after their parents: what is
+/// below a node lies together and is refit in one backward pass.
 class MovingKdopTree {
  public:
   /// @brief Makes the structure: surface-area splits of the triangles' centroids in frame

@@ -39,7 +39,8 @@ class PreparedMesh {
   /// @pre meshKindOf(geometry) != kNotAMesh; a rigid mesh is not rotated between the
   /// poses
   /// @throws fcl::Exception  model not built or being updated, pose or frame not finite,
-  /// vertex index out of range
+  /// vertex index out of range, a vertex that leaves the range of double where boxes are
+  /// made for its pose
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
                const Transform3<S>& tf_end, const std::string& name,
@@ -61,7 +62,7 @@ class PreparedMesh {
   static void requireIndices(const BVHModel<BV>& model, const std::string& name);
   template <typename BV>
   void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
-  void refit();
+  void refit(const std::string& name);
 
   MeshInstance instance_;
   std::vector<MeshTriangle> owners_;

@@ -75,14 +75,17 @@ class Traversal {
   /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
   /// (Kernels::isFanEmbedded): pairs of triangles in one are left out; null: unknown
   /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
+  /// @param timed  whether it matters from when on boxes overlap; false: `earliest` is 0
+  /// for those that overlap at t = 0, else positive
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
             const std::uint8_t* embedded, const SeparatingAxes* axes,
-            const Kernels& kernels)
+            const Kernels& kernels, bool timed)
       : tree_a_(tree_a),
         tree_b_(tree_b),
         embedded_(embedded),
         axes_(axes),
-        kernels_(kernels) {
+        kernels_(kernels),
+        timed_(timed) {
     if (!shift) return;
     // What is added to a box of tree b is the same with the half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
@@ -131,10 +134,15 @@ class Traversal {
 
   template <typename Visit>
   void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
-    for (int lane = 0; lane < tree_a_.node(i).count; ++lane) {
-      const MovingKdopNode& node = tree_a_.node(i);
-      if (!node.isTriangle(lane)) open.add(0, -1, node.child[lane], false, 0.f);
-      const unsigned later = node.lanes() & ~((2U << lane) - 1);
+    const MovingKdopNode& node = tree_a_.node(i);
+    const unsigned triangles = node.triangles();
+    if (triangles) visitTriangles<false>(node, triangles, node, visit);
+    for (int lane = 0; lane < node.count; ++lane) {
+      unsigned later = node.lanes() & ~((2U << lane) - 1);
+      if (node.isTriangle(lane))
+        later &= ~triangles;
+      else
+        open.add(0, -1, node.child[lane], false, 0.f);
       if (later) compare<false>(node, i, lane, node, i, later, open, visit);
     }
   }
@@ -145,6 +153,13 @@ class Traversal {
   void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
                const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
                Visit& visit) {
+    const bool is_triangle = parent.isTriangle(lane);
+    const unsigned triangles = node.triangles();
+    if (is_triangle) {
+      if (triangles & lanes) visitTriangles<kSwapped>(parent, 1U << lane, node, visit);
+      lanes &= ~triangles & node.lanes();
+      if (lanes == 0) return;
+    }
     BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], BoxView::kInNode};
     float moved[2][16];
     if (!kSelf) {
@@ -158,44 +173,46 @@ class Traversal {
     }
     compared_ += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
-    unsigned left = kernels_.overlapChildren(box, node, earliest) & lanes;
-    const bool is_triangle = parent.isTriangle(lane);
-    if (kSelf && is_triangle && embedded_) left = leaveOutFans(parent, lane, node, left);
+    unsigned left = kernels_.overlapChildren(box, node, timed_, earliest) & lanes;
+    if (left == 0) return;
+    const std::int32_t mine = parent.child[lane];
+    if (!is_triangle && (left & triangles)) {
+      const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
+      if (child.triangles() == child.lanes()) {
+        visitTriangles<!kSwapped>(node, left & triangles, child, visit);
+        left &= ~triangles;
+      }
+    }
     const float size = is_triangle ? 0.f : extent(parent, lane);
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
-      const float w = earliest[k];
-      if (is_triangle && node.isTriangle(k)) {
-        const int mine = parent.triangle(lane), theirs = node.triangle(k);
-        kSwapped ? visit(theirs, mine, w) : visit(mine, theirs, w);
-      } else {
-        const bool both_nodes = !is_triangle && !node.isTriangle(k);
-        const float other = both_nodes ? extent(node, k) : 0.f;
-        if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
-            axes_->areApart(kSwapped ? node.child[k] : parent.child[lane],
-                            kSwapped ? parent.child[lane] : node.child[k]))
-          continue;
-        if (is_triangle || (both_nodes && size < other))
-          open.add(i, lane, node.child[k], kSwapped, w);
-        else
-          open.add(j, k, parent.child[lane], !kSwapped, w);
-      }
+      const bool both_nodes = !is_triangle && !node.isTriangle(k);
+      const float other = both_nodes ? extent(node, k) : 0.f;
+      if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
+          axes_->areApart(kSwapped ? node.child[k] : mine,
+                          kSwapped ? mine : node.child[k]))
+        continue;
+      if (is_triangle || (both_nodes && size < other))
+        open.add(i, lane, node.child[k], kSwapped, earliest[k]);
+      else
+        open.add(j, k, mine, !kSwapped, earliest[k]);
     }
   }
 
-  /// Of the lanes those that are not in an embedded fan with the triangle.
-  unsigned leaveOutFans(const MovingKdopNode& parent, int lane,
-                        const MovingKdopNode& node, unsigned lanes) {
-    std::uint32_t places[3];
-    std::size_t count = 0;
-    for (int k = 0; k < 3; ++k) {
-      places[count] = parent.places[k][lane];
-      count += embedded_[places[count]];
+  /// Triangles `lanes` of a node of tree a (kSwapped: b) against those of a node of the
+  /// other tree, or of the same node.
+  template <bool kSwapped, typename Visit>
+  void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
+                      const MovingKdopNode& theirs, Visit& visit) {
+    compared_ += numBits(lanes) * static_cast<std::uint64_t>(theirs.count);
+    kernels_.overlapTriangles(
+        {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, timed_},
+        pairs_);
+    fan_culled_ += pairs_.fan_culled;
+    for (std::size_t i = 0; i < pairs_.size; ++i) {
+      const int x = mine.triangle(pairs_.a[i]), y = theirs.triangle(pairs_.b[i]);
+      kSwapped ? visit(y, x, pairs_.earliest[i]) : visit(x, y, pairs_.earliest[i]);
     }
-    if (count == 0) return lanes;
-    const unsigned fan = kernels_.trianglesAt(places, count, node) & lanes;
-    fan_culled_ += numBits(fan);
-    return lanes & ~fan;
   }
 
   TreeA& tree_a_;
@@ -203,7 +220,9 @@ class Traversal {
   const std::uint8_t* embedded_;
   const SeparatingAxes* axes_;
   const Kernels& kernels_;
+  bool timed_;
   float shift_[2][2][16];
+  LanePairs pairs_;
   std::uint64_t compared_{0};
   std::uint64_t fan_culled_{0};
 };

@@ -17,6 +17,11 @@ template <typename T>
 struct DefaultInitAllocator : std::allocator<T> {
   static_assert(std::is_trivial<T>::value, "what is left without a value");
 
+  DefaultInitAllocator() = default;
+  // Between types, as every allocator: a library's vector may need it for its own.
+  template <typename U>
+  DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}
+
   template <typename U>
   struct rebind {
     using other = DefaultInitAllocator<U>;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "swept_query.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+
+#include "swept_tree.h"
+#include "timing.h"
+#include "traverse.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+namespace deformable = detail::deformable;
+
+PairName nameOf(const deformable::FeatureContact& contact) {
+  const auto id = [&contact](int k) { return static_cast<int>(contact.vertices[k]); };
+  return pairName(contact.kind == deformable::FeatureKind::kVertexFace
+                      ? ContinuousContactKind::kVertexFace
+                      : ContinuousContactKind::kEdgeEdge,
+                  {id(0), id(1), id(2), id(3)});
+}
+
+}  // namespace
+
+SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_fans) {
+  const SweptTree tree(model.movingTree());
+  deformable::MeshInstance instance;
+  instance.frames = model.frames();
+  instance.tree = &model.movingTree();
+  deformable::TrianglePairTest leaves(instance, instance, nullptr,
+                                      deformable::QueryOptions());
+  SweptContacts found;
+  std::vector<std::pair<int, int>> pairs;
+  found.ms_traverse = millisecondsOf([&] {
+    std::vector<std::uint8_t> embedded;
+    if (with_fans) embedded = embeddedFans(model.movingTree());
+    leaves.counts().node_pairs = traverse<true>(
+        tree, tree, nullptr, [&](int a, int b, float) { pairs.emplace_back(a, b); }, 1,
+        with_fans ? embedded.data() : nullptr);
+  });
+  found.ms_test = millisecondsOf([&] {
+    for (std::size_t i = 0; i < pairs.size(); leaves.flush()) {
+      const std::size_t end =
+          std::min(i + deformable::FeatureBatch::kMaxPairs, pairs.size());
+      for (; i < end; ++i) leaves.visit(pairs[i].first, pairs[i].second, 0.f);
+    }
+  });
+  found.counts = leaves.counts();
+  for (const auto& contact : leaves.sink().contacts())
+    found.pairs.push_back(nameOf(contact));
+  return found;
+}
+
+}  // namespace test
+}  // namespace fcl
