@@ -5,13 +5,12 @@
 # Tables, pictures and page go to build/speed. With DATA_FOLDER (scenes/) and no options
 # they also replace those in doc/results; without it the generated scenes are measured
 # alone. Options are handed to fcl_ccd_speed: --groups smooth,size --repeats 3
-# About twenty minutes; the largest scene needs 6 GiB of memory.
+# About half an hour; the largest scene needs 6 GiB of memory.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
 fcl_ccd_begin_report speed "$@"
 gnuplot -e "folder='$out'" "$sources/plot.gp"
-awk -F, -f "$sources/tables.awk" "$out/speed.csv" "$out/speed_sequence.csv" \
-  >"$out/speed.md"
-fcl_ccd_end_report speed.md speed.csv speed_sequence.csv \
+awk -F, -f "$sources/tables.awk" "$out"/speed{,_baselines,_sequence}.csv >"$out/speed.md"
+fcl_ccd_end_report speed.md speed{,_baselines,_sequence}.csv \
   speed_{size,stages,ablation,sequence}.png

@@ -84,6 +84,27 @@ TEST(FCL_SPEED, figuresAreConsistent) {
   EXPECT_EQ(hash_of["cloth at the origin, all, moving, certified, " + kernels + ", 1"],
             hash_of["cloth at 1e6, all, moving, certified, " + kernels + ", " + threads]);
 
+  std::map<std::string, int> baselines_of;
+  std::map<std::string, std::string> tests_of;
+  for (CsvRow row : readCsv(folder + "/speed_baselines.csv",
+                            "scene,triangles,technique,filter,kernels,ms_build,ms_update,"
+                            "ms_traverse,ms_test,ms_total,triangle_pairs,feature_pairs,"
+                            "elementary_tests,contacts,missed,extra,machine")) {
+    const std::string name = row["scene"] + ", " + row["technique"] + ", " +
+                             row["filter"] + ", " + row["kernels"];
+    SCOPED_TRACE(name);
+    ++baselines_of[row["scene"]];
+    tests_of[name] = row["elementary_tests"];
+    EXPECT_EQ(row["missed"], "0");
+    EXPECT_EQ(row["extra"], "0");
+    EXPECT_LE(std::stoi(row["elementary_tests"]), std::stoi(row["feature_pairs"]));
+  }
+  const std::map<std::string, int> expected_baselines{{"smooth cloth 2K", 12},
+                                                      {"tiles", 12}};
+  EXPECT_EQ(baselines_of, expected_baselines);
+  EXPECT_EQ(tests_of["tiles, r-triangles, none, scalar"],
+            tests_of["tiles, r-triangles, none, vector"]);
+
   std::map<std::string, int> steps_of;
   for (CsvRow row : readCsv(folder + "/speed_sequence.csv",
                             "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,"

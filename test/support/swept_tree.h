@@ -15,7 +15,11 @@ namespace test {
 /// which is what the paper and FCL use.
 class SweptTree {
  public:
-  explicit SweptTree(const detail::deformable::MovingKdopTree& tree) {
+  explicit SweptTree(const detail::deformable::MovingKdopTree& tree) { assign(tree); }
+
+  /// @brief Takes the tree's boxes as they are now.
+  void assign(const detail::deformable::MovingKdopTree& tree) {
+    nodes_.clear();
     nodes_.reserve(tree.numNodes());
     for (std::size_t i = 0; i < tree.numNodes(); ++i) {
       detail::deformable::MovingKdopNode node = tree.node(static_cast<int>(i));

@@ -23,7 +23,8 @@ using Query = fcl::ContinuousQuery;
 struct Options {
   std::string out;
   std::string data;
-  std::vector<std::string> groups{"data", "smooth", "size", "first", "far", "sequence"};
+  std::vector<std::string> groups{"data", "smooth",   "size",     "first",
+                                  "far",  "sequence", "baselines"};
   Effort effort;
   int max_triangles{10000000};
   bool is_short{false};
@@ -43,7 +44,7 @@ Scene smoothCloth(int triangles) {
   return {std::string("smooth cloth ") + size, makeSmoothCloth(triangles)};
 }
 
-enum class Baseline { kNone, kPaper, kAblation };
+enum class PaperRows { kNone, kPublished, kAblation };
 
 /// One thread, and all where there are more.
 std::vector<int> threadNumbers() {
@@ -56,12 +57,12 @@ std::vector<int> threadNumbers() {
 /// @param queries  of the library
 /// @return the true contacts, or else what is found
 std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& options,
-                              std::initializer_list<Query> queries, Baseline baseline,
+                              std::initializer_list<Query> queries, PaperRows paper,
                               const std::vector<PairName>* known_truth = nullptr) {
   std::vector<PairName> truth;
   table.add(measureLibrary(scene, Query::kAll, 1, options.effort, known_truth, &truth));
   if (known_truth) truth = *known_truth;
-  if (baseline == Baseline::kAblation)
+  if (paper == PaperRows::kAblation)
     table.add(measureSwept(scene, options.effort, truth));
   if (options.is_scalar) return truth;
   for (const Query query : queries)
@@ -70,36 +71,48 @@ std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& o
         table.add(measureLibrary(scene, query, threads, options.effort, &truth));
   for (const std::string boxes : {"swept", "moving"})
     for (const std::string filter : {"none", "plain", "certified"})
-      if (baseline == Baseline::kAblation ||
-          (baseline == Baseline::kPaper && boxes == "swept" && filter == "plain"))
+      if (paper == PaperRows::kAblation ||
+          (paper == PaperRows::kPublished && boxes == "swept" && filter == "plain"))
         table.add(measurePaper(scene, boxes, filter, options.effort, truth));
   return truth;
 }
 
-void runData(Table& table, const Options& options) {
+/// A scene of the data folder and its true contacts.
+struct DataScene {
+  Scene scene;
+  std::vector<PairName> truth;
+};
+
+std::vector<DataScene> readDataScenes(const Options& options) {
+  std::vector<DataScene> scenes;
   if (options.data.empty()) {
     std::fprintf(stderr, "no data folder: generated scenes only\n");
-    return;
+    return scenes;
   }
   const struct {
     const char *name, *previous, *current;
-  } scenes[] = {{"cloth-ball", "92.ply", "93.ply"}, {"n-body", "18.ply", "19.ply"}};
-  for (const auto& files : scenes) {
+  } sources[] = {{"cloth-ball", "92.ply", "93.ply"}, {"n-body", "18.ply", "19.ply"}};
+  for (const auto& files : sources) {
     const std::string folder = options.data + "/scenes/" + files.name + "/";
     const auto pairs = readTruePairs(folder + "true_pairs.csv.gz");
-    const std::vector<PairName> truth(pairs.begin(), pairs.end());
-    addSelf(table,
-            {files.name, readFramePair(folder + files.previous, folder + files.current)},
-            options, {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation,
-            &truth);
+    scenes.push_back(
+        {{files.name, readFramePair(folder + files.previous, folder + files.current)},
+         {pairs.begin(), pairs.end()}});
   }
+  return scenes;
+}
+
+void runData(Table& table, const Options& options) {
+  for (const DataScene& data : readDataScenes(options))
+    addSelf(table, data.scene, options, {Query::kAll, Query::kFirst, Query::kAny},
+            PaperRows::kAblation, &data.truth);
 }
 
 void runSmooth(Table& table, const Options& options) {
   for (const int triangles :
        {options.pick(20000, 1000), options.pick(80000, 2000), options.pick(200000, 4000)})
     addSelf(table, smoothCloth(triangles), options,
-            {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kAblation);
+            {Query::kAll, Query::kFirst, Query::kAny}, PaperRows::kAblation);
 }
 
 void runSize(Table& table, const Options& options) {
@@ -108,7 +121,7 @@ void runSize(Table& table, const Options& options) {
   for (const int triangles : {10000, 30000, 100000, 300000, 1000000, 3000000, 10000000}) {
     if (triangles > options.pick(options.max_triangles, 10000)) break;
     addSelf(table, {"tiles", makeTiles(triangles)}, options, {Query::kAll, Query::kFirst},
-            triangles <= kMostForPaper ? Baseline::kPaper : Baseline::kNone);
+            triangles <= kMostForPaper ? PaperRows::kPublished : PaperRows::kNone);
   }
 }
 
@@ -120,16 +133,16 @@ void runFirst(Table& table, const Options& options) {
     for (const int threads : threadNumbers())
       table.add(measureLibrary(pair, query, threads, options.effort, nullptr));
   addSelf(table, smoothCloth(options.pick(1600000, 8000)), options,
-          {Query::kAll, Query::kFirst, Query::kAny}, Baseline::kNone);
+          {Query::kAll, Query::kFirst, Query::kAny}, PaperRows::kNone);
 }
 
 void runFar(Table& table, const Options& options) {
   Scene scene{"cloth at the origin", makeSmoothCloth(options.pick(80000, 2000))};
   const auto queries = {Query::kAll, Query::kFirst};
-  const auto truth = addSelf(table, scene, options, queries, Baseline::kNone);
+  const auto truth = addSelf(table, scene, options, queries, PaperRows::kNone);
   scene.name = "cloth at 1e6";
   move(scene.a, {1e6, 1e6, 1e6});
-  addSelf(table, scene, options, queries, Baseline::kPaper, &truth);
+  addSelf(table, scene, options, queries, PaperRows::kPublished, &truth);
 }
 
 /// The rows of a sequence, and two in the main table: the means of its steps.
@@ -166,15 +179,33 @@ void runSequences(Table& table, const Options& options) {
   addSequence(table, "mix", makeMixingBalls(frames), options);
 }
 
+void runBaselines(Table& table, const Options& options) {
+  const auto add = [&](const Scene& scene, const std::vector<PairName>& truth) {
+    for (const BaselineRow& row : measureBaselines(scene, options.effort, truth))
+      table.add(row);
+  };
+  for (const DataScene& data : readDataScenes(options)) add(data.scene, data.truth);
+  for (const Scene& scene : {smoothCloth(options.pick(80000, 2000)),
+                             Scene{"tiles", makeTiles(options.pick(100000, 2000))}}) {
+    std::vector<PairName> truth;
+    measureLibrary(scene, Query::kAll, 1, {1, 0}, nullptr, &truth);
+    add(scene, truth);
+  }
+}
+
 void run(const Options& options) {
   Table table(options.out, options.is_scalar);
   const struct {
     const char* name;
     void (*run)(Table&, const Options&);
     bool has_ablation;
-  } groups[] = {{"data", runData, true},  {"smooth", runSmooth, true},
-                {"size", runSize, false}, {"first", runFirst, false},
-                {"far", runFar, false},   {"sequence", runSequences, false}};
+  } groups[] = {{"data", runData, true},
+                {"smooth", runSmooth, true},
+                {"size", runSize, false},
+                {"first", runFirst, false},
+                {"far", runFar, false},
+                {"sequence", runSequences, false},
+                {"baselines", runBaselines, false}};
   for (const auto& group : groups)
     for (const std::string& wanted : options.groups)
       if (wanted == group.name && (group.has_ablation || !options.is_scalar))
@@ -198,13 +229,16 @@ int runAgain(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Speed of whole queries; writes speed.csv and speed_sequence.csv."};
+  CLI::App app{
+      "Speed of whole queries; writes speed.csv, speed_sequence.csv and "
+      "speed_baselines.csv."};
   app.add_option("out", options.out, "Folder for the tables")->required();
   app.add_option("--data", options.data,
                  "Folder with scenes/; without it: generated scenes only");
   app.add_option("--groups", options.groups, "Which scenes, comma between; all if absent")
       ->delimiter(',')
-      ->check(CLI::IsMember({"data", "smooth", "size", "first", "far", "sequence"}));
+      ->check(CLI::IsMember(
+          {"data", "smooth", "size", "first", "far", "sequence", "baselines"}));
   auto* repeats = app.add_option("--repeats", options.effort.repeats,
                                  "Each time is the least of so many")
                       ->check(CLI::PositiveNumber);

@@ -1,50 +1,27 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <memory>
 #include <stdexcept>
 
+#include "baselines/measurement.h"
 #include "machine.h"
-#include "paper_method/self_query.h"
 #include "rows.h"
-#include "timing.h"
 
 namespace fcl {
 namespace test {
 namespace {
 
-/// At which Interval-Newton leaves no contact of the public scenes out for its own sake,
-/// nor invents one; doc/speed_error.md has what coarser and finer ones cost.
-constexpr double kResolution = 1e-6;
-
-template <typename Box, Filter kFilter>
-void measure(const FramePairMesh& mesh, const Effort& effort, Row& row,
-             std::vector<PairName>& found) {
-  using Tree = FeatureTree<Box>;
-  std::unique_ptr<Tree> tree;
-  measureBuild(effort, row, [&] {
-    tree.reset();
-    return millisecondsOf([&] { tree = std::make_unique<Tree>(mesh); });
-  });
-  measureStep(effort, row, [&](StepTimes& times) {
-    times.update = millisecondsOf([&] { tree->refit(mesh); });
-    SelfContacts contacts =
-        SelfQuery<kFilter, Box, IntervalNewton>(*tree, IntervalNewton{kResolution}).run();
-    times.traverse = contacts.ms_traverse;
-    times.test = contacts.ms_test;
-    found = std::move(contacts.pairs);
-  });
-}
-
-template <typename Box>
-void measure(const std::string& filter, const FramePairMesh& mesh, const Effort& effort,
-             Row& row, std::vector<PairName>& found) {
-  if (filter == "none")
-    measure<Box, Filter::kNone>(mesh, effort, row, found);
-  else if (filter == "plain")
-    measure<Box, Filter::kPlain>(mesh, effort, row, found);
+BaselineMethod methodOf(const std::string& boxes, const std::string& filter) {
+  BaselineMethod method{Technique::kRepresentatives};
+  if (boxes == "moving")
+    method.boxes = Boxes::kMoving;
+  else if (boxes != "swept")
+    throw std::invalid_argument(boxes + ": no boxes");
+  if (filter == "plain")
+    method.filter = Filter::kPlain;
   else if (filter == "certified")
-    measure<Box, Filter::kCertified>(mesh, effort, row, found);
-  else
+    method.filter = Filter::kCertified;
+  else if (filter != "none")
     throw std::invalid_argument(filter + ": no filter");
+  return method;
 }
 
 }  // namespace
@@ -52,16 +29,13 @@ void measure(const std::string& filter, const FramePairMesh& mesh, const Effort&
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
                  const Effort& effort, const std::vector<PairName>& truth) {
   Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, kPaperKernels, 1};
-  std::vector<PairName> found;
+  const BaselineMethod method = methodOf(boxes, filter);
   resetPeakMemory();
-  if (boxes == "swept")
-    measure<SweptBox>(filter, scene.a, effort, row, found);
-  else if (boxes == "moving")
-    measure<MovingKdop>(filter, scene.a, effort, row, found);
-  else
-    throw std::invalid_argument(boxes + ": no boxes");
+  BaselineFigures figures = measureBaseline(scene.a, method, effort);
+  row.build = figures.ms_build;
+  row.times = {figures.step.ms_update, figures.step.ms_traverse, figures.step.ms_test};
   row.peak_mb = peakMegabytes();
-  setContacts(found, truth, row);
+  setContacts(figures.step.contacts, truth, row);
   return row;
 }
 

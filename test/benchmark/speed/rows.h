@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is measured: the library's queries, the paper's method, the library over a
-// sequence of frames.
+// What is measured: the library's queries, the paper's method, earlier methods, the
+// library over a sequence of frames.
 #ifndef FCL_BENCHMARK_SPEED_ROWS_H
 #define FCL_BENCHMARK_SPEED_ROWS_H
 
@@ -63,6 +63,11 @@ Row measureSwept(const Scene& scene, const Effort& effort,
 /// @throws std::invalid_argument for other words
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
                  const Effort& effort, const std::vector<PairName>& truth);
+
+/// @brief Times and counts of the methods of earlier papers for all self-contacts, with
+/// and without a filter, scalar and with the library's kernels; on one thread.
+std::vector<BaselineRow> measureBaselines(const Scene& scene, const Effort& effort,
+                                          const std::vector<PairName>& truth);
 
 /// @brief All self-contacts in every step of a sequence, with a model that is updated
 /// from frame to frame, and with one that is built anew for each.

@@ -30,20 +30,6 @@ std::string countOrDash(const std::optional<std::size_t>& count) {
 
 }  // namespace
 
-Errors errorsOf(const std::vector<PairName>& found, const std::vector<PairName>& truth) {
-  std::size_t right = 0;
-  for (auto f = found.begin(), t = truth.begin(); f != found.end() && t != truth.end();) {
-    right += *f == *t;
-    if (*f < *t)
-      ++f;
-    else if (*t < *f)
-      ++t;
-    else
-      ++f, ++t;
-  }
-  return {truth.size() - right, found.size() - right};
-}
-
 void Hash::add(double number) {
   std::uint64_t bits;
   std::memcpy(&bits, &number, sizeof bits);
@@ -72,12 +58,17 @@ Table::Table(const std::string& folder, bool add) : machine_(machineName()) {
   const auto mode = add ? std::ios::app : std::ios::trunc;
   rows_.open(folder + "/speed.csv", mode);
   sequences_.open(folder + "/speed_sequence.csv", mode);
-  if (!rows_ || !sequences_) throw std::runtime_error(folder + ": cannot be written to");
+  baselines_.open(folder + "/speed_baselines.csv", mode);
+  if (!rows_ || !sequences_ || !baselines_)
+    throw std::runtime_error(folder + ": cannot be written to");
   if (add) return;
   rows_ << "scene,triangles,query,boxes,filter,kernels,threads,ms_build,ms_update,"
            "ms_traverse,ms_test,ms_total,contacts,missed,extra,hash,peak_mb,machine\n";
   sequences_ << "sequence,frame,contacts,ms_update,ms_kept,ms_fresh_build,ms_fresh,ratio,"
                 "ms_fresh_update,restructured,machine\n";
+  baselines_ << "scene,triangles,technique,filter,kernels,ms_build,ms_update,ms_traverse,"
+                "ms_test,ms_total,triangle_pairs,feature_pairs,elementary_tests,contacts,"
+                "missed,extra,machine\n";
 }
 
 void Table::add(const Row& row) {
@@ -105,8 +96,19 @@ void Table::add(const SequenceRow& row) {
              << std::endl;
 }
 
+void Table::add(const BaselineRow& row) {
+  baselines_ << row.scene << ',' << row.triangles << ',' << row.technique << ','
+             << row.filter << ',' << row.kernels << ',' << number(row.build) << ','
+             << fields(row.times) << row.triangle_pairs << ',' << row.feature_pairs << ','
+             << row.elementary_tests << ',' << row.contacts << ',' << row.errors.missed
+             << ',' << row.errors.extra << ',' << machine_ << std::endl;
+  std::fprintf(stderr, "%s: %s, %s filter, %s: %.2f ms\n", row.scene.c_str(),
+               row.technique.c_str(), row.filter.c_str(), row.kernels.c_str(),
+               row.times.total());
+}
+
 void Table::finish() {
-  if (!rows_.flush() || !sequences_.flush())
+  if (!rows_.flush() || !sequences_.flush() || !baselines_.flush())
     throw std::runtime_error("the tables cannot be written");
 }
 

@@ -3,7 +3,6 @@
 #define FCL_BENCHMARK_SPEED_TABLE_H
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
@@ -12,38 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "effort.h"
+#include "errors.h"
 #include "scene_data.h"
 
 namespace fcl {
 namespace test {
-
-/// @brief How often something is measured.
-struct Effort {
-  int repeats{5};
-  /// no further repeat once so much time is spent on it
-  double seconds{20};
-};
-
-/// @brief Calls measure() as the effort says, once at least.
-template <typename Measure>
-void repeat(const Effort& effort, Measure&& measure) {
-  using Clock = std::chrono::steady_clock;
-  const auto start = Clock::now();
-  int done = 0;
-  do {
-    measure();
-  } while (++done < effort.repeats &&
-           std::chrono::duration<double>(Clock::now() - start).count() < effort.seconds);
-}
-
-/// @brief Differences of a list of contacts to the true one.
-struct Errors {
-  std::size_t missed;
-  std::size_t extra;
-};
-
-/// @brief Both lists sorted.
-Errors errorsOf(const std::vector<PairName>& found, const std::vector<PairName>& truth);
 
 /// @brief FNV-1a, of 64 bits, over 64-bit words.
 class Hash {
@@ -110,6 +83,22 @@ void measureStep(const Effort& effort, Row& row, Step&& step) {
 void setContacts(std::vector<PairName>& found, const std::vector<PairName>& truth,
                  Row& row);
 
+/// @brief A row of speed_baselines.csv; doc/baselines.md explains the columns.
+struct BaselineRow {
+  std::string scene;
+  std::size_t triangles{0};
+  std::string technique;
+  std::string filter;
+  std::string kernels;
+  double build{0};
+  StepTimes times{};
+  std::size_t triangle_pairs{0};
+  std::size_t feature_pairs{0};
+  std::size_t elementary_tests{0};
+  std::size_t contacts{0};
+  Errors errors{};
+};
+
 /// @brief A row of speed_sequence.csv: a step from one frame to the next, with the tree
 /// made for the first frame and with one made for this.
 struct SequenceRow {
@@ -125,7 +114,7 @@ struct SequenceRow {
   bool is_restructured{false};
 };
 
-/// @brief speed.csv and speed_sequence.csv in a folder.
+/// @brief speed.csv, speed_sequence.csv and speed_baselines.csv in a folder.
 class Table {
  public:
   /// @param add  to the files that are there
@@ -134,6 +123,7 @@ class Table {
 
   void add(const Row& row);
   void add(const SequenceRow& row);
+  void add(const BaselineRow& row);
 
   /// @throws std::runtime_error if not everything could be written
   void finish();
@@ -142,6 +132,7 @@ class Table {
   std::string machine_;
   std::ofstream rows_;
   std::ofstream sequences_;
+  std::ofstream baselines_;
 };
 
 }  // namespace test

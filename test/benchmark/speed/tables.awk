@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# awk -F, -f tables.awk speed.csv speed_sequence.csv > speed.md
+# awk -F, -f tables.awk speed.csv speed_baselines.csv speed_sequence.csv > speed.md
 # The tables as a page to read.
 
 function heading(title) {
@@ -13,26 +13,41 @@ function heading(title) {
 
 FNR == 1 { ++file; next }
 
-file == 1 && NR == 2 {
+!titled++ {
   print "# Speed of whole queries\n"
   print "Made by `cmake/speed.sh`; [the guide](../speed.md) explains it.\n"
-  print "Machine: " $18 ".\n"
+  print "Machine: " $NF ".\n"
   print "| | |\n|---|---|"
   print "| ![Time and memory against size](speed_size.png) " \
         "| ![Stages of each scene](speed_stages.png) |"
   print "| ![Boxes and filters](speed_ablation.png) " \
         "| ![Tree quality over time](speed_sequence.png) |"
-  heading("Scenes")
 }
 
 file == 1 {
+  if (FNR == 2) heading("Scenes")
   print "| " $1 " | " $2 " | " $3 " | " $4 " | " $5 " | " $6 " | " $7 " | " $8 " | " $9 \
         " | " $10 " | " $11 " | " $12 " | " sprintf("%.0f", 1e6 * $12 / $2) " | " $13 \
-        " | " ($3 == "all" && $13 ? sprintf("%.0f", 1e6 * $12 / $13) : "-") " | " $14 " | " $15 " | " $17 " |"
+        " | " ($3 == "all" && $13 ? sprintf("%.0f", 1e6 * $12 / $13) : "-") \
+        " | " $14 " | " $15 " | " $17 " |"
+}
+
+file == 2 {
+  if (FNR == 2) {
+    print "\n## Methods of earlier papers\n"
+    print "[What they are](../baselines.md). All contacts, one thread.\n"
+    print "| scene | triangles | technique | filter | kernels | build | update | traverse " \
+          "| test | total ms | triangle pairs | feature pairs | elementary tests " \
+          "| contacts | missed | extra |"
+    print "|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+  }
+  line = "|"
+  for (i = 1; i <= 16; ++i) line = line " " $i " |"
+  print line
 }
 
 # Sequences: the ratio of both trees' times, in four parts of each.
-file == 2 {
+file == 3 {
   if (!($1 in steps)) order[++sequences] = $1
   ratio[$1, steps[$1]++] = $8
   if ($8 > worst[$1]) worst[$1] = $8

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The tree of feature_tree.h with the library's kernels: its binary structure in nodes of
+// eight children, compared with a box at once, and boxes of features compared many at a
+// time. Swept boxes are moving boxes that are equal at t = 0 and t = 1.
+#ifndef FCL_BENCHMARK_BASELINES_WIDE_TREE_H
+#define FCL_BENCHMARK_BASELINES_WIDE_TREE_H
+
+#include <cstdint>
+#include <vector>
+
+#include "baselines/candidates.h"
+#include "baselines/connectivity.h"
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "scene_data.h"
+#include "swept_tree.h"
+
+namespace fcl {
+namespace test {
+
+class WideTree {
+ public:
+  using VertexPath = detail::deformable::VertexPath;
+
+  /// @brief Structure, order and features, by the first frame.
+  explicit WideTree(const FramePairMesh& mesh);
+
+  const MeshConnectivity& connectivity() const { return connectivity_; }
+  const std::vector<VertexPath>& paths() const { return paths_; }
+  const std::vector<detail::deformable::TreeVertex>& vertices() const {
+    return vertices_;
+  }
+  int originalVertex(std::uint32_t v) const { return static_cast<int>(original_[v]); }
+
+  /// @brief Every node is a region.
+  Regions regions() const;
+
+  /// @brief Boxes of all nodes and vertices for a pair of frames.
+  void refit(const FramePairMesh& mesh);
+
+  /// @brief visit(i, j) for each two triangles whose boxes overlap.
+  /// @param isLeftOut  isLeftOut(region): without those within the region
+  template <typename IsLeftOut, typename Visit>
+  void traverse(IsLeftOut&& isLeftOut, Visit&& visit) const {
+    namespace deformable = detail::deformable;
+    deformable::Traversal<true, const SweptTree, const SweptTree> traversal(
+        swept_, swept_, nullptr, nullptr, nullptr, deformable::kernels(), false);
+    deformable::WorkList open;
+    traversal.start(open);
+    while (open.size() > 0) {
+      const deformable::NodePair work = open[open.size() - 1];
+      open.cut(open.size() - 1);
+      if (work.lane < 0 && isLeftOut(work.node)) continue;
+      traversal.step(work, open, [&](int i, int j, float) { visit(i, j); });
+    }
+  }
+
+  /// @brief Of the pairs of features of triangle pairs those whose boxes overlap.
+  void findOverlaps(const std::vector<TrianglePairMask>& pairs,
+                    std::vector<Candidate>& found);
+
+ private:
+  explicit WideTree(detail::deformable::MovingKdopTree tree);
+
+  detail::deformable::MovingKdopTree tree_;
+  MeshConnectivity connectivity_;
+  std::vector<std::uint32_t> original_;
+  SweptTree swept_;
+  /// As the tree's, with swept boxes.
+  std::vector<detail::deformable::TreeVertex> vertices_;
+  std::vector<VertexPath> paths_;
+  std::vector<detail::deformable::TrianglePair> triangle_pairs_;
+  std::vector<std::uint16_t> masks_;
+  std::vector<std::uint32_t> codes_;
+  std::vector<TimeWindow> windows_;
+};
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
