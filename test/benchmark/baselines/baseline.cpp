@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "baselines/baseline.h"
 
-#include <stdexcept>
-
 #include "baselines/feature_tree.h"
 #include "baselines/self_query.h"
 #include "baselines/wide_tree.h"
@@ -33,14 +31,12 @@ bool touchesByIntervalNewton(detail::deformable::FeatureKind,
 
 std::unique_ptr<Baseline> makeBaseline(const FramePairMesh& mesh,
                                        const BaselineMethod& method, TouchTest touches) {
-  if (method.kernels == KernelSet::kVector) {
-    if (method.filter == Filter::kPlain || method.boxes != Boxes::kSwept)
-      throw std::invalid_argument("vector kernels: swept boxes and no plain filter");
-    return make<WideTree>(mesh, method, touches);
-  }
-  return method.boxes == Boxes::kSwept
-             ? make<FeatureTree<SweptBox>>(mesh, method, touches)
-             : make<FeatureTree<MovingKdop>>(mesh, method, touches);
+  const bool is_swept = method.boxes == Boxes::kSwept;
+  if (method.kernels == KernelSet::kVector)
+    return is_swept ? make<WideTree<Boxes::kSwept>>(mesh, method, touches)
+                    : make<WideTree<Boxes::kMoving>>(mesh, method, touches);
+  return is_swept ? make<FeatureTree<SweptBox>>(mesh, method, touches)
+                  : make<FeatureTree<MovingKdop>>(mesh, method, touches);
 }
 
 }  // namespace test

@@ -57,7 +57,6 @@ class Baseline {
 };
 
 /// @brief Makes the structure by the first frame.
-/// @throws std::invalid_argument for what BaselineMethod says is not to be had
 std::unique_ptr<Baseline> makeBaseline(const FramePairMesh& mesh,
                                        const BaselineMethod& method,
                                        TouchTest touches = touchesByIntervalNewton);

@@ -44,8 +44,6 @@ enum class KernelSet {
   kVector
 };
 
-/// @brief KernelSet::kVector takes swept boxes, and no plain filter: the kernel's has a
-/// bound, which costs it next to nothing.
 struct BaselineMethod {
   Technique technique;
   Filter filter{Filter::kNone};

@@ -131,12 +131,13 @@ class SelfQuery final : public Baseline {
           !detail::deformable::mayBecomeCoplanar(
               points.kind, pathsOf(points), double{c.window.lo}, double{c.window.hi}))
         continue;
-      solve(points);
+      solve(points, filter_ == Filter::kPlain);
     }
   }
 
   /// Eight pairs of one kind at a time through the filter.
-  void test(const WideTree& tree) {
+  template <Boxes kBoxes>
+  void test(const WideTree<kBoxes>& tree) {
     if (filter_ == Filter::kNone) {
       for (const Candidate& c : candidates_) solve(pointsOf(c));
       return;
@@ -145,20 +146,28 @@ class SelfQuery final : public Baseline {
     for (std::size_t i = 0; i < candidates_.size();) {
       detail::deformable::EightPairs eight;
       PointIds points[8];
+      const std::size_t first = i;
       std::size_t count = 0;
       eight.kind = pointsOf(candidates_[i]).kind;
       for (; count < 8 && i < candidates_.size(); ++i, ++count) {
         points[count] = pointsOf(candidates_[i]);
         if (points[count].kind != eight.kind) break;
       }
+      const bool is_plain = filter_ == Filter::kPlain;
       for (std::size_t lane = 0; lane < 8; ++lane) {
-        const auto& v = points[std::min(lane, count - 1)].v;
-        const auto at = [&](std::size_t k) { return &tree.vertices()[v[k]]; };
-        eight.set(lane, {at(0), at(1), at(2), at(3)}, 0, 1);
+        const std::size_t k = std::min(lane, count - 1);
+        const TimeWindow window =
+            is_plain ? TimeWindow{0, 1} : candidates_[first + k].window;
+        const auto at = [&](std::size_t n) { return &tree.vertices()[points[k].v[n]]; };
+        eight.set(lane, {at(0), at(1), at(2), at(3)}, double{window.lo},
+                  double{window.hi});
       }
-      const auto may = detail::deformable::kernels().coplanarity(eight);
+      // Where signs agree but stand below the bound is unclear; the plain filter has no
+      // bound.
+      const auto found = detail::deformable::kernels().coplanarity(eight);
+      const unsigned left = is_plain ? found.possible : found.possible | found.unclear;
       for (std::size_t lane = 0; lane < count; ++lane)
-        if (((may.possible | may.unclear) >> lane & 1U) != 0) solve(points[lane]);
+        if (left >> lane & 1U) solve(points[lane]);
     }
   }
 
@@ -168,11 +177,12 @@ class SelfQuery final : public Baseline {
              &paths[points.v[3]]}};
   }
 
-  void solve(const PointIds& points) {
+  /// @param filtered  whether the plain filter looks at the cubic first
+  void solve(const PointIds& points, bool filtered = false) {
     const detail::deformable::FeaturePoints x = pathsOf(points);
     const RelativePair<double> pair(points.kind, x);
     const CoplanarityCubic<double> cubic(pair);
-    if (filter_ == Filter::kPlain && cubic.hasOneSign()) return;
+    if (filtered && cubic.hasOneSign()) return;
     ++step_.elementary_tests;
     if (!touches_(points.kind, x, pair, cubic)) return;
     std::array<int, 4> ids{};

@@ -38,9 +38,11 @@ MeshConnectivity connect(const MovingKdopTree& tree) {
 
 }  // namespace
 
-WideTree::WideTree(const FramePairMesh& mesh) : WideTree(build(mesh)) {}
+template <Boxes kBoxes>
+WideTree<kBoxes>::WideTree(const FramePairMesh& mesh) : WideTree(build(mesh)) {}
 
-WideTree::WideTree(MovingKdopTree tree)
+template <Boxes kBoxes>
+WideTree<kBoxes>::WideTree(MovingKdopTree tree)
     : tree_(std::move(tree)),
       connectivity_(connect(tree_)),
       original_(tree_.vertices().size()),
@@ -51,7 +53,8 @@ WideTree::WideTree(MovingKdopTree tree)
     for (int k = 0; k < 3; ++k) original_[t.place[k]] = t.id[k];
 }
 
-Regions WideTree::regions() const {
+template <Boxes kBoxes>
+Regions WideTree<kBoxes>::regions() const {
   Regions regions;
   for (std::size_t i = 0; i < tree_.numNodes(); ++i) {
     const MovingKdopNode& node = tree_.node(static_cast<int>(i));
@@ -61,20 +64,22 @@ Regions WideTree::regions() const {
   return regions;
 }
 
-void WideTree::refit(const FramePairMesh& mesh) {
+template <Boxes kBoxes>
+void WideTree<kBoxes>::refit(const FramePairMesh& mesh) {
   tree_.refit({mesh.previous[0].data(), mesh.current[0].data(), mesh.previous.size()});
-  swept_.assign(tree_);
+  if (kBoxes == Boxes::kSwept) swept_.assign(tree_);
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     TreeVertex& v = vertices_[i] = tree_.vertices()[i];
-    for (int j = 0; j < 16; ++j)
+    for (int j = 0; kBoxes == Boxes::kSwept && j < 16; ++j)
       v.box.t0.half[j] = v.box.t1.half[j] = std::max(v.box.t0.half[j], v.box.t1.half[j]);
     std::copy(v.t0, v.t0 + 3, paths_[i].t0);
     std::copy(v.t1, v.t1 + 3, paths_[i].t1);
   }
 }
 
-void WideTree::findOverlaps(const std::vector<TrianglePairMask>& pairs,
-                            std::vector<Candidate>& found) {
+template <Boxes kBoxes>
+void WideTree<kBoxes>::findOverlaps(const std::vector<TrianglePairMask>& pairs,
+                                    std::vector<Candidate>& found) {
   triangle_pairs_.resize(pairs.size());
   masks_.resize(pairs.size());
   for (std::size_t p = 0; p < pairs.size(); ++p) {
@@ -106,6 +111,9 @@ void WideTree::findOverlaps(const std::vector<TrianglePairMask>& pairs,
           {codes_[i] / 16, static_cast<std::int32_t>(codes_[i] % 16), windows_[i]});
   }
 }
+
+template class WideTree<Boxes::kSwept>;
+template class WideTree<Boxes::kMoving>;
 
 }  // namespace test
 }  // namespace fcl

@@ -2,7 +2,7 @@
 //
 // The tree of feature_tree.h with the library's kernels: its binary structure in nodes of
 // eight children, compared with a box at once, and boxes of features compared many at a
-// time. Swept boxes are moving boxes that are equal at t = 0 and t = 1.
+// time.
 #ifndef FCL_BENCHMARK_BASELINES_WIDE_TREE_H
 #define FCL_BENCHMARK_BASELINES_WIDE_TREE_H
 
@@ -11,6 +11,7 @@
 
 #include "baselines/candidates.h"
 #include "baselines/connectivity.h"
+#include "baselines/method.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "scene_data.h"
@@ -19,6 +20,8 @@
 namespace fcl {
 namespace test {
 
+/// @tparam kBoxes  swept boxes are moving boxes that are equal at t = 0 and t = 1
+template <Boxes kBoxes>
 class WideTree {
  public:
   using VertexPath = detail::deformable::VertexPath;
@@ -43,9 +46,24 @@ class WideTree {
   /// @param isLeftOut  isLeftOut(region): without those within the region
   template <typename IsLeftOut, typename Visit>
   void traverse(IsLeftOut&& isLeftOut, Visit&& visit) const {
+    if constexpr (kBoxes == Boxes::kMoving)
+      traverse(tree_, isLeftOut, visit);
+    else
+      traverse(swept_, isLeftOut, visit);
+  }
+
+  /// @brief Of the pairs of features of triangle pairs those whose boxes overlap.
+  void findOverlaps(const std::vector<TrianglePairMask>& pairs,
+                    std::vector<Candidate>& found);
+
+ private:
+  explicit WideTree(detail::deformable::MovingKdopTree tree);
+
+  template <typename Tree, typename IsLeftOut, typename Visit>
+  static void traverse(const Tree& tree, IsLeftOut& isLeftOut, Visit& visit) {
     namespace deformable = detail::deformable;
-    deformable::Traversal<true, const SweptTree, const SweptTree> traversal(
-        swept_, swept_, nullptr, nullptr, nullptr, deformable::kernels(), false);
+    deformable::Traversal<true, const Tree, const Tree> traversal(
+        tree, tree, nullptr, nullptr, nullptr, deformable::kernels(), false);
     deformable::WorkList open;
     traversal.start(open);
     while (open.size() > 0) {
@@ -56,18 +74,11 @@ class WideTree {
     }
   }
 
-  /// @brief Of the pairs of features of triangle pairs those whose boxes overlap.
-  void findOverlaps(const std::vector<TrianglePairMask>& pairs,
-                    std::vector<Candidate>& found);
-
- private:
-  explicit WideTree(detail::deformable::MovingKdopTree tree);
-
   detail::deformable::MovingKdopTree tree_;
   MeshConnectivity connectivity_;
   std::vector<std::uint32_t> original_;
   SweptTree swept_;
-  /// As the tree's, with swept boxes.
+  /// As the tree's; with swept boxes, if these are to be compared.
   std::vector<detail::deformable::TreeVertex> vertices_;
   std::vector<VertexPath> paths_;
   std::vector<detail::deformable::TrianglePair> triangle_pairs_;

@@ -20,6 +20,7 @@ std::vector<BaselineRow> measureBaselines(const Scene& scene, const Effort& effo
   } variants[] = {{"none", "scalar", Filter::kNone, KernelSet::kScalar},
                   {"plain", "scalar", Filter::kPlain, KernelSet::kScalar},
                   {"none", "vector", Filter::kNone, KernelSet::kVector},
+                  {"plain", "vector", Filter::kPlain, KernelSet::kVector},
                   {"certified", "vector", Filter::kCertified, KernelSet::kVector}};
   std::vector<BaselineRow> rows;
   for (const auto& technique : techniques)

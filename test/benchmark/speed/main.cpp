@@ -69,11 +69,13 @@ std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& o
     for (const int threads : threadNumbers())
       if (query != Query::kAll || threads != 1)
         table.add(measureLibrary(scene, query, threads, options.effort, &truth));
-  for (const std::string boxes : {"swept", "moving"})
-    for (const std::string filter : {"none", "plain", "certified"})
-      if (paper == PaperRows::kAblation ||
-          (paper == PaperRows::kPublished && boxes == "swept" && filter == "plain"))
-        table.add(measurePaper(scene, boxes, filter, options.effort, truth));
+  for (const KernelSet kernels : {KernelSet::kScalar, KernelSet::kVector})
+    for (const std::string boxes : {"swept", "moving"})
+      for (const std::string filter : {"none", "plain", "certified"})
+        if (paper == PaperRows::kAblation ||
+            (paper == PaperRows::kPublished && kernels == KernelSet::kScalar &&
+             boxes == "swept" && filter == "plain"))
+          table.add(measurePaper(scene, boxes, filter, kernels, options.effort, truth));
   return truth;
 }
 

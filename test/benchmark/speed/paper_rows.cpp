@@ -9,8 +9,10 @@ namespace fcl {
 namespace test {
 namespace {
 
-BaselineMethod methodOf(const std::string& boxes, const std::string& filter) {
+BaselineMethod methodOf(const std::string& boxes, const std::string& filter,
+                        KernelSet kernels) {
   BaselineMethod method{Technique::kRepresentatives};
+  method.kernels = kernels;
   if (boxes == "moving")
     method.boxes = Boxes::kMoving;
   else if (boxes != "swept")
@@ -27,9 +29,11 @@ BaselineMethod methodOf(const std::string& boxes, const std::string& filter) {
 }  // namespace
 
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
-                 const Effort& effort, const std::vector<PairName>& truth) {
-  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, kPaperKernels, 1};
-  const BaselineMethod method = methodOf(boxes, filter);
+                 KernelSet kernels, const Effort& effort,
+                 const std::vector<PairName>& truth) {
+  const char* name = kernels == KernelSet::kScalar ? kPaperKernels : kPaperVectorKernels;
+  Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, name, 1};
+  const BaselineMethod method = methodOf(boxes, filter, kernels);
   resetPeakMemory();
   BaselineFigures figures = measureBaseline(scene.a, method, effort);
   row.build = figures.ms_build;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "baselines/method.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "generated_scenes.h"
 #include "scene_data.h"
@@ -25,8 +26,10 @@ struct Scene {
   bool isSelf() const { return b.triangles.empty(); }
 };
 
-/// @brief What rows of the paper's method have as kernels: scalar code of its own.
+/// @brief What rows of the paper's method have as kernels: scalar code of its own, or the
+/// library's.
 constexpr const char* kPaperKernels = "scalar (paper)";
+constexpr const char* kPaperVectorKernels = "vector (paper)";
 
 /// @brief So many threads the library uses where all are allowed.
 int allThreads();
@@ -60,9 +63,11 @@ Row measureSwept(const Scene& scene, const Effort& effort,
 /// @brief Times of the paper's method for all self-contacts, on one thread.
 /// @param boxes  "swept" (the paper's) or "moving"
 /// @param filter  "none", "plain" (the paper's) or "certified"
+/// @param kernels  scalar ones are the paper's
 /// @throws std::invalid_argument for other words
 Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
-                 const Effort& effort, const std::vector<PairName>& truth);
+                 KernelSet kernels, const Effort& effort,
+                 const std::vector<PairName>& truth);
 
 /// @brief Times and counts of the methods of earlier papers for all self-contacts, with
 /// and without a filter, scalar and with the library's kernels; on one thread.
