@@ -367,6 +367,10 @@ TYPED_TEST(DeformableModel, RefusesToBuildNonsense) {
   expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA,
               ("triangle 0 refers to vertex " + std::to_string(points.size())).c_str());
   model.tri_indices[0] = Triangle(0, 1, 10);
+  const int num_vertices = std::exchange(model.num_vertices, (1 << 29) + 1);
+  expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA,
+              "536870913 vertices are more than 536870912");
+  model.num_vertices = num_vertices;
   model.vertices[3][2] = std::numeric_limits<S>::quiet_NaN();
   expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA, "vertex 3 ");
   model.vertices[3][2] = std::numeric_limits<S>::infinity();
@@ -419,6 +423,17 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   expectLikePlain(*makeModel<Plain>(larger));
   ASSERT_EQ(update(*changed, larger_next), BVH_OK);
   this->expectFrames(*changed, larger, larger_next);
+}
+
+TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {
+  USING_FIXTURE;
+  const auto model = makeModel<Plain>(frame(1));
+  for (int* count : {&model->num_tris, &model->num_vertices}) {
+    const int before = std::exchange(*count, (1 << 29) + 1);
+    expectRefused([&] { selfContacts<S>(*model); }, "o: 536870913 ");
+    *count = before;
+  }
+  EXPECT_NO_THROW(selfContacts<S>(*model));
 }
 
 TYPED_TEST(DeformableModel, CopiesAreDeep) {

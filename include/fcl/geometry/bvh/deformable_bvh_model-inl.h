@@ -189,6 +189,8 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
+  std::string too_many = detail::deformable::findTooMany(num_triangles, count);
+  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
   const std::size_t bad =
       detail::deformable::findOutOfRange(this->tri_indices, num_triangles, count);
   if (bad < 3 * num_triangles)

@@ -75,8 +75,9 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int setNumThreads(int num_threads);
 
   /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
-  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), coordinates that are not finite and vertex
-  /// indices out of range (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
+  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
+  /// coordinates that are not finite and vertex indices out of range
+  /// (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
 
   /// @name Replace the current frame; both frames become equal (no motion).
