@@ -9,6 +9,15 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
+
+std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices) {
+  const bool triangles = num_triangles > kMaxMeshSize;
+  if (!triangles && num_vertices <= kMaxMeshSize) return {};
+  return std::to_string(triangles ? num_triangles : num_vertices) +
+         (triangles ? " triangles" : " vertices") + " are more than " +
+         std::to_string(kMaxMeshSize);
+}
+
 std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,
                            std::size_t num_vertices) {
   for (std::size_t i = 0; i < num_triangles; ++i) {

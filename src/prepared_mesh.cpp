@@ -150,6 +150,9 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
     throw Exception(name +
                     ": the model is not built, or an update has begun and not ended");
   const auto count = static_cast<std::size_t>(model.num_vertices);
+  const std::string too_many =
+      findTooMany(static_cast<std::size_t>(model.num_tris), count);
+  if (!too_many.empty()) throw Exception(name + ": " + too_many);
   const auto* current = model.vertices->data();
   instance_.frames =
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);

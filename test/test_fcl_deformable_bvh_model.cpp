@@ -4,10 +4,13 @@
 // test_fcl_deformable_discrete.cpp.
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
+#include <functional>
 #include <limits>
 #include <memory>
+#include <new>
 #include <utility>
 
+#include "allocation_failures.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
@@ -364,6 +367,10 @@ TYPED_TEST(DeformableModel, RefusesToBuildNonsense) {
   expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA,
               ("triangle 0 refers to vertex " + std::to_string(points.size())).c_str());
   model.tri_indices[0] = Triangle(0, 1, 10);
+  const int num_vertices = std::exchange(model.num_vertices, (1 << 29) + 1);
+  expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA,
+              "536870913 vertices are more than 536870912");
+  model.num_vertices = num_vertices;
   model.vertices[3][2] = std::numeric_limits<S>::quiet_NaN();
   expectError(model, model.endModel(), BVH_ERR_INCORRECT_DATA, "vertex 3 ");
   model.vertices[3][2] = std::numeric_limits<S>::infinity();
@@ -418,6 +425,17 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   this->expectFrames(*changed, larger, larger_next);
 }
 
+TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {
+  USING_FIXTURE;
+  const auto model = makeModel<Plain>(frame(1));
+  for (int* count : {&model->num_tris, &model->num_vertices}) {
+    const int before = std::exchange(*count, (1 << 29) + 1);
+    expectRefused([&] { selfContacts<S>(*model); }, "o: 536870913 ");
+    *count = before;
+  }
+  EXPECT_NO_THROW(selfContacts<S>(*model));
+}
+
 TYPED_TEST(DeformableModel, CopiesAreDeep) {
   USING_FIXTURE;
   auto original = makeModel<Model>(frame(1), frame(2));
@@ -448,6 +466,152 @@ TYPED_TEST(DeformableModel, CopiesAreDeep) {
   const Model late(*copy);
   expectIdentical(selfContacts<S>(late), selfContacts<S>(*copy));
   EXPECT_GT(selfContacts<S>(late).contacts.size(), 50u);
+}
+
+/// Whether the call runs out of memory, if so many allocations succeed.
+template <typename Call>
+bool failsAfter(int allocations, Call&& call) {
+  allocations_left = allocations;
+  bool fails = false;
+  try {
+    fails = call() != BVH_OK;
+  } catch (const std::bad_alloc&) {
+    fails = true;
+  }
+  allocations_left = -1;
+  return fails;
+}
+
+/// What comes after an allocation that fails: many are tried, but not all.
+int nextAllocation(int i) { return i + 1 + i / 8; }
+
+// A model is as before, or, if an update was half done, refused until it has both frames.
+TYPED_TEST(DeformableModel, UpdateWithoutMemory) {
+  USING_FIXTURE;
+  const auto p = this->points(frame(3)), q = this->points(frame(4));
+  const std::function<int(Model&)> updates[] = {
+      [&](Model& model) { return update(model, frame(3)); },
+      [&](Model& model) {
+        model.beginUpdateModel();
+        model.updateSubModel(p);
+        return model.endUpdateModel(false);
+      },
+      [&](Model& model) {
+        model.beginReplaceModel();
+        model.replaceSubModel(p);
+        return model.endReplaceModel();
+      },
+      [&](Model& model) { return this->updateFrames(model, p, q); },
+      [&](Model& model) { return this->updateFrames(model, p, q, FclTree::kUpdate); },
+      [&](Model& model) { return model.updateFclTree(); }};
+  const std::function<void(Model&)> beginnings[] = {
+      [](Model& model) { model.endModel(); },
+      [](Model& model) { model.endModel(FclTree::kSkip); },
+      [&](Model& model) {
+        model.endModel();
+        this->updateFrames(model, p, q);
+      },
+      [&](Model& model) {
+        model.endModel();
+        EXPECT_EQ(update<Plain>(model, frame(2)), BVH_OK);
+      }};
+  const auto modelOf = [&](const auto& beginning) {
+    auto model = std::make_unique<Model>();
+    EXPECT_EQ(model->beginModel(), BVH_OK);
+    EXPECT_EQ(model->addSubModel(this->points(frame(1)), kSheet.triangles), BVH_OK);
+    beginning(*model);
+    return model;
+  };
+  int num_refused = 0, num_unchanged = 0;
+  for (const auto& beginning : beginnings)
+    for (const auto& change : updates) {
+      const auto before = modelOf(beginning), after = modelOf(beginning);
+      const bool is_possible = change(*after) == BVH_OK;
+      const auto answer_before = selfContacts<S>(*before),
+                 answer_after = selfContacts<S>(*after);
+      for (int i = 0;; i = nextAllocation(i)) {
+        const auto model = modelOf(beginning);
+        ::testing::internal::CaptureStderr();  // FCL tells that there is no memory
+        const bool fails = failsAfter(i, [&] { return change(*model); });
+        ::testing::internal::GetCapturedStderr();
+        if (!fails || !is_possible) break;
+        if (model->build_state == BVH_BUILD_STATE_UPDATE_BEGUN) {
+          ++num_refused;
+          expectRefused([&] { selfContacts<S>(*model); }, "the last update failed");
+          expectRefused([&] { pairContacts<S>(*after, *model); }, "last update failed");
+          expectRefused([&] { model->getNodeType(); }, "the last update failed");
+          expectRefused([&] { const Model copy(*model); }, "failed");
+          EXPECT_EQ(model->beginUpdateModel(), BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
+          EXPECT_NE(model->updateFclTree(), BVH_OK);
+          EXPECT_NE(model->lastError().find("failed"), std::string::npos);
+        } else if (!model->isUpdateOpen()) {
+          ++num_unchanged;
+          // Frames are there before FCL's tree is built for them.
+          const bool is_old = this->previousOf(*model) == this->previousOf(*before) &&
+                              this->currentOf(*model) == this->currentOf(*before);
+          expectIdentical(selfContacts<S>(*model), is_old ? answer_before : answer_after);
+          if (!before->isFclTreeUpToDate()) {
+            EXPECT_THROW(model->getNodeType(), Exception);
+          }
+        }
+        if (model->isUpdateOpen()) continue;
+        if (i % 2) {
+          ASSERT_EQ(this->updateFrames(*model, p, q), BVH_OK);
+          this->expectFrames(*model, frame(3), frame(4));
+        } else {
+          ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
+          ASSERT_EQ(model->replaceSubModel(p), BVH_OK);
+          ASSERT_EQ(model->endReplaceModel(), BVH_OK);
+          ASSERT_EQ(update(*model, frame(4)), BVH_OK);
+          this->expectFrames(*model, frame(3), frame(4));
+        }
+        ASSERT_FALSE(this->HasFailure());
+      }
+    }
+  EXPECT_GT(num_refused, 20);
+  EXPECT_GT(num_unchanged, 20);
+}
+
+TYPED_TEST(DeformableModel, BuildWithoutMemory) {
+  USING_FIXTURE;
+  for (const FclTree tree : {FclTree::kSkip, FclTree::kUpdate}) {
+    int num_failures = 0;
+    for (int i = 0;; i = nextAllocation(i)) {
+      Model model;
+      ASSERT_EQ(model.beginModel(), BVH_OK);
+      ASSERT_EQ(model.addSubModel(this->points(frame(1)), kSheet.triangles), BVH_OK);
+      ::testing::internal::CaptureStderr();
+      const bool fails = failsAfter(i, [&] { return model.endModel(tree); });
+      ::testing::internal::GetCapturedStderr();
+      if (!fails) break;
+      ++num_failures;
+      expectRefused([&] { selfContacts<S>(model); }, "not built");
+      EXPECT_EQ(this->updateFrames(model, this->points(frame(1)), this->points(frame(2))),
+                BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
+      // FCL does not give back what it had for its own tree.
+      if (tree == FclTree::kUpdate) continue;
+      ASSERT_EQ(model.endModel(tree), BVH_OK);
+      ASSERT_EQ(update(model, frame(2)), BVH_OK);
+      this->expectFrames(model, frame(1), frame(2));
+    }
+    EXPECT_GT(num_failures, 10);
+  }
+}
+
+TYPED_TEST(DeformableModel, AssignmentWithoutMemory) {
+  USING_FIXTURE;
+  const auto other = makeModel<Model>(bentSheet(5));
+  for (int i = 0;; ++i) {
+    const auto model = makeModel<Model>(frame(1), frame(2));
+    const bool fails = failsAfter(i, [&] {
+      *model = *other;
+      return BVH_OK;
+    });
+    EXPECT_TRUE(model->isInStep());
+    if (!fails) break;
+    ASSERT_LT(i, 200);
+    this->expectFrames(*model, frame(1), frame(2));
+  }
 }
 
 TEST(DeformableModelMemory, PerTriangle) {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -324,6 +325,19 @@ TEST(FCL_FEATURE_PAIRS, findsWhatIsOutOfRange) {
   EXPECT_EQ(findOutOfRange(triangles.data(), triangles.size(), 4), 7U);
   EXPECT_EQ(findOutOfRange(triangles.data(), triangles.size(), 3), 3U);
   EXPECT_EQ(findOutOfRange(triangles.data(), 1, 3), 3U);
+}
+
+TEST(FCL_FEATURE_PAIRS, findsWhatIsTooMany) {
+  EXPECT_EQ(kMaxMeshSize, 536870912U);
+  EXPECT_EQ(findTooMany(kMaxMeshSize, kMaxMeshSize), "");
+  EXPECT_EQ(findTooMany(0, 0), "");
+  EXPECT_EQ(findTooMany(kMaxMeshSize + 1, kMaxMeshSize + 2),
+            "536870913 triangles are more than 536870912");
+  EXPECT_EQ(findTooMany(1, kMaxMeshSize + 1),
+            "536870913 vertices are more than 536870912");
+  // What is numbered up to there.
+  EXPECT_LE(4 * (kMaxMeshSize - 1) + 2, std::numeric_limits<std::uint32_t>::max());
+  EXPECT_LE(6 * kMaxMeshSize, std::numeric_limits<std::uint32_t>::max());
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -58,7 +59,11 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
       staged_(other.staged_),
       fcl_tree_built_(other.fcl_tree_built_),
       fcl_tree_up_to_date_(other.fcl_tree_up_to_date_),
+      is_changing_(other.is_changing_),
       last_error_(other.last_error_) {
+  // FCL copies the nodes that a tree has; one that is half made has less than it needs.
+  if (isHalfUpdated())
+    throw Exception("DeformableBVHModel: copied after an update that failed");
   // FCL shares these between copies, although building writes to them.
   this->bv_splitter = std::make_shared<detail::BVSplitter<BV>>(detail::SPLIT_METHOD_MEAN);
   this->bv_fitter = std::make_shared<detail::BVFitter<BV>>();
@@ -69,13 +74,15 @@ template <typename BV>
 DeformableBVHModel<BV>& DeformableBVHModel<BV>::operator=(
     const DeformableBVHModel& other) {
   if (this == &other) return *this;
+  // From the swap on nothing throws.
   DeformableBVHModel copy(other);
   swapBase(copy);
-  detail::DeformableMesh::operator=(copy);
+  detail::DeformableMesh::operator=(std::move(static_cast<DeformableMesh&>(copy)));
   staged_ = std::move(copy.staged_);
   seal_ = copy.seal_;
   fcl_tree_built_ = copy.fcl_tree_built_;
   fcl_tree_up_to_date_ = copy.fcl_tree_up_to_date_;
+  is_changing_ = copy.is_changing_;
   last_error_ = std::move(copy.last_error_);
   return *this;
 }
@@ -127,11 +134,26 @@ bool DeformableBVHModel<BV>::isInStep() const {
   return seal_.vertices && seal_.prev_vertices && seal_ == currentSeal();
 }
 
+/// Brings the base into the state of a model that is built, with all that belongs to it.
+template <typename BV>
+void DeformableBVHModel<BV>::seal() {
+  this->build_state = fcl_tree_built_ ? BVH_BUILD_STATE_PROCESSED : BVH_BUILD_STATE_BEGUN;
+  seal_ = currentSeal();
+  is_changing_ = false;
+}
+
+// A change through the base class that follows leaves another state.
+template <typename BV>
+bool DeformableBVHModel<BV>::isHalfUpdated() const {
+  return is_changing_ && this->build_state == BVH_BUILD_STATE_UPDATE_BEGUN;
+}
+
 template <typename BV>
 bool DeformableBVHModel<BV>::isBuilt() const {
-  return isInStep() || (this->vertices && this->num_tris > 0 &&
-                        (this->build_state == BVH_BUILD_STATE_PROCESSED ||
-                         this->build_state == BVH_BUILD_STATE_UPDATED));
+  return isInStep() || isHalfUpdated() ||
+         (this->vertices && this->num_tris > 0 &&
+          (this->build_state == BVH_BUILD_STATE_PROCESSED ||
+           this->build_state == BVH_BUILD_STATE_UPDATED));
 }
 
 template <typename BV>
@@ -167,6 +189,8 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
+  std::string too_many = detail::deformable::findTooMany(num_triangles, count);
+  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
   const std::size_t bad =
       detail::deformable::findOutOfRange(this->tri_indices, num_triangles, count);
   if (bad < 3 * num_triangles)
@@ -177,17 +201,22 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
             " of " + std::to_string(count));
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
+  // What fails leaves an open model, which no seal fits.
+  open_ = Open::kNone;
+  seal_.build_state = BVH_BUILD_STATE_EMPTY;
+  std::unique_ptr<Vector3<S>[]> previous(new Vector3<S>[count]);
+  std::copy(this->vertices, this->vertices + count, previous.get());
+  delete[] this->prev_vertices;
+  this->prev_vertices = previous.release();
+  buildTree(this->tri_indices, num_triangles, frames());
+  refitTree(frames());
+  computeLocalAABB();
   if (fcl_tree == FclTree::kUpdate) {
     if (const int code = Base::endModel())
       return refuse(code, "FCL refused to build its tree");
   }
   fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
-  delete[] this->prev_vertices;
-  this->prev_vertices = new Vector3<S>[count];
-  std::copy(this->vertices, this->vertices + count, this->prev_vertices);
-  open_ = Open::kNone;
-  buildTree(this->tri_indices, num_triangles, frames());
-  finish();
+  seal();
   return accept();
 }
 
@@ -227,6 +256,10 @@ int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
 
 template <typename BV>
 int DeformableBVHModel<BV>::beginUpdateModel() {
+  if (isHalfUpdated())
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+        "beginUpdateModel() after an update that failed: both frames are needed");
   return open(Open::kUpdate, "beginUpdateModel");
 }
 
@@ -250,7 +283,7 @@ int DeformableBVHModel<BV>::updateSubModel(const std::vector<Vector3<S>>& ps) {
 template <typename BV>
 int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
   if (const int code = close(Open::kUpdate, "endUpdateModel")) return code;
-  advance(FclTree::kUpdate, refit, bottomup);
+  advance(nullptr, FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
 }
@@ -280,8 +313,7 @@ int DeformableBVHModel<BV>::replaceSubModel(const std::vector<Vector3<S>>& ps) {
 template <typename BV>
 int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
   if (const int code = close(Open::kReplace, "endReplaceModel")) return code;
-  setPreviousFrame(staged_.data()->data());
-  advance(FclTree::kUpdate, refit, bottomup);
+  advance(staged_.data()->data(), FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
 }
@@ -307,40 +339,39 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
   // Both copies are made before an array changes: the frames may be the model's own.
   staged_.resize(num_vertices);
   std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
-  setPreviousFrame(previous);
   const bool build = fcl_tree == FclTree::kUpdate && !fcl_tree_built_;
-  advance(fcl_tree, true, true);
+  advance(previous, fcl_tree, true, true);
   finish();
   if (build) return updateFclTree();
   return accept();
 }
 
-/// What advance() takes as the previous frame is the array of the current one.
+/// `previous`, or else the current frame, becomes the previous one, staged_ the current
+/// one. Until seal() the model is in the state of an update that has begun and not ended:
+/// if an exception comes between them it stays there, and no query takes it.
 template <typename BV>
-void DeformableBVHModel<BV>::setPreviousFrame(const S* previous) {
-  std::memmove(this->vertices->data(), previous,
-               3 * static_cast<std::size_t>(this->num_vertices) * sizeof(S));
-}
-
-/// The current frame becomes the previous one, staged_ the current one.
-template <typename BV>
-void DeformableBVHModel<BV>::advance(FclTree fcl_tree, bool refit, bool bottomup) {
+void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool refit,
+                                     bool bottomup) {
+  const auto count = static_cast<std::size_t>(this->num_vertices);
+  const bool rebuild = !isInStep(), repair = isHalfUpdated();
+  if (!this->prev_vertices) this->prev_vertices = new Vector3<S>[count];
+  is_changing_ = true;
+  this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   // After a change through the base class the base alone knows what the model is.
-  const bool rebuild = !isInStep();
-  if (rebuild) fcl_tree_built_ = true;
-  if (!this->prev_vertices)
-    this->prev_vertices = new Vector3<S>[static_cast<std::size_t>(this->num_vertices)];
-  fcl_tree_up_to_date_ = fcl_tree_built_ && fcl_tree == FclTree::kUpdate;
+  if (rebuild && !repair) fcl_tree_built_ = true;
+  if (previous) std::memmove(this->vertices->data(), previous, 3 * count * sizeof(S));
+  // FCL's tree may have been left half made: a repair makes it anew.
+  fcl_tree_up_to_date_ = fcl_tree_built_ && (repair || fcl_tree == FclTree::kUpdate);
   if (fcl_tree_up_to_date_) {
     this->build_state = BVH_BUILD_STATE_PROCESSED;
     Base::beginUpdateModel();
     Base::updateSubModel(staged_);
-    Base::endUpdateModel(refit, bottomup && detail::RefitsBottomUp<BV>::value);
+    Base::endUpdateModel(refit && !repair, bottomup && detail::RefitsBottomUp<BV>::value);
+    this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   } else {
     std::swap(this->vertices, this->prev_vertices);
     std::copy(staged_.begin(), staged_.end(), this->vertices);
   }
-  this->build_state = fcl_tree_built_ ? BVH_BUILD_STATE_PROCESSED : BVH_BUILD_STATE_BEGUN;
   if (rebuild)
     buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
 }
@@ -349,11 +380,14 @@ template <typename BV>
 void DeformableBVHModel<BV>::finish() {
   refitTree(frames());
   computeLocalAABB();
-  seal_ = currentSeal();
+  seal();
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::updateFclTree() {
+  if (isHalfUpdated())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  "updateFclTree() after an update that failed: both frames are needed");
   if (!isInStep())
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
                   "updateFclTree() on a model that is not built");
@@ -361,21 +395,29 @@ int DeformableBVHModel<BV>::updateFclTree() {
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
                   "updateFclTree() between begin...Model() and end...Model()");
   if (!fcl_tree_built_) {
-    if (const int code = Base::endModel())
-      return refuse(code, "FCL refused to build its tree");
-    fcl_tree_built_ = fcl_tree_up_to_date_ = true;
+    // FCL may have moved the vertices before it fails.
+    int code;
+    try {
+      code = Base::endModel();
+    } catch (...) {
+      seal();
+      throw;
+    }
+    fcl_tree_built_ = fcl_tree_up_to_date_ = code == BVH_OK;
+    seal();
+    if (code) return refuse(code, "FCL refused to build its tree");
   } else if (!fcl_tree_up_to_date_) {
     staged_.assign(this->vertices, this->vertices + this->num_vertices);
-    setPreviousFrame(this->prev_vertices->data());
-    advance(FclTree::kUpdate, true, true);
+    advance(this->prev_vertices->data(), FclTree::kUpdate, true, true);
+    seal();
   }
-  seal_ = currentSeal();
   return accept();
 }
 
 template <typename BV>
 bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
   if (isInStep()) return fcl_tree_up_to_date_;
+  if (isHalfUpdated()) return false;
   // Changed through the base class, which keeps its tree up to date, unless it never had
   // one: vertices were added after endModel(FclTree::kSkip).
   return !(seal_.vertices && this->build_state == BVH_BUILD_STATE_BEGUN);
@@ -393,6 +435,10 @@ std::size_t DeformableBVHModel<BV>::deformableMemUsage() const {
 
 template <typename BV>
 NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
+  if (isHalfUpdated())
+    throw Exception(
+        "DeformableBVHModel: the last update failed, for want of memory or in an "
+        "exception; give both frames first, through updateFrames() or a replacement");
   if (!isFclTreeUpToDate())
     throw Exception(
         "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "

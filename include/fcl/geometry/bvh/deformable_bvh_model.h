@@ -32,7 +32,10 @@ enum class FclTree {
 ///
 /// Errors: functions return FCL's BVHReturnCode; on any error the model is what it was
 /// before the call (before the begin... call, for a begin/end sequence), nothing is
-/// printed, and lastError() says what is wrong.
+/// printed, and lastError() says what is wrong. An exception (std::bad_alloc) in
+/// endModel() leaves the model open, as an error does. An update that an exception ends
+/// may be half done: until updateFrames() or a replacement has given both frames, every
+/// query and copy of the model throws fcl::Exception and beginUpdateModel() is refused.
 ///
 /// Inherited behaviour that differs from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
@@ -40,8 +43,9 @@ enum class FclTree {
 ///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN: FCL's tree is still to be
 ///   built;
 /// - prev_vertices is never null in a built model;
-/// - getNodeType() throws fcl::Exception while FCL's tree is out of date: every discrete
-///   query of FCL starts with it;
+/// - getNodeType() throws fcl::Exception while FCL's tree is out of date, or an update
+/// has
+///   failed: every discrete query of FCL starts with it;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
 /// No update function of BVHModel is virtual. One called through a pointer or reference
@@ -71,8 +75,9 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int setNumThreads(int num_threads);
 
   /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
-  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), coordinates that are not finite and vertex
-  /// indices out of range (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
+  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
+  /// coordinates that are not finite and vertex indices out of range
+  /// (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
 
   /// @name Replace the current frame; both frames become equal (no motion).
@@ -145,9 +150,10 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int open(Open what, const char* caller);
   int stage(const Vector3<S>* points, std::size_t count, Open expected);
   int close(Open expected, const char* caller);
-  void setPreviousFrame(const S* previous);
-  void advance(FclTree fcl_tree, bool refit, bool bottomup);
+  bool isHalfUpdated() const;
+  void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
+  void seal();
   void swapBase(Base& other);
 
   /// Coordinates given since begin..., so that a refused frame changes nothing.
@@ -155,6 +161,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   Seal seal_;
   bool fcl_tree_built_{false};
   bool fcl_tree_up_to_date_{false};
+  /// From the first change of an update to the seal.
+  bool is_changing_{false};
   std::string last_error_;
 };
 

@@ -43,7 +43,9 @@ class DeformableMesh {
 
   DeformableMesh() = default;
   DeformableMesh(const DeformableMesh&) = default;
+  DeformableMesh(DeformableMesh&&) = default;
   DeformableMesh& operator=(const DeformableMesh&) = default;
+  DeformableMesh& operator=(DeformableMesh&&) = default;
 
   /// @brief Owners and tree structure anew, for triangles that have been checked.
   void buildTree(const Triangle* triangles, std::size_t num_triangles,

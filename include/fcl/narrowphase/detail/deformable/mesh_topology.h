@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -44,6 +45,16 @@ inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
   std::memcpy(ids, &triangle, sizeof(ids));
   for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
 }
+
+/// @brief No mesh has more triangles, or vertices. Numbers of 32 bits then hold 4 *
+/// triangle
+/// + k, and the spokes of all fans, of which there are six a triangle where no two share
+/// a vertex; numbers with a sign hold nodes and ~leaf.
+constexpr std::size_t kMaxMeshSize = std::size_t{1} << 29;
+
+/// @brief What of a mesh is more than kMaxMeshSize, for example "536870913 triangles are
+/// more than 536870912"; empty if nothing is.
+std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices);
 
 /// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;
 /// 3 * num_triangles if there is none.

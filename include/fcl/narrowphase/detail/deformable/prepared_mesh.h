@@ -38,9 +38,9 @@ class PreparedMesh {
   /// @param name  how errors call the geometry, for example "o1"
   /// @pre meshKindOf(geometry) != kNotAMesh; a rigid mesh is not rotated between the
   /// poses
-  /// @throws fcl::Exception  model not built or being updated, pose or frame not finite,
-  /// vertex index out of range, a vertex that leaves the range of double where boxes are
-  /// made for its pose
+  /// @throws fcl::Exception  model not built or being updated, or too large, pose or
+  /// frame not finite, vertex index out of range, a vertex that leaves the range of
+  /// double where boxes are made for its pose
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
                const Transform3<S>& tf_end, const std::string& name,
