@@ -46,10 +46,9 @@ inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
 }
 
-/// @brief No mesh has more triangles, or vertices. Numbers of 32 bits then hold 4 *
-/// triangle
-/// + k, and the spokes of all fans, of which there are six a triangle where no two share
-/// a vertex; numbers with a sign hold nodes and ~leaf.
+/// @brief No mesh has more triangles, or vertices. Numbers of 32 bits then hold four for
+/// each triangle, and the spokes of all fans, of which there are six a triangle where no
+/// two share a vertex; numbers with a sign hold nodes and ~leaf.
 constexpr std::size_t kMaxMeshSize = std::size_t{1} << 29;
 
 /// @brief What of a mesh is more than kMaxMeshSize, for example "536870913 triangles are
