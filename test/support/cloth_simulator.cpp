@@ -158,10 +158,28 @@ FrameReport ClothSimulator::advanceFrame() {
   breakShells();
   frame_begin_ = mesh_.vertices;
   FrameReport report;
+  if (options_.find_free_motion) findFreeMotion();
+  step_time_ = options_.frame_time / options_.steps_per_frame;
   for (int i = 0; i < options_.steps_per_frame; ++i) advanceStep(i, report);
   finishContacts(report);
   report.total_seconds = secondsSince(begin);
   return report;
+}
+
+/// One step as long as the frame, without contacts, after which all is as before.
+void ClothSimulator::findFreeMotion() {
+  const std::vector<Vector3<double>> velocities = velocities_;
+  const std::vector<Solid> solids = solids_;
+  step_time_ = options_.frame_time;
+  contacts_.clear();
+  predict();
+  for (Spring& s : edge_springs_) s.multiplier = 0;
+  for (Spring& s : bend_springs_) s.multiplier = 0;
+  solve(options_.iterations);
+  placeSolids();
+  free_motion_ = moved_;
+  velocities_ = velocities;
+  solids_ = solids;
 }
 
 /// Keeps one entry a pair of features, ordered by kind and vertices, and counts them.

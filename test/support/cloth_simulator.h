@@ -62,6 +62,8 @@ struct SimulatorOptions {
   bool push_apart{true};
   /// whether a report lists the contacts of all queries, of which there can be millions
   bool keep_contacts{true};
+  /// whether freeMotion() is wanted
+  bool find_free_motion{false};
   /// of the queries; what results does not depend on it
   int num_threads{1};
   /// shakes the start positions by 1e-4 of an edge and orders the constraints
@@ -168,17 +170,26 @@ class ClothSimulator {
   /// @brief Where the last frame's motion began, vertices as in mesh().
   const std::vector<Vector3<double>>& frameBegin() const { return frame_begin_; }
 
+  /// @brief Where the last frame would have led if nothing were in the way: what a
+  /// simulator with one step a frame asks collision detection about.
+  const std::vector<Vector3<double>>& freeMotion() const { return free_motion_; }
+
   /// @brief How the mesh changed at the beginning of the last frame.
   const TopologyChange& topologyChange() const { return change_; }
 
   /// @brief The body of a vertex: 0, 1, ... in the order in which they were added.
   int bodyOf(std::size_t vertex) const { return body_of_[vertex]; }
 
+  /// @brief bodyOf() of all vertices.
+  const std::vector<int>& bodies() const { return body_of_; }
+
   /// @brief The options given.
   const SimulatorOptions& options() const { return options_; }
 
   /// @brief Seconds simulated.
-  double time() const { return static_cast<double>(step_) * stepTime(); }
+  double time() const {
+    return static_cast<double>(step_) * options_.frame_time / options_.steps_per_frame;
+  }
 
   /// @brief Largest current length of a cloth edge over its length at rest.
   double maxStretch() const;
@@ -227,7 +238,7 @@ class ClothSimulator {
     Transform3<double> step_motion;  // the identity unless it is an obstacle that moves
   };
 
-  double stepTime() const { return options_.frame_time / options_.steps_per_frame; }
+  double stepTime() const { return step_time_; }
   int addBody(const TestMesh& mesh, Kind kind, ObstacleMotion motion);
   void addSprings(const TestMesh& rest, int first_vertex);
   void addMasses(const TestMesh& rest, int first_vertex);
@@ -242,12 +253,14 @@ class ClothSimulator {
   void loadBonds();
 
   double obstacleTime() const {
-    return static_cast<double>(step_ - stopped_steps_) * stepTime();
+    return static_cast<double>(step_ - stopped_steps_) * options_.frame_time /
+           options_.steps_per_frame;
   }
   bool isObstacle(int body) const {
     return bodies_[static_cast<std::size_t>(body)].kind == Kind::kObstacle;
   }
 
+  void findFreeMotion();
   void finishContacts(FrameReport& report) const;
   void advanceStep(int step_of_frame, FrameReport& report);
   void predict();
@@ -290,8 +303,10 @@ class ClothSimulator {
   std::vector<Solid> solids_;
   std::vector<Shell> shells_;
   std::vector<Vector3<double>> frame_begin_;
+  std::vector<Vector3<double>> free_motion_;
   TopologyChange change_;
   double mean_edge_{0};
+  double step_time_{0};
   std::int64_t step_{0};
   std::int64_t stopped_steps_{0};
   bool started_{false};

@@ -53,8 +53,8 @@ void FragileShell::findNeighbours() {
   std::vector<std::array<int, 3>> edges;
   edges.reserve(3 * sheet_.size());
   for (int corner = 0; corner < static_cast<int>(3 * sheet_.size()); ++corner) {
-    const auto ends = std::minmax(sheetVertex(corner), sheetVertex(next(corner)));
-    edges.push_back({{ends.first, ends.second, corner}});
+    const int a = sheetVertex(corner), b = sheetVertex(next(corner));
+    edges.push_back({{std::min(a, b), std::max(a, b), corner}});
   }
   std::sort(edges.begin(), edges.end());
   neighbour_.assign(edges.size(), -1);
