@@ -79,16 +79,11 @@ void run(const SceneInfo& info, const Options& options) {
                 encodePng(drawFrame(info.kind, frame, 640, 480)));
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    const bool crossing = figures.crossing || frame.report.crossing;
     std::fprintf(stderr,
-                 "%s frame %d: %zu triangles, %zu contacts (%.2f a triangle), "
-                 "%d queries, %zu held, %d stopped, %.1f s%s\n",
+                 "%s frame %d: %zu triangles, %zu contacts (%.2f a triangle), %.1f s%s\n",
                  info.name.c_str(), frame.index + 1, frame.triangles.size(),
-                 figures.contacts(), density, frame.report.queries,
-                 frame.report.held_vertices, frame.report.stopped_steps, seconds,
-                 figures.crossing || frame.report.crossing ? " CROSSING" : "");
-    std::fprintf(stderr, "DBG q %.2f feature %zu exact %zu unres %zu\n",
-                 frame.report.query_seconds, (size_t)frame.report.counts.feature_pairs,
-                 (size_t)frame.report.counts.exact_tests, frame.report.unresolved);
+                 figures.contacts(), density, seconds, crossing ? ", CROSSING" : "");
     return true;
   });
   table.finish();

@@ -89,6 +89,9 @@ struct FragileOptions {
   double reach{0.1};
   /// how far borders of parted pieces draw back, in lengths of their edges
   double gap{0.02};
+  /// speed at which parts leave the middle of what broke, metres a second; a random part
+  /// of it is missing
+  double burst{0};
 };
 
 /// @brief Where two features touched, as weights on their four vertices: positive ones
@@ -138,7 +141,8 @@ using ObstacleMotion = std::function<Transform3<double>(double time)>;
 /// and of the options: same seed, same bits.
 class ClothSimulator {
  public:
-  explicit ClothSimulator(const SimulatorOptions& options) : options_(options) {}
+  explicit ClothSimulator(const SimulatorOptions& options)
+      : options_(options), random_(options.seed + 1) {}
 
   /// @brief Adds a cloth at rest in the shape of `rest`, that starts in the shape of
   /// `start` (same topology). @return its first vertex
@@ -286,6 +290,7 @@ class ClothSimulator {
                      Vector3<double> direction);
 
   SimulatorOptions options_;
+  Random random_;                       // of what breaks
   TestMesh mesh_;                       // positions at the start of the step
   std::vector<Vector3<double>> moved_;  // positions at the end of the step
   std::vector<Vector3<double>> velocities_;

@@ -12,11 +12,12 @@ using Vec = Vector3<double>;
 using Pose = Transform3<double>;
 
 const double kPi = std::acos(-1.0);
-const double kHip = 0.87;       // height of the hip joints, metres
-const double kThigh = 0.44;     // length of a thigh, joint to joint
-const double kShin = 0.42;      // of a shin, to the heel
-const double kHipGap = 0.26;    // from the hip joint, inside the trunk, to the thigh
-const double kJointGap = 0.01;  // from any other joint to the limbs' ends
+const double kHip = 0.87;      // height of the hip joints, metres
+const double kThigh = 0.44;    // length of a thigh, joint to joint
+const double kShin = 0.42;     // of a shin, to the heel
+const double kHipGap = 0.24;   // from the hip joint, inside the trunk, to the thigh
+const double kKneeGap = 0.06;  // from a knee to the limbs' ends, which a bent knee needs
+const double kEndGap = 0.01;   // from shoulders, hands and heels
 
 double smoothStep(double x) {
   x = std::max(0.0, std::min(1.0, x));
@@ -55,11 +56,11 @@ TestMesh makeTrunk(double scale) {
                                           {0, 0.80}});
 }
 
-/// A limb along z between a joint at the origin, which is `gap` away, and one at
-/// `length`.
-TestMesh makeLimb(double radius, double length, double gap, double scale) {
+/// A limb along z, from `gap` after a joint at the origin to `end_gap` before `length`.
+TestMesh makeLimb(double radius, double length, double gap, double end_gap,
+                  double scale) {
   return transformed(makeCapsule(scaled(16, scale), scaled(4, scale, 2), radius,
-                                 length - gap - kJointGap - 2 * radius),
+                                 length - gap - end_gap - 2 * radius),
                      moved(Vec(0, 0, radius + gap)));
 }
 
@@ -94,9 +95,9 @@ Figure makeFigure(double scale, const ObstacleMotion& root, const ObstacleMotion
   figure.push_back(
       {transformed(makeGeodesicSphere(scaled(6, scale), 0.11), moved(Vec(0, 0, 1.57))),
        whole});
-  const TestMesh thigh = makeLimb(0.065, kThigh, kHipGap, scale);
-  const TestMesh shin = makeLimb(0.05, kShin, kJointGap, scale);
-  const TestMesh upper_arm = makeLimb(0.038, 0.6, kJointGap, scale);
+  const TestMesh thigh = makeLimb(0.058, kThigh, kHipGap, kKneeGap, scale);
+  const TestMesh shin = makeLimb(0.05, kShin, kKneeGap, kEndGap, scale);
+  const TestMesh upper_arm = makeLimb(0.038, 0.6, kEndGap, kEndGap, scale);
   for (const double side : {-1.0, 1.0}) {
     const auto hip = [=](double time) {
       return Vec(trunk(time) * Vec(0.085 * side, 0, kHip));

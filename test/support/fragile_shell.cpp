@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -194,38 +195,67 @@ std::vector<int> FragileShell::groupCorners(const std::vector<int>& part_of_piec
   return group_of;
 }
 
-/// Along the bisector of the group's angle, which leads away from both of its borders.
+/// Along the bisector of the group's angle, seen along the wall's edge at the vertex:
+/// that leads away from both borders of the group. The vertex stays on the surface, in
+/// the triangle that the bisector crosses, so that it comes no closer to what lies there.
 void FragileShell::drawBack(const std::vector<int>& group_of,
                             const std::vector<char>& is_split, double gap,
                             std::vector<Vector3<double>>& positions) const {
-  struct Sum {
-    Vector3<double> direction{Vector3<double>::Zero()};
-    double length{0};
-    int edges{0};
+  struct Side {
+    int corner;
+    Vector3<double> a, b;  // its edges, seen along the wall
   };
-  for (const bool is_outer : {true, false}) {
-    const auto id = [&](int corner) {
-      const VertexPair& pair = vertices_[index(corner)];
-      return is_outer ? pair.outer : pair.inner;
+  std::map<int, std::vector<Side>> groups;
+  for (int corner = 0; corner < static_cast<int>(group_of.size()); ++corner) {
+    const int group = group_of[index(corner)];
+    if (!is_split[index(group)]) continue;
+    const VertexPair& at = vertices_[index(corner)];
+    const Vector3<double>& p = positions[index(at.outer)];
+    const Vector3<double> through = (p - positions[index(at.inner)]).normalized();
+    const auto across = [&](int to) -> Vector3<double> {
+      const Vector3<double> edge = positions[index(vertices_[index(to)].outer)] - p;
+      return edge - through.dot(edge) * through;
     };
-    std::map<int, Sum> sums;
-    for (int corner = 0; corner < static_cast<int>(group_of.size()); ++corner) {
-      if (!is_split[index(group_of[index(corner)])]) continue;
-      const Vector3<double>& p = positions[index(id(corner))];
-      const Vector3<double> e = positions[index(id(next(corner)))] - p;
-      const Vector3<double> f = positions[index(id(next(next(corner))))] - p;
-      const double angle = std::atan2(e.cross(f).norm(), e.dot(f));
-      Sum& sum = sums[id(corner)];
-      sum.direction += angle * (e.normalized() + f.normalized()).normalized();
-      sum.length += e.norm() + f.norm();
-      sum.edges += 2;
-    }
-    for (const auto& entry : sums) {
-      const Sum& sum = entry.second;
-      positions[index(entry.first)] +=
-          gap * sum.length / sum.edges * sum.direction.normalized();
-    }
+    groups[group].push_back({corner, across(next(corner)), across(next(next(corner)))});
   }
+  std::vector<std::pair<int, Vector3<double>>> moves;
+  for (const auto& entry : groups) {
+    Vector3<double> bisector = Vector3<double>::Zero();
+    double shortest = std::numeric_limits<double>::max();
+    for (const Side& s : entry.second) {
+      const double angle = std::atan2(s.a.cross(s.b).norm(), s.a.dot(s.b));
+      bisector += angle * (s.a.normalized() + s.b.normalized()).normalized();
+      shortest = std::min({shortest, s.a.norm(), s.b.norm()});
+    }
+    bisector *= gap * shortest / bisector.norm();
+    // The triangle in whose edges the step has the least negative weight.
+    double best = -std::numeric_limits<double>::max();
+    int corner = 0;
+    double weights[2] = {0, 0};
+    for (const Side& s : entry.second) {
+      const Vector3<double> n = s.a.cross(s.b);
+      const double area2 = n.squaredNorm();
+      if (area2 == 0) continue;
+      const double x = bisector.cross(s.b).dot(n) / area2;
+      const double y = s.a.cross(bisector).dot(n) / area2;
+      if (std::min(x, y) <= best) continue;
+      best = std::min(x, y);
+      corner = s.corner;
+      weights[0] = std::max(0.0, x);
+      weights[1] = std::max(0.0, y);
+    }
+    const VertexPair& v = vertices_[index(corner)];
+    const VertexPair& a = vertices_[index(next(corner))];
+    const VertexPair& b = vertices_[index(next(next(corner)))];
+    const auto step = [&](int from, int to_a, int to_b) -> Vector3<double> {
+      const Vector3<double>& p = positions[index(from)];
+      return weights[0] * (positions[index(to_a)] - p) +
+             weights[1] * (positions[index(to_b)] - p);
+    };
+    moves.emplace_back(v.outer, step(v.outer, a.outer, b.outer));
+    moves.emplace_back(v.inner, step(v.inner, a.inner, b.inner));
+  }
+  for (const auto& move : moves) positions[index(move.first)] += move.second;
 }
 
 void FragileShell::split(const std::vector<int>& part_of_piece, double gap,

@@ -93,10 +93,12 @@ StagePointer makeCloth(const SceneOptions& scene) {
   stage->addObstacle(
       SceneRole::kContainer, makeGeodesicSphere(scaled(13, scene.scale), ball_radius),
       [=](double time) {
-        const double turning = std::max(0.0, time - 0.2);
+        const double turning = std::max(0.0, time - 0.1);
         Transform3<double> pose = Transform3<double>::Identity();
         pose.translation() = Vec(0, 0, ball_radius + 0.02);
-        pose.rotate(Eigen::AngleAxisd(6.0 * turning * turning, Vec::UnitZ()));
+        // From rest to 5 radians a second in about half a second.
+        pose.rotate(Eigen::AngleAxisd(
+            5 * (turning - 0.25 * (1 - std::exp(-turning / 0.25))), Vec::UnitZ()));
         return pose;
       });
   stage->addGround(1.5, scaled(16, scene.scale));
@@ -169,6 +171,7 @@ StagePointer makeBalls(const SceneOptions& scene) {
   options.friction = 0.2;
   options.damping = 0.1;
   options.solid_damping = 6;
+  options.response_rounds = 8;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
   const double radius = 0.06;
@@ -209,13 +212,14 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
   options.thickness = 0.0005;
   options.friction = 0.3;
   options.solid_damping = 10;
+  options.response_rounds = 8;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
-  const int letters = std::max(3, static_cast<int>(std::lround(30 * scene.scale)));
+  const int letters = std::max(3, static_cast<int>(std::lround(34 * scene.scale)));
   SolidOptions solid;
   solid.frequency = 120;
   FragileOptions fragile;
-  fragile.strength = 0.6;
+  fragile.strength = 0.25;
   fragile.reach = 0.15;
   for (int i = 0; i < letters; ++i) {
     Transform3<double> pose = Transform3<double>::Identity();
@@ -238,23 +242,25 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
 /// A ball falls on a lion of stone.
 StagePointer makeLionScene(const SceneOptions& scene) {
   SimulatorOptions options = simulatorOptions(scene);
-  options.steps_per_frame = 4;
+  options.steps_per_frame = 3;
   options.iterations = 20;
   options.thickness = 0.0002;
   options.push_apart = false;
+  options.response_rounds = 3;
   options.friction = 0.3;
   options.damping = 0.1;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
   const int frequency = scaled(199, scene.scale);
   const int pieces =
-      std::max(8, static_cast<int>(std::lround(240 * std::sqrt(scene.scale))));
+      std::max(8, static_cast<int>(std::lround(240 * std::pow(scene.scale, 0.25))));
   SolidOptions stone;
   stone.density = 60;
   FragileOptions fragile;
-  fragile.strength = 25;
+  fragile.strength = 50;
   fragile.reach = 0.12;
   fragile.gap = 0.05;
+  fragile.burst = 1;
   ShellDesign design = makeLion(frequency, pieces, random);
   double lowest = 0;
   for (const Vec& p : design.outer) lowest = std::min(lowest, p[2]);

@@ -165,6 +165,9 @@ void ClothSimulator::divideSolids(int shell_id, const std::vector<int>& part_of_
     };
     solid.body.begin = solid.body.end = carried(whole.body.begin);
     solid.body.velocity = carried(whole.body.velocity);
+    if (from_whole.norm() > 0)
+      solid.body.velocity.centre += shell.options.burst * random_.uniform(0.3, 1) *
+                                    (whole.body.begin.shape * from_whole).normalized();
     part_index[part] = static_cast<int>(parts.size());
     parts.push_back({old, std::move(solid)});
   }
