@@ -51,9 +51,23 @@ void AffineBody::predict(double dt, const Vector3<double>& gravity, double kept,
   restoreShape();
 }
 
+void AffineBody::slowDown(double dt) {
+  if (!is_slowed) {
+    wanted_velocity.centre = 0.8 / dt * (end.centre - begin.centre);
+    wanted_velocity.shape = 0.8 / dt * (end.shape - begin.shape);
+  }
+  is_slowed = true;
+  end.centre = 0.5 * (begin.centre + end.centre);
+  end.shape = 0.5 * (begin.shape + end.shape);
+}
+
 void AffineBody::finish(double dt) {
-  velocity.centre = (end.centre - begin.centre) / dt;
-  velocity.shape = (end.shape - begin.shape) / dt;
+  if (is_slowed) {
+    velocity = wanted_velocity;
+  } else {
+    velocity.centre = (end.centre - begin.centre) / dt;
+    velocity.shape = (end.shape - begin.shape) / dt;
+  }
   begin = end;
 }
 

@@ -36,7 +36,9 @@ struct AffineBody {
   AffineState begin;                                          // of the step
   AffineState end;                                            // of the step
   AffineState velocity{Vector3<double>::Zero(), Matrix3<double>::Zero()};
-  int held_with{-1};  // the body that it moves with in this step, or -1
+  AffineState wanted_velocity;  // of a body that is slowed
+  int held_with{-1};            // the body that it moves with in this step, or -1
+  bool is_slowed{false};        // does not go as far in this step as it wanted to
 
   /// @brief Sets mass and moment from the particles.
   /// @return their centre of mass, which has to be taken from their rest positions
@@ -68,6 +70,10 @@ struct AffineBody {
   void restoreShape() {
     if (isRigid()) end.shape = closestRotation(end.shape);
   }
+
+  /// @brief Goes half as far in this step; most of the velocity stays, so that the next
+  /// step is not the same again.
+  void slowDown(double dt);
 
   /// @brief Takes the velocity from the step and begins the next one.
   void finish(double dt);

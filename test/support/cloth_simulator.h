@@ -42,6 +42,10 @@ struct SimulatorOptions {
   double thickness{0.002};
   /// speed at which surfaces closer than `thickness` are pushed apart, metres a second
   double push_speed{0.05};
+  /// part of their distance by which surfaces in contact may approach each other in a
+  /// step, down to a tenth of `thickness`: what is wedged in between others has a motion
+  /// that satisfies all of them then, and is not held
+  double approach{0};
   /// Coulomb coefficient
   double friction{0.3};
   /// part of the velocity lost in a second (exponential), 1 / s
@@ -277,6 +281,8 @@ class ClothSimulator {
   void projectContacts();
   void respond(int step_of_frame, FrameReport& report);
   void holdInContact(int step_of_frame, FrameReport& report);
+  void slowDown(const std::vector<ContinuousContact<double>>& contacts);
+  int carrierOf(const ContinuousContact<double>& contact) const;
   int carrierOf(int vertex) const;
   bool hold(int vertex, int carrier);
   void stopObstacles();

@@ -20,8 +20,11 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
 
 /// Rounds of holding before obstacles stop for the step, and before everything does. Of
 /// the demo's steps that hold at all, most need one round, none more than five.
-const int kRoundsWithMotion = 12;
-const int kRoundsWithCloth = 24;
+const int kRoundsWithMotion = 20;
+const int kRoundsWithCloth = 50;
+
+/// Rounds before that in which motion is halved.
+const int kRoundsOfSlowing = 3;
 
 /// Weights of the points of lines a0 a1 and b0 b1 closest to each other, kept on the
 /// segments.
@@ -119,8 +122,10 @@ void ClothSimulator::addConstraint(ContinuousContactKind kind, ContactWeights wh
   if (!(length > 0)) return;
   direction /= length;
   const double push = options_.push_speed * stepTime();
-  const double gap =
-      std::min(options_.thickness, std::max(0.0, direction.dot(now)) + push);
+  double distance = std::max(0.0, direction.dot(now));
+  distance = std::max((1 - options_.approach) * distance,
+                      std::min(distance, 0.1 * options_.thickness));
+  const double gap = std::min(options_.thickness, distance + push);
   ContactConstraint contact{where, {}, direction, now, gap, 0};
   const int split = kind == ContinuousContactKind::kVertexFace ? 1 : 2;
   for (int k = 0; k < 4; ++k) {
@@ -183,6 +188,7 @@ void ClothSimulator::projectContacts() {
 
 /// Queries and corrects until the motion of the step has no contact left.
 void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
+  for (Solid& s : solids_) s.body.is_slowed = false;
   for (int round = 0; round < options_.response_rounds; ++round) {
     const auto result = query(step_of_frame, report);
     if (result.contacts.empty()) return;
@@ -195,6 +201,33 @@ void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
   holdInContact(step_of_frame, report);
 }
 
+/// What is still in contact goes half as far beside what carries it: the correction has
+/// left little of the contacts, and that late in the step.
+void ClothSimulator::slowDown(const std::vector<ContinuousContact<double>>& contacts) {
+  std::vector<std::array<int, 2>> slowed;  // vertex, carrier
+  std::vector<int> solids;
+  for (const auto& contact : contacts) {
+    const int carrier = carrierOf(contact);
+    for (int k = 0; k < 4; ++k) {
+      const int v = contact.vertices[k];
+      if (solid_of_[v] >= 0)
+        solids.push_back(solid_of_[v]);
+      else if (is_movable_[v])
+        slowed.push_back({{v, carrier}});
+    }
+  }
+  std::sort(solids.begin(), solids.end());
+  solids.erase(std::unique(solids.begin(), solids.end()), solids.end());
+  for (const int solid : solids) solids_[solid].body.slowDown(stepTime());
+  placeSolids();
+  std::sort(slowed.begin(), slowed.end());
+  for (std::size_t i = 0; i < slowed.size(); ++i) {
+    const int v = slowed[i][0];
+    if (i + 1 < slowed.size() && slowed[i + 1][0] == v) continue;
+    moved_[v] = 0.5 * (moved_[v] + bodies_[slowed[i][1]].step_motion * mesh_.vertices[v]);
+  }
+}
+
 /// Lets what is still in contact move with the obstacle that it touches, directly or
 /// through what is held, or not at all. The step in which everything stands still ends
 /// the loop: it began without contact.
@@ -204,6 +237,10 @@ void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
   for (int round = 0;; ++round) {
     const auto result = query(step_of_frame, report);
     if (result.contacts.empty()) return;
+    if (round < kRoundsOfSlowing) {
+      slowDown(result.contacts);
+      continue;
+    }
     if (round > kRoundsWithCloth) {
       report.unresolved += result.contacts.size();
       return;
@@ -214,15 +251,22 @@ void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
     }
     if (round == kRoundsWithCloth) stopAll();
     for (const auto& contact : result.contacts) {
-      int carrier = body_of_[contact.vertices[0]];
-      for (int k = 0; k < 4; ++k) {
-        const int with = carrierOf(contact.vertices[k]);
-        if (with >= 0 && isObstacle(with)) carrier = with;
-      }
+      const int carrier = carrierOf(contact);
       for (int k = 0; k < 4; ++k)
         if (hold(contact.vertices[k], carrier)) ++report.held_vertices;
     }
   }
+}
+
+/// The obstacle that a contact is with, directly or through what is held, or the body of
+/// its first vertex.
+int ClothSimulator::carrierOf(const ContinuousContact<double>& contact) const {
+  int carrier = body_of_[contact.vertices[0]];
+  for (int k = 0; k < 4; ++k) {
+    const int with = carrierOf(contact.vertices[k]);
+    if (with >= 0 && isObstacle(with)) carrier = with;
+  }
+  return carrier;
 }
 
 /// The body that a vertex moves with already, or -1.

@@ -67,6 +67,11 @@ SimulatorOptions simulatorOptions(const SceneOptions& scene) {
   options.num_threads = scene.num_threads;
   options.keep_contacts = false;
   options.find_free_motion = true;
+  options.push_speed = 0.01;
+  options.approach = 0.5;
+  // Each round leaves a tenth of the contacts of the one before; holding the last few
+  // dozens brings new ones.
+  options.response_rounds = 14;
   return options;
 }
 
@@ -171,7 +176,6 @@ StagePointer makeBalls(const SceneOptions& scene) {
   options.friction = 0.2;
   options.damping = 0.1;
   options.solid_damping = 6;
-  options.response_rounds = 8;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
   const double radius = 0.06;
@@ -212,7 +216,6 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
   options.thickness = 0.0005;
   options.friction = 0.3;
   options.solid_damping = 10;
-  options.response_rounds = 8;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
   const int letters = std::max(3, static_cast<int>(std::lround(34 * scene.scale)));
@@ -243,11 +246,11 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
 StagePointer makeLionScene(const SceneOptions& scene) {
   SimulatorOptions options = simulatorOptions(scene);
   options.steps_per_frame = 3;
-  options.iterations = 20;
+  options.iterations = 40;
   options.thickness = 0.0002;
   options.push_apart = false;
-  options.response_rounds = 3;
   options.friction = 0.3;
+  options.push_speed = 0.002;
   options.damping = 0.1;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
