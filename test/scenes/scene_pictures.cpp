@@ -55,8 +55,8 @@ Camera cameraOf(SceneKind kind) {
       break;
     case SceneKind::kBalls:
       camera.eye = {1.5, -3.6, 3.4};
-      camera.target = {0, 0, 0.62};
-      camera.vertical_view_angle = 0.5;
+      camera.target = {0, 0, 0.4};
+      camera.vertical_view_angle = 0.34;
       break;
     case SceneKind::kAlphabets:
       camera.eye = {0.8, -2.2, 2.4};

@@ -195,7 +195,7 @@ StagePointer makeBalls(const SceneOptions& scene) {
     solid.velocity = random.point(0.8) - Vec(0, 0, 0.5);
     stage->addSolid(transformed(ball, pose), solid);
   }
-  const double bowl = 2.2 * radius * std::cbrt(count) + 0.1;
+  const double bowl = 1.6 * radius * std::cbrt(count) + 0.1;
   stage->addObstacle(
       SceneRole::kContainer, makeBowl(32, bowl, 0.03, 0.7 * bowl), [=](double time) {
         Transform3<double> pose = Transform3<double>::Identity();
@@ -245,7 +245,7 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
 /// A ball falls on a lion of stone.
 StagePointer makeLionScene(const SceneOptions& scene) {
   SimulatorOptions options = simulatorOptions(scene);
-  options.steps_per_frame = 3;
+  options.steps_per_frame = 2;
   options.iterations = 40;
   options.thickness = 0.0002;
   options.push_apart = false;
@@ -260,7 +260,7 @@ StagePointer makeLionScene(const SceneOptions& scene) {
   SolidOptions stone;
   stone.density = 60;
   FragileOptions fragile;
-  fragile.strength = 50;
+  fragile.strength = 30;
   fragile.reach = 0.12;
   fragile.gap = 0.05;
   fragile.burst = 1;
