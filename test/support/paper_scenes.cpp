@@ -79,6 +79,8 @@ SimulatorOptions simulatorOptions(const SceneOptions& scene) {
 StagePointer makeCloth(const SceneOptions& scene) {
   const double ball_radius = 0.25;
   SimulatorOptions options = simulatorOptions(scene);
+  // Long frames: the denser are the contacts of their free motion.
+  options.frame_time = 1.0 / 20;
   options.steps_per_frame = 6;
   options.iterations = 20;
   options.thickness = 0.0001;
@@ -98,12 +100,11 @@ StagePointer makeCloth(const SceneOptions& scene) {
   stage->addObstacle(
       SceneRole::kContainer, makeGeodesicSphere(scaled(13, scene.scale), ball_radius),
       [=](double time) {
-        const double turning = std::max(0.0, time - 0.1);
         Transform3<double> pose = Transform3<double>::Identity();
         pose.translation() = Vec(0, 0, ball_radius + 0.02);
         // From rest to 5 radians a second in about half a second.
-        pose.rotate(Eigen::AngleAxisd(
-            5 * (turning - 0.25 * (1 - std::exp(-turning / 0.25))), Vec::UnitZ()));
+        pose.rotate(Eigen::AngleAxisd(5 * (time - 0.25 * (1 - std::exp(-time / 0.25))),
+                                      Vec::UnitZ()));
         return pose;
       });
   stage->addGround(1.5, scaled(16, scene.scale));
@@ -113,7 +114,7 @@ StagePointer makeCloth(const SceneOptions& scene) {
 /// A dancer whose three skirts swing as she turns to and fro.
 StagePointer makeFlamenco(const SceneOptions& scene) {
   SimulatorOptions options = simulatorOptions(scene);
-  options.steps_per_frame = 6;
+  options.steps_per_frame = 4;
   options.iterations = 20;
   options.thickness = 0.0002;
   options.friction = 0.3;
@@ -136,7 +137,7 @@ StagePointer makeFlamenco(const SceneOptions& scene) {
 /// A figure that sits down on the ground; her dress and the one below it fold under her.
 StagePointer makePrincess(const SceneOptions& scene) {
   SimulatorOptions options = simulatorOptions(scene);
-  options.steps_per_frame = 6;
+  options.steps_per_frame = 4;
   options.iterations = 20;
   options.thickness = 0.0002;
   options.friction = 0.4;
@@ -238,7 +239,7 @@ StagePointer makeAlphabets(const SceneOptions& scene) {
     solid.velocity = Vec(0, 0, -2.0);
     stage->addFragile(design, solid, fragile);
   }
-  stage->addObstacle(SceneRole::kContainer, makeBowl(20, 0.7, 0.03, 0.5), {});
+  stage->addObstacle(SceneRole::kContainer, makeBowl(19, 0.7, 0.03, 0.5), {});
   return stage;
 }
 
@@ -248,7 +249,9 @@ StagePointer makeLionScene(const SceneOptions& scene) {
   options.steps_per_frame = 2;
   options.iterations = 40;
   options.thickness = 0.0002;
+  // A query takes a second, which bounds how many a frame can have.
   options.push_apart = false;
+  options.response_rounds = 6;
   options.friction = 0.3;
   options.push_speed = 0.002;
   options.damping = 0.1;
