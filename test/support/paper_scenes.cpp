@@ -196,7 +196,7 @@ StagePointer makeBalls(const SceneOptions& scene) {
     solid.velocity = random.point(0.8) - Vec(0, 0, 0.5);
     stage->addSolid(transformed(ball, pose), solid);
   }
-  const double bowl = 1.6 * radius * std::cbrt(count) + 0.1;
+  const double bowl = 2.2 * radius * std::cbrt(count) + 0.1;
   stage->addObstacle(
       SceneRole::kContainer, makeBowl(32, bowl, 0.03, 0.7 * bowl), [=](double time) {
         Transform3<double> pose = Transform3<double>::Identity();
@@ -265,8 +265,8 @@ StagePointer makeLionScene(const SceneOptions& scene) {
   FragileOptions fragile;
   fragile.strength = 30;
   fragile.reach = 0.12;
-  fragile.gap = 0.05;
-  fragile.burst = 1;
+  fragile.gap = 0.25;
+  fragile.burst = 2;
   ShellDesign design = makeLion(frequency, pieces, random);
   double lowest = 0;
   for (const Vec& p : design.outer) lowest = std::min(lowest, p[2]);
