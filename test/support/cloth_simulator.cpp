@@ -9,8 +9,6 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
-#include "fcl/narrowphase/continuous_collision.h"
-#include "proximity.h"
 
 namespace fcl {
 namespace test {
@@ -21,10 +19,6 @@ using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
-
-/// Rounds of holding; each holds at least one more vertex, so that the bound is met only
-/// in a scene where an obstacle crushes the cloth.
-const int kMaxHoldRounds = 100;
 
 /// Opposite corners of each pair of triangles that share an edge.
 std::vector<std::array<int, 2>> hinges(const std::vector<Triangle>& triangles) {
@@ -48,61 +42,51 @@ void shuffle(std::vector<T>& items, Random& random) {
     std::swap(items[i - 1], items[random.index(i)]);
 }
 
+/// Mean length of the edges of movable triangles.
+double meanEdge(const TestMesh& mesh, const std::vector<char>& is_movable) {
+  double sum = 0;
+  std::size_t edges = 0;
+  for (const Triangle& t : mesh.triangles) {
+    if (!is_movable[t[0]]) continue;
+    for (int k = 0; k < 3; ++k)
+      sum += (mesh.vertices[t[k]] - mesh.vertices[t[(k + 1) % 3]]).norm();
+    edges += 3;
+  }
+  return edges > 0 ? sum / static_cast<double>(edges) : 0;
+}
+
 bool sameFeatures(const FrameContact& a, const FrameContact& b) {
   return a.kind == b.kind && a.where.vertices == b.where.vertices;
 }
 
-/// Weights of the points of lines a0 a1 and b0 b1 closest to each other, kept on the
-/// segments.
-std::array<double, 4> edgeWeights(const Vector3<double>& a0, const Vector3<double>& a1,
-                                  const Vector3<double>& b0, const Vector3<double>& b1) {
-  const Vector3<double> v = a1 - a0;
-  const Vector3<double> w = b1 - b0;
-  const Vector3<double> u = b0 - a0;
-  const Vector3<double> n = v.cross(w);
-  const double n2 = n.squaredNorm();
-  const auto onSegment = [](double x) { return std::min(1.0, std::max(0.0, x)); };
-  double s = 0.5;
-  double t = 0.5;
-  if (n2 > 0) {
-    s = onSegment(u.cross(w).dot(n) / n2);
-    t = onSegment(u.cross(v).dot(n) / n2);
-  }
-  return {{1 - s, s, t - 1, -t}};
-}
-
-Vector3<double> separation(const ContactWeights& where,
-                           const std::vector<Vector3<double>>& positions) {
-  Vector3<double> sum = Vector3<double>::Zero();
-  for (int k = 0; k < 4; ++k) sum += where.weights[k] * positions[where.vertices[k]];
-  return sum;
-}
-
 }  // namespace
 
-int ClothSimulator::addBody(const TestMesh& mesh, bool is_obstacle,
-                            ObstacleMotion motion) {
+int ClothSimulator::addBody(const TestMesh& mesh, Kind kind, ObstacleMotion motion) {
   if (started_) throw Exception("ClothSimulator: bodies come before the first frame");
   const int first = static_cast<int>(mesh_.vertices.size());
   const int count = static_cast<int>(mesh.vertices.size());
   append(mesh_, mesh);
-  bodies_.push_back({first, count, is_obstacle, mesh, std::move(motion)});
+  bodies_.push_back(
+      {first, count, kind, mesh, std::move(motion), Transform3<double>::Identity()});
   body_of_.resize(mesh_.vertices.size(), static_cast<int>(bodies_.size()) - 1);
-  is_movable_.resize(mesh_.vertices.size(), is_obstacle ? 0 : 1);
+  is_movable_.resize(mesh_.vertices.size(), kind == Kind::kObstacle ? 0 : 1);
   inverse_masses_.resize(mesh_.vertices.size(), 0);
+  pinned_to_.resize(mesh_.vertices.size(), -1);
+  solid_of_.resize(mesh_.vertices.size(), -1);
+  rest_.resize(mesh_.vertices.size(), Vector3<double>::Zero());
   return first;
 }
 
 int ClothSimulator::addObstacle(const TestMesh& mesh, ObstacleMotion motion) {
   const Transform3<double> pose = motion ? motion(0) : Transform3<double>::Identity();
-  const int first = addBody(transformed(mesh, pose), true, std::move(motion));
+  const int first = addBody(transformed(mesh, pose), Kind::kObstacle, std::move(motion));
   bodies_.back().shape = mesh;
   return first;
 }
 
 int ClothSimulator::addCloth(const TestMesh& rest,
                              const std::vector<Vector3<double>>& start) {
-  const int first = addBody({start, rest.triangles}, false, {});
+  const int first = addBody({start, rest.triangles}, Kind::kCloth, {});
   addSprings(rest, first);
   addMasses(rest, first);
   return first;
@@ -132,6 +116,12 @@ void ClothSimulator::addMasses(const TestMesh& rest, int first_vertex) {
     inverse_masses_[first_vertex + v] = mass[v] > 0 ? 1 / mass[v] : 0;
 }
 
+void ClothSimulator::pin(int vertex, int obstacle) {
+  pinned_to_[vertex] = obstacle;
+  is_movable_[vertex] = 0;
+  inverse_masses_[vertex] = 0;
+}
+
 void ClothSimulator::start() {
   started_ = true;
   Random random(options_.seed);
@@ -141,10 +131,21 @@ void ClothSimulator::start() {
   for (const Spring& s : edge_springs_)
     mean_edge_ += s.rest_length / static_cast<double>(edge_springs_.size());
   for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
-    if (is_movable_[v]) mesh_.vertices[v] += random.point(1e-4 * mean_edge_);
+    if (is_movable_[v] && solid_of_[v] < 0)
+      mesh_.vertices[v] += random.point(1e-4 * mean_edge_);
+  if (edge_springs_.empty()) mean_edge_ = meanEdge(mesh_, is_movable_);
+  for (Shell& shell : shells_)
+    for (FragileShell::Bond& bond : shell.surface.bonds())
+      bond.strength = shell.options.strength * random.uniform(0.5, 1.5);
   velocities_.assign(mesh_.vertices.size(), Vector3<double>::Zero());
   held_with_.assign(mesh_.vertices.size(), -1);
+  buildModel();
+}
+
+void ClothSimulator::buildModel() {
   moved_ = mesh_.vertices;
+  model_ = {};
+  model_.setNumThreads(options_.num_threads);
   const bool built = model_.beginModel() == BVH_OK &&
                      model_.addSubModel(mesh_.vertices, mesh_.triangles) == BVH_OK &&
                      model_.endModel(FclTree::kSkip) == BVH_OK;
@@ -154,11 +155,31 @@ void ClothSimulator::start() {
 FrameReport ClothSimulator::advanceFrame() {
   const auto begin = Clock::now();
   if (!started_) start();
+  breakShells();
+  frame_begin_ = mesh_.vertices;
   FrameReport report;
+  if (options_.find_free_motion) findFreeMotion();
+  step_time_ = options_.frame_time / options_.steps_per_frame;
   for (int i = 0; i < options_.steps_per_frame; ++i) advanceStep(i, report);
   finishContacts(report);
   report.total_seconds = secondsSince(begin);
   return report;
+}
+
+/// One step as long as the frame, without contacts, after which all is as before.
+void ClothSimulator::findFreeMotion() {
+  const std::vector<Vector3<double>> velocities = velocities_;
+  const std::vector<Solid> solids = solids_;
+  step_time_ = options_.frame_time;
+  contacts_.clear();
+  predict();
+  for (Spring& s : edge_springs_) s.multiplier = 0;
+  for (Spring& s : bend_springs_) s.multiplier = 0;
+  solve(options_.iterations);
+  placeSolids();
+  free_motion_ = moved_;
+  velocities_ = velocities;
+  solids_ = solids;
 }
 
 /// Keeps one entry a pair of features, ordered by kind and vertices, and counts them.
@@ -182,11 +203,13 @@ void ClothSimulator::advanceStep(int step_of_frame, FrameReport& report) {
   predict();
   pushApart();
   for (const auto& contact : query(step_of_frame, report).contacts)
-    addConstraint(weightsAt(contact), -contact.normal);
+    addConstraint(contact.kind, weightsAt(contact), -contact.normal);
   for (Spring& s : edge_springs_) s.multiplier = 0;
   for (Spring& s : bend_springs_) s.multiplier = 0;
   solve(options_.iterations);
+  placeSolids();
   respond(step_of_frame, report);
+  loadBonds();
   finishStep();
 }
 
@@ -194,98 +217,44 @@ void ClothSimulator::advanceStep(int step_of_frame, FrameReport& report) {
 void ClothSimulator::predict() {
   const double dt = stepTime();
   const double kept = std::exp(-options_.damping * dt);
-  for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const Body& body = bodies_[b];
-    const bool moves = body.is_obstacle && body.motion;
+  for (Body& body : bodies_) {
+    const bool moves = body.kind == Kind::kObstacle && body.motion;
     const Transform3<double> pose =
-        moves ? body.motion(time() + dt) : Transform3<double>::Identity();
+        moves ? body.motion(obstacleTime() + dt) : Transform3<double>::Identity();
+    if (moves) body.step_motion = pose * body.motion(obstacleTime()).inverse();
+    if (body.kind == Kind::kSolid) continue;
     for (int i = 0; i < body.num_vertices; ++i) {
       const int v = body.first_vertex + i;
       if (moves) {
         moved_[v] = pose * body.shape.vertices[i];
-      } else if (body.is_obstacle) {
+      } else if (body.kind == Kind::kObstacle) {
         moved_[v] = mesh_.vertices[v];
-      } else {
+      } else if (pinned_to_[v] < 0) {
         velocities_[v] = kept * velocities_[v] + dt * options_.gravity;
         moved_[v] = mesh_.vertices[v] + dt * velocities_[v];
       }
     }
   }
+  for (std::size_t v = 0; v < moved_.size(); ++v)
+    if (pinned_to_[v] >= 0)
+      moved_[v] = bodies_[pinned_to_[v]].step_motion * mesh_.vertices[v];
+  const double deforming_kept = std::exp(-options_.solid_damping * dt);
+  for (Solid& s : solids_) s.body.predict(dt, options_.gravity, kept, deforming_kept);
+  placeSolids();
 }
 
-/// Surfaces that are close at the start of the step, hence on known sides of each other,
-/// keep their distance during the step.
-void ClothSimulator::pushApart() {
-  for (const NearPair& pair :
-       findNearPairs(mesh_.vertices, mesh_.triangles, is_movable_, options_.thickness,
-                     std::max(mean_edge_, 2 * options_.thickness))) {
-    const Triangle& t = mesh_.triangles[pair.triangle];
-    ContactWeights where;
-    where.vertices = {{pair.vertex, static_cast<int>(t[0]), static_cast<int>(t[1]),
-                       static_cast<int>(t[2])}};
-    where.weights = {{1, -pair.weights[0], -pair.weights[1], -pair.weights[2]}};
-    addConstraint(where, separation(where, mesh_.vertices));
-  }
-}
-
-/// One query over the motion from mesh_.vertices to moved_.
-ContinuousContactResult<double> ClothSimulator::query(int step_of_frame,
-                                                      FrameReport& report) {
-  const auto begin = Clock::now();
-  if (model_.updateFrames(mesh_.vertices[0].data(), moved_[0].data(), moved_.size()) !=
-      BVH_OK)
-    throw Exception("ClothSimulator: " + model_.lastError());
-  ContinuousContactResult<double> result;
-  continuousSelfCollide(&model_, ContinuousContactRequest<double>(), result);
-  report.query_seconds += secondsSince(begin);
-  ++report.queries;
-  report.counts += result.counts;
-  report.crossing = report.crossing || result.initially_crossing;
-  for (const auto& c : result.contacts) {
-    report.contacts.push_back(
-        {c.kind, {{static_cast<int>(c.b1), static_cast<int>(c.b2)}}, weightsAt(c)});
-    report.first_contact = std::min(
-        report.first_contact, (step_of_frame + c.toc_lo) / options_.steps_per_frame);
-  }
-  return result;
-}
-
-ContactWeights ClothSimulator::weightsAt(const ContinuousContact<double>& contact) const {
-  ContactWeights where;
-  Vector3<double> p[4];
-  for (int k = 0; k < 4; ++k) {
-    const int v = contact.vertices[k];
-    where.vertices[k] = v;
-    p[k] = mesh_.vertices[v] + contact.toc_lo * (moved_[v] - mesh_.vertices[v]);
-  }
-  if (contact.kind == ContinuousContactKind::kVertexFace) {
-    const Vector3<double> w = closestWeights(p[0], p[1], p[2], p[3]);
-    where.weights = {{1, -w[0], -w[1], -w[2]}};
-  } else {
-    where.weights = edgeWeights(p[0], p[1], p[2], p[3]);
-  }
-  return where;
-}
-
-/// Keeps the first feature on the side `direction` (of any length) of the second.
-void ClothSimulator::addConstraint(const ContactWeights& where,
-                                   Vector3<double> direction) {
-  const Vector3<double> now = separation(where, mesh_.vertices);
-  if (direction.squaredNorm() == 0) direction = now;
-  const double length = direction.norm();
-  if (!(length > 0)) return;
-  direction /= length;
-  const double push = options_.push_speed * stepTime();
-  const double gap =
-      std::min(options_.thickness, std::max(0.0, direction.dot(now)) + push);
-  contacts_.push_back({where, direction, gap});
+/// Takes the vertices of solids along.
+void ClothSimulator::placeSolids() {
+  for (const Solid& s : solids_)
+    for (const int v : s.body.vertices)
+      moved_[v] = s.body.end.centre + s.body.end.shape * rest_[v];
 }
 
 void ClothSimulator::solve(int iterations) {
   for (int i = 0; i < iterations; ++i) {
     for (Spring& s : edge_springs_) projectSpring(s);
     for (Spring& s : bend_springs_) projectSpring(s);
-    for (const ContactConstraint& c : contacts_) projectContact(c);
+    projectContacts();
   }
 }
 
@@ -305,81 +274,11 @@ void ClothSimulator::projectSpring(Spring& spring) {
   moved_[b] += inverse_masses_[b] * push;
 }
 
-/// Inelastic: takes away what is missing to the gap, and of the sliding as much as
-/// friction allows.
-void ClothSimulator::projectContact(const ContactConstraint& contact) {
-  const auto& ids = contact.where.vertices;
-  const auto& weights = contact.where.weights;
-  const double missing =
-      contact.gap - contact.direction.dot(separation(contact.where, moved_));
-  if (missing <= 0) return;
-  double mobility = 0;
-  for (int k = 0; k < 4; ++k)
-    mobility += weights[k] * weights[k] * inverse_masses_[ids[k]];
-  if (mobility == 0) return;
-  Vector3<double> slide =
-      separation(contact.where, moved_) - separation(contact.where, mesh_.vertices);
-  slide -= contact.direction.dot(slide) * contact.direction;
-  const double sliding = slide.norm();
-  const double stopped = std::min(sliding, options_.friction * missing);
-  Vector3<double> change = missing * contact.direction;
-  if (sliding > 0) change -= (stopped / sliding) * slide;
-  for (int k = 0; k < 4; ++k)
-    moved_[ids[k]] += (weights[k] * inverse_masses_[ids[k]] / mobility) * change;
-}
-
-/// Queries and corrects until the motion of the step has no contact left.
-void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
-  for (int round = 0; round < options_.response_rounds; ++round) {
-    const auto result = query(step_of_frame, report);
-    if (result.contacts.empty()) return;
-    for (const auto& contact : result.contacts)
-      addConstraint(weightsAt(contact), -contact.normal);
-    solve(2);
-    for (int i = 0; i < options_.iterations; ++i)
-      for (const ContactConstraint& c : contacts_) projectContact(c);
-  }
-  holdInContact(step_of_frame, report);
-}
-
-/// Lets the cloth vertices that are still in contact move with the obstacle that they
-/// touch, directly or through held vertices, or not at all.
-void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
-  std::fill(held_with_.begin(), held_with_.end(), -1);
-  for (int round = 0; round < kMaxHoldRounds; ++round) {
-    const auto result = query(step_of_frame, report);
-    if (result.contacts.empty()) return;
-    if (round + 1 == kMaxHoldRounds) report.unresolved += result.contacts.size();
-    for (const auto& contact : result.contacts) {
-      int carrier = body_of_[contact.vertices[0]];
-      for (int k = 0; k < 4; ++k) {
-        const int v = contact.vertices[k];
-        const int with = is_movable_[v] ? held_with_[v] : body_of_[v];
-        if (with >= 0 && bodies_[with].is_obstacle) carrier = with;
-      }
-      const Transform3<double> motion = bodyMotion(carrier);
-      for (int k = 0; k < 4; ++k) {
-        const int v = contact.vertices[k];
-        if (!is_movable_[v]) continue;
-        if (held_with_[v] < 0) ++report.held_vertices;
-        held_with_[v] = carrier;
-        moved_[v] = motion * mesh_.vertices[v];
-      }
-    }
-  }
-}
-
-/// The body's motion in this step; the identity for a cloth.
-Transform3<double> ClothSimulator::bodyMotion(int body) const {
-  const ObstacleMotion& motion = bodies_[body].motion;
-  if (!motion) return Transform3<double>::Identity();
-  return motion(time() + stepTime()) * motion(time()).inverse();
-}
-
 void ClothSimulator::finishStep() {
   for (std::size_t v = 0; v < moved_.size(); ++v)
     velocities_[v] = (moved_[v] - mesh_.vertices[v]) / stepTime();
   dampNeighbours();
+  for (Solid& s : solids_) s.body.finish(stepTime());
   mesh_.vertices.swap(moved_);
   ++step_;
 }
@@ -391,6 +290,7 @@ void ClothSimulator::dampNeighbours() {
   for (const Spring& s : edge_springs_) {
     const auto [a, b] = s.vertices;
     const double mobility = inverse_masses_[a] + inverse_masses_[b];
+    if (mobility == 0) continue;
     const Vector3<double> impulse = (lost / mobility) * (velocities_[b] - velocities_[a]);
     velocities_[a] += inverse_masses_[a] * impulse;
     velocities_[b] -= inverse_masses_[b] * impulse;

@@ -1,23 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Position based dynamics for scenes of cloth and moving obstacles, after Mueller et al.
-// 2007 "Position Based Dynamics" and Macklin et al. 2016 "XPBD". A contact is found by
-// the library's continuous query on the motion of the step; it becomes a constraint that
-// keeps its two features apart. Two departures keep every state free of crossings:
+// Position based dynamics for scenes of cloth, solids and moving obstacles, after Mueller
+// et al. 2007 "Position Based Dynamics" and Macklin et al. 2016 "XPBD". A contact is
+// found by the library's continuous query on the motion of the step; it becomes a
+// constraint that keeps its two features apart. Departures that keep every state free of
+// crossings:
 // - the query is repeated on the corrected motion until it finds nothing;
 // - what is still in contact after that moves with the obstacle it touches, or not at all
-//   (the rigid impact zones of Provot 1997, with the simplest rigid motion).
+//   (the rigid impact zones of Provot 1997, with the simplest rigid motion);
+// - if that does not help, because obstacles crush what is between them, these stop for
+//   the step, and in the end everything does.
 #ifndef FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 #define FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <vector>
 
+#include "affine_body.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/narrowphase/continuous_contact.h"
+#include "fragile_shell.h"
 #include "mesh_generators.h"
 
 namespace fcl {
@@ -36,6 +42,10 @@ struct SimulatorOptions {
   double thickness{0.002};
   /// speed at which surfaces closer than `thickness` are pushed apart, metres a second
   double push_speed{0.05};
+  /// part of their distance by which surfaces in contact may approach each other in a
+  /// step, down to a tenth of `thickness`: what is wedged in between others has a motion
+  /// that satisfies all of them then, and is not held
+  double approach{0};
   /// Coulomb coefficient
   double friction{0.3};
   /// part of the velocity lost in a second (exponential), 1 / s
@@ -43,14 +53,49 @@ struct SimulatorOptions {
   /// part of the velocity of two neighbours against each other lost in a second
   /// (exponential), 1 / s; calms what contacts and springs do to each other
   double internal_damping{100};
+  /// the same for the deformation of solids, 1 / s
+  double solid_damping{4};
   /// kilograms a square metre of cloth
   double cloth_density{0.2};
   /// XPBD compliance of the bending springs, metres a newton
   double bend_compliance{0.5};
   /// rounds of query and correction in a step before what is in contact is held
   int response_rounds{4};
+  /// whether surfaces that are near each other are pushed apart (see `thickness`) before
+  /// they touch; without, only contacts are answered, which is cheaper
+  bool push_apart{true};
+  /// whether a report lists the contacts of all queries, of which there can be millions
+  bool keep_contacts{true};
+  /// whether freeMotion() is wanted
+  bool find_free_motion{false};
+  /// of the queries; what results does not depend on it
+  int num_threads{1};
   /// shakes the start positions by 1e-4 of an edge and orders the constraints
   std::uint64_t seed{1};
+};
+
+/// @brief What a solid is made of.
+struct SolidOptions {
+  /// kilograms a square metre of its surface
+  double density{5};
+  /// radians a second in which a deformed solid swings back to its shape; infinite: rigid
+  double frequency{std::numeric_limits<double>::infinity()};
+  /// metres a second, at the start
+  Vector3<double> velocity{Vector3<double>::Zero()};
+};
+
+/// @brief When a fragile solid breaks.
+struct FragileOptions {
+  /// mean of the impulses that a bond endures in a step, N s; each bond's own is between
+  /// half and one and a half of it
+  double strength{1};
+  /// distance from a blow at which it loads a bond with 1 / e of itself, metres
+  double reach{0.1};
+  /// how far borders of parted pieces draw back, in lengths of their edges
+  double gap{0.02};
+  /// speed at which parts leave the middle of what broke, metres a second; a random part
+  /// of it is missing
+  double burst{0};
 };
 
 /// @brief Where two features touched, as weights on their four vertices: positive ones
@@ -84,9 +129,10 @@ struct FrameReport {
   StageCounts counts;
   /// vertices that had to be held, summed over the steps
   std::size_t held_vertices{0};
-  /// contacts still there when a step was accepted; 0 unless an obstacle crushes the
-  /// cloth
+  /// contacts still there when a step was accepted
   std::size_t unresolved{0};
+  /// steps in which obstacles had to stop
+  int stopped_steps{0};
   /// whether a step began with surfaces that cross
   bool crossing{false};
 };
@@ -99,7 +145,8 @@ using ObstacleMotion = std::function<Transform3<double>(double time)>;
 /// and of the options: same seed, same bits.
 class ClothSimulator {
  public:
-  explicit ClothSimulator(const SimulatorOptions& options) : options_(options) {}
+  explicit ClothSimulator(const SimulatorOptions& options)
+      : options_(options), random_(options.seed + 1) {}
 
   /// @brief Adds a cloth at rest in the shape of `rest`, that starts in the shape of
   /// `start` (same topology). @return its first vertex
@@ -109,7 +156,18 @@ class ClothSimulator {
   /// @return its first vertex
   int addObstacle(const TestMesh& mesh, ObstacleMotion motion = {});
 
-  /// @brief Simulates one frame. The first call ends the construction.
+  /// @brief Lets a vertex of a cloth move with an obstacle.
+  void pin(int vertex, int obstacle);
+
+  /// @brief Adds a solid where the mesh is. @return its first vertex
+  int addSolid(const TestMesh& mesh, const SolidOptions& options);
+
+  /// @brief Adds a solid that breaks into its pieces. @return its first vertex
+  int addFragile(const ShellDesign& design, const SolidOptions& options,
+                 const FragileOptions& fragile);
+
+  /// @brief Breaks what the frame before loaded too much, then simulates one frame. The
+  /// first call ends the construction.
   /// @throws fcl::Exception if the library refuses the mesh, for example because a
   /// coordinate is not finite.
   FrameReport advanceFrame();
@@ -117,14 +175,29 @@ class ClothSimulator {
   /// @brief All bodies in the order in which they were added, at the current time.
   const TestMesh& mesh() const { return mesh_; }
 
+  /// @brief Where the last frame's motion began, vertices as in mesh().
+  const std::vector<Vector3<double>>& frameBegin() const { return frame_begin_; }
+
+  /// @brief Where the last frame would have led if nothing were in the way: what a
+  /// simulator with one step a frame asks collision detection about.
+  const std::vector<Vector3<double>>& freeMotion() const { return free_motion_; }
+
+  /// @brief How the mesh changed at the beginning of the last frame.
+  const TopologyChange& topologyChange() const { return change_; }
+
   /// @brief The body of a vertex: 0, 1, ... in the order in which they were added.
   int bodyOf(std::size_t vertex) const { return body_of_[vertex]; }
+
+  /// @brief bodyOf() of all vertices.
+  const std::vector<int>& bodies() const { return body_of_; }
 
   /// @brief The options given.
   const SimulatorOptions& options() const { return options_; }
 
   /// @brief Seconds simulated.
-  double time() const { return static_cast<double>(step_) * stepTime(); }
+  double time() const {
+    return static_cast<double>(step_) * options_.frame_time / options_.steps_per_frame;
+  }
 
   /// @brief Largest current length of a cloth edge over its length at rest.
   double maxStretch() const;
@@ -136,43 +209,94 @@ class ClothSimulator {
     double compliance;   // metres a newton
     double multiplier;   // of the current step
   };
-  struct ContactConstraint {
-    ContactWeights where;
-    Vector3<double> direction;  // from the second feature to the first, unit
-    double gap;                 // metres
+  /// The part of a separation that a solid has: weight * centre + shape * rest.
+  struct SolidShare {
+    int solid{-1};
+    double weight{0};
+    Vector3<double> rest{Vector3<double>::Zero()};
   };
+  struct ContactConstraint {
+    ContactWeights where;  // without the vertices of solids
+    std::array<SolidShare, 2> solids;
+    Vector3<double> direction;  // from the second feature to the first, unit
+    Vector3<double> begin;      // separation at the start of the step
+    double gap;                 // metres
+    double impulse;             // of the step, kg m
+  };
+  struct Solid {
+    AffineBody body;
+    int shell{-1};  // the fragile shell that it is a part of
+    int pieces{0};  // of the shell
+    Vector3<double> offset{Vector3<double>::Zero()};  // from rest to the shell's design
+  };
+  struct Shell {
+    FragileShell surface;
+    FragileOptions options;
+    double vertex_mass;  // kg
+    std::vector<int> solid_of_piece;
+    bool is_loaded;  // bonds broke since its surface was parted
+  };
+  enum class Kind { kCloth, kObstacle, kSolid };
   struct Body {
     int first_vertex;
     int num_vertices;
-    bool is_obstacle;
+    Kind kind;
     TestMesh shape;
     ObstacleMotion motion;
+    Transform3<double> step_motion;  // the identity unless it is an obstacle that moves
   };
 
-  double stepTime() const { return options_.frame_time / options_.steps_per_frame; }
-  int addBody(const TestMesh& mesh, bool is_obstacle, ObstacleMotion motion);
+  double stepTime() const { return step_time_; }
+  int addBody(const TestMesh& mesh, Kind kind, ObstacleMotion motion);
   void addSprings(const TestMesh& rest, int first_vertex);
   void addMasses(const TestMesh& rest, int first_vertex);
+  Solid makeSolid(const std::vector<int>& vertices,
+                  const std::vector<Vector3<double>>& places, double vertex_mass,
+                  const SolidOptions& options);
   void start();
+  void buildModel();
+  void breakShells();
+  void divideSolids(int shell, const std::vector<int>& part_of_piece,
+                    const std::vector<Vector3<double>>& design);
+  void loadBonds();
 
+  double obstacleTime() const {
+    return static_cast<double>(step_ - stopped_steps_) * options_.frame_time /
+           options_.steps_per_frame;
+  }
+  bool isObstacle(int body) const {
+    return bodies_[static_cast<std::size_t>(body)].kind == Kind::kObstacle;
+  }
+
+  void findFreeMotion();
   void finishContacts(FrameReport& report) const;
   void advanceStep(int step_of_frame, FrameReport& report);
   void predict();
+  void placeSolids();
   void pushApart();
   void solve(int iterations);
   void projectSpring(Spring& spring);
-  void projectContact(const ContactConstraint& contact);
+  Vector3<double> separationNow(const ContactConstraint& contact) const;
+  void projectContact(ContactConstraint& contact);
+  void projectContacts();
   void respond(int step_of_frame, FrameReport& report);
   void holdInContact(int step_of_frame, FrameReport& report);
+  void slowDown(const std::vector<ContinuousContact<double>>& contacts);
+  int carrierOf(const ContinuousContact<double>& contact) const;
+  int carrierOf(int vertex) const;
+  bool hold(int vertex, int carrier);
+  void stopObstacles();
+  void stopAll();
   void finishStep();
   void dampNeighbours();
 
   ContinuousContactResult<double> query(int step_of_frame, FrameReport& report);
   ContactWeights weightsAt(const ContinuousContact<double>& contact) const;
-  void addConstraint(const ContactWeights& where, Vector3<double> direction);
-  Transform3<double> bodyMotion(int body) const;
+  void addConstraint(ContinuousContactKind kind, ContactWeights where,
+                     Vector3<double> direction);
 
   SimulatorOptions options_;
+  Random random_;                       // of what breaks
   TestMesh mesh_;                       // positions at the start of the step
   std::vector<Vector3<double>> moved_;  // positions at the end of the step
   std::vector<Vector3<double>> velocities_;
@@ -183,9 +307,19 @@ class ClothSimulator {
   std::vector<Spring> edge_springs_;
   std::vector<Spring> bend_springs_;
   std::vector<ContactConstraint> contacts_;
-  std::vector<int> held_with_;  // body a held vertex moves with, or -1
+  std::vector<int> held_with_;         // body a held vertex moves with, or -1
+  std::vector<int> pinned_to_;         // obstacle, or -1
+  std::vector<int> solid_of_;          // solid, or -1
+  std::vector<Vector3<double>> rest_;  // of the vertices of solids
+  std::vector<Solid> solids_;
+  std::vector<Shell> shells_;
+  std::vector<Vector3<double>> frame_begin_;
+  std::vector<Vector3<double>> free_motion_;
+  TopologyChange change_;
   double mean_edge_{0};
+  double step_time_{0};
   std::int64_t step_{0};
+  std::int64_t stopped_steps_{0};
   bool started_{false};
   DeformableBVHModel<KDOP<double, 16>> model_;
 };

@@ -102,6 +102,20 @@ TestMesh makeSheet(int nx, int ny, const SheetPosition& position) {
   return mesh;
 }
 
+TestMesh makeTube(int nx, int ny, const SheetPosition& position) {
+  const TestMesh sheet = makeSheet(nx, ny, position);
+  TestMesh mesh;
+  const auto columns = static_cast<std::size_t>(nx);
+  for (std::size_t v = 0; v < sheet.vertices.size(); ++v)
+    if (v % (columns + 1) != columns) mesh.vertices.push_back(sheet.vertices[v]);
+  const auto id = [&](std::size_t v) {
+    return v / (columns + 1) * columns + v % (columns + 1) % columns;
+  };
+  for (const Triangle& t : sheet.triangles)
+    mesh.triangles.emplace_back(id(t[0]), id(t[1]), id(t[2]));
+  return mesh;
+}
+
 TestMesh makeUvSphere(int slices, int stacks, double radius) {
   TestMesh mesh;
   mesh.vertices.emplace_back(0, 0, radius);
@@ -132,6 +146,69 @@ TestMesh makeIcosphere(int subdivisions, double radius) {
   for (int level = 0; level < subdivisions; ++level) mesh = subdivided(mesh);
   for (Vector3<double>& v : mesh.vertices) v *= radius / v.norm();
   return mesh;
+}
+
+TestMesh makeGeodesicSphere(int frequency, double radius) {
+  const TestMesh coarse = icosahedron();
+  TestMesh mesh;
+  // A point is known by the corners that it lies between and its weights on them.
+  std::map<std::array<std::size_t, 6>, int> id_of;
+  const auto vertex = [&](const Triangle& t, int i, int j) {
+    const int weights[3] = {frequency - i - j, i, j};
+    std::array<std::array<std::size_t, 2>, 3> key{};
+    Vector3<double> p = Vector3<double>::Zero();
+    for (int k = 0; k < 3; ++k) {
+      const auto weight = static_cast<std::size_t>(weights[k]);
+      key[static_cast<std::size_t>(k)] = {{weight > 0 ? t[k] + 1 : 0, weight}};
+      p += weights[k] * coarse.vertices[t[k]];
+    }
+    std::sort(key.begin(), key.end());
+    const auto inserted =
+        id_of.emplace(std::array<std::size_t, 6>{{key[0][0], key[0][1], key[1][0],
+                                                  key[1][1], key[2][0], key[2][1]}},
+                      static_cast<int>(mesh.vertices.size()));
+    if (inserted.second) mesh.vertices.push_back(p * (radius / p.norm()));
+    return inserted.first->second;
+  };
+  for (const Triangle& t : coarse.triangles)
+    for (int i = 0; i < frequency; ++i)
+      for (int j = 0; i + j < frequency; ++j) {
+        const int a = vertex(t, i, j), b = vertex(t, i + 1, j), c = vertex(t, i, j + 1);
+        mesh.triangles.push_back(triangle(a, b, c));
+        if (i + j + 1 < frequency)
+          mesh.triangles.push_back(triangle(b, vertex(t, i + 1, j + 1), c));
+      }
+  return mesh;
+}
+
+TestMesh makeLathe(int slices, const std::vector<std::array<double, 2>>& profile) {
+  const int stacks = static_cast<int>(profile.size()) - 1;
+  TestMesh mesh = makeUvSphere(slices, stacks, 1);
+  mesh.vertices.front() = {0, 0, profile.front()[1]};
+  mesh.vertices.back() = {0, 0, profile.back()[1]};
+  std::size_t v = 1;
+  for (std::size_t j = 1; j + 1 < profile.size(); ++j)
+    for (int i = 0; i < slices; ++i) {
+      const double azimuth = 2 * kPi * i / slices;
+      mesh.vertices[v++] = {profile[j][0] * std::cos(azimuth),
+                            profile[j][0] * std::sin(azimuth), profile[j][1]};
+    }
+  return mesh;
+}
+
+TestMesh makeCapsule(int slices, int rings, double radius, double length) {
+  std::vector<std::array<double, 2>> profile;
+  for (int i = 0; i <= rings; ++i) {
+    const double polar = 0.5 * kPi * i / rings;
+    profile.push_back({{radius * std::sin(polar), length + radius * std::cos(polar)}});
+  }
+  for (int i = 1; i < rings; ++i)
+    profile.push_back({{radius, length * (1 - static_cast<double>(i) / rings)}});
+  for (int i = 0; i <= rings; ++i) {
+    const double polar = 0.5 * kPi * (1 + static_cast<double>(i) / rings);
+    profile.push_back({{radius * std::sin(polar), radius * std::cos(polar)}});
+  }
+  return makeLathe(slices, profile);
 }
 
 TestMesh makeBox(const Vector3<double>& half_extents, int divisions) {

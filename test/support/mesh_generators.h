@@ -50,6 +50,10 @@ using SheetPosition = std::function<Vector3<double>(double u, double v)>;
 /// 0.
 TestMesh makeSheet(int nx, int ny, const SheetPosition& position = {});
 
+/// @brief A sheet whose first column of vertices is also its last: nx x ny quads, nx (ny
+/// + 1) vertices.
+TestMesh makeTube(int nx, int ny, const SheetPosition& position);
+
 /// @brief A sphere around the origin from `slices` >= 3 meridians and `stacks` >= 2
 /// rings: 2 slices (stacks - 1) triangles.
 TestMesh makeUvSphere(int slices, int stacks, double radius);
@@ -57,6 +61,21 @@ TestMesh makeUvSphere(int slices, int stacks, double radius);
 /// @brief A sphere around the origin: an icosahedron whose faces were split in four
 /// `subdivisions` times; 20 * 4^subdivisions triangles.
 TestMesh makeIcosphere(int subdivisions, double radius);
+
+/// @brief A sphere around the origin: an icosahedron whose edges were divided into
+/// `frequency` parts; 20 frequency^2 triangles, all of about the same size.
+TestMesh makeGeodesicSphere(int frequency, double radius);
+
+/// @brief A closed surface of revolution around the z axis, of 2 slices (points - 2)
+/// triangles.
+/// @param profile  radius and height, from the highest point of the axis to the lowest
+/// one; radii of the first and the last are not looked at.
+TestMesh makeLathe(int slices, const std::vector<std::array<double, 2>>& profile);
+
+/// @brief A capsule from (0, 0, 0) to (0, 0, length), of 4 slices (rings + 1) triangles
+/// or so.
+/// @param rings  along the straight part and along each of its ends
+TestMesh makeCapsule(int slices, int rings, double radius, double length);
 
 /// @brief A box around the origin, each side split into `divisions`^2 quads; closed.
 TestMesh makeBox(const Vector3<double>& half_extents, int divisions = 1);
