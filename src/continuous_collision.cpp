@@ -23,6 +23,7 @@ using detail::kNotAnsweredHere;
 using detail::Placement;
 using detail::require;
 using detail::requireMesh;
+using detail::deformable::inArena;
 using detail::deformable::MeshKind;
 using detail::deformable::PreparedMesh;
 using detail::deformable::QueryAnswer;
@@ -71,8 +72,8 @@ Transform3<S> poseAt(const Placement<S>& placement, S t) {
 
 /// The part of the result that FCL's own type has.
 template <typename S>
-S fill(const QueryAnswer& answer, const Placement<S>& placement1,
-       const Placement<S>& placement2, ContinuousCollisionResult<S>& result) {
+void fill(const QueryAnswer& answer, const Placement<S>& placement1,
+          const Placement<S>& placement2, ContinuousCollisionResult<S>& result) {
   result.is_collide = answer.has_crossing || !answer.contacts.empty();
   result.time_of_contact =
       answer.has_crossing ? S(0)
@@ -81,7 +82,6 @@ S fill(const QueryAnswer& answer, const Placement<S>& placement1,
           : detail::deformable::roundTimeDown<S>(answer.contacts.front().toc_lo);
   result.contact_tf1 = poseAt(placement1, result.time_of_contact);
   result.contact_tf2 = poseAt(placement2, result.time_of_contact);
-  return result.time_of_contact;
 }
 
 /// What a query looked at, for the conversion of its contacts.
@@ -130,12 +130,15 @@ S collideMeshes(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
                 const CollisionGeometry<S>& o2, const Placement<S>& placement2,
                 const Request& request, Result& result) {
   const QueryOptions options = makeOptions(request);
-  const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1");
-  const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2");
-  const QueryAnswer answer =
-      answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
-  fillContacts(answer, Scene<S>{o1, o2, mesh1, mesh2}, request, result);
-  return fill(answer, placement1, placement2, result);
+  inArena(options.num_threads, [&] {
+    const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1");
+    const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2");
+    const QueryAnswer answer =
+        answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
+    fillContacts(answer, Scene<S>{o1, o2, mesh1, mesh2}, request, result);
+    fill(answer, placement1, placement2, result);
+  });
+  return result.time_of_contact;
 }
 
 template <typename S, typename Request, typename Result>
@@ -144,11 +147,14 @@ S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& res
   const QueryOptions options = makeOptions(request);
   requireMesh(*o, "continuousSelfCollide");
   const Placement<S> still{Transform3<S>::Identity(), Transform3<S>::Identity()};
-  const PreparedMesh mesh(*o, still.beginning, still.end, "o");
-  const QueryAnswer answer =
-      answerOf([&] { return querySelf(mesh.instance(), options); });
-  fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, request, result);
-  return fill(answer, still, still, result);
+  inArena(options.num_threads, [&] {
+    const PreparedMesh mesh(*o, still.beginning, still.end, "o");
+    const QueryAnswer answer =
+        answerOf([&] { return querySelf(mesh.instance(), options); });
+    fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, request, result);
+    fill(answer, still, still, result);
+  });
+  return result.time_of_contact;
 }
 
 template <typename Motion, typename S>

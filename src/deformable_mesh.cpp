@@ -10,14 +10,15 @@ namespace detail {
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
                                const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
-  tree_.build(triangles, num_triangles, frames, num_threads_);
+  deformable::inArena(
+      num_threads_, [&] { tree_.build(triangles, num_triangles, frames, num_threads_); });
   num_restructurings_ = 0;
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
   num_restructurings_ += tree_.restructure();
-  tree_.refit(frames, num_threads_);
+  deformable::inArena(num_threads_, [&] { tree_.refit(frames, num_threads_); });
   is_deforming_ = false;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {
     const deformable::VertexPath path = frames[i];

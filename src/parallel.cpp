@@ -61,9 +61,17 @@ void parallelFor(std::size_t count, int num_threads,
     if (error) std::rethrow_exception(error);
 }
 
+void inArena(int num_threads, const std::function<void()>& work) {
+  const int threads = numThreads(num_threads);
+  if (threads <= 1 || threads == tbb::this_task_arena::max_concurrency()) return work();
+  tbb::task_arena(threads).execute(work);
+}
+
 #else
 
 int numThreads(int) { return 1; }
+
+void inArena(int, const std::function<void()>& work) { work(); }
 
 void parallelFor(std::size_t count, int, const std::function<void(std::size_t)>& visit) {
   forEach(count, visit);

@@ -18,6 +18,11 @@ namespace deformable {
 void parallelFor(std::size_t count, int num_threads,
                  const std::function<void(std::size_t)>& visit);
 
+/// @brief Calls work() once, on this thread. What it does with parallelFor() and the same
+/// number shares one task arena, which each call would make for itself otherwise. Without
+/// such calls, or for one thread, nothing is made.
+void inArena(int num_threads, const std::function<void()>& work);
+
 /// @brief How many threads parallelFor() uses.
 int numThreads(int num_threads);
 
