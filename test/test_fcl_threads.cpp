@@ -111,6 +111,12 @@ const std::vector<Scene>& scenes() {
     const TestMesh soup = makeTetrahedronSoup(60, 1, 0.3, 5);
     out.push_back({"crossing soups", makeModel<Model>(soup, shaken(soup, 0.2, 6)),
                    makeModel<Model>(makeTetrahedronSoup(60, 1, 0.3, 7))});
+    Pose turned = translation(0.1, 0, 0);
+    turned.linear() = AngleAxis<double>(0.3, Vector3<double>::UnitY()).toRotationMatrix();
+    out.push_back({"turning sheet", falling, still, turned});
+    out.push_back({"plain turning sheet",
+                   makeModel<Plain>(shaken(above, 0.01, 1), shaken(below, 0.02, 2)),
+                   still, turned});
     out.push_back({"apart", falling, makeModel<Plain>(moved(sheet, 9, 0, 0))});
     return out;
   }();
