@@ -64,7 +64,7 @@ bool selfCandidates(const CollisionGeometry<S>* o, const ContinuousCandidateSink
   require(sink);
   detail::requireMesh(*o, "continuousSelfCandidates");
   const Transform3<S> still = Transform3<S>::Identity();
-  const PreparedMesh mesh(*o, still, still, "o", FeatureOwners::kAlways);
+  const PreparedMesh mesh(*o, still, still, "o", 1, FeatureOwners::kAlways);
   return handOut(sink, [&](const auto& inner) {
     return detail::deformable::candidatesSelf(mesh.instance(), inner);
   });
@@ -79,9 +79,9 @@ bool pairCandidates(const CollisionGeometry<S>* o1, const Placement<S>& placemen
   require(sink);
   if (!detail::isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
     throw Exception(std::string("candidates") + detail::kNotAnsweredHere);
-  const PreparedMesh mesh1(*o1, placement1.beginning, placement1.end, "o1",
+  const PreparedMesh mesh1(*o1, placement1.beginning, placement1.end, "o1", 1,
                            FeatureOwners::kAlways);
-  const PreparedMesh mesh2(*o2, placement2.beginning, placement2.end, "o2",
+  const PreparedMesh mesh2(*o2, placement2.beginning, placement2.end, "o2", 1,
                            FeatureOwners::kAlways);
   return handOut(sink, [&](const auto& inner) {
     return detail::deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);

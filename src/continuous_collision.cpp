@@ -136,8 +136,10 @@ S collideMeshes(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
                 const Request& request, Result& result) {
   const QueryOptions options = makeOptions(request);
   inArena(options.num_threads, [&] {
-    const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1");
-    const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2");
+    const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1",
+                             options.num_threads);
+    const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2",
+                             options.num_threads);
     const QueryAnswer answer =
         answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
     fillContacts(answer, Scene<S>{o1, o2, mesh1, mesh2}, request, result);
@@ -153,7 +155,7 @@ S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& res
   requireMesh(*o, "continuousSelfCollide");
   const Placement<S> still{Transform3<S>::Identity(), Transform3<S>::Identity()};
   inArena(options.num_threads, [&] {
-    const PreparedMesh mesh(*o, still.beginning, still.end, "o");
+    const PreparedMesh mesh(*o, still.beginning, still.end, "o", options.num_threads);
     const QueryAnswer answer =
         answerOf([&] { return querySelf(mesh.instance(), options); });
     fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, request, result);

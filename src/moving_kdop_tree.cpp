@@ -142,7 +142,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
 
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
                            std::size_t num_vertices,
-                           const std::vector<std::int32_t>& links) {
+                           const std::vector<std::int32_t>& links, int num_threads) {
   const auto children = [&links](std::int32_t link, std::size_t) {
     std::int32_t nodes[kWidth];
     TreeChildren out{};
@@ -151,7 +151,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
     });
     return out;
   };
-  arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, 1);
+  arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, num_threads);
 }
 
 /// Takes a structure, and gives the vertices their places.

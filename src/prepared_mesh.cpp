@@ -117,7 +117,8 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
 template <typename S>
 PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
                            const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
-                           const std::string& name, FeatureOwners owners) {
+                           const std::string& name, int num_threads,
+                           FeatureOwners owners) {
   const Pose beginning = toPose<S>(tf_beg, name), end = toPose<S>(tf_end, name);
   for (int k = 0; k < 3; ++k) {
     instance_.translation[0][k] = beginning.translation[k];
@@ -132,17 +133,17 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
     instance_.tree = &mesh->movingTree();
     if (beginning.isTranslation() && end.isTranslation()) return;
     tree_ = mesh->movingTree();
-    refit(name);
+    refit(name, num_threads);
     return;
   }
   visitModel(geometry, [&](const auto& model) {
-    prepareModel(model, beginning, end, name, owners);
+    prepareModel(model, beginning, end, name, num_threads, owners);
   });
 }
 
 template <typename BV>
 void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning,
-                                const Pose& end, const std::string& name,
+                                const Pose& end, const std::string& name, int num_threads,
                                 FeatureOwners owners) {
   const bool deforming =
       model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
@@ -172,7 +173,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       }
       return;
     }
-  prepareDeforming(model, name);
+  prepareDeforming(model, name, num_threads);
 }
 
 template <typename BV>
@@ -186,7 +187,8 @@ void PreparedMesh::requireIndices(const BVHModel<BV>& model, const std::string& 
 }
 
 template <typename BV>
-void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name) {
+void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name,
+                                    int num_threads) {
   if (model.prev_vertices)
     requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
   requireFinite(model.vertices, model.num_vertices, name + ", current frame");
@@ -195,14 +197,14 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
     links[static_cast<std::size_t>(i)] = model.getBV(i).first_child;
   requireIndices(model, name);
   tree_.build(model.tri_indices, static_cast<std::size_t>(model.num_tris),
-              static_cast<std::size_t>(model.num_vertices), links);
-  refit(name);
+              static_cast<std::size_t>(model.num_vertices), links, num_threads);
+  refit(name, num_threads);
 }
 
-void PreparedMesh::refit(const std::string& name) {
+void PreparedMesh::refit(const std::string& name, int num_threads) {
   const auto start = std::chrono::steady_clock::now();
   const DefaultFloatingPoint mode;
-  tree_.refit(instance_.frames);
+  tree_.refit(instance_.frames, num_threads);
   requireFinite(tree_, name);
   instance_.tree = &tree_;
   // The boxes are posed already.
@@ -215,7 +217,7 @@ void PreparedMesh::refit(const std::string& name) {
 #define FCL_CCD_INSTANTIATE(S)                                                           \
   template MeshKind meshKindOf(const CollisionGeometry<S>&);                             \
   template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Transform3<S>&, \
-                                      const Transform3<S>&, const std::string&,          \
+                                      const Transform3<S>&, const std::string&, int,     \
                                       FeatureOwners);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

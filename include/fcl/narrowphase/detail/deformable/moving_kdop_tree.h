@@ -126,8 +126,10 @@ class MovingKdopTree {
 
   /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
   /// node i (the right one follows it), links[i] < 0 is leaf ~links[i].
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
   void build(const Triangle* triangles, std::size_t num_triangles,
-             std::size_t num_vertices, const std::vector<std::int32_t>& links);
+             std::size_t num_vertices, const std::vector<std::int32_t>& links,
+             int num_threads = 1);
 
   /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
   /// t, for every t in [0, 1], up to nothing: all rounding is outward.

@@ -36,6 +36,7 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 class PreparedMesh {
  public:
   /// @param name  how errors call the geometry, for example "o1"
+  /// @param num_threads  for boxes, as in parallelFor(); the mesh does not depend on it
   /// @pre meshKindOf(geometry) != kNotAMesh; a rigid mesh is not rotated between the
   /// poses
   /// @throws fcl::Exception  model not built or being updated, or too large, pose or
@@ -43,7 +44,7 @@ class PreparedMesh {
   /// double where boxes are made for its pose
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
-               const Transform3<S>& tf_end, const std::string& name,
+               const Transform3<S>& tf_end, const std::string& name, int num_threads = 1,
                FeatureOwners owners = FeatureOwners::kIfKept);
 
   PreparedMesh(const PreparedMesh&) = delete;
@@ -57,12 +58,13 @@ class PreparedMesh {
  private:
   template <typename BV>
   void prepareModel(const BVHModel<BV>& model, const Pose& beginning, const Pose& end,
-                    const std::string& name, FeatureOwners owners);
+                    const std::string& name, int num_threads, FeatureOwners owners);
   template <typename BV>
   static void requireIndices(const BVHModel<BV>& model, const std::string& name);
   template <typename BV>
-  void prepareDeforming(const BVHModel<BV>& model, const std::string& name);
-  void refit(const std::string& name);
+  void prepareDeforming(const BVHModel<BV>& model, const std::string& name,
+                        int num_threads);
+  void refit(const std::string& name, int num_threads);
 
   MeshInstance instance_;
   std::vector<MeshTriangle> owners_;
