@@ -426,7 +426,8 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
 }
 
 TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {
-  USING_FIXTURE;
+  using Plain = typename TestFixture::Plain;
+  using S = typename TestFixture::S;
   const auto model = makeModel<Plain>(frame(1));
   for (int* count : {&model->num_tris, &model->num_vertices}) {
     const int before = std::exchange(*count, (1 << 29) + 1);
