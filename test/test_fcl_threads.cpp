@@ -564,21 +564,6 @@ TEST(FCL_THREADS, modelsUseThreads) {
   EXPECT_EQ(most, 2U);
 }
 
-TEST(FCL_THREADS, twoThreadsInAnArenaOfFour) {
-  tbb::task_arena arena(4);
-  Watcher watcher(arena);
-  runAll(arena, 2);
-  arena.execute([&] {
-    for (const Step& step : steps()) {
-      const auto one = step.model(1), two = step.model(2);
-      EXPECT_EQ(step.update(*one), BVH_OK);
-      EXPECT_EQ(step.update(*two), BVH_OK);
-      expectSameModel(*two, *one);
-    }
-  });
-  EXPECT_EQ(watcher.threads(), justThisOne()) << "they have an arena of their own";
-}
-
 // Of so few vertices all but the tree is one task.
 TEST(FCL_THREADS, updatesOfTreesUseThreads) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
