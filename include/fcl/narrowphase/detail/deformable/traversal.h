@@ -134,16 +134,20 @@ class Traversal {
 
   template <typename Visit>
   void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
-    const MovingKdopNode& node = tree_a_.node(i);
-    const unsigned triangles = node.triangles();
-    if (triangles) visitTriangles<false>(node, triangles, node, visit);
-    for (int lane = 0; lane < node.count; ++lane) {
-      unsigned later = node.lanes() & ~((2U << lane) - 1);
+    // A node of a reader is valid until another is asked for, which compare() does: there
+    // it is asked for anew, and as both trees' node.
+    const unsigned lanes = tree_a_.node(i).lanes(),
+                   triangles = tree_a_.node(i).triangles();
+    if (triangles)
+      visitTriangles<false>(tree_a_.node(i), triangles, tree_a_.node(i), visit);
+    for (int lane = 0; lanes >> lane != 0; ++lane) {
+      const MovingKdopNode& node = tree_a_.node(i);
+      unsigned later = lanes & ~((2U << lane) - 1);
       if (node.isTriangle(lane))
         later &= ~triangles;
       else
         open.add(0, -1, node.child[lane], false, 0.f);
-      if (later) compare<false>(node, i, lane, node, i, later, open, visit);
+      if (later) compare<false>(node, i, lane, tree_b_.node(i), i, later, open, visit);
     }
   }
 
@@ -175,7 +179,9 @@ class Traversal {
     float earliest[MovingKdopNode::kWidth];
     unsigned left = kernels_.overlapChildren(box, node, timed_, earliest) & lanes;
     if (left == 0) return;
+    // The parent is not looked at again: its child may take its place.
     const std::int32_t mine = parent.child[lane];
+    const float size = is_triangle ? 0.f : extent(parent, lane);
     if (!is_triangle && (left & triangles)) {
       const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
       if (child.triangles() == child.lanes()) {
@@ -183,7 +189,6 @@ class Traversal {
         left &= ~triangles;
       }
     }
-    const float size = is_triangle ? 0.f : extent(parent, lane);
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
