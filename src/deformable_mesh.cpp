@@ -15,9 +15,22 @@ void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triang
   num_restructurings_ = 0;
 }
 
-void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
+void DeformableMesh::changeTopology(const Triangle* triangles, std::size_t num_triangles,
+                                    const std::vector<int>& origins,
+                                    const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
+  deformable::inArena(num_threads_, [&] {
+    tree_.changeTopology(triangles, num_triangles, origins, frames, num_threads_);
+  });
+}
+
+void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
   num_restructurings_ += tree_.restructure();
+  refitChangedTree(frames);
+}
+
+void DeformableMesh::refitChangedTree(const deformable::VertexFrames& frames) {
+  const deformable::DefaultFloatingPoint mode;
   deformable::inArena(num_threads_, [&] { tree_.refit(frames, num_threads_); });
   is_deforming_ = false;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {

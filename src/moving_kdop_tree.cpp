@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "parallel.h"
 #include "tree_builder.h"
@@ -154,9 +155,20 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
   arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, num_threads);
 }
 
-/// Takes a structure, and gives the vertices their places.
+/// Takes a structure, and finds fans and owners.
 void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* triangles,
                              std::size_t num_vertices, int num_threads) {
+  place(structure, triangles, num_vertices, num_threads);
+  setNodes(structure, num_threads);
+  UninitializedVector<TreeVertex>(vertex_ids_.size()).swap(vertices_);
+  const VertexCorners corners(triangles_, vertex_ids_.size(), num_threads);
+  fans_ = VertexFans(corners, num_threads);
+  assignOwners(corners, num_threads, triangles_);
+}
+
+/// Takes the triangles of a structure, and gives the vertices their places.
+void MovingKdopTree::place(const TreeStructure& structure, const Triangle* triangles,
+                           std::size_t num_vertices, int num_threads) {
   const std::vector<std::uint32_t>& leaves = structure.leaves;
   triangles_.resize(leaves.size());
   parallelForBlocks(leaves.size(), kTriangleBlock, num_threads,
@@ -170,11 +182,30 @@ void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* tri
                     });
   findSubtrees(structure);
   placeVertices(num_vertices);
-  setNodes(structure, num_threads);
-  UninitializedVector<TreeVertex>(vertex_ids_.size()).swap(vertices_);
-  const VertexCorners corners(triangles_, vertex_ids_.size(), num_threads);
-  fans_ = VertexFans(corners, num_threads);
-  assignOwners(corners, num_threads, triangles_);
+}
+
+/// Takes memory for nodes and vertices where that of another tree, which this one is to
+/// replace, does not suffice.
+void MovingKdopTree::takeMemory(const MovingKdopTree& other,
+                                const TreeStructure& structure) {
+  const std::size_t num_nodes = structure.nodes.size(), num_vertices = vertex_ids_.size();
+  sizes_.resize(num_nodes);
+  // Trees that change have a few more each time.
+  if (other.nodes_.capacity() < num_nodes) nodes_.reserve(num_nodes + num_nodes / 16);
+  if (other.vertices_.capacity() < num_vertices)
+    vertices_.reserve(num_vertices + num_vertices / 16);
+}
+
+/// Becomes another tree, which has all but nodes and vertices, and memory for these.
+void MovingKdopTree::become(MovingKdopTree&& next,
+                            const TreeStructure& structure) noexcept {
+  if (next.nodes_.capacity() == 0) next.nodes_ = std::move(nodes_);
+  if (next.vertices_.capacity() == 0) next.vertices_ = std::move(vertices_);
+  next.nodes_.resize(structure.nodes.size());
+  next.vertices_.resize(next.vertex_ids_.size());
+  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
+    next.setNode(structure.nodes[i], next.nodes_[i]);
+  *this = std::move(next);
 }
 
 /// Finds the largest parts of the tree that are refit together.

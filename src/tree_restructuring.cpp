@@ -186,7 +186,6 @@ bool MovingKdopTree::restructure() {
 void MovingKdopTree::adopt(const Restructuring& restructuring) {
   MovingKdopTree next;
   const TreeStructure structure = restructuring.structure(next.first_sizes_);
-  next.sizes_.resize(structure.nodes.size());
   next.triangles_.resize(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i)
     next.triangles_[i] = triangles_[structure.leaves[i]];
@@ -203,17 +202,11 @@ void MovingKdopTree::adopt(const Restructuring& restructuring) {
     old_places[new_places[i]] = static_cast<std::uint32_t>(i);
   }
   const VertexFans fans = fans_;
-  if (nodes_.capacity() < structure.nodes.size())
-    next.nodes_.resize(structure.nodes.size());
+  next.takeMemory(*this, structure);
 
-  if (next.nodes_.empty()) next.nodes_ = std::move(nodes_);
-  next.nodes_.resize(structure.nodes.size());
-  for (std::size_t i = 0; i < structure.nodes.size(); ++i)
-    next.setNode(structure.nodes[i], next.nodes_[i]);
-  next.vertices_ = std::move(vertices_);
   next.fans_ = std::move(fans_);
   next.fans_.renumber(fans, new_places, old_places);
-  *this = std::move(next);
+  become(std::move(next), structure);
 }
 
 }  // namespace deformable

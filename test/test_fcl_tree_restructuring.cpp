@@ -27,8 +27,6 @@ using Model = DeformableBVHModel<>;
 using Result = ContinuousContactResult<double>;
 using Points = std::vector<Vector3<double>>;
 using detail::deformable::assignFeatures;
-using detail::deformable::VertexFan;
-using detail::deformable::VertexFans;
 
 FrameSequence reversed(FrameSequence sequence) {
   std::reverse(sequence.frames.begin(), sequence.frames.end());
@@ -107,22 +105,6 @@ void expectSameContacts(const Model& x, const Model& y) {
     ASSERT_EQ(c.toc_hi, d.toc_hi);
     ASSERT_EQ(c.pos, d.pos);
     ASSERT_EQ(c.normal, d.normal);
-  }
-}
-
-/// Each vertex has the fan that its triangles form, wherever a closed one begins.
-void expectFans(const MovingKdopTree& tree) {
-  const VertexFans expected(tree.triangles(), tree.vertices().size());
-  ASSERT_EQ(tree.fans().size(), expected.size());
-  for (std::size_t v = 0; v < expected.size(); ++v) {
-    const VertexFan mine = tree.fans()[v], its = expected[v];
-    ASSERT_EQ(mine.count, its.count);
-    ASSERT_EQ(mine.is_closed, its.is_closed);
-    std::vector<std::uint32_t> spokes(mine.spokes, mine.spokes + mine.count);
-    if (mine.is_closed)
-      std::rotate(spokes.begin(), std::find(spokes.begin(), spokes.end(), its.spokes[0]),
-                  spokes.end());
-    ASSERT_TRUE(std::equal(spokes.begin(), spokes.end(), its.spokes)) << "vertex " << v;
   }
 }
 

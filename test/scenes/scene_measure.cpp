@@ -22,7 +22,7 @@ std::size_t countMissing(const std::vector<PairName>& a, const std::vector<PairN
 }  // namespace
 
 FrameFigures SceneMeasure::measure(const SceneFrame& frame) {
-  if (frame.index == 0 || !frame.change.isEmpty()) {
+  if (frame.index == 0) {
     model_ = {};
     const bool built = model_.beginModel() == BVH_OK &&
                        model_.addSubModel(frame.previous, frame.triangles) == BVH_OK &&
@@ -30,9 +30,12 @@ FrameFigures SceneMeasure::measure(const SceneFrame& frame) {
     if (!built) throw Exception("SceneMeasure: " + model_.lastError());
   }
   const auto begin = std::chrono::steady_clock::now();
-  if (model_.updateFrames(frame.previous[0].data(), frame.current[0].data(),
-                          frame.previous.size()) != BVH_OK)
-    throw Exception("SceneMeasure: " + model_.lastError());
+  const double *previous = frame.previous[0].data(), *current = frame.current[0].data();
+  const int code = frame.change.isEmpty()
+                       ? model_.updateFrames(previous, current, frame.previous.size())
+                       : model_.updateTopology(frame.triangles, {}, previous, current,
+                                               frame.previous.size());
+  if (code != BVH_OK) throw Exception("SceneMeasure: " + model_.lastError());
   ContinuousContactRequest<double> request;
   request.num_threads = num_threads_;
   result_ = {};

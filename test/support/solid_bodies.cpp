@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "cloth_simulator.h"
+#include "fcl/common/exception.h"
 
 namespace fcl {
 namespace test {
@@ -118,7 +119,11 @@ void ClothSimulator::breakShells() {
     divideSolids(static_cast<int>(i), part_of_piece, design);
   }
   if (change_.isEmpty()) return;
-  buildModel();
+  moved_ = mesh_.vertices;
+  const double* place = mesh_.vertices[0].data();
+  if (model_.updateTopology(mesh_.triangles, {}, place, place, mesh_.vertices.size()) !=
+      BVH_OK)
+    throw Exception("ClothSimulator: " + model_.lastError());
 }
 
 /// Gives each part a body of its own, which goes on as the part moved in the whole.

@@ -25,6 +25,8 @@ using detail::deformable::MovingKdopNode;
 using detail::deformable::MovingKdopTree;
 using detail::deformable::TreeTriangle;
 using detail::deformable::TreeVertex;
+using detail::deformable::VertexFan;
+using detail::deformable::VertexFans;
 using detail::deformable::VertexFrames;
 using detail::deformable::VertexPath;
 
@@ -163,6 +165,22 @@ inline void expectContainment(const MovingKdopTree& tree,
         }
       }
     }
+}
+
+/// Each vertex has the fan that its triangles form, wherever a closed one begins.
+inline void expectFans(const MovingKdopTree& tree) {
+  const VertexFans expected(tree.triangles(), tree.vertices().size());
+  ASSERT_EQ(tree.fans().size(), expected.size());
+  for (std::size_t v = 0; v < expected.size(); ++v) {
+    const VertexFan mine = tree.fans()[v], its = expected[v];
+    ASSERT_EQ(mine.count, its.count);
+    ASSERT_EQ(mine.is_closed, its.is_closed);
+    std::vector<std::uint32_t> spokes(mine.spokes, mine.spokes + mine.count);
+    if (mine.is_closed)
+      std::rotate(spokes.begin(), std::find(spokes.begin(), spokes.end(), its.spokes[0]),
+                  spokes.end());
+    ASSERT_TRUE(std::equal(spokes.begin(), spokes.end(), its.spokes)) << "vertex " << v;
+  }
 }
 
 /// The same boxes to the bit.

@@ -173,6 +173,65 @@ int DeformableBVHModel<BV>::checkFinite(const S* coordinates, std::size_t count,
 }
 
 template <typename BV>
+int DeformableBVHModel<BV>::checkFrames(const S* previous, const S* current,
+                                        std::size_t num_vertices) {
+  if (const int code = checkFinite(previous, num_vertices, "previous")) return code;
+  return checkFinite(current, num_vertices, "current");
+}
+
+/// Whether both frames can be given at once.
+template <typename BV>
+int DeformableBVHModel<BV>::checkSteppable(const char* caller) {
+  const std::string name(caller);
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  name + "() on a model that is not built");
+  if (isUpdateOpen())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  name + "() between begin...Model() and end...Model()");
+  return BVH_OK;
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::checkTriangles(const Triangle* triangles,
+                                           std::size_t num_triangles,
+                                           std::size_t num_vertices) {
+  if (num_triangles == 0 || num_vertices == 0)
+    return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
+  std::string too_many = detail::deformable::findTooMany(num_triangles, num_vertices);
+  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
+  const std::size_t bad =
+      detail::deformable::findOutOfRange(triangles, num_triangles, num_vertices);
+  if (bad == 3 * num_triangles) return BVH_OK;
+  return refuse(BVH_ERR_INCORRECT_DATA,
+                "triangle " + std::to_string(bad / 3) + " refers to vertex " +
+                    std::to_string(triangles[bad / 3][static_cast<int>(bad % 3)]) +
+                    " of " + std::to_string(num_vertices));
+}
+
+/// Fills in the origins if they were left out.
+template <typename BV>
+int DeformableBVHModel<BV>::checkOrigins(std::vector<int>& origins,
+                                         std::size_t num_triangles) {
+  if (origins.empty()) {
+    origins.resize(num_triangles);
+    for (int i = 0; i < static_cast<int>(num_triangles); ++i)
+      origins[static_cast<std::size_t>(i)] = i < this->num_tris ? i : -1;
+  }
+  if (origins.size() != num_triangles)
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  std::to_string(origins.size()) + " origins given for " +
+                      std::to_string(num_triangles) + " triangles");
+  for (std::size_t i = 0; i < num_triangles; ++i)
+    if (origins[i] < -1 || origins[i] >= this->num_tris)
+      return refuse(BVH_ERR_INCORRECT_DATA, "triangle " + std::to_string(i) +
+                                                " comes from triangle " +
+                                                std::to_string(origins[i]) + " of " +
+                                                std::to_string(this->num_tris));
+  return BVH_OK;
+}
+
+template <typename BV>
 int DeformableBVHModel<BV>::setNumThreads(int num_threads) {
   if (num_threads < 0)
     return refuse(BVH_ERR_INCORRECT_DATA,
@@ -185,20 +244,10 @@ template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
-  if (this->num_tris == 0 || this->num_vertices == 0)
-    return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
-  std::string too_many = detail::deformable::findTooMany(num_triangles, count);
-  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
-  const std::size_t bad =
-      detail::deformable::findOutOfRange(this->tri_indices, num_triangles, count);
-  if (bad < 3 * num_triangles)
-    return refuse(
-        BVH_ERR_INCORRECT_DATA,
-        "triangle " + std::to_string(bad / 3) + " refers to vertex " +
-            std::to_string(this->tri_indices[bad / 3][static_cast<int>(bad % 3)]) +
-            " of " + std::to_string(count));
+  if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
+    return code;
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
   // What fails leaves an open model, which no seal fits.
@@ -321,20 +370,14 @@ int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
 template <typename BV>
 int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
                                          std::size_t num_vertices, FclTree fcl_tree) {
-  if (!isBuilt())
-    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-                  "updateFrames() on a model that is not built");
-  if (isUpdateOpen())
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "updateFrames() between begin...Model() and end...Model()");
+  if (const int code = checkSteppable("updateFrames")) return code;
   if (!previous || !current)
     return refuse(BVH_ERR_INCORRECT_DATA, "updateFrames() with a null frame");
   if (num_vertices != static_cast<std::size_t>(this->num_vertices))
     return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
                                               " vertices given for a model of " +
                                               std::to_string(this->num_vertices));
-  if (const int code = checkFinite(previous, num_vertices, "previous")) return code;
-  if (const int code = checkFinite(current, num_vertices, "current")) return code;
+  if (const int code = checkFrames(previous, current, num_vertices)) return code;
 
   // Both copies are made before an array changes: the frames may be the model's own.
   staged_.resize(num_vertices);
@@ -343,6 +386,54 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
   advance(previous, fcl_tree, true, true);
   finish();
   if (build) return updateFclTree();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangles,
+                                           const std::vector<int>& origins,
+                                           const S* previous, const S* current,
+                                           std::size_t num_vertices, FclTree fcl_tree) {
+  if (const int code = checkSteppable("updateTopology")) return code;
+  if (!previous || !current)
+    return refuse(BVH_ERR_INCORRECT_DATA, "updateTopology() with a null frame");
+  if (const int code = checkTriangles(triangles.data(), triangles.size(), num_vertices))
+    return code;
+  std::vector<int> all_origins(origins);
+  if (const int code = checkOrigins(all_origins, triangles.size())) return code;
+  if (const int code = checkFrames(previous, current, num_vertices)) return code;
+
+  // All is made beside the model. What of it is no mesh stays.
+  Base next;
+  static_cast<CollisionGeometry<S>&>(next) = *this;
+  next.bv_splitter = this->bv_splitter;
+  next.bv_fitter = this->bv_fitter;
+  std::vector<Vector3<S>> points(num_vertices);
+  std::memcpy(points.data()->data(), current, 3 * num_vertices * sizeof(S));
+  int code =
+      next.beginModel(static_cast<int>(triangles.size()), static_cast<int>(num_vertices));
+  if (code == BVH_OK) code = next.addSubModel(points, triangles);
+  if (code != BVH_OK) return refuse(code, "FCL refused the mesh");
+  next.prev_vertices = new Vector3<S>[num_vertices];
+  std::memcpy(next.prev_vertices->data(), previous, 3 * num_vertices * sizeof(S));
+  if (fcl_tree == FclTree::kUpdate) code = next.endModel();
+  if (code != BVH_OK) return refuse(code, "FCL refused to build its tree");
+  const detail::deformable::VertexFrames new_frames(next.prev_vertices->data(),
+                                                    next.vertices->data(), num_vertices);
+  if (isInStep())
+    changeTopology(next.tri_indices, triangles.size(), all_origins, new_frames);
+  else
+    buildTree(next.tri_indices, triangles.size(), new_frames);
+
+  // What fails from here on leaves an update half done.
+  seal_ = {};
+  is_changing_ = true;
+  this->build_state = next.build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
+  swapBase(next);
+  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  refitChangedTree(frames());
+  computeLocalAABB();
+  seal();
   return accept();
 }
 

@@ -25,10 +25,12 @@ enum class FclTree {
 /// Life: beginModel / addVertex / addTriangle / addSubModel / endModel build it once,
 /// both frames equal. Each step then gives the next frame, through beginUpdateModel /
 /// updateVertex / updateSubModel / endUpdateModel (the current frame becomes the previous
-/// one), or both frames at once through updateFrames. A step refits the boxes; topology
-/// stays, and so does the tree until motion has made its boxes poor: then a step makes
-/// the aged parts anew (numRestructurings() counts these steps), which changes the time
-/// of queries and nothing else. What decides is the boxes of the step before.
+/// one), or both frames at once through updateFrames. A step refits the boxes; the tree
+/// stays until motion has made its boxes poor: then a step makes the aged parts anew
+/// (numRestructurings() counts these steps), which changes the time of queries and
+/// nothing else. What decides is the boxes of the step before. A step in which the mesh
+/// tears, breaks, grows or loses parts goes through updateTopology, which changes the
+/// tree where the mesh has changed.
 ///
 /// Errors: functions return FCL's BVHReturnCode; on any error the model is what it was
 /// before the call (before the begin... call, for a begin/end sequence), nothing is
@@ -109,6 +111,25 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int updateFrames(const S* previous, const S* current, std::size_t num_vertices,
                    FclTree fcl_tree = FclTree::kSkip);
 
+  /// @brief Gives the next step of a mesh that has torn, broken, grown or lost parts: its
+  /// triangles and both frames. The moving tree keeps what the mesh keeps, and all
+  /// answers are those of a model that is built anew. numRestructurings() does not count
+  /// this.
+  /// @param triangles  all of them, vertex ids in terms of the new frames; copied
+  /// @param origins  for each triangle the number of the one that it was, or was cut
+  /// from, before the call, -1 for a new one; empty: triangle i was triangle i, and those
+  /// beyond the model's are new. A hint, which saves time. Ids of vertices may change
+  /// with no need to say so.
+  /// @param previous, current  num_vertices x 3 coordinates each, as in updateFrames()
+  /// @param fcl_tree  whether FCL's own tree is built, which takes longer than all else;
+  /// else discrete queries throw until updateFclTree().
+  ///
+  /// Errors: as endModel() and updateFrames(), and origins of another number or out of
+  /// range (BVH_ERR_INCORRECT_DATA).
+  int updateTopology(const std::vector<Triangle>& triangles,
+                     const std::vector<int>& origins, const S* previous, const S* current,
+                     std::size_t num_vertices, FclTree fcl_tree = FclTree::kSkip);
+
   /// @brief Brings FCL's own tree up to date (builds it if it was never built).
   int updateFclTree();
 
@@ -147,6 +168,11 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   bool isBuilt() const;
   Seal currentSeal() const;
   int checkFinite(const S* coordinates, std::size_t count, const char* frame);
+  int checkFrames(const S* previous, const S* current, std::size_t num_vertices);
+  int checkSteppable(const char* caller);
+  int checkTriangles(const Triangle* triangles, std::size_t num_triangles,
+                     std::size_t num_vertices);
+  int checkOrigins(std::vector<int>& origins, std::size_t num_triangles);
   int open(Open what, const char* caller);
   int stage(const Vector3<S>* points, std::size_t count, Open expected);
   int close(Open expected, const char* caller);

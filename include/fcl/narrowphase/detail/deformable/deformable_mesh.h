@@ -3,6 +3,7 @@
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_DEFORMABLE_MESH_H
 
 #include <cstddef>
+#include <vector>
 
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
@@ -53,6 +54,15 @@ class DeformableMesh {
 
   /// @brief Boxes for a pair of frames, in a tree whose aged parts are made anew.
   void refitTree(const deformable::VertexFrames& frames);
+
+  /// @brief Tree and owners for triangles that have been checked, as
+  /// MovingKdopTree::changeTopology(); without boxes.
+  void changeTopology(const Triangle* triangles, std::size_t num_triangles,
+                      const std::vector<int>& origins,
+                      const deformable::VertexFrames& frames);
+
+  /// @brief Boxes for a pair of frames after a change of topology.
+  void refitChangedTree(const deformable::VertexFrames& frames);
 
   std::size_t treeMemUsage() const;
 

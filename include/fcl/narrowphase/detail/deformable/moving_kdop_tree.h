@@ -104,14 +104,15 @@ struct alignas(64) TreeVertex {
   MovingKdop box;
 };
 
+class TopologyDifference;
 struct TreeChildren;
 struct TreeStructure;
 
 /// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
 /// The structure is made by build() or from the links of another tree; refit() sets the
-/// boxes for a pair of frames; restructure() renews what has aged. Triangles and vertices
-/// lie in the order in which the tree meets them, so that neighbours on the surface are
-/// neighbours in memory.
+/// boxes for a pair of frames; restructure() renews what has aged; changeTopology()
+/// follows a mesh that breaks. Triangles and vertices lie in the order in which the tree
+/// meets them, so that neighbours on the surface are neighbours in memory.
 ///
 /// Nodes lie in one array in the order of a walk, children after their parents: what is
 /// below a node lies together and is refit in one backward pass.
@@ -143,6 +144,19 @@ class MovingKdopTree {
   /// @return whether the structure has changed; not if there is no memory for it
   bool restructure();
 
+  /// @brief Follows a mesh that tears, breaks, grows or loses parts: nodes stay as they
+  /// are unless triangles come to them or leave them. Leaves no boxes behind; an
+  /// exception leaves the tree as it was.
+  /// @param triangles  at least one, indices below frames.size() (not checked here)
+  /// @param origins  for each of them the number of the one before that it was or was cut
+  /// from, -1 for one that comes to where it lies in frame 0; a hint: no answer depends
+  /// on it
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  /// @pre refit() has set the boxes
+  void changeTopology(const Triangle* triangles, std::size_t num_triangles,
+                      const std::vector<int>& origins, const VertexFrames& frames,
+                      int num_threads = 1);
+
   const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   std::size_t numNodes() const { return nodes_.size(); }
 
@@ -173,6 +187,7 @@ class MovingKdopTree {
     float box, triangles;
   };
   class Restructuring;
+  class TopologyUpdate;
 
   /// The box as it would be had it only grown as its triangles have.
   static float expectedBox(const NodeSize& first, const NodeSize& now) {
@@ -182,6 +197,12 @@ class MovingKdopTree {
   void adopt(const Restructuring& restructuring);
   void arrange(const TreeStructure& structure, const Triangle* triangles,
                std::size_t num_vertices, int num_threads);
+  void place(const TreeStructure& structure, const Triangle* triangles,
+             std::size_t num_vertices, int num_threads);
+  void takeMemory(const MovingKdopTree& other, const TreeStructure& structure);
+  void become(MovingKdopTree&& next, const TreeStructure& structure) noexcept;
+  void inherit(const MovingKdopTree& before, const TopologyDifference& difference,
+               int num_threads);
   void findSubtrees(const TreeStructure& structure);
   void placeVertices(std::size_t num_vertices);
   void setNodes(const TreeStructure& structure, int num_threads);

@@ -42,6 +42,13 @@ class VertexFans {
   /// @param num_threads  as in parallelFor()
   VertexFans(const VertexCorners& corners, int num_threads);
 
+  /// @brief Takes over the fans that other ones have, and makes the others.
+  /// @param old_places  of the vertex at each place, among those of `before`; ~0: its fan
+  /// is made from the corners
+  /// @param new_places  of the vertices of `before` that are spokes of those taken over
+  VertexFans(const VertexFans& before, const std::vector<std::uint32_t>& old_places,
+             const std::vector<std::uint32_t>& new_places, const VertexCorners& corners);
+
   /// @brief Follows the vertices to other places; needs no memory.
   /// @param before  a copy of these fans
   /// @param new_places  of the vertex at each place
