@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -13,6 +16,7 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
+#include "fcl/narrowphase/detail/deformable/rigid_tree.h"
 #include "fcl/narrowphase/detail/traversal/collision_node.h"
 #include "test_models.h"
 
@@ -181,6 +185,54 @@ TEST(TraversalNode, AgreesOnRigidMeshes) {
   };
   EXPECT_GT(expected.contacts.size(), 100u);
   EXPECT_EQ(points(rowsOf(result)), points(rowsOf(expected)));
+}
+
+/// How many nodes of a rigid tree, from node i on, hold triangles and a child of nothing
+/// but triangles that takes the node's place where a traversal reads them.
+int countDisplaced(const detail::deformable::RigidTree& tree, int i) {
+  detail::deformable::MovingKdopNode node, child;
+  tree.open(i, node);
+  int count = 0;
+  bool is_displaced = false;
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (node.isTriangle(lane)) continue;
+    const int k = node.child[lane];
+    tree.open(k, child);
+    is_displaced |= node.triangles() != 0 && child.triangles() == child.lanes() &&
+                    (k - i) % detail::deformable::RigidTreeReader::kSlots == 0;
+    count += countDisplaced(tree, k);
+  }
+  return count + is_displaced;
+}
+
+/// Separate triangles with corners on a grid, where many touch, and so uneven that nodes
+/// of FCL's tree hold single triangles beside large subtrees.
+TestMesh unevenSoup(int count, std::uint64_t seed) {
+  TestMesh mesh = makeTriangleSoup(count, 1, 0.5, seed);
+  for (Vector3<double>& p : mesh.vertices)
+    for (int k = 0; k < 3; ++k) p[k] = std::round(24 * p[k] * p[k] * p[k]);
+  return mesh;
+}
+
+// A node that is compared with its children keeps what it holds, whichever nodes are read
+// meanwhile.
+TEST(TraversalNode, AgreesOnRigidMeshesWithThemselves) {
+  using Plain = BVHModel<OBBRSS<double>>;
+  using Model = DeformableBVHModel<OBBRSS<double>>;
+  int count = 0;
+  for (std::uint64_t seed = 1; seed <= 100 && count < 10; ++seed) {
+    const TestMesh mesh = unevenSoup(150, seed);
+    const auto rigid = makeModel<Plain>(mesh);
+    const detail::deformable::RigidTree tree(*rigid, detail::deformable::Pose());
+    if (countDisplaced(tree, 0) == 0) continue;
+    ++count;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    expectSameContacts(selfContacts<double>(*rigid),
+                       selfContacts<double>(*makeModel<Model>(mesh)));
+    expectNodeAgrees<double>({rigid, nullptr}, 50);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_EQ(count, 10);
 }
 
 TEST(TraversalNode, CrossingAloneIsOneContact) {

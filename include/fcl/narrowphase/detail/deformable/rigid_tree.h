@@ -107,6 +107,9 @@ class RigidTree {
 /// FCL's nodes stays in a small table, since a node is met in many pairs. For one thread.
 class RigidTreeReader {
  public:
+  /// @brief Nodes whose numbers differ by a multiple of it take each other's place.
+  static constexpr int kSlots = 64;  // 68 KiB of nodes
+
   explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
     std::fill(made_, made_ + kSlots, -1);
   }
@@ -122,7 +125,6 @@ class RigidTreeReader {
   }
 
  private:
-  static constexpr int kSlots = 64;  // 68 KiB of nodes
   const RigidTree& tree_;
   int made_[kSlots];
   MovingKdopNode node_[kSlots];
