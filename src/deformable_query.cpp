@@ -296,9 +296,9 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
   std::vector<NodePair> works;
   std::vector<TaskAnswer> answers(1);
   const bool parallel = numThreads(options.num_threads) > 1;
-  StageTimes first_times;
-  TrianglePairTest first(a, b, shift, task_options, &progress, 0);
-  scene.visitPart(schedule, first, first_times, [&](auto& part) {
+  StageTimes opening_times;
+  TrianglePairTest opening(a, b, shift, task_options, &progress, 0);
+  scene.visitPart(schedule, opening, opening_times, [&](auto& part) {
     part.divide(works);
     answers.resize(1 + works.size());
     if (parallel) return;
@@ -310,8 +310,8 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
       answers[i + 1].take(task);
     }
   });
-  answers[0].take(first);
-  answers[0].times = first_times;
+  answers[0].take(opening);
+  answers[0].times = opening_times;
   if (parallel)
     parallelFor(works.size(), options.num_threads, [&](std::size_t i) {
       TrianglePairTest task(a, b, shift, task_options, &progress, i + 1);
