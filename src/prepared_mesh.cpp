@@ -2,8 +2,10 @@
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <type_traits>
 #include <utility>
 
@@ -80,20 +82,35 @@ void requireFinite(const Vector3<S>* vertices, int count, const std::string& wha
 }
 
 /// What is finite can be posed out of range. Boxes of that are unbounded, the root's too:
-/// where this one has bounds no vertex is looked at.
-void requireFinite(const MovingKdopTree& tree, const std::string& name) {
+/// where this one has bounds no vertex has to be looked at.
+bool areBoxesBounded(const MovingKdopTree& tree) {
   const MovingKdopNode& root = tree.node(0);
   float most = 0;
   for (const MovingKdopNode::Row& row : root.rows)
     for (int lane = 0; lane < root.count; ++lane)
       most = std::max(most, std::max(row.t0[lane], row.t1[lane]));
-  if (std::isfinite(most)) return;
+  return std::isfinite(most);
+}
+
+/// Whether no translation takes a vertex of the tree out of range. Half of the range is
+/// more than what rounds here and in reach().
+bool stayInRange(const MovingKdopTree& tree, const double (&translation)[2][3]) {
+  double most = 0;
+  for (const auto& step : translation)
+    for (int k = 0; k < 3; ++k)
+      most = std::max(most, std::abs(tree.origin()[k]) + std::abs(step[k]));
+  return most + tree.reach() <= 0.5 * DBL_MAX;
+}
+
+/// @param frames  posed
+void requireFinite(const MovingKdopTree& tree, const VertexFrames& frames,
+                   const std::string& name) {
   for (const TreeTriangle& triangle : tree.triangles())
-    for (int k = 0; k < 3; ++k) {
-      const TreeVertex& x = tree.vertices()[triangle.place[k]];
-      for (int i = 0; i < 3; ++i)
-        if (!std::isfinite(x.t0[i]) || !std::isfinite(x.t1[i]))
-          throw Exception(name + ": vertex " + std::to_string(triangle.id[k]) +
+    for (const std::uint32_t id : triangle.id) {
+      const VertexPath path = frames[id];
+      for (int k = 0; k < 3; ++k)
+        if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
+          throw Exception(name + ": vertex " + std::to_string(id) +
                           ", posed, is not finite");
     }
 }
@@ -131,7 +148,13 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
     instance_.frames = mesh->frames();
     instance_.frames.setPoses(beginning, end);
     instance_.tree = &mesh->movingTree();
-    if (beginning.isTranslation() && end.isTranslation()) return;
+    if (beginning.isTranslation() && end.isTranslation()) {
+      const DefaultFloatingPoint mode;
+      if (instance_.frames.isPosed() &&
+          !stayInRange(mesh->movingTree(), instance_.translation))
+        requireFinite(mesh->movingTree(), instance_.frames, name);
+      return;
+    }
     tree_ = mesh->movingTree();
     refit(name, num_threads);
     return;
@@ -205,7 +228,7 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
   const auto start = std::chrono::steady_clock::now();
   const DefaultFloatingPoint mode;
   tree_.refit(instance_.frames, num_threads);
-  requireFinite(tree_, name);
+  if (!areBoxesBounded(tree_)) requireFinite(tree_, instance_.frames, name);
   instance_.tree = &tree_;
   // The boxes are posed already.
   for (auto& translation : instance_.translation)

@@ -15,6 +15,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/math/motion/translation_motion.h"
+#include "fcl/narrowphase/continuous_candidates.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -392,6 +393,38 @@ TEST(ContinuousContacts, VerticesPosedOutOfRangeAreRefused) {
   const TestMesh next = moved(large, 0, 0, 1e300);
   check(*makeModel<Model>(large, next), *makeModel<Model>(kA0, kA1));
   check(*makeModel<BVHModel<AABB<double>>>(large, next), *makeModel<Model>(kA0, kA1));
+}
+
+// Nothing is made anew for a translation, and yet it is noticed before the query.
+TEST(ContinuousContacts, VerticesMovedOutOfRangeAreRefused) {
+  constexpr double kLarge = 1.6e308;
+  const Pose here = Pose::Identity();
+  TestMesh large;
+  large.vertices = {{0, 0, 0}, {1, 0, 0}, {0, kLarge, 0}};
+  large.triangles = {Triangle(0, 1, 2)};
+  const auto o1 = makeModel<Model>(large, moved(large, 1, 0, 0)),
+             o2 = makeModel<Model>(moved(large, 0, 0, -1), moved(large, 0, 0, 1));
+  for (const ContinuousQuery query :
+       {ContinuousQuery::kAll, ContinuousQuery::kFirst, ContinuousQuery::kAny})
+    for (const bool late : {false, true})
+      for (const double y : {kLarge, -kLarge, 1., -1.}) {
+        Pose away = here;
+        away.translation()[1] = y;
+        Request request;
+        request.query = query;
+        Result result;
+        const auto collide = [&] {
+          continuousCollide(o1.get(), late ? here : away, late ? away : here, o2.get(),
+                            here, here, request, result);
+          continuousCandidates(o1.get(), late ? here : away, late ? away : here, o2.get(),
+                               here, here,
+                               [](const auto*, std::size_t) { return false; });
+        };
+        if (y == kLarge)
+          expectRefused(collide, "o1: vertex 2, posed, is not finite");
+        else
+          EXPECT_NO_THROW(collide());
+      }
 }
 
 template <typename Request, typename Result, typename = void>

@@ -41,7 +41,7 @@ class PreparedMesh {
   /// poses
   /// @throws fcl::Exception  model not built or being updated, or too large, pose or
   /// frame not finite, vertex index out of range, a vertex that leaves the range of
-  /// double where boxes are made for its pose
+  /// double in its pose (not of a rigid mesh, whose vertices are not looked at)
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
                const Transform3<S>& tf_end, const std::string& name, int num_threads = 1,
