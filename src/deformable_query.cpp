@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <limits>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
@@ -116,9 +118,13 @@ class Part {
     for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
       const std::size_t last = std::min(first + schedule_.block, count_);
       const double latest = leaves_->latest();
-      for (; first < last; ++first) {
-        const LeafPair& p = block_[first];
-        if (p.earliest <= latest) leaves_->visit(p.a, p.b, p.earliest);
+      try {
+        for (; first < last; ++first) {
+          const LeafPair& p = block_[first];
+          if (p.earliest <= latest) leaves_->visit(p.a, p.b, p.earliest);
+        }
+      } catch (const NonFiniteVertex& error) {
+        leaves_->refuse(error, block_[first++].earliest);
       }
       leaves_->flush();
     }
@@ -228,6 +234,7 @@ struct TaskAnswer {
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};
+  std::optional<QueryError> error;
   StageCounts counts;
   StageTimes times;
 
@@ -236,9 +243,29 @@ struct TaskAnswer {
     has_crossing = leaves.hasCrossing();
     crossing = leaves.crossing();
     contacts = leaves.sink().takeContacts();
+    error = leaves.error();
     counts = leaves.counts();
   }
 };
+
+/// Throws what the query has to end with, whatever the tasks did in what order: the error
+/// of the first task that has an answer or an error; of a first-contact query the
+/// earliest error, unless the first contact is earlier than its triangles meet.
+void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& options,
+                const QueryProgress& progress) {
+  const double latest = options.goal == QueryGoal::kFirst
+                            ? progress.first_hi.load()
+                            : std::numeric_limits<double>::infinity();
+  const std::size_t last = progress.answered_by.load();
+  const QueryError* earliest = nullptr;
+  for (std::size_t i = 0; i < tasks.size() && i <= last; ++i) {
+    const std::optional<QueryError>& error = tasks[i].error;
+    if (error && error->earliest <= latest &&
+        (!earliest || error->earliest < earliest->earliest))
+      earliest = &*error;
+  }
+  if (earliest) throw NonFiniteVertex(earliest->vertex);
+}
 
 /// The answers of all tasks as one, which does not depend on how the tasks went: the
 /// first task that has a crossing tells it, a first-contact query keeps only what may be
@@ -320,6 +347,7 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
       answers[i + 1].take(task);
     });
 
+  throwError(answers, options, progress);
   QueryAnswer answer =
       merge(answers, options, progress.first_hi.load(), !a.hasOwners() || !b.hasOwners());
   // Wall time, divided as the tasks' own; what is left is the tests'.

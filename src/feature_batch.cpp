@@ -20,7 +20,8 @@ bool isFinite(const TreeVertex& x) {
 }  // namespace
 
 NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
-    : std::domain_error("vertex " + std::to_string(vertex) + " is not finite") {}
+    : std::domain_error("vertex " + std::to_string(vertex) + " is not finite"),
+      vertex_(vertex) {}
 
 TriangleReader::TriangleReader(const MeshInstance& mesh)
     : mesh_(mesh), direct_(mesh.isInPlace()) {}

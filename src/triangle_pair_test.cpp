@@ -44,6 +44,14 @@ TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
       progress_(progress),
       task_(task) {}
 
+void TrianglePairTest::refuse(const NonFiniteVertex& error, float earliest) {
+  if (error_ && error_->earliest <= earliest) return;
+  error_ = QueryError{earliest, error.vertex()};
+  if (!progress_) return;
+  QueryProgress::lower(progress_->first_hi, double{earliest});
+  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+}
+
 void TrianglePairTest::flush() {
   batch_.cull(latest(), counts_);
   testCrossings();
@@ -190,7 +198,10 @@ void TrianglePairTest::testCrossings() {
                     start(face_on_a, 1), start(face_on_a, 2)))
       continue;
     has_crossing_ = true;
-    if (progress_ && hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+    if (progress_ && hasAnswer()) {
+      QueryProgress::lower(progress_->answered_by, task_);
+      if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+    }
     const bool self = batch_.isSelf();
     const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
                        &face = c.edge_on_a ? *c.pair->b : *c.pair->a;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cfenv>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -282,6 +283,109 @@ TEST(FCL_THREADS, exceptionsComeThrough) {
     for (const int threads : {2, 4, 0}) EXPECT_EQ(messageOf(threads), message) << threads;
   for (const int v : {77, 200, 333, 500}) rigid->vertices[v][2] = 1;
   EXPECT_EQ(messageOf(0), "nothing thrown");
+}
+
+/// What a query ends with: an answer, or an error.
+struct Outcome {
+  Result result;
+  std::string error;
+
+  Outcome(const Scene& scene, const Request& request) {
+    try {
+      result = scene.run(request);
+    } catch (const Exception& thrown) {
+      error = thrown.what();
+    }
+  }
+};
+
+/// A wavy sheet that comes down on another, with boxes that meet long before they touch.
+struct Approach {
+  /// The gap between them at one end, and how much wider it is at the other.
+  double gap, slope;
+  double way;
+  /// Height of two vertices of the lower sheet.
+  double spike;
+
+  TestMesh upper() const { return sheet(gap, slope); }
+  TestMesh lower() const {
+    TestMesh mesh = sheet(0, 0);
+    Random random(31);
+    for (Vector3<double>& p : mesh.vertices) p += random.point(0.003);
+    for (int i = 0; i < 2; ++i)
+      mesh.vertices[random.index(mesh.vertices.size())].z() += spike;
+    return mesh;
+  }
+
+ private:
+  static TestMesh sheet(double height, double slope) {
+    return makeSheet(32, 32, [=](double u, double v) {
+      return Vector3<double>(
+          u, v, height + slope * u + 0.2 * std::sin(12 * v) * std::cos(12 * u));
+    });
+  }
+};
+
+// Whether a query comes to a vertex that is not finite before it has its answer: in the
+// first scene few tasks have an answer to kAny, in the second one errors come earlier and
+// later than the first contact.
+TEST(FCL_THREADS, errorsWithAnyNumber) {
+  for (const Approach& approach : {Approach{0.05, 0, 0.03, 0.05}, {0.2, 0.4, 1, 0}}) {
+    const TestMesh upper = approach.upper();
+    const auto lower = makeModel<Plain>(approach.lower());
+    int failed = 0, answered = 0;
+    for (const ContinuousQuery query : kQueries)
+      for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const auto rigid = makeModel<Plain>(upper);
+        Random random(seed);
+        for (int i = 0; i < 2; ++i)
+          rigid->vertices[random.index(upper.vertices.size())][1] =
+              std::numeric_limits<double>::quiet_NaN();
+        const Scene scene{"broken", rigid, lower, translation(0, 0, -approach.way)};
+        const Outcome one(scene, requestOf(query, kNoLimit, 1e-4, 1));
+        ++(one.error.empty() ? answered : failed);
+        for (int i = 0; i < 3; ++i)
+          for (const int threads : {2, 4}) {
+            SCOPED_TRACE("query " + std::to_string(static_cast<int>(query)) + ", seed " +
+                         std::to_string(seed) + ", " + std::to_string(threads) +
+                         " threads");
+            const Outcome several(scene, requestOf(query, kNoLimit, 1e-4, threads));
+            ASSERT_EQ(several.error, one.error);
+            expectSame(several.result, one.result);
+            if (HasFailure()) return;
+          }
+      }
+    EXPECT_GT(failed, 8);
+    EXPECT_GT(answered, 1);
+  }
+}
+
+// A first-contact query fails where a vertex may be in the first contact, and not where
+// its triangles come near only later.
+TEST(FCL_THREADS, firstContactBeforeAnError) {
+  const TestMesh upper = moved(bentSheet(16), 0, 0, 1);
+  const auto lower = makeModel<Plain>(makeSheet(16, 16));
+  const auto rigid = makeModel<Plain>(upper);
+  const Scene scene{"broken", rigid, lower, translation(0, 0, -1.5)};
+  const Request request = requestOf(ContinuousQuery::kFirst, kNoLimit, 1e-4, 1);
+  const double toc = scene.run(request).time_of_contact;
+  const auto lowest =
+      std::min_element(upper.vertices.begin(), upper.vertices.end(),
+                       [](const auto& x, const auto& y) { return x.z() < y.z(); });
+  for (std::size_t v = 0; v < upper.vertices.size(); v += 3) {
+    const double height = upper.vertices[v].z() - lowest->z();
+    if (height > 0 && height < 0.15) continue;
+    const Vector3<double> place = rigid->vertices[v];
+    rigid->vertices[v][1] = std::numeric_limits<double>::quiet_NaN();
+    const Outcome outcome(scene, request);
+    rigid->vertices[v] = place;
+    if (height == 0) {
+      EXPECT_EQ(outcome.error, "vertex " + std::to_string(v) + " is not finite");
+    } else {
+      EXPECT_EQ(outcome.error, "");
+      EXPECT_EQ(outcome.result.time_of_contact, toc);
+    }
+  }
 }
 
 // The caller's floating-point mode changes no answer, and is the same afterwards.

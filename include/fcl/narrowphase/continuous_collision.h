@@ -28,7 +28,10 @@ namespace fcl {
 ///
 /// @throws fcl::Exception that names the object, when a mesh is not built or is in the
 /// middle of an update, holds a coordinate that is not finite, a triangle index out of
-/// range, or when the request is not usable (toc_err not positive, num_max_contacts 0).
+/// range, or when the request is not usable (toc_err not positive, num_max_contacts 0). A
+/// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
+/// that cannot change the answer (too late for the first contact, or, with kAny, behind
+/// what has the answer) may go unnoticed, for any number of threads alike.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
 /// at t = 0; 1 without collision.
 /// @{

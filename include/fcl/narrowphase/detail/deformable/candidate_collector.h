@@ -32,6 +32,9 @@ class CandidateCollector {
   /// @throws NonFiniteVertex
   void visit(int i, int j, float) { batch_.add(i, j, false, counts_); }
 
+  /// @brief What visit() threw ends the query: all candidates are wanted.
+  [[noreturn]] void refuse(const NonFiniteVertex& error, float) { throw error; }
+
   /// @brief Hands out what is there.
   void flush();
 

@@ -26,6 +26,11 @@ namespace deformable {
 class NonFiniteVertex : public std::domain_error {
  public:
   explicit NonFiniteVertex(std::size_t vertex);
+
+  std::size_t vertex() const { return vertex_; }
+
+ private:
+  std::size_t vertex_;
 };
 
 /// @brief Reads the triangles of one mesh: those of a tree as they lie there, others into

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/contact_sink.h"
@@ -33,9 +34,10 @@ struct QueryOptions {
 /// @brief What the tasks of one query tell each other, so that none does what cannot
 /// change the answer; which task comes first is known whatever the threads do.
 struct QueryProgress {
-  /// Upper end of the earliest bracket so far.
+  /// Upper end of the earliest bracket so far; an error stands for a contact from when on
+  /// its triangles may touch.
   std::atomic<double> first_hi{1};
-  /// The lowest task that has the answer on its own.
+  /// The lowest task that has the answer on its own, or an error in place of it.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
 
   template <typename T>
@@ -44,6 +46,13 @@ struct QueryProgress {
     while (to < now && !value.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
     }
   }
+};
+
+/// @brief A vertex that is not finite, of two triangles whose boxes overlap from
+/// `earliest` on.
+struct QueryError {
+  float earliest;
+  std::size_t vertex;
 };
 
 /// @brief An edge of one mesh that passes through a face of the other at t = 0.
@@ -77,6 +86,13 @@ class TrianglePairTest {
   void visit(int i, int j, float earliest) {
     batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
   }
+
+  /// @brief Notes what visit() threw for a pair; the pair is left out. Whether the query
+  /// fails is known when all tasks have ended: another may have the answer before.
+  void refuse(const NonFiniteVertex& error, float earliest);
+
+  /// @brief The earliest of the errors that were noted, the first one of these.
+  const std::optional<QueryError>& error() const { return error_; }
 
   /// @brief Tests what visit() has taken.
   void flush();
@@ -121,6 +137,9 @@ class TrianglePairTest {
 
   bool hasAnswer() const {
     if (has_crossing_ && options_.stop_at_crossing) return true;
+    // No contact is earlier than the start.
+    if (error_ && (options_.goal != QueryGoal::kFirst || error_->earliest <= 0.f))
+      return true;
     return options_.goal == QueryGoal::kAny &&
            (!sink_.contacts().empty() || has_crossing_);
   }
@@ -151,6 +170,7 @@ class TrianglePairTest {
   std::size_t task_;
   bool has_crossing_{false};
   Crossing crossing_{};
+  std::optional<QueryError> error_;
   StageCounts counts_;
 };
 
