@@ -17,8 +17,7 @@
 #define HWY_ATTR
 #endif
 
-#if !defined(FCL_CCD_USE_HIGHWAY) || \
-    defined(FCL_CCD_LANES_INCLUDED) == defined(HWY_TARGET_TOGGLE)
+#if defined(FCL_CCD_LANES_INCLUDED) == defined(HWY_TARGET_TOGGLE)
 #ifdef FCL_CCD_LANES_INCLUDED
 #undef FCL_CCD_LANES_INCLUDED
 #else

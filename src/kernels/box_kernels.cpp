@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Boxes against boxes: of nodes, triangles and features.
+#include <algorithm>
+#include <cfloat>
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/box_kernels.cpp"
+#include "hwy/foreach_target.h"
+#endif
+
+#include "kernels/kernel_functions.h"
+#include "kernels/lanes.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+/// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and
+/// s1 at its ends, how much of it is lost before and after.
+template <std::size_t N>
+HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
+                        Lanes<float, N>& before, Lanes<float, N>& after) {
+  const Lanes<float, N> least = smaller(s0, s1), most = larger(s0, s1);
+  const Lanes<float, N> loss = least / (least - most) * broadcast<N>(kLossDown);
+  before = larger(before, whereNegative(s0, loss));
+  after = larger(after, whereNegative(s1, loss));
+}
+
+template <std::size_t kStride>
+HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+                                    bool timed,
+                                    float (&earliest)[MovingKdopNode::kWidth]) {
+  constexpr std::size_t kRows = 16;
+  Floats s0[kRows], s1[kRows];
+  Floats apart = broadcast<kEight>(1.f), cut0 = apart, cut1 = apart;
+  for (std::size_t r = 0; r < kRows; ++r) {
+    // Row r ^ 1 is the opposite half-axis.
+    s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
+    s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.rows[r ^ 1].t1);
+    apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
+    cut0 = eitherNegative(cut0, s0[r]);
+    cut1 = eitherNegative(cut1, s1[r]);
+  }
+  const unsigned left = ~signs(apart) & node.lanes();
+  if (left == 0) return 0;
+  // A window that is cut at one end only is not empty.
+  if ((signs(timed ? cut0 : bothNegative(cut0, cut1)) & left) == 0) {
+    store(whereNegative(cut0, broadcast<kEight>(FLT_MIN)), earliest);
+    return left;
+  }
+  Floats before = broadcast<kEight>(0.f), after = before;
+  for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);
+  const Floats hi = broadcast<kEight>(kWindowEnd) - after;
+  store(before, earliest);
+  return left & bits(before <= hi);
+}
+
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node, bool timed,
+                           float (&earliest)[MovingKdopNode::kWidth]) {
+  return box.stride == 1 ? overlapChildren<1>(box, node, timed, earliest)
+                         : overlapChildren<BoxView::kInNode>(box, node, timed, earliest);
+}
+
+/// Which of the node's triangles have one of `count` vertices (places in the tree).
+HWY_INLINE unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
+                                const MovingKdopNode& node) {
+  const auto first = load<kEight>(node.places[0]), second = load<kEight>(node.places[1]),
+             third = load<kEight>(node.places[2]);
+  unsigned found = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto place = broadcast<kEight>(places[i]);
+    found |= bits((first == place) | (second == place) | (third == place));
+  }
+  return found;
+}
+
+/// The triangles of a node that lie in an embedded fan with a triangle of another.
+HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
+                                    const MovingKdopNode& b,
+                                    const std::uint8_t* embedded) {
+  std::uint32_t places[3];
+  std::size_t count = 0;
+  for (const auto& row : a.places) {
+    places[count] = row[lane];
+    count += embedded[row[lane]];
+  }
+  return trianglesAt(places, count, b);
+}
+
+template <bool kShifted>
+HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
+  const MovingKdopNode &a = leaves.a, &b = leaves.b;
+  const unsigned triangles = b.triangles();
+  for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    float earliest[MovingKdopNode::kWidth];
+    unsigned left = triangles;
+    if (&a == &b) left &= ~((2U << lane) - 1);
+    if (left == 0) continue;
+    if constexpr (kShifted) {
+      float moved[2][16];
+      for (std::size_t r = 0; r < 16; ++r) {
+        moved[0][r] = std::max(a.rows[r].t0[lane] + leaves.shift[0][r], kLeastHalf);
+        moved[1][r] = std::max(a.rows[r].t1[lane] + leaves.shift[1][r], kLeastHalf);
+      }
+      left &= overlapChildren<1>({moved[0], moved[1], 1}, b, leaves.timed, earliest);
+    } else {
+      const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode};
+      left &= overlapChildren<BoxView::kInNode>(box, b, leaves.timed, earliest);
+    }
+    if (left != 0 && leaves.embedded) {
+      const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
+      out.fan_culled += static_cast<std::size_t>(__builtin_popcount(fan));
+      left &= ~fan;
+    }
+    for (; left != 0; left &= left - 1, ++out.size) {
+      const int other = __builtin_ctz(left);
+      out.a[out.size] = static_cast<std::uint8_t>(lane);
+      out.b[out.size] = static_cast<std::uint8_t>(other);
+      out.earliest[out.size] = earliest[other];
+    }
+  }
+}
+
+void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
+  out.size = out.fan_culled = 0;
+  leaves.shift ? overlapTriangles<true>(leaves, out)
+               : overlapTriangles<false>(leaves, out);
+}
+
+std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
+                         std::uint32_t* codes) {
+  std::size_t size = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const unsigned mask = masks[i] & kept;
+    storeCounted(mask, featureCode(static_cast<std::uint32_t>(i), 0), codes + size);
+    size += static_cast<std::size_t>(__builtin_popcount(mask));
+  }
+  return size;
+}
+
+/// A moving box at both times.
+struct MovingBox {
+  HalfAxes t0, t1;
+};
+
+HWY_INLINE MovingBox boxOf(const TreeVertex& x) {
+  return {load<16>(x.box.t0.half), load<16>(x.box.t1.half)};
+}
+
+HWY_INLINE MovingBox merge(const MovingBox& a, const MovingBox& b) {
+  return {larger(a.t0, b.t0), larger(a.t1, b.t1)};
+}
+
+/// The overlap depths of a pair of features at both times. Which feature comes first does
+/// not matter but for the shift.
+HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::size_t bit,
+                            const KdopShift* shift, const KdopShift* turned_shift) {
+  MovingBox first, second;
+  const KdopShift* add = shift;
+  if (kind == FeatureKind::kVertexFace) {
+    // The vertex, and where the other triangle begins.
+    const bool on_a = bit < 3;
+    const TreeVertex* const* face = pair.x + (on_a ? 3 : 0);
+    first = boxOf(*pair.x[bit]);
+    second = merge(merge(boxOf(*face[0]), boxOf(*face[1])), boxOf(*face[2]));
+    add = on_a ? shift : turned_shift;
+  } else {
+    const unsigned char(&ends)[4] = kFeaturePoints[bit];
+    first = merge(boxOf(*pair.x[ends[0]]), boxOf(*pair.x[ends[1]]));
+    second = merge(boxOf(*pair.x[ends[2]]), boxOf(*pair.x[ends[3]]));
+  }
+  if (add) {
+    const HalfAxes least = broadcast<16>(kLeastHalf);
+    first.t0 = larger(first.t0 + load<16>(add->t0.half), least);
+    first.t1 = larger(first.t1 + load<16>(add->t1.half), least);
+  }
+  return {first.t0 + swapHalves(second.t0), first.t1 + swapHalves(second.t1)};
+}
+
+template <FeatureKind kind, bool kShifted>
+HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
+                                    const KdopShift* turned_shift, float latest,
+                                    std::uint32_t* codes, std::size_t count,
+                                    TimeWindow* windows) {
+  // Two loops: the first one has no branch that depends on the boxes.
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t code = codes[i];
+    const MovingBox s =
+        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
+               kShifted ? turned_shift : nullptr);
+    codes[left] = code;
+    left += !isAnyNegative(bothNegative(s.t0, s.t1));
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < left; ++i) {
+    const std::uint32_t code = codes[i];
+    const MovingBox s =
+        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
+               kShifted ? turned_shift : nullptr);
+    HalfAxes before = broadcast<16>(0.f), after = before;
+    addLoss(s.t0, s.t1, before, after);
+    const float lo = largest(before), hi = kWindowEnd - largest(after);
+    codes[kept] = code;
+    windows[kept] = {lo, hi < 1.f ? hi : 1.f};
+    kept += lo <= (hi < latest ? hi : latest);
+  }
+  return kept;
+}
+
+std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
+                           const KdopShift* shift, const KdopShift* turned_shift,
+                           float latest, std::uint32_t* codes, std::size_t count,
+                           TimeWindow* windows) {
+  constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+  const auto cull = kind == kVf
+                        ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
+                        : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
+  return cull(pairs, shift, turned_shift, latest, codes, count, windows);
+}
+
+std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
+                          const KdopShift* turned_shift, std::uint32_t* codes,
+                          std::size_t count) {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint32_t code = codes[i];
+    const std::size_t edge = code % 16, on_b = edge / 3, k = edge % 3;
+    const TreeVertex* const* mine = pairs[code / 16].x + 3 * on_b;
+    const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
+    HalfAxes ends =
+        larger(load<16>(mine[k]->box.t0.half), load<16>(mine[(k + 1) % 3]->box.t0.half));
+    if (shift)
+      ends = larger(ends + load<16>((on_b ? turned_shift : shift)->t0.half),
+                    broadcast<16>(kLeastHalf));
+    const HalfAxes all =
+        larger(larger(load<16>(face[0]->box.t0.half), load<16>(face[1]->box.t0.half)),
+               load<16>(face[2]->box.t0.half));
+    codes[left] = code;
+    left += !isAnyNegative(ends + swapHalves(all));
+  }
+  return left;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The elementary test of eight pairs: coplanarity filter, solve, division of windows.
+#if defined(FCL_CCD_USE_HIGHWAY)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/elementary_kernels.cpp"
+#include "hwy/foreach_target.h"
+#endif
+
+#include "error_bounds.h"
+#include "kernels/kernel_functions.h"
+#include "kernels/lanes.h"
+#include "kernels/vectors.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+/// A difference of two points that moves linearly, at the ends of the window, and its
+/// norm over the step.
+struct Segments {
+  Vectors l, h;
+  Doubles norm;
+};
+
+/// The points of eight pairs at both times.
+struct Points {
+  Vectors t0[4], t1[4];
+
+  HWY_INLINE explicit Points(const EightPairs& pairs) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double *rows0[kEight], *rows1[kEight];
+      for (std::size_t lane = 0; lane < kEight; ++lane) {
+        rows0[lane] = pairs.x[i][lane]->t0;
+        rows1[lane] = pairs.x[i][lane]->t1;
+      }
+      loadColumns(rows0, t0[i].x, t0[i].y, t0[i].z);
+      loadColumns(rows1, t1[i].x, t1[i].y, t1[i].z);
+    }
+  }
+};
+
+/// As Difference::at(); 0 and 1 need no case of their own, but what is not finite in one
+/// frame shows at all times.
+HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
+  const Doubles s = broadcast<kEight>(1.) - t;
+  return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
+}
+
+/// Differences of two points of each pair over the step, and their norms.
+struct Differences {
+  Vectors t0, t1;
+  Doubles norm;
+};
+
+HWY_INLINE Differences differences(const Points& x, std::size_t p, std::size_t q) {
+  const Vectors t0 = x.t0[p] - x.t0[q], t1 = x.t1[p] - x.t1[q];
+  return {t0, t1, max(max(maxNorm(t0), maxNorm(t1)), broadcast<kEight>(kLeastNorm))};
+}
+
+HWY_INLINE Segments restrict(const Differences& d, const Doubles& lo, const Doubles& hi) {
+  return {at(d.t0, d.t1, lo), at(d.t0, d.t1, hi), d.norm};
+}
+
+/// Volume and normal over a part of the step, as in solveCoplanarity().
+struct Quadratics {
+  Vectors c0, c1, c2;
+  Doubles norm;
+};
+
+HWY_INLINE Quadratics cross(const Segments& a, const Segments& b) {
+  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
+          a.norm * b.norm};
+}
+
+HWY_INLINE DoubleMask isInRange(const Doubles& size) {
+  return (size >= broadcast<kEight>(kTiny)) & (size <= broadcast<kEight>(kHuge));
+}
+
+struct Cubics {
+  Doubles b0, b1, b2, b3, outer, inner;
+  DoubleMask has_bounds;
+
+  HWY_INLINE Doubles at(const Doubles& s) const {
+    const Doubles r = broadcast<kEight>(1.) - s;
+    return r * r * (b0 * r + b1 * s) + s * s * (b2 * r + b3 * s);
+  }
+  HWY_INLINE DoubleMask hasNoRoot() const {
+    const Doubles zero = broadcast<kEight>(0.), outer_n = zero - outer,
+                  inner_n = zero - inner;
+    return has_bounds &
+           (((b0 > outer) & (b1 > inner) & (b2 > inner) & (b3 > outer)) |
+            ((b0 < outer_n) & (b1 < inner_n) & (b2 < inner_n) & (b3 < outer_n)));
+  }
+  HWY_INLINE DoubleMask changesSign() const {
+    const Doubles outer_n = broadcast<kEight>(0.) - outer;
+    return has_bounds &
+           (((b0 > outer) & (b3 < outer_n)) | ((b0 < outer_n) & (b3 > outer)));
+  }
+};
+
+HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
+  const Doubles size = u.norm * n.norm;
+  return {dot(u.l, n.c0),
+          dot(u.h, n.c0) + dot(u.l, n.c1),
+          dot(u.h, n.c1) + dot(u.l, n.c2),
+          dot(u.h, n.c2),
+          broadcast<kEight>(kOuterBound) * size,
+          broadcast<kEight>(kInnerBound) * size,
+          isInRange(size) & isInRange(n.norm)};
+}
+
+EightCoplanarities coplanarityOfEight(const EightPairs& pairs) {
+  const bool vf = pairs.kind == FeatureKind::kVertexFace;
+  const Points x(pairs);
+  const Doubles lo = load<kEight>(pairs.lo), hi = load<kEight>(pairs.hi);
+  const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
+  const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
+  const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
+  const Cubics f = spannedVolume(u, cross(v, w));
+  // min() and max() pick a NaN on the right, as the scalar filter does: there, inner
+  // ones.
+  const Doubles scale = broadcast<kEight>(kInnerScale);
+  const Doubles b1 = scale * f.b1, b2 = scale * f.b2;
+  const Doubles least = min(min(f.b0, b1), min(f.b3, b2)),
+                most = max(max(f.b0, b1), max(f.b3, b2));
+  const Doubles norm = max(max(u.norm, v.norm), w.norm), zero = broadcast<kEight>(0.),
+                bound = broadcast<kEight>(kOuterBound) * (norm * norm * norm);
+  const unsigned signs_agree = bits(((least > zero) | (most < zero)) &
+                                    (norm > broadcast<kEight>(kLeastFilterNorm)) &
+                                    (norm < broadcast<kEight>(kMostFilterNorm)));
+  const unsigned clear = bits((least > bound) | (most < zero - bound));
+  return {0xffU & ~signs_agree, signs_agree & ~clear};
+}
+
+/// The differences that the inside conditions use, see Pair in elementary_test.cpp.
+struct Pairs {
+  bool vf;
+  Differences u, v, w, r, q;
+
+  HWY_INLINE explicit Pairs(const EightPairs& pairs)
+      : Pairs(Points(pairs), pairs.kind == FeatureKind::kVertexFace) {}
+
+ private:
+  HWY_INLINE Pairs(const Points& x, bool is_vf)
+      : vf(is_vf),
+        u(vf ? differences(x, 0, 1) : differences(x, 2, 0)),
+        v(vf ? differences(x, 2, 1) : differences(x, 1, 0)),
+        w(vf ? differences(x, 3, 1) : differences(x, 3, 2)),
+        r(vf ? differences(x, 2, 0) : differences(x, 1, 2)),
+        q(differences(x, 3, 0)) {}
+};
+
+/// Where all inside conditions are surely met, and where one is surely not.
+struct Sides {
+  DoubleMask positive, negative;
+
+  HWY_INLINE void require(const Quadratics& q, const Quadratics& n) {
+    const Doubles size = q.norm * n.norm;
+    const DoubleMask valid = isInRange(size) & isInRange(q.norm) & isInRange(n.norm);
+    const Doubles bound = broadcast<kEight>(kInsideBound) * size,
+                  minus = broadcast<kEight>(0.) - bound;
+    const Doubles c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
+                          dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
+                          dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
+    DoubleMask above = valid, below = valid;
+    for (const Doubles& ck : c) {
+      above = above & (ck > bound);
+      below = below & (ck < minus);
+    }
+    positive = positive & above;
+    negative = negative | below;
+  }
+};
+
+HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
+                            const Segments& u, const Segments& v, const Segments& w,
+                            const Quadratics& n) {
+  const Segments r = restrict(pairs.r, lo, hi), q = restrict(pairs.q, lo, hi);
+  const Doubles zero = broadcast<kEight>(0.);
+  Sides sides = {zero <= zero, zero < zero};
+  sides.require(cross(u, w), n);
+  if (pairs.vf) {
+    sides.require(cross(v, u), n);
+    sides.require(cross(r, q), n);
+  } else {
+    sides.require(cross(r, w), n);
+    sides.require(cross(u, v), n);
+    sides.require(cross(v, q), n);
+  }
+  return sides;
+}
+
+/// Where the cubics that change sign are zero, by false position (Illinois), each until
+/// it moves by no more than its tolerance: no lane's answer depends on the others.
+HWY_INLINE Doubles root(const Cubics& f, const Doubles& tolerance) {
+  constexpr int kMaxSteps = 24;
+  const Doubles zero = broadcast<kEight>(0.), half = broadcast<kEight>(0.5);
+  Doubles a = zero, b = broadcast<kEight>(1.), fa = f.b0, fb = f.b3, x = zero;
+  DoubleMask moves = zero <= zero;
+  for (int i = 0; i < kMaxSteps; ++i) {
+    const Doubles next = a + (b - a) * (fa / (fa - fb));
+    const Doubles fx = f.at(next);
+    const DoubleMask moved = abs(next - x) > tolerance;
+    x = select(moves, next, x);
+    moves = moves & moved;
+    if (bits(moves) == 0) break;
+    // The end that the root is not at: kept, its value halved.
+    const DoubleMask beyond = ((fx > zero) & (fb > zero)) | ((fx < zero) & (fb < zero));
+    a = select(beyond, a, b);
+    fa = select(beyond, half * fa, fb);
+    b = next;
+    fb = fx;
+  }
+  return x;
+}
+
+EightAnswers solveEight(const EightPairs& x, double toc_err) {
+  const Pairs pairs(x);
+  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
+  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
+                 w = restrict(pairs.w, lo, hi);
+  const Cubics f = spannedVolume(u, cross(v, w));
+  EightAnswers answers;
+  answers.yes = 0;
+  answers.no = bits(f.hasNoRoot());
+  const unsigned open = bits(f.changesSign());
+  if (open == 0) return answers;
+
+  // [a, b] around the root: before it and behind it there is none.
+  const Doubles half = broadcast<kEight>(0.25 * toc_err);
+  const Doubles t = lo + root(f, broadcast<kEight>(0.125) * half / width) * width;
+  const Doubles a = max(lo, t - half), b = min(hi, t + half);
+  const Segments ua = restrict(pairs.u, a, b), va = restrict(pairs.v, a, b),
+                 wa = restrict(pairs.w, a, b);
+  const Quadratics na = cross(va, wa);
+  const Sides sides = insideness(pairs, a, b, ua, va, wa, na);
+  const unsigned crosses = bits(spannedVolume(ua, na).changesSign());
+  const auto isFree = [&](const Doubles& from, const Doubles& to) HWY_ATTR {
+    const Segments us = restrict(pairs.u, from, to), vs = restrict(pairs.v, from, to),
+                   ws = restrict(pairs.w, from, to);
+    return bits(spannedVolume(us, cross(vs, ws)).hasNoRoot() | (from >= to));
+  };
+  const unsigned first = open & isFree(lo, a);
+  answers.yes = first & crosses & bits(sides.positive);
+  const unsigned outside = first & bits(sides.negative);
+  if (outside != 0) answers.no |= outside & isFree(b, hi);
+  store(a, answers.toc_lo);
+  store(b, answers.toc_hi);
+  return answers;
+}
+
+/// Where the cubics that have one sign at 0 and at 1 come nearest to zero in between, as
+/// far as doubles tell: of b0's sign, the lowest point; 1/2 where there is none.
+HWY_INLINE Doubles nearestToZero(const Cubics& f) {
+  const Doubles zero = broadcast<kEight>(0.), three = broadcast<kEight>(3.),
+                half = broadcast<kEight>(0.5);
+  // The slope has Bernstein coefficients e0, e1, e2; it rises through zero at s / (1 - s)
+  // = (q - e1) / e2 = -e0 / (q + e1), q^2 = e1^2 - e0 e2.
+  const DoubleMask below = f.b0 < zero;
+  const auto turned = [&](const Doubles& e)
+                          HWY_ATTR { return select(below, zero - e, e); };
+  const Doubles e0 = turned(f.b1 - three * f.b0), e1 = turned(f.b2 - f.b1),
+                e2 = turned(three * f.b3 - f.b2);
+  const Doubles q = squareRoot(e1 * e1 - e0 * e2);
+  const DoubleMask is_late = e1 < zero;
+  const Doubles part = select(is_late, q - e1, zero - e0),
+                rest = select(is_late, e2, q + e1);
+  const Doubles s = part / (part + rest);
+  return select((s > zero) & (s < broadcast<kEight>(1.)), s, half);
+}
+
+EightDivisions divideEight(const EightPairs& x) {
+  const Pairs pairs(x);
+  const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
+  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
+                 w = restrict(pairs.w, lo, hi);
+  const Quadratics n = cross(v, w);
+  EightDivisions out;
+  out.never_inside = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
+  const Cubics f = spannedVolume(u, n);
+  out.divisible = bits(f.has_bounds & (abs(f.b0) > f.outer) & (abs(f.b3) > f.outer));
+  const Doubles s = nearestToZero(f);
+  store(min(hi, lo + s * (hi - lo)), out.at);
+  return out;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the tables of kernels.cpp point to: each function once for each instruction set.
+// See kernels.h.
+//
+// Included once for each of Highway's targets, hence no ordinary include guard.
+#include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "kernels/lanes.h"
+
+#if defined(FCL_CCD_KERNEL_FUNCTIONS_INCLUDED) == defined(HWY_TARGET_TOGGLE)
+#ifdef FCL_CCD_KERNEL_FUNCTIONS_INCLUDED
+#undef FCL_CCD_KERNEL_FUNCTIONS_INCLUDED
+#else
+#define FCL_CCD_KERNEL_FUNCTIONS_INCLUDED
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node, bool timed,
+                           float (&earliest)[MovingKdopNode::kWidth]);
+void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out);
+std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
+                         std::uint32_t* codes);
+std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
+                           const KdopShift* shift, const KdopShift* turned_shift,
+                           float latest, std::uint32_t* codes, std::size_t count,
+                           TimeWindow* windows);
+std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
+                          const KdopShift* turned_shift, std::uint32_t* codes,
+                          std::size_t count);
+bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
+                   const VertexFan& fan);
+EightCoplanarities coplanarityOfEight(const EightPairs& pairs);
+EightAnswers solveEight(const EightPairs& pairs, double toc_err);
+EightDivisions divideEight(const EightPairs& pairs);
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
+
+#endif
