@@ -25,6 +25,7 @@ void DeformableMesh::changeTopology(const Triangle* triangles, std::size_t num_t
 }
 
 void DeformableMesh::refitTree(const deformable::VertexFrames& frames) {
+  const deformable::DefaultFloatingPoint mode;
   num_restructurings_ += tree_.restructure();
   refitChangedTree(frames);
 }

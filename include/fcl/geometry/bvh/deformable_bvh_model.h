@@ -36,8 +36,9 @@ enum class FclTree {
 /// before the call (before the begin... call, for a begin/end sequence), nothing is
 /// printed, and lastError() says what is wrong. An exception (std::bad_alloc) in
 /// endModel() leaves the model open, as an error does. An update that an exception ends
-/// may be half done: until updateFrames() or a replacement has given both frames, every
-/// query and copy of the model throws fcl::Exception and beginUpdateModel() is refused.
+/// may be half done: until updateFrames(), updateTopology() or a replacement has given
+/// both frames, every query and copy of the model throws fcl::Exception and
+/// beginUpdateModel() is refused.
 ///
 /// Inherited behaviour that differs from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
