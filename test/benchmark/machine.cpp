@@ -9,6 +9,8 @@
 #include <fstream>
 #include <thread>
 
+#include "fcl/narrowphase/detail/deformable/kernels.h"
+
 namespace fcl {
 namespace test {
 namespace {
@@ -39,6 +41,11 @@ std::string machineName() {
   for (char& c : name)
     if (c == ',' || c == '"') c = ' ';
   return name;
+}
+
+std::string libraryKernels() {
+  const std::string name = detail::deformable::kernels().name;
+  return name == "plain" || name == "SCALAR" || name == "EMU128" ? "scalar" : "vector";
 }
 
 void resetPeakMemory() {

@@ -10,6 +10,9 @@ namespace test {
 /// @brief Processor, number of cores and compiler, without commas.
 std::string machineName();
 
+/// @brief What the library's kernels are here: "vector" or "scalar".
+std::string libraryKernels();
+
 /// @brief From here on peakMegabytes() counts anew; memory that was freed is given back
 /// to the system first.
 void resetPeakMemory();

@@ -4,7 +4,6 @@
 #include <cstdint>
 
 #include "mesh_io.h"
-#include "render.h"
 
 namespace fcl {
 namespace test {
@@ -37,7 +36,14 @@ Look lookOf(SceneRole role, int body) {
   }
 }
 
-Camera cameraOf(SceneKind kind) {
+Look lookOfVertex(const SceneFrame& frame, std::size_t v) {
+  const int body = frame.body_of[v];
+  return lookOf(frame.roles[static_cast<std::size_t>(body)], body);
+}
+
+}  // namespace
+
+Camera sceneCamera(SceneKind kind) {
   Camera camera;
   camera.vertical_view_angle = 0.46;
   switch (kind) {
@@ -70,13 +76,6 @@ Camera cameraOf(SceneKind kind) {
   return camera;
 }
 
-Look lookOfVertex(const SceneFrame& frame, std::size_t v) {
-  const int body = frame.body_of[v];
-  return lookOf(frame.roles[static_cast<std::size_t>(body)], body);
-}
-
-}  // namespace
-
 Image drawFrame(SceneKind kind, const SceneFrame& frame, int width, int height) {
   PaintedMesh scene;
   scene.mesh = {frame.accepted, frame.triangles};
@@ -90,7 +89,7 @@ Image drawFrame(SceneKind kind, const SceneFrame& frame, int width, int height) 
   options.width = width;
   options.height = height;
   options.fade_end = 2;
-  return render(scene, {}, cameraOf(kind), options);
+  return render(scene, {}, sceneCamera(kind), options);
 }
 
 std::string encodeFrame(const SceneFrame& frame,

@@ -6,9 +6,13 @@
 
 #include "image.h"
 #include "paper_scenes.h"
+#include "render.h"
 
 namespace fcl {
 namespace test {
+
+/// @brief Where a scene is seen from.
+Camera sceneCamera(SceneKind kind);
 
 /// @brief A picture of a frame's end; cloth in two colours, solids in one each.
 Image drawFrame(SceneKind kind, const SceneFrame& frame, int width, int height);

@@ -10,7 +10,6 @@
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "machine.h"
 #include "rows.h"
 #include "swept_query.h"
@@ -116,11 +115,6 @@ int allThreads() {
 #else
   return 1;
 #endif
-}
-
-std::string libraryKernels() {
-  const std::string name = detail::deformable::kernels().name;
-  return name == "plain" || name == "SCALAR" || name == "EMU128" ? "scalar" : "vector";
 }
 
 void useScalarKernels() {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "machine.h"
 #include "rows.h"
 #include "table.h"
 

@@ -34,9 +34,6 @@ constexpr const char* kPaperVectorKernels = "vector (paper)";
 /// @brief So many threads the library uses where all are allowed.
 int allThreads();
 
-/// @brief "vector" or "scalar".
-std::string libraryKernels();
-
 /// @brief From here on the library's kernels are those that need no vector instructions,
 /// if it has any. To be called before all else here, which chooses the kernels for the
 /// process.

@@ -59,7 +59,7 @@ double quantile(std::vector<double>& values, double q) {
 
 }  // namespace
 
-void Errors::add(const Truth& truth, bool contact, double toc) {
+void AnswerErrors::add(const Truth& truth, bool contact, double toc) {
   if (truth.contact) ++contacts;
   if (truth.contact && !contact) ++false_negatives;
   if (!truth.contact && contact) ++false_positives;
@@ -70,8 +70,8 @@ void Errors::add(const Truth& truth, bool contact, double toc) {
   }
 }
 
-Errors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set) {
-  Errors errors;
+AnswerErrors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set) {
+  AnswerErrors errors;
   for (std::size_t i = 0; i < answers.size(); ++i)
     errors.add(set.truth[i], answers[i].contact, answers[i].toc);
   return errors;

@@ -14,7 +14,7 @@ namespace test {
 
 /// @brief Wrong answers, and by how much the time of contact is wrong in pairs that touch
 /// and are found to.
-struct Errors {
+struct AnswerErrors {
   std::size_t contacts{0};  ///< true ones
   std::size_t false_negatives{0};
   std::size_t false_positives{0};
@@ -45,7 +45,7 @@ struct Run {
 /// sake is slow each time.
 Run run(const Method& method, const QuerySet& set, int repeats);
 
-Errors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set);
+AnswerErrors errorsOf(const std::vector<MethodAnswer>& answers, const QuerySet& set);
 
 /// @brief Share of the queries that each stage decided.
 std::array<double, 4> stageShares(const std::vector<MethodAnswer>& answers);

@@ -20,7 +20,7 @@ std::string number(double value, const char* format = "%.1f") {
   return text;
 }
 
-std::string errorFields(const QuerySet& set, const Errors& errors) {
+std::string errorFields(const QuerySet& set, const AnswerErrors& errors) {
   return std::to_string(set.queries.size()) + ',' + std::to_string(errors.contacts) +
          ',' + std::to_string(errors.false_negatives) + ',' +
          std::to_string(errors.false_positives) + ',' + number(errors.max_late, "%.3g") +
