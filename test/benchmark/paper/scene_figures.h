@@ -61,7 +61,8 @@ struct SceneFigures {
 using Score = std::function<Errors(std::size_t i, const FrameAnswer& answer)>;
 
 /// @brief Runs a method through the frames. A frame's time is the least of as many
-/// queries as the effort says, one after the other.
+/// queries as the effort says, one after the other. Before every fifth frame the method
+/// may renew its structure, which is not measured.
 MethodFigures measureMethod(const ListedMethod& listed, const FrameFolder& folder,
                             const Effort& effort, const Score& score);
 

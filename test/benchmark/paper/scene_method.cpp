@@ -61,6 +61,12 @@ class EarlierMethod final : public SceneMethod {
     baseline_ = makeBaseline(frame, method_);
   }
 
+  void renew(const FramePairMesh& frame) override {
+    std::unique_ptr<Baseline> fresh = makeBaseline(frame, method_);
+    if (fresh->step(frame).total() < baseline_->step(frame).total())
+      baseline_ = std::move(fresh);
+  }
+
   FrameAnswer query(const FramePairMesh& frame) override {
     BaselineStep step = baseline_->step(frame);
     FrameAnswer answer;

@@ -38,6 +38,11 @@ class SceneMethod {
   /// @brief Takes in a frame whose topology is not that of the frame before.
   virtual void takeTopology(const FramePairMesh& frame) = 0;
 
+  /// @brief Goes on with a structure made for this frame, if it is faster than the one
+  /// that was kept. Methods that look after their structure by themselves have nothing to
+  /// do.
+  virtual void renew(const FramePairMesh&) {}
+
   virtual FrameAnswer query(const FramePairMesh& frame) = 0;
 };
 
