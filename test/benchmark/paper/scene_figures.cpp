@@ -12,9 +12,9 @@ namespace fcl {
 namespace test {
 namespace {
 
-/// Frames until a method may renew its structure: trees that are only refitted make the
-/// earlier methods take twice the time on balls that mix, while ones made anew each time
-/// cost a third on skirts, whose layers they do not tell apart.
+/// Frames until a method may renew its structure. Trees that are only refitted make the
+/// earlier methods take up to twice the time on balls that mix; where layers lie on each
+/// other one made for the frame can be the slower.
 constexpr std::size_t kRenewal = 5;
 
 template <typename Figure>
