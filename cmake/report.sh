@@ -1,46 +1,54 @@
 # shellcheck shell=bash
-# What the reports of speed have in common. Sourced by speed.sh and speed_error.sh; a
+# What the reports have in common. Sourced by speed.sh, speed_error.sh and paper.sh; a
 # report NAME is what the program fcl_ccd_NAME writes, tables and pictures are made by
 # test/benchmark/NAME.
 
-# fcl_ccd_begin_report NAME [DATA_FOLDER] [OPTION ...]
+# fcl_ccd_build_report NAME [TARGET ...]
 #
-# Installs what is missing (Debian), builds in Release and measures. Goes to the project's
-# folder. Sets `out`, where the tables are, and `sources`.
-fcl_ccd_begin_report() {
+# Installs what is missing (Debian), builds in Release: the report's program, and TARGETs.
+# Goes to the project's folder. Sets `out`, where the tables are, and `sources`.
+fcl_ccd_build_report() {
   local name=$1
   shift
-  data=
-  if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
-    data=$(cd "$1" && pwd)
-    shift
-  fi
-  has_options=$#
   cd "$(dirname "${BASH_SOURCE[0]}")/.." || return
   # shellcheck source=cmake/dependencies.sh
   source cmake/dependencies.sh
   fcl_ccd_install_dependencies build gnuplot-nox
   cmake --preset release
-  cmake --build --preset release -j "$(nproc)" --target "fcl_ccd_$name"
+  cmake --build --preset release -j "$(nproc)" --target "fcl_ccd_$name" "$@"
 
   out=build/$name
   # shellcheck disable=SC2034
   sources=test/benchmark/$name
+}
+
+# fcl_ccd_begin_report NAME [DATA_FOLDER] [OPTION ...]
+#
+# Builds and measures. Sets `is_whole`: whether everything was measured.
+fcl_ccd_begin_report() {
+  local name=$1 data=
+  shift
+  if [ $# -gt 0 ] && [ "${1#-}" = "$1" ]; then
+    data=$(cd "$1" && pwd)
+    shift
+  fi
+  is_whole=false
+  if [ -n "$data" ] && [ $# -eq 0 ]; then is_whole=true; fi
+  fcl_ccd_build_report "$name"
   rm -rf "$out"
   "build/release/test/fcl_ccd_$name" "$out" ${data:+--data "$data"} "$@"
 }
 
 # fcl_ccd_end_report PAGE FILE ...
 #
-# Copies the files of `out` to doc/results where everything was measured, and says where
-# the page is.
+# Copies the files of `out` to doc/results if `is_whole`, and says where the page is.
 fcl_ccd_end_report() {
-  if [ -z "$data" ]; then
-    echo "Without a data folder: what is generated only. doc/results stays as it is."
-  elif [ "$has_options" -eq 0 ]; then
+  if $is_whole; then
     mkdir -p doc/results
     (cd "$out" && cp "$@" ../../doc/results/)
     out=doc/results
+  else
+    echo "Not everything was measured: doc/results stays as it is."
   fi
   echo "Tables and pictures: $out/$1"
 }

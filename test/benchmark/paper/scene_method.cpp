@@ -15,7 +15,8 @@ namespace {
 
 using Model = DeformableBVHModel<>;
 
-/// Above it feature boxes alone take a minute a frame.
+/// Above it feature boxes alone, which take several times as long as all others, are not
+/// worth the time.
 constexpr std::size_t kMostForFeatureBoxes = 1000000;
 
 void expect(int code, const Model& model) {

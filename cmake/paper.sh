@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Installs what is missing (Debian), builds in Release, simulates the scenes of the paper's
+# evaluation and runs its experiments on them; doc/reproduction.md explains the report.
+#   bash cmake/paper.sh                            # everything: about three hours
+#   bash cmake/paper.sh --short                    # small scenes: minutes
+#   bash cmake/paper.sh --scenes balls alphabets   # some of them
+# Frames go to build/scenes (8 GiB), or build/scenes_short, and are kept: what is there is
+# not simulated again. Tables, pictures and page go to build/paper; those of everything
+# also replace the ones in doc/results. Other options are handed to fcl_ccd_paper.
+set -euo pipefail
+# shellcheck source=cmake/report.sh
+source "$(dirname "$0")/report.sh"
+
+is_whole=true
+is_short=false
+scenes=(cloth flamenco princess balls alphabets lion)
+options=()
+while [ $# -gt 0 ]; do
+  is_whole=false
+  case $1 in
+    --short) is_short=true ;;
+    --scenes)
+      scenes=()
+      while [ $# -gt 1 ] && [ "${2#-}" = "$2" ]; do
+        scenes+=("$2")
+        shift
+      done
+      ;;
+    *) options+=("$1") ;;
+  esac
+  shift
+done
+frames=build/scenes
+if $is_short; then
+  frames=build/scenes_short
+  case " ${options[*]-} " in
+    *" --every "*) ;;
+    *) options+=(--every 3) ;;
+  esac
+fi
+
+# Of the lion a hundredth is as much as a tenth of the others. frames.csv is written last.
+fcl_ccd_simulate() {
+  local scene=$1 scale=1
+  if [ -f "$frames/$scene/frames.csv" ]; then return; fi
+  case $is_short-$scene in
+    true-lion) scale=0.01 ;;
+    true-*) scale=0.1 ;;
+  esac
+  build/release/test/fcl_ccd_scenes "$frames" --meshes --scenes "$scene" \
+    --scale "$scale" --threads "$(nproc)"
+}
+
+fcl_ccd_build_report paper fcl_ccd_scenes
+for scene in "${scenes[@]}"; do fcl_ccd_simulate "$scene"; done
+rm -rf "$out"
+build/release/test/fcl_ccd_paper "$out" --frames "$frames" --scenes "${scenes[@]}" \
+  "${options[@]}"
+gnuplot -e "folder='$out'; scripts='$sources'" "$sources/plot.gp"
+tables=("$out"/{paper_scenes,table1,figure6,figure8,figure9,figure10,filter}.csv
+  "$out"/paper_topologies.csv)
+awk -F, -f "$sources/tables.awk" "${tables[@]}" >"$out/paper.md"
+fcl_ccd_end_report paper.md table1.{csv,png} figure{6,8,9,10}.{csv,png} filter.csv \
+  paper_{scenes,topologies}.csv
