@@ -35,12 +35,14 @@ PaintedMesh paint(const FramePairMesh& frame) {
   return scene;
 }
 
-/// Each edge as a row of dots, half a pixel apart.
+/// Each edge as a row of dots, half a pixel apart; without the ground's, which are long
+/// and would cross the picture.
 std::vector<Marker> dotted(const TestedEdges& edges, const Colour& colour,
                            const Camera& camera) {
   std::vector<Marker> dots;
   for (const TestedEdges::Segment& s : edges.edges) {
     const Vector3<double> p(s[0], s[1], s[2]), q(s[3], s[4], s[5]);
+    if (p[2] == 0 && q[2] == 0) continue;
     const double pixel = (p - camera.eye).norm() * 2 *
                          std::tan(0.5 * camera.vertical_view_angle) / kHeight;
     const double steps = std::max(1., std::ceil((q - p).norm() / (0.5 * pixel)));
@@ -71,7 +73,8 @@ Image drawPanel(const PaintedMesh& scene, const Camera& camera, const TestedEdge
 Image drawTestedEdges(SceneKind kind, const FramePairMesh& frame,
                       const TestedEdgeSets& sets) {
   const PaintedMesh scene = paint(frame);
-  const Camera camera = sceneCamera(kind);
+  Camera camera = sceneCamera(kind);
+  camera.eye = camera.target + 0.75 * (camera.eye - camera.target);
   Image picture(3 * kWidth, kHeight, RenderOptions().background);
   paste(picture, drawPanel(scene, camera, sets.boxes, 0x1d5fa8, "BOXES"), 0, 0);
   paste(picture, drawPanel(scene, camera, sets.plain, 0x1e8449, "AND THE FILTER"), kWidth,

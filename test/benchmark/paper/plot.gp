@@ -63,7 +63,7 @@ shown = scenes('figure10')
 if (words(shown) > 0) {
   set output folder.'/figure10.png'
   set yrange [0:1]
-  set multiplot layout 1, words(shown) margins 0.06, 0.985, 0.24, 0.92 spacing 0.045
+  set multiplot layout 1, words(shown) margins 0.07, 0.985, 0.24, 0.92 spacing 0.045
   unset key
   do for [scene in shown] {
     if (scene eq word(shown, words(shown))) {
