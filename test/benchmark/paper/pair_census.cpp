@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "brute_force.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "scene_method.h"
 #include "speed_error/plain_solvers.h"
@@ -17,12 +16,16 @@ namespace deformable = detail::deformable;
 using deformable::FeatureKind;
 using deformable::FeaturePoints;
 
+/// Times are not asked for.
+constexpr double kTocErr = 1;
+
 /// Who is told of the pairs: a TouchTest is a plain function.
 const PairVisitor* visitor_of_pairs = nullptr;
 
 bool touchAndTell(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
                   const CoplanarityCubic<double>& cubic) {
-  const bool is_contact = doTouch(kind, x);
+  const bool is_contact = deformable::elementaryTest(kind, x, 0, 1, kTocErr).answer ==
+                          deformable::Answer::kYes;
   (*visitor_of_pairs)({kind, x, is_contact, cubic.hasOneSign()});
   return is_contact;
 }

@@ -46,7 +46,7 @@ using PairVisitor = std::function<void(const MetPair& pair)>;
 class SweptPairs {
  public:
   /// @brief Decides each pair by itself, by the library's elementary test over the whole
-  /// step: what is found owes nothing to the library's tree, windows, fans or filter.
+  /// step: what is found owes nothing to the library's tree, boxes and fans.
   /// @return the contacts, sorted
   std::vector<PairName> visit(const FramePairMesh& frame, const PairVisitor& visitor);
 
