@@ -4,7 +4,7 @@
 #   bash cmake/paper.sh                            # everything: about three hours
 #   bash cmake/paper.sh --short                    # small scenes: minutes
 #   bash cmake/paper.sh --scenes balls alphabets   # some of them
-# Frames go to build/scenes (8 GiB), or build/scenes_short, and are kept: what is there is
+# Frames go to build/scenes (4 GiB), or build/scenes_short, and are kept: what is there is
 # not simulated again. Tables, pictures and page go to build/paper; those of everything
 # also replace the ones in doc/results. Other options are handed to fcl_ccd_paper.
 set -euo pipefail
