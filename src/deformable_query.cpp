@@ -56,7 +56,7 @@ class Part {
       : traversal_(tree_a, tree_b, shift, embedded, axes, kernels(), schedule.in_order),
         schedule_(schedule),
         leaves_(&leaves),
-        block_(schedule.block + maxStep()) {}
+        block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
 
   /// From here on for another task.
   void use(Leaves& leaves) { leaves_ = &leaves; }
@@ -100,18 +100,6 @@ class Part {
   }
 
  private:
-  /// A step finds at most so many triangle pairs. The most are those of a node with
-  /// itself: each two of its triangles, and each of them with the triangles of each other
-  /// child; 134 where four of eight children are triangles.
-  static constexpr std::size_t maxStep() {
-    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-    std::size_t most = LanePairs::kMax;
-    for (std::size_t triangles = 1; triangles <= kWidth; ++triangles)
-      most = std::max(most, triangles * (triangles - 1) / 2 +
-                                triangles * (kWidth - triangles) * kWidth);
-    return most;
-  }
-
   void step(const NodePair& work) {
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
       assert(count_ < block_.size());

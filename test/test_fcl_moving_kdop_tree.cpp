@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numeric>
@@ -526,6 +527,69 @@ TEST(FCL_MOVING_KDOP_TREE, traversalVisitsEveryOverlap) {
     EXPECT_LE(visitsOf(pa.body, pa.body, 0).size(), all);
   }
   EXPECT_GT(needed, 10000);
+}
+
+/// A binary tree, as MovingKdopTree::build() takes it, that makes a root of eight
+/// children: nodes of eight triangles, then single triangles.
+std::vector<std::int32_t> rootOfNodesAndTriangles(unsigned num_nodes) {
+  std::vector<std::int32_t> links(1);
+  std::int32_t next = 0;
+  const std::function<void(std::size_t, unsigned, unsigned)> fill =
+      [&](std::size_t node, unsigned depth, unsigned lane) {
+        const unsigned leaf_depth = depth >= 3 && lane % 8 < num_nodes ? 6 : 3;
+        if (depth >= leaf_depth) {
+          links[node] = ~next++;
+          return;
+        }
+        const std::size_t left = links.size();
+        links.resize(left + 2);
+        links[node] = static_cast<std::int32_t>(left);
+        // Lanes are filled level by level: the first turn is the lowest bit.
+        fill(left, depth + 1, lane);
+        fill(left + 1, depth + 1, lane | 1U << depth);
+      };
+  fill(0, 0, 0);
+  return links;
+}
+
+// No step finds more pairs than a query has room for, and one finds as many.
+TEST(FCL_MOVING_KDOP_TREE, pairsOfAStep) {
+  using SelfTraversal =
+      deformable::Traversal<true, const MovingKdopTree, const MovingKdopTree>;
+  std::size_t most = 0;
+  for (unsigned num_nodes = 0; num_nodes <= 8; ++num_nodes) {
+    const std::size_t count = 8 + 7 * num_nodes;
+    MovingMesh mesh;  // all triangles in one place
+    for (std::size_t i = 0; i < count; ++i) {
+      mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+      for (const Vector3<double>& p :
+           {Vector3<double>(0, 0, 0), Vector3<double>(1, 0, 0), Vector3<double>(0, 1, 0)})
+        mesh.t0.push_back(p);
+    }
+    mesh.t1 = mesh.t0;
+    MovingKdopTree tree;
+    tree.build(mesh.triangles.data(), count, mesh.t0.size(),
+               rootOfNodesAndTriangles(num_nodes));
+    tree.refit(VertexFrames(mesh.previous(), mesh.current(), mesh.t0.size()));
+    ASSERT_EQ(tree.node(0).count, 8);
+    ASSERT_EQ(tree.node(0).triangles(), 0xffU & (0xffU << num_nodes));
+    SelfTraversal traversal(tree, tree, nullptr, nullptr, nullptr, deformable::kernels(),
+                            false);
+    deformable::WorkList open;
+    traversal.start(open);
+    std::size_t all = 0;
+    while (open.size() > 0) {
+      const deformable::NodePair work = open[open.size() - 1];
+      open.cut(open.size() - 1);
+      std::size_t found = 0;
+      traversal.step(work, open, [&found](int, int, float) { ++found; });
+      EXPECT_LE(found, SelfTraversal::maxPairs());
+      most = std::max(most, found);
+      all += found;
+    }
+    EXPECT_EQ(all, count * (count - 1) / 2);
+  }
+  EXPECT_EQ(most, SelfTraversal::maxPairs());
 }
 
 // Trees of every small size, where nodes are full, nearly empty or mixed.

@@ -121,6 +121,18 @@ class Traversal {
                      kAllLanes, open, visit);
   }
 
+  /// @brief A step visits at most so many pairs. Those of two nodes have as many as these
+  /// have lanes; more are found where a node is opened with itself: each two of its
+  /// triangles, and each of them with those of every child that has only triangles, 134
+  /// if four of its children are triangles.
+  static constexpr std::size_t maxPairs() {
+    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+    std::size_t most = LanePairs::kMax;
+    for (std::size_t i = 1; kSelf && i <= kWidth; ++i)
+      most = std::max(most, i * (i - 1) / 2 + i * (kWidth - i) * kWidth);
+    return most;
+  }
+
   /// @brief Number of boxes that were compared.
   std::uint64_t compared() const { return compared_; }
 
