@@ -121,7 +121,12 @@ std::vector<ListedMethod> listMethods(std::size_t triangles) {
 }
 
 void takeFrame(DeformableBVHModel<>& model, const FramePairMesh& frame) {
-  model = Model();
+  if (model.isInStep()) {
+    expect(model.updateTopology(frame.triangles, {}, frame.previous[0].data(),
+                                frame.current[0].data(), frame.previous.size()),
+           model);
+    return;
+  }
   expect(model.beginModel(static_cast<int>(frame.triangles.size()),
                           static_cast<int>(frame.previous.size())),
          model);
