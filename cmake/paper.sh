@@ -57,8 +57,11 @@ rm -rf "$out"
 build/release/test/fcl_ccd_paper "$out" --frames "$frames" --scenes "${scenes[@]}" \
   "${options[@]}"
 gnuplot -e "folder='$out'; scripts='$sources'" "$sources/plot.gp"
-tables=("$out"/{paper_scenes,table1,figure6,figure8,figure9,figure10,filter}.csv
+simulations=("${scenes[@]/#/$frames/}")
+awk 'FNR == 1 { n = split(FILENAME, part, "/"); if (NR == 1) print "scene," $0; next }
+  { print part[n - 1] "," $0 }' "${simulations[@]/%//frames.csv}" >"$out/paper_frames.csv"
+tables=("$out"/{paper_scenes,paper_frames,table1,figure6,figure8,figure9,figure10,filter}.csv
   "$out"/paper_topologies.csv)
 awk -F, -f "$sources/tables.awk" "${tables[@]}" >"$out/paper.md"
 fcl_ccd_end_report paper.md table1.{csv,png} figure{6,8,9,10}.{csv,png} filter.csv \
-  paper_{scenes,topologies}.csv
+  paper_{scenes,frames,topologies}.csv

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# awk -F, -f tables.awk paper_scenes.csv table1.csv figure6.csv figure8.csv figure9.csv
+# awk -F, -f tables.awk paper_scenes.csv paper_frames.csv table1.csv figure6.csv figure8.csv figure9.csv
 #   figure10.csv filter.csv paper_topologies.csv > paper.md
 # The tables as a page to read, the paper's figures beside ours.
 
@@ -37,6 +37,7 @@ function row(first, last,   i, line) {
 function percent(share) { return share == "-" ? share : sprintf("%.0f%%", 100 * share) }
 
 FNR == 1 {
+  if (file == "paper_frames") printFrames()
   if (file == "table1") printTable1()
   file = FILENAME
   sub(/.*\//, "", file)
@@ -54,6 +55,33 @@ file == "paper_scenes" {
             "| contacts | contacts a triangle")
   }
   print row(1, 8)
+}
+
+file == "paper_frames" {
+  if (!($1 in frames)) simulated[++simulations] = $1
+  ++frames[$1]
+  density[$1] += $10
+  if ($10 > densest[$1]) densest[$1] = $10
+  dense[$1] += $10 >= 1
+  turnover[$1] += ($11 + $12) / 2
+  met[$1] += $8 + $9
+  crossings[$1] += $13
+  seconds[$1] += $17
+}
+
+function printFrames(   i, s) {
+  heading("Contacts over the frames",
+          "All frames of the simulation (paper_frames.csv): contacts a triangle, contacts " \
+          "that were none in the frame before or are none in the next one, queries of " \
+          "the simulator that met surfaces which cross, and what it needed.",
+          "scene | frames | mean | most | frames with at least 1 | started or ended in a " \
+          "frame | crossings | seconds")
+  for (i = 1; i <= simulations; ++i) {
+    s = simulated[i]
+    printf "| %s | %d | %.2f | %.2f | %d | %.0f%% | %d | %.0f |\n", s, frames[s],
+           density[s] / frames[s], densest[s], dense[s], 100 * turnover[s] / met[s],
+           crossings[s], seconds[s]
+  }
 }
 
 # Kept for two tables.
