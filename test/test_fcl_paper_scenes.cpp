@@ -4,6 +4,7 @@
 // each of them. Full size is checked where nothing needs to be simulated for it.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -109,6 +110,24 @@ TEST(FCL_PAPER_SCENES, sameSeedSameBits) {
     }
     EXPECT_NE(first.back().accepted, other.back().accepted);
   }
+}
+
+// Contacts make nothing faster: balls that fall into a bowl come to lie there.
+TEST(FCL_PAPER_SCENES, ballsStayInTheBowl) {
+  SceneOptions options;
+  options.scale = 0.08;
+  options.frames = 40;
+  Eigen::AlignedBox3d room;
+  generateScene(SceneKind::kBalls, options, [&](const SceneFrame& frame) {
+    Eigen::AlignedBox3d reach;
+    for (const Vec& p : frame.accepted) reach.extend(p);
+    if (frame.index == 0) room = reach;
+    const Vec spare = Vec::Constant(0.1 * room.sizes().maxCoeff());
+    const bool is_inside =
+        Eigen::AlignedBox3d(room.min() - spare, room.max() + spare).contains(reach);
+    EXPECT_TRUE(is_inside) << "frame " << frame.index;
+    return is_inside;
+  });
 }
 
 TEST(FCL_PAPER_SCENES, framesAreWholeAndContactsStartAndEnd) {

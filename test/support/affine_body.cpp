@@ -24,10 +24,12 @@ Vector3<double> AffineBody::setMasses(const std::vector<Vector3<double>>& rest,
     centre += masses[i] * rest[i];
   }
   centre /= mass;
+  radius = 0;
   Matrix3<double> moment = Matrix3<double>::Zero();
   for (std::size_t i = 0; i < rest.size(); ++i) {
     const Vector3<double> r = rest[i] - centre;
     moment += masses[i] * r * r.transpose();
+    radius = std::max(radius, r.norm());
   }
   inverse_mass = 1 / mass;
   inverse_moment = moment.inverse();
@@ -69,6 +71,13 @@ void AffineBody::finish(double dt) {
     velocity.shape = (end.shape - begin.shape) / dt;
   }
   begin = end;
+}
+
+void AffineBody::limitSpeed(double most) {
+  const double bound = speedBound();
+  if (bound <= most) return;
+  velocity.centre *= most / bound;
+  velocity.shape *= most / bound;
 }
 
 }  // namespace test

@@ -31,6 +31,7 @@ struct AffineBody {
   /// ids in the simulator's mesh
   std::vector<int> vertices;
   double inverse_mass{0};          // 1 / kg
+  double radius{0};                // of the particle farthest from the centre, at rest, m
   Matrix3<double> inverse_moment;  // of the sum of mass * rest * rest^T, 1 / (kg m^2)
   double frequency{std::numeric_limits<double>::infinity()};  // see SolidOptions
   AffineState begin;                                          // of the step
@@ -77,6 +78,14 @@ struct AffineBody {
 
   /// @brief Takes the velocity from the step and begins the next one.
   void finish(double dt);
+
+  /// @brief No particle is faster, m / s.
+  double speedBound() const {
+    return velocity.centre.norm() + radius * velocity.shape.norm();
+  }
+
+  /// @brief Slows the velocity as a whole to where speedBound() is no more.
+  void limitSpeed(double most);
 };
 
 }  // namespace test

@@ -238,6 +238,12 @@ void ClothSimulator::predict() {
   for (std::size_t v = 0; v < moved_.size(); ++v)
     if (pinned_to_[v] >= 0)
       moved_[v] = bodies_[pinned_to_[v]].step_motion * mesh_.vertices[v];
+  fastest_ = 0;
+  for (std::size_t v = 0; v < moved_.size(); ++v)
+    if (!is_movable_[v])
+      fastest_ = std::max(fastest_, (moved_[v] - mesh_.vertices[v]).norm() / dt);
+  for (const Solid& s : solids_) fastest_ = std::max(fastest_, s.body.speedBound());
+  fastest_ += dt * options_.gravity.norm();
   const double deforming_kept = std::exp(-options_.solid_damping * dt);
   for (Solid& s : solids_) s.body.predict(dt, options_.gravity, kept, deforming_kept);
   placeSolids();
@@ -278,7 +284,10 @@ void ClothSimulator::finishStep() {
   for (std::size_t v = 0; v < moved_.size(); ++v)
     velocities_[v] = (moved_[v] - mesh_.vertices[v]) / stepTime();
   dampNeighbours();
-  for (Solid& s : solids_) s.body.finish(stepTime());
+  for (Solid& s : solids_) {
+    s.body.finish(stepTime());
+    s.body.limitSpeed(fastest_);
+  }
   mesh_.vertices.swap(moved_);
   ++step_;
 }

@@ -318,6 +318,9 @@ class ClothSimulator {
   TopologyChange change_;
   double mean_edge_{0};
   double step_time_{0};
+  /// Speed of the fastest thing when the step begins, and what gravity adds. Contacts
+  /// pass motion on and make none: pushes, each of them right, may not add up to more.
+  double fastest_{0};
   std::int64_t step_{0};
   std::int64_t stopped_steps_{0};
   bool started_{false};
