@@ -30,7 +30,7 @@ void makeTables() {
   std::filesystem::create_directories(kFolder);
   const std::string scenes = "'" FCL_CCD_SCENES "' '" + kFolder + "' --meshes";
   runProgram(scenes + " --scenes cloth flamenco --scale 0.01 --frames 24");
-  runProgram(scenes + " --scenes alphabets --scale 0.1 --frames 30");
+  runProgram(scenes + " --scenes alphabets --scale 0.2 --frames 30");
   runProgram("'" FCL_CCD_PAPER "' '" + kFolder + "' --frames '" + kFolder +
              "' --scenes alphabets cloth flamenco --every 7 --repeats 1 --sample 500");
 }

@@ -27,7 +27,7 @@ SceneOptions smallScene(SceneKind kind) {
   SceneOptions options;
   switch (kind) {
     case SceneKind::kAlphabets:
-      options.scale = 0.1;
+      options.scale = 0.2;
       options.frames = 30;
       break;
     case SceneKind::kBalls:
