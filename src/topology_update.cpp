@@ -54,8 +54,9 @@ Entry* splitEntries(Entry* first, Entry* last) {
   int axis = 0;
   for (int k = 1; k < 3; ++k)
     if (all.width(k) > all.width(axis)) axis = k;
-  std::stable_sort(first, last, [axis](const Entry& a, const Entry& b) {
-    return a.place[axis] < b.place[axis];
+  std::sort(first, last, [axis](const Entry& a, const Entry& b) {
+    return a.place[axis] != b.place[axis] ? a.place[axis] < b.place[axis]
+                                          : a.child < b.child;
   });
   const auto count = static_cast<std::size_t>(last - first);
   std::vector<float> cost(count);
