@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tables.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
 #include "machine.h"
+#include "number.h"
 
 namespace fcl {
 namespace test {
 namespace {
-
-std::string number(double value, const char* format = "%.3f") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 /// A quotient; "-" where there is none.
 std::string ratio(double a, double b, const char* format = "%.2f") {

@@ -2,22 +2,16 @@
 #include "table.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
 #include "machine.h"
+#include "number.h"
 
 namespace fcl {
 namespace test {
 namespace {
-
-std::string number(double value, const char* format = "%.3f") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 std::string fields(const StepTimes& times) {
   return number(times.update) + ',' + number(times.traverse) + ',' + number(times.test) +

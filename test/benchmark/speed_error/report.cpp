@@ -1,24 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "report.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
 #include "machine.h"
 #include "measurement.h"
 #include "methods.h"
+#include "number.h"
 #include "operation_count.h"
 
 namespace fcl {
 namespace test {
 namespace {
 
-std::string number(double value, const char* format = "%.1f") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
+std::string tenths(double value) { return number(value, "%.1f"); }
 
 std::string errorFields(const QuerySet& set, const AnswerErrors& errors) {
   return std::to_string(set.queries.size()) + ',' + std::to_string(errors.contacts) +
@@ -28,8 +24,8 @@ std::string errorFields(const QuerySet& set, const AnswerErrors& errors) {
 }
 
 std::string timeFields(const Times& times) {
-  return number(times.ns_mean) + ',' + number(times.ns_median) + ',' +
-         number(times.ns_p999) + ',';
+  return tenths(times.ns_mean) + ',' + tenths(times.ns_median) + ',' +
+         tenths(times.ns_p999) + ',';
 }
 
 /// A filter as a stage: how much of what cannot touch it culls, and how many contacts.
@@ -51,8 +47,8 @@ Culling cullingOf(const std::vector<MethodAnswer>& answers,
 }
 
 std::string operationFields(const OperationCount& count) {
-  return number(count.additions) + ',' + number(count.multiplications) + ',' +
-         number(count.divisions);
+  return tenths(count.additions) + ',' + tenths(count.multiplications) + ',' +
+         tenths(count.divisions);
 }
 
 }  // namespace
@@ -100,7 +96,7 @@ void Report::addSolver(const QuerySet& set, const OutsideSolver& solver) {
   const OutsideAnswers outside = runOutsideSolver(solver, set);
   methods_ << set.name << ',' << solver.name << ','
            << (outside.own_clock ? "own clock" : "wall clock") << ','
-           << errorFields(set, errorsOf(outside.answers, set)) << number(outside.ns_mean)
+           << errorFields(set, errorsOf(outside.answers, set)) << tenths(outside.ns_mean)
            << ",,,,,,," << machine_ << std::endl;
 }
 
@@ -121,7 +117,7 @@ void Report::addFilters(const QuerySet& set) {
              << ','
              << number(static_cast<double>(culling.rightly_as_plain) / plain_rightly,
                        "%.6f")
-             << ',' << number(ns) << ',' << number(ns / plain_ns, "%.3f") << ','
+             << ',' << tenths(ns) << ',' << number(ns / plain_ns, "%.3f") << ','
              << operations << ',' << machine_ << std::endl;
   };
   for (const Method& stage : filters())
