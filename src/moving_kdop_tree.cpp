@@ -196,7 +196,8 @@ void MovingKdopTree::takeMemory(const MovingKdopTree& other,
     vertices_.reserve(num_vertices + num_vertices / 16);
 }
 
-/// Becomes another tree, which has all but nodes and vertices, and memory for these.
+/// Becomes another tree, which has all but nodes and vertices, and memory for these. On
+/// one thread: a task would need more.
 void MovingKdopTree::become(MovingKdopTree&& next,
                             const TreeStructure& structure) noexcept {
   if (next.nodes_.capacity() == 0) next.nodes_ = std::move(nodes_);

@@ -40,9 +40,11 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
   stays_.assign(before.size(), 0);
   int last = -1;
   for (std::size_t i = 0; i < num_triangles; ++i) {
-    origins_[i] = origins[i] < 0 ? kNone : slots[static_cast<std::size_t>(origins[i])];
-    if (origins[i] <= last) continue;
-    last = origins[i];
+    const int number = static_cast<int>(i);
+    const int origin = !origins.empty() ? origins[i] : i < before.size() ? number : -1;
+    origins_[i] = origin < 0 ? kNone : slots[static_cast<std::size_t>(origin)];
+    if (origin <= last) continue;
+    last = origin;
     is_same_[i] = stays_[origins_[i]] = 1;
   }
 }

@@ -24,7 +24,7 @@ class TopologyDifference {
 
   /// @param before  triangles in the order of a tree with so many vertices
   /// @param origins  for each new triangle the number of the one that it was or was cut
-  /// from, or -1
+  /// from, or -1; empty: the one of its number
   TopologyDifference(const std::vector<TreeTriangle>& before,
                      std::size_t num_places_before, const Triangle* triangles,
                      std::size_t num_triangles, std::size_t num_vertices,

@@ -100,16 +100,7 @@ class MovingKdopTree::TopologyUpdate {
   /// @param first_sizes  of each node; of a new one not yet known
   TreeStructure structure(std::size_t num_triangles,
                           std::vector<NodeSize>& first_sizes) const {
-    first_sizes.resize(nodes_.size());
-    const auto children = [&](std::int32_t i, std::size_t place) {
-      // The walk begins with 0.
-      const auto from = static_cast<std::size_t>(place == 0 ? root_ : i);
-      first_sizes[place] = first_sizes_[from];
-      return nodes_[from];
-    };
-    TreeStructure tree = inWalkOrder(num_triangles, children);
-    first_sizes.resize(tree.nodes.size());
-    return tree;
+    return walk(root_, nodes_, first_sizes_, num_triangles, first_sizes);
   }
 
  private:
@@ -132,8 +123,6 @@ class MovingKdopTree::TopologyUpdate {
   /// Four times the place of a triangle relative to the tree's origin, where it is when
   /// the step begins.
   void placeOf(std::uint32_t triangle, float (&place)[3]) const {
-    // Sums of places, and widths, must not overflow.
-    constexpr double kFarthest = 1e37;
     std::uint32_t ids[3];
     vertexIds(triangles_[triangle], ids);
     double sum[3] = {0, 0, 0};
@@ -142,20 +131,7 @@ class MovingKdopTree::TopologyUpdate {
       frames_.at(0, id, p);
       for (int k = 0; k < 3; ++k) sum[k] += p[k] - tree_.origin_[k];
     }
-    for (int k = 0; k < 3; ++k)
-      place[k] = static_cast<float>(
-          std::max(-kFarthest, std::min(kFarthest, sum[k] * (4. / 3))));
-  }
-
-  /// The same of a child of a node of the tree.
-  static void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
-    constexpr float kFarthest = 1e37f;
-    for (int k = 0; k < 3; ++k) {
-      const MovingKdopNode::Row &lo = node.rows[2 * k], &hi = node.rows[2 * k + 1];
-      const float sum = (hi.t0[lane] - lo.t0[lane]) + (hi.t1[lane] - lo.t1[lane]);
-      // Without bounds on both sides it is no number.
-      place[k] = sum == sum ? std::max(-kFarthest, std::min(kFarthest, sum)) : 0.f;
-    }
+    for (int k = 0; k < 3; ++k) place[k] = deformable::placeOf(sum[k] * (4. / 3));
   }
 
   /// The lowest node that a triangle lies next to: down the nearest boxes.
@@ -284,7 +260,7 @@ class MovingKdopTree::TopologyUpdate {
     for (std::int32_t part = first; part != kNoPart;) {
       const auto k = static_cast<std::size_t>(part);
       entries_.push_back(places_[k]);
-      if (is_one) placeOf(node, lane, entries_.back().place);
+      if (is_one) deformable::placeOf(node, lane, entries_.back().place);
       part = next_part_[k];
     }
   }

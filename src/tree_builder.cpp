@@ -234,8 +234,6 @@ class Splitter {
 UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_triangles,
                                   const VertexFrames& frames, int num_threads) {
   constexpr std::size_t kBlock = 8192;
-  // Sums and widths of sums must not overflow.
-  constexpr double kFarthest = 1e37;
   std::uint32_t ids[3];
   vertexIds(triangles[0], ids);
   double first[3];
@@ -247,9 +245,7 @@ UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_tri
                         double p[3];
                         frames.at(0, i, p);
                         Float4 place{};
-                        for (int k = 0; k < 3; ++k)
-                          place[k] = static_cast<float>(
-                              std::max(-kFarthest, std::min(kFarthest, p[k] - first[k])));
+                        for (int k = 0; k < 3; ++k) place[k] = placeOf(p[k] - first[k]);
                         places[i] = place;
                       }
                     });

@@ -74,6 +74,23 @@ struct alignas(16) TreeItem {
   std::uint32_t index;
 };
 
+/// @brief A coordinate from which widths, sums and products of a few can be taken without
+/// overflow; what is no number lies in the middle.
+inline float placeOf(double coordinate) {
+  constexpr double kFarthest = 1e37;
+  return coordinate == coordinate
+             ? static_cast<float>(std::max(-kFarthest, std::min(kFarthest, coordinate)))
+             : 0.f;
+}
+
+/// @brief Four times the center of a child's box, over both frames.
+inline void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const MovingKdopNode::Row &lo = node.rows[2 * k], &hi = node.rows[2 * k + 1];
+    place[k] = placeOf(double{(hi.t0[lane] - lo.t0[lane]) + (hi.t1[lane] - lo.t1[lane])});
+  }
+}
+
 /// @brief Splits items into a tree, whose leaves are their indices: by surface area at
 /// the top, and into halves at the bottom, so that the lowest nodes are full.
 /// @param max_parts  the root has at most so many children

@@ -45,13 +45,7 @@ class MovingKdopTree::Restructuring {
   /// In the order of a walk; leaves are triangles of the tree.
   /// @param first_sizes  of each node; of a new one not yet known
   TreeStructure structure(std::vector<NodeSize>& first_sizes) const {
-    first_sizes.resize(nodes_.size());
-    const auto children = [&](std::int32_t i, std::size_t place) {
-      const auto from = static_cast<std::size_t>(i);
-      first_sizes[place] = first_sizes_[from];
-      return nodes_[from];
-    };
-    return inWalkOrder(tree_.triangles_.size(), children);
+    return walk(0, nodes_, first_sizes_, tree_.triangles_.size(), first_sizes);
   }
 
  private:
@@ -125,10 +119,7 @@ class MovingKdopTree::Restructuring {
           continue;
         }
         TreeItem item{{}, static_cast<std::uint32_t>(names_.size())};
-        for (int k = 0; k < 3; ++k) {
-          const MovingKdopNode::Row &lo = node.rows[2 * k], &hi = node.rows[2 * k + 1];
-          item.place[k] = (hi.t0[lane] - lo.t0[lane]) + (hi.t1[lane] - lo.t1[lane]);
-        }
+        placeOf(node, lane, item.place);
         items_.push_back(item);
         names_.push_back(child);
       }
@@ -164,6 +155,26 @@ class MovingKdopTree::Restructuring {
   UninitializedVector<TreeItem> items_;
   std::vector<std::int32_t> names_;
 };
+
+/// The nodes that are met in a walk from one, in its order.
+/// @param sizes  of each node when it was made
+/// @param first_sizes  the same in the order of the walk
+TreeStructure MovingKdopTree::walk(std::int32_t root,
+                                   const std::vector<TreeChildren>& nodes,
+                                   const std::vector<NodeSize>& sizes,
+                                   std::size_t num_leaves,
+                                   std::vector<NodeSize>& first_sizes) {
+  first_sizes.resize(nodes.size());
+  const auto children = [&](std::int32_t i, std::size_t place) {
+    // A walk begins with 0.
+    const auto from = static_cast<std::size_t>(place == 0 ? root : i);
+    first_sizes[place] = sizes[from];
+    return nodes[from];
+  };
+  TreeStructure tree = inWalkOrder(num_leaves, children);
+  first_sizes.resize(tree.nodes.size());
+  return tree;
+}
 
 bool MovingKdopTree::restructure() {
   double now = 0, expected = 0;

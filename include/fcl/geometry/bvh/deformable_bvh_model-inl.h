@@ -209,15 +209,10 @@ int DeformableBVHModel<BV>::checkTriangles(const Triangle* triangles,
                     " of " + std::to_string(num_vertices));
 }
 
-/// Fills in the origins if they were left out.
 template <typename BV>
-int DeformableBVHModel<BV>::checkOrigins(std::vector<int>& origins,
+int DeformableBVHModel<BV>::checkOrigins(const std::vector<int>& origins,
                                          std::size_t num_triangles) {
-  if (origins.empty()) {
-    origins.resize(num_triangles);
-    for (int i = 0; i < static_cast<int>(num_triangles); ++i)
-      origins[static_cast<std::size_t>(i)] = i < this->num_tris ? i : -1;
-  }
+  if (origins.empty()) return BVH_OK;
   if (origins.size() != num_triangles)
     return refuse(BVH_ERR_INCORRECT_DATA,
                   std::to_string(origins.size()) + " origins given for " +
@@ -399,8 +394,7 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
     return refuse(BVH_ERR_INCORRECT_DATA, "updateTopology() with a null frame");
   if (const int code = checkTriangles(triangles.data(), triangles.size(), num_vertices))
     return code;
-  std::vector<int> all_origins(origins);
-  if (const int code = checkOrigins(all_origins, triangles.size())) return code;
+  if (const int code = checkOrigins(origins, triangles.size())) return code;
   if (const int code = checkFrames(previous, current, num_vertices)) return code;
 
   // All is made beside the model. What of it is no mesh stays.
@@ -408,12 +402,13 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   static_cast<CollisionGeometry<S>&>(next) = *this;
   next.bv_splitter = this->bv_splitter;
   next.bv_fitter = this->bv_fitter;
-  std::vector<Vector3<S>> points(num_vertices);
-  std::memcpy(points.data()->data(), current, 3 * num_vertices * sizeof(S));
   int code =
       next.beginModel(static_cast<int>(triangles.size()), static_cast<int>(num_vertices));
-  if (code == BVH_OK) code = next.addSubModel(points, triangles);
-  if (code != BVH_OK) return refuse(code, "FCL refused the mesh");
+  if (code != BVH_OK) return refuse(code, "FCL has no memory for the mesh");
+  std::copy(triangles.begin(), triangles.end(), next.tri_indices);
+  next.num_tris = static_cast<int>(triangles.size());
+  std::memcpy(next.vertices->data(), current, 3 * num_vertices * sizeof(S));
+  next.num_vertices = static_cast<int>(num_vertices);
   next.prev_vertices = new Vector3<S>[num_vertices];
   std::memcpy(next.prev_vertices->data(), previous, 3 * num_vertices * sizeof(S));
   if (fcl_tree == FclTree::kUpdate) code = next.endModel();
@@ -421,7 +416,7 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   const detail::deformable::VertexFrames new_frames(next.prev_vertices->data(),
                                                     next.vertices->data(), num_vertices);
   if (isInStep())
-    changeTopology(next.tri_indices, triangles.size(), all_origins, new_frames);
+    changeTopology(next.tri_indices, triangles.size(), origins, new_frames);
   else
     buildTree(next.tri_indices, triangles.size(), new_frames);
 

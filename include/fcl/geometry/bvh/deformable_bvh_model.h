@@ -173,7 +173,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int checkSteppable(const char* caller);
   int checkTriangles(const Triangle* triangles, std::size_t num_triangles,
                      std::size_t num_vertices);
-  int checkOrigins(std::vector<int>& origins, std::size_t num_triangles);
+  int checkOrigins(const std::vector<int>& origins, std::size_t num_triangles);
   int open(Open what, const char* caller);
   int stage(const Vector3<S>* points, std::size_t count, Open expected);
   int close(Open expected, const char* caller);

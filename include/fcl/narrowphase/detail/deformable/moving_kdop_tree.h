@@ -149,8 +149,8 @@ class MovingKdopTree {
   /// exception leaves the tree as it was.
   /// @param triangles  at least one, indices below frames.size() (not checked here)
   /// @param origins  for each of them the number of the one before that it was or was cut
-  /// from, -1 for one that comes to where it lies in frame 0; a hint: no answer depends
-  /// on it
+  /// from, -1 for one that comes to where it lies in frame 0; empty: each was the one of
+  /// its number, as far as there was one; a hint: no answer depends on it
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   /// @pre refit() has set the boxes
   void changeTopology(const Triangle* triangles, std::size_t num_triangles,
@@ -194,6 +194,9 @@ class MovingKdopTree {
     return first.box * (now.triangles / first.triangles);
   }
 
+  static TreeStructure walk(std::int32_t root, const std::vector<TreeChildren>& nodes,
+                            const std::vector<NodeSize>& sizes, std::size_t num_leaves,
+                            std::vector<NodeSize>& first_sizes);
   void adopt(const Restructuring& restructuring);
   void arrange(const TreeStructure& structure, const Triangle* triangles,
                std::size_t num_vertices, int num_threads);
