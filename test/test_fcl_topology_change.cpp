@@ -17,6 +17,7 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/collision.h"
+#include "generated_scenes.h"
 #include "test_models.h"
 #include "tree_checks.h"
 
@@ -266,20 +267,16 @@ TEST(FCL_TOPOLOGY_CHANGE, downToOneTriangle) {
   EXPECT_EQ(moving.tree.numNodes(), 1u);
 }
 
-/// The triangles of each lowest node, by their origins.
-std::set<std::set<int>> lowestNodes(const MovingKdopTree& tree,
-                                    const std::vector<int>& origins) {
-  std::set<std::set<int>> nodes;
-  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
-    const MovingKdopNode& node = tree.node(i);
-    if (node.triangles() != node.lanes()) continue;
-    std::set<int> triangles;
-    for (int lane = 0; lane < node.count; ++lane)
-      triangles.insert(
-          origins[tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index]);
-    nodes.insert(triangles);
-  }
-  return nodes;
+// Of what is left scattered, nodes are made that are not nearly empty.
+TEST(FCL_TOPOLOGY_CHANGE, whatIsLeftIsDrawnTogether) {
+  ChangingMesh mesh = changing(bentSheet(40));
+  MovingTree moving(mesh);
+  mesh.settle();
+  for (std::size_t i = 2; i < mesh.triangles.size(); i += 2)
+    lose(mesh, i, std::min<std::size_t>(18, mesh.triangles.size() - i));
+  moving.step(mesh, mesh.points);
+  expectSound(moving.tree, mesh, mesh.points);
+  EXPECT_LE(3 * moving.tree.numNodes(), mesh.triangles.size());
 }
 
 // A crack, and a part that goes: elsewhere nodes are what they were.
@@ -288,7 +285,7 @@ TEST(FCL_TOPOLOGY_CHANGE, whatIsUntouchedStays) {
   ChangingMesh mesh = changing(makeSheet(kSide, kSide));
   mesh.settle();
   MovingTree moving(mesh);
-  const auto before = lowestNodes(moving.tree, mesh.origins);
+  const auto before = lowestNodes(moving.tree);
   Random random(3);
   // In a corner of the sheet.
   std::vector<std::size_t> corner;
@@ -305,12 +302,32 @@ TEST(FCL_TOPOLOGY_CHANGE, whatIsUntouchedStays) {
   }
   moving.step(mesh, mesh.points);
   expectSound(moving.tree, mesh, mesh.points);
-  const auto after = lowestNodes(moving.tree, mesh.origins);
+  const auto after = lowestNodes(moving.tree);
   std::size_t num_changed = 0;
   for (const auto& node : before) num_changed += after.count(node) == 0;
   EXPECT_GT(num_changed, 0u);
   EXPECT_LE(num_changed, corner.size());
   EXPECT_GT(before.size(), 8 * num_changed);
+}
+
+// Parts that topology does not touch go on ageing: a tree that becomes poor is made anew,
+// however often a triangle is torn off in between.
+TEST(FCL_TOPOLOGY_CHANGE, whatStaysKeepsItsAge) {
+  const FrameSequence balls = makeMixingBalls(30);
+  ChangingMesh mesh{balls.triangles, balls.frames[0], {}};
+  const auto model = makeModel<DeformableBVHModel<>>({mesh.points, mesh.triangles});
+  std::size_t num_aged = 0;
+  for (std::size_t i = 0; i + 1 < balls.frames.size(); ++i) {
+    const double *t0 = balls.frames[i][0].data(), *t1 = balls.frames[i + 1][0].data();
+    const std::size_t count = balls.frames[i].size();
+    ASSERT_EQ(model->updateFrames(t0, t1, count), BVH_OK);
+    num_aged = model->numRestructurings();
+    Triangle& t = mesh.triangles[i];
+    t = Triangle(t[1], t[2], t[0]);
+    ASSERT_EQ(model->updateTopology(mesh.triangles, {}, t0, t1, count), BVH_OK);
+    EXPECT_EQ(model->numRestructurings(), num_aged);
+  }
+  EXPECT_GT(num_aged, 0u);
 }
 
 int depthOf(const MovingKdopTree& tree) {

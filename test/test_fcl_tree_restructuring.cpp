@@ -17,6 +17,7 @@
 #include "fcl/narrowphase/continuous_collision.h"
 #include "generated_scenes.h"
 #include "moving_mesh.h"
+#include "test_models.h"
 #include "tree_checks.h"
 
 namespace fcl {
@@ -87,39 +88,7 @@ void update(const FrameSequence& sequence, std::size_t i, Model& model) {
 
 /// All that a user sees of the contacts, to the bit and in order.
 void expectSameContacts(const Model& x, const Model& y) {
-  Result a, b;
-  continuousSelfCollide(&x, ContinuousContactRequest<double>(), a);
-  continuousSelfCollide(&y, ContinuousContactRequest<double>(), b);
-  EXPECT_EQ(a.is_collide, b.is_collide);
-  EXPECT_EQ(a.initially_crossing, b.initially_crossing);
-  EXPECT_EQ(a.time_of_contact, b.time_of_contact);
-  ASSERT_EQ(a.contacts.size(), b.contacts.size());
-  for (std::size_t i = 0; i < a.contacts.size(); ++i) {
-    const auto &c = a.contacts[i], &d = b.contacts[i];
-    ASSERT_EQ(c.kind, d.kind);
-    ASSERT_EQ(c.vertices, d.vertices);
-    ASSERT_EQ(c.b1, d.b1);
-    ASSERT_EQ(c.b2, d.b2);
-    ASSERT_EQ(c.first_on_o1, d.first_on_o1);
-    ASSERT_EQ(c.toc_lo, d.toc_lo);
-    ASSERT_EQ(c.toc_hi, d.toc_hi);
-    ASSERT_EQ(c.pos, d.pos);
-    ASSERT_EQ(c.normal, d.normal);
-  }
-}
-
-/// The triangles of the nodes that have only triangles, by the user's numbers.
-std::set<std::vector<std::uint32_t>> lowestNodes(const MovingKdopTree& tree) {
-  std::set<std::vector<std::uint32_t>> nodes;
-  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
-    const auto& node = tree.node(i);
-    std::vector<std::uint32_t> triangles;
-    for (int lane = 0; lane < node.count && node.isTriangle(lane); ++lane)
-      triangles.push_back(
-          tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index);
-    if (triangles.size() == static_cast<std::size_t>(node.count)) nodes.insert(triangles);
-  }
-  return nodes;
+  expectIdentical(selfContacts<double>(x), selfContacts<double>(y));
 }
 
 TEST(FCL_TREE_RESTRUCTURING, onlyWhereBoxesGrow) {

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <set>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
@@ -181,6 +182,20 @@ inline void expectFans(const MovingKdopTree& tree) {
                   spokes.end());
     ASSERT_TRUE(std::equal(spokes.begin(), spokes.end(), its.spokes)) << "vertex " << v;
   }
+}
+
+/// The triangles of the nodes that have only triangles, by the user's numbers.
+inline std::set<std::vector<std::uint32_t>> lowestNodes(const MovingKdopTree& tree) {
+  std::set<std::vector<std::uint32_t>> nodes;
+  for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
+    const auto& node = tree.node(i);
+    std::vector<std::uint32_t> triangles;
+    for (int lane = 0; lane < node.count && node.isTriangle(lane); ++lane)
+      triangles.push_back(
+          tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index);
+    if (triangles.size() == static_cast<std::size_t>(node.count)) nodes.insert(triangles);
+  }
+  return nodes;
 }
 
 /// The same boxes to the bit.
