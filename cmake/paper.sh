@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian), builds in Release, simulates the scenes of the paper's
 # evaluation and runs its experiments on them; doc/reproduction.md explains the report.
-#   bash cmake/paper.sh                            # everything: about three hours
+#   bash cmake/paper.sh                            # everything: hours, most for the lion
 #   bash cmake/paper.sh --short                    # small scenes: minutes
 #   bash cmake/paper.sh --scenes balls alphabets   # some of them
-# Frames go to build/scenes (4 GiB), or build/scenes_short, and are kept: what is there is
+# Frames go to build/scenes, or build/scenes_short, and are kept: what is there is
 # not simulated again. Tables, pictures and page go to build/paper; those of everything
 # also replace the ones in doc/results. Other options are handed to fcl_ccd_paper.
 set -euo pipefail

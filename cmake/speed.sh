@@ -5,7 +5,7 @@
 # Tables, pictures and page go to build/speed. With DATA_FOLDER (scenes/) and no options
 # they also replace those in doc/results; without it the generated scenes are measured
 # alone. Options are handed to fcl_ccd_speed: --groups smooth,size --repeats 3
-# About half an hour; the largest scene needs 6 GiB of memory.
+# A quarter of an hour; the largest scene needs 6 GiB of memory.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
