@@ -25,6 +25,9 @@ constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64
 /// A task while the tree is made: so many triangles.
 constexpr std::size_t kTriangleBlock = 8192;
 
+/// Of so many triangles one knows the number of places before it.
+constexpr std::size_t kPlacesBlock = 8;
+
 /// What is read in any order is brought near so many steps before.
 constexpr std::size_t kAhead = 8;
 
@@ -209,15 +212,24 @@ void MovingKdopTree::become(MovingKdopTree&& next,
   *this = std::move(next);
 }
 
-/// Finds the largest parts of the tree that are refit together.
+/// Finds where the triangles of each node begin, and the largest parts of the tree that
+/// are refit together.
 void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
   const auto& nodes = structure.nodes;
   const auto isNode = [](std::int32_t child) { return child > 0; };
   // Children come after their parents.
   std::vector<std::uint32_t> size(nodes.size(), 1);
-  for (std::size_t i = nodes.size(); i-- > 0;)
-    for (const std::int32_t child : nodes[i].child)
-      if (isNode(child)) size[i] += size[static_cast<std::size_t>(child)];
+  first_triangles_.resize(nodes.size());
+  for (std::size_t i = nodes.size(); i-- > 0;) {
+    const std::int32_t* child = nodes[i].child;
+    const std::int32_t* leaf = std::find_if_not(child, child + nodes[i].count, isNode);
+    // A node's own leaves come first.
+    first_triangles_[i] = leaf != child + nodes[i].count
+                              ? static_cast<std::uint32_t>(~*leaf)
+                              : first_triangles_[static_cast<std::size_t>(*child)];
+    for (int k = 0; k < nodes[i].count; ++k)
+      if (isNode(child[k])) size[i] += size[static_cast<std::size_t>(child[k])];
+  }
   top_.clear();
   subtrees_.clear();
   std::vector<std::uint32_t> open{0};
@@ -237,14 +249,7 @@ void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
     subtree.root = i;
     if (size[i] > 1) subtree.first_node = static_cast<std::uint32_t>(*first);
     subtree.last_node = subtree.first_node + size[i] - 1;
-    // The first leaf is the node's own, or that of the first child.
-    const std::int32_t* leaf = node.child;
-    for (const TreeChildren* at = &node;;
-         at = &nodes[static_cast<std::size_t>(at->child[0])]) {
-      leaf = std::find_if_not(at->child, at->child + at->count, isNode);
-      if (leaf != at->child + at->count) break;
-    }
-    subtree.first_triangle = static_cast<std::uint32_t>(~*leaf);
+    subtree.first_triangle = first_triangles_[i];
     subtrees_.push_back(subtree);
   }
 }
@@ -256,6 +261,7 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
   std::vector<std::uint32_t> place_of(num_vertices, kNoPlace);
   // One more, which is written and not counted.
   vertex_ids_.resize(num_vertices + 1);
+  places_before_.resize((triangles_.size() + kPlacesBlock - 1) / kPlacesBlock);
   std::uint32_t num_places = 0;
   std::size_t i = 0;
   for (std::size_t s = 0; s < subtrees_.size(); ++s) {
@@ -263,7 +269,8 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
     // What nodes above have between two subtrees goes with the first of them.
     const bool is_last = s + 1 == subtrees_.size();
     const std::size_t end = is_last ? triangles_.size() : subtrees_[s + 1].first_triangle;
-    for (; i < end; ++i)
+    for (; i < end; ++i) {
+      if (i % kPlacesBlock == 0) places_before_[i / kPlacesBlock] = num_places;
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t id = triangles_[i].id[k];
         std::uint32_t& place = place_of[id];
@@ -274,9 +281,19 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
         num_places += is_new;
         triangles_[i].place[k] = place;
       }
+    }
     subtrees_[s].last_vertex = num_places;
   }
   vertex_ids_.resize(num_places);
+}
+
+std::uint32_t MovingKdopTree::placesBefore(std::size_t i) const {
+  if (i == triangles_.size()) return static_cast<std::uint32_t>(vertices_.size());
+  std::uint32_t count = places_before_[i / kPlacesBlock];
+  for (std::size_t k = i / kPlacesBlock * kPlacesBlock; k < i; ++k)
+    for (const std::uint32_t place : triangles_[k].place)
+      count = std::max(count, place + 1);
+  return count;
 }
 
 /// Sets all of the nodes but the boxes.
@@ -439,6 +456,8 @@ void MovingKdopTree::refitGroups(const VertexFrames& frames, float pad, int num_
 
 std::size_t MovingKdopTree::memUsage() const {
   return nodes_.capacity() * sizeof(nodes_[0]) +
+         (first_triangles_.capacity() + places_before_.capacity()) *
+             sizeof(std::uint32_t) +
          triangles_.capacity() * sizeof(triangles_[0]) +
          vertices_.capacity() * sizeof(vertices_[0]) +
          vertex_ids_.capacity() * sizeof(vertex_ids_[0]) +

@@ -99,6 +99,7 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
   std::vector<int> open{0};
   while (!open.empty()) {
     const MovingKdopNode& node = tree.node(open.back());
+    EXPECT_EQ(tree.firstTriangle(open.back()), static_cast<std::uint32_t>(next));
     open.pop_back();
     for (int lane = node.count; lane-- > 0;)
       if (!node.isTriangle(lane)) open.push_back(node.child[lane]);

@@ -160,6 +160,14 @@ class MovingKdopTree {
   const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
   std::size_t numNodes() const { return nodes_.size(); }
 
+  /// @brief The first of the triangles below node i, which lie together.
+  std::uint32_t firstTriangle(int i) const {
+    return first_triangles_[static_cast<std::size_t>(i)];
+  }
+
+  /// @brief How many vertices the triangles before triangle i have.
+  std::uint32_t placesBefore(std::size_t i) const;
+
   /// @brief Triangles and vertices in the tree's order.
   const std::vector<TreeTriangle>& triangles() const { return triangles_; }
   const UninitializedVector<TreeVertex>& vertices() const { return vertices_; }
@@ -217,6 +225,9 @@ class MovingKdopTree {
   void refitGroups(const VertexFrames& frames, float pad, int num_threads);
 
   UninitializedVector<MovingKdopNode> nodes_;
+  std::vector<std::uint32_t> first_triangles_;
+  /// placesBefore() of every eighth triangle.
+  std::vector<std::uint32_t> places_before_;
   std::vector<TreeTriangle> triangles_;
   UninitializedVector<TreeVertex> vertices_;
   /// The user's id of each vertex.
