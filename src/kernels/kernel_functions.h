@@ -34,6 +34,8 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           std::size_t count);
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan);
+std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
+                              std::size_t count);
 EightCoplanarities coplanarityOfEight(const EightPairs& pairs);
 EightAnswers solveEight(const EightPairs& pairs, double toc_err);
 EightDivisions divideEight(const EightPairs& pairs);

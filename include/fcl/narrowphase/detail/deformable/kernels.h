@@ -103,6 +103,13 @@ struct EightDivisions {
   double at[8];
 };
 
+/// @brief Directions in which a surface may face: these (bit k of a set) and their
+/// opposites (bit k + kNumAxes).
+constexpr std::size_t kNumAxes = 13;
+constexpr int kAxes[kNumAxes][3] = {
+    {1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1},  {1, 0, -1},
+    {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
+
 struct Kernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
@@ -148,6 +155,12 @@ struct Kernels {
   /// cover a fixed ray. Then no two sectors overlap.
   bool (*isFanEmbedded)(const TreeVertex* vertices, const TreeVertex& center,
                         const VertexFan& fan);
+
+  /// The directions d that all of up to eight triangles provably face at every time of
+  /// the step, n(t) . d > 0, a bit each.
+  /// @param count  1 to 8
+  std::uint32_t (*facedDirections)(const TreeVertex* vertices,
+                                   const TreeTriangle* triangles, std::size_t count);
 
   /// coplanarityInDoubles() of eight pairs.
   EightCoplanarities (*coplanarity)(const EightPairs& pairs);
