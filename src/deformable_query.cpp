@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/detail/deformable/embedded_regions.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "parallel.h"
 
@@ -42,6 +43,17 @@ struct Schedule {
 constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, false, 256};
 constexpr Schedule kFirstSchedule{32, true, 64};
 
+/// What a query of a mesh with itself leaves out: for each vertex of the tree whether
+/// its fan is embedded, for each node whether it is the root of an embedded region; empty
+/// if unknown.
+struct SelfCulling {
+  std::vector<std::uint8_t> fans, regions;
+
+  static const std::uint8_t* dataOf(const std::vector<std::uint8_t>& x) {
+    return x.empty() ? nullptr : x.data();
+  }
+};
+
 bool isEarlierWork(const NodePair& x, const NodePair& y) {
   return x.earliest < y.earliest;
 }
@@ -51,9 +63,11 @@ bool isEarlierWork(const NodePair& x, const NodePair& y) {
 template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
-  Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const std::uint8_t* embedded,
+  Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
        const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, embedded, axes, kernels(), schedule.in_order),
+      : traversal_(tree_a, tree_b, shift, SelfCulling::dataOf(culling.fans),
+                   SelfCulling::dataOf(culling.regions), axes, kernels(),
+                   schedule.in_order),
         schedule_(schedule),
         leaves_(&leaves),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
@@ -162,7 +176,7 @@ struct Scene {
   const MeshInstance& a;
   const MeshInstance& b;
   const KdopShift* shift;
-  const std::uint8_t* embedded;
+  SelfCulling culling;
 
   bool isSelf() const { return &a == &b; }
 
@@ -183,7 +197,7 @@ struct Scene {
   void makePart(const Schedule& schedule, Leaves& leaves, Visit&& visit) const {
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
-          *a.tree, *a.tree, shift, embedded, nullptr, schedule, leaves);
+          *a.tree, *a.tree, shift, culling, nullptr, schedule, leaves);
       return visit(part);
     }
     visitTree(a, [&](auto& tree_a) {
@@ -192,12 +206,12 @@ struct Scene {
         using B = std::remove_reference_t<decltype(tree_b)>;
         if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
           if (isSelf()) {
-            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, nullptr, nullptr,
+            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, culling, nullptr,
                                           schedule, leaves);
             return visit(part);
           }
         const SeparatingAxes axes(a, b);
-        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, nullptr,
+        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, culling,
                                        a.tree || b.tree ? nullptr : &axes, schedule,
                                        leaves);
         visit(part);
@@ -206,25 +220,33 @@ struct Scene {
   }
 };
 
-/// For each vertex of the mesh's tree, whether its fan is embedded; empty if unknown.
-std::vector<std::uint8_t> embeddedFans(const MeshInstance& mesh, int num_threads,
-                                       StageTimes& times) {
-  std::vector<std::uint8_t> embedded;
-  if (!mesh.tree || !mesh.isInPlace()) return embedded;
+/// What a query of the mesh with itself leaves out.
+SelfCulling cullSelf(const MeshInstance& mesh, bool with_regions, int num_threads,
+                     StageTimes& times) {
+  SelfCulling culling;
+  if (!mesh.tree || !mesh.isInPlace()) return culling;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   const std::size_t count = tree.vertices().size();
+  std::vector<std::uint8_t> interior(count, 0);
+  if (with_regions) {
+    EmbeddedRegions regions = findEmbeddedRegions(tree, kernels(), num_threads);
+    culling.regions = std::move(regions.nodes);
+    interior = std::move(regions.interior);
+  }
   constexpr std::size_t kBlock = 4096, kAhead = 64;
-  embedded.resize(count);
+  culling.fans.resize(count);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
     for (; i < last; ++i) {
       __builtin_prefetch(&tree.vertices()[std::min(i + kAhead, count - 1)]);
-      embedded[i] = kernels().isFanEmbedded(tree.vertices().data(), tree.vertices()[i],
-                                            tree.fans()[i]);
+      // No pair of triangles around a vertex inside of a region is met.
+      culling.fans[i] =
+          !interior[i] && kernels().isFanEmbedded(tree.vertices().data(),
+                                                  tree.vertices()[i], tree.fans()[i]);
     }
   });
   times.traverse += secondsSince(start);
-  return embedded;
+  return culling;
 }
 
 /// The answer of one task.
@@ -315,9 +337,10 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
     ++task_options.max_contacts;
 
   StageTimes times;
-  std::vector<std::uint8_t> embedded;
-  if (&a == &b) embedded = embeddedFans(a, options.num_threads, times);
-  const Scene scene{a, b, shift, embedded.empty() ? nullptr : embedded.data()};
+  SelfCulling culling;
+  if (&a == &b)
+    culling = cullSelf(a, options.leaves_out_regions, options.num_threads, times);
+  const Scene scene{a, b, shift, std::move(culling)};
   QueryProgress progress;
   std::vector<NodePair> works;
   std::vector<TaskAnswer> answers(1);
@@ -363,9 +386,9 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* s
                 const CandidateSink& sink) {
   CandidateCollector leaves(a, b, shift, sink);
   StageTimes times;
-  std::vector<std::uint8_t> embedded;
-  if (&a == &b) embedded = embeddedFans(a, 1, times);
-  const Scene scene{a, b, shift, embedded.empty() ? nullptr : embedded.data()};
+  SelfCulling culling;
+  if (&a == &b) culling = cullSelf(a, true, 1, times);
+  const Scene scene{a, b, shift, std::move(culling)};
   scene.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
     part.divide(works);

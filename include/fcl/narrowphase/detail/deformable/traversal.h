@@ -74,15 +74,18 @@ class Traversal {
   /// @param shift  between the two trees' origins and translations; null for kSelf
   /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
   /// (Kernels::isFanEmbedded): pairs of triangles in one are left out; null: unknown
+  /// @param regions  kSelf: for each node of the tree, whether pairs of triangles below
+  /// it are left out (EmbeddedRegions::nodes); null: none are
   /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
   /// @param timed  whether it matters from when on boxes overlap; false: `earliest` is 0
   /// for those that overlap at t = 0, else positive
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
-            const std::uint8_t* embedded, const SeparatingAxes* axes,
-            const Kernels& kernels, bool timed)
+            const std::uint8_t* embedded, const std::uint8_t* regions,
+            const SeparatingAxes* axes, const Kernels& kernels, bool timed)
       : tree_a_(tree_a),
         tree_b_(tree_b),
         embedded_(embedded),
+        regions_(regions),
         axes_(axes),
         kernels_(kernels),
         timed_(timed) {
@@ -98,7 +101,7 @@ class Traversal {
   /// @brief The whole of both trees, as the first work.
   void start(WorkList& open) {
     if (kSelf)
-      open.add(0, -1, 0, false, 0.f);
+      addSelf(0, open);
     else
       for (int lane = tree_a_.node(0).count; lane-- > 0;)
         open.add(0, lane, 0, false, 0.f);
@@ -144,6 +147,11 @@ class Traversal {
  private:
   static constexpr unsigned kAllLanes = (1U << MovingKdopNode::kWidth) - 1;
 
+  /// A node with itself.
+  void addSelf(std::int32_t i, WorkList& open) const {
+    if (!regions_ || !regions_[i]) open.add(0, -1, i, false, 0.f);
+  }
+
   template <typename Visit>
   void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
     // A node of a reader is valid until another is asked for, which compare() does: there
@@ -158,7 +166,7 @@ class Traversal {
       if (node.isTriangle(lane))
         later &= ~triangles;
       else
-        open.add(0, -1, node.child[lane], false, 0.f);
+        addSelf(node.child[lane], open);
       if (later) compare<false>(node, i, lane, tree_b_.node(i), i, later, open, visit);
     }
   }
@@ -235,6 +243,7 @@ class Traversal {
   TreeA& tree_a_;
   TreeB& tree_b_;
   const std::uint8_t* embedded_;
+  const std::uint8_t* regions_;
   const SeparatingAxes* axes_;
   const Kernels& kernels_;
   bool timed_;

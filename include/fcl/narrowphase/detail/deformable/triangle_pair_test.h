@@ -29,6 +29,8 @@ struct QueryOptions {
   bool stop_at_crossing{false};
   /// See parallelFor().
   int num_threads{1};
+  /// Whether a self query leaves out embedded regions; no answer depends on it.
+  bool leaves_out_regions{true};
 };
 
 /// @brief What the tasks of one query tell each other, so that none does what cannot
