@@ -21,6 +21,10 @@ namespace deformable {
 // v1 x w0): 100 u for the first, 3 (16 + 44 + 4) + 20 = 212 u for the second, 18 u for
 // the sum: 330 u UVW.
 constexpr double kUnit = 0x1p-53;
+// u . (v x w) with differences and products that are rounded once only: a component of v
+// x w has an error of 2 (2 + 1) + 2 = 8 u VW, the volume of 3 (2 + 8 + 2) + 10 = 46 u
+// UVW.
+constexpr double kVolumeBound = 48 * kUnit;
 constexpr double kOuterBound = 104 * kUnit;
 constexpr double kInnerBound = 344 * kUnit;
 // The filter takes the largest norm N for all of U, V, W and makes the inner coefficients

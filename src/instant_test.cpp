@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "double2.h"
+#include "error_bounds.h"
 #include "integer_coordinates.h"
 
 namespace fcl {
@@ -143,8 +144,6 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
   const double volume = u[0] * (v[1] * w[2] - v[2] * w[1]) +
                         u[1] * (v[2] * w[0] - v[0] * w[2]) +
                         u[2] * (v[0] * w[1] - v[1] * w[0]);
-  // Differences and products rounded once: a component of v x w has an error of 2 (2 + 1)
-  // + 2 = 8 units of 2^-53 VW, the volume of 3 (2 + 8 + 2) + 10 = 46 units of UVW.
   // Nothing underflows or overflows while VW and UVW are in this range.
   const double size = u_max * (v_max * w_max);
   // Layers in a plane of constant x, y or z.
@@ -152,7 +151,7 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
   if (v_max * w_max > 0x1p-900 && v_max * w_max < 0x1p900 && size > 0x1p-900 &&
       size < 0x1p900) {
-    if (std::abs(volume) > 48 * 0x1p-53 * size) return volume > 0 ? 1 : -1;
+    if (std::abs(volume) > kVolumeBound * size) return volume > 0 ? 1 : -1;
     if (const int sign = accurateOrientation(p, a, b, c, {u_max, v_max, w_max}))
       return sign;
   }

@@ -186,32 +186,45 @@ void TrianglePairTest::solve(const FeatureCandidate& candidate) {
 }
 
 void TrianglePairTest::testCrossings() {
-  for (std::size_t i = 0; i < batch_.numCrossings() && !has_crossing_; ++i) {
-    const FeatureBatch::EdgeAndFace c = batch_.crossing(i);
-    const auto start = [&c](bool on_a, unsigned k) -> const double(&)[3] {
-      return reinterpret_cast<const double(&)[3]>(c.pair->x[on_a ? k : 3 + k]->t0);
-    };
-    const unsigned k = c.edge, l = (k + 1) % 3;
-    const bool face_on_a = !c.edge_on_a;
-    ++counts_.crossing_tests;
-    if (!isCrossing(start(c.edge_on_a, k), start(c.edge_on_a, l), start(face_on_a, 0),
-                    start(face_on_a, 1), start(face_on_a, 2)))
-      continue;
-    has_crossing_ = true;
-    if (progress_ && hasAnswer()) {
-      QueryProgress::lower(progress_->answered_by, task_);
-      if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+  const std::size_t size = batch_.numCrossings();
+  for (std::size_t first = 0; first < size && !has_crossing_; first += 8) {
+    // The last pair fills up the last eight.
+    EightCrossings eight;
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      const TreeVertex* x[5];
+      batch_.crossingPoints(std::min(first + lane, size - 1), x);
+      for (std::size_t i = 0; i < 5; ++i) eight.x[i][lane] = x[i];
     }
-    const bool self = batch_.isSelf();
-    const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
-                       &face = c.edge_on_a ? *c.pair->b : *c.pair->a;
-    crossing_.first_on_a = c.edge_on_a || self;
-    crossing_.edge[0] = edge.id[k];
-    crossing_.edge[1] = edge.id[l];
-    std::copy(face.id, face.id + 3, crossing_.face);
-    crossing_.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
-    crossing_.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
+    const std::size_t count = std::min<std::size_t>(size - first, 8);
+    counts_.crossing_tests += count;
+    for (unsigned left = kernels_.mayCross(eight) & ((1U << count) - 1);
+         left != 0 && !has_crossing_; left &= left - 1)
+      testCrossing(first + static_cast<std::size_t>(__builtin_ctz(left)));
   }
+}
+
+void TrianglePairTest::testCrossing(std::size_t i) {
+  const TreeVertex* x[5];
+  batch_.crossingPoints(i, x);
+  const auto start = [&x](int k) -> const double(&)[3] {
+    return reinterpret_cast<const double(&)[3]>(x[k]->t0);
+  };
+  if (!isCrossing(start(0), start(1), start(2), start(3), start(4))) return;
+  has_crossing_ = true;
+  if (progress_ && hasAnswer()) {
+    QueryProgress::lower(progress_->answered_by, task_);
+    if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+  }
+  const FeatureBatch::EdgeAndFace c = batch_.crossing(i);
+  const bool self = batch_.isSelf();
+  const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
+                     &face = c.edge_on_a ? *c.pair->b : *c.pair->a;
+  crossing_.first_on_a = c.edge_on_a || self;
+  crossing_.edge[0] = edge.id[c.edge];
+  crossing_.edge[1] = edge.id[(c.edge + 1) % 3];
+  std::copy(face.id, face.id + 3, crossing_.face);
+  crossing_.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
+  crossing_.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
 }
 
 }  // namespace deformable

@@ -20,6 +20,7 @@
 
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "fcl/narrowphase/detail/deformable/vertex_fans.h"
 #include "feature_pair_generators.h"
 #include "mesh_generators.h"
@@ -608,6 +609,78 @@ TEST(FCL_KERNELS, edgesAndFacesAtStart) {
     EXPECT_GT(overlaps[bit], 500) << bit;
     EXPECT_GT(apart[bit], 500) << bit;
   }
+}
+
+/// Five points of few values, so that many lie in a plane or are the same, or of any.
+/// Returns whether they are nothing special.
+bool setCrossing(Random& random, double scale, std::size_t lane,
+                 std::vector<TreeVertex>& vertices) {
+  const bool few = random.index(2) == 0;
+  for (std::size_t i = 0; i < 5; ++i)
+    for (double& x : vertices[5 * lane + i].t0)
+      x = scale * (few ? static_cast<double>(random.index(4)) : random.uniform(-1, 1));
+  if (random.index(4) > 0) return !few;
+  // The edge ends next to the plane of the face, or passes next to an edge of it.
+  TreeVertex* const x = &vertices[5 * lane];
+  const double s = random.uniform(0, 1), tilt = random.uniform(-1, 1) * 0x1p-50 * scale;
+  for (int k = 0; k < 3; ++k)
+    x[1].t0[k] = s * x[2].t0[k] + (1 - s) * x[3].t0[k] + (k == 2 ? tilt : 0);
+  return false;
+}
+
+// What is left out does not cross, on every instruction set; nearly all of what does not
+// is, unless it is special.
+TEST(FCL_KERNELS, whatMayCross) {
+  constexpr std::uint64_t kSeed = 74;
+  Random random(kSeed);
+  int crossing = 0, apart = 0, left = 0;
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const double scale =
+        std::ldexp(1, i % 3 > 0 ? 0 : 60 * static_cast<int>(random.index(34)) - 1020);
+    std::vector<TreeVertex> vertices(40);
+    EightCrossings pairs;
+    bool is_plain[8];
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      is_plain[lane] = setCrossing(random, scale, lane, vertices) && i % 3 > 0;
+      for (std::size_t k = 0; k < 5; ++k) pairs.x[k][lane] = &vertices[5 * lane + k];
+    }
+    const unsigned found = allSets().front()->mayCross(pairs);
+    for (const Kernels* k : allSets()) EXPECT_EQ(k->mayCross(pairs), found) << k->name;
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      const auto at = [&](std::size_t k) -> const double(&)[3] {
+        return reinterpret_cast<const double(&)[3]>(pairs.x[k][lane]->t0);
+      };
+      const bool crosses = isCrossing(at(0), at(1), at(2), at(3), at(4));
+      const bool kept = found >> lane & 1U;
+      EXPECT_TRUE(kept || !crosses);
+      crossing += crosses;
+      apart += !crosses && is_plain[lane];
+      left += !crosses && is_plain[lane] && kept;
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(crossing, 5000);
+  EXPECT_GT(apart, 20000);
+  EXPECT_LT(1000 * left, apart);
+}
+
+TEST(FCL_KERNELS, whatIsNotFiniteMayCross) {
+  std::vector<TreeVertex> vertices(5);
+  // An edge far above a face.
+  vertices[0].t0[2] = vertices[1].t0[2] = vertices[1].t0[0] = 1;
+  vertices[3].t0[0] = vertices[4].t0[1] = 1;
+  EightCrossings pairs;
+  for (std::size_t lane = 0; lane < 8; ++lane)
+    for (std::size_t k = 0; k < 5; ++k) pairs.x[k][lane] = &vertices[k];
+  for (const Kernels* k : allSets()) EXPECT_EQ(k->mayCross(pairs), 0u) << k->name;
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()})
+    for (TreeVertex& vertex : vertices) {
+      const double before = vertex.t0[0];
+      vertex.t0[0] = bad;
+      for (const Kernels* k : allSets()) EXPECT_EQ(k->mayCross(pairs), 0xffu) << k->name;
+      vertex.t0[0] = before;
+    }
 }
 
 /// A pair and the window in which it is looked at.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The elementary test of eight pairs: coplanarity filter, solve, division of windows.
+// The elementary test of eight pairs: coplanarity filter, solve, division of windows; and
+// the crossings of eight edges and faces at t = 0.
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/elementary_kernels.cpp"
@@ -250,6 +251,53 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   store(a, answers.toc_lo);
   store(b, answers.toc_hi);
   return answers;
+}
+
+/// Where volumes are positive and where they are negative beyond doubt, as in
+/// orientation().
+struct Orientations {
+  DoubleMask positive, negative;
+
+  /// @param normal  v x w, and the product of the norms of these
+  HWY_INLINE Orientations(const Vectors& u, const Vectors& normal, const Doubles& norms)
+      : Orientations(dot(u, normal), maxNorm(u) * norms, norms) {}
+
+ private:
+  HWY_INLINE Orientations(const Doubles& volume, const Doubles& size,
+                          const Doubles& norms) {
+    const DoubleMask valid = isInRange(size) & isInRange(norms);
+    const Doubles bound = broadcast<kEight>(kVolumeBound) * size;
+    positive = valid & (volume > bound);
+    negative = valid & (volume < broadcast<kEight>(0.) - bound);
+  }
+};
+
+HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
+                                const Vectors& w) {
+  return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
+}
+
+unsigned mayCrossOfEight(const EightCrossings& pairs) {
+  Vectors x[5];
+  for (std::size_t i = 0; i < 5; ++i) {
+    const double* rows[kEight];
+    for (std::size_t lane = 0; lane < kEight; ++lane) rows[lane] = pairs.x[i][lane]->t0;
+    loadColumns(rows, x[i].x, x[i].y, x[i].z);
+  }
+  const auto& [p, q, a, b, c] = x;
+  const Vectors v = b - a, w = c - a, normal = cross(v, w);
+  const Doubles norms = maxNorm(v) * maxNorm(w);
+  const Orientations from(p - a, normal, norms), to(q - a, normal, norms);
+  const unsigned on_one_side =
+      bits((from.positive & to.positive) | (from.negative & to.negative));
+  if (on_one_side == (1U << kEight) - 1) return 0;
+  // The line turns one way around an edge and the other way around another.
+  const Vectors along = q - p, pa = a - p, pb = b - p, pc = c - p;
+  const Orientations ab = turnsOf(along, pa, pb), bc = turnsOf(along, pb, pc),
+                     ca = turnsOf(along, pc, pa);
+  const unsigned beside = bits((ab.positive | bc.positive | ca.positive) &
+                               (ab.negative | bc.negative | ca.negative));
+  return ((1U << kEight) - 1) & ~(on_one_side | beside);
 }
 
 /// Where the cubics that have one sign at 0 and at 1 come nearest to zero in between, as

@@ -32,6 +32,7 @@ std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
+unsigned mayCrossOfEight(const EightCrossings& pairs);
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,

@@ -23,10 +23,10 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {targetName(),   &overlapChildrenOf, &overlapTrianglesOf,
-                                 &listFeatures,  &cullFeaturesOf,    &cullCrossings,
-                                 &isFanEmbedded, &facedDirections,   &coplanarityOfEight,
-                                 &solveEight,    &divideEight};
+extern const Kernels kKernels = {
+    targetName(),     &overlapChildrenOf,  &overlapTrianglesOf, &listFeatures,
+    &cullFeaturesOf,  &cullCrossings,      &mayCrossOfEight,    &isFanEmbedded,
+    &facedDirections, &coplanarityOfEight, &solveEight,         &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

@@ -82,6 +82,11 @@ struct EightPairs {
   }
 };
 
+/// @brief Eight edges, from x[0][k] to x[1][k], and faces.
+struct EightCrossings {
+  const TreeVertex* x[5][8];
+};
+
 /// @brief What coplanarityInDoubles() says of eight pairs, a bit each; where neither is
 /// set, kNever.
 struct EightCoplanarities {
@@ -146,6 +151,10 @@ struct Kernels {
   std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
                                const KdopShift* turned_shift, std::uint32_t* codes,
                                std::size_t count);
+
+  /// Which of eight edges may pass through their faces at t = 0, a bit each: isCrossing()
+  /// says no to all others.
+  unsigned (*mayCross)(const EightCrossings& pairs);
 
   /// Proves that the triangles around a vertex meet nowhere but in what they share, at
   /// every time of the step; false: not proved. Along a direction d they all keep turning

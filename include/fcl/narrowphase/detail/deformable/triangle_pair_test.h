@@ -152,6 +152,7 @@ class TrianglePairTest {
   };
 
   void testCrossings();
+  void testCrossing(std::size_t i);
   void filter(FeatureKind kind);
   void solve();
   template <typename OnNo, typename OnOpen>
