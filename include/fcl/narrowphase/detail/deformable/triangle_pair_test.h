@@ -29,7 +29,8 @@ struct QueryOptions {
   bool stop_at_crossing{false};
   /// See parallelFor().
   int num_threads{1};
-  /// Whether a self query leaves out embedded regions; no answer depends on it.
+  /// Whether a self query leaves out embedded regions; only which contact kAny names may
+  /// depend on it.
   bool leaves_out_regions{true};
 };
 
