@@ -397,6 +397,18 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* s
   return !leaves.isDone();
 }
 
+BoxPlace placeOfBoxes(const MeshInstance& mesh) {
+  BoxPlace place;
+  for (int frame = 0; frame < 2; ++frame)
+    for (int k = 0; k < 3; ++k) {
+      place.origin[frame][k] =
+          mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k];
+      place.translation[frame][k] = mesh.translation[frame][k];
+    }
+  place.reach = mesh.tree ? 0 : mesh.rigid.reach();
+  return place;
+}
+
 }  // namespace
 
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
@@ -424,10 +436,7 @@ bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {
-  return relativeShift(a.tree ? a.tree->origin() : a.rigid.origin(), a.translation,
-                       a.tree ? a.tree->reach() : a.rigid.reach(),
-                       b.tree ? b.tree->origin() : b.rigid.origin(), b.translation,
-                       b.tree ? b.tree->reach() : b.rigid.reach());
+  return relativeShift(placeOfBoxes(a), placeOfBoxes(b));
 }
 
 }  // namespace deformable

@@ -2,6 +2,8 @@
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -18,6 +20,8 @@ constexpr int kWidth = MovingKdopNode::kWidth;
 
 /// What is refit together, while its vertices are near: 80 KB of nodes.
 constexpr std::uint32_t kMaxSubtree = 64;
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
 
 /// A task: so many vertices, or so many subtrees, which come in groups of 4 MB of nodes.
 constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64;
@@ -326,37 +330,63 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
   }
 }
 
-/// The origin, in the middle of both frames, and the reach.
-void MovingKdopTree::setOrigin(const VertexFrames& frames, int num_threads) {
-  constexpr double kInf = std::numeric_limits<double>::infinity();
-  struct Range {
-    double lo[3]{kInf, kInf, kInf}, hi[3]{-kInf, -kInf, -kInf};
-  };
-  std::vector<Range> ranges(vertex_ids_.size() / kVertexBlock + 1);
-  parallelForBlocks(
-      vertex_ids_.size(), kVertexBlock, num_threads,
-      [&](std::size_t first, std::size_t last) {
-        Range range;
-        for (std::size_t i = first; i < last; ++i) {
-          if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
-          const VertexPath path = frames[vertex_ids_[i]];
-          for (int k = 0; k < 3; ++k) {
-            range.lo[k] = std::min(range.lo[k], std::min(path.t0[k], path.t1[k]));
-            range.hi[k] = std::max(range.hi[k], std::max(path.t0[k], path.t1[k]));
-          }
-        }
-        ranges[first / kVertexBlock] = range;
-      });
-  Range& all = ranges[0];
-  reach_ = 0;
-  for (int k = 0; k < 3; ++k) {
-    for (const Range& range : ranges) {
-      all.lo[k] = std::min(all.lo[k], range.lo[k]);
-      all.hi[k] = std::max(all.hi[k], range.hi[k]);
+/// By frame and axis.
+struct MovingKdopTree::Range {
+  double lo[2][3]{{kInf, kInf, kInf}, {kInf, kInf, kInf}};
+  double hi[2][3]{{-kInf, -kInf, -kInf}, {-kInf, -kInf, -kInf}};
+
+  void add(int frame, const double* p) {
+    for (int k = 0; k < 3; ++k) {
+      lo[frame][k] = std::min(lo[frame][k], p[k]);
+      hi[frame][k] = std::max(hi[frame][k], p[k]);
     }
-    origin_[k] = 0.5 * all.lo[k] + 0.5 * all.hi[k];
-    reach_ = std::max(reach_, std::max(all.hi[k] - origin_[k], origin_[k] - all.lo[k]));
   }
+};
+
+MovingKdopTree::Range MovingKdopTree::rangeOf(const VertexFrames& frames,
+                                              int num_threads) const {
+  std::vector<Range> ranges(vertex_ids_.size() / kVertexBlock + 1);
+  parallelForBlocks(vertex_ids_.size(), kVertexBlock, num_threads,
+                    [&](std::size_t first, std::size_t last) {
+                      Range range;
+                      for (std::size_t i = first; i < last; ++i) {
+                        if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
+                        const VertexPath path = frames[vertex_ids_[i]];
+                        range.add(0, path.t0);
+                        range.add(1, path.t1);
+                      }
+                      ranges[first / kVertexBlock] = range;
+                    });
+  Range all;
+  for (const Range& range : ranges)
+    for (int frame = 0; frame < 2; ++frame) {
+      all.add(frame, range.lo[frame]);
+      all.add(frame, range.hi[frame]);
+    }
+  return all;
+}
+
+/// Of the vertices' coordinates in a frame, the same for any order of theirs.
+double MovingKdopTree::medianOf(const VertexFrames& frames, int frame, int axis) const {
+  std::vector<double> x;
+  x.reserve(vertex_ids_.size());
+  for (const std::uint32_t id : vertex_ids_) {
+    double p[3];
+    frames.at(frame, id, p);
+    if (std::isfinite(p[axis])) x.push_back(p[axis]);
+  }
+  if (x.empty()) return 0;
+  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
+  std::nth_element(x.begin(), middle, x.end());
+  return *middle;
+}
+
+void MovingKdopTree::setReach(const Range& range) {
+  reach_ = 0;
+  for (int frame = 0; frame < 2; ++frame)
+    for (int k = 0; k < 3; ++k)
+      reach_ = std::max(reach_, std::max(range.hi[frame][k] - origin_[frame][k],
+                                         origin_[frame][k] - range.lo[frame][k]));
 }
 
 /// Sets the boxes of a node whose children have theirs.
@@ -379,22 +409,24 @@ void MovingKdopTree::refit(MovingKdopNode& node) {
   }
   float extents[kWidth];
   setBoxes(boxes, node, extents);
-  float triangles = 0;
+  NodeSize& size = sizes_[static_cast<std::size_t>(&node - nodes_.data())];
+  size.triangles = 0;
+  size.blurred = 0;
   for (int lane = 0; lane < node.count; ++lane) {
     if (node.isTriangle(lane)) {
-      triangles += extents[lane];
+      size.triangles += extents[lane];
+      size.blurred += !(extents[lane] >= blur_ && extents[lane] <= FLT_MAX);
       continue;
     }
     NodeSize& child = sizes_[static_cast<std::size_t>(node.child[lane])];
     child.box = extents[lane];
-    triangles += child.triangles;
+    size.triangles += child.triangles;
+    size.blurred += child.blurred;
   }
-  sizes_[static_cast<std::size_t>(&node - nodes_.data())].triangles = triangles;
 }
 
 /// Sets paths and boxes of the vertices of a subtree.
-void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& frames,
-                                 float pad) {
+void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& frames) {
   for (std::size_t i = subtree.first_vertex; i < subtree.last_vertex; ++i) {
     if (i + kAhead < subtree.last_vertex) frames.prefetch(vertex_ids_[i + kAhead]);
     TreeVertex& v = vertices_[i];
@@ -406,7 +438,13 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
       to[1] = p[1];
       to[2] = p[2];
       to[3] = 0;
-      fitOffset(p[0] - origin_[0], p[1] - origin_[1], p[2] - origin_[2], pad,
+      const double(&o)[3] = origin_[frame];
+      const double x = p[0] - o[0], y = p[1] - o[1], z = p[2] - o[2];
+      // Doubles: a coordinate relative to the origin is rounded by 2^-53 of itself, the
+      // posed one in relativeShift() by as much, and a sum of two by 2^-52 of the larger:
+      // six of 2^-53 in all.
+      const double size = std::max(std::max(std::abs(x), std::abs(y)), std::abs(z));
+      fitOffset(x, y, z, 0x1p-49F * static_cast<float>(size),
                 frame == 0 ? v.box.t0 : v.box.t1);
     }
   }
@@ -421,16 +459,33 @@ void MovingKdopTree::refit(const Subtree& subtree) {
   refit(nodes_[subtree.root]);
 }
 
+/// The boxes are floats: relative to an origin that is far from most of a mesh, since
+/// some vertex flies off or all of it jumps, they are mere rounding. Then the origin goes
+/// to where most is.
 void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
-  setOrigin(frames, num_threads);
-  // A coordinate relative to the origin is rounded by 2^-53 of itself, a sum of two by as
-  // much again of the sum: together less than 2^-50 of the reach.
-  const float pad = roundUp(reach_ * 0x1p-50, 0.f);
+  const Range range = rangeOf(frames, num_threads);
+  for (int k = 0; k < 3; ++k)
+    origin_[0][k] = origin_[1][k] = 0.5 * std::min(range.lo[0][k], range.lo[1][k]) +
+                                    0.5 * std::max(range.hi[0][k], range.hi[1][k]);
+  setReach(range);
+  // Extents along eight directions in two frames have up to 2^-17 of the reach from
+  // rounding: 32 half-axes of at most 2 reach each, outward by 2^-22 of themselves.
+  blur_ = roundUp(reach_ * 0x1p-13, 0.f);
+  fit(frames, num_threads);
+  if (sizes_[0].blurred <= triangles_.size() / 2) return;
+  for (int frame = 0; frame < 2; ++frame)
+    for (int k = 0; k < 3; ++k) origin_[frame][k] = medianOf(frames, frame, k);
+  setReach(range);
+  fit(frames, num_threads);
+}
+
+/// Sets all paths and boxes.
+void MovingKdopTree::fit(const VertexFrames& frames, int num_threads) {
   if (numThreads(num_threads) > 1) {
-    refitGroups(frames, pad, num_threads);
+    refitGroups(frames, num_threads);
   } else {
     for (const Subtree& subtree : subtrees_) {
-      fitVertices(subtree, frames, pad);
+      fitVertices(subtree, frames);
       refit(subtree);
     }
   }
@@ -439,13 +494,13 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
 
 /// Refits the subtrees, which have vertices that those before them were the first to
 /// meet: of a group the vertices come first, which are still near for the nodes.
-void MovingKdopTree::refitGroups(const VertexFrames& frames, float pad, int num_threads) {
+void MovingKdopTree::refitGroups(const VertexFrames& frames, int num_threads) {
   for (std::size_t first = 0; first < subtrees_.size(); first += kSubtreeGroup) {
     const Subtree* subtrees = &subtrees_[first];
     const std::size_t count = std::min(kSubtreeGroup, subtrees_.size() - first);
     parallelForBlocks(count, kSubtreeBlock, num_threads,
                       [&](std::size_t i, std::size_t last) {
-                        for (; i < last; ++i) fitVertices(subtrees[i], frames, pad);
+                        for (; i < last; ++i) fitVertices(subtrees[i], frames);
                       });
     parallelForBlocks(count, kSubtreeBlock, num_threads,
                       [&](std::size_t i, std::size_t last) {
@@ -465,29 +520,25 @@ std::size_t MovingKdopTree::memUsage() const {
          fans_.memUsage();
 }
 
-KdopShift relativeShift(const double (&origin_a)[3], const double (&translation_a)[2][3],
-                        double reach_a, const double (&origin_b)[3],
-                        const double (&translation_b)[2][3], double reach_b) {
+KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b) {
   KdopShift shift;
   for (int frame = 0; frame < 2; ++frame) {
+    const double(&origin_a)[3] = a.origin[frame], (&origin_b)[3] = b.origin[frame];
+    const double(&move_a)[3] = a.translation[frame], (&move_b)[3] = b.translation[frame];
     double offset[3], d[8];
     double size = 0;  // of every number that enters a moved coordinate
     for (int k = 0; k < 3; ++k) {
-      const double a = translation_a[frame][k], b = translation_b[frame][k];
-      offset[k] = (origin_a[k] - origin_b[k]) + (a - b);
-      size = std::max(size, std::abs(origin_a[k]) + std::abs(origin_b[k]) + std::abs(a) +
-                                std::abs(b));
+      offset[k] = (origin_a[k] - origin_b[k]) + (move_a[k] - move_b[k]);
+      size = std::max(size, std::abs(origin_a[k]) + std::abs(origin_b[k]) +
+                                std::abs(move_a[k]) + std::abs(move_b[k]));
     }
     kdopCoordinates(offset, d);
-    size = 2 * (size + reach_a + reach_b);
-    // Doubles: three roundings of the offset, one of the diagonal, and one of each posed
-    // coordinate, each 2^-53 of a number below size: 2^-49 in all. Floats: in the sum of
-    // box, box and shift two roundings of 2^-24, each of a number below 2 (reach_a +
-    // reach_b) + |shift|, and the shift's own, which roundUp covers.
+    // Three roundings of the offset, one of the diagonal, and one of each posed
+    // coordinate, each 2^-53 of a number below size: 2^-49 in all.
+    size = 2 * (size + a.reach + b.reach);
+    const float pad = roundUp(size * 0x1p-49, 0.f);
     Kdop16& out = frame == 0 ? shift.t0 : shift.t1;
     for (int j = 0; j < 8; ++j) {
-      const float pad = roundUp(
-          size * 0x1p-49 + (2 * (reach_a + reach_b) + std::abs(d[j])) * 0x1p-22, 0.f);
       out.half[j] = roundUp(-d[j], pad);
       out.half[j + 8] = roundUp(d[j], pad);
     }

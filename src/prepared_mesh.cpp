@@ -96,9 +96,10 @@ bool areBoxesBounded(const MovingKdopTree& tree) {
 /// more than what rounds here and in reach().
 bool stayInRange(const MovingKdopTree& tree, const double (&translation)[2][3]) {
   double most = 0;
-  for (const auto& step : translation)
+  for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k)
-      most = std::max(most, std::abs(tree.origin()[k]) + std::abs(step[k]));
+      most = std::max(most,
+                      std::abs(tree.origin(frame)[k]) + std::abs(translation[frame][k]));
   return most + tree.reach() <= 0.5 * DBL_MAX;
 }
 

@@ -183,8 +183,8 @@ void RegionBorder::project(int direction) {
   int d[3];
   directionOf(direction, d);
   const PlaneAxes plane(d);
-  const auto at = [&](const double* p) {
-    const double(&o)[3] = tree_.origin();
+  const auto at = [&](const double* p, int frame) {
+    const double(&o)[3] = tree_.origin(frame);
     const double q[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
     const auto along = [&q](const int(&u)[3]) {
       return u[0] * q[0] + u[1] * q[1] + u[2] * q[2];
@@ -194,7 +194,7 @@ void RegionBorder::project(int direction) {
   planar_.clear();
   for (const Edge& edge : edges_) {
     const TreeVertex &a = tree_.vertices()[edge.from], &b = tree_.vertices()[edge.to];
-    planar_.push_back({{at(a.t0), at(a.t1)}, {at(b.t0), at(b.t1)}});
+    planar_.push_back({{at(a.t0, 0), at(a.t1, 1)}, {at(b.t0, 0), at(b.t1, 1)}});
   }
 }
 

@@ -102,6 +102,17 @@ struct EightBoxes {
   float half_axis[3][3][MovingKdopNode::kWidth];
 };
 
+/// How far a box reaches from its center along the axes.
+double spreadOf(const OrientedBox& box) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k) {
+    double spread = 0;
+    for (int i = 0; i < 3; ++i) spread += std::abs(box.axis[i][k] * box.extent[i]);
+    most = std::max(most, spread);
+  }
+  return most;
+}
+
 /// Half-axes of 16-DOPs around the boxes, but for rounding: a direction d meets a box as
 /// far from its center as the sum of |d . half axis|.
 void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
@@ -130,20 +141,28 @@ RigidTree::Volumes RigidTree::volumesOf() {
           &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
 }
 
+/// The origin lies in the middle of the mesh; or of one of its halves, if that is a speck
+/// beside the whole: a vertex may be far away from all others, and floats relative to the
+/// middle would be mere rounding (as in MovingKdopTree::refit()).
 RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose)
     : nodes_(nodes), volumes_(volumes), is_rotated_(!pose.isTranslation()) {
+  constexpr double kSpeck = 0x1p-10;
   std::copy(pose.rotation, pose.rotation + 9, rotation_);
-  OrientedBox box;
-  orientedBox(0, box);
-  std::copy(box.center, box.center + 3, origin_);
+  OrientedBox whole, part;
+  orientedBox(0, whole);
+  double least = kSpeck * spreadOf(whole);
+  std::copy(whole.center, whole.center + 3, origin_);
+  for (int child = link(0); child >= 0 && child < link(0) + 2; ++child) {
+    orientedBox(child, part);
+    if (!(spreadOf(part) < least)) continue;
+    least = spreadOf(part);
+    std::copy(part.center, part.center + 3, origin_);
+  }
   // Twice, so that with a center relative to it it bounds the center itself too.
   origin_size_ = roundUp(
       2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
-  for (int k = 0; k < 3; ++k) {
-    double spread = 0;
-    for (int i = 0; i < 3; ++i) spread += std::abs(box.axis[i][k] * box.extent[i]);
-    reach_ = std::max(reach_, spread);
-  }
+  for (int k = 0; k < 3; ++k)
+    reach_ = std::max(reach_, spreadOf(whole) + std::abs(whole.center[k] - origin_[k]));
   reach_ *= 1 + slack();
 }
 

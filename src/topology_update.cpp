@@ -120,8 +120,8 @@ class MovingKdopTree::TopologyUpdate {
     return counts_[static_cast<std::size_t>(node)];
   }
 
-  /// Four times the place of a triangle relative to the tree's origin, where it is when
-  /// the step begins.
+  /// Four times the place of a triangle relative to the tree's origins, between them,
+  /// where it is when the step begins.
   void placeOf(std::uint32_t triangle, float (&place)[3]) const {
     std::uint32_t ids[3];
     vertexIds(triangles_[triangle], ids);
@@ -129,7 +129,8 @@ class MovingKdopTree::TopologyUpdate {
     for (const std::uint32_t id : ids) {
       double p[3];
       frames_.at(0, id, p);
-      for (int k = 0; k < 3; ++k) sum[k] += p[k] - tree_.origin_[k];
+      for (int k = 0; k < 3; ++k)
+        sum[k] += p[k] - (0.5 * tree_.origin_[0][k] + 0.5 * tree_.origin_[1][k]);
     }
     for (int k = 0; k < 3; ++k) place[k] = deformable::placeOf(sum[k] * (4. / 3));
   }

@@ -2,6 +2,7 @@
 #include "tree_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <limits>
@@ -230,14 +231,30 @@ class Splitter {
   UninitializedVector<Item> scratch_;
 };
 
-/// Centroids relative to a vertex, so that far from the origin nothing is lost.
+/// Where most of a mesh is: the median of a few vertices' coordinates.
+void findMiddle(const Triangle* triangles, std::size_t num_triangles,
+                const VertexFrames& frames, double (&middle)[3]) {
+  constexpr std::size_t kSample = 31;
+  double x[3][kSample];
+  for (std::size_t i = 0; i < kSample; ++i) {
+    std::uint32_t v[3];
+    vertexIds(triangles[i * num_triangles / kSample], v);
+    double p[3];
+    frames.at(0, v[0], p);
+    for (int k = 0; k < 3; ++k) x[k][i] = std::isfinite(p[k]) ? p[k] : 0;
+  }
+  for (int k = 0; k < 3; ++k) {
+    std::nth_element(x[k], x[k] + kSample / 2, x[k] + kSample);
+    middle[k] = x[k][kSample / 2];
+  }
+}
+
+/// Centroids relative to the middle, so that far from the origin nothing is lost.
 UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_triangles,
                                   const VertexFrames& frames, int num_threads) {
   constexpr std::size_t kBlock = 8192;
-  std::uint32_t ids[3];
-  vertexIds(triangles[0], ids);
-  double first[3];
-  frames.at(0, ids[0], first);
+  double middle[3];
+  findMiddle(triangles, num_triangles, frames, middle);
   UninitializedVector<Float4> places(frames.size());
   parallelForBlocks(frames.size(), kBlock, num_threads,
                     [&](std::size_t i, std::size_t last) {
@@ -245,7 +262,7 @@ UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_tri
                         double p[3];
                         frames.at(0, i, p);
                         Float4 place{};
-                        for (int k = 0; k < 3; ++k) place[k] = placeOf(p[k] - first[k]);
+                        for (int k = 0; k < 3; ++k) place[k] = placeOf(p[k] - middle[k]);
                         places[i] = place;
                       }
                     });

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
@@ -334,6 +335,116 @@ TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_GT(contacts, 1000U);
+}
+
+/// Takes some vertices away, in one frame or in both.
+void letFly(Random& random, double far, std::size_t count, MovingMesh& mesh) {
+  const std::size_t frames = 1 + random.index(3);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t id = random.index(mesh.t0.size());
+    const Vector3<double> away = far * random.point(1);
+    if (frames & 1U) mesh.t0[id] += away;
+    if (frames & 2U) mesh.t1[id] += away;
+  }
+}
+
+TEST(FCL_DEFORMABLE_QUERY, flyingVerticesAgainstBruteForce) {
+  std::size_t contacts = 0;
+  for (std::uint64_t seed = 4000; seed < 4060; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const double far = std::pow(10, random.uniform(1, 40));
+    MovingMesh a = test::crumpledSheet(random, 4, 0.25),
+               b = test::crumpledSheet(random, 3, 0.25);
+    letFly(random, far, 1 + random.index(3), a);
+    if (seed % 3 == 0) letFly(random, far, 1, b);
+    Pose beginning, end;
+    if (seed % 2)
+      for (int k = 0; k < 3; ++k) {
+        beginning.translation[k] = random.uniform(-0.2, 0.2);
+        end.translation[k] = random.uniform(-0.2, 0.2);
+      }
+    const PreparedMovingMesh pa(a, beginning, end), pb(b);
+    const Body body_a{pa.instance(), a.triangles}, body_b{pb.instance(), b.triangles};
+    contacts += expectRightAnswers(body_a, body_a) + expectRightAnswers(body_a, body_b);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(contacts, 500U);
+}
+
+// A simulation that loses a vertex costs little more than one that does not: the boxes of
+// everything else still tell it apart.
+TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
+  constexpr std::uint64_t kSeed = 5000;
+  Random random(kSeed);
+  MovingMesh a = test::crumpledSheet(random, 40, 0.02);
+  MovingMesh b = test::crumpledSheet(random, 40, 0.02);
+  for (auto* points : {&b.t0, &b.t1})
+    for (auto& p : *points) p[2] += 0.01;
+  // In no order that a tree could live on, but for the first.
+  for (MovingMesh* mesh : {&a, &b})
+    for (std::size_t i = mesh->triangles.size() - 1; i > 1; --i)
+      std::swap(mesh->triangles[i], mesh->triangles[1 + random.index(i)]);
+  Pose beginning, end;
+  beginning.translation[0] = 0.3;
+  end.translation[0] = 0.1;
+  const auto boxesOf = [&](const MovingMesh& x, const MovingMesh& y) {
+    const PreparedMovingMesh px(x), py(y, beginning, end);
+    return std::array<std::uint64_t, 4>{
+        querySelf(px.instance(), QueryOptions()).counts.node_pairs,
+        querySelf(py.instance(), QueryOptions()).counts.node_pairs,
+        queryPair(px.instance(), py.instance(), QueryOptions()).counts.node_pairs,
+        queryPair(py.instance(), px.instance(), QueryOptions()).counts.node_pairs};
+  };
+  const auto usual = boxesOf(a, b);
+  for (const double far : {10., 1e3, 1e5, 1e7, 1e9, 1e15, 1e30}) {
+    MovingMesh flying_a = a, flying_b = b;
+    letFly(random, far, 2, flying_a);
+    letFly(random, far, 1, flying_b);
+    // Already where the tree is built, in the first triangle: below all others and above.
+    for (int k = 0; k < 3; ++k) {
+      flying_a.t0[a.triangles[0][0]][k] -= far;
+      flying_b.t0[b.triangles[0][0]][k] += far;
+    }
+    const auto counts = boxesOf(flying_a, flying_b);
+    for (std::size_t i = 0; i < counts.size(); ++i)
+      EXPECT_LT(counts[i], 2 * usual[i]) << "seed " << kSeed << ", " << far << ", " << i;
+    // All of it jumps; a box at t = 1 still has the size that rounds there.
+    MovingMesh jumping = a;
+    const double size = std::min(far, 1e9);
+    for (auto& p : jumping.t1) p += Vector3<double>(size, -size, size);
+    EXPECT_LT(boxesOf(jumping, b)[0], 2 * usual[0]) << "seed " << kSeed << ", " << far;
+  }
+}
+
+// The same of a mesh that FCL's own tree holds.
+TEST(FCL_DEFORMABLE_QUERY, farVerticesOfARigidMeshCostLittle) {
+  const TestMesh near = test::bentSheet(40);
+  const auto sheet = test::makeModel<BVHModel<KDOP<double, 16>>>(near);
+  const auto boxesOf = [&](const TestMesh& mesh, auto volume) {
+    const auto model = test::makeModel<BVHModel<decltype(volume)>>(mesh);
+    const Transform3<double> still = Transform3<double>::Identity();
+    Transform3<double> begin = still, end = still;
+    begin.translation() << 0.02, 0.1, 0.05;
+    end.translation() << 0.02, 0.1, -0.02;
+    const PreparedMesh px(*model, begin, end, "x"), py(*sheet, still, still, "y");
+    return std::array<std::uint64_t, 2>{
+        queryPair(px.instance(), py.instance(), QueryOptions()).counts.node_pairs,
+        queryPair(py.instance(), px.instance(), QueryOptions()).counts.node_pairs};
+  };
+  for (const double far : {1e3, 1e5, 1e7, 1e9}) {
+    TestMesh mesh = near;
+    mesh.vertices[near.vertices.size() / 3] +=
+        Vector3<double>(far, -0.2 * far, 0.5 * far);
+    const auto expectLittle = [&](auto volume) {
+      const auto usual = boxesOf(near, volume), counts = boxesOf(mesh, volume);
+      for (std::size_t i = 0; i < counts.size(); ++i)
+        EXPECT_LT(counts[i], 2 * usual[i]) << far << ", " << i;
+    };
+    expectLittle(AABB<double>());
+    expectLittle(KDOP<double, 16>());
+    expectLittle(OBBRSS<double>());
+  }
 }
 
 // What eight pairs at a time leave unclear is decided before the solver.

@@ -276,8 +276,8 @@ MovingKdop shifted(const MovingKdop& original, const KdopShift* shift) {
   MovingKdop box = original;
   if (!shift) return box;
   for (int j = 0; j < 16; ++j) {
-    box.t0.half[j] = std::max(box.t0.half[j] + shift->t0.half[j], kLeastHalf);
-    box.t1.half[j] = std::max(box.t1.half[j] + shift->t1.half[j], kLeastHalf);
+    box.t0.half[j] = detail::deformable::shifted(box.t0.half[j], shift->t0.half[j]);
+    box.t1.half[j] = detail::deformable::shifted(box.t1.half[j], shift->t1.half[j]);
   }
   return box;
 }

@@ -191,15 +191,16 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
     const MovingMesh mesh = test::randomSoup(random, 700, 500, size, size);
     const PreparedMovingMesh prepared(mesh);
     const MovingKdopTree& tree = prepared.tree();
-    const float pad = roundUp(tree.reach() * 0x1p-50, 0.f);
     for (const TreeVertex& v : tree.vertices())
       for (int frame = 0; frame < 2; ++frame) {
         const double* p = frame ? v.t1 : v.t0;
         const Kdop16& box = frame ? v.box.t1 : v.box.t0;
-        const double offset[3] = {p[0] - tree.origin()[0], p[1] - tree.origin()[1],
-                                  p[2] - tree.origin()[2]};
-        double d[8];
+        const double(&o)[3] = tree.origin(frame);
+        const double offset[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
+        double d[8], farthest = 0;
         kdopCoordinates(offset, d);
+        for (const double x : offset) farthest = std::max(farthest, std::abs(x));
+        const float pad = 0x1p-49F * static_cast<float>(farthest);
         for (int j = 0; j < 8; ++j) {
           ASSERT_EQ(box.half[j], roundUp(-d[j], pad));
           ASSERT_EQ(box.half[j + 8], roundUp(d[j], pad));
@@ -276,6 +277,9 @@ TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
       const PreparedMovingMesh prepared(mesh);
       const MovingKdopTree& tree = prepared.tree();
       expectStructure(tree, prepared.features());
+      std::vector<double> sample;
+      for (std::size_t i = 0; i < 31; ++i) sample.push_back(places[i * count / 31]);
+      std::sort(sample.begin(), sample.end());
       // Lowest nodes, by their places on the axis.
       std::vector<std::pair<float, float>> ranges;
       std::size_t full = 0;
@@ -287,8 +291,8 @@ TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
         for (int lane = 0; lane < node.count; ++lane) {
           const std::uint32_t t =
               tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index;
-          // As the tree sees it: relative to a vertex, three vertices together.
-          const auto x = static_cast<float>(places[t] - places[0]);
+          // As the tree sees it: relative to a median, three vertices together.
+          const auto x = static_cast<float>(places[t] - sample[15]);
           range.first = std::min(range.first, x + x + x);
           range.second = std::max(range.second, x + x + x);
         }
@@ -432,7 +436,7 @@ bool doTrianglesOverlapAt(const Body& a, std::size_t i, const Body& b, std::size
     const auto& triangle = body.triangles[side ? j : i];
     for (std::size_t c = 0; c < 3; ++c) {
       long double d[8];
-      coordinatesAt(body.instance.frames[triangle[c]], t, first.t0, d);
+      coordinatesAt(body.instance.frames[triangle[c]], t, first.t0, first.t0, d);
       for (int k = 0; k < 8; ++k) {
         lo[side][k] = c ? std::min(lo[side][k], d[k]) : d[k];
         hi[side][k] = c ? std::max(hi[side][k], d[k]) : d[k];
@@ -703,6 +707,91 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
         EXPECT_LT(visitsOf(pa.body, pb.body).size(),
                   a.triangles.size() * b.triangles.size() * 3 / 4);
       }
+    }
+}
+
+/// Widths of the triangles' boxes along all directions in both frames, and how much of
+/// them comes from rounding; without those of triangles with vertices that are
+/// `left_out`.
+struct Widths {
+  double all{0}, rounded{0};
+
+  Widths(const MovingKdopTree& tree, const std::vector<std::uint32_t>& left_out) {
+    const auto isLeftOut = [&left_out](std::uint32_t id) {
+      return std::find(left_out.begin(), left_out.end(), id) != left_out.end();
+    };
+    for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
+      for (int lane = 0; lane < tree.node(i).count; ++lane) {
+        if (!tree.node(i).isTriangle(lane)) continue;
+        const TreeTriangle& triangle =
+            tree.triangles()[static_cast<std::size_t>(tree.node(i).triangle(lane))];
+        if (std::any_of(triangle.id, triangle.id + 3, isLeftOut)) continue;
+        add(tree, triangle, tree.node(i).box(lane));
+      }
+  }
+
+ private:
+  void add(const MovingKdopTree& tree, const TreeTriangle& triangle,
+           const MovingKdop& box) {
+    for (int frame = 0; frame < 2; ++frame) {
+      double d[3][8];
+      for (std::size_t k = 0; k < 3; ++k) {
+        const TreeVertex& v = tree.vertices()[triangle.place[k]];
+        const double* p = frame ? v.t1 : v.t0;
+        kdopCoordinates({p[0], p[1], p[2]}, d[k]);
+      }
+      const Kdop16& half = frame ? box.t1 : box.t0;
+      for (int j = 0; j < 8; ++j) {
+        const double width =
+            std::max({d[0][j], d[1][j], d[2][j]}) - std::min({d[0][j], d[1][j], d[2][j]});
+        all += width;
+        rounded += double{half.half[j]} + double{half.half[j + 8]} - width;
+      }
+    }
+  }
+};
+
+// However far some vertices fly, and wherever the whole jumps, the boxes of what stays
+// are no wider by more than an eighth, whichever vertices these are; nor do they depend
+// on the order of the vertices.
+TEST(FCL_MOVING_KDOP_TREE, whatFliesOffBlursNothingElse) {
+  constexpr std::uint64_t kSeed = 64;
+  Random random(kSeed);
+  const MovingMesh sheet = test::crumpledSheet(random, 20, 0.05);
+  const auto count = static_cast<std::uint32_t>(sheet.t0.size());
+  for (const double far : {10., 1e3, 1e5, 1e7, 1e9, 1e20, 1e37, 1e39, 1e100, 1e307})
+    for (int i = 0; i < 12; ++i) {
+      SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(far) + ", " +
+                   std::to_string(i));
+      MovingMesh mesh = sheet;
+      // The first one, one, or several that fly apart; in one frame, or in both.
+      std::vector<std::uint32_t> flying(i % 3 == 2 ? 5 : 1);
+      for (auto& id : flying)
+        id = i % 3 == 0 ? 0 : static_cast<std::uint32_t>(random.index(count));
+      for (const std::uint32_t id : flying) {
+        const Vector3<double> away = far * random.point(1);
+        if (i / 3 % 3 != 0) mesh.t0[id] += away;
+        if (i / 3 % 3 != 1) mesh.t1[id] += away;
+      }
+      const Vector3<double> jump = far * random.point(1);
+      if (i >= 9 && far < 1e6)
+        for (auto& p : mesh.t1) p += jump;
+      const PreparedMovingMesh prepared(mesh);
+      const MovingKdopTree& tree = prepared.tree();
+      const Widths widths(tree, flying);
+      EXPECT_LT(widths.rounded, widths.all / 8);
+      for (const TreeVertex& v : tree.vertices())
+        for (int k = 0; k < 3; ++k) {
+          EXPECT_LE(std::abs(v.t0[k] - tree.origin(0)[k]), tree.reach());
+          EXPECT_LE(std::abs(v.t1[k] - tree.origin(1)[k]), tree.reach());
+        }
+
+      MovingMesh reversed = mesh;
+      std::reverse(reversed.t0.begin(), reversed.t0.end());
+      std::reverse(reversed.t1.begin(), reversed.t1.end());
+      for (Triangle& t : reversed.triangles)
+        for (int k = 0; k < 3; ++k) t[k] = count - 1 - t[k];
+      expectSameBoxes(PreparedMovingMesh(reversed).tree(), tree);
     }
 }
 

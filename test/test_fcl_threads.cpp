@@ -468,7 +468,8 @@ bool areSame(const T& x, const T& y) {
 /// To the bit, structure and boxes.
 void expectSameModel(const Model& x, const Model& y) {
   const auto &a = x.movingTree(), &b = y.movingTree();
-  EXPECT_TRUE(areSame(a.origin(), b.origin()));
+  EXPECT_TRUE(areSame(a.origin(0), b.origin(0)));
+  EXPECT_TRUE(areSame(a.origin(1), b.origin(1)));
   EXPECT_EQ(a.reach(), b.reach());
   ASSERT_EQ(a.numNodes(), b.numNodes());
   for (int i = 0; i < static_cast<int>(a.numNodes()); ++i) {

@@ -104,8 +104,8 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
     if constexpr (kShifted) {
       float moved[2][16];
       for (std::size_t r = 0; r < 16; ++r) {
-        moved[0][r] = std::max(a.rows[r].t0[lane] + leaves.shift[0][r], kLeastHalf);
-        moved[1][r] = std::max(a.rows[r].t1[lane] + leaves.shift[1][r], kLeastHalf);
+        moved[0][r] = shifted(a.rows[r].t0[lane], leaves.shift[0][r]);
+        moved[1][r] = shifted(a.rows[r].t1[lane], leaves.shift[1][r]);
       }
       left &= overlapChildren<1>({moved[0], moved[1], 1}, b, leaves.timed, earliest);
     } else {
@@ -156,6 +156,11 @@ HWY_INLINE MovingBox merge(const MovingBox& a, const MovingBox& b) {
   return {larger(a.t0, b.t0), larger(a.t1, b.t1)};
 }
 
+HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
+  const HalfAxes sum = half + load<16>(shift.half);
+  return larger(sum + abs(sum) * broadcast<16>(kOutward), broadcast<16>(kLeastHalf));
+}
+
 /// The overlap depths of a pair of features at both times. Which feature comes first does
 /// not matter but for the shift.
 HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::size_t bit,
@@ -175,9 +180,8 @@ HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::siz
     second = merge(boxOf(*pair.x[ends[2]]), boxOf(*pair.x[ends[3]]));
   }
   if (add) {
-    const HalfAxes least = broadcast<16>(kLeastHalf);
-    first.t0 = larger(first.t0 + load<16>(add->t0.half), least);
-    first.t1 = larger(first.t1 + load<16>(add->t1.half), least);
+    first.t0 = shifted(first.t0, add->t0);
+    first.t1 = shifted(first.t1, add->t1);
   }
   return {first.t0 + swapHalves(second.t0), first.t1 + swapHalves(second.t1)};
 }
@@ -235,9 +239,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
     const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
     HalfAxes ends =
         larger(load<16>(mine[k]->box.t0.half), load<16>(mine[(k + 1) % 3]->box.t0.half));
-    if (shift)
-      ends = larger(ends + load<16>((on_b ? turned_shift : shift)->t0.half),
-                    broadcast<16>(kLeastHalf));
+    if (shift) ends = shifted(ends, (on_b ? turned_shift : shift)->t0);
     const HalfAxes all =
         larger(larger(load<16>(face[0]->box.t0.half), load<16>(face[1]->box.t0.half)),
                load<16>(face[2]->box.t0.half));

@@ -33,14 +33,15 @@ using detail::deformable::VertexPath;
 
 constexpr double kTimes[] = {0, 1e-9, 0.125, 1. / 3, 0.5, 0.7, 0.9375, 1};
 
-/// The 8 coordinates of a vertex at t, relative to origin, with 11 bits more than double.
-inline void coordinatesAt(const VertexPath& p, double t, const double (&origin)[3],
-                          long double (&d)[8]) {
+/// The 8 coordinates of a vertex at t, relative to origins of both frames, with 11 bits
+/// more than double.
+inline void coordinatesAt(const VertexPath& p, double t, const double (&origin0)[3],
+                          const double (&origin1)[3], long double (&d)[8]) {
   long double x[3];
   for (int k = 0; k < 3; ++k)
     x[k] = (1 - static_cast<long double>(t)) *
-               (static_cast<long double>(p.t0[k]) - origin[k]) +
-           static_cast<long double>(t) * (static_cast<long double>(p.t1[k]) - origin[k]);
+               (static_cast<long double>(p.t0[k]) - origin0[k]) +
+           static_cast<long double>(t) * (static_cast<long double>(p.t1[k]) - origin1[k]);
   const long double all[8] = {x[0],        x[1],        x[2],        x[0] + x[1],
                               x[0] + x[2], x[1] + x[2], x[0] - x[1], x[0] - x[2]};
   std::copy(all, all + 8, d);
@@ -128,10 +129,10 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
 }
 
 /// Whether the box contains the vertex at t.
-inline void expectContained(const VertexPath& path, double t, const double (&origin)[3],
+inline void expectContained(const VertexPath& path, double t, const MovingKdopTree& tree,
                             const MovingKdop& box) {
   long double d[8];
-  coordinatesAt(path, t, origin, d);
+  coordinatesAt(path, t, tree.origin(0), tree.origin(1), d);
   for (int j = 0; j < 8; ++j) {
     ASSERT_LE(-d[j], halfAt(box, j, t)) << "half-axis " << j << " at " << t;
     ASSERT_LE(d[j], halfAt(box, j + 8, t)) << "half-axis " << j + 8 << " at " << t;
@@ -158,11 +159,11 @@ inline void expectContainment(const MovingKdopTree& tree,
           ASSERT_EQ(vertex.t1[c], path.t1[c]);
         }
         for (const double t : kTimes) {
-          ASSERT_NO_FATAL_FAILURE(expectContained(path, t, tree.origin(), vertex.box));
+          ASSERT_NO_FATAL_FAILURE(expectContained(path, t, tree, vertex.box));
           for (Place p{i, lane}; p.node >= 0;
                p = parent[static_cast<std::size_t>(p.node)])
             ASSERT_NO_FATAL_FAILURE(
-                expectContained(path, t, tree.origin(), tree.node(p.node).box(p.lane)))
+                expectContained(path, t, tree, tree.node(p.node).box(p.lane)))
                 << "node " << p.node << ", lane " << p.lane;
         }
       }

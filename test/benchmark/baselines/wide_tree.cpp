@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 #include <utility>
 
 #include "baselines/binary_structure.h"
@@ -67,7 +68,13 @@ Regions WideTree<kBoxes>::regions() const {
 template <Boxes kBoxes>
 void WideTree<kBoxes>::refit(const FramePairMesh& mesh) {
   tree_.refit({mesh.previous[0].data(), mesh.current[0].data(), mesh.previous.size()});
-  if (kBoxes == Boxes::kSwept) swept_.assign(tree_);
+  if (kBoxes == Boxes::kSwept) {
+    // Their union needs boxes that are relative to one point.
+    for (int k = 0; k < 3; ++k)
+      if (tree_.origin(0)[k] != tree_.origin(1)[k])
+        throw std::invalid_argument("boxes of a mesh that is spread too far");
+    swept_.assign(tree_);
+  }
   for (std::size_t i = 0; i < vertices_.size(); ++i) {
     TreeVertex& v = vertices_[i] = tree_.vertices()[i];
     for (int j = 0; kBoxes == Boxes::kSwept && j < 16; ++j)

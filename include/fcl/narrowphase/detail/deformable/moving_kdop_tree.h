@@ -175,8 +175,9 @@ class MovingKdopTree {
   /// @brief The fans of the vertices in the tree's order.
   const VertexFans& fans() const { return fans_; }
 
-  /// @brief World point that the boxes are relative to.
-  const double (&origin() const)[3] { return origin_; }
+  /// @brief World point that the boxes of a frame (0 or 1) are relative to; the same of
+  /// both, unless most of the mesh is far away from it.
+  const double (&origin(int frame) const)[3] { return origin_[frame]; }
 
   /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
   double reach() const { return reach_; }
@@ -190,10 +191,13 @@ class MovingKdopTree {
     std::uint32_t root, first_node, last_node, first_triangle, first_vertex, last_vertex;
   };
   /// Extents of a node's box, and of all triangles' boxes below together: along all eight
-  /// directions, in both frames.
+  /// directions, in both frames; and how many of the triangles are blurred.
   struct NodeSize {
     float box, triangles;
+    std::uint32_t blurred;
   };
+  /// Least and greatest coordinates.
+  struct Range;
   class Restructuring;
   class TopologyUpdate;
 
@@ -218,11 +222,14 @@ class MovingKdopTree {
   void placeVertices(std::size_t num_vertices);
   void setNodes(const TreeStructure& structure, int num_threads);
   void setNode(const TreeChildren& from, MovingKdopNode& node) const;
-  void setOrigin(const VertexFrames& frames, int num_threads);
-  void fitVertices(const Subtree& subtree, const VertexFrames& frames, float pad);
+  Range rangeOf(const VertexFrames& frames, int num_threads) const;
+  double medianOf(const VertexFrames& frames, int frame, int axis) const;
+  void setReach(const Range& range);
+  void fit(const VertexFrames& frames, int num_threads);
+  void fitVertices(const Subtree& subtree, const VertexFrames& frames);
   void refit(MovingKdopNode& node);
   void refit(const Subtree& subtree);
-  void refitGroups(const VertexFrames& frames, float pad, int num_threads);
+  void refitGroups(const VertexFrames& frames, int num_threads);
 
   UninitializedVector<MovingKdopNode> nodes_;
   std::vector<std::uint32_t> first_triangles_;
@@ -239,8 +246,10 @@ class MovingKdopTree {
   /// Of each node as it is, and as it was when it was made; 0 as long as unknown.
   std::vector<NodeSize> sizes_;
   std::vector<NodeSize> first_sizes_;
-  double origin_[3]{0, 0, 0};
+  double origin_[2][3]{};
   double reach_{0};
+  /// Triangles whose boxes have smaller extents are blurred.
+  float blur_{0};
 };
 
 /// @brief Opens node i of a binary tree until there are eight nodes or only leaves.
@@ -274,14 +283,20 @@ int openBinary(std::int32_t i, std::int32_t (&nodes)[MovingKdopNode::kWidth],
 /// @brief Box of a point relative to an origin, with `pad` for what was rounded before.
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out);
 
-/// @brief What to add to the sum of a box of a tree around origin_a and one of a tree
-/// around origin_b, whose meshes are moved by translations on top: outward by the
-/// rounding of everything that is added, and of the moved coordinates themselves.
-/// @param translation_a, translation_b  [frame][axis]
-/// @param reach_a, reach_b  as MovingKdopTree::reach()
-KdopShift relativeShift(const double (&origin_a)[3], const double (&translation_a)[2][3],
-                        double reach_a, const double (&origin_b)[3],
-                        const double (&translation_b)[2][3], double reach_b);
+/// @brief Where the boxes of a tree are in space: [frame][axis].
+struct BoxPlace {
+  /// What they are relative to.
+  double origin[2][3];
+  /// By which the mesh is moved on top.
+  double translation[2][3];
+  /// Of a RigidTree, as reach(); 0 of a MovingKdopTree, whose boxes have room for the
+  /// rounding of what is relative to the origin.
+  double reach;
+};
+
+/// @brief What to add to the sum of a box of one tree and one of another: outward by the
+/// rounding of the numbers that make it, and of the moved coordinates themselves.
+KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b);
 
 }  // namespace deformable
 }  // namespace detail

@@ -188,10 +188,8 @@ class Traversal {
     float moved[2][16];
     if (!kSelf) {
       for (std::size_t r = 0; r < 16; ++r) {
-        moved[0][r] =
-            std::max(box.t0[r * box.stride] + shift_[kSwapped][0][r], kLeastHalf);
-        moved[1][r] =
-            std::max(box.t1[r * box.stride] + shift_[kSwapped][1][r], kLeastHalf);
+        moved[0][r] = shifted(box.t0[r * box.stride], shift_[kSwapped][0][r]);
+        moved[1][r] = shifted(box.t1[r * box.stride], shift_[kSwapped][1][r]);
       }
       box = {moved[0], moved[1], 1};
     }
