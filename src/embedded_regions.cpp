@@ -50,10 +50,99 @@ class FacedDirections {
   std::vector<std::uint32_t> blocks_;
 };
 
-/// A node that is not below an embedded one, and where its triangles end.
+/// A node that may be the root of a region, and where its triangles end.
 struct OpenNode {
   std::int32_t node;
   std::uint32_t last;
+};
+
+/// What is left to be searched, and the triangles of the regions that were found, and of
+/// those whose borders were looked at in vain.
+struct Searched {
+  std::vector<OpenNode> rest;
+  std::size_t embedded{0}, in_vain{0};
+};
+
+class RegionSearch {
+ public:
+  /// @param found  of the tree's size, all 0
+  RegionSearch(const MovingKdopTree& tree, const Kernels& kernels,
+               std::uint32_t least_triangles, EmbeddedRegions& found)
+      : tree_(tree),
+        least_triangles_(least_triangles),
+        faced_(tree, kernels),
+        found_(found) {}
+
+  OpenNode root() const {
+    return {0, static_cast<std::uint32_t>(tree_.triangles().size())};
+  }
+
+  /// Finds the largest region among a node, its first part, the first part of that and so
+  /// on. A part of an embedded region is embedded, too: hence from the smallest one
+  /// upwards, as far as they are, so that no large border is looked at in vain where
+  /// layers lie on each other. Different nodes at the same time, none below another.
+  /// @return with the other parts of those that are not embedded
+  Searched search(const OpenNode& open, RegionBorder& border) {
+    std::vector<OpenNode> chain{open};
+    for (std::vector<OpenNode> parts = partsOf(open); !parts.empty();
+         parts = partsOf(parts.front()))
+      chain.push_back(parts.front());
+    Searched out;
+    std::size_t largest = chain.size();
+    while (largest > 0 && isEmbedded(chain[largest - 1], border, out.in_vain)) --largest;
+    if (largest > 0) {
+      const Region tried = regionOf(chain[largest - 1]);
+      std::fill(found_.interior.begin() + tried.first_place,
+                found_.interior.begin() + tried.last_place, std::uint8_t{0});
+    }
+    if (largest < chain.size()) {
+      const Region region = regionOf(chain[largest]);
+      found_.nodes[static_cast<std::size_t>(chain[largest].node)] = 1;
+      border.markInterior(region, found_.interior.data());
+      out.embedded = region.last - region.first;
+    }
+    for (std::size_t i = 0; i < largest; ++i) {
+      const std::vector<OpenNode> parts = partsOf(chain[i]);
+      if (!parts.empty()) out.rest.insert(out.rest.end(), parts.begin() + 1, parts.end());
+    }
+    return out;
+  }
+
+ private:
+  /// The nodes below that have enough triangles.
+  std::vector<OpenNode> partsOf(const OpenNode& open) const {
+    std::vector<OpenNode> parts;
+    const MovingKdopNode& node = tree_.node(open.node);
+    std::uint32_t last = open.last;
+    for (int lane = node.count; lane-- > 0;) {
+      if (node.isTriangle(lane)) continue;
+      const std::uint32_t first = tree_.firstTriangle(node.child[lane]);
+      if (last - first >= least_triangles_) parts.push_back({node.child[lane], last});
+      last = first;
+    }
+    return parts;
+  }
+
+  Region regionOf(const OpenNode& open) const {
+    const std::uint32_t first = tree_.firstTriangle(open.node);
+    return {first, open.last, tree_.placesBefore(first), tree_.placesBefore(open.last)};
+  }
+
+  /// Writes to what is interior of the node.
+  bool isEmbedded(const OpenNode& open, RegionBorder& border, std::size_t& in_vain) {
+    const Region region = regionOf(open);
+    const std::uint32_t directions = faced_.of(region.first, region.last);
+    if (directions == 0) return false;
+    if (border.find(region, found_.interior.data()) && border.isEmbedded(directions))
+      return true;
+    in_vain += region.last - region.first;
+    return false;
+  }
+
+  const MovingKdopTree& tree_;
+  std::uint32_t least_triangles_;
+  FacedDirections faced_;
+  EmbeddedRegions& found_;
 };
 
 }  // namespace
@@ -62,43 +151,26 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
                                     int num_threads, std::uint32_t least_triangles) {
   EmbeddedRegions found{std::vector<std::uint8_t>(tree.numNodes(), 0),
                         std::vector<std::uint8_t>(tree.vertices().size(), 0)};
-  FacedDirections faced(tree, kernels);
-  // Level by level; regions of a level have no triangle in common, nor do they write to
-  // the same vertices.
+  RegionSearch regions(tree, kernels, least_triangles, found);
+  // No two that are open have a triangle in common, nor are the same vertices written to.
   constexpr std::size_t kTasks = 64;
-  std::vector<OpenNode> open{{0, static_cast<std::uint32_t>(tree.triangles().size())}},
-      next;
-  for (; !open.empty(); open.swap(next)) {
-    parallelForBlocks(
-        open.size(), open.size() / kTasks + 1, num_threads,
-        [&](std::size_t i, std::size_t last) {
-          RegionBorder border(tree, kernels);
-          for (; i < last; ++i) {
-            const std::uint32_t first = tree.firstTriangle(open[i].node),
-                                end = open[i].last;
-            const std::uint32_t directions = faced.of(first, end);
-            if (directions == 0) continue;
-            const Region region{first, end, tree.placesBefore(first),
-                                tree.placesBefore(end)};
-            const bool embedded = border.find(region, found.interior.data()) &&
-                                  border.isEmbedded(directions);
-            found.nodes[static_cast<std::size_t>(open[i].node)] = embedded;
-            if (!embedded)
-              std::fill(found.interior.begin() + region.first_place,
-                        found.interior.begin() + region.last_place, std::uint8_t{0});
-          }
-        });
-    next.clear();
-    for (const OpenNode& o : open) {
-      if (found.nodes[static_cast<std::size_t>(o.node)]) continue;
-      const MovingKdopNode& node = tree.node(o.node);
-      std::uint32_t last = o.last;
-      for (int lane = node.count; lane-- > 0;) {
-        if (node.isTriangle(lane)) continue;
-        const std::uint32_t first = tree.firstTriangle(node.child[lane]);
-        if (last - first >= least_triangles) next.push_back({node.child[lane], last});
-        last = first;
-      }
+  // Parts from all over the mesh: where most of them are in vain, so will the rest be.
+  const std::size_t spare = 16 * std::size_t{least_triangles};
+  std::size_t embedded = 0, in_vain = 0;
+  std::vector<OpenNode> open{regions.root()};
+  while (!open.empty() && in_vain <= spare + 2 * embedded) {
+    std::vector<Searched> searched(open.size());
+    parallelForBlocks(open.size(), open.size() / kTasks + 1, num_threads,
+                      [&](std::size_t i, std::size_t last) {
+                        RegionBorder border(tree, kernels);
+                        for (; i < last; ++i)
+                          searched[i] = regions.search(open[i], border);
+                      });
+    open.clear();
+    for (const Searched& s : searched) {
+      open.insert(open.end(), s.rest.begin(), s.rest.end());
+      embedded += s.embedded;
+      in_vain += s.in_vain;
     }
   }
   return found;

@@ -35,9 +35,13 @@ class RegionBorder {
   RegionBorder(const MovingKdopTree& tree, const Kernels& kernels)
       : tree_(tree), kernels_(kernels) {}
 
+  /// @brief Finds what lies inside.
+  /// @param interior  for each vertex of the tree; those of the region get 1 if they have
+  /// a closed fan of its triangles and no others, else 0
+  void markInterior(const Region& region, std::uint8_t* interior) const;
+
   /// @brief Finds the border: the directed edges that are left when opposite ones cancel.
-  /// @param interior  for each vertex of the tree; those of the region get 1 if they lie
-  /// inside: they have a closed fan of its triangles, and no others
+  /// @param interior  markInterior() is called
   /// @return false if an edge is left more than once
   bool find(const Region& region, std::uint8_t* interior);
 
@@ -68,7 +72,6 @@ class RegionBorder {
   static double cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
   static double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
 
-  void markInterior(const Region& region, std::uint8_t* interior) const;
   bool cancelOpposites();
   bool linkPaths();
   int widest(std::uint32_t directions) const;

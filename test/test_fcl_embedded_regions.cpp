@@ -19,6 +19,7 @@
 
 #include "brute_force.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
+#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "generated_scenes.h"
 #include "moving_mesh.h"
@@ -608,6 +609,37 @@ TEST(FCL_EMBEDDED_REGIONS, doNotDependOnThreadsOrKernels) {
   const QueryAnswer one = answerOf(prepared.instance(), QueryGoal::kAll, true);
   const QueryAnswer four = answerOf(prepared.instance(), QueryGoal::kAll, true, 4);
   EXPECT_EQ(bitsOf(one), bitsOf(four));
+}
+
+// Sheets that lie on each other face one direction, all of them, but no border of theirs
+// is simple: a few are looked at, which are enough to give up.
+TEST(FCL_EMBEDDED_REGIONS, layersAreNotSearchedInVain) {
+  static std::size_t triangles_asked, boxes_compared;
+  Kernels counting = kernels();
+  counting.facedDirections = [](const TreeVertex* vertices, const TreeTriangle* triangles,
+                                std::size_t count) {
+    triangles_asked += count;
+    return kernels().facedDirections(vertices, triangles, count);
+  };
+  counting.overlapTriangles = [](const LeafPairing& leaves, LanePairs& out) {
+    boxes_compared += numBits(leaves.lanes);
+    kernels().overlapTriangles(leaves, out);
+  };
+  const auto search = [&counting](const test::FramePairMesh& scene) {
+    const MovingMesh moving{scene.previous, scene.current, scene.triangles};
+    const PreparedMovingMesh prepared(moving);
+    triangles_asked = boxes_compared = 0;
+    const EmbeddedRegions found = findEmbeddedRegions(prepared.tree(), counting, 1);
+    return std::count(found.nodes.begin(), found.nodes.end(), 1);
+  };
+  const test::FramePairMesh tiles = test::makeTiles(120000);
+  EXPECT_EQ(search(tiles), 0);
+  EXPECT_GT(boxes_compared, 0U);
+  EXPECT_LT(boxes_compared, tiles.triangles.size() / 20);
+  EXPECT_LT(triangles_asked, tiles.triangles.size() / 4);
+  const test::FramePairMesh cloth = test::makeSmoothCloth(30000);
+  EXPECT_GT(search(cloth), 2);
+  EXPECT_LE(triangles_asked, cloth.triangles.size());
 }
 
 // What the traversal leaves out is exactly the pairs below one of the nodes, whatever
