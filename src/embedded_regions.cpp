@@ -90,16 +90,18 @@ class RegionSearch {
     Searched out;
     std::size_t largest = chain.size();
     while (largest > 0 && isEmbedded(chain[largest - 1], border, out.in_vain)) --largest;
+    const bool is_found = largest < chain.size();
+    if (is_found) {
+      const Region region = regionOf(chain[largest]);
+      found_.nodes[static_cast<std::size_t>(chain[largest].node)] = 1;
+      out.embedded = region.last - region.first;
+    }
     if (largest > 0) {
+      // The last try, which failed, has written there.
       const Region tried = regionOf(chain[largest - 1]);
       std::fill(found_.interior.begin() + tried.first_place,
                 found_.interior.begin() + tried.last_place, std::uint8_t{0});
-    }
-    if (largest < chain.size()) {
-      const Region region = regionOf(chain[largest]);
-      found_.nodes[static_cast<std::size_t>(chain[largest].node)] = 1;
-      border.markInterior(region, found_.interior.data());
-      out.embedded = region.last - region.first;
+      if (is_found) border.markInterior(regionOf(chain[largest]), found_.interior.data());
     }
     for (std::size_t i = 0; i < largest; ++i) {
       const std::vector<OpenNode> parts = partsOf(chain[i]);

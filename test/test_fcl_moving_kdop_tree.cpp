@@ -322,6 +322,31 @@ TEST(FCL_MOVING_KDOP_TREE, structureFarFromTheOrigin) {
     ASSERT_EQ(here.tree().triangles()[i].index, there.tree().triangles()[i].index);
 }
 
+// A moved half-axis is not below the sum, nor above it by more than a few units of float.
+TEST(FCL_MOVING_KDOP, shiftedHalvesAreNotBelowTheSum) {
+  constexpr std::uint64_t kSeed = 65;
+  Random random(kSeed);
+  int rounded = 0;
+  for (int i = 0; i < 100000; ++i) {
+    // Sums of these are exact in doubles.
+    const int exponent = static_cast<int>(random.index(230)) - 140;
+    const auto number = [&] {
+      return std::ldexp(static_cast<float>(random.uniform(-1, 1)),
+                        exponent + static_cast<int>(random.index(28)));
+    };
+    const float half = number(), shift = number();
+    const double sum = double{half} + double{shift};
+    const auto moved = double{shifted(half, shift)};
+    ASSERT_GE(moved, sum) << "seed " << kSeed << ", " << i;
+    ASSERT_LE(moved, sum + std::abs(sum) * 0x1p-21 + 0x1p-149);
+    rounded += double{half + shift} < sum;
+  }
+  EXPECT_GT(rounded, 10000);
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(shifted(kInf, kLeastHalf), kInf);
+  EXPECT_EQ(shifted(kLeastHalf, kLeastHalf), kLeastHalf);
+}
+
 /// A box whose bounds are multiples of a power of two, so that the exact overlap below
 /// is exact.
 MovingKdop gridBox(Random& random, int exponent) {
