@@ -41,7 +41,7 @@ struct Schedule {
   std::size_t tasks;
 };
 constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, false, 256};
-constexpr Schedule kFirstSchedule{32, true, 64};
+constexpr Schedule kFirstSchedule{128, true, 64};
 
 /// What a query of a mesh with itself leaves out: for each vertex of the tree whether
 /// its fan is embedded, for each node whether it is the root of an embedded region; empty
@@ -64,10 +64,12 @@ template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
-       const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
+       const SeparatingAxes* axes, double approach, const Schedule& schedule,
+       Leaves& leaves)
       : traversal_(tree_a, tree_b, shift, SelfCulling::dataOf(culling.fans),
                    SelfCulling::dataOf(culling.regions), axes, kernels(),
                    schedule.in_order),
+        approach_(approach),
         schedule_(schedule),
         leaves_(&leaves),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
@@ -87,7 +89,8 @@ class Part {
            !leaves_->isDone();
          ++next) {
       const NodePair work = open_[next];
-      if (work.earliest <= leaves_->latest()) step(work);
+      const double latest = leaves_->latest();
+      if (work.earliest <= latest) step(work, latest);
     }
     finish();
     if (!leaves_->isDone())
@@ -103,8 +106,9 @@ class Part {
       const std::size_t first = open_.size() - 1;
       const NodePair& last = open_[first];
       open_.cut(first);
-      if (last.earliest > leaves_->latest()) continue;
-      step(last);
+      const double latest = leaves_->latest();
+      if (last.earliest > latest) continue;
+      step(last, latest);
       if (schedule_.in_order)
         std::sort(
             open_.data() + first, open_.data() + open_.size(),
@@ -114,7 +118,8 @@ class Part {
   }
 
  private:
-  void step(const NodePair& work) {
+  void step(const NodePair& work, double latest) {
+    traversal_.leaveOutBeyond(gapUntil(latest, approach_));
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
       assert(count_ < block_.size());
       LeafPair& pair = block_[count_++];
@@ -152,6 +157,8 @@ class Part {
   }
 
   Traversal<kSelf, TreeA, TreeB> traversal_;
+  /// Of the meshes, see approachOf().
+  double approach_;
   const Schedule& schedule_;
   Leaves* leaves_;
   double test_time_{0};
@@ -195,9 +202,10 @@ struct Scene {
  private:
   template <typename Leaves, typename Visit>
   void makePart(const Schedule& schedule, Leaves& leaves, Visit&& visit) const {
+    const double approach = approachOf(a, b);
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
-          *a.tree, *a.tree, shift, culling, nullptr, schedule, leaves);
+          *a.tree, *a.tree, shift, culling, nullptr, approach, schedule, leaves);
       return visit(part);
     }
     visitTree(a, [&](auto& tree_a) {
@@ -207,13 +215,13 @@ struct Scene {
         if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
           if (isSelf()) {
             Part<true, A, B, Leaves> part(tree_a, tree_b, shift, culling, nullptr,
-                                          schedule, leaves);
+                                          approach, schedule, leaves);
             return visit(part);
           }
         const SeparatingAxes axes(a, b);
         Part<false, A, B, Leaves> part(tree_a, tree_b, shift, culling,
-                                       a.tree || b.tree ? nullptr : &axes, schedule,
-                                       leaves);
+                                       a.tree || b.tree ? nullptr : &axes, approach,
+                                       schedule, leaves);
         visit(part);
       });
     });

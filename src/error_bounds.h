@@ -27,6 +27,10 @@ constexpr double kUnit = 0x1p-53;
 constexpr double kVolumeBound = 48 * kUnit;
 constexpr double kOuterBound = 104 * kUnit;
 constexpr double kInnerBound = 344 * kUnit;
+// d . (x - o) for a direction d and points that differ by norm N from o, at most: 3 (1 +
+// 1
+// + 2) u DN; the difference of two such numbers 24 + 6 u DN.
+constexpr double kPlaneBound = 32 * kUnit;
 // The filter takes the largest norm N for all of U, V, W and makes the inner coefficients
 // smaller, so that all four have one bound, kOuterBound N^3. Computing that, and making
 // them smaller, rounds by 4 u of their own size: in the room.

@@ -11,6 +11,9 @@ namespace detail {
 namespace deformable {
 namespace {
 
+/// Of two triangles.
+constexpr std::size_t kEdges = 6;
+
 bool isFinite(const TreeVertex& x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
@@ -88,10 +91,13 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       reader_b_(b),
       self_(&a == &b),
       shift_(shift),
+      approach_(approachOf(a, b)),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
       owned_(new std::uint16_t[kMaxPairs]),
-      lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)} {
+      edges_(new std::uint16_t[kMaxPairs]),
+      lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
+      crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
     turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
@@ -104,39 +110,59 @@ FeatureBatch::List::List(std::size_t pairs_each)
     : codes(new std::uint32_t[kMaxPairs * pairs_each + 16]),
       windows(new TimeWindow[kMaxPairs * pairs_each]) {}
 
-/// Only edges that the triangle owns and that share no vertex with the face.
-void FeatureBatch::addCrossings(std::uint32_t pair, unsigned shared) {
+/// Those that the triangle owns and that share no vertex with the other one.
+unsigned FeatureBatch::ownedEdges(const TrianglePair& pair, unsigned shared) {
   // Vertices of a that are b's too, and the reverse.
   const unsigned shared_a =
       (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
   const unsigned shared_b = (shared | shared >> 3 | shared >> 6) & 7U;
-  const TrianglePair& p = pairs_[pair];
-  unsigned edges = (p.a->owned >> 3 & 7U & ~edgesAt(shared_a)) |
-                   (p.b->owned >> 3 & 7U & ~edgesAt(shared_b)) << 3;
-  for (; edges != 0; edges &= edges - 1)
-    crossings_.push_back(featureCode(pair, __builtin_ctz(edges)));
+  return (pair.a->owned >> 3 & 7U & ~edgesAt(shared_a)) |
+         (pair.b->owned >> 3 & 7U & ~edgesAt(shared_b)) << 3;
 }
 
 void FeatureBatch::clear() {
-  num_pairs_ = 0;
-  crossings_.clear();
+  num_pairs_ = num_crossings_ = 0;
+  has_edges_ = false;
   for (List& list : lists_) list.size = 0;
 }
 
 void FeatureBatch::cull(double latest, StageCounts& counts) {
-  const float last = roundUp(latest, 0.f);
-  cull(FeatureKind::kVertexFace, last, lists_[0], counts);
-  cull(FeatureKind::kEdgeEdge, last, lists_[1], counts);
-  crossings_.resize(kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
-                                           crossings_.data(), crossings_.size()));
+  leaveOutApart(latest, counts);
+  cull(FeatureKind::kVertexFace, latest, lists_[0], counts);
+  cull(FeatureKind::kEdgeEdge, latest, lists_[1], counts);
+  if (!has_edges_) return;
+  const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
+                                                 (1U << kEdges) - 1, crossings_.get());
+  num_crossings_ = kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
+                                          crossings_.get(), size);
 }
 
-void FeatureBatch::cull(FeatureKind kind, float latest, List& list, StageCounts& counts) {
+/// Takes from triangle pairs that are apart what cannot touch until `latest`: features if
+/// that is before the end of the step, edges that may cross at t = 0 in any case.
+void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
+  const bool ends_early = latest < 1;
+  if (!ends_early && !has_edges_) return;
+  const double approach = ends_early ? latest * approach_ : 0;
+  for (std::size_t first = 0; first < num_pairs_; first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, approach);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool is_apart = apart >> i & 1U;
+      if (is_apart) edges_[first + i] = 0;
+      if (is_apart && ends_early) owned_[first + i] = 0;
+    }
+    if (ends_early) counts.plane_culled += numBits(apart);
+  }
+}
+
+void FeatureBatch::cull(FeatureKind kind, double latest, List& list,
+                        StageCounts& counts) {
   constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, latest,
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                                    roundUp(latest, 0.f), gapUntil(latest, approach_),
                                     list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;

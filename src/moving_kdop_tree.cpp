@@ -330,10 +330,11 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
   }
 }
 
-/// By frame and axis.
+/// By frame and axis; and the largest change of a coordinate.
 struct MovingKdopTree::Range {
   double lo[2][3]{{kInf, kInf, kInf}, {kInf, kInf, kInf}};
   double hi[2][3]{{-kInf, -kInf, -kInf}, {-kInf, -kInf, -kInf}};
+  double displacement{0};
 
   void add(int frame, const double* p) {
     for (int k = 0; k < 3; ++k) {
@@ -354,15 +355,20 @@ MovingKdopTree::Range MovingKdopTree::rangeOf(const VertexFrames& frames,
                         const VertexPath path = frames[vertex_ids_[i]];
                         range.add(0, path.t0);
                         range.add(1, path.t1);
+                        for (int k = 0; k < 3; ++k)
+                          range.displacement = std::max(
+                              range.displacement, std::abs(path.t1[k] - path.t0[k]));
                       }
                       ranges[first / kVertexBlock] = range;
                     });
   Range all;
-  for (const Range& range : ranges)
+  for (const Range& range : ranges) {
     for (int frame = 0; frame < 2; ++frame) {
       all.add(frame, range.lo[frame]);
       all.add(frame, range.hi[frame]);
     }
+    all.displacement = std::max(all.displacement, range.displacement);
+  }
   return all;
 }
 
@@ -468,6 +474,7 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
     origin_[0][k] = origin_[1][k] = 0.5 * std::min(range.lo[0][k], range.lo[1][k]) +
                                     0.5 * std::max(range.hi[0][k], range.hi[1][k]);
   setReach(range);
+  displacement_ = range.displacement;
   // Extents along eight directions in two frames have up to 2^-17 of the reach from
   // rounding: 32 half-axes of at most 2 reach each, outward by 2^-22 of themselves.
   blur_ = roundUp(reach_ * 0x1p-13, 0.f);

@@ -437,9 +437,10 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
     const Json& stages = step.at("stages");
     EXPECT_EQ(keysOf(stages),
               (std::set<std::string>{"node_pairs", "triangle_pairs", "adjacent_pairs",
-                                     "fan_culled", "feature_pairs", "box_culled",
-                                     "filter_culled", "solver_culled", "exact_culled",
-                                     "exact_tests", "contacts", "crossing_tests"}));
+                                     "fan_culled", "plane_culled", "feature_pairs",
+                                     "box_culled", "filter_culled", "solver_culled",
+                                     "exact_culled", "exact_tests", "contacts",
+                                     "crossing_tests"}));
     int left = stages.at("feature_pairs").get<int>();
     for (const char* culled :
          {"box_culled", "filter_culled", "solver_culled", "exact_culled"})

@@ -490,6 +490,108 @@ TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
   EXPECT_GT(contacts, 1000U);
 }
 
+/// Tips of triangles on their way to faces that come towards them, each as fast as any
+/// vertex is; each two far from all others.
+struct HeadOn {
+  MovingMesh tips, faces;
+
+  void add(const Vector3<double>& center, const Vector3<double>& way, double meeting) {
+    const Vector3<double> side =
+        way.cross(Vector3<double>(way[1] + 2, way[2] - 3, way[0])).normalized();
+    const Vector3<double> other = way.cross(side).normalized();
+    const Vector3<double> tip = center - meeting * way;
+    addTriangle(tips, {tip, tip - way + side, tip - way - side}, way);
+    const Vector3<double> middle = center + meeting * way;
+    addTriangle(faces, {middle - side - other, middle + side - other, middle + 2 * other},
+                -way);
+  }
+
+  static void addTriangle(MovingMesh& mesh, const std::array<Vector3<double>, 3>& x,
+                          const Vector3<double>& way) {
+    const std::size_t n = mesh.t0.size();
+    for (const Vector3<double>& p : x) {
+      mesh.t0.push_back(p);
+      mesh.t1.push_back(p + way);
+    }
+    mesh.triangles.emplace_back(n, n + 1, n + 2);
+  }
+
+  MovingMesh both() const {
+    MovingMesh mesh = tips;
+    for (const Triangle& t : faces.triangles)
+      mesh.triangles.emplace_back(t[0] + tips.t0.size(), t[1] + tips.t0.size(),
+                                  t[2] + tips.t0.size());
+    mesh.t0.insert(mesh.t0.end(), faces.t0.begin(), faces.t0.end());
+    mesh.t1.insert(mesh.t1.end(), faces.t1.begin(), faces.t1.end());
+    return mesh;
+  }
+};
+
+/// The first contact is the first of all contacts, to the bit.
+void expectFirstOfAll(const Body& a, const Body& b, std::size_t count,
+                      std::uint64_t& left_out) {
+  const QueryAnswer all = query(a, b, QueryOptions());
+  ASSERT_GE(all.contacts.size(), count);
+  QueryOptions options;
+  options.goal = QueryGoal::kFirst;
+  const QueryAnswer first = query(a, b, options);
+  ASSERT_FALSE(first.contacts.empty());
+  EXPECT_EQ(first.contacts.front().toc_lo, all.contacts.front().toc_lo);
+  EXPECT_EQ(first.contacts.front().toc_hi, all.contacts.front().toc_hi);
+  left_out += all.counts.feature_pairs - first.counts.feature_pairs;
+}
+
+// What was found bounds how far away anything that matters can still be: not by less than
+// what moves fastest covers, along an axis or a diagonal, by its own motion or its
+// pose's.
+TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
+  constexpr std::size_t kCount = 600;  // several blocks
+  std::uint64_t left_out = 0;
+  for (std::uint64_t seed = 6000; seed < 6060; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto randomWay = [&random] {
+      Vector3<double> way = Vector3<double>::Zero();
+      while (way == Vector3<double>::Zero())
+        for (int k = 0; k < 3; ++k) way[k] = static_cast<double>(random.index(3)) - 1;
+      return way;
+    };
+    const Vector3<double> one_way = randomWay();
+    // The first few meet at nearly the same time.
+    const double first = random.uniform(0.1, 0.8);
+    HeadOn any, same;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Vector3<double> center(10. * static_cast<double>(i % 8),
+                                   10. * static_cast<double>(i / 8 % 8),
+                                   10. * static_cast<double>(i / 64));
+      const double meeting =
+          i % 2 ? first * random.uniform(1, 1.1) : random.uniform(first, 1);
+      any.add(center, randomWay(), meeting);
+      same.add(center, one_way, meeting);
+    }
+    const MovingMesh mesh = any.both();
+    const PreparedMovingMesh self(mesh), a(any.tips), b(any.faces), c(same.faces);
+    // The tips stand still, and their pose moves them.
+    MovingMesh still = same.tips;
+    still.t1 = still.t0;
+    Pose end;
+    for (int k = 0; k < 3; ++k) end.translation[k] = one_way[k];
+    const PreparedMovingMesh posed(still, Pose(), end);
+    const Body body{self.instance(), mesh.triangles};
+    const Body body_a{a.instance(), any.tips.triangles},
+        body_b{b.instance(), any.faces.triangles},
+        body_c{c.instance(), same.faces.triangles},
+        body_d{posed.instance(), still.triangles};
+    expectFirstOfAll(body, body, kCount, left_out);
+    expectFirstOfAll(body_a, body_b, kCount, left_out);
+    expectFirstOfAll(body_b, body_a, kCount, left_out);
+    expectFirstOfAll(body_c, body_d, kCount, left_out);
+    expectFirstOfAll(body_d, body_c, kCount, left_out);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(left_out, 10000U);
+}
+
 template <typename S>
 Transform3<S> pose(Random& random, const Matrix3<S>& rotation, double step) {
   Transform3<S> tf = Transform3<S>::Identity();

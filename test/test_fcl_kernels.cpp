@@ -165,11 +165,32 @@ struct Rows {
   BoxView view() const { return {t0, t1, 1}; }
 };
 
+/// The least overlap depth at t = 0.
+float depthAtStart(const MovingKdop& a, const MovingKdop& b) {
+  float least = a.t0.half[0] + b.t0.half[8];
+  for (int j = 1; j < 16; ++j) least = std::min(least, a.t0.half[j] + b.t0.half[j ^ 8]);
+  return least;
+}
+
 /// Whether no half-axis separates the boxes at t = 0.
 bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
-  for (int j = 0; j < 16; ++j)
-    if (a.t0.half[j] + b.t0.half[j ^ 8] < 0) return false;
-  return true;
+  return depthAtStart(a, b) >= 0;
+}
+
+constexpr float kNoGap = std::numeric_limits<float>::infinity();
+
+/// One that leaves out nothing or, of boxes of that depth, some or none.
+float randomGap(Random& random, float depth) {
+  switch (random.index(4)) {
+    case 0:
+      return kNoGap;
+    case 1:
+      return 0;
+    case 2:
+      return -std::min(depth, 0.f);
+    default:
+      return -std::min(depth, 0.f) * static_cast<float>(random.uniform(0, 2));
+  }
 }
 
 /// What is said without times of boxes that overlap from `lo` on.
@@ -183,7 +204,8 @@ void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, flo
 void expectRightChildren(const BoxView& view, const MovingKdop& box,
                          const MovingKdopNode& node, Tally& tally) {
   float first[kWidth];
-  const unsigned mask = allSets().front()->overlapChildren(view, node, true, first);
+  const unsigned mask =
+      allSets().front()->overlapChildren(view, node, {true, kNoGap}, first);
   EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
   for (int lane = 0; lane < node.count; ++lane) {
     const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
@@ -194,24 +216,50 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
     tally.add(!expected.isEmpty(), expected);
   }
   float first_untimed[kWidth];
-  allSets().front()->overlapChildren(view, node, false, first_untimed);
+  allSets().front()->overlapChildren(view, node, {false, kNoGap}, first_untimed);
   for (int lane = 0; lane < node.count; ++lane)
     if (mask >> lane & 1U)
       expectUntimed(first_untimed[lane], box, node.box(lane), first[lane]);
   for (const Kernels* k : allSets()) {
     float earliest[kWidth];
-    ASSERT_EQ(k->overlapChildren(view, node, true, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, {true, kNoGap}, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first);
-    ASSERT_EQ(k->overlapChildren(view, node, false, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, {false, kNoGap}, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first_untimed);
     ASSERT_FALSE(testing::Test::HasFailure()) << k->name;
   }
+}
+
+/// A gap leaves out the children that are further away at t = 0, and changes nothing of
+/// the others. Counts those that it leaves out.
+void expectRightGap(const BoxView& view, const MovingKdop& box,
+                    const MovingKdopNode& node, float gap, int& left_out) {
+  unsigned near = 0;
+  for (int lane = 0; lane < node.count; ++lane)
+    near |= unsigned{depthAtStart(box, node.box(lane)) >= -gap} << lane;
+  for (const bool timed : {true, false})
+    for (const Kernels* k : allSets()) {
+      float expected[kWidth], earliest[kWidth];
+      const unsigned all = k->overlapChildren(view, node, {timed, kNoGap}, expected);
+      ASSERT_EQ(k->overlapChildren(view, node, {timed, gap}, earliest), all & near)
+          << k->name;
+      for (int lane = 0; lane < node.count; ++lane)
+        if (all & near & 1U << lane) {
+          if (timed)
+            EXPECT_EQ(earliest[lane], expected[lane]) << k->name;
+          else
+            expectUntimed(earliest[lane], box, node.box(lane),
+                          overlapWindow<false>(box, node.box(lane), nullptr).lo);
+        }
+      left_out += static_cast<int>(numBits(all & ~near));
+    }
 }
 
 TEST(FCL_KERNELS, childrenAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 71;
   Random random(kSeed);
   Tally tally;
+  int left_out = 0;
   for (int i = 0; i < 20000; ++i) {
     const float scale = randomScale(random);
     MovingKdopNode parent, node;
@@ -231,11 +279,16 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
     expectRightChildren(rows.view(), box, node, tally);
     expectRightChildren({&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], 2 * kWidth},
                         box, node, tally);
+    const float gap = randomGap(random, depthAtStart(box, node.box(0)));
+    expectRightGap(rows.view(), box, node, gap, left_out);
+    expectRightGap({&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], 2 * kWidth}, box,
+                   node, gap, left_out);
     ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
   }
   EXPECT_GT(tally.overlaps, 5000);
   EXPECT_GT(tally.apart, 5000);
   EXPECT_GT(tally.cut, 2000);
+  EXPECT_GT(left_out, 5000);
 }
 
 // Boxes that nothing bounds overlap all that is there, and nothing else.
@@ -251,13 +304,14 @@ TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
       node.clearRest();
       for (const Kernels* k : allSets()) {
         float earliest[kWidth];
-        for (const bool timed : {true, false}) {
-          EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, timed, earliest),
-                    (1U << count) - 1)
-              << k->name;
-          for (int lane = 0; lane < count; ++lane)
-            EXPECT_EQ(earliest[lane], 0) << k->name;
-        }
+        for (const bool timed : {true, false})
+          for (const float gap : {0.f, 1.f, kNoGap}) {
+            EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, {timed, gap}, earliest),
+                      (1U << count) - 1)
+                << k->name;
+            for (int lane = 0; lane < count; ++lane)
+              EXPECT_EQ(earliest[lane], 0) << k->name;
+          }
       }
     }
   }
@@ -391,7 +445,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint32_t kPairs = 5;
   Random random(kSeed);
   Tally tally[kNumFeaturePairs];
-  int late = 0;
+  int late = 0, far = 0;
   for (int i = 0; i < 12000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     std::vector<TrianglePairBoxes> boxes;
@@ -407,6 +461,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     const KdopShift* shift = boxes[0].shiftOrNull();
     const float latest =
         random.index(2) ? 1.f : static_cast<float>(random.uniform(-0.1, 1));
+    const float gap = randomGap(
+        random, depthAtStart(boxes[0].a[random.index(3)].box, boxes[0].b[0].box));
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
       std::vector<TimeWindow> left_windows;
@@ -421,7 +477,9 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
               b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
           const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
-          if (!expected.isEmpty() && expected.lo <= latest) {
+          const bool is_far = depthAtStart(box_a, box_b) < -gap;
+          far += is_far && !expected.isEmpty();
+          if (!expected.isEmpty() && expected.lo <= latest && !is_far) {
             left.push_back(codes.back());
             left_windows.push_back(expected);
           }
@@ -433,7 +491,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
         std::vector<std::uint32_t> mine = codes;
         std::vector<TimeWindow> windows(codes.size());
         const std::size_t count =
-            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, latest,
+            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, latest, gap,
                                   mine.data(), mine.size(), windows.data());
         mine.resize(count);
         windows.resize(count);
@@ -454,6 +512,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     EXPECT_GT(tally[bit].cut, 300) << bit;
   }
   EXPECT_GT(late, 1000);
+  EXPECT_GT(far, 1000);
 }
 
 /// A node with triangles of few vertices and, here and there, a node among them.
@@ -494,7 +553,7 @@ struct ExpectedPair {
 TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
-  int overlaps = 0, apart = 0, fans = 0, late = 0;
+  int overlaps = 0, apart = 0, fans = 0, late = 0, far = 0;
   for (int i = 0; i < 6000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const Halves halves = randomHalves(random);
@@ -527,6 +586,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         }
     }
     const auto lanes = static_cast<unsigned>(random.next()) & a.triangles();
+    const float gap = randomGap(random, depthAtStart(a.box(0), b.box(b.count - 1)));
 
     std::vector<ExpectedPair> expected;
     std::size_t expected_fans = 0;
@@ -535,37 +595,42 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         if (!(lanes >> x & 1U) || !b.isTriangle(y)) continue;
         const MovingKdop moved = shifted(a.box(x), has_shift ? &shift : nullptr);
         const TimeWindow window = overlapWindow<false>(moved, b.box(y), nullptr);
-        if (window.isEmpty())
+        const bool is_far = depthAtStart(moved, b.box(y)) < -gap;
+        far += is_far && !window.isEmpty();
+        if (window.isEmpty() || is_far)
           ++apart;
         else if (doShareEmbedded(a, x, b, y, embedded))
           ++expected_fans;
         else
           expected.push_back({x, y, window.lo});
       }
-    for (const bool timed : {true, false}) {
-      LanePairs first;
-      for (const Kernels* k : allSets()) {
-        LanePairs pairs;
-        k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
-                             has_fans ? table.data() : nullptr, timed},
-                            pairs);
-        ASSERT_EQ(pairs.size, expected.size()) << k->name;
-        EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
-        if (k == allSets().front()) first = pairs;
-        for (std::size_t n = 0; n < pairs.size; ++n) {
-          EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
-          EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
-          if (timed)
-            EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
-          else
-            expectUntimed(pairs.earliest[n],
-                          shifted(a.box(expected[n].a), has_shift ? &shift : nullptr),
-                          b.box(expected[n].b), expected[n].lo);
-          EXPECT_EQ(std::memcmp(&pairs.earliest[n], &first.earliest[n], sizeof(float)), 0)
-              << k->name;
-        }
-        ASSERT_FALSE(HasFailure()) << k->name;
+    const bool timed = random.index(2);
+    LanePairs first;
+    for (const Kernels* k : allSets()) {
+      LanePairs pairs;
+      k->overlapTriangles({a,
+                           b,
+                           lanes,
+                           has_shift ? rows : nullptr,
+                           has_fans ? table.data() : nullptr,
+                           {timed, gap}},
+                          pairs);
+      ASSERT_EQ(pairs.size, expected.size()) << k->name;
+      EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
+      if (k == allSets().front()) first = pairs;
+      for (std::size_t n = 0; n < pairs.size; ++n) {
+        EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
+        EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
+        if (timed)
+          EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
+        else
+          expectUntimed(pairs.earliest[n],
+                        shifted(a.box(expected[n].a), has_shift ? &shift : nullptr),
+                        b.box(expected[n].b), expected[n].lo);
+        EXPECT_EQ(std::memcmp(&pairs.earliest[n], &first.earliest[n], sizeof(float)), 0)
+            << k->name;
       }
+      ASSERT_FALSE(HasFailure()) << k->name;
     }
     fans += static_cast<int>(expected_fans);
     overlaps += static_cast<int>(expected.size());
@@ -575,6 +640,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   EXPECT_GT(apart, 5000);
   EXPECT_GT(fans, 1000);
   EXPECT_GT(late, 1000);
+  EXPECT_GT(far, 1000);
 }
 
 TEST(FCL_KERNELS, edgesAndFacesAtStart) {
@@ -663,6 +729,125 @@ TEST(FCL_KERNELS, whatMayCross) {
   EXPECT_GT(crossing, 5000);
   EXPECT_GT(apart, 20000);
   EXPECT_LT(1000 * left, apart);
+}
+
+/// Two triangles whose coordinates are whole numbers, so that sums of them are exact, but
+/// not always products; the second one has a vertex, or the middle of an edge, where the
+/// first one has.
+struct TouchingTriangles {
+  TreeVertex a[3], b[3];
+
+  explicit TouchingTriangles(Random& random) {
+    constexpr std::size_t kSizes[] = {4, 2000, std::size_t{1} << 48};
+    const std::size_t size = kSizes[random.index(3)];
+    const auto whole = [&random, size] {
+      return 2 * static_cast<double>(random.index(size));
+    };
+    double shift[3];
+    for (TreeVertex* x : {a, b})
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k) x[i].t0[k] = whole();
+    // A layer beside a layer, as cloth has it.
+    const bool parallel = random.index(2) == 0;
+    if (parallel)
+      for (int i = 0; i < 3; ++i)
+        for (int k = 0; k < 3; ++k)
+          b[i].t0[k] = a[i].t0[k] + 2 * static_cast<double>(random.index(2));
+    const std::size_t mine = random.index(6), theirs = random.index(6);
+    for (int k = 0; k < 3; ++k) shift[k] = place(a, mine, k) - place(b, theirs, k);
+    move(shift);
+  }
+
+  TouchingTriangles(const TouchingTriangles&) = default;
+
+  /// Of vertex i, or of the middle of edge i - 3.
+  static double place(const TreeVertex (&x)[3], std::size_t i, int k) {
+    return i < 3 ? x[i].t0[k] : 0.5 * (x[i - 3].t0[k] + x[(i - 2) % 3].t0[k]);
+  }
+
+  /// Moves the second one.
+  void move(const double (&by)[3]) {
+    for (TreeVertex& x : b)
+      for (int k = 0; k < 3; ++k) x.t0[k] += by[k];
+  }
+
+  void scale(double by, double offset) {
+    for (TreeVertex* x : {a, b})
+      for (int i = 0; i < 3; ++i)
+        for (double& c : x[i].t0) c = by * (c + offset);
+  }
+
+  TrianglePair pair() const {
+    return {{&a[0], &a[1], &a[2], &b[0], &b[1], &b[2]}, nullptr, nullptr};
+  }
+};
+
+// Triangles that touch when one is moved by `approach` at most are never called apart.
+TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
+  constexpr std::uint64_t kSeed = 75;
+  Random random(kSeed);
+  int apart = 0, total = 0;
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const double approach = random.index(4) ? static_cast<double>(random.index(40)) : 0;
+    const double scale =
+        std::ldexp(1, i % 3 > 0 ? 0 : 60 * static_cast<int>(random.index(32)) - 960);
+    const double offset = random.index(2) ? std::ldexp(1, 30) : 0;
+    std::vector<TouchingTriangles> triangles;
+    std::vector<TrianglePair> touching, separated;
+    const std::size_t count = 1 + random.index(8);
+    for (std::size_t n = 0; n < 2 * count; ++n) {
+      triangles.emplace_back(random);
+      // The first ones so far that they can come together, the others, further.
+      const double size = n < count ? approach : 40 * (approach + 1);
+      double away[3];
+      for (double& w : away) w = size * (static_cast<double>(random.index(3)) - 1);
+      triangles.back().move(away);
+      triangles.back().scale(scale, offset);
+    }
+    for (std::size_t n = 0; n < 2 * count; ++n)
+      (n < count ? touching : separated).push_back(triangles[n].pair());
+    for (const Kernels* k : allSets())
+      EXPECT_EQ(k->areApart(touching.data(), count, scale * approach), 0U) << k->name;
+    const unsigned found =
+        allSets().front()->areApart(separated.data(), count, scale * approach);
+    for (const Kernels* k : allSets())
+      EXPECT_EQ(k->areApart(separated.data(), count, scale * approach), found) << k->name;
+    apart += static_cast<int>(numBits(found));
+    total += static_cast<int>(count);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(3 * apart, total);
+}
+
+// Layers are called apart where three times the approach does not bridge what is between
+// them, wherever they are and whichever is on top; by the plane of either.
+TEST(FCL_KERNELS, layersAreApart) {
+  for (const double offset : {0., 0x1p30})
+    for (const double height : {1., -1.})
+      // Which of them stands upright, so that its plane cuts the other one.
+      for (const int upright : {-1, 0, 1}) {
+        TreeVertex x[2][3];
+        for (int t = 0; t < 2; ++t) {
+          const double corners[3][3] = {{0, -4, 0}, {8, -4, 0}, {4, 4, 0}};
+          for (int i = 0; i < 3; ++i)
+            for (int k = 0; k < 3; ++k) x[t][i].t0[k] = offset + corners[i][k];
+          if (t == upright) {
+            for (TreeVertex& v : x[t]) v.t0[1] = offset;
+            x[t][2].t0[2] += (t == 0 ? -8 : 8) * height;
+          }
+          for (TreeVertex& v : x[t]) v.t0[2] += t * height;
+        }
+        const TrianglePair pair{
+            {&x[0][0], &x[0][1], &x[0][2], &x[1][0], &x[1][1], &x[1][2]},
+            nullptr,
+            nullptr};
+        for (const Kernels* k : allSets()) {
+          EXPECT_EQ(k->areApart(&pair, 1, 0.33), 1U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, 0), 1U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, 0.34), 0U) << k->name << " " << upright;
+        }
+      }
 }
 
 TEST(FCL_KERNELS, whatIsNotFiniteMayCross) {

@@ -30,10 +30,35 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
+/// The children that lie within `gap` of the box at t = 0, and those of them that are
+/// apart from it.
 template <std::size_t kStride>
+HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
+                                 float gap, unsigned& apart) {
+  Floats s[16];
+  for (std::size_t r = 0; r < 16; ++r)
+    s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
+  // The least, two by two: each of a chain of sixteen would wait for the one before.
+  for (std::size_t half = 8; half > 0; half /= 2)
+    for (std::size_t r = 0; r < half; ++r) s[r] = smaller(s[r], s[r + half]);
+  const unsigned near = bits(s[0] >= broadcast<kEight>(-gap)) & node.lanes();
+  apart = signs(s[0]) & near;
+  return near;
+}
+
+template <std::size_t kStride, bool kHasGap>
 HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
-                                    bool timed,
+                                    const OverlapRequest& request,
                                     float (&earliest)[MovingKdopNode::kWidth]) {
+  unsigned left = node.lanes();
+  if (kHasGap) {
+    unsigned open = 0;
+    left = nearChildren<kStride>(box, node, request.gap, open);
+    if (open == 0) {
+      store(broadcast<kEight>(0.f), earliest);
+      return left;
+    }
+  }
   constexpr std::size_t kRows = 16;
   Floats s0[kRows], s1[kRows];
   Floats apart = broadcast<kEight>(1.f), cut0 = apart, cut1 = apart;
@@ -45,10 +70,10 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
     cut0 = eitherNegative(cut0, s0[r]);
     cut1 = eitherNegative(cut1, s1[r]);
   }
-  const unsigned left = ~signs(apart) & node.lanes();
+  left &= ~signs(apart);
   if (left == 0) return 0;
   // A window that is cut at one end only is not empty.
-  if ((signs(timed ? cut0 : bothNegative(cut0, cut1)) & left) == 0) {
+  if ((signs(request.timed ? cut0 : bothNegative(cut0, cut1)) & left) == 0) {
     store(whereNegative(cut0, broadcast<kEight>(FLT_MIN)), earliest);
     return left;
   }
@@ -59,10 +84,15 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
   return left & bits(before <= hi);
 }
 
-unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node, bool timed,
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
+                           const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]) {
-  return box.stride == 1 ? overlapChildren<1>(box, node, timed, earliest)
-                         : overlapChildren<BoxView::kInNode>(box, node, timed, earliest);
+  constexpr std::size_t kInNode = BoxView::kInNode;
+  if (request.gap <= FLT_MAX)
+    return box.stride == 1 ? overlapChildren<1, true>(box, node, request, earliest)
+                           : overlapChildren<kInNode, true>(box, node, request, earliest);
+  return box.stride == 1 ? overlapChildren<1, false>(box, node, request, earliest)
+                         : overlapChildren<kInNode, false>(box, node, request, earliest);
 }
 
 /// Which of the node's triangles have one of `count` vertices (places in the tree).
@@ -91,7 +121,7 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
   return trianglesAt(places, count, b);
 }
 
-template <bool kShifted>
+template <bool kShifted, bool kHasGap>
 HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
   const unsigned triangles = b.triangles();
@@ -107,10 +137,12 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
         moved[0][r] = shifted(a.rows[r].t0[lane], leaves.shift[0][r]);
         moved[1][r] = shifted(a.rows[r].t1[lane], leaves.shift[1][r]);
       }
-      left &= overlapChildren<1>({moved[0], moved[1], 1}, b, leaves.timed, earliest);
+      left &= overlapChildren<1, kHasGap>({moved[0], moved[1], 1}, b, leaves.request,
+                                          earliest);
     } else {
       const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode};
-      left &= overlapChildren<BoxView::kInNode>(box, b, leaves.timed, earliest);
+      left &=
+          overlapChildren<BoxView::kInNode, kHasGap>(box, b, leaves.request, earliest);
     }
     if (left != 0 && leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
@@ -128,8 +160,12 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
 
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
   out.size = out.fan_culled = 0;
-  leaves.shift ? overlapTriangles<true>(leaves, out)
-               : overlapTriangles<false>(leaves, out);
+  if (leaves.request.gap <= FLT_MAX)
+    leaves.shift ? overlapTriangles<true, true>(leaves, out)
+                 : overlapTriangles<false, true>(leaves, out);
+  else
+    leaves.shift ? overlapTriangles<true, false>(leaves, out)
+                 : overlapTriangles<false, false>(leaves, out);
 }
 
 std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
@@ -143,17 +179,10 @@ std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned
   return size;
 }
 
-/// A moving box at both times.
-struct MovingBox {
-  HalfAxes t0, t1;
-};
-
-HWY_INLINE MovingBox boxOf(const TreeVertex& x) {
-  return {load<16>(x.box.t0.half), load<16>(x.box.t1.half)};
-}
-
-HWY_INLINE MovingBox merge(const MovingBox& a, const MovingBox& b) {
-  return {larger(a.t0, b.t0), larger(a.t1, b.t1)};
+/// The box of a vertex in one frame.
+template <int kFrame>
+HWY_INLINE HalfAxes boxOf(const TreeVertex& x) {
+  return load<16>(kFrame == 0 ? x.box.t0.half : x.box.t1.half);
 }
 
 HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
@@ -161,54 +190,63 @@ HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
   return larger(sum + abs(sum) * broadcast<16>(kOutward), broadcast<16>(kLeastHalf));
 }
 
-/// The overlap depths of a pair of features at both times. Which feature comes first does
+/// The overlap depths of a pair of features in one frame. Which feature comes first does
 /// not matter but for the shift.
-HWY_INLINE MovingBox depths(FeatureKind kind, const TrianglePair& pair, std::size_t bit,
-                            const KdopShift* shift, const KdopShift* turned_shift) {
-  MovingBox first, second;
+template <FeatureKind kind, bool kShifted, int kFrame>
+HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
+                           const KdopShift* shift, const KdopShift* turned_shift) {
+  const auto box = [&pair](std::size_t i) { return boxOf<kFrame>(*pair.x[i]); };
+  HalfAxes first, second;
   const KdopShift* add = shift;
   if (kind == FeatureKind::kVertexFace) {
     // The vertex, and where the other triangle begins.
     const bool on_a = bit < 3;
-    const TreeVertex* const* face = pair.x + (on_a ? 3 : 0);
-    first = boxOf(*pair.x[bit]);
-    second = merge(merge(boxOf(*face[0]), boxOf(*face[1])), boxOf(*face[2]));
+    const std::size_t face = on_a ? 3 : 0;
+    first = box(bit);
+    second = larger(larger(box(face), box(face + 1)), box(face + 2));
     add = on_a ? shift : turned_shift;
   } else {
     const unsigned char(&ends)[4] = kFeaturePoints[bit];
-    first = merge(boxOf(*pair.x[ends[0]]), boxOf(*pair.x[ends[1]]));
-    second = merge(boxOf(*pair.x[ends[2]]), boxOf(*pair.x[ends[3]]));
+    first = larger(box(ends[0]), box(ends[1]));
+    second = larger(box(ends[2]), box(ends[3]));
   }
-  if (add) {
-    first.t0 = shifted(first.t0, add->t0);
-    first.t1 = shifted(first.t1, add->t1);
-  }
-  return {first.t0 + swapHalves(second.t0), first.t1 + swapHalves(second.t1)};
+  if (kShifted) first = shifted(first, kFrame == 0 ? add->t0 : add->t1);
+  return first + swapHalves(second);
 }
 
 template <FeatureKind kind, bool kShifted>
 HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
                                     const KdopShift* turned_shift, float latest,
-                                    std::uint32_t* codes, std::size_t count,
+                                    float gap, std::uint32_t* codes, std::size_t count,
                                     TimeWindow* windows) {
-  // Two loops: the first one has no branch that depends on the boxes.
+  const auto at0 = [&](std::uint32_t code) {
+    return depths<kind, kShifted, 0>(pairs[code / 16], code % 16, shift, turned_shift);
+  };
+  const auto at1 = [&](std::uint32_t code) {
+    return depths<kind, kShifted, 1>(pairs[code / 16], code % 16, shift, turned_shift);
+  };
+  // A loop for each look at the boxes: none has a branch that depends on them.
+  if (gap <= FLT_MAX) {
+    const HalfAxes least = broadcast<16>(-gap);
+    std::size_t near = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t code = codes[i];
+      codes[near] = code;
+      near += isAll(at0(code) >= least);
+    }
+    count = near;
+  }
   std::size_t left = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t code = codes[i];
-    const MovingBox s =
-        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
-               kShifted ? turned_shift : nullptr);
     codes[left] = code;
-    left += !isAnyNegative(bothNegative(s.t0, s.t1));
+    left += !isAnyNegative(bothNegative(at0(code), at1(code)));
   }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < left; ++i) {
     const std::uint32_t code = codes[i];
-    const MovingBox s =
-        depths(kind, pairs[code / 16], code % 16, kShifted ? shift : nullptr,
-               kShifted ? turned_shift : nullptr);
     HalfAxes before = broadcast<16>(0.f), after = before;
-    addLoss(s.t0, s.t1, before, after);
+    addLoss(at0(code), at1(code), before, after);
     const float lo = largest(before), hi = kWindowEnd - largest(after);
     codes[kept] = code;
     windows[kept] = {lo, hi < 1.f ? hi : 1.f};
@@ -219,13 +257,13 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
 
 std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
-                           float latest, std::uint32_t* codes, std::size_t count,
-                           TimeWindow* windows) {
+                           float latest, float gap, std::uint32_t* codes,
+                           std::size_t count, TimeWindow* windows) {
   constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
   const auto cull = kind == kVf
                         ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
                         : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
-  return cull(pairs, shift, turned_shift, latest, codes, count, windows);
+  return cull(pairs, shift, turned_shift, latest, gap, codes, count, windows);
 }
 
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,

@@ -277,6 +277,50 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
+/// The points of eight triangle pairs at t = 0, relative to the first.
+struct TrianglePoints {
+  Vectors x[6];
+  Doubles norm;
+
+  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double* rows[kEight];
+      // The last pair fills up the eight.
+      for (std::size_t lane = 0; lane < kEight; ++lane)
+        rows[lane] = pairs[lane < count ? lane : count - 1].x[i]->t0;
+      loadColumns(rows, x[i].x, x[i].y, x[i].z);
+    }
+    norm = broadcast<kEight>(0.);
+    for (std::size_t i = 6; i-- > 0;) {
+      x[i] = x[i] - x[0];
+      norm = max(norm, maxNorm(x[i]));
+    }
+  }
+};
+
+/// Where d separates the triangles, whatever direction that is, by more than `approach`
+/// along x, y and z can bridge.
+HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
+                                   const Doubles& approach) {
+  const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
+                b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
+  const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
+                below = min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]);
+  const Doubles size = maxNorm(d), volume = size * p.norm;
+  const Doubles least =
+      broadcast<kEight>(kPlaneBound) * volume + broadcast<kEight>(3.) * size * approach;
+  return isInRange(volume) & ((above > least) | (below > least));
+}
+
+unsigned areApart(const TrianglePair* pairs, std::size_t count, double approach) {
+  const TrianglePoints p(pairs, count);
+  const Doubles bridged = broadcast<kEight>(approach);
+  const DoubleMask apart =
+      areSeparated(p, cross(p.x[1], p.x[2]), bridged) |
+      areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged);
+  return bits(apart) & ((1U << count) - 1);
+}
+
 unsigned mayCrossOfEight(const EightCrossings& pairs) {
   Vectors x[5];
   for (std::size_t i = 0; i < 5; ++i) {

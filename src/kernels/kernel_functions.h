@@ -20,18 +20,20 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node, bool timed,
+unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
+                           const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]);
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out);
 std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
                          std::uint32_t* codes);
 std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
-                           float latest, std::uint32_t* codes, std::size_t count,
-                           TimeWindow* windows);
+                           float latest, float gap, std::uint32_t* codes,
+                           std::size_t count, TimeWindow* windows);
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
+unsigned areApart(const TrianglePair* pairs, std::size_t count, double approach);
 unsigned mayCrossOfEight(const EightCrossings& pairs);
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan);

@@ -205,6 +205,13 @@ HWY_INLINE bool isAnyNegative(const Lanes<T, N>& a) {
   return !hn::AllFalse(integers, hn::Lt(hn::BitCast(integers, any), hn::Zero(integers)));
 }
 
+template <typename T, std::size_t N>
+HWY_INLINE bool isAll(const LaneMask<T, N>& mask) {
+  auto all = mask.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) all = hn::And(all, mask.part[p]);
+  return hn::AllTrue(typename Lanes<T, N>::Tag(), all);
+}
+
 /// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
 /// are written.
 HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
@@ -349,6 +356,13 @@ inline unsigned bits(const LaneMask<T, N>& mask) {
   unsigned out = 0;
   FCL_CCD_FOR_LANES out |= unsigned{mask.lane[i]} << i;
   return out;
+}
+
+template <typename T, std::size_t N>
+inline bool isAll(const LaneMask<T, N>& mask) {
+  bool all = true;
+  FCL_CCD_FOR_LANES all &= mask.lane[i];
+  return all;
 }
 
 template <typename T, std::size_t N>

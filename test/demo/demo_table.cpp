@@ -101,7 +101,7 @@ std::string formatCsv(const std::vector<FrameReport>& reports, std::size_t trian
   std::ostringstream out;
   out << "frame,triangles,queries,vertex_face,edge_edge,self,first_contact,query_ms,"
          "total_ms,held_vertices,node_pairs,triangle_pairs,adjacent_pairs,fan_culled,"
-         "feature_pairs,"
+         "plane_culled,feature_pairs,"
          "box_culled,filter_culled,solver_culled,exact_culled,exact_tests,contacts,"
          "crossing_tests\n";
   for (std::size_t i = 0; i < reports.size(); ++i) {
@@ -111,10 +111,10 @@ std::string formatCsv(const std::vector<FrameReport>& reports, std::size_t trian
         << r.edge_edge << ',' << r.self << ',' << r.first_contact << ','
         << 1000 * r.query_seconds << ',' << 1000 * r.total_seconds << ','
         << r.held_vertices << ',' << c.node_pairs << ',' << c.triangle_pairs << ','
-        << c.adjacent_pairs << ',' << c.fan_culled << ',' << c.feature_pairs << ','
-        << c.box_culled << ',' << c.filter_culled << ',' << c.solver_culled << ','
-        << c.exact_culled << ',' << c.exact_tests << ',' << c.contacts << ','
-        << c.crossing_tests << '\n';
+        << c.adjacent_pairs << ',' << c.fan_culled << ',' << c.plane_culled << ','
+        << c.feature_pairs << ',' << c.box_culled << ',' << c.filter_culled << ','
+        << c.solver_culled << ',' << c.exact_culled << ',' << c.exact_tests << ','
+        << c.contacts << ',' << c.crossing_tests << '\n';
   }
   return out.str();
 }

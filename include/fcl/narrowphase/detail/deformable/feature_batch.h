@@ -98,7 +98,7 @@ class FeatureBatch {
   /// @brief Adds triangle i of a and triangle j of b, as their trees count them; at most
   /// kMaxPairs until clear().
   /// @param with_crossing  whether they may cross at t = 0
-  /// @param counts  triangle_pairs, adjacent_pairs and feature_pairs are counted
+  /// @param counts  triangle_pairs and adjacent_pairs are counted
   /// @throws NonFiniteVertex
   void add(int i, int j, bool with_crossing, StageCounts& counts) {
     TrianglePair& pair = pairs_[num_pairs_];
@@ -110,17 +110,20 @@ class FeatureBatch {
     ++counts.triangle_pairs;
     counts.adjacent_pairs += do_share;
     owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
-    if (with_crossing) addCrossings(static_cast<std::uint32_t>(num_pairs_), shared);
+    const unsigned edges = with_crossing ? ownedEdges(pair, shared) : 0U;
+    edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
+    has_edges_ |= edges != 0;
     // Three pairs of ten own nothing together: no branch, nobody could foretell it.
-    num_pairs_ += (owned != 0) | with_crossing;
+    num_pairs_ += (owned | edges) != 0;
   }
 
   void clear();
 
   /// @brief Leaves the pairs of features whose moving boxes overlap, with their windows,
-  /// and the edges and faces whose boxes overlap at t = 0.
+  /// and the edges and faces whose boxes overlap at t = 0; none of triangles that are
+  /// apart until `latest`.
   /// @param latest  pairs that overlap only later are of no interest
-  /// @param counts  box_culled is counted
+  /// @param counts  plane_culled, feature_pairs and box_culled are counted
   void cull(double latest, StageCounts& counts);
 
   /// @brief How many pairs of one kind are left.
@@ -145,7 +148,7 @@ class FeatureBatch {
     unsigned edge;
     bool edge_on_a;
   };
-  std::size_t numCrossings() const { return crossings_.size(); }
+  std::size_t numCrossings() const { return num_crossings_; }
   EdgeAndFace crossing(std::size_t i) const;
 
   /// @brief The ends of that edge, then the corners of that face.
@@ -171,20 +174,27 @@ class FeatureBatch {
   const List& list(FeatureKind kind) const {
     return lists_[kind == FeatureKind::kEdgeEdge];
   }
-  void addCrossings(std::uint32_t pair, unsigned shared);
-  void cull(FeatureKind kind, float latest, List& list, StageCounts& counts);
+  static unsigned ownedEdges(const TrianglePair& pair, unsigned shared);
+  void leaveOutApart(double latest, StageCounts& counts);
+  void cull(FeatureKind kind, double latest, List& list, StageCounts& counts);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
   const KdopShift* shift_;
   KdopShift turned_shift_;
+  double approach_;
   const Kernels& kernels_;
   std::unique_ptr<TrianglePair[]> pairs_;
   /// The pairs of features of each triangle pair that are to be looked at.
   std::unique_ptr<std::uint16_t[]> owned_;
+  /// The edges of each triangle pair that may pass through the other triangle at t = 0:
+  /// bits 0-2 for a's, 3-5 for b's.
+  std::unique_ptr<std::uint16_t[]> edges_;
+  bool has_edges_{false};
   std::size_t num_pairs_{0};
   List lists_[2];
-  std::vector<std::uint32_t> crossings_;
+  std::unique_ptr<std::uint32_t[]> crossings_;
+  std::size_t num_crossings_{0};
 };
 
 /// @brief Windows are widened by this much, far more than their rounding: a contact at

@@ -25,6 +25,16 @@ struct BoxView {
   std::size_t stride;
 };
 
+/// @brief Which overlaps of boxes matter to a query.
+struct OverlapRequest {
+  /// Whether it matters from when on boxes overlap; false: `earliest` only tells which
+  /// overlap at t = 0; it is 0 for these, and FLT_MIN or what it would be for others.
+  bool timed;
+  /// Boxes that are further apart than this at t = 0, along one of the directions, are
+  /// left out; infinity: none are. See gapUntil().
+  float gap;
+};
+
 /// @brief Two nodes whose triangles are compared, or one twice: then each pair of
 /// different triangles once.
 struct LeafPairing {
@@ -37,8 +47,7 @@ struct LeafPairing {
   /// For each vertex of the tree, whether its fan is embedded: pairs of triangles in one
   /// are left out; null: unknown.
   const std::uint8_t* embedded;
-  /// As overlapChildren() takes it.
-  bool timed;
+  OverlapRequest request;
 };
 
 /// @brief Pairs of children of two nodes, and from when on they overlap.
@@ -120,10 +129,9 @@ struct Kernels {
   const char* name;
 
   /// Which children of the node overlap the box at some time, a bit each, and from when
-  /// on: overlapWindow() of each.
-  /// @param timed  false: `earliest` only tells which overlap at t = 0; it is 0 for
-  /// these, and FLT_MIN or what it would be for others
-  unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node, bool timed,
+  /// on: overlapWindow() of each, unless the request leaves it out.
+  unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
+                              const OverlapRequest& request,
                               float (&earliest)[MovingKdopNode::kWidth]);
 
   /// Pairs of triangles among the children of two nodes, or of one, that overlap at some
@@ -141,16 +149,24 @@ struct Kernels {
   /// @param shift, turned_shift  added to boxes of a's features, and the same with the
   /// halves exchanged; null: none
   /// @param latest  windows that begin later are left out
+  /// @param gap  as in OverlapRequest
   std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
-                              float latest, std::uint32_t* codes, std::size_t count,
-                              TimeWindow* windows);
+                              float latest, float gap, std::uint32_t* codes,
+                              std::size_t count, TimeWindow* windows);
 
   /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2
   /// of the code for an edge of a, 3-5 of b.
   std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
                                const KdopShift* turned_shift, std::uint32_t* codes,
                                std::size_t count);
+
+  /// Which of up to eight pairs of triangles are apart at t = 0, a bit each, and stay so
+  /// as long as no vertex of the one and vertex of the other come closer to each other
+  /// than by `approach` along x, y or z: the plane of one of the two provably separates
+  /// them by more.
+  /// @param count  1 to 8
+  unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double approach);
 
   /// Which of eight edges may pass through their faces at t = 0, a bit each: isCrossing()
   /// says no to all others.

@@ -2,7 +2,10 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_MESH_INSTANCE_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_MESH_INSTANCE_H
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "fcl/math/triangle.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
@@ -39,7 +42,37 @@ struct MeshInstance {
   }
 
   bool hasOwners() const { return tree || prepared; }
+
+  /// @brief Bound on the change of a coordinate of a vertex in the step. Posed
+  /// coordinates are rounded at both ends, by less than 2^-49 of what they are made of.
+  double displacement() const {
+    double moved = 0, size = tree ? tree->reach() : rigid.reach();
+    for (int k = 0; k < 3; ++k) {
+      moved = std::max(moved, std::abs(translation[1][k] - translation[0][k]));
+      for (int frame = 0; frame < 2; ++frame)
+        size = std::max(size,
+                        std::abs(translation[frame][k]) +
+                            std::abs(tree ? tree->origin(frame)[k] : rigid.origin()[k]));
+    }
+    return (tree ? tree->displacement() : 0) + moved + 0x1p-46 * size;
+  }
 };
+
+/// @brief By how much, at most, a vertex of a and one of b approach each other along x,
+/// y or z in the step.
+inline double approachOf(const MeshInstance& a, const MeshInstance& b) {
+  return a.displacement() + b.displacement();
+}
+
+/// @brief Boxes that are further apart than this at t = 0, along a direction of theirs,
+/// do not meet until `latest`; infinity if that is the end of the step, where their other
+/// frame tells more. Two coordinates enter a direction; rounding up is more than what the
+/// sum of two half-axes rounds.
+/// @param approach  approachOf() the meshes
+inline float gapUntil(double latest, double approach) {
+  return latest < 1 ? roundUp(2 * latest * approach, 0.f)
+                    : std::numeric_limits<float>::infinity();
+}
 
 }  // namespace deformable
 }  // namespace detail

@@ -182,6 +182,9 @@ class MovingKdopTree {
   /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
   double reach() const { return reach_; }
 
+  /// @brief Largest change of a coordinate of a vertex in the step.
+  double displacement() const { return displacement_; }
+
   std::size_t memUsage() const;
 
  private:
@@ -248,6 +251,7 @@ class MovingKdopTree {
   std::vector<NodeSize> first_sizes_;
   double origin_[2][3]{};
   double reach_{0};
+  double displacement_{0};
   /// Triangles whose boxes have smaller extents are blurred.
   float blur_{0};
 };

@@ -19,6 +19,9 @@ struct StageCounts {
   /// of those, the pairs that provably meet nowhere else: the triangles around the shared
   /// vertex stay a fan
   std::uint64_t fan_culled{0};
+  /// pairs that a plane separates until the latest time that still matters, for all that
+  /// has been found before; 0 where that is the end of the step
+  std::uint64_t plane_culled{0};
   /// VF and EE pairs that the other triangle pairs own and that share no vertex
   std::uint64_t feature_pairs{0};
   /// feature pairs whose ranges along x, y, z never meet all at once
@@ -41,6 +44,7 @@ struct StageCounts {
     triangle_pairs += other.triangle_pairs;
     adjacent_pairs += other.adjacent_pairs;
     fan_culled += other.fan_culled;
+    plane_culled += other.plane_culled;
     feature_pairs += other.feature_pairs;
     box_culled += other.box_culled;
     filter_culled += other.filter_culled;

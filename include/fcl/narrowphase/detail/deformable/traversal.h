@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -77,8 +78,7 @@ class Traversal {
   /// @param regions  kSelf: for each node of the tree, whether pairs of triangles below
   /// it are left out (EmbeddedRegions::nodes); null: none are
   /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
-  /// @param timed  whether it matters from when on boxes overlap; false: `earliest` is 0
-  /// for those that overlap at t = 0, else positive
+  /// @param timed  as in OverlapRequest
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
             const std::uint8_t* embedded, const std::uint8_t* regions,
             const SeparatingAxes* axes, const Kernels& kernels, bool timed)
@@ -88,7 +88,7 @@ class Traversal {
         regions_(regions),
         axes_(axes),
         kernels_(kernels),
-        timed_(timed) {
+        request_{timed, std::numeric_limits<float>::infinity()} {
     if (!shift) return;
     // What is added to a box of tree b is the same with the half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
@@ -123,6 +123,10 @@ class Traversal {
       compare<false>(tree_a_.node(parent), parent, lane, tree_b_.node(node), node,
                      kAllLanes, open, visit);
   }
+
+  /// @brief From here on boxes that are further apart than this at t = 0 are left out
+  /// (gapUntil()); none are before the first call.
+  void leaveOutBeyond(float gap) { request_.gap = gap; }
 
   /// @brief A step visits at most so many pairs. Those of two nodes have as many as these
   /// have lanes; more are found where a node is opened with itself: each two of its
@@ -195,7 +199,7 @@ class Traversal {
     }
     compared_ += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
-    unsigned left = kernels_.overlapChildren(box, node, timed_, earliest) & lanes;
+    unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;
     if (left == 0) return;
     // The parent is not looked at again: its child may take its place.
     const std::int32_t mine = parent.child[lane];
@@ -229,7 +233,7 @@ class Traversal {
                       const MovingKdopNode& theirs, Visit& visit) {
     compared_ += numBits(lanes) * static_cast<std::uint64_t>(theirs.count);
     kernels_.overlapTriangles(
-        {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, timed_},
+        {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, request_},
         pairs_);
     fan_culled_ += pairs_.fan_culled;
     for (std::size_t i = 0; i < pairs_.size; ++i) {
@@ -244,7 +248,7 @@ class Traversal {
   const std::uint8_t* regions_;
   const SeparatingAxes* axes_;
   const Kernels& kernels_;
-  bool timed_;
+  OverlapRequest request_;
   float shift_[2][2][16];
   LanePairs pairs_;
   std::uint64_t compared_{0};
