@@ -58,18 +58,26 @@ bool isEarlierWork(const NodePair& x, const NodePair& y) {
   return x.earliest < y.earliest;
 }
 
+/// Works that overlap from the start on, as most do, are in order already.
+void sortLatestFirst(NodePair* first, NodePair* last) {
+  const auto isLater = [](const NodePair& x, const NodePair& y) {
+    return isEarlierWork(y, x);
+  };
+  if (!std::is_sorted(first, last, isLater)) std::sort(first, last, isLater);
+}
+
 /// Part of a traversal: its work, and what is done to the triangle pairs that it finds.
 /// @tparam Leaves  TrianglePairTest or CandidateCollector
 template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
-       const SeparatingAxes* axes, double approach, const Schedule& schedule,
+       const SeparatingAxes* axes, double pose_displacement, const Schedule& schedule,
        Leaves& leaves)
       : traversal_(tree_a, tree_b, shift, SelfCulling::dataOf(culling.fans),
                    SelfCulling::dataOf(culling.regions), axes, kernels(),
                    schedule.in_order),
-        approach_(approach),
+        pose_displacement_(pose_displacement),
         schedule_(schedule),
         leaves_(&leaves),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
@@ -110,16 +118,15 @@ class Part {
       if (last.earliest > latest) continue;
       step(last, latest);
       if (schedule_.in_order)
-        std::sort(
-            open_.data() + first, open_.data() + open_.size(),
-            [](const NodePair& x, const NodePair& y) { return isEarlierWork(y, x); });
+        sortLatestFirst(open_.data() + first, open_.data() + open_.size());
     }
     finish();
   }
 
  private:
   void step(const NodePair& work, double latest) {
-    traversal_.leaveOutBeyond(gapUntil(latest, approach_));
+    if (latest != latest_) traversal_.leaveOutAfter(latest, pose_displacement_);
+    latest_ = latest;
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
       assert(count_ < block_.size());
       LeafPair& pair = block_[count_++];
@@ -157,8 +164,10 @@ class Part {
   }
 
   Traversal<kSelf, TreeA, TreeB> traversal_;
-  /// Of the meshes, see approachOf().
-  double approach_;
+  /// Of both meshes.
+  double pose_displacement_;
+  /// As it was in the last step.
+  double latest_{1};
   const Schedule& schedule_;
   Leaves* leaves_;
   double test_time_{0};
@@ -202,10 +211,10 @@ struct Scene {
  private:
   template <typename Leaves, typename Visit>
   void makePart(const Schedule& schedule, Leaves& leaves, Visit&& visit) const {
-    const double approach = approachOf(a, b);
+    const double pose_displacement = a.poseDisplacement() + b.poseDisplacement();
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
-          *a.tree, *a.tree, shift, culling, nullptr, approach, schedule, leaves);
+          *a.tree, *a.tree, shift, culling, nullptr, pose_displacement, schedule, leaves);
       return visit(part);
     }
     visitTree(a, [&](auto& tree_a) {
@@ -215,13 +224,13 @@ struct Scene {
         if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
           if (isSelf()) {
             Part<true, A, B, Leaves> part(tree_a, tree_b, shift, culling, nullptr,
-                                          approach, schedule, leaves);
+                                          pose_displacement, schedule, leaves);
             return visit(part);
           }
         const SeparatingAxes axes(a, b);
         Part<false, A, B, Leaves> part(tree_a, tree_b, shift, culling,
-                                       a.tree || b.tree ? nullptr : &axes, approach,
-                                       schedule, leaves);
+                                       a.tree || b.tree ? nullptr : &axes,
+                                       pose_displacement, schedule, leaves);
         visit(part);
       });
     });

@@ -31,6 +31,8 @@ constexpr double kInnerBound = 344 * kUnit;
 // 1
 // + 2) u DN; the difference of two such numbers 24 + 6 u DN.
 constexpr double kPlaneBound = 32 * kUnit;
+// Of D, where three coordinates come closer: more than the rounding of this product.
+constexpr double kPlaneApproach = 3 * (1 + 8 * kUnit);
 // The filter takes the largest norm N for all of U, V, W and makes the inner coefficients
 // smaller, so that all four have one bound, kOuterBound N^3. Computing that, and making
 // them smaller, rounds by 4 u of their own size: in the room.

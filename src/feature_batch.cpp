@@ -14,6 +14,18 @@ namespace {
 /// Of two triangles.
 constexpr std::size_t kEdges = 6;
 
+/// By how much at most vertices of the two come closer to each other along an axis in the
+/// step.
+double approachOf(const TrianglePair& pair) {
+  double moved[2];
+  for (int on_b = 0; on_b < 2; ++on_b) {
+    const TreeVertex* const* x = pair.x + 3 * on_b;
+    moved[on_b] = std::max(std::max(x[0]->displacement(), x[1]->displacement()),
+                           x[2]->displacement());
+  }
+  return moved[0] + moved[1];
+}
+
 bool isFinite(const TreeVertex& x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
@@ -67,8 +79,7 @@ void TriangleReader::readIntoStore(int i) {
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   const VertexPath path = mesh_.frames[id];
-  std::copy(path.t0, path.t0 + 3, out.t0);
-  std::copy(path.t1, path.t1 + 3, out.t1);
+  out.setPath(path.t0, path.t1);
   if (mesh_.tree) return;
   // Boxes of a rigid tree are without the translation. Taking it off again rounds by
   // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all.
@@ -91,11 +102,11 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       reader_b_(b),
       self_(&a == &b),
       shift_(shift),
-      approach_(approachOf(a, b)),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
       owned_(new std::uint16_t[kMaxPairs]),
       edges_(new std::uint16_t[kMaxPairs]),
+      gaps_(new float[kMaxPairs]),
       lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
       crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
   if (!shift) return;
@@ -142,14 +153,21 @@ void FeatureBatch::cull(double latest, StageCounts& counts) {
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   const bool ends_early = latest < 1;
   if (!ends_early && !has_edges_) return;
-  const double approach = ends_early ? latest * approach_ : 0;
+  // Rounded up by more than a sum and a product round.
+  const double share = ends_early ? latest * (1 + 0x1p-50) : 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
+    double approach[8] = {};
+    for (std::size_t i = 0; i < count && ends_early; ++i) {
+      approach[i] = share * approachOf(pairs_[first + i]);
+      gaps_[first + i] = roundUp(2 * approach[i], 0.f);
+    }
     const unsigned apart = kernels_.areApart(&pairs_[first], count, approach);
     for (std::size_t i = 0; i < count; ++i) {
-      const bool is_apart = apart >> i & 1U;
-      if (is_apart) edges_[first + i] = 0;
-      if (is_apart && ends_early) owned_[first + i] = 0;
+      // No branch, nobody could foretell it.
+      const auto kept = static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
+      edges_[first + i] &= kept;
+      if (ends_early) owned_[first + i] &= kept;
     }
     if (ends_early) counts.plane_culled += numBits(apart);
   }
@@ -161,9 +179,9 @@ void FeatureBatch::cull(FeatureKind kind, double latest, List& list,
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
-                                    roundUp(latest, 0.f), gapUntil(latest, approach_),
-                                    list.codes.get(), size, list.windows.get());
+  list.size = kernels_.cullFeatures(
+      kind, pairs_.get(), shift_, &turned_shift_, roundUp(latest, 0.f),
+      latest < 1 ? gaps_.get() : nullptr, list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

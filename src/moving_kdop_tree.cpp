@@ -330,11 +330,10 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
   }
 }
 
-/// By frame and axis; and the largest change of a coordinate.
+/// By frame and axis.
 struct MovingKdopTree::Range {
   double lo[2][3]{{kInf, kInf, kInf}, {kInf, kInf, kInf}};
   double hi[2][3]{{-kInf, -kInf, -kInf}, {-kInf, -kInf, -kInf}};
-  double displacement{0};
 
   void add(int frame, const double* p) {
     for (int k = 0; k < 3; ++k) {
@@ -355,20 +354,15 @@ MovingKdopTree::Range MovingKdopTree::rangeOf(const VertexFrames& frames,
                         const VertexPath path = frames[vertex_ids_[i]];
                         range.add(0, path.t0);
                         range.add(1, path.t1);
-                        for (int k = 0; k < 3; ++k)
-                          range.displacement = std::max(
-                              range.displacement, std::abs(path.t1[k] - path.t0[k]));
                       }
                       ranges[first / kVertexBlock] = range;
                     });
   Range all;
-  for (const Range& range : ranges) {
+  for (const Range& range : ranges)
     for (int frame = 0; frame < 2; ++frame) {
       all.add(frame, range.lo[frame]);
       all.add(frame, range.hi[frame]);
     }
-    all.displacement = std::max(all.displacement, range.displacement);
-  }
   return all;
 }
 
@@ -403,14 +397,20 @@ void MovingKdopTree::refit(MovingKdopNode& node) {
     if (lane >= node.count) {
       std::fill(box.t0.half, box.t0.half + 16, kLeastHalf);
       std::fill(box.t1.half, box.t1.half + 16, kLeastHalf);
+      node.displacement[lane] = 0;
     } else if (node.isTriangle(lane)) {
-      const MovingKdop& a = vertices_[node.places[0][lane]].box;
-      const MovingKdop& b = vertices_[node.places[1][lane]].box;
-      const MovingKdop& c = vertices_[node.places[2][lane]].box;
-      merge(a.t0, b.t0, c.t0, box.t0);
-      merge(a.t1, b.t1, c.t1, box.t1);
+      const TreeVertex& a = vertices_[node.places[0][lane]];
+      const TreeVertex& b = vertices_[node.places[1][lane]];
+      const TreeVertex& c = vertices_[node.places[2][lane]];
+      merge(a.box.t0, b.box.t0, c.box.t0, box.t0);
+      merge(a.box.t1, b.box.t1, c.box.t1, box.t1);
+      node.displacement[lane] = detail::deformable::roundUp(
+          std::max(std::max(a.displacement(), b.displacement()), c.displacement()), 0.f);
     } else {
-      bound(nodes_[static_cast<std::size_t>(node.child[lane])], box);
+      const MovingKdopNode& child = nodes_[static_cast<std::size_t>(node.child[lane])];
+      bound(child, box);
+      node.displacement[lane] =
+          *std::max_element(child.displacement, child.displacement + kWidth);
     }
   }
   float extents[kWidth];
@@ -436,14 +436,10 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
   for (std::size_t i = subtree.first_vertex; i < subtree.last_vertex; ++i) {
     if (i + kAhead < subtree.last_vertex) frames.prefetch(vertex_ids_[i + kAhead]);
     TreeVertex& v = vertices_[i];
+    double path[2][3];
     for (int frame = 0; frame < 2; ++frame) {
-      double p[3];
+      double(&p)[3] = path[frame];
       frames.at(frame, vertex_ids_[i], p);
-      double* to = frame == 0 ? v.t0 : v.t1;
-      to[0] = p[0];
-      to[1] = p[1];
-      to[2] = p[2];
-      to[3] = 0;
       const double(&o)[3] = origin_[frame];
       const double x = p[0] - o[0], y = p[1] - o[1], z = p[2] - o[2];
       // Doubles: a coordinate relative to the origin is rounded by 2^-53 of itself, the
@@ -453,6 +449,7 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
       fitOffset(x, y, z, 0x1p-49F * static_cast<float>(size),
                 frame == 0 ? v.box.t0 : v.box.t1);
     }
+    v.setPath(path[0], path[1]);
   }
 }
 
@@ -474,7 +471,6 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
     origin_[0][k] = origin_[1][k] = 0.5 * std::min(range.lo[0][k], range.lo[1][k]) +
                                     0.5 * std::max(range.hi[0][k], range.hi[1][k]);
   setReach(range);
-  displacement_ = range.displacement;
   // Extents along eight directions in two frames have up to 2^-17 of the reach from
   // rounding: 32 half-axes of at most 2 reach each, outward by 2^-22 of themselves.
   blur_ = roundUp(reach_ * 0x1p-13, 0.f);

@@ -245,6 +245,9 @@ void RegionBorder::makeNode(std::size_t i, std::size_t first, std::size_t last,
   node.count = count;
   std::copy(numbers, numbers + count, node.child);
   for (int lane = 0; lane < count; ++lane) node.setBox(lane, boxes[lane]);
+  // Nobody asks how far its edges go.
+  std::fill(node.displacement, node.displacement + count,
+            std::numeric_limits<float>::infinity());
   node.clearRest();
 }
 

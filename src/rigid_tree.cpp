@@ -258,6 +258,7 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   std::fill(nodes, nodes + kWidth, i);
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
   (this->*volumes_.set_rows)(nodes, out);
+  std::fill(out.displacement, out.displacement + kWidth, 0.f);
   out.clearRest();
 }
 

@@ -490,28 +490,30 @@ TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
   EXPECT_GT(contacts, 1000U);
 }
 
-/// Tips of triangles on their way to faces that come towards them, each as fast as any
-/// vertex is; each two far from all others.
+/// Tips of triangles on their way to faces that come towards them, both as fast as they
+/// can be for what their boxes say; each two far from all others.
 struct HeadOn {
   MovingMesh tips, faces;
 
-  void add(const Vector3<double>& center, const Vector3<double>& way, double meeting) {
+  void add(const Vector3<double>& center, const Vector3<double>& way, double speed,
+           double meeting) {
     const Vector3<double> side =
         way.cross(Vector3<double>(way[1] + 2, way[2] - 3, way[0])).normalized();
     const Vector3<double> other = way.cross(side).normalized();
-    const Vector3<double> tip = center - meeting * way;
-    addTriangle(tips, {tip, tip - way + side, tip - way - side}, way);
-    const Vector3<double> middle = center + meeting * way;
+    const Vector3<double> motion = speed * way;
+    const Vector3<double> tip = center - meeting * motion;
+    addTriangle(tips, {tip, tip - way + side, tip - way - side}, motion);
+    const Vector3<double> middle = center + meeting * motion;
     addTriangle(faces, {middle - side - other, middle + side - other, middle + 2 * other},
-                -way);
+                -motion);
   }
 
   static void addTriangle(MovingMesh& mesh, const std::array<Vector3<double>, 3>& x,
-                          const Vector3<double>& way) {
+                          const Vector3<double>& motion) {
     const std::size_t n = mesh.t0.size();
     for (const Vector3<double>& p : x) {
       mesh.t0.push_back(p);
-      mesh.t1.push_back(p + way);
+      mesh.t1.push_back(p + motion);
     }
     mesh.triangles.emplace_back(n, n + 1, n + 2);
   }
@@ -566,8 +568,9 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
                                    10. * static_cast<double>(i / 64));
       const double meeting =
           i % 2 ? first * random.uniform(1, 1.1) : random.uniform(first, 1);
-      any.add(center, randomWay(), meeting);
-      same.add(center, one_way, meeting);
+      any.add(center, randomWay(), std::ldexp(1, -static_cast<int>(random.index(6))),
+              meeting);
+      same.add(center, one_way, 1, meeting);
     }
     const MovingMesh mesh = any.both();
     const PreparedMovingMesh self(mesh), a(any.tips), b(any.faces), c(same.faces);

@@ -162,7 +162,7 @@ struct Rows {
       t1[r] = box.t1.half[MovingKdopNode::halfAxis(r)];
     }
   }
-  BoxView view() const { return {t0, t1, 1}; }
+  BoxView view(float displacement = 0) const { return {t0, t1, 1, displacement}; }
 };
 
 /// The least overlap depth at t = 0.
@@ -177,13 +177,11 @@ bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b) {
   return depthAtStart(a, b) >= 0;
 }
 
-constexpr float kNoGap = std::numeric_limits<float>::infinity();
-
-/// One that leaves out nothing or, of boxes of that depth, some or none.
+/// A gap that leaves out nothing or, of boxes of that depth, some or none.
 float randomGap(Random& random, float depth) {
   switch (random.index(4)) {
     case 0:
-      return kNoGap;
+      return std::numeric_limits<float>::infinity();
     case 1:
       return 0;
     case 2:
@@ -191,6 +189,37 @@ float randomGap(Random& random, float depth) {
     default:
       return -std::min(depth, 0.f) * static_cast<float>(random.uniform(0, 2));
   }
+}
+
+/// The same as a request, of boxes whose displacements are `moved` together.
+OverlapRequest randomRequest(Random& random, float depth, float moved) {
+  OverlapRequest request{random.index(2) == 0};
+  const float gap = randomGap(random, depth);
+  if (!(gap <= FLT_MAX)) return request;
+  const auto part = static_cast<float>(random.uniform(0, 1));
+  switch (random.index(3)) {
+    case 0:
+      request.share = 0;
+      request.slack = gap;
+      break;
+    case 1:
+      request.share = moved > 0 ? gap / moved : 1.f;
+      request.slack = 0;
+      break;
+    default:
+      request.share = moved > 0 ? part * gap / moved : part;
+      request.slack = gap - part * gap;
+  }
+  return request;
+}
+
+/// Whether the request leaves out boxes of that depth at t = 0.
+bool isTooFar(const OverlapRequest& request, float depth, float moved) {
+  return request.leavesOut() && depth + (moved * request.share + request.slack) < 0;
+}
+
+float randomDisplacement(Random& random, float scale) {
+  return random.index(3) ? scale * static_cast<float>(random.uniform(0, 2)) : 0.f;
 }
 
 /// What is said without times of boxes that overlap from `lo` on.
@@ -204,8 +233,7 @@ void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, flo
 void expectRightChildren(const BoxView& view, const MovingKdop& box,
                          const MovingKdopNode& node, Tally& tally) {
   float first[kWidth];
-  const unsigned mask =
-      allSets().front()->overlapChildren(view, node, {true, kNoGap}, first);
+  const unsigned mask = allSets().front()->overlapChildren(view, node, {true}, first);
   EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
   for (int lane = 0; lane < node.count; ++lane) {
     const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
@@ -216,43 +244,44 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
     tally.add(!expected.isEmpty(), expected);
   }
   float first_untimed[kWidth];
-  allSets().front()->overlapChildren(view, node, {false, kNoGap}, first_untimed);
+  allSets().front()->overlapChildren(view, node, {false}, first_untimed);
   for (int lane = 0; lane < node.count; ++lane)
     if (mask >> lane & 1U)
       expectUntimed(first_untimed[lane], box, node.box(lane), first[lane]);
   for (const Kernels* k : allSets()) {
     float earliest[kWidth];
-    ASSERT_EQ(k->overlapChildren(view, node, {true, kNoGap}, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, {true}, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first);
-    ASSERT_EQ(k->overlapChildren(view, node, {false, kNoGap}, earliest), mask) << k->name;
+    ASSERT_EQ(k->overlapChildren(view, node, {false}, earliest), mask) << k->name;
     expectSameBits(mask, earliest, first_untimed);
     ASSERT_FALSE(testing::Test::HasFailure()) << k->name;
   }
 }
 
-/// A gap leaves out the children that are further away at t = 0, and changes nothing of
-/// the others. Counts those that it leaves out.
-void expectRightGap(const BoxView& view, const MovingKdop& box,
-                    const MovingKdopNode& node, float gap, int& left_out) {
+/// A request leaves out the children that are too far away at t = 0, and changes nothing
+/// of the others. Counts those that it leaves out.
+void expectRightRequest(const BoxView& view, const MovingKdop& box,
+                        const MovingKdopNode& node, const OverlapRequest& request,
+                        int& left_out) {
   unsigned near = 0;
   for (int lane = 0; lane < node.count; ++lane)
-    near |= unsigned{depthAtStart(box, node.box(lane)) >= -gap} << lane;
-  for (const bool timed : {true, false})
-    for (const Kernels* k : allSets()) {
-      float expected[kWidth], earliest[kWidth];
-      const unsigned all = k->overlapChildren(view, node, {timed, kNoGap}, expected);
-      ASSERT_EQ(k->overlapChildren(view, node, {timed, gap}, earliest), all & near)
-          << k->name;
-      for (int lane = 0; lane < node.count; ++lane)
-        if (all & near & 1U << lane) {
-          if (timed)
-            EXPECT_EQ(earliest[lane], expected[lane]) << k->name;
-          else
-            expectUntimed(earliest[lane], box, node.box(lane),
-                          overlapWindow<false>(box, node.box(lane), nullptr).lo);
-        }
-      left_out += static_cast<int>(numBits(all & ~near));
-    }
+    near |= unsigned{!isTooFar(request, depthAtStart(box, node.box(lane)),
+                               view.displacement + node.displacement[lane])}
+            << lane;
+  for (const Kernels* k : allSets()) {
+    float expected[kWidth], earliest[kWidth];
+    const unsigned all = k->overlapChildren(view, node, {request.timed}, expected);
+    ASSERT_EQ(k->overlapChildren(view, node, request, earliest), all & near) << k->name;
+    for (int lane = 0; lane < node.count; ++lane)
+      if (all & near & 1U << lane) {
+        if (request.timed)
+          EXPECT_EQ(earliest[lane], expected[lane]) << k->name;
+        else
+          expectUntimed(earliest[lane], box, node.box(lane),
+                        overlapWindow<false>(box, node.box(lane), nullptr).lo);
+      }
+    left_out += static_cast<int>(numBits(all & ~near));
+  }
 }
 
 TEST(FCL_KERNELS, childrenAsOverlapWindow) {
@@ -269,6 +298,8 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
       parent.child[lane] = node.child[lane] = 0;
       parent.setBox(lane, randomBounds(random, randomHalves(random), scale));
       node.setBox(lane, randomBounds(random, randomHalves(random), scale));
+      parent.displacement[lane] = randomDisplacement(random, scale);
+      node.displacement[lane] = randomDisplacement(random, scale);
     }
     // Whatever lies in lanes that are not in use.
     if (random.index(2)) node.clearRest();
@@ -276,13 +307,15 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
     const MovingKdop box = parent.box(lane);
     // A box by itself, and one of eight.
     const Rows rows(box);
-    expectRightChildren(rows.view(), box, node, tally);
-    expectRightChildren({&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], 2 * kWidth},
-                        box, node, tally);
-    const float gap = randomGap(random, depthAtStart(box, node.box(0)));
-    expectRightGap(rows.view(), box, node, gap, left_out);
-    expectRightGap({&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], 2 * kWidth}, box,
-                   node, gap, left_out);
+    const float moved = parent.displacement[lane];
+    const OverlapRequest request = randomRequest(random, depthAtStart(box, node.box(0)),
+                                                 moved + node.displacement[0]);
+    for (const BoxView& view :
+         {rows.view(moved), BoxView{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane],
+                                    2 * kWidth, moved}}) {
+      expectRightChildren(view, box, node, tally);
+      expectRightRequest(view, box, node, request, left_out);
+    }
     ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
   }
   EXPECT_GT(tally.overlaps, 5000);
@@ -300,13 +333,17 @@ TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
     for (int count = 0; count <= kWidth; ++count) {
       MovingKdopNode node;
       node.count = count;
-      for (int lane = 0; lane < count; ++lane) node.setBox(lane, box);
+      for (int lane = 0; lane < count; ++lane) {
+        node.setBox(lane, box);
+        node.displacement[lane] = half;
+      }
       node.clearRest();
       for (const Kernels* k : allSets()) {
         float earliest[kWidth];
         for (const bool timed : {true, false})
-          for (const float gap : {0.f, 1.f, kNoGap}) {
-            EXPECT_EQ(k->overlapChildren(Rows(box).view(), node, {timed, gap}, earliest),
+          for (const float share : {0.1f, std::numeric_limits<float>::infinity()}) {
+            EXPECT_EQ(k->overlapChildren(Rows(box).view(half), node, {timed, share, 0.f},
+                                         earliest),
                       (1U << count) - 1)
                 << k->name;
             for (int lane = 0; lane < count; ++lane)
@@ -461,8 +498,11 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     const KdopShift* shift = boxes[0].shiftOrNull();
     const float latest =
         random.index(2) ? 1.f : static_cast<float>(random.uniform(-0.1, 1));
-    const float gap = randomGap(
-        random, depthAtStart(boxes[0].a[random.index(3)].box, boxes[0].b[0].box));
+    std::vector<float> gaps;
+    for (const TrianglePairBoxes& b : boxes)
+      gaps.push_back(
+          randomGap(random, depthAtStart(b.a[random.index(3)].box, b.b[0].box)));
+    const bool has_gaps = random.index(3) > 0;
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
       std::vector<TimeWindow> left_windows;
@@ -477,7 +517,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
               b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
           const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
-          const bool is_far = depthAtStart(box_a, box_b) < -gap;
+          const bool is_far = has_gaps && depthAtStart(box_a, box_b) < -gaps[k];
           far += is_far && !expected.isEmpty();
           if (!expected.isEmpty() && expected.lo <= latest && !is_far) {
             left.push_back(codes.back());
@@ -490,9 +530,9 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
       for (const Kernels* kernels : allSets()) {
         std::vector<std::uint32_t> mine = codes;
         std::vector<TimeWindow> windows(codes.size());
-        const std::size_t count =
-            kernels->cullFeatures(kind, pairs.data(), shift, &turned_shift, latest, gap,
-                                  mine.data(), mine.size(), windows.data());
+        const std::size_t count = kernels->cullFeatures(
+            kind, pairs.data(), shift, &turned_shift, latest,
+            has_gaps ? gaps.data() : nullptr, mine.data(), mine.size(), windows.data());
         mine.resize(count);
         windows.resize(count);
         ASSERT_EQ(mine, left) << kernels->name;
@@ -531,6 +571,7 @@ MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
     for (auto& row : node.places)
       row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
     node.setBox(lane, randomBounds(random, halves, scale));
+    node.displacement[lane] = randomDisplacement(random, scale);
   }
   return node;
 }
@@ -586,7 +627,9 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         }
     }
     const auto lanes = static_cast<unsigned>(random.next()) & a.triangles();
-    const float gap = randomGap(random, depthAtStart(a.box(0), b.box(b.count - 1)));
+    const OverlapRequest request =
+        randomRequest(random, depthAtStart(a.box(0), b.box(b.count - 1)),
+                      a.displacement[0] + b.displacement[b.count - 1]);
 
     std::vector<ExpectedPair> expected;
     std::size_t expected_fans = 0;
@@ -595,7 +638,8 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         if (!(lanes >> x & 1U) || !b.isTriangle(y)) continue;
         const MovingKdop moved = shifted(a.box(x), has_shift ? &shift : nullptr);
         const TimeWindow window = overlapWindow<false>(moved, b.box(y), nullptr);
-        const bool is_far = depthAtStart(moved, b.box(y)) < -gap;
+        const bool is_far = isTooFar(request, depthAtStart(moved, b.box(y)),
+                                     a.displacement[x] + b.displacement[y]);
         far += is_far && !window.isEmpty();
         if (window.isEmpty() || is_far)
           ++apart;
@@ -604,16 +648,11 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         else
           expected.push_back({x, y, window.lo});
       }
-    const bool timed = random.index(2);
     LanePairs first;
     for (const Kernels* k : allSets()) {
       LanePairs pairs;
-      k->overlapTriangles({a,
-                           b,
-                           lanes,
-                           has_shift ? rows : nullptr,
-                           has_fans ? table.data() : nullptr,
-                           {timed, gap}},
+      k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
+                           has_fans ? table.data() : nullptr, request},
                           pairs);
       ASSERT_EQ(pairs.size, expected.size()) << k->name;
       EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
@@ -621,7 +660,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
       for (std::size_t n = 0; n < pairs.size; ++n) {
         EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
         EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
-        if (timed)
+        if (request.timed)
           EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
         else
           expectUntimed(pairs.earliest[n],
@@ -789,17 +828,20 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
   int apart = 0, total = 0;
   for (int i = 0; i < 20000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
-    const double approach = random.index(4) ? static_cast<double>(random.index(40)) : 0;
+    double approach[8], scaled[8];
+    for (double& x : approach)
+      x = random.index(4) ? static_cast<double>(random.index(40)) : 0;
     const double scale =
         std::ldexp(1, i % 3 > 0 ? 0 : 60 * static_cast<int>(random.index(32)) - 960);
     const double offset = random.index(2) ? std::ldexp(1, 30) : 0;
     std::vector<TouchingTriangles> triangles;
     std::vector<TrianglePair> touching, separated;
     const std::size_t count = 1 + random.index(8);
+    for (std::size_t n = 0; n < 8; ++n) scaled[n] = scale * approach[n];
     for (std::size_t n = 0; n < 2 * count; ++n) {
       triangles.emplace_back(random);
       // The first ones so far that they can come together, the others, further.
-      const double size = n < count ? approach : 40 * (approach + 1);
+      const double size = n < count ? approach[n] : 40 * (approach[n - count] + 1);
       double away[3];
       for (double& w : away) w = size * (static_cast<double>(random.index(3)) - 1);
       triangles.back().move(away);
@@ -808,11 +850,10 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
     for (std::size_t n = 0; n < 2 * count; ++n)
       (n < count ? touching : separated).push_back(triangles[n].pair());
     for (const Kernels* k : allSets())
-      EXPECT_EQ(k->areApart(touching.data(), count, scale * approach), 0U) << k->name;
-    const unsigned found =
-        allSets().front()->areApart(separated.data(), count, scale * approach);
+      EXPECT_EQ(k->areApart(touching.data(), count, scaled), 0U) << k->name;
+    const unsigned found = allSets().front()->areApart(separated.data(), count, scaled);
     for (const Kernels* k : allSets())
-      EXPECT_EQ(k->areApart(separated.data(), count, scale * approach), found) << k->name;
+      EXPECT_EQ(k->areApart(separated.data(), count, scaled), found) << k->name;
     apart += static_cast<int>(numBits(found));
     total += static_cast<int>(count);
     ASSERT_FALSE(HasFailure());
@@ -843,9 +884,10 @@ TEST(FCL_KERNELS, layersAreApart) {
             nullptr,
             nullptr};
         for (const Kernels* k : allSets()) {
-          EXPECT_EQ(k->areApart(&pair, 1, 0.33), 1U) << k->name << " " << upright;
-          EXPECT_EQ(k->areApart(&pair, 1, 0), 1U) << k->name << " " << upright;
-          EXPECT_EQ(k->areApart(&pair, 1, 0.34), 0U) << k->name << " " << upright;
+          const double near[8] = {0.33}, nearer[8] = {}, far[8] = {0.34};
+          EXPECT_EQ(k->areApart(&pair, 1, near), 1U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, nearer), 1U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, far), 0U) << k->name << " " << upright;
         }
       }
 }

@@ -30,30 +30,34 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
-/// The children that lie within `gap` of the box at t = 0, and those of them that are
-/// apart from it.
+/// The children that are near enough to the box at t = 0 for the request, and those of
+/// them that are apart from it.
 template <std::size_t kStride>
 HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
-                                 float gap, unsigned& apart) {
+                                 const OverlapRequest& request, unsigned& apart) {
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
     s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
   // The least, two by two: each of a chain of sixteen would wait for the one before.
   for (std::size_t half = 8; half > 0; half /= 2)
     for (std::size_t r = 0; r < half; ++r) s[r] = smaller(s[r], s[r + half]);
-  const unsigned near = bits(s[0] >= broadcast<kEight>(-gap)) & node.lanes();
+  const Floats displacement =
+      load<kEight>(node.displacement) + broadcast<kEight>(box.displacement);
+  const Floats bridged =
+      displacement * broadcast<kEight>(request.share) + broadcast<kEight>(request.slack);
+  const unsigned near = bits(s[0] + bridged >= broadcast<kEight>(0.f)) & node.lanes();
   apart = signs(s[0]) & near;
   return near;
 }
 
-template <std::size_t kStride, bool kHasGap>
+template <std::size_t kStride, bool kLeavesOut>
 HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
                                     const OverlapRequest& request,
                                     float (&earliest)[MovingKdopNode::kWidth]) {
   unsigned left = node.lanes();
-  if (kHasGap) {
+  if (kLeavesOut) {
     unsigned open = 0;
-    left = nearChildren<kStride>(box, node, request.gap, open);
+    left = nearChildren<kStride>(box, node, request, open);
     if (open == 0) {
       store(broadcast<kEight>(0.f), earliest);
       return left;
@@ -88,7 +92,7 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                            const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kInNode = BoxView::kInNode;
-  if (request.gap <= FLT_MAX)
+  if (request.leavesOut())
     return box.stride == 1 ? overlapChildren<1, true>(box, node, request, earliest)
                            : overlapChildren<kInNode, true>(box, node, request, earliest);
   return box.stride == 1 ? overlapChildren<1, false>(box, node, request, earliest)
@@ -121,7 +125,7 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
   return trianglesAt(places, count, b);
 }
 
-template <bool kShifted, bool kHasGap>
+template <bool kShifted, bool kLeavesOut>
 HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
   const unsigned triangles = b.triangles();
@@ -137,12 +141,13 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
         moved[0][r] = shifted(a.rows[r].t0[lane], leaves.shift[0][r]);
         moved[1][r] = shifted(a.rows[r].t1[lane], leaves.shift[1][r]);
       }
-      left &= overlapChildren<1, kHasGap>({moved[0], moved[1], 1}, b, leaves.request,
-                                          earliest);
+      left &= overlapChildren<1, kLeavesOut>(
+          {moved[0], moved[1], 1, a.displacement[lane]}, b, leaves.request, earliest);
     } else {
-      const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode};
+      const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode,
+                        a.displacement[lane]};
       left &=
-          overlapChildren<BoxView::kInNode, kHasGap>(box, b, leaves.request, earliest);
+          overlapChildren<BoxView::kInNode, kLeavesOut>(box, b, leaves.request, earliest);
     }
     if (left != 0 && leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
@@ -160,7 +165,7 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
 
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
   out.size = out.fan_culled = 0;
-  if (leaves.request.gap <= FLT_MAX)
+  if (leaves.request.leavesOut())
     leaves.shift ? overlapTriangles<true, true>(leaves, out)
                  : overlapTriangles<false, true>(leaves, out);
   else
@@ -217,8 +222,8 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
 template <FeatureKind kind, bool kShifted>
 HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
                                     const KdopShift* turned_shift, float latest,
-                                    float gap, std::uint32_t* codes, std::size_t count,
-                                    TimeWindow* windows) {
+                                    const float* gaps, std::uint32_t* codes,
+                                    std::size_t count, TimeWindow* windows) {
   const auto at0 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 0>(pairs[code / 16], code % 16, shift, turned_shift);
   };
@@ -226,13 +231,12 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
     return depths<kind, kShifted, 1>(pairs[code / 16], code % 16, shift, turned_shift);
   };
   // A loop for each look at the boxes: none has a branch that depends on them.
-  if (gap <= FLT_MAX) {
-    const HalfAxes least = broadcast<16>(-gap);
+  if (gaps) {
     std::size_t near = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const std::uint32_t code = codes[i];
       codes[near] = code;
-      near += isAll(at0(code) >= least);
+      near += isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));
     }
     count = near;
   }
@@ -257,13 +261,13 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
 
 std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
-                           float latest, float gap, std::uint32_t* codes,
+                           float latest, const float* gaps, std::uint32_t* codes,
                            std::size_t count, TimeWindow* windows) {
   constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
   const auto cull = kind == kVf
                         ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
                         : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
-  return cull(pairs, shift, turned_shift, latest, gap, codes, count, windows);
+  return cull(pairs, shift, turned_shift, latest, gaps, codes, count, windows);
 }
 
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,

@@ -307,14 +307,14 @@ HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
   const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
                 below = min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]);
   const Doubles size = maxNorm(d), volume = size * p.norm;
-  const Doubles least =
-      broadcast<kEight>(kPlaneBound) * volume + broadcast<kEight>(3.) * size * approach;
+  const Doubles least = broadcast<kEight>(kPlaneBound) * volume +
+                        broadcast<kEight>(kPlaneApproach) * size * approach;
   return isInRange(volume) & ((above > least) | (below > least));
 }
 
-unsigned areApart(const TrianglePair* pairs, std::size_t count, double approach) {
+unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* approach) {
   const TrianglePoints p(pairs, count);
-  const Doubles bridged = broadcast<kEight>(approach);
+  const Doubles bridged = load<kEight>(approach);
   const DoubleMask apart =
       areSeparated(p, cross(p.x[1], p.x[2]), bridged) |
       areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged);

@@ -28,12 +28,12 @@ std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned
                          std::uint32_t* codes);
 std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
-                           float latest, float gap, std::uint32_t* codes,
+                           float latest, const float* gaps, std::uint32_t* codes,
                            std::size_t count, TimeWindow* windows);
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
-unsigned areApart(const TrianglePair* pairs, std::size_t count, double approach);
+unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* approach);
 unsigned mayCrossOfEight(const EightCrossings& pairs);
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan);

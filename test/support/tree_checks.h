@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -139,8 +140,19 @@ inline void expectContained(const VertexPath& path, double t, const MovingKdopTr
   }
 }
 
+/// A bound on the change of each coordinate, and not much more.
+inline void expectBounded(const VertexPath& path, double displacement, bool is_least) {
+  long double moved = 0;
+  for (int k = 0; k < 3; ++k)
+    moved = std::max(moved, std::abs(static_cast<long double>(path.t1[k]) - path.t0[k]));
+  ASSERT_LE(moved, displacement);
+  if (is_least) {
+    ASSERT_LE(displacement, moved * (1 + 1e-15L));
+  }
+}
+
 /// Every box of the tree contains the triangles below it, and the vertices' own contain
-/// these.
+/// these; no vertex below moves further than is said.
 inline void expectContainment(const MovingKdopTree& tree,
                               const std::vector<MeshTriangle>& triangles,
                               const VertexFrames& frames) {
@@ -158,6 +170,10 @@ inline void expectContainment(const MovingKdopTree& tree,
           ASSERT_EQ(vertex.t0[c], path.t0[c]);
           ASSERT_EQ(vertex.t1[c], path.t1[c]);
         }
+        ASSERT_NO_FATAL_FAILURE(expectBounded(path, vertex.displacement(), true));
+        for (Place p{i, lane}; p.node >= 0; p = parent[static_cast<std::size_t>(p.node)])
+          ASSERT_NO_FATAL_FAILURE(
+              expectBounded(path, tree.node(p.node).displacement[p.lane], false));
         for (const double t : kTimes) {
           ASSERT_NO_FATAL_FAILURE(expectContained(path, t, tree, vertex.box));
           for (Place p{i, lane}; p.node >= 0;
@@ -207,6 +223,7 @@ inline void expectSameBoxes(const MovingKdopTree& x, const MovingKdopTree& y) {
     ASSERT_EQ(x.node(i).count, y.node(i).count);
     for (int lane = 0; lane < x.node(i).count; ++lane) {
       ASSERT_EQ(x.node(i).child[lane], y.node(i).child[lane]);
+      ASSERT_EQ(x.node(i).displacement[lane], y.node(i).displacement[lane]);
       const MovingKdop a = x.node(i).box(lane), b = y.node(i).box(lane);
       ASSERT_EQ(std::memcmp(&a, &b, sizeof(a)), 0) << "node " << i;
     }

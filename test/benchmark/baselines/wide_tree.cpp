@@ -110,9 +110,9 @@ void WideTree<kBoxes>::findOverlaps(const std::vector<TrianglePairMask>& pairs,
     const std::size_t listed = kernels().listFeatures(
         masks_.data(), pairs.size(),
         kind == FeatureKind::kVertexFace ? kVertexFace : kEdgeEdge, codes_.data());
-    const std::size_t kept = kernels().cullFeatures(
-        kind, triangle_pairs_.data(), nullptr, nullptr, 1,
-        std::numeric_limits<float>::infinity(), codes_.data(), listed, windows_.data());
+    const std::size_t kept =
+        kernels().cullFeatures(kind, triangle_pairs_.data(), nullptr, nullptr, 1, nullptr,
+                               codes_.data(), listed, windows_.data());
     for (std::size_t i = 0; i < kept; ++i)
       found.push_back(
           {codes_[i] / 16, static_cast<std::int32_t>(codes_[i] % 16), windows_[i]});

@@ -182,7 +182,6 @@ class FeatureBatch {
   bool self_;
   const KdopShift* shift_;
   KdopShift turned_shift_;
-  double approach_;
   const Kernels& kernels_;
   std::unique_ptr<TrianglePair[]> pairs_;
   /// The pairs of features of each triangle pair that are to be looked at.
@@ -191,6 +190,9 @@ class FeatureBatch {
   /// bits 0-2 for a's, 3-5 for b's.
   std::unique_ptr<std::uint16_t[]> edges_;
   bool has_edges_{false};
+  /// Features of each triangle pair that are further apart at t = 0 do not meet until the
+  /// time after which nothing matters.
+  std::unique_ptr<float[]> gaps_;
   std::size_t num_pairs_{0};
   List lists_[2];
   std::unique_ptr<std::uint32_t[]> crossings_;

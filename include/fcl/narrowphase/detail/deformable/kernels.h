@@ -5,8 +5,10 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
 
+#include <cfloat>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/feature_pairs.h"
@@ -23,6 +25,8 @@ struct BoxView {
   const float* t0;
   const float* t1;
   std::size_t stride;
+  /// As that of a child.
+  float displacement;
 };
 
 /// @brief Which overlaps of boxes matter to a query.
@@ -30,9 +34,22 @@ struct OverlapRequest {
   /// Whether it matters from when on boxes overlap; false: `earliest` only tells which
   /// overlap at t = 0; it is 0 for these, and FLT_MIN or what it would be for others.
   bool timed;
-  /// Boxes that are further apart than this at t = 0, along one of the directions, are
-  /// left out; infinity: none are. See gapUntil().
-  float gap;
+  /// Boxes are left out that are further apart at t = 0, along one of the directions,
+  /// than `share` of what their displacements add up to, and `slack`; infinity: none are.
+  float share{std::numeric_limits<float>::infinity()};
+  float slack{0};
+
+  /// @brief Leaves out boxes that do not meet until `latest`; none if that is the end of
+  /// the step, where their other frame tells more. Two coordinates enter a direction;
+  /// the rounding up here and of displacements, 2^-22 of each, is more than what the
+  /// kernels round: three operations and the sum of two half-axes, 2^-24 each.
+  /// @param pose_displacement  of both meshes together
+  void leaveOutAfter(double latest, double pose_displacement) {
+    share =
+        latest < 1 ? roundUp(2 * latest, 0.f) : std::numeric_limits<float>::infinity();
+    slack = roundUp(2 * latest * pose_displacement, 0.f);
+  }
+  bool leavesOut() const { return share <= FLT_MAX; }
 };
 
 /// @brief Two nodes whose triangles are compared, or one twice: then each pair of
@@ -149,10 +166,11 @@ struct Kernels {
   /// @param shift, turned_shift  added to boxes of a's features, and the same with the
   /// halves exchanged; null: none
   /// @param latest  windows that begin later are left out
-  /// @param gap  as in OverlapRequest
+  /// @param gaps  for each triangle pair: its features are left out if they are further
+  /// apart at t = 0, along one of the directions; null: none are
   std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
-                              float latest, float gap, std::uint32_t* codes,
+                              float latest, const float* gaps, std::uint32_t* codes,
                               std::size_t count, TimeWindow* windows);
 
   /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2
@@ -162,11 +180,12 @@ struct Kernels {
                                std::size_t count);
 
   /// Which of up to eight pairs of triangles are apart at t = 0, a bit each, and stay so
-  /// as long as no vertex of the one and vertex of the other come closer to each other
-  /// than by `approach` along x, y or z: the plane of one of the two provably separates
-  /// them by more.
+  /// as long as their vertices come no closer to each other than by `approach` along x, y
+  /// or z: the plane of one of the two provably separates them by more.
   /// @param count  1 to 8
-  unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double approach);
+  /// @param approach  of each; eight numbers are read
+  unsigned (*areApart)(const TrianglePair* pairs, std::size_t count,
+                       const double* approach);
 
   /// Which of eight edges may pass through their faces at t = 0, a bit each: isCrossing()
   /// says no to all others.

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "fcl/math/triangle.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
@@ -43,9 +42,11 @@ struct MeshInstance {
 
   bool hasOwners() const { return tree || prepared; }
 
-  /// @brief Bound on the change of a coordinate of a vertex in the step. Posed
-  /// coordinates are rounded at both ends, by less than 2^-49 of what they are made of.
-  double displacement() const {
+  /// @brief By how much more than in the tree a coordinate of a vertex changes in the
+  /// step: as the pose moves it, and rounds it at both ends, by less than 2^-49 of what
+  /// it is made of.
+  double poseDisplacement() const {
+    if (isInPlace()) return 0;
     double moved = 0, size = tree ? tree->reach() : rigid.reach();
     for (int k = 0; k < 3; ++k) {
       moved = std::max(moved, std::abs(translation[1][k] - translation[0][k]));
@@ -54,25 +55,9 @@ struct MeshInstance {
                         std::abs(translation[frame][k]) +
                             std::abs(tree ? tree->origin(frame)[k] : rigid.origin()[k]));
     }
-    return (tree ? tree->displacement() : 0) + moved + 0x1p-46 * size;
+    return moved + 0x1p-46 * size;
   }
 };
-
-/// @brief By how much, at most, a vertex of a and one of b approach each other along x,
-/// y or z in the step.
-inline double approachOf(const MeshInstance& a, const MeshInstance& b) {
-  return a.displacement() + b.displacement();
-}
-
-/// @brief Boxes that are further apart than this at t = 0, along a direction of theirs,
-/// do not meet until `latest`; infinity if that is the end of the step, where their other
-/// frame tells more. Two coordinates enter a direction; rounding up is more than what the
-/// sum of two half-axes rounds.
-/// @param approach  approachOf() the meshes
-inline float gapUntil(double latest, double approach) {
-  return latest < 1 ? roundUp(2 * latest * approach, 0.f)
-                    : std::numeric_limits<float>::infinity();
-}
 
 }  // namespace deformable
 }  // namespace detail

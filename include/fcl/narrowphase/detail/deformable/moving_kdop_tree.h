@@ -2,6 +2,8 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_MOVING_KDOP_TREE_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_MOVING_KDOP_TREE_H
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -31,6 +33,8 @@ struct alignas(64) MovingKdopNode {
   Row rows[16];
   /// Vertices of the triangles, as places in the tree's order; kNoPlace for a node.
   std::uint32_t places[3][kWidth];
+  /// Bound on the change of a coordinate of a vertex of the child in the step.
+  float displacement[kWidth];
   /// >= 0: a node; < 0: ~triangle. The first `count` are in use.
   std::int32_t child[kWidth];
   std::int32_t count;
@@ -72,6 +76,7 @@ struct alignas(64) MovingKdopNode {
   void clearRest() {
     for (int i = count; i < kWidth; ++i) {
       child[i] = 0;
+      displacement[i] = 0;
       for (Row& row : rows) row.t0[i] = row.t1[i] = kLeastHalf;
     }
   }
@@ -96,12 +101,26 @@ inline ThreeIds idsOf(const TreeTriangle& t) {
   return ids;
 }
 
-/// @brief A vertex where the tests read it: its path (the fourth number is not used) and
-/// its moving box.
+/// @brief A vertex where the tests read it: its path, t0[3] a bound on the change of a
+/// coordinate in the step (t1[3] is not used); and its moving box.
 struct alignas(64) TreeVertex {
   double t0[4];
   double t1[4];
   MovingKdop box;
+
+  double displacement() const { return t0[3]; }
+
+  /// @brief Sets the path. Differences of doubles are rounded by 2^-53 of themselves.
+  void setPath(const double (&from)[3], const double (&to)[3]) {
+    double moved = 0;
+    for (int k = 0; k < 3; ++k) {
+      t0[k] = from[k];
+      t1[k] = to[k];
+      moved = std::max(moved, std::fabs(to[k] - from[k]));
+    }
+    t0[3] = moved * (1 + 0x1p-52);
+    t1[3] = 0;
+  }
 };
 
 class TopologyDifference;
@@ -182,9 +201,6 @@ class MovingKdopTree {
   /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
   double reach() const { return reach_; }
 
-  /// @brief Largest change of a coordinate of a vertex in the step.
-  double displacement() const { return displacement_; }
-
   std::size_t memUsage() const;
 
  private:
@@ -251,7 +267,6 @@ class MovingKdopTree {
   std::vector<NodeSize> first_sizes_;
   double origin_[2][3]{};
   double reach_{0};
-  double displacement_{0};
   /// Triangles whose boxes have smaller extents are blurred.
   float blur_{0};
 };

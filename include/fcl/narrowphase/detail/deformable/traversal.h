@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -88,7 +87,7 @@ class Traversal {
         regions_(regions),
         axes_(axes),
         kernels_(kernels),
-        request_{timed, std::numeric_limits<float>::infinity()} {
+        request_{timed} {
     if (!shift) return;
     // What is added to a box of tree b is the same with the half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
@@ -124,9 +123,11 @@ class Traversal {
                      kAllLanes, open, visit);
   }
 
-  /// @brief From here on boxes that are further apart than this at t = 0 are left out
-  /// (gapUntil()); none are before the first call.
-  void leaveOutBeyond(float gap) { request_.gap = gap; }
+  /// @brief From here on boxes that do not meet until `latest` may be left out.
+  /// @param pose_displacement  MeshInstance::poseDisplacement() of both
+  void leaveOutAfter(double latest, double pose_displacement) {
+    request_.leaveOutAfter(latest, pose_displacement);
+  }
 
   /// @brief A step visits at most so many pairs. Those of two nodes have as many as these
   /// have lanes; more are found where a node is opened with itself: each two of its
@@ -188,14 +189,15 @@ class Traversal {
       lanes &= ~triangles & node.lanes();
       if (lanes == 0) return;
     }
-    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], BoxView::kInNode};
+    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], BoxView::kInNode,
+                parent.displacement[lane]};
     float moved[2][16];
     if (!kSelf) {
       for (std::size_t r = 0; r < 16; ++r) {
         moved[0][r] = shifted(box.t0[r * box.stride], shift_[kSwapped][0][r]);
         moved[1][r] = shifted(box.t1[r * box.stride], shift_[kSwapped][1][r]);
       }
-      box = {moved[0], moved[1], 1};
+      box = {moved[0], moved[1], 1, box.displacement};
     }
     compared_ += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
