@@ -27,9 +27,8 @@ constexpr double kUnit = 0x1p-53;
 constexpr double kVolumeBound = 48 * kUnit;
 constexpr double kOuterBound = 104 * kUnit;
 constexpr double kInnerBound = 344 * kUnit;
-// d . (x - o) for a direction d and points that differ by norm N from o, at most: 3 (1 +
-// 1
-// + 2) u DN; the difference of two such numbers 24 + 6 u DN.
+// d . (x - o), for a direction of norm D and points at most N from o: an error of 12 u
+// DN; the difference of two such numbers 24 u DN, and it rounds by 6 u DN.
 constexpr double kPlaneBound = 32 * kUnit;
 // Of D, where three coordinates come closer: more than the rounding of this product.
 constexpr double kPlaneApproach = 3 * (1 + 8 * kUnit);

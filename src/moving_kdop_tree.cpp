@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "parallel.h"
 #include "tree_builder.h"
 #include "vertex_corners.h"
@@ -431,25 +432,40 @@ void MovingKdopTree::refit(MovingKdopNode& node) {
   }
 }
 
-/// Sets paths and boxes of the vertices of a subtree.
+/// Sets paths and boxes of the vertices of a subtree, eight at a time.
 void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& frames) {
-  for (std::size_t i = subtree.first_vertex; i < subtree.last_vertex; ++i) {
-    if (i + kAhead < subtree.last_vertex) frames.prefetch(vertex_ids_[i + kAhead]);
-    TreeVertex& v = vertices_[i];
-    double path[2][3];
-    for (int frame = 0; frame < 2; ++frame) {
-      double(&p)[3] = path[frame];
-      frames.at(frame, vertex_ids_[i], p);
-      const double(&o)[3] = origin_[frame];
-      const double x = p[0] - o[0], y = p[1] - o[1], z = p[2] - o[2];
-      // Doubles: a coordinate relative to the origin is rounded by 2^-53 of itself, the
-      // posed one in relativeShift() by as much, and a sum of two by 2^-52 of the larger:
-      // six of 2^-53 in all.
-      const double size = std::max(std::max(std::abs(x), std::abs(y)), std::abs(z));
-      fitOffset(x, y, z, 0x1p-49F * static_cast<float>(size),
-                frame == 0 ? v.box.t0 : v.box.t1);
+  constexpr std::size_t kEight = 8;
+  const Kernels& kernel = kernels();
+  for (std::size_t first = subtree.first_vertex; first < subtree.last_vertex;
+       first += kEight) {
+    const std::size_t count = std::min(kEight, subtree.last_vertex - first);
+    TreeVertex* const vertices = &vertices_[first];
+    double offsets[2][3][kEight] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      if (first + i + kAhead < subtree.last_vertex)
+        frames.prefetch(vertex_ids_[first + i + kAhead]);
+      double path[2][3];
+      for (int frame = 0; frame < 2; ++frame) {
+        frames.at(frame, vertex_ids_[first + i], path[frame]);
+        for (int k = 0; k < 3; ++k)
+          offsets[frame][k][i] = path[frame][k] - origin_[frame][k];
+      }
+      vertices[i].setPath(path[0], path[1]);
     }
-    v.setPath(path[0], path[1]);
+    for (int frame = 0; frame < 2; ++frame) {
+      float halves[16][kEight];
+      kernel.fitPoints(offsets[frame], halves);
+      for (int q = 0; q < 4; ++q)
+        for (std::size_t i = 0; i < count; i += 4) {
+          Float4 half[4];
+          for (int k = 0; k < 4; ++k) half[k] = load(halves[4 * q + k] + i);
+          transpose(half);
+          for (std::size_t k = 0; k < std::min<std::size_t>(4, count - i); ++k) {
+            MovingKdop& box = vertices[i + k].box;
+            store(half[k], (frame == 0 ? box.t0 : box.t1).half + 4 * q);
+          }
+        }
+    }
   }
 }
 

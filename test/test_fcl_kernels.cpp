@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <set>
 #include <string>
@@ -282,6 +283,51 @@ void expectRightRequest(const BoxView& view, const MovingKdop& box,
       }
     left_out += static_cast<int>(numBits(all & ~near));
   }
+}
+
+// Boxes of points, as fitPoint() makes them: near and far, on the axes, beyond the range
+// of a float, and not finite.
+TEST(FCL_KERNELS, pointsAsFitPoint) {
+  constexpr std::uint64_t kSeed = 76;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  const double specials[] = {0.,      -0.,     kInf,        -kInf,  std::nan(""),
+                             FLT_MAX, DBL_MAX, -DBL_MAX,    1e-310, FLT_MIN,
+                             0x1p175, 0x1p177, 2 * FLT_MAX, -1e39};
+  Random random(kSeed);
+  int unbounded = 0, bounded = 0;
+  for (int i = 0; i < 20000; ++i) {
+    double offsets[3][8];
+    const bool special = random.index(3) == 0;
+    const double scale = std::ldexp(1, static_cast<int>(random.index(80)) - 40);
+    for (auto& axis : offsets)
+      for (double& x : axis)
+        x = special && random.index(2) ? specials[random.index(std::size(specials))]
+                                       : scale * random.uniform(-1, 1);
+    float first[16][8];
+    allSets().front()->fitPoints(offsets, first);
+    for (const Kernels* k : allSets()) {
+      float halves[16][8];
+      k->fitPoints(offsets, halves);
+      ASSERT_EQ(std::memcmp(halves, first, sizeof(first)), 0)
+          << k->name << ", seed " << kSeed << ", " << i;
+    }
+    for (std::size_t n = 0; n < 8; ++n) {
+      const double point[3] = {offsets[0][n], offsets[1][n], offsets[2][n]},
+                   origin[3] = {};
+      double size = std::abs(point[0]);
+      for (int k = 1; k < 3; ++k)
+        size = size < std::abs(point[k]) ? std::abs(point[k]) : size;
+      Kdop16 box;
+      fitPoint(point, origin, offsetPad(size), box);
+      for (std::size_t j = 0; j < 16; ++j) {
+        ASSERT_EQ(first[j][n], box.half[j])
+            << j << ", seed " << kSeed << ", " << i << ", " << n;
+        ++(box.half[j] <= FLT_MAX ? bounded : unbounded);
+      }
+    }
+  }
+  EXPECT_GT(bounded, 1000000);
+  EXPECT_GT(unbounded, 100000);
 }
 
 TEST(FCL_KERNELS, childrenAsOverlapWindow) {

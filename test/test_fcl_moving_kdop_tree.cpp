@@ -200,7 +200,7 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
         double d[8], farthest = 0;
         kdopCoordinates(offset, d);
         for (const double x : offset) farthest = std::max(farthest, std::abs(x));
-        const float pad = 0x1p-49F * static_cast<float>(farthest);
+        const float pad = offsetPad(farthest);
         for (int j = 0; j < 8; ++j) {
           ASSERT_EQ(box.half[j], roundUp(-d[j], pad));
           ASSERT_EQ(box.half[j + 8], roundUp(d[j], pad));

@@ -3,6 +3,7 @@
 // Boxes against boxes: of nodes, triangles and features.
 #include <algorithm>
 #include <cfloat>
+#include <limits>
 
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
@@ -18,6 +19,31 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
+
+/// roundUp() of eight numbers.
+/// @param pad  with FLT_MIN
+HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
+  const Floats f = narrowed(max(broadcast<kEight>(double{kLeastHalf}), value));
+  const Floats up = f + (abs(f) * broadcast<kEight>(kOutward) + pad);
+  return select(up == up, up, broadcast<kEight>(std::numeric_limits<float>::infinity()));
+}
+
+void fitPoints(const double (&offsets)[3][8], float (&halves)[16][8]) {
+  const Doubles x = load<kEight>(offsets[0]), y = load<kEight>(offsets[1]),
+                z = load<kEight>(offsets[2]);
+  // As kdopCoordinates().
+  const Doubles d[8] = {x, y, z, x + y, x + z, y + z, x - y, x - z};
+  const Floats narrow =
+      narrowed(max(abs(z), max(abs(y), abs(x))) * broadcast<kEight>(0x1p-49));
+  const Floats infinity = broadcast<kEight>(std::numeric_limits<float>::infinity());
+  const Floats pad = select(narrow >= broadcast<kEight>(FLT_MAX), infinity, narrow) +
+                     broadcast<kEight>(FLT_MIN);
+  const Doubles zero = broadcast<kEight>(0.);
+  for (std::size_t j = 0; j < 8; ++j) {
+    store(roundedUp(zero - d[j], pad), halves[j]);
+    store(roundedUp(d[j], pad), halves[j + 8]);
+  }
+}
 
 /// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and
 /// s1 at its ends, how much of it is lost before and after.

@@ -20,6 +20,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
+void fitPoints(const double (&offsets)[3][8], float (&halves)[16][8]);
 unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                            const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]);

@@ -24,10 +24,10 @@ inline const char* targetName() { return "plain"; }
 #endif
 
 extern const Kernels kKernels = {
-    targetName(),    &overlapChildrenOf, &overlapTrianglesOf, &listFeatures,
-    &cullFeaturesOf, &cullCrossings,     &areApart,           &mayCrossOfEight,
-    &isFanEmbedded,  &facedDirections,   &coplanarityOfEight, &solveEight,
-    &divideEight};
+    targetName(),     &fitPoints,      &overlapChildrenOf, &overlapTrianglesOf,
+    &listFeatures,    &cullFeaturesOf, &cullCrossings,     &areApart,
+    &mayCrossOfEight, &isFanEmbedded,  &facedDirections,   &coplanarityOfEight,
+    &solveEight,      &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

@@ -212,6 +212,28 @@ HWY_INLINE bool isAll(const LaneMask<T, N>& mask) {
   return hn::AllTrue(typename Lanes<T, N>::Tag(), all);
 }
 
+/// Rounded to floats; beyond their range FLT_MAX or infinity, whatever the machine has.
+template <std::size_t N>
+HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
+  const typename Lanes<float, N>::Tag tag;
+  Lanes<float, N> out;
+  for (std::size_t p = 0; p < Lanes<float, N>::kParts; ++p) {
+    // As many parts of floats as of doubles, or half as many.
+#if HWY_TARGET == HWY_SCALAR
+    out.part[p] = hn::DemoteTo(tag, a.part[p]);
+#else
+    if constexpr (Lanes<float, N>::kParts == Lanes<double, N>::kParts) {
+      out.part[p] = hn::DemoteTo(tag, a.part[p]);
+    } else {
+      const hn::Half<decltype(tag)> half;
+      out.part[p] = hn::Combine(tag, hn::DemoteTo(half, a.part[2 * p + 1]),
+                                hn::DemoteTo(half, a.part[2 * p]));
+    }
+#endif
+  }
+  return out;
+}
+
 /// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
 /// are written.
 HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
@@ -413,6 +435,13 @@ inline unsigned signs(const Lanes<T, N>& a) {
 template <typename T, std::size_t N>
 inline bool isAnyNegative(const Lanes<T, N>& a) {
   return signs(a) != 0;
+}
+
+template <std::size_t N>
+inline Lanes<float, N> narrowed(const Lanes<double, N>& a) {
+  Lanes<float, N> out;
+  FCL_CCD_FOR_LANES out.lane[i] = static_cast<float>(a.lane[i]);
+  return out;
 }
 
 inline void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {

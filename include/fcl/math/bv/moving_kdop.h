@@ -68,6 +68,15 @@ inline float roundUp(double value, float pad) {
   return up == up ? up : std::numeric_limits<float>::infinity();
 }
 
+/// @brief What roundUp() adds for a coordinate that was rounded before it came here, of a
+/// point at most `size` away from the origin along an axis: relative to the origin by
+/// 2^-53 of itself, posed in relativeShift() by as much, and a sum of two by 2^-52 of the
+/// larger: six of 2^-53 in all.
+inline float offsetPad(double size) {
+  const auto pad = static_cast<float>(size * 0x1p-49);
+  return pad >= FLT_MAX ? std::numeric_limits<float>::infinity() : pad;
+}
+
 /// @brief A half-axis of a box that is moved, not less than the sum: that loses 2^-24 of
 /// itself where it is a normal number, and nothing where it is not.
 inline float shifted(float half, float shift) {

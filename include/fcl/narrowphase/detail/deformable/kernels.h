@@ -41,13 +41,13 @@ struct OverlapRequest {
 
   /// @brief Leaves out boxes that do not meet until `latest`; none if that is the end of
   /// the step, where their other frame tells more. Two coordinates enter a direction;
-  /// the rounding up here and of displacements, 2^-22 of each, is more than what the
-  /// kernels round: three operations and the sum of two half-axes, 2^-24 each.
+  /// 2^-20 is more than what the kernels round: three operations and the sum of two
+  /// half-axes, 2^-24 each.
   /// @param pose_displacement  of both meshes together
   void leaveOutAfter(double latest, double pose_displacement) {
-    share =
-        latest < 1 ? roundUp(2 * latest, 0.f) : std::numeric_limits<float>::infinity();
-    slack = roundUp(2 * latest * pose_displacement, 0.f);
+    const double twice = 2 * (1 + 0x1p-20) * latest;
+    share = latest < 1 ? roundUp(twice, 0.f) : std::numeric_limits<float>::infinity();
+    slack = roundUp(twice * pose_displacement, 0.f);
   }
   bool leavesOut() const { return share <= FLT_MAX; }
 };
@@ -144,6 +144,10 @@ constexpr int kAxes[kNumAxes][3] = {
 struct Kernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
+
+  /// The 16-DOPs of eight points that lie at offsets[axis][point] from the origin:
+  /// half-axis j of point i is halves[j][i], roundUp() of it with a pad of offsetPad().
+  void (*fitPoints)(const double (&offsets)[3][8], float (&halves)[16][8]);
 
   /// Which children of the node overlap the box at some time, a bit each, and from when
   /// on: overlapWindow() of each, unless the request leaves it out.

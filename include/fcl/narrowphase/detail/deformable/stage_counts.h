@@ -19,8 +19,8 @@ struct StageCounts {
   /// of those, the pairs that provably meet nowhere else: the triangles around the shared
   /// vertex stay a fan
   std::uint64_t fan_culled{0};
-  /// pairs that a plane separates until the latest time that still matters, for all that
-  /// has been found before; 0 where that is the end of the step
+  /// triangle pairs that a plane keeps apart until the latest time that still matters,
+  /// where what was found before makes that earlier than the end of the step
   std::uint64_t plane_culled{0};
   /// VF and EE pairs that the other triangle pairs own and that share no vertex
   std::uint64_t feature_pairs{0};

@@ -56,13 +56,19 @@ class WorkList {
   std::size_t size_{0};
 };
 
-/// @brief Size by which the larger of two boxes is opened: extents along the axes at t =
-/// 0.
-inline float extent(const MovingKdopNode& node, int lane) {
-  float sum = 0;
-  for (int r = 0; r < 6; ++r) sum += node.rows[r].t0[lane];
-  return sum;
-}
+/// @brief Sizes by which the larger of two boxes is opened, of all children: extents
+/// along the axes at t = 0.
+struct Extents {
+  float of[MovingKdopNode::kWidth];
+
+  explicit Extents(const MovingKdopNode& node) {
+    for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane)
+      of[lane] = node.rows[0].t0[lane];
+    for (int r = 1; r < 6; ++r)
+      for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane)
+        of[lane] += node.rows[r].t0[lane];
+  }
+};
 
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
@@ -205,7 +211,7 @@ class Traversal {
     if (left == 0) return;
     // The parent is not looked at again: its child may take its place.
     const std::int32_t mine = parent.child[lane];
-    const float size = is_triangle ? 0.f : extent(parent, lane);
+    const float size = is_triangle ? 0.f : Extents(parent).of[lane];
     if (!is_triangle && (left & triangles)) {
       const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
       if (child.triangles() == child.lanes()) {
@@ -213,10 +219,11 @@ class Traversal {
         left &= ~triangles;
       }
     }
+    const Extents extents(node);
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
-      const float other = both_nodes ? extent(node, k) : 0.f;
+      const float other = both_nodes ? extents.of[k] : 0.f;
       if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
           axes_->areApart(kSwapped ? node.child[k] : mine,
                           kSwapped ? mine : node.child[k]))
