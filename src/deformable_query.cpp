@@ -32,16 +32,19 @@ struct LeafPair {
 };
 
 /// Triangle pairs are visited in blocks, so that the tree and the vertices do not push
-/// each other out of the cache at every pair. A first-contact query uses small blocks,
-/// since each contact found prunes what follows, and takes the earliest work first.
+/// each other out of the cache at every pair. A first-contact query begins with small
+/// blocks, since a contact that is found prunes what follows, and takes the earliest work
+/// first.
 struct Schedule {
-  std::size_t block;
+  /// Until only the beginning of the step matters, see isEarly(), and from then on.
+  std::size_t first_block, block;
   bool in_order;
   /// The traversal is cut into about so many tasks, whatever the number of threads.
   std::size_t tasks;
 };
-constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, false, 256};
-constexpr Schedule kFirstSchedule{128, true, 64};
+constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, FeatureBatch::kMaxPairs, false,
+                                256};
+constexpr Schedule kFirstSchedule{32, 128, true, 64};
 
 /// What a query of a mesh with itself leaves out: for each vertex of the tree whether
 /// its fan is embedded, for each node whether it is the root of an embedded region; empty
@@ -134,15 +137,19 @@ class Part {
       pair.b = b;
       pair.earliest = earliest;
     });
-    if (count_ >= schedule_.block) visitBlock();
+    if (count_ >= blockFor(latest)) visitBlock();
+  }
+
+  std::size_t blockFor(double latest) const {
+    return isEarly(latest) ? schedule_.block : schedule_.first_block;
   }
 
   void visitBlock() {
     if (count_ == 0) return;
     const auto start = Clock::now();
     for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
-      const std::size_t last = std::min(first + schedule_.block, count_);
       const double latest = leaves_->latest();
+      const std::size_t last = std::min(first + blockFor(latest), count_);
       try {
         for (; first < last; ++first) {
           const LeafPair& p = block_[first];

@@ -149,16 +149,16 @@ void FeatureBatch::cull(double latest, StageCounts& counts) {
 }
 
 /// Takes from triangle pairs that are apart what cannot touch until `latest`: features if
-/// that is before the end of the step, edges that may cross at t = 0 in any case.
+/// that isEarly(), edges that may cross at t = 0 in any case.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
-  const bool ends_early = latest < 1;
-  if (!ends_early && !has_edges_) return;
+  const bool is_early = isEarly(latest);
+  if (!is_early && !has_edges_) return;
   // Rounded up by more than a sum and a product round.
-  const double share = ends_early ? latest * (1 + 0x1p-50) : 0;
+  const double share = is_early ? latest * (1 + 0x1p-50) : 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     double approach[8] = {};
-    for (std::size_t i = 0; i < count && ends_early; ++i) {
+    for (std::size_t i = 0; i < count && is_early; ++i) {
       approach[i] = share * approachOf(pairs_[first + i]);
       gaps_[first + i] = roundUp(2 * approach[i], 0.f);
     }
@@ -167,9 +167,9 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
       // No branch, nobody could foretell it.
       const auto kept = static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
       edges_[first + i] &= kept;
-      if (ends_early) owned_[first + i] &= kept;
+      if (is_early) owned_[first + i] &= kept;
     }
-    if (ends_early) counts.plane_culled += numBits(apart);
+    if (is_early) counts.plane_culled += numBits(apart);
   }
 }
 
@@ -179,9 +179,10 @@ void FeatureBatch::cull(FeatureKind kind, double latest, List& list,
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
-  list.size = kernels_.cullFeatures(
-      kind, pairs_.get(), shift_, &turned_shift_, roundUp(latest, 0.f),
-      latest < 1 ? gaps_.get() : nullptr, list.codes.get(), size, list.windows.get());
+  list.size =
+      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
+                            list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

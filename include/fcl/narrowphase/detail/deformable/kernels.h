@@ -29,6 +29,11 @@ struct BoxView {
   float displacement;
 };
 
+/// @brief Whether what is apart at t = 0 can be left out of a query to which nothing
+/// after `latest` matters. Of a larger part of the step it is not worth a look: motion
+/// bridges most of what is between boxes then, and their other frame tells more.
+inline bool isEarly(double latest) { return latest < 0x1p-4; }
+
 /// @brief Which overlaps of boxes matter to a query.
 struct OverlapRequest {
   /// Whether it matters from when on boxes overlap; false: `earliest` only tells which
@@ -39,14 +44,14 @@ struct OverlapRequest {
   float share{std::numeric_limits<float>::infinity()};
   float slack{0};
 
-  /// @brief Leaves out boxes that do not meet until `latest`; none if that is the end of
-  /// the step, where their other frame tells more. Two coordinates enter a direction;
-  /// 2^-20 is more than what the kernels round: three operations and the sum of two
-  /// half-axes, 2^-24 each.
+  /// @brief Leaves out boxes that do not meet until `latest`, if that isEarly(). Two
+  /// coordinates enter a direction; 2^-20 is more than what the kernels round: three
+  /// operations and the sum of two half-axes, 2^-24 each.
   /// @param pose_displacement  of both meshes together
   void leaveOutAfter(double latest, double pose_displacement) {
     const double twice = 2 * (1 + 0x1p-20) * latest;
-    share = latest < 1 ? roundUp(twice, 0.f) : std::numeric_limits<float>::infinity();
+    share =
+        isEarly(latest) ? roundUp(twice, 0.f) : std::numeric_limits<float>::infinity();
     slack = roundUp(twice * pose_displacement, 0.f);
   }
   bool leavesOut() const { return share <= FLT_MAX; }

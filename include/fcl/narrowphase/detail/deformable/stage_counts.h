@@ -20,7 +20,7 @@ struct StageCounts {
   /// vertex stay a fan
   std::uint64_t fan_culled{0};
   /// triangle pairs that a plane keeps apart until the latest time that still matters,
-  /// where what was found before makes that earlier than the end of the step
+  /// once contacts that were found leave only the beginning of the step
   std::uint64_t plane_culled{0};
   /// VF and EE pairs that the other triangle pairs own and that share no vertex
   std::uint64_t feature_pairs{0};
