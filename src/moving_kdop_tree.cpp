@@ -60,17 +60,6 @@ Float4 roundUp(Double2 a, Double2 b, float pad) {
   return up == up ? up : Float4{} + std::numeric_limits<float>::infinity();
 }
 
-/// Box of a point that lies at x, y, z from the origin.
-inline void fitOffset(double x, double y, double z, float pad, Kdop16& out) {
-  double d[8];
-  kdopCoordinates({x, y, z}, d);
-  for (int j = 0; j < 8; j += 4) {
-    const Double2 a = {d[j], d[j + 1]}, b = {d[j + 2], d[j + 3]};
-    store(roundUp(-a, -b, pad), out.half + j);
-    store(roundUp(a, b, pad), out.half + j + 8);
-  }
-}
-
 /// Rows become columns.
 void transpose(Float4 (&x)[4]) {
   const Float4 a = __builtin_shufflevector(x[0], x[1], 0, 4, 1, 5),
@@ -81,6 +70,21 @@ void transpose(Float4 (&x)[4]) {
   x[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
   x[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
   x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
+}
+
+/// Sets the boxes of up to eight vertices in one frame, from rows of their half-axes.
+void setVertexBoxes(const float (&halves)[16][8], int frame, std::size_t count,
+                    TreeVertex* vertices) {
+  for (std::size_t i = 0; i < count; i += 4)
+    for (int q = 0; q < 4; ++q) {
+      Float4 half[4];
+      for (int k = 0; k < 4; ++k) half[k] = load(halves[4 * q + k] + i);
+      transpose(half);
+      for (std::size_t k = i; k < std::min(i + 4, count); ++k) {
+        MovingKdop& box = vertices[k].box;
+        store(half[k - i], (frame == 0 ? box.t0 : box.t1).half + 4 * q);
+      }
+    }
 }
 
 /// The smallest box around three.
@@ -140,7 +144,13 @@ void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node,
 }  // namespace
 
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out) {
-  fitOffset(point[0] - origin[0], point[1] - origin[1], point[2] - origin[2], pad, out);
+  double d[8];
+  kdopCoordinates({point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]}, d);
+  for (int j = 0; j < 8; j += 4) {
+    const Double2 a = {d[j], d[j + 1]}, b = {d[j + 2], d[j + 3]};
+    store(roundUp(-a, -b, pad), out.half + j);
+    store(roundUp(a, b, pad), out.half + j + 8);
+  }
 }
 
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
@@ -455,16 +465,7 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
     for (int frame = 0; frame < 2; ++frame) {
       float halves[16][kEight];
       kernel.fitPoints(offsets[frame], halves);
-      for (int q = 0; q < 4; ++q)
-        for (std::size_t i = 0; i < count; i += 4) {
-          Float4 half[4];
-          for (int k = 0; k < 4; ++k) half[k] = load(halves[4 * q + k] + i);
-          transpose(half);
-          for (std::size_t k = 0; k < std::min<std::size_t>(4, count - i); ++k) {
-            MovingKdop& box = vertices[i + k].box;
-            store(half[k], (frame == 0 ? box.t0 : box.t1).half + 4 * q);
-          }
-        }
+      setVertexBoxes(halves, frame, count, vertices);
     }
   }
 }

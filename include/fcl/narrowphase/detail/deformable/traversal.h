@@ -58,10 +58,10 @@ class WorkList {
 
 /// @brief Sizes by which the larger of two boxes is opened, of all children: extents
 /// along the axes at t = 0.
-struct Extents {
+struct ChildExtents {
   float of[MovingKdopNode::kWidth];
 
-  explicit Extents(const MovingKdopNode& node) {
+  explicit ChildExtents(const MovingKdopNode& node) {
     for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane)
       of[lane] = node.rows[0].t0[lane];
     for (int r = 1; r < 6; ++r)
@@ -211,7 +211,7 @@ class Traversal {
     if (left == 0) return;
     // The parent is not looked at again: its child may take its place.
     const std::int32_t mine = parent.child[lane];
-    const float size = is_triangle ? 0.f : Extents(parent).of[lane];
+    const float size = is_triangle ? 0.f : ChildExtents(parent).of[lane];
     if (!is_triangle && (left & triangles)) {
       const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
       if (child.triangles() == child.lanes()) {
@@ -219,7 +219,7 @@ class Traversal {
         left &= ~triangles;
       }
     }
-    const Extents extents(node);
+    const ChildExtents extents(node);
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
