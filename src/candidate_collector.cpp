@@ -9,8 +9,10 @@ void CandidateCollector::flush() {
   batch_.cull(latest(), counts_);
   block_.clear();
   for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
-    for (std::size_t i = 0; i < batch_.size(kind); ++i)
-      block_.push_back(batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]));
+    for (std::size_t i = 0; i < batch_.size(kind); ++i) {
+      block_.emplace_back();
+      batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], block_.back());
+    }
   batch_.clear();
   if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());
 }

@@ -192,14 +192,41 @@ FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
   return {&pairs_[code / 16], bit % 3, bit < 3};
 }
 
+/// Without a branch, where nobody could foretell it.
+template <typename T>
+void swapIf(bool condition, T& a, T& b) {
+  const T difference = (a ^ b) & static_cast<T>(-static_cast<T>(condition));
+  a ^= difference;
+  b ^= difference;
+}
+
+/// An edge by ascending ids.
+struct OrderedEdge {
+  /// Both, 32 bits each.
+  std::uint64_t ids;
+  /// Places in a TrianglePair, four bits each.
+  std::uint32_t places;
+
+  /// @param k  the corner of the triangle that it begins at
+  /// @param first  place of the triangle's first corner
+  OrderedEdge(const TreeTriangle& triangle, unsigned k, unsigned first) {
+    unsigned l = (k + 1) % 3;
+    std::uint32_t p = triangle.id[k], q = triangle.id[l];
+    const bool is_turned = q < p;
+    swapIf(is_turned, k, l);
+    swapIf(is_turned, p, q);
+    ids = std::uint64_t{p} << 32 | q;
+    places = (first + k) << 4 | (first + l);
+  }
+};
+
 /// Edges have their ids in ascending order (edges of two meshes stay on their sides) and
 /// the points are in the order of the ids: one name, one evaluation. In a self-collision
 /// the vertex of a VF pair is always mesh a's.
-FeatureCandidate FeatureBatch::candidate(std::uint32_t code,
-                                         const TimeWindow& window) const {
+void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
+                                FeatureCandidate& out) const {
   const TrianglePair& triangles = pairs_[code / 16];
   const FeaturePair pair = featurePair(static_cast<int>(code % 16));
-  FeatureCandidate out;
   out.kind = pair.kind;
   out.first_on_a = pair.first_on_a;
   out.window_lo = windowLo(window);
@@ -217,28 +244,20 @@ FeatureCandidate FeatureBatch::candidate(std::uint32_t code,
       out.first_on_a = true;
       std::swap(out.triangles[0], out.triangles[1]);
     }
-    return out;
+    return;
   }
-  const auto setEdge = [&](int i, bool on_a, unsigned k) {
-    const unsigned l = (k + 1) % 3;
-    set(i, on_a, k);
-    set(i + 1, on_a, l);
-    if (out.vertices[i + 1] < out.vertices[i]) {
-      std::swap(out.vertices[i], out.vertices[i + 1]);
-      std::swap(out.x[i], out.x[i + 1]);
-    }
-  };
-  setEdge(0, true, pair.first);
-  setEdge(2, false, pair.second);
-  std::uint32_t(&v)[4] = out.vertices;
-  if (self_ && (v[2] < v[0] || (v[2] == v[0] && v[3] < v[1]))) {
-    for (int i = 0; i < 2; ++i) {
-      std::swap(v[i], v[i + 2]);
-      std::swap(out.x[i], out.x[i + 2]);
-    }
-    std::swap(out.triangles[0], out.triangles[1]);
+  OrderedEdge edges[2] = {OrderedEdge(*triangles.a, pair.first, 0),
+                          OrderedEdge(*triangles.b, pair.second, 3)};
+  const bool is_turned = self_ & (edges[1].ids < edges[0].ids);
+  swapIf(is_turned, edges[0].ids, edges[1].ids);
+  swapIf(is_turned, edges[0].places, edges[1].places);
+  swapIf(is_turned, out.triangles[0], out.triangles[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.vertices[2 * i] = static_cast<std::uint32_t>(edges[i].ids >> 32);
+    out.vertices[2 * i + 1] = static_cast<std::uint32_t>(edges[i].ids);
+    out.x[2 * i] = triangles.x[edges[i].places >> 4];
+    out.x[2 * i + 1] = triangles.x[edges[i].places & 15];
   }
-  return out;
 }
 
 }  // namespace deformable

@@ -70,26 +70,20 @@ void TrianglePairTest::filter(FeatureKind kind) {
   const std::size_t size = batch_.size(kind);
   const double latest = this->latest();
   candidates_.clear();
-  EightPairs eight;
-  eight.kind = kind;
   for (std::size_t first = 0; first < size; first += 8) {
-    // The last pair fills up the last eight.
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      const std::size_t i = std::min(first + lane, size - 1);
-      const TreeVertex* x[4];
-      batch_.points(codes[i], x);
-      eight.set(lane, x, windowLo(windows[i]), std::min(windowHi(windows[i]), latest));
-    }
-    const EightCoplanarities found = kernels_.coplanarity(eight);
+    const EightCoplanarities found =
+        kernels_.coplanarity(kind, batch_.pairs(), codes + first, windows + first,
+                             std::min<std::size_t>(8, size - first), latest);
     unsigned left = found.possible | found.unclear;
-    if (size - first < 8) left &= (1U << (size - first)) - 1;
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(left));
       const std::size_t i = first + lane;
-      const FeatureCandidate candidate = batch_.candidate(codes[i], windows[i]);
-      if (found.unclear >> lane & 1U && !mayBecomeCoplanarAccurately(candidate, latest))
-        continue;
-      candidates_.push_back(candidate);
+      // Written where it lies: what is stored in parts is slow to copy as a whole.
+      candidates_.emplace_back();
+      batch_.setCandidate(codes[i], windows[i], candidates_.back());
+      if (found.unclear >> lane & 1U &&
+          !mayBecomeCoplanarAccurately(candidates_.back(), latest))
+        candidates_.pop_back();
     }
   }
   counts_.filter_culled += size - candidates_.size();

@@ -8,6 +8,8 @@
 #include "hwy/foreach_target.h"
 #endif
 
+#include <algorithm>
+
 #include "error_bounds.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
@@ -30,12 +32,28 @@ struct Segments {
 struct Points {
   Vectors t0[4], t1[4];
 
-  HWY_INLINE explicit Points(const EightPairs& pairs) {
+  HWY_INLINE explicit Points(const EightPairs& pairs)
+      : Points([&pairs](std::size_t i, std::size_t lane)
+                   HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; }) {}
+
+  /// @param count  1 to 8; the last one fills up the eight
+  HWY_INLINE Points(const TrianglePair* pairs, const std::uint32_t* codes,
+                    std::size_t count)
+      : Points([=](std::size_t i, std::size_t lane) HWY_ATTR -> const TreeVertex& {
+          const std::uint32_t code = codes[std::min(lane, count - 1)];
+          return *pairs[code / 16].x[kFeaturePoints[code % 16][i]];
+        }) {}
+
+ private:
+  /// @param vertex  point i of a pair
+  template <typename Vertex>
+  HWY_INLINE explicit Points(const Vertex& vertex) {
     for (std::size_t i = 0; i < 4; ++i) {
       const double *rows0[kEight], *rows1[kEight];
       for (std::size_t lane = 0; lane < kEight; ++lane) {
-        rows0[lane] = pairs.x[i][lane]->t0;
-        rows1[lane] = pairs.x[i][lane]->t1;
+        const TreeVertex& x = vertex(i, lane);
+        rows0[lane] = x.t0;
+        rows1[lane] = x.t1;
       }
       loadColumns(rows0, t0[i].x, t0[i].y, t0[i].z);
       loadColumns(rows1, t1[i].x, t1[i].y, t1[i].z);
@@ -113,10 +131,23 @@ HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
           isInRange(size) & isInRange(n.norm)};
 }
 
-EightCoplanarities coplanarityOfEight(const EightPairs& pairs) {
-  const bool vf = pairs.kind == FeatureKind::kVertexFace;
-  const Points x(pairs);
-  const Doubles lo = load<kEight>(pairs.lo), hi = load<kEight>(pairs.hi);
+EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* pairs,
+                                         const std::uint32_t* codes,
+                                         const TimeWindow* windows, std::size_t count,
+                                         double latest) {
+  const bool vf = kind == FeatureKind::kVertexFace;
+  const Points x(pairs, codes, count);
+  double starts[kEight], ends[kEight];
+  for (std::size_t lane = 0; lane < kEight; ++lane) {
+    const TimeWindow& window = windows[std::min(lane, count - 1)];
+    starts[lane] = double{window.lo};
+    ends[lane] = double{window.hi};
+  }
+  // windowLo() and windowHi().
+  const Doubles margin = broadcast<kEight>(kWindowMargin);
+  const Doubles lo = max(broadcast<kEight>(0.), load<kEight>(starts) - margin),
+                hi = min(broadcast<kEight>(latest),
+                         min(broadcast<kEight>(1.), load<kEight>(ends) + margin));
   const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
   const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
   const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
@@ -133,7 +164,8 @@ EightCoplanarities coplanarityOfEight(const EightPairs& pairs) {
                                     (norm > broadcast<kEight>(kLeastFilterNorm)) &
                                     (norm < broadcast<kEight>(kMostFilterNorm)));
   const unsigned clear = bits((least > bound) | (most < zero - bound));
-  return {0xffU & ~signs_agree, signs_agree & ~clear};
+  const unsigned used = (1U << count) - 1;
+  return {used & ~signs_agree, used & signs_agree & ~clear};
 }
 
 /// The differences that the inside conditions use, see Pair in elementary_test.cpp.

@@ -40,7 +40,10 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
-EightCoplanarities coplanarityOfEight(const EightPairs& pairs);
+EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* pairs,
+                                         const std::uint32_t* codes,
+                                         const TimeWindow* windows, std::size_t count,
+                                         double latest);
 EightAnswers solveEight(const EightPairs& pairs, double toc_err);
 EightDivisions divideEight(const EightPairs& pairs);
 

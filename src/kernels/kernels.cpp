@@ -26,7 +26,7 @@ inline const char* targetName() { return "plain"; }
 extern const Kernels kKernels = {
     targetName(),     &fitPoints,      &overlapChildrenOf, &overlapTrianglesOf,
     &listFeatures,    &cullFeaturesOf, &cullCrossings,     &areApart,
-    &mayCrossOfEight, &isFanEmbedded,  &facedDirections,   &coplanarityOfEight,
+    &mayCrossOfEight, &isFanEmbedded,  &facedDirections,   &coplanarityOfFeatures,
     &solveEight,      &divideEight};
 
 const Kernels* table() { return &kKernels; }

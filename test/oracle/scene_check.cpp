@@ -75,11 +75,13 @@ class CullCheck {
     batch_.cull(1, counts);
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
       for (std::size_t i = 0; i < batch_.size(kind); ++i) {
-        const deformable::FeatureCandidate c =
-            batch_.candidate(batch_.codes(kind)[i], batch_.windows(kind)[i]);
+        deformable::FeatureCandidate c;
+        batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], c);
         left.push_back(
             keyOf(c.kind, {c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]}));
-        addCandidate(c);
+        addCandidate(c, deformable::kernels().coplanarity(
+                            kind, batch_.pairs(), batch_.codes(kind) + i,
+                            batch_.windows(kind) + i, 1, 1.));
       }
     batch_.clear();
     forEachPair(a, b, [&](const MovingPair& pair, const PairKey& key) {
@@ -105,13 +107,14 @@ class CullCheck {
   }
 
  private:
-  void addCandidate(const deformable::FeatureCandidate& c) {
+  /// @param found  by the filter
+  void addCandidate(const deformable::FeatureCandidate& c,
+                    const deformable::EightCoplanarities& found) {
     MovingPair pair{c.kind, {}};
     deformable::EightPairs eight;
     eight.kind = c.kind;
     for (std::size_t i = 0; i < 8; ++i) eight.set(i, c.x, c.window_lo, c.window_hi);
     for (std::size_t i = 0; i < 4; ++i) pair.x[i] = model_.frames()[c.vertices[i]];
-    const deformable::EightCoplanarities found = deformable::kernels().coplanarity(eight);
     if (found.possible == 0 &&
         (found.unclear == 0 || !mayBecomeCoplanarAccurately(pair.kind, pair.points(),
                                                             c.window_lo, c.window_hi))) {

@@ -144,27 +144,27 @@ class SelfQuery final : public Baseline {
     }
     // A tree of kernels lists the pairs of a vertex and a face first.
     for (std::size_t i = 0; i < candidates_.size();) {
-      detail::deformable::EightPairs eight;
-      PointIds points[8];
-      const std::size_t first = i;
-      std::size_t count = 0;
-      eight.kind = pointsOf(candidates_[i]).kind;
-      for (; count < 8 && i < candidates_.size(); ++i, ++count) {
-        points[count] = pointsOf(candidates_[i]);
-        if (points[count].kind != eight.kind) break;
-      }
       const bool is_plain = filter_ == Filter::kPlain;
-      for (std::size_t lane = 0; lane < 8; ++lane) {
-        const std::size_t k = std::min(lane, count - 1);
-        const TimeWindow window =
-            is_plain ? TimeWindow{0, 1} : candidates_[first + k].window;
-        const auto at = [&](std::size_t n) { return &tree.vertices()[points[k].v[n]]; };
-        eight.set(lane, {at(0), at(1), at(2), at(3)}, double{window.lo},
-                  double{window.hi});
+      const Kind kind = pointsOf(candidates_[i]).kind;
+      PointIds points[8];
+      detail::deformable::TrianglePair pairs[8];
+      std::uint32_t codes[8];
+      TimeWindow windows[8];
+      std::uint32_t count = 0;
+      for (; count < 8 && i < candidates_.size(); ++i, ++count) {
+        const Candidate& c = candidates_[i];
+        points[count] = pointsOf(c);
+        if (points[count].kind != kind) break;
+        const auto& places = detail::deformable::kFeaturePoints[c.bit];
+        for (std::size_t n = 0; n < 4; ++n)
+          pairs[count].x[places[n]] = &tree.vertices()[points[count].v[n]];
+        codes[count] = detail::deformable::featureCode(count, c.bit);
+        windows[count] = is_plain ? TimeWindow{0, 1} : c.window;
       }
       // Where signs agree but stand below the bound is unclear; the plain filter has no
       // bound.
-      const auto found = detail::deformable::kernels().coplanarity(eight);
+      const auto found = detail::deformable::kernels().coplanarity(kind, pairs, codes,
+                                                                   windows, count, 1.);
       const unsigned left = is_plain ? found.possible : found.possible | found.unclear;
       for (std::size_t lane = 0; lane < count; ++lane)
         if (left >> lane & 1U) solve(points[lane]);

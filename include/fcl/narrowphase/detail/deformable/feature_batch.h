@@ -128,18 +128,14 @@ class FeatureBatch {
 
   /// @brief How many pairs of one kind are left.
   std::size_t size(FeatureKind kind) const { return list(kind).size; }
-  /// @brief Those pairs, for points() and candidate(), and their windows.
+  /// @brief Those pairs, features of pairs(), and their windows.
   const std::uint32_t* codes(FeatureKind kind) const { return list(kind).codes.get(); }
   const TimeWindow* windows(FeatureKind kind) const { return list(kind).windows.get(); }
-
-  /// @brief The four vertices of a pair, features in the order of its triangle pair.
-  void points(std::uint32_t code, const TreeVertex* (&x)[4]) const {
-    const unsigned char(&places)[4] = kFeaturePoints[code % 16];
-    for (int i = 0; i < 4; ++i) x[i] = pairs_[code / 16].x[places[i]];
-  }
+  const TrianglePair* pairs() const { return pairs_.get(); }
 
   /// @brief The pair's one name, whatever triangles it is met in.
-  FeatureCandidate candidate(std::uint32_t code, const TimeWindow& window) const;
+  void setCandidate(std::uint32_t code, const TimeWindow& window,
+                    FeatureCandidate& out) const;
 
   /// @brief An edge of one triangle and the face of the other.
   struct EdgeAndFace {
@@ -198,17 +194,6 @@ class FeatureBatch {
   std::unique_ptr<std::uint32_t[]> crossings_;
   std::size_t num_crossings_{0};
 };
-
-/// @brief Windows are widened by this much, far more than their rounding: a contact at
-/// the very start of a window would leave the solver no room to see the sign before it.
-constexpr double kFeatureMargin = 0x1p-18;
-
-inline double windowLo(const TimeWindow& w) {
-  return std::max(w.lo - kFeatureMargin, 0.);
-}
-inline double windowHi(const TimeWindow& w) {
-  return std::min(w.hi + kFeatureMargin, 1.);
-}
 
 }  // namespace deformable
 }  // namespace detail

@@ -5,6 +5,7 @@
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_KERNELS_H
 
+#include <algorithm>
 #include <cfloat>
 #include <cstddef>
 #include <cstdint>
@@ -97,6 +98,10 @@ inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 
+/// @brief The windows of pairs of features as the tests take them, with a margin.
+inline double windowLo(const TimeWindow& w) { return std::max(w.lo - kWindowMargin, 0.); }
+inline double windowHi(const TimeWindow& w) { return std::min(w.hi + kWindowMargin, 1.); }
+
 /// @brief Eight pairs of features, of one kind: their points and windows.
 struct EightPairs {
   /// Point i of pair k is x[i][k].
@@ -118,8 +123,8 @@ struct EightCrossings {
   const TreeVertex* x[5][8];
 };
 
-/// @brief What coplanarityInDoubles() says of eight pairs, a bit each; where neither is
-/// set, kNever.
+/// @brief What coplanarityInDoubles() says of up to eight pairs, a bit each; where
+/// neither is set, kNever.
 struct EightCoplanarities {
   unsigned possible, unclear;
 };
@@ -215,8 +220,12 @@ struct Kernels {
   std::uint32_t (*facedDirections)(const TreeVertex* vertices,
                                    const TreeTriangle* triangles, std::size_t count);
 
-  /// coplanarityInDoubles() of eight pairs.
-  EightCoplanarities (*coplanarity)(const EightPairs& pairs);
+  /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() left, in
+  /// [windowLo(), min(windowHi(), latest)].
+  /// @param count  1 to 8
+  EightCoplanarities (*coplanarity)(FeatureKind kind, const TrianglePair* pairs,
+                                    const std::uint32_t* codes, const TimeWindow* windows,
+                                    std::size_t count, double latest);
 
   /// The plain cases of solveCoplanarity(): a pair whose volume has one sign, or changes
   /// it once, well inside or outside. What is proved keeps the properties (1) and (2)
