@@ -26,16 +26,16 @@ ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   return key;
 }
 
-/// A pair that is kept already, where `place` says.
-bool ContactSink::addAgain(const FeatureContact& contact, std::size_t place) {
-  auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(place);
+/// A pair that is kept already.
+bool ContactSink::addAgain(const FeatureContact& contact, Seen& seen) {
+  if (!isEarlier(contact, seen.contact)) return false;
+  auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(seen.place);
   if (cut_) {
     const PairKey key = keyOf(contact);
     kept = std::find_if(contacts_.begin(), contacts_.end(),
                         [&key](const FeatureContact& c) { return keyOf(c) == key; });
   }
-  if (!isEarlier(contact, *kept)) return false;
-  *kept = contact;
+  *kept = seen.contact = contact;
   if (cut_) std::make_heap(contacts_.begin(), contacts_.end(), isEarlier);
   return true;
 }
@@ -57,7 +57,7 @@ bool ContactSink::add(const FeatureContact& contact) {
     contacts_.back() = contact;
     std::push_heap(contacts_.begin(), contacts_.end(), isEarlier);
   }
-  if (may_repeat_) seen_[keyOf(contact)] = contacts_.size() - 1;
+  if (may_repeat_) seen_[keyOf(contact)] = {contact, contacts_.size() - 1};
   return true;
 }
 

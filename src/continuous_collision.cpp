@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/continuous_collision.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <type_traits>
 #include <typeinfo>
@@ -182,24 +183,35 @@ bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
   return false;
 }
 
-/// The ends of a motion. A motion that is not known to follow a straight line counts as a
-/// rotation: a rigid mesh that follows it is FCL's.
+/// The ends of a motion of FCL's, which stays as it is.
 template <typename S>
-Placement<S> placementOf(const MotionBase<S>& motion, bool& is_rotation) {
+std::optional<Placement<S>> placementOf(const MotionBase<S>& motion) {
   Placement<S> placement{Transform3<S>::Identity(), Transform3<S>::Identity()};
   if (readMotion<TranslationMotion<S>>(motion, placement) ||
       readMotion<InterpMotion<S>>(motion, placement) ||
-      readMotion<ScrewMotion<S>>(motion, placement)) {
-    is_rotation = placement.isRotating();
+      readMotion<ScrewMotion<S>>(motion, placement) ||
+      readMotion<SplineMotion<S>>(motion, placement))
     return placement;
-  }
-  is_rotation = true;
-  if (readMotion<SplineMotion<S>>(motion, placement)) return placement;
-  motion.integrate(0);
-  motion.getCurrentTransform(placement.beginning);
+  return std::nullopt;
+}
+
+/// The ends of a motion of the caller's own, which nobody can copy: it is at its
+/// beginning afterwards.
+template <typename S>
+Placement<S> integratedEnds(const MotionBase<S>& motion) {
+  Placement<S> placement;
   motion.integrate(1);
   motion.getCurrentTransform(placement.end);
+  motion.integrate(0);
+  motion.getCurrentTransform(placement.beginning);
   return placement;
+}
+
+/// A motion that is not known to follow a straight line counts as a rotation: a rigid
+/// mesh that follows it is FCL's.
+template <typename S>
+bool isRotation(const MotionBase<S>& motion, const std::optional<Placement<S>>& ends) {
+  return !ends || ends->isRotating() || typeid(motion) == typeid(SplineMotion<S>);
 }
 
 /// FCL's own function, for what is not answered here.
@@ -226,13 +238,14 @@ S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
   require(o2, "o2");
   require(motion1, "motion1");
   require(motion2, "motion2");
-  bool rotates1 = false, rotates2 = false;
   if (detail::deformable::meshKindOf(*o1) != MeshKind::kNotAMesh &&
       detail::deformable::meshKindOf(*o2) != MeshKind::kNotAMesh) {
-    const Placement<S> placement1 = placementOf(*motion1, rotates1);
-    const Placement<S> placement2 = placementOf(*motion2, rotates2);
-    if (isAnsweredHere(*o1, rotates1, *o2, rotates2))
-      return collideMeshes(*o1, placement1, *o2, placement2, request, result);
+    const std::optional<Placement<S>> ends1 = placementOf(*motion1),
+                                      ends2 = placementOf(*motion2);
+    if (isAnsweredHere(*o1, isRotation(*motion1, ends1), *o2,
+                       isRotation(*motion2, ends2)))
+      return collideMeshes(*o1, ends1 ? *ends1 : integratedEnds(*motion1), *o2,
+                           ends2 ? *ends2 : integratedEnds(*motion2), request, result);
   }
   return collideInFcl(o1, motion1, o2, motion2, request, result);
 }

@@ -61,7 +61,8 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
 
 /// coplanarityInDoubles(), as this file can inline it. Both frames are computed side by
 /// side: the coefficients of the volume u . (v x w) go over into each other when time is
-/// reversed. coplanarityOfFeatures() in kernels/ has the same operations, over eight pairs.
+/// reversed. coplanarityOfFeatures() in kernels/ has the same operations, over eight
+/// pairs.
 Coplanarity inDoubles(FeatureKind kind, const FeaturePoints& x, double window_lo,
                       double window_hi) {
   const bool vf = kind == FeatureKind::kVertexFace;

@@ -2,6 +2,9 @@
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 
 #include <algorithm>
+#include <limits>
+#include <memory>
+#include <utility>
 
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
@@ -31,8 +34,12 @@ class BinaryView {
   int triangle(int b) const { return node(b).triangle(firstLane(b)); }
 
   int leftChild(int b) const {
+    constexpr int kMostNodes = std::numeric_limits<int>::max() / 16;
     const int k = placeOf(b);
-    return k < 8 ? 16 * (b / 16) + 2 * k : 16 * node(b).child[firstLane(b)] + 2;
+    if (k < 8) return 16 * (b / 16) + 2 * k;
+    const int child = node(b).child[firstLane(b)];
+    if (child >= kMostNodes) throw Exception("the tree has too many nodes for FCL's int");
+    return 16 * child + 2;
   }
 
   /// The smallest box around the children, of which there is at least one.
@@ -99,50 +106,69 @@ void DeformableContinuousCollisionTraversalNode<S>::start(
     const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
     const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
     const CollisionRequest<S>& request, CollisionResult<S>& result) {
-  auto prepared1 =
-      std::make_unique<deformable::PreparedMesh>(model1, tf1_beg, tf1_end, "model1");
-  prepared2_ =
-      std::make_unique<deformable::PreparedMesh>(model2, tf2_beg, tf2_end, "model2");
-  prepared1_ = std::move(prepared1);
+  requireValid(request);
+  begin(std::make_unique<deformable::PreparedMesh>(model1, tf1_beg, tf1_end, "model1"),
+        std::make_unique<deformable::PreparedMesh>(model2, tf2_beg, tf2_end, "model2"),
+        request, result);
   model1_ = &model1;
   model2_ = &model2;
   this->tf1 = tf1_beg;
   this->tf2 = tf2_beg;
-  const deformable::DefaultFloatingPoint mode;
-  shift_ = deformable::relativeShift(mesh1(), mesh2());
-  begin(request, result);
 }
 
 template <typename S>
 void DeformableContinuousCollisionTraversalNode<S>::startSelf(
     const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
     CollisionResult<S>& result) {
+  requireValid(request);
   const Transform3<S> identity = Transform3<S>::Identity();
-  prepared1_ =
-      std::make_unique<deformable::PreparedMesh>(model, identity, identity, "model");
-  prepared2_.reset();
+  begin(std::make_unique<deformable::PreparedMesh>(model, identity, identity, "model"),
+        nullptr, request, result);
   model1_ = model2_ = &model;
   this->tf1 = this->tf2 = identity;
-  begin(request, result);
 }
 
 template <typename S>
-void DeformableContinuousCollisionTraversalNode<S>::begin(
-    const CollisionRequest<S>& request, CollisionResult<S>& result) {
+void DeformableContinuousCollisionTraversalNode<S>::requireValid(
+    const CollisionRequest<S>& request) const {
   if (request.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
   if (!(toc_err > 0)) throw Exception("toc_err is not positive");
-  this->request = request;
-  this->result = &result;
+}
+
+/// All is made before anything changes: a node that was ready stays so if it fails.
+/// @param prepared2  null: the first with itself
+template <typename S>
+void DeformableContinuousCollisionTraversalNode<S>::begin(
+    std::unique_ptr<deformable::PreparedMesh> prepared1,
+    std::unique_ptr<deformable::PreparedMesh> prepared2,
+    const CollisionRequest<S>& request, CollisionResult<S>& result) {
+  const deformable::MeshInstance &mesh1 = prepared1->instance(),
+                                 &mesh2 = (prepared2 ? prepared2 : prepared1)->instance();
+  std::unique_ptr<deformable::KdopShift> shift;
+  std::unique_ptr<deformable::BinaryView> view2;
+  if (prepared2) {
+    const deformable::DefaultFloatingPoint mode;
+    shift =
+        std::make_unique<deformable::KdopShift>(deformable::relativeShift(mesh1, mesh2));
+    view2 = std::make_unique<deformable::BinaryView>(mesh2);
+  }
   deformable::QueryOptions options;
   options.max_contacts = request.num_max_contacts;
   options.toc_err = static_cast<double>(toc_err);
-  test_ = std::make_unique<deformable::TrianglePairTest>(
-      mesh1(), mesh2(), prepared2_ ? &shift_ : nullptr, options);
-  view1_ = std::make_unique<deformable::BinaryView>(mesh1());
-  view2_.reset();
-  if (prepared2_) view2_ = std::make_unique<deformable::BinaryView>(mesh2());
-  earlier_.clear();
-  result.getContacts(earlier_);
+  auto test =
+      std::make_unique<deformable::TrianglePairTest>(mesh1, mesh2, shift.get(), options);
+  auto view1 = std::make_unique<deformable::BinaryView>(mesh1);
+  CollisionResult<S> earlier = result;
+
+  this->request = request;
+  this->result = &result;
+  test_ = std::move(test);
+  view1_ = std::move(view1);
+  view2_ = std::move(view2);
+  shift_ = std::move(shift);
+  prepared1_ = std::move(prepared1);
+  prepared2_ = std::move(prepared2);
+  std::swap(earlier_, earlier);
   reported_ = 0;
   crossing_reported_ = false;
   time_of_contact = 1;
@@ -194,7 +220,7 @@ int DeformableContinuousCollisionTraversalNode<S>::getSecondRightChild(int b) co
 template <typename S>
 TimeWindow DeformableContinuousCollisionTraversalNode<S>::window(int b1, int b2) const {
   const MovingKdop box1 = view1_->box(b1), box2 = view2().box(b2);
-  return prepared2_ ? deformable::overlapWindow<true>(box1, box2, &shift_)
+  return prepared2_ ? deformable::overlapWindow<true>(box1, box2, shift_.get())
                     : deformable::overlapWindow<false>(box1, box2, nullptr);
 }
 
@@ -244,8 +270,7 @@ void DeformableContinuousCollisionTraversalNode<S>::report() const {
   // A crossing stands in the result only while there is no contact.
   const bool drop_crossing = crossing_reported_ && !contacts.empty();
   if (test_->sink().isCut() || drop_crossing) {
-    this->result->clear();
-    for (const Contact<S>& contact : earlier_) this->result->addContact(contact);
+    *this->result = earlier_;
     reported_ = 0;
     crossing_reported_ = false;
   }

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include "fcl/common/exception.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -59,8 +61,13 @@ void TriangleReader::readIntoStore(int i) {
       std::copy(mesh_.prepared[index].v, mesh_.prepared[index].v + 3, triangle.id);
       triangle.owned = mesh_.prepared[index].owned;
     } else {
-      for (int k = 0; k < 3; ++k)
-        triangle.id[k] = static_cast<std::uint32_t>(mesh_.triangles[index][k]);
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t id = mesh_.triangles[index][k];
+        if (id >= mesh_.frames.size())
+          throw Exception("triangle " + std::to_string(i) +
+                          " refers to a vertex that is not there");
+        triangle.id[k] = static_cast<std::uint32_t>(id);
+      }
       // As in assignFeatures(), an edge with two equal ids is none.
       for (unsigned k = 0; k < 3; ++k)
         if (triangle.id[k] == triangle.id[(k + 1) % 3])

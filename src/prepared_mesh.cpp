@@ -183,11 +183,8 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
-  // FCL 0.7 merges two RSSs into one that can leave points out: a tree of them that was
-  // refit is no bound.
-  constexpr bool kHasSoundTree = !std::is_same_v<BV, RSS<typename BV::S>>;
-  if constexpr (kHasSoundTree)
-    if (!deforming) {
+  if constexpr (!std::is_same_v<BV, RSS<typename BV::S>>)
+    if (!deforming && RigidTree::isSound(model)) {
       instance_.rigid = RigidTree(model, beginning);
       if (owners == FeatureOwners::kAlways) {
         requireIndices(model, name);

@@ -41,6 +41,15 @@ constexpr bool kHasSlabs<AABB<S>> = true;
 template <typename S, std::size_t N>
 constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
+template <typename BV>
+constexpr bool kHasOrientedBox = false;
+template <typename S>
+constexpr bool kHasOrientedBox<OBB<S>> = true;
+template <typename S>
+constexpr bool kHasOrientedBox<OBBRSS<S>> = true;
+template <typename S>
+constexpr bool kHasOrientedBox<kIOS<S>> = true;
+
 /// Bounds along our directions.
 struct Slabs {
   double lo[8];
@@ -73,6 +82,43 @@ Slabs slabsOf(const KDOP<S, N>& bv) {
     slabs.hi[j] = double{bounds[j + N / 2]};
   }
   return slabs;
+}
+
+/// Whether the leaf is surely no oriented box that FCL fitted to a triangle by itself,
+/// along its longest edge (fit3() in fcl/math/bv/utility-inl.h), but one that has the
+/// directions in which the corners scatter (BVFitter). They are the same for a triangle
+/// with two equal sides, and nearly so for a thin one.
+template <typename S>
+bool isFittedToScatter(const OBB<S>& box, const Vector3<S> (&corners)[3]) {
+  constexpr double kSameDirection = 1 - 1e-5;
+  const Vector3<double> axis = box.axis.col(0).template cast<double>();
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<double> edge =
+        corners[(k + 1) % 3].template cast<double>() - corners[k].template cast<double>();
+    if (!(std::abs(axis.dot(edge)) < kSameDirection * axis.norm() * edge.norm()))
+      return false;
+  }
+  return true;
+}
+
+/// Contains all that is in range.
+constexpr OrientedBox kUnbounded = {
+    {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
+
+/// Whether axes are unit vectors at right angles but for an error that is a part of what
+/// points may stand out, which it multiplies as their coordinates do. FCL's are mere
+/// numbers where sums of squares of coordinates left the range of S.
+bool isBox(const OrientedBox& box, double slack) {
+  bool is_box = true;
+  for (int i = 0; i < 3; ++i) {
+    is_box &= std::abs(box.center[i]) < DBL_MAX && box.extent[i] < DBL_MAX;
+    for (int j = 0; j <= i; ++j) {
+      double product = i == j ? -1 : 0;
+      for (int k = 0; k < 3; ++k) product += box.axis[i][k] * box.axis[j][k];
+      is_box &= std::abs(product) < slack / 8;
+    }
+  }
+  return is_box;
 }
 
 constexpr float kFloatUnit = 0x1p-24f;
@@ -136,6 +182,30 @@ void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
 }  // namespace
 
 template <typename BV>
+bool RigidTree::isSound(const BVHModel<BV>& model) {
+  if constexpr (kHasSlabs<BV>) return true;
+  if constexpr (kHasOrientedBox<BV>) {
+    // FCL refits all nodes or none: one leaf is enough, and as a rule the first one is.
+    constexpr int kMostNodes = 4096, kStride = 7919;
+    const int count = model.getNumBVs();
+    for (int i = 0, at = 0; i < std::min(count, kMostNodes);
+         ++i, at = (at + kStride) % count) {
+      const BVNode<BV>& node = model.getBV(at);
+      if (!node.isLeaf()) continue;
+      const Triangle& triangle = model.tri_indices[node.primitiveId()];
+      Vector3<typename BV::S> corners[3];
+      bool is_there = true;
+      for (int k = 0; k < 3; ++k) {
+        is_there &= triangle[k] < static_cast<std::size_t>(model.num_vertices);
+        if (is_there) corners[k] = model.vertices[triangle[k]];
+      }
+      if (is_there && isFittedToScatter(obbOf(node.bv), corners)) return true;
+    }
+  }
+  return false;
+}
+
+template <typename BV>
 RigidTree::Volumes RigidTree::volumesOf() {
   return {sizeof(BVNode<BV>), kFitSlack<typename BV::S>, kHasSlabs<BV>,
           &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
@@ -194,6 +264,7 @@ void RigidTree::setBox(int node, OrientedBox& box) const {
       for (int i = 0; i < 3; ++i) box.axis[i][k] = double{obb.axis(k, i)};
       box.extent[k] = double{obb.extent[k]};
     }
+    if (!isBox(box, volumes_.slack)) box = kUnbounded;
   }
   if (is_rotated_) rotate(box);
 }
@@ -270,7 +341,9 @@ MovingKdop RigidTree::box(int node) const {
   return out.box(0);
 }
 
-#define FCL_CCD_INSTANTIATE(BV) template RigidTree::Volumes RigidTree::volumesOf<BV>();
+#define FCL_CCD_INSTANTIATE(BV)                              \
+  template bool RigidTree::isSound<BV>(const BVHModel<BV>&); \
+  template RigidTree::Volumes RigidTree::volumesOf<BV>();
 #define FCL_CCD_COMMA ,
 FCL_CCD_INSTANTIATE(AABB<double>)
 FCL_CCD_INSTANTIATE(AABB<float>)

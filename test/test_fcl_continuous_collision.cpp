@@ -353,6 +353,55 @@ TEST(ContinuousCollideMotion, InterpMotionWithoutRotationIsAnsweredHere) {
               0.25, 1e-4);
 }
 
+/// A motion that only its caller knows.
+class OwnMotion : public TranslationMotion<double> {
+ public:
+  using TranslationMotion<double>::TranslationMotion;
+};
+
+// FCL's conservative advancement starts where it finds a motion.
+TEST(ContinuousCollideMotion, OwnMotionsReachFclWhereTheyAre) {
+  const auto model = makeModel<BVHModel<OBBRSS<double>>>(makeSheet(4, 4));
+  for (const double height : {0., 2.}) {
+    ContinuousCollisionRequest<double> request;
+    for (const auto solver : {CCDC_NAIVE, CCDC_CONSERVATIVE_ADVANCEMENT}) {
+      request.ccd_solver_type = solver;
+      ContinuousCollisionResult<double> ours, stock;
+      double times[2];
+      for (const bool in_fcl : {false, true}) {
+        const OwnMotion falling(shift<double>(0.01, 0.02, 2),
+                                shift<double>(0, 0, height)),
+            still(shift<double>(0, 0, 0), shift<double>(0, 0, 0));
+        times[in_fcl] =
+            in_fcl ? continuousCollide<double>(model.get(), &falling, model.get(), &still,
+                                               request, stock)
+                   : continuousCollide(model.get(), &falling, model.get(), &still,
+                                       request, ours);
+      }
+      EXPECT_EQ(times[0], times[1]) << solver;
+      EXPECT_EQ(ours.is_collide, stock.is_collide) << solver;
+      // FCL's conservative advancement misses what it meets here.
+      EXPECT_EQ(ours.is_collide, height == 0 && solver == CCDC_NAIVE);
+    }
+  }
+}
+
+// A mesh that deforms goes from where such a motion begins to where it ends.
+TEST(ContinuousCollideMotion, OwnMotionsOfDeformingMeshes) {
+  const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
+      makeSheet(4, 4), moved(makeSheet(4, 4), 0, 0, 0.5));
+  const OwnMotion falling(shift<double>(0, 0, 1), shift<double>(0, 0, -3)),
+      still(shift<double>(0, 0, 0), shift<double>(0, 0, 0));
+  falling.integrate(0.5);
+  ContinuousCollisionResult<double> result;
+  EXPECT_NEAR(continuousCollide(model.get(), &falling, model.get(), &still,
+                                ContinuousCollisionRequest<double>(), result),
+              0.25, 1e-4);
+  Transform3<double> after;
+  falling.getCurrentTransform(after);
+  EXPECT_EQ(after.translation().z(), 1);
+}
+
 // A deforming mesh's vertices go straight from one pose to the other.
 TEST(ContinuousCollideMotion, DeformingMeshMayRotate) {
   const auto a = makeModel<DeformableBVHModel<OBBRSS<double>>>(

@@ -335,6 +335,10 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   expectRefused(
       [&] { continuousCollide(no_object, here, no_object, here, request, result); },
       "o1");
+  const auto wrong = makeModel<BVHModel<AABB<double>>>(bentSheet(2));
+  wrong->tri_indices[3][1] = 1000;
+  expectRefused([&] { continuousSelfCollide(wrong.get(), request, result); },
+                "triangle 3 refers to a vertex that is not there");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const double toc_err : {0., -1., nan}) {
     Request bad;

@@ -425,6 +425,83 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   this->expectFrames(*changed, larger, larger_next);
 }
 
+// The base knows nothing of an update that is open.
+TYPED_TEST(DeformableModel, RefusesToEndWhatTheBaseHasChanged) {
+  USING_FIXTURE;
+  const auto expectChanged = [](Model& model, int code) {
+    EXPECT_EQ(code, BVH_ERR_BUILD_OUT_OF_SEQUENCE);
+    EXPECT_NE(model.lastError().find("changed since"), std::string::npos);
+    EXPECT_FALSE(model.isUpdateOpen());
+  };
+  const auto model = makeModel<Model>(frame(1), frame(2));
+  Plain& base = *model;
+  ASSERT_EQ(model->beginUpdateModel(), BVH_OK);
+  ASSERT_EQ(model->updateSubModel(this->points(frame(3))), BVH_OK);
+  ASSERT_EQ(update(base, frame(4)), BVH_OK);
+  expectChanged(*model, model->endUpdateModel());
+  ASSERT_EQ(update(*model, frame(5)), BVH_OK);
+  this->expectFrames(*model, frame(4), frame(5));
+
+  // A model of as many vertices that is not built yet.
+  ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
+  const Model copy(*model);
+  ::testing::internal::CaptureStderr();
+  ASSERT_EQ(model->beginModel(), BVH_ERR_BUILD_OUT_OF_SEQUENCE);
+  ::testing::internal::GetCapturedStderr();
+  delete[] std::exchange(base.vertices, nullptr);
+  delete[] std::exchange(base.tri_indices, nullptr);
+  ASSERT_EQ(model->beginModel(), BVH_OK);
+  ASSERT_EQ(model->addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  ASSERT_EQ(model->replaceSubModel(this->points(frame(6))), BVH_OK);
+  expectChanged(*model, model->endReplaceModel());
+  ASSERT_EQ(model->endModel(), BVH_OK);
+  ASSERT_EQ(update(*model, frame(7)), BVH_OK);
+  this->expectFrames(*model, kSheet, frame(7));
+
+  // The copy's update is open, and its own.
+  Model assigned;
+  assigned = copy;
+  ASSERT_EQ(assigned.replaceSubModel(this->points(frame(6))), BVH_OK);
+  ASSERT_EQ(assigned.endReplaceModel(), BVH_OK);
+  this->expectFrames(assigned, frame(6), frame(6));
+}
+
+// While FCL's tree is not built, FCL takes more triangles, as far as it has room.
+TYPED_TEST(DeformableModel, GrowsAfterSteps) {
+  USING_FIXTURE;
+  const TestMesh soup = floatMesh(makeTriangleSoup(60, 0.4, 0.6, 5)),
+                 next = shaken(soup, 0.1, 6);
+  const auto points = this->points(soup);
+  const auto add = [&](Model& model, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i)
+      EXPECT_EQ(model.addTriangle(points[3 * i], points[3 * i + 1], points[3 * i + 2]),
+                BVH_OK);
+  };
+  Model model;
+  ASSERT_EQ(model.beginModel(), BVH_OK);
+  add(model, 0, 30);
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+  const auto part = [](std::vector<Vector3<S>> all) {
+    all.resize(90);
+    return all;
+  };
+  ASSERT_EQ(model.updateFrames(part(this->points(next))[0].data(), part(points)[0].data(),
+                               90, FclTree::kSkip),
+            BVH_OK);
+  add(model, 30, 60);
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+  ASSERT_EQ(model.updateFrames(points[0].data(), this->points(next)[0].data(),
+                               points.size(), FclTree::kSkip),
+            BVH_OK);
+  Model whole;
+  ASSERT_EQ(whole.beginModel(), BVH_OK);
+  add(whole, 0, 60);
+  ASSERT_EQ(whole.endModel(), BVH_OK);
+  ASSERT_EQ(update(whole, next), BVH_OK);
+  expectSameContacts(selfContacts<S>(model), selfContacts<S>(whole));
+  EXPECT_GT(selfContacts<S>(whole).contacts.size(), 0U);
+}
+
 TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {
   using Plain = typename TestFixture::Plain;
   using S = typename TestFixture::S;

@@ -314,6 +314,43 @@ TEST(TraversalNode, UnusableInputIsRefused) {
       "model");
 }
 
+// What a refused call leaves is what was there before it.
+TEST(TraversalNode, StaysReadyWhenRefused) {
+  const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
+      bentSheet(6), shaken(bentSheet(6), 0.2, 1));
+  CollisionResult<double> result, expected, other;
+  Node<double> node, fresh;
+  const CollisionRequest<double> request(1000, true);
+  ASSERT_TRUE(detail::initialize(fresh, *model, request, expected));
+  detail::selfCollide(&fresh);
+  ASSERT_TRUE(detail::initialize(node, *model, request, result));
+  expectRefused(
+      [&] { detail::initialize(node, *model, CollisionRequest<double>(0, true), other); },
+      "num_max_contacts");
+  detail::selfCollide(&node);
+  EXPECT_GT(result.numContacts(), 0u);
+  EXPECT_EQ(result.numContacts(), expected.numContacts());
+  EXPECT_EQ(node.time_of_contact, fresh.time_of_contact);
+  EXPECT_EQ(other.numContacts(), 0u);
+}
+
+// The result keeps what it held, also when contacts had to be dropped.
+TEST(TraversalNode, KeepsWhatTheResultHeld) {
+  const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
+      bentSheet(6), shaken(bentSheet(6), 0.2, 1));
+  CollisionResult<double> result;
+  result.addContact(Contact<double>(model.get(), nullptr, 7, 8));
+  result.addCostSource(
+      CostSource<double>(Vector3<double>(0, 0, 0), Vector3<double>(1, 1, 1), 3.), 10);
+  Node<double> node;
+  ASSERT_TRUE(
+      detail::initialize(node, *model, CollisionRequest<double>(2, true), result));
+  detail::selfCollide(&node);
+  EXPECT_EQ(result.numContacts(), 3u);
+  EXPECT_EQ(result.getContact(0).b1, 7);
+  EXPECT_EQ(result.numCostSources(), 1u);
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace fcl

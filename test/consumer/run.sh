@@ -56,3 +56,7 @@ read -ra libs <<<"$(pkg-config --libs fcl)"
 "$CXX" "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
   -Wl,--as-needed "${libs[@]}"
 LD_LIBRARY_PATH=$prefix/$lib "$work/pc_app"
+# What FCL does not have needs C++17, which fcl.pc leaves to the program.
+"$CXX" -std=c++17 "${cflags[@]}" "$source_dir/deforming.cpp" -o "$work/pc_deforming" \
+  "${libs[@]}"
+LD_LIBRARY_PATH=$prefix/$lib "$work/pc_deforming"

@@ -32,17 +32,16 @@ FCL_CCD_EXTERN_MODELS(float)
 
 namespace detail {
 
-/// FCL 0.7 merges two RSSs into one that can leave points out, so that a bottom-up refit
-/// of a tree that holds them makes distances too large; from the top down each volume is
-/// fitted to the vertices.
+/// FCL 0.7 merges two RSSs into one that can leave points out, and the oriented boxes of
+/// single triangles that are thin or have no area are not around them, so that a
+/// bottom-up refit of a tree that holds them makes distances too large and misses
+/// contacts; from the top down each volume is fitted to the vertices.
 template <typename BV>
-struct RefitsBottomUp : std::true_type {};
+struct RefitsBottomUp : std::false_type {};
 template <typename S>
-struct RefitsBottomUp<RSS<S>> : std::false_type {};
-template <typename S>
-struct RefitsBottomUp<OBBRSS<S>> : std::false_type {};
-template <typename S>
-struct RefitsBottomUp<kIOS<S>> : std::false_type {};
+struct RefitsBottomUp<AABB<S>> : std::true_type {};
+template <typename S, std::size_t N>
+struct RefitsBottomUp<KDOP<S, N>> : std::true_type {};
 
 }  // namespace detail
 
@@ -68,6 +67,7 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
   this->bv_splitter = std::make_shared<detail::BVSplitter<BV>>(detail::SPLIT_METHOD_MEAN);
   this->bv_fitter = std::make_shared<detail::BVFitter<BV>>();
   if (other.isInStep()) seal_ = currentSeal();
+  if (other.opened_ == other.currentSeal()) opened_ = currentSeal();
 }
 
 template <typename BV>
@@ -80,6 +80,7 @@ DeformableBVHModel<BV>& DeformableBVHModel<BV>::operator=(
   detail::DeformableMesh::operator=(std::move(static_cast<DeformableMesh&>(copy)));
   staged_ = std::move(copy.staged_);
   seal_ = copy.seal_;
+  opened_ = copy.opened_;
   fcl_tree_built_ = copy.fcl_tree_built_;
   fcl_tree_up_to_date_ = copy.fcl_tree_up_to_date_;
   is_changing_ = copy.is_changing_;
@@ -272,6 +273,7 @@ int DeformableBVHModel<BV>::open(Open what, const char* caller) {
   staged_.clear();
   staged_.reserve(static_cast<std::size_t>(this->num_vertices));
   open_ = what;
+  opened_ = currentSeal();
   return accept();
 }
 
@@ -290,6 +292,10 @@ int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
                   std::string(caller) + "() without its begin...Model()");
   open_ = Open::kNone;
+  if (!(opened_ == currentSeal()))
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        std::string(caller) + "() of a model that was changed since its begin...Model()");
   const auto count = static_cast<std::size_t>(this->num_vertices);
   if (staged_.size() != count)
     return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(staged_.size()) +
@@ -445,17 +451,20 @@ void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool r
   this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   // After a change through the base class the base alone knows what the model is.
   if (rebuild && !repair) fcl_tree_built_ = true;
-  if (previous) std::memmove(this->vertices->data(), previous, 3 * count * sizeof(S));
   // FCL's tree may have been left half made: a repair makes it anew.
   fcl_tree_up_to_date_ = fcl_tree_built_ && (repair || fcl_tree == FclTree::kUpdate);
+  const std::size_t size = 3 * count * sizeof(S);
   if (fcl_tree_up_to_date_) {
+    if (previous) std::memmove(this->vertices->data(), previous, size);
     this->build_state = BVH_BUILD_STATE_PROCESSED;
     Base::beginUpdateModel();
     Base::updateSubModel(staged_);
     Base::endUpdateModel(refit && !repair, bottomup && detail::RefitsBottomUp<BV>::value);
     this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   } else {
-    std::swap(this->vertices, this->prev_vertices);
+    // Each array stays in its place: FCL may have room for more vertices in `vertices`.
+    std::memmove(this->prev_vertices->data(),
+                 previous ? previous : this->vertices->data(), size);
     std::copy(staged_.begin(), staged_.end(), this->vertices);
   }
   if (rebuild)

@@ -38,7 +38,8 @@ enum class FclTree {
 /// endModel() leaves the model open, as an error does. An update that an exception ends
 /// may be half done: until updateFrames(), updateTopology() or a replacement has given
 /// both frames, every query and copy of the model throws fcl::Exception and
-/// beginUpdateModel() is refused.
+/// beginUpdateModel() is refused. beginModel() and the add... functions are FCL's own:
+/// called out of order they print, and beginModel() clears a model that is built.
 ///
 /// Inherited behaviour that differs from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
@@ -186,6 +187,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// Coordinates given since begin..., so that a refused frame changes nothing.
   std::vector<Vector3<S>> staged_;
   Seal seal_;
+  /// When the open update began.
+  Seal opened_;
   bool fcl_tree_built_{false};
   bool fcl_tree_up_to_date_{false};
   /// From the first change of an update to the seal.

@@ -59,7 +59,12 @@ class ContactSink {
  private:
   using PairKey = std::array<std::uint32_t, 5>;
   static PairKey keyOf(const FeatureContact& contact);
-  bool addAgain(const FeatureContact& contact, std::size_t place);
+  struct Seen {
+    FeatureContact contact;
+    /// Where it is until cut_.
+    std::size_t place;
+  };
+  bool addAgain(const FeatureContact& contact, Seen& seen);
 
   std::size_t capacity_;
   bool may_repeat_;
@@ -67,8 +72,8 @@ class ContactSink {
   double first_hi_{1};
   /// Once cut_, a heap with the latest contact in front.
   std::deque<FeatureContact> contacts_;
-  /// The kept pairs, and until cut_ where they are.
-  std::map<PairKey, std::size_t> seen_;
+  /// The kept pairs.
+  std::map<PairKey, Seen> seen_;
 };
 
 /// @brief The contacts of some lists, earliest first. They stay in the lists, since there

@@ -22,7 +22,7 @@ struct MeshInstance {
   VertexFrames frames;
 
   /// The moving tree, whose boxes are still to be moved by `translation`; null: the mesh
-  /// only translates and `rigid` is used.
+  /// only translates, FCL's tree is sound and `rigid` is used.
   const MovingKdopTree* tree{nullptr};
   RigidTree rigid;
   double translation[2][3]{{0, 0, 0}, {0, 0, 0}};

@@ -31,8 +31,9 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
 /// @brief A geometry made ready for one query, with what had to be computed for it:
 /// nothing for a DeformableBVHModel that is only translated and for a rigid mesh (but see
-/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state; boxes
-/// for a rotated DeformableBVHModel.
+/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state, and for a
+/// rigid mesh whose tree is not sound (RigidTree::isSound()); boxes for a rotated
+/// DeformableBVHModel.
 class PreparedMesh {
  public:
   /// @param name  how errors call the geometry, for example "o1"

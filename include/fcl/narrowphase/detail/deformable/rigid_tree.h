@@ -30,7 +30,15 @@ class RigidTree {
  public:
   RigidTree() = default;
 
-  /// @tparam BV  any of FCL's but RSS, whose refit trees are no bounds.
+  /// @brief Whether FCL's volumes surely bound what is below them. FCL 0.7 merges two
+  /// RSSs into one that can leave points out. The oriented box of a triangle that is not
+  /// fitted with others is nowhere near it if it has no area, and misses a thin one by a
+  /// part of its size: such a tree, that a replacement of the vertices refit from the
+  /// bottom up, counts as none, and so does one of which that cannot be excluded.
+  template <typename BV>
+  static bool isSound(const BVHModel<BV>& model);
+
+  /// @tparam BV  any of FCL's but RSS.
   /// @param pose  its rotation turns the boxes; its translation is left to
   /// relativeShift().
   template <typename BV>
@@ -108,7 +116,7 @@ class RigidTree {
 class RigidTreeReader {
  public:
   /// @brief Nodes whose numbers differ by a multiple of it take each other's place.
-  static constexpr int kSlots = 64;  // 68 KiB of nodes
+  static constexpr int kSlots = 64;  // 76 KiB of nodes
 
   explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
     std::fill(made_, made_ + kSlots, -1);

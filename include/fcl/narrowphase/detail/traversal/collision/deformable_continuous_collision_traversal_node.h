@@ -22,7 +22,7 @@ class BinaryView;
 /// @brief Traversal node for continuous collision between two meshes that deform or
 /// translate, or of one with itself; made by initialize(), driven by FCL's collide(&node)
 /// or selfCollide(&node). The trees are the models' moving 16-DOP trees (a rigid model's
-/// own FCL tree), whatever BV the models have.
+/// own FCL tree, where that bounds it), whatever BV the models have.
 ///
 /// The result receives one Contact for each VF or EE contact (b1, b2 triangles, pos and
 /// normal if request.enable_contact, see ContinuousContact::normal; penetration depth 0),
@@ -76,7 +76,10 @@ class FCL_EXPORT DeformableContinuousCollisionTraversalNode
   const deformable::MeshInstance& mesh2() const;
   const deformable::BinaryView& view2() const;
   TimeWindow window(int b1, int b2) const;
-  void begin(const CollisionRequest<S>& request, CollisionResult<S>& result);
+  void requireValid(const CollisionRequest<S>& request) const;
+  void begin(std::unique_ptr<deformable::PreparedMesh> prepared1,
+             std::unique_ptr<deformable::PreparedMesh> prepared2,
+             const CollisionRequest<S>& request, CollisionResult<S>& result);
   void report() const;
   Contact<S> toFcl(ContinuousContact<S> contact) const;
 
@@ -87,9 +90,9 @@ class FCL_EXPORT DeformableContinuousCollisionTraversalNode
   std::unique_ptr<deformable::TrianglePairTest> test_;
   std::unique_ptr<deformable::BinaryView> view1_;
   std::unique_ptr<deformable::BinaryView> view2_;  // null: with itself
-  deformable::KdopShift shift_;
-  /// Contacts that the result held before.
-  std::vector<Contact<S>> earlier_;
+  std::unique_ptr<deformable::KdopShift> shift_;   // null: with itself
+  /// What the result held before.
+  CollisionResult<S> earlier_;
   mutable std::size_t reported_{0};
   mutable bool crossing_reported_{false};
 };
