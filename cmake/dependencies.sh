@@ -11,8 +11,8 @@ fcl_ccd_install_dependencies() {
     libcli11-dev nlohmann-json3-dev libcgal-dev
     libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
   )
-  # The second compiler and the style checks.
-  if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14); fi
+  # The second compiler, the style checks and the reference.
+  if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14 doxygen); fi
   packages+=("${@:2}")
 
   # On another system CMake says what it cannot find.

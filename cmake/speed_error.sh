@@ -13,5 +13,5 @@ fcl_ccd_begin_report speed_error "$@"
 gnuplot -e "table='$out/speed_error.csv'; picture='$out/speed_error.png'" \
   "$sources/plot.gp"
 awk -F, -f "$sources/tables.awk" "$out/speed_error.csv" "$out/filter_ratio.csv" \
-  >"$out/README.md"
-fcl_ccd_end_report README.md speed_error.csv filter_ratio.csv speed_error.png
+  >"$out/speed_error.md"
+fcl_ccd_end_report speed_error.md speed_error.csv filter_ratio.csv speed_error.png

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian), builds in Release and runs the tests.
 #   bash cmake/test.sh         the test suite
-#   bash cmake/test.sh --all   also: sanitizers, clang with -Werror, clang-tidy, and the
+#   bash cmake/test.sh --all   also: sanitizers, clang with -Werror, clang-tidy, the
+#                              reference, a build without vectors and threads, and the
 #                              checks that need clang (what CI runs; CI=true means the same)
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -38,6 +39,14 @@ if $all; then
   # Its stderr only counts the findings in other people's headers.
   find src -name '*.cpp' -print0 |
     xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
+  echo "== reference"
+  doxygen doc/Doxyfile
+  # What compares with scalar code and brute force.
+  plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
+  echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
+  cmake --preset plain
+  cmake --build --preset plain -j "$jobs" --target "${plain_tests[@]}"
+  for test in "${plain_tests[@]}"; do "build/plain/test/$test" --gtest_brief=1; done
   build asan-ubsan
   echo "== asan-ubsan: unit tests"
   ctest --preset asan-ubsan -j "$jobs"

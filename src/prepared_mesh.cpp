@@ -156,8 +156,10 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
         requireFinite(mesh->movingTree(), instance_.frames, name);
       return;
     }
-    tree_ = mesh->movingTree();
-    refit(name, num_threads);
+    measure([&] {
+      tree_ = mesh->movingTree();
+      refit(name, num_threads);
+    });
     return;
   }
   visitModel(geometry, [&](const auto& model) {
@@ -188,13 +190,15 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       instance_.rigid = RigidTree(model, beginning);
       if (owners == FeatureOwners::kAlways) {
         requireIndices(model, name);
-        owners_ = assignFeatures(model.tri_indices,
-                                 static_cast<std::size_t>(model.num_tris), count);
+        measure([&] {
+          owners_ = assignFeatures(model.tri_indices,
+                                   static_cast<std::size_t>(model.num_tris), count);
+        });
         instance_.prepared = owners_.data();
       }
       return;
     }
-  prepareDeforming(model, name, num_threads);
+  measure([&] { prepareDeforming(model, name, num_threads); });
 }
 
 template <typename BV>
@@ -222,8 +226,15 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
   refit(name, num_threads);
 }
 
-void PreparedMesh::refit(const std::string& name, int num_threads) {
+template <typename Work>
+void PreparedMesh::measure(Work&& work) {
   const auto start = std::chrono::steady_clock::now();
+  work();
+  update_time_ =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void PreparedMesh::refit(const std::string& name, int num_threads) {
   const DefaultFloatingPoint mode;
   tree_.refit(instance_.frames, num_threads);
   if (!areBoxesBounded(tree_)) requireFinite(tree_, instance_.frames, name);
@@ -231,8 +242,6 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
   // The boxes are posed already.
   for (auto& translation : instance_.translation)
     std::fill(translation, translation + 3, 0.);
-  update_time_ =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                           \

@@ -395,6 +395,7 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
     expectSameContacts(pairContacts<S>(*other, *changed), pairContacts<S>(*other, plain));
   };
   ASSERT_EQ(update(base, frame(3)), BVH_OK);
+  EXPECT_EQ(changed->updateFclTree(), BVH_OK);
   expectLikePlain(*makeModel<Plain>(frame(2), frame(3)));
   ASSERT_EQ(update(base, frame(4)), BVH_OK);
   expectLikePlain(*makeModel<Plain>(frame(3), frame(4)));

@@ -2,6 +2,7 @@
 //
 // FCL's discrete queries on a DeformableBVHModel: right in every state, under any
 // transform, or refused.
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -110,7 +111,7 @@ class DiscreteQuery : public ::testing::Test {
   }
 };
 
-using BVs = ::testing::Types<KDOP<double, 16>, AABB<double>, OBBRSS<double>>;
+using BVs = ::testing::Types<KDOP<double, 16>, AABB<double>, OBB<double>, OBBRSS<double>>;
 TYPED_TEST_SUITE(DiscreteQuery, BVs, );
 
 TYPED_TEST(DiscreteQuery, CollideIsRightAfterEveryUpdate) {
@@ -174,6 +175,34 @@ TYPED_TEST(DiscreteQuery, SkippedAtBuildThenUpdateFramesBuilds) {
             BVH_OK);
   EXPECT_TRUE(model.isFclTreeUpToDate());
   this->expectCollidesRight(model);
+}
+
+// FCL's oriented boxes of single thin triangles are not around them, and bottom-up they
+// are what the tree is made of.
+TEST(DiscreteQueryBoxes, ContainThinTriangles) {
+  using Model = DeformableBVHModel<OBB<double>>;
+  const TestMesh soup = makeTriangleSoup(40, 0.5, 0.8, 9);
+  Random random(10);
+  for (int exponent = 10; exponent < 60; ++exponent) {
+    TestMesh thin = soup;
+    for (std::size_t i = 0; i < thin.vertices.size(); i += 3)
+      thin.vertices[i + 2] = 0.5 * (thin.vertices[i] + thin.vertices[i + 1]) +
+                             std::ldexp(1, -exponent) * random.point(1);
+    const auto model = makeModel<Model>(soup, thin);
+    for (int i = 0; i < model->getNumBVs(); ++i) {
+      const auto& node = model->getBV(i);
+      if (!node.isLeaf()) continue;
+      for (int k = 0; k < 3; ++k) {
+        const Vector3<double> from_center =
+            thin.vertices[thin.triangles[static_cast<std::size_t>(node.primitiveId())]
+                                        [k]] -
+            node.bv.To;
+        const Vector3<double> along = node.bv.axis.transpose() * from_center;
+        EXPECT_TRUE((along.cwiseAbs().array() <= node.bv.extent.array() + 1e-12).all())
+            << exponent << ", " << i;
+      }
+    }
+  }
 }
 
 template <typename BV>

@@ -49,7 +49,7 @@ using ContinuousCandidateSink =
 ///
 /// Hand out, in blocks, every feature pair that continuousSelfCollide() or
 /// continuousCollide() with ContinuousQuery::kAll would give to its coplanarity filter:
-/// the pairs left by the moving boxes and by the coordinate ranges of both features.
+/// the pairs that the moving boxes of nodes, triangles and features leave.
 ///
 /// (1) Every pair that touches is among them (a pair that crosses at t = 0 and never
 /// touches need not be). (2) No pair comes twice; faces with the same three vertices are

@@ -26,9 +26,11 @@ namespace fcl {
 /// motion, never on request.ccd_solver_type. Models are not changed; two calls give the
 /// same answer; concurrent calls on the same models are safe.
 ///
-/// @throws fcl::Exception that names the object, when a mesh is not built or is in the
-/// middle of an update, holds a coordinate that is not finite, a triangle index out of
-/// range, or when the request is not usable (toc_err not positive, num_max_contacts 0). A
+/// @throws fcl::Exception that names the object, when it or its motion is null, when a
+/// mesh is not built or is in the middle of an update, has more than 2^29 triangles or
+/// vertices, holds a coordinate that is not finite or a triangle index out of range, when
+/// a transform is not finite, a geometry that has to be a mesh is none, or the request is
+/// not usable (toc_err not positive, num_max_contacts 0, num_threads negative). A
 /// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
 /// that cannot change the answer (too late for the first contact, or, with kAny, behind
 /// what has the answer) may go unnoticed, for any number of threads alike.

@@ -76,8 +76,8 @@ enum class ContinuousQuery {
   kAny     ///< whether there is a contact at all; stops at the first proof
 };
 
-/// @brief A continuous request that asks for contacts. Fields of FCL's request that act:
-/// toc_err (the width of a contact's time bracket) and ccd_motion_type.
+/// @brief A continuous request that asks for contacts. Of the fields of FCL's request
+/// toc_err acts, the width of a contact's time bracket.
 template <typename S>
 struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   using ContinuousCollisionRequest<S>::ContinuousCollisionRequest;
@@ -93,7 +93,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief Threads that the query may use: 1, the caller's own and no task (the default,
   /// as in FCL, whose callers run their own queries side by side); n, at most n; 0, as
-  /// many as the oneTBB task arena around has. The answer does not depend on it.
+  /// many as the oneTBB task arena around has; not negative. The answer does not depend
+  /// on it.
   int num_threads{1};
 };
 

@@ -12,8 +12,8 @@ namespace fcl {
 /// @brief FCL's distance. When one of the objects is a DeformableBVHModel (its current
 /// frame counts) and FCL has no distance function for the pair's types, for example two
 /// KDOP models, it throws fcl::Exception instead of answering; other objects reach FCL
-/// unchanged. Two AABB, RSS, kIOS or
-/// OBBRSS models of the same type have one, and RSS, kIOS or OBBRSS with a shape.
+/// unchanged. Two AABB, RSS, kIOS or OBBRSS models of the same type have one, and RSS,
+/// kIOS or OBBRSS with a shape.
 /// @{
 #define FCL_CCD_DECLARE_DISTANCE(S)                                                    \
   FCL_EXPORT S distance(const CollisionObject<S>* o1, const CollisionObject<S>* o2,    \

@@ -23,8 +23,8 @@ bool touchesByIntervalNewton(detail::deformable::FeatureKind,
                              const detail::deformable::FeaturePoints&,
                              const RelativePair<double>& pair,
                              const CoplanarityCubic<double>& cubic) {
-  // At which no contact of the public scenes is left out for its own sake, nor invented;
-  // doc/speed_error.md has what coarser and finer ones cost.
+  // At which next to no contact of the public scenes is left out for its own sake, or
+  // invented; doc/speed_error.md has what coarser and finer ones cost.
   constexpr double kResolution = 1e-6;
   return firstTimeByIntervalNewton(pair, cubic, kResolution, kResolution) >= 0;
 }

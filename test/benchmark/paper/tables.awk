@@ -104,7 +104,7 @@ function printTable1(   i, s, first) {
   heading("Table 1, the paper's beside ours",
           "Paper: its method on its machine. Iccd, plain filter, scalar: its method here. " \
           "Speedups over ICCD and over R-Triangles, both scalar and without a filter. " \
-          "Errors: missed / extra, of all frames; of the first contact, frames with " \
+          "Errors: missed / extra, of the frames measured; of the first contact, frames with " \
           "another time than that of all contacts.",
           "scene | paper: ms | over iccd | over r-triangles | its method here: ms " \
           "| over iccd | over r-triangles | errors | ours, all contacts: ms | over iccd " \

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# awk -F, -f tables.awk speed_error.csv filter_ratio.csv > README.md
+# awk -F, -f tables.awk speed_error.csv filter_ratio.csv > speed_error.md
 # The two tables as a page to read.
 
 FNR == 1 { ++file; set = ""; next }

@@ -483,12 +483,14 @@ int DeformableBVHModel<BV>::updateFclTree() {
   if (isHalfUpdated())
     return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
                   "updateFclTree() after an update that failed: both frames are needed");
-  if (!isInStep())
+  if (!isBuilt())
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
                   "updateFclTree() on a model that is not built");
   if (isUpdateOpen())
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
                   "updateFclTree() between begin...Model() and end...Model()");
+  // A change through the base class has refit FCL's tree.
+  if (!isInStep()) return accept();
   if (!fcl_tree_built_) {
     // FCL may have moved the vertices before it fails.
     int code;

@@ -133,6 +133,10 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
                      std::size_t num_vertices, FclTree fcl_tree = FclTree::kSkip);
 
   /// @brief Brings FCL's own tree up to date (builds it if it was never built).
+  ///
+  /// Errors: the model is not built (BVH_ERR_BUILD_EMPTY_MODEL), an update is open
+  /// (BVH_ERR_BUILD_OUT_OF_SEQUENCE) or has failed (BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
+  /// FCL's own.
   int updateFclTree();
 
   /// @brief Whether FCL's own tree is up to date, that is, discrete queries are allowed.

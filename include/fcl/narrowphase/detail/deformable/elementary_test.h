@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The elementary test of one VF or EE pair: axis test -> coplanarity filter -> certified
-// root solve. After Tang, Manocha, Tong 2010 (sections 3.3, 3.4), with these differences:
-// the filter's signs carry a bound on their rounding, it looks only at the part of the
-// step in which the pair's boxes meet, and the cubic is not solved by Interval-Newton but
-// by bisection into intervals each of which is proved free of contact or proved to hold
-// one.
+// root solve -> integers for what rounding leaves open. After Tang, Manocha, Tong 2010
+// (sections 3.3, 3.4), with these differences: the filter's signs carry a bound on their
+// rounding, it looks only at the part of the step in which the pair's boxes meet, and the
+// cubic is not solved by Interval-Newton but by bisection into intervals each of which is
+// proved free of contact or proved to hold one.
 #ifndef FCL_NARROWPHASE_DETAIL_DEFORMABLE_ELEMENTARY_TEST_H
 #define FCL_NARROWPHASE_DETAIL_DEFORMABLE_ELEMENTARY_TEST_H
 

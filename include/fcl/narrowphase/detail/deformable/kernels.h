@@ -37,11 +37,13 @@ inline bool isEarly(double latest) { return latest < 0x1p-4; }
 
 /// @brief Which overlaps of boxes matter to a query.
 struct OverlapRequest {
-  /// Whether it matters from when on boxes overlap; false: `earliest` only tells which
-  /// overlap at t = 0; it is 0 for these, and FLT_MIN or what it would be for others.
+  /// Whether it matters from when on boxes overlap; false: only whether they do at t = 0
+  /// does. `earliest` is 0 for those that do, and for the others a number above 0,
+  /// FLT_MIN or the right one.
   bool timed;
-  /// Boxes are left out that are further apart at t = 0, along one of the directions,
-  /// than `share` of what their displacements add up to, and `slack`; infinity: none are.
+  /// Boxes a and b are left out if the gap between them at t = 0, along one of the
+  /// directions, is larger than share * (a.displacement + b.displacement) + slack;
+  /// infinity: none are.
   float share{std::numeric_limits<float>::infinity()};
   float slack{0};
 

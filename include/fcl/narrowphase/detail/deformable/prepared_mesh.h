@@ -31,8 +31,8 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
 /// @brief A geometry made ready for one query, with what had to be computed for it:
 /// nothing for a DeformableBVHModel that is only translated and for a rigid mesh (but see
-/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state, and for a
-/// rigid mesh whose tree is not sound (RigidTree::isSound()); boxes for a rotated
+/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state, and for
+/// a rigid mesh whose tree is not sound (RigidTree::isSound()); boxes for a rotated
 /// DeformableBVHModel.
 class PreparedMesh {
  public:
@@ -53,7 +53,7 @@ class PreparedMesh {
 
   const MeshInstance& instance() const { return instance_; }
 
-  /// @brief Seconds spent on boxes and owners.
+  /// @brief Seconds that boxes, owners and a tree took, if they had to be made.
   double updateTime() const { return update_time_; }
 
  private:
@@ -66,6 +66,8 @@ class PreparedMesh {
   void prepareDeforming(const BVHModel<BV>& model, const std::string& name,
                         int num_threads);
   void refit(const std::string& name, int num_threads);
+  template <typename Work>
+  void measure(Work&& work);
 
   MeshInstance instance_;
   std::vector<MeshTriangle> owners_;

@@ -8,7 +8,8 @@ namespace fcl {
 
 /// @brief How many candidates each stage of a continuous query saw and removed, in
 /// pipeline order. Every candidate that enters a stage leaves it culled or goes on:
-/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts.
+/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts,
+/// but for those that a query for any contact no longer looks at.
 struct StageCounts {
   /// node pairs whose moving boxes were compared
   std::uint64_t node_pairs{0};
@@ -24,7 +25,7 @@ struct StageCounts {
   std::uint64_t plane_culled{0};
   /// VF and EE pairs that the other triangle pairs own and that share no vertex
   std::uint64_t feature_pairs{0};
-  /// feature pairs whose ranges along x, y, z never meet all at once
+  /// feature pairs whose moving boxes do not meet, or too late to matter
   std::uint64_t box_culled{0};
   /// feature pairs that provably never become coplanar while their boxes meet
   std::uint64_t filter_culled{0};
