@@ -2,6 +2,7 @@
 #include "fcl/narrowphase/continuous_collision.h"
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -103,6 +104,7 @@ template <typename S>
 void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
                   const ContinuousContactRequest<S>& request,
                   ContinuousContactResult<S>& result) {
+  const auto start = std::chrono::steady_clock::now();
   const auto convert = [&](const auto& contact) {
     auto out = detail::deformable::toContinuousContact<S>(
         contact, scene.mesh1.instance(), scene.mesh2.instance(), request.enable_contact);
@@ -110,17 +112,27 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
     out.o2 = &scene.o2;
     return out;
   };
-  result.contacts.resize(answer.contacts.size());
-  constexpr std::size_t kBlock = 1024, kAhead = 16;
-  detail::deformable::parallelForBlocks(
-      answer.contacts.size(), kBlock, request.num_threads,
-      [&](std::size_t i, std::size_t last) {
-        for (; i < last; ++i) {
-          // Contacts that follow each other in time lie anywhere in memory.
-          __builtin_prefetch(&answer.contacts[std::min(i + kAhead, last - 1)]);
-          result.contacts[i] = convert(answer.contacts[i]);
-        }
-      });
+  const std::size_t count = answer.contacts.size();
+  const auto contactAt = [&](std::size_t i) {
+    // Contacts that follow each other in time lie anywhere in memory.
+    constexpr std::size_t kAhead = 16;
+    __builtin_prefetch(&answer.contacts[std::min(i + kAhead, count - 1)]);
+    return convert(answer.contacts[i]);
+  };
+  result.contacts.clear();
+  if (detail::deformable::numThreads(request.num_threads) == 1) {
+    result.contacts.reserve(count);
+    for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
+  } else {
+    // Written twice.
+    constexpr std::size_t kBlock = 1024;
+    result.contacts.resize(count);
+    detail::deformable::parallelForBlocks(count, kBlock, request.num_threads,
+                                          [&](std::size_t i, std::size_t last) {
+                                            for (; i < last; ++i)
+                                              result.contacts[i] = contactAt(i);
+                                          });
+  }
   result.contacts_cut = answer.cut;
   result.initially_crossing = answer.has_crossing;
   result.crossing =
@@ -129,6 +141,8 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
   result.times = answer.times;
   result.times.update += scene.mesh1.updateTime();
   if (&scene.mesh1 != &scene.mesh2) result.times.update += scene.mesh2.updateTime();
+  result.times.test +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 template <typename S, typename Request, typename Result>

@@ -65,7 +65,7 @@ struct StageTimes {
   double update{0};
   /// moving boxes against moving boxes
   double traverse{0};
-  /// everything done to a triangle pair
+  /// everything done to a triangle pair, and handing over the contacts
   double test{0};
 };
 
