@@ -119,9 +119,10 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
     __builtin_prefetch(&answer.contacts[std::min(i + kAhead, count - 1)]);
     return convert(answer.contacts[i]);
   };
-  result.contacts.clear();
+  // Memory before anything changes.
+  result.contacts.reserve(count);
   if (detail::deformable::numThreads(request.num_threads) == 1) {
-    result.contacts.reserve(count);
+    result.contacts.clear();
     for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
   } else {
     // Written twice.

@@ -8,8 +8,6 @@
 #include "hwy/foreach_target.h"
 #endif
 
-#include <algorithm>
-
 #include "error_bounds.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
@@ -40,7 +38,7 @@ struct Points {
   HWY_INLINE Points(const TrianglePair* pairs, const std::uint32_t* codes,
                     std::size_t count)
       : Points([=](std::size_t i, std::size_t lane) HWY_ATTR -> const TreeVertex& {
-          const std::uint32_t code = codes[std::min(lane, count - 1)];
+          const std::uint32_t code = codes[lane < count ? lane : count - 1];
           return *pairs[code / 16].x[kFeaturePoints[code % 16][i]];
         }) {}
 
@@ -139,7 +137,7 @@ EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* p
   const Points x(pairs, codes, count);
   double starts[kEight], ends[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane) {
-    const TimeWindow& window = windows[std::min(lane, count - 1)];
+    const TimeWindow& window = windows[lane < count ? lane : count - 1];
     starts[lane] = double{window.lo};
     ends[lane] = double{window.hi};
   }
