@@ -208,18 +208,19 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
 Answer AccuratePair::touchAt(const Double2& t, double t_error) const {
   // A difference at t: weight, product and sum, less than 4 products' errors together;
   // and it moves by less than 2 norms in the step. A component of a cross product: four
-  // factors with such errors, their squares, 3 products' errors of its own.
+  // factors with such errors, their squares, 3 products' errors of its own. What
+  // underflows in a difference is multiplied by the other factor.
   const double difference_error = 4 * kProductBound + 2 * t_error;
   if (!(difference_error < 0x1p-10)) return Answer::kUnsure;
-  const auto crossError = [difference_error](double norm) {
-    return 5 * difference_error * norm + kUnderflow;
+  const auto crossError = [difference_error](double a_norm, double b_norm) {
+    return 5 * difference_error * (a_norm * b_norm) + kUnderflow * (1 + a_norm + b_norm);
   };
   Vector a, b, c;
   v_.at(t, a);
   w_.at(t, b);
   cross(a, b, c);
   const Vec n = rounded(c);
-  const double n_size = maxNorm(n), n_error = crossError(v_.norm * w_.norm);
+  const double n_size = maxNorm(n), n_error = crossError(v_.norm, w_.norm);
   Answer answer = Answer::kYes;
   for (int i = 0; i < numSides(); ++i) {
     const auto [x, y] = factors(i);
@@ -227,7 +228,7 @@ Answer AccuratePair::touchAt(const Double2& t, double t_error) const {
     y.at(t, b);
     cross(a, b, c);
     const Vec q = rounded(c);
-    const double q_size = maxNorm(q), q_error = crossError(x.norm * y.norm);
+    const double q_size = maxNorm(q), q_error = crossError(x.norm, y.norm);
     // Three products of factors with errors; three units for rounding each factor and the
     // product, and sums of size 2 and 3: 14 units.
     const double bound = 3 * (q_size * n_error + q_error * (n_size + n_error)) +

@@ -4,7 +4,8 @@
 //
 // After Dekker 1971; error bounds: Joldes, Muller, Popescu 2017, "Tight and rigorous
 // error bounds for basic building blocks of double-word arithmetic", algorithms 6 and 10.
-// They hold while nothing underflows or overflows; an underflow adds less than 2^-1070.
+// They hold while nothing underflows or overflows; an underflow adds less than 2^-1070,
+// which a later factor multiplies.
 #ifndef FCL_CCD_SRC_DOUBLE2_H
 #define FCL_CCD_SRC_DOUBLE2_H
 

@@ -410,31 +410,69 @@ ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
   return solved.answer == Answer::kUnsure ? decideExactly(kind, x, toc_err) : solved;
 }
 
+namespace {
+
+/// A factor for a vector of which the fourth power would leave the range of double.
+double scaleOf(const Vec& v) {
+  const double norm = maxNorm(v);
+  if (norm > 0x1p-100 && norm < 0x1p100) return 1;
+  const bool has_size = norm > 0 && std::isfinite(norm);
+  return has_size ? std::ldexp(1, std::min(-std::ilogb(norm), 1000)) : 1;
+}
+
+double clamped(double value) { return std::max(0., std::min(1., value)); }
+
+/// Where parallel edges meet that begin at a distance u from each other and go along v
+/// and w: the place of the second's beginning or of its end on the first, whichever is
+/// nearer to the middle of it.
+/// @return weights of the ends of both
+std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const Vec& w) {
+  const double along = dot(v, v), other = dot(w, w);
+  const auto onSecond = [&](double s) {
+    return other > 0 ? clamped((s * dot(v, w) - dot(u, w)) / other) : 0.;
+  };
+  if (!(along > 0)) return {0, onSecond(0)};
+  const double first = dot(u, v) / along, last = first + dot(w, v) / along;
+  const double nearer = std::abs(first - 0.5) <= std::abs(last - 0.5) ? first : last;
+  const double s = clamped(nearer);
+  return {s, onSecond(s)};
+}
+
+}  // namespace
+
 void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
                      double (&position)[3], double (&normal)[3]) {
+  // Rounding is what two edges span whose cross product is smaller.
+  constexpr double kParallel = 0x1p-48;
   const bool vf = kind == FeatureKind::kVertexFace;
   const Pair pair(kind, x);
-  const Vec u = pair.u.at(t), v = pair.v.at(t), w = pair.w.at(t);
+  const Vec u = pair.u.at(t), v_there = pair.v.at(t), w_there = pair.w.at(t);
+  const double v_scale = scaleOf(v_there), w_scale = scaleOf(w_there);
+  const Vec v = v_scale * v_there, w = w_scale * w_there;
   Vec n = cross(v, w);
   // Weights of the four vertices in the two points that meet (feature 2 minus feature 1).
   double weight[4];
   const double area = dot(n, n);
-  const auto ratio = [area](double value) {
-    return area > 0 ? std::max(0., std::min(1., value / area)) : 0.5;
-  };
+  // u x w and v x u on the scale of v x w.
+  const double along_w = dot(cross(v_scale * u, w), n),
+               along_v = dot(cross(v, w_scale * u), n);
   if (vf) {
-    const double beta = area > 0 ? ratio(dot(cross(u, w), n)) : 1. / 3;
-    const double gamma = area > 0 ? ratio(dot(cross(v, u), n)) : 1. / 3;
+    const double beta = area > 0 ? clamped(along_w / area) : 1. / 3;
+    const double gamma = area > 0 ? clamped(along_v / area) : 1. / 3;
     weight[0] = -1;
     weight[1] = 1 - beta - gamma;
     weight[2] = beta;
     weight[3] = gamma;
   } else {
-    const double s = ratio(dot(cross(u, w), n)), r = ratio(dot(cross(u, v), n));
-    weight[0] = s - 1;
-    weight[1] = -s;
-    weight[2] = 1 - r;
-    weight[3] = r;
+    std::pair<double, double> at(clamped(along_w / area), clamped(along_v / area));
+    if (!(area > kParallel * kParallel * (dot(v, v) * dot(w, w)))) {
+      const double scale = std::min(v_scale, w_scale);
+      at = meetingOfParallels(scale * u, scale * v_there, scale * w_there);
+    }
+    weight[0] = at.first - 1;
+    weight[1] = -at.first;
+    weight[2] = 1 - at.second;
+    weight[3] = at.second;
   }
   double position_1[3] = {0, 0, 0}, relative_velocity[3] = {0, 0, 0};
   double offset_t0[3] = {0, 0, 0};

@@ -57,14 +57,13 @@ constexpr double kInsideRounding = 74 * kUnit;
 // d . x for a direction d taken as exact: three products of size DX, error (4 + 1) u,
 // sums of size 2 and 3: 20 u DX.
 constexpr double kSideBound = 32 * kUnit;
-// Normal . d for exact d: components of v x w as above with differences that are rounded
-// once only; the middle one: three products of size 4 VWD, error (44 + 4) u, sums of size
-// 8 and 12: 164 u VWD.
-// Of d of 1, 0 and -1 too, with sums in place of the products.
+// Normal . d for exact d: components of v x w as above, though its differences are
+// rounded once only; the middle one: three products of size 4 VWD, error (44 + 4) u, sums
+// of size 8 and 12: 164 u VWD. Of d of 1, 0 and -1 too, with sums in place of the
+// products.
 constexpr double kFanBound = 192 * kUnit;
-// u . (r x d) for exact r and d: components of the cross product of size 2 RD, error 4 u;
-// three products of error (8 + 2 + 2) u... each at most 12 u, sums of size 4 and 6: 46 u
-// URD.
+// u . (r x d) for exact r and d: components of the cross product of size 2 RD, error 4 u
+// RD; three products, error (4 + 2 + 2) u each, sums of size 4 and 6: 34 u URD.
 constexpr double kRayBound = 64 * kUnit;
 // Points in a plane: a coordinate is the sum of two differences to an origin from which
 // no vertex is further than R, 4 u R off, below 2 R in size. Differences of these below L

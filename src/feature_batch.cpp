@@ -89,7 +89,8 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   out.setPath(path.t0, path.t1);
   if (mesh_.tree) return;
   // Boxes of a rigid tree are without the translation. Taking it off again rounds by
-  // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all.
+  // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all,
+  // and roundUp() may lose a part of what it adds.
   const auto fit = [&](const double* x, const double(&translation)[3], Kdop16& box) {
     double p[3], size = 0;
     for (int k = 0; k < 3; ++k) {
@@ -97,7 +98,7 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
       size = std::max(size, std::abs(x[k]) + std::abs(translation[k]) +
                                 std::abs(mesh_.rigid.origin()[k]));
     }
-    fitPoint(p, mesh_.rigid.origin(), roundUp(size * 0x1p-50, 0.f), box);
+    fitPoint(p, mesh_.rigid.origin(), roundUp(size * 0x1p-49, 0.f), box);
   };
   fit(out.t0, mesh_.translation[0], out.box.t0);
   fit(out.t1, mesh_.translation[1], out.box.t1);

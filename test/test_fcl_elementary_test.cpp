@@ -637,6 +637,106 @@ TEST(FCL_ELEMENTARY_TEST, mixedScales) {
   EXPECT_GT(contacts, 10);
 }
 
+/// The answer of all stages is that of the last one.
+void expectAsExact(const MovingPair& pair, Answer answer) {
+  EXPECT_EQ(exact(pair).answer, answer) << pair;
+  EXPECT_EQ(test(pair).answer, answer) << pair;
+}
+
+// A tiny vertex that passes beside or through the edge of a large face: what underflows
+// in its coordinates is multiplied by the size of the face.
+TEST(FCL_ELEMENTARY_TEST, tinyPathsAtLargeFaces) {
+  for (int exponent = 20; exponent <= 480; exponent += 10) {
+    const double size = std::ldexp(1, exponent);
+    MovingPair pair{FeatureKind::kVertexFace, {}};
+    auto& x = pair.x;
+    const auto still = [&x](std::size_t i, double px, double py) {
+      x[i].t0[0] = x[i].t1[0] = px;
+      x[i].t0[1] = x[i].t1[1] = py;
+      x[i].t0[2] = x[i].t1[2] = 0;
+    };
+    still(1, 0, 0);
+    still(2, size, 0);
+    still(3, 0, 0x1p50);
+    const auto path = [&x](double x0, double z0, double x1, double z1) {
+      const double from[3] = {x0, 0x1p-1002, z0}, to[3] = {x1, 0x1p-1002, z1};
+      std::copy(from, from + 3, x[0].t0);
+      std::copy(to, to + 3, x[0].t1);
+    };
+    path(0x1.988614adc749cp-1002, 0x1.366dca38bd6bep-1001, -0x1.d55ae2274e568p-1002,
+         -0x1.64a73eb83cff6p-1001);
+    expectAsExact(pair, Answer::kNo);
+    path(0x1.039bee163ef9ap-1001, 0x1.37b0ce96c6636p-1001, -0x1.85f901815cd78p-1001,
+         -0x1.d435081323ccap-1001);
+    expectAsExact(pair, Answer::kYes);
+  }
+}
+
+/// Where and along what two features touch at t.
+struct Geometry {
+  double position[3], normal[3];
+
+  Geometry(const MovingPair& pair, double t) {
+    contactGeometry(pair.kind, pair.points(), t, position, normal);
+  }
+};
+
+/// An edge along x from 0 to `length` that rests, and another from p to q that comes from
+/// above and touches it at t = 1.
+MovingPair fallingEdge(double length, const double (&p)[2], const double (&q)[2],
+                       double height) {
+  MovingPair pair{FeatureKind::kEdgeEdge, {}};
+  pair.x[1].t0[0] = pair.x[1].t1[0] = length;
+  for (int k = 0; k < 2; ++k) {
+    pair.x[2].t0[k] = pair.x[2].t1[k] = p[k];
+    pair.x[3].t0[k] = pair.x[3].t1[k] = q[k];
+  }
+  pair.x[2].t0[2] = pair.x[3].t0[2] = height;
+  return pair;
+}
+
+TEST(FCL_ELEMENTARY_TEST, geometryOfAllSizes) {
+  for (int exponent = -1000; exponent <= 1000; exponent += 20) {
+    const double size = std::ldexp(1, exponent);
+    // They cross at a quarter of the first.
+    const Geometry found(
+        fallingEdge(size, {0.25 * size, -size}, {0.25 * size, size}, size), 1);
+    EXPECT_EQ(found.position[0] / size, 0.25) << exponent;
+    EXPECT_EQ(found.position[1], 0) << exponent;
+    EXPECT_EQ(found.position[2], 0) << exponent;
+    EXPECT_EQ(std::abs(found.normal[2]), 1) << exponent;
+  }
+}
+
+// Edges that lie along each other touch where both are.
+TEST(FCL_ELEMENTARY_TEST, geometryOfParallelEdges) {
+  constexpr double kRounding = 1e-14;  // of weights, times the longer edge
+  const double ranges[][4] = {         // second edge from, to; common part from, to
+                              {1, 2, 1, 1},
+                              {2, 1, 1, 1},
+                              {-1, 0, 0, 0},
+                              {0, -1, 0, 0},
+                              {0.25, 0.75, 0.25, 0.75},
+                              {-3, 0.5, 0, 0.5},
+                              {0.5, 9, 0.5, 1},
+                              {-2, 4, 0, 1},
+                              {5, -1, 0, 1},
+                              {0.5, 0.5, 0.5, 0.5}};
+  for (const auto& r : ranges)
+    for (const double size : {1., 0x1p-300, 0x1p300}) {
+      MovingPair pair = fallingEdge(size, {r[0] * size, 0}, {r[1] * size, 0}, size);
+      const double x = Geometry(pair, 1).position[0] / size;
+      EXPECT_GE(x, r[2] - kRounding) << r[0] << " to " << r[1];
+      EXPECT_LE(x, r[3] + kRounding) << r[0] << " to " << r[1];
+      // The same seen from the other edge.
+      std::swap(pair.x[0], pair.x[2]);
+      std::swap(pair.x[1], pair.x[3]);
+      const double y = Geometry(pair, 1).position[0] / size;
+      EXPECT_GE(y, r[2] - kRounding) << r[0] << " to " << r[1];
+      EXPECT_LE(y, r[3] + kRounding) << r[0] << " to " << r[1];
+    }
+}
+
 // The boxes' depth goes from 1.5e308 to -1.5e308: the difference of the two overflows.
 TEST(FCL_ELEMENTARY_TEST, windowOfCoordinatesNearTheLargestDouble) {
   const double big = 0.75e308;

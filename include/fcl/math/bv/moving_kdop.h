@@ -59,8 +59,9 @@ constexpr float kOutward = 0x1p-22f;
 /// infinity.
 constexpr float kLeastHalf = -0.5f * FLT_MAX;
 
-/// @brief A float not less than value + pad, pad >= 0; FLT_MIN keeps it right where a
-/// float would be subnormal. Infinity for a NaN, never below kLeastHalf.
+/// @brief A float not less than value + pad, pad >= 0, but for 2^-22 of the pad; FLT_MIN
+/// keeps it right where a float would be subnormal. Infinity for a NaN, never below
+/// kLeastHalf.
 inline float roundUp(double value, float pad) {
   const auto f =
       static_cast<float>(value < double{kLeastHalf} ? double{kLeastHalf} : value);
@@ -111,8 +112,8 @@ inline bool isAny(const Mask4& mask) {
 #endif
 }
 
-/// The loss of a window: rounded down by more than its own rounding, the quotient's 2^-24
-/// and that of each of the two differences in it.
+/// The loss of a window: rounded down by more than its own rounding, 2^-24 for each of
+/// the two sums and the difference of these in it, the quotient and this product.
 constexpr float kLossDown = 1.f - 0x1p-21f;
 /// Minus the loss at the end: 1 and more than the rounding of the subtraction.
 constexpr float kWindowEnd = 1.f + 0x1p-22f;
