@@ -464,7 +464,7 @@ void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
     weight[2] = beta;
     weight[3] = gamma;
   } else {
-    std::pair<double, double> at(clamped(along_w / area), clamped(along_v / area));
+    std::pair<double, double> at(clamped(along_w / area), clamped(-along_v / area));
     if (!(area > kParallel * kParallel * (dot(v, v) * dot(w, w)))) {
       const double scale = std::min(v_scale, w_scale);
       at = meetingOfParallels(scale * u, scale * v_there, scale * w_there);
