@@ -185,6 +185,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
+  // FCL 0.7 merges two RSSs into one that can leave points out.
   if constexpr (!std::is_same_v<BV, RSS<typename BV::S>>)
     if (!deforming && RigidTree::isSound(model)) {
       instance_.rigid = RigidTree(model, beginning);

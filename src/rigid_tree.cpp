@@ -41,15 +41,6 @@ constexpr bool kHasSlabs<AABB<S>> = true;
 template <typename S, std::size_t N>
 constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
-template <typename BV>
-constexpr bool kHasOrientedBox = false;
-template <typename S>
-constexpr bool kHasOrientedBox<OBB<S>> = true;
-template <typename S>
-constexpr bool kHasOrientedBox<OBBRSS<S>> = true;
-template <typename S>
-constexpr bool kHasOrientedBox<kIOS<S>> = true;
-
 /// Bounds along our directions.
 struct Slabs {
   double lo[8];
@@ -183,8 +174,7 @@ void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
 
 template <typename BV>
 bool RigidTree::isSound(const BVHModel<BV>& model) {
-  if constexpr (kHasSlabs<BV>) return true;
-  if constexpr (kHasOrientedBox<BV>) {
+  if constexpr (!kHasSlabs<BV>) {
     // FCL refits all nodes or none: one leaf is enough, and as a rule the first one is.
     constexpr int kMostNodes = 4096, kStride = 7919;
     const int count = model.getNumBVs();
@@ -202,7 +192,7 @@ bool RigidTree::isSound(const BVHModel<BV>& model) {
       if (is_there && isFittedToScatter(obbOf(node.bv), corners)) return true;
     }
   }
-  return false;
+  return kHasSlabs<BV>;
 }
 
 template <typename BV>
