@@ -257,7 +257,7 @@ StagePointer makeLionScene(const SceneOptions& scene) {
   options.damping = 0.1;
   auto stage = std::make_unique<Stage>(options);
   Random random(scene.seed);
-  const int frequency = scaled(199, scene.scale);
+  const int frequency = scaled(197, scene.scale);
   const int pieces =
       std::max(8, static_cast<int>(std::lround(240 * std::pow(scene.scale, 0.25))));
   SolidOptions stone;
