@@ -419,7 +419,7 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
 
 // The same of a mesh that FCL's own tree holds.
 TEST(FCL_DEFORMABLE_QUERY, farVerticesOfARigidMeshCostLittle) {
-  const TestMesh near = test::bentSheet(40);
+  const TestMesh near = test::bentSheet(24);
   const auto sheet = test::makeModel<BVHModel<KDOP<double, 16>>>(near);
   const auto boxesOf = [&](const TestMesh& mesh, auto volume) {
     const auto model = test::makeModel<BVHModel<decltype(volume)>>(mesh);
