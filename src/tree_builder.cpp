@@ -24,6 +24,9 @@ Float4 vectorOf(const Item& item) {
   return v;
 }
 
+/// At once: three parts of it take longer.
+void setItem(const Float4& v, Item& item) { __builtin_memcpy(&item, &v, sizeof(v)); }
+
 struct Bounds {
   Float4 lo{kInf, kInf, kInf, kInf};
   Float4 hi{-kInf, -kInf, -kInf, -kInf};
@@ -45,8 +48,14 @@ class Slabs {
  public:
   Slabs(const Item* items, std::size_t count, std::size_t stride, int num_slabs)
       : last_(num_slabs - 1) {
+    // Of every fourth item apart: one minimum would wait for the one before.
+    Bounds of[4];
+    std::size_t i = 0;
+    for (; i + 3 * stride < count; i += 4 * stride)
+      for (std::size_t k = 0; k < 4; ++k) of[k].add(vectorOf(items[i + k * stride]));
+    for (; i < count; i += stride) of[0].add(vectorOf(items[i]));
     Bounds all;
-    for (std::size_t i = 0; i < count; i += stride) all.add(vectorOf(items[i]));
+    for (const Bounds& bounds : of) all.add(bounds);
     const Float4 width = all.hi - all.lo;
     for (int k = 1; k < 3; ++k)
       if (width[k] > width[axis_]) axis_ = k;
@@ -144,9 +153,9 @@ class Splitter {
     for (std::size_t i = 0; i < r.count; ++i) {
       // No branch: nobody could foretell it.
       const bool is_before = slabs.isBefore(items[i], slab);
-      const Item item = items[i];
-      items[before] = item;
-      scratch[after] = item;
+      const Float4 item = vectorOf(items[i]);
+      setItem(item, items[before]);
+      setItem(item, scratch[after]);
       before += is_before;
       after += !is_before;
     }
