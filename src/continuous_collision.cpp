@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -21,13 +22,14 @@ namespace fcl {
 namespace {
 
 using detail::answerOf;
+using detail::areMeshes;
 using detail::isAnsweredHere;
 using detail::kNotAnsweredHere;
 using detail::Placement;
 using detail::require;
+using detail::requireFinite;
 using detail::requireMesh;
 using detail::deformable::inArena;
-using detail::deformable::MeshKind;
 using detail::deformable::PreparedMesh;
 using detail::deformable::QueryAnswer;
 using detail::deformable::QueryGoal;
@@ -180,6 +182,15 @@ S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& res
   return result.time_of_contact;
 }
 
+/// FCL's motions rotate by quaternions: a rotation that stays the same may differ at the
+/// end, by a few roundings (one as a rule).
+template <typename S>
+bool isConstantRotation(const Placement<S>& placement) {
+  constexpr S kRounding = 8 * std::numeric_limits<S>::epsilon();
+  return (placement.end.linear() - placement.beginning.linear()).cwiseAbs().maxCoeff() <=
+         kRounding;
+}
+
 template <typename Motion, typename S>
 bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
   // FCL's InterpMotion<float> and ScrewMotion<float> are abstract: there are none to
@@ -193,6 +204,8 @@ bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
     copy.getCurrentTransform(placement.beginning);
     copy.integrate(1);
     copy.getCurrentTransform(placement.end);
+    if (isConstantRotation(placement))
+      placement.end.linear() = placement.beginning.linear();
     return true;
   }
   return false;
@@ -253,10 +266,11 @@ S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
   require(o2, "o2");
   require(motion1, "motion1");
   require(motion2, "motion2");
-  if (detail::deformable::meshKindOf(*o1) != MeshKind::kNotAMesh &&
-      detail::deformable::meshKindOf(*o2) != MeshKind::kNotAMesh) {
+  if (areMeshes(*o1, *o2)) {
     const std::optional<Placement<S>> ends1 = placementOf(*motion1),
                                       ends2 = placementOf(*motion2);
+    if (ends1) requireFinite(*ends1, "o1");
+    if (ends2) requireFinite(*ends2, "o2");
     if (isAnsweredHere(*o1, isRotation(*motion1, ends1), *o2,
                        isRotation(*motion2, ends2)))
       return collideMeshes(*o1, ends1 ? *ends1 : integratedEnds(*motion1), *o2,
@@ -271,6 +285,7 @@ S collideTransforms(const CollisionGeometry<S>* o1, const Placement<S>& placemen
                     const Request& request, Result& result) {
   require(o1, "o1");
   require(o2, "o2");
+  requireFinite(*o1, placement1, *o2, placement2);
   if (isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
     return collideMeshes(*o1, placement1, *o2, placement2, request, result);
   const auto motionOf = [&request](const Placement<S>& placement) {

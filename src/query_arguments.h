@@ -29,6 +29,13 @@ inline void require(const void* argument, const char* name) {
 }
 
 template <typename S>
+void requireFinite(const Placement<S>& placement, const char* name) {
+  for (const Transform3<S>* tf : {&placement.beginning, &placement.end})
+    if (!tf->linear().allFinite() || !tf->translation().allFinite())
+      throw Exception(std::string(name) + ": the transform is not finite");
+}
+
+template <typename S>
 void requireMesh(const CollisionGeometry<S>& o, const char* function) {
   if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
     throw Exception(std::string(function) + ": the geometry is not a triangle mesh");
@@ -37,6 +44,21 @@ void requireMesh(const CollisionGeometry<S>& o, const char* function) {
 /// What errors say of a pair for which isAnsweredHere() is false.
 constexpr const char* kNotAnsweredHere =
     " of continuous collision need two triangle meshes that deform or translate";
+
+template <typename S>
+bool areMeshes(const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2) {
+  return deformable::meshKindOf(o1) != deformable::MeshKind::kNotAMesh &&
+         deformable::meshKindOf(o2) != deformable::MeshKind::kNotAMesh;
+}
+
+/// Of two meshes; all else is FCL's to look at.
+template <typename S>
+void requireFinite(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
+                   const CollisionGeometry<S>& o2, const Placement<S>& placement2) {
+  if (!areMeshes(o1, o2)) return;
+  requireFinite(placement1, "o1");
+  requireFinite(placement2, "o2");
+}
 
 /// Whether the pair is answered by this library and not left to FCL.
 template <typename S>

@@ -353,6 +353,37 @@ TEST(ContinuousCollideMotion, InterpMotionWithoutRotationIsAnsweredHere) {
               0.25, 1e-4);
 }
 
+// FCL's quaternions round: a rotation that stays the same may end beside itself.
+TEST(ContinuousCollideMotion, InterpMotionWithConstantRotationIsAnsweredHere) {
+  const auto ball = makeModel<BVHModel<OBBRSS<double>>>(makeIcosphere(1, 0.5));
+  const auto sheet = makeModel<BVHModel<OBBRSS<double>>>(makeSheet(4, 4));
+  const TranslationMotion<double> still(shift<double>(0, 0, 0), shift<double>(0, 0, 0));
+  ContinuousContactRequest<double> request;
+  request.toc_err = 1e-9;
+  request.query = ContinuousQuery::kFirst;
+  int num_rounded = 0;
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE(i);
+    Transform3<double> beginning = shift<double>(0.1, 0.2, 2),
+                       end = shift<double>(0.1, 0.2, -2.1);
+    beginning.linear() = end.linear() = rotation(0.0123 * i);
+    const auto motion = interpolation(beginning, end);
+    Transform3<double> first, last;
+    motion.getCurrentTransform(first);
+    motion.integrate(1);
+    motion.getCurrentTransform(last);
+    motion.integrate(0);
+    num_rounded += first.linear() != last.linear();
+    ContinuousContactResult<double> result, expected;
+    continuousCollide(ball.get(), &motion, sheet.get(), &still, request, result);
+    const TranslationMotion<double> straight(beginning, end);
+    continuousCollide(ball.get(), &straight, sheet.get(), &still, request, expected);
+    ASSERT_TRUE(expected.is_collide);
+    ASSERT_NEAR(result.time_of_contact, expected.time_of_contact, 1e-8);
+  }
+  EXPECT_GT(num_rounded, 0);
+}
+
 /// A motion that only its caller knows.
 class OwnMotion : public TranslationMotion<double> {
  public:

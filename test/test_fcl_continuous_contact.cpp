@@ -26,6 +26,8 @@ using Model = DeformableBVHModel<KDOP<double, 16>>;
 using Plain = BVHModel<OBBRSS<double>>;
 using Request = ContinuousContactRequest<double>;
 using Result = ContinuousContactResult<double>;
+using BaseRequest = ContinuousCollisionRequest<double>;
+using BaseResult = ContinuousCollisionResult<double>;
 using Kind = ContinuousContactKind;
 using Pose = Transform3<double>;
 
@@ -358,6 +360,29 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
     expectRefused(
         [&] { continuousCollide(o, here, broken, o, here, here, request, result); },
         "o1: the transform");
+    // Also where a rotation would be FCL's.
+    const auto rigid = makeModel<Plain>(kSheet);
+    Pose twisted = here;
+    twisted.linear()(1, 2) = value;
+    BaseResult base;
+    const TranslationMotion<double> turned(twisted, here);
+    const CollisionGeometry<double>* const meshes[] = {o, rigid.get()};
+    for (const auto* mesh : meshes) {
+      expectRefused(
+          [&] {
+            continuousCollide(mesh, here, here, o, here, twisted, BaseRequest(), base);
+          },
+          "o2: the transform");
+      expectRefused(
+          [&] { continuousCollide(mesh, &turned, o, &motion, BaseRequest(), base); },
+          "o1: the transform");
+      expectRefused(
+          [&] {
+            continuousCandidates(mesh, here, twisted, o, here, here,
+                                 [](const auto*, std::size_t) { return true; });
+          },
+          "o1: the transform");
+    }
   }
   const auto plain = makeModel<Plain>(kA0, kA1);
   plain->vertices[7][0] = nan;
@@ -441,12 +466,37 @@ struct Compiles<
         std::declval<const Pose&>(), std::declval<const CollisionGeometry<double>*>(),
         std::declval<const Pose&>(), std::declval<const Pose&>(),
         std::declval<const Request&>(), std::declval<Result&>()))>> : std::true_type {};
-using BaseRequest = ContinuousCollisionRequest<double>;
-using BaseResult = ContinuousCollisionResult<double>;
 static_assert(Compiles<BaseRequest, BaseResult>::value, "FCL's call");
 static_assert(Compiles<Request, Result>::value, "the call for contacts");
 static_assert(!Compiles<Request, BaseResult>::value, "would lose the contacts");
 static_assert(!Compiles<BaseRequest, Result>::value, "would leave the contacts empty");
+
+struct OwnRequest : Request {};
+struct OwnResult : Result {};
+static_assert(Compiles<OwnRequest, OwnResult>::value, "the caller's own types");
+static_assert(Compiles<OwnRequest, Result>::value, "one of them");
+static_assert(!Compiles<OwnRequest, BaseResult>::value, "would lose the contacts");
+static_assert(!Compiles<BaseRequest, OwnResult>::value, "would leave the contacts empty");
+
+// The result says which request is meant.
+TEST(ContinuousContacts, RequestsInBraces) {
+  const auto a = makeModel<Model>(kA0, kA1), b = makeModel<Model>(kB0, kB1);
+  const Pose pose = Pose::Identity();
+  BaseResult base;
+  Result result;
+  EXPECT_EQ(
+      continuousCollide(a.get(), pose, pose, b.get(), pose, pose, {}, base),
+      continuousCollide(a.get(), pose, pose, b.get(), pose, pose, BaseRequest(), base));
+  EXPECT_EQ(
+      continuousCollide(a.get(), pose, pose, b.get(), pose, pose, {100, 1e-5}, base),
+      continuousCollide(a.get(), pose, pose, b.get(), pose, pose, BaseRequest(100, 1e-5),
+                        base));
+  EXPECT_TRUE(base.is_collide);
+  continuousCollide(a.get(), pose, pose, b.get(), pose, pose, {}, result);
+  EXPECT_FALSE(result.contacts.empty());
+  continuousSelfCollide(a.get(), {}, base);
+  continuousSelfCollide(a.get(), {}, result);
+}
 
 TEST(ContinuousContacts, QueriesRunSideBySide) {
   const auto a = makeModel<Model>(kA0, kA1), b = makeModel<Model>(kB0, kB1);

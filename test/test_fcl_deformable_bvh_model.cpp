@@ -228,8 +228,10 @@ TYPED_TEST(DeformableModel, UpdateFramesTakesItsOwnArrays) {
 TYPED_TEST(DeformableModel, SkippedTreeServesContinuousQueries) {
   USING_FIXTURE;
   Model model;
+  EXPECT_FALSE(model.isFclTreeUpToDate());
   ASSERT_EQ(model.beginModel(), BVH_OK);
   ASSERT_EQ(model.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  EXPECT_FALSE(model.isFclTreeUpToDate());
   ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
   EXPECT_EQ(model.build_state, BVH_BUILD_STATE_BEGUN);
   EXPECT_THROW(model.getNodeType(), Exception);

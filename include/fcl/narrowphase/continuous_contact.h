@@ -108,8 +108,8 @@ using ContinuousContactRequestd = ContinuousContactRequest<double>;
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S> {
   /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
-  /// ContinuousQuery::kFirst those that may be the first: whose bracket begins before the
-  /// earliest end of a bracket; with kAny at most one.
+  /// ContinuousQuery::kFirst those that may be the first: whose bracket begins no later
+  /// than the earliest one ends; with kAny at most one.
   std::vector<ContinuousContact<S>> contacts;
 
   /// @brief Whether contacts were dropped because of num_max_contacts.

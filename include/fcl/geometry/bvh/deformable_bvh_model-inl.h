@@ -513,11 +513,17 @@ int DeformableBVHModel<BV>::updateFclTree() {
 
 template <typename BV>
 bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
-  if (isInStep()) return fcl_tree_up_to_date_;
-  if (isHalfUpdated()) return false;
+  return this->getNumBVs() > 0 && !isFclTreeBehind();
+}
+
+/// Whether FCL's tree, if there is any, is one of other frames or triangles.
+template <typename BV>
+bool DeformableBVHModel<BV>::isFclTreeBehind() const {
+  if (isInStep()) return !fcl_tree_up_to_date_;
+  if (isHalfUpdated()) return true;
   // Changed through the base class, which keeps its tree up to date, unless it never had
   // one: vertices were added after endModel(FclTree::kSkip).
-  return !(seal_.vertices && this->build_state == BVH_BUILD_STATE_BEGUN);
+  return seal_.vertices && this->build_state == BVH_BUILD_STATE_BEGUN;
 }
 
 template <typename BV>
@@ -536,7 +542,7 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
     throw Exception(
         "DeformableBVHModel: the last update failed, for want of memory or in an "
         "exception; give both frames first, through updateFrames() or a replacement");
-  if (!isFclTreeUpToDate())
+  if (isFclTreeBehind())
     throw Exception(
         "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
         "queries "

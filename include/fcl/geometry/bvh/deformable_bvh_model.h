@@ -13,7 +13,10 @@
 namespace fcl {
 
 /// @brief What a build or an update does with FCL's own tree, which discrete queries
-/// (collide, distance) need and continuous ones do not.
+/// (collide, distance) need and continuous ones do not. Of the broadphase managers the
+/// DynamicAABBTree ones ask the object that they are queried with, collide(&object, ...)
+/// or distance(&object, ...), for its node type: they throw as discrete queries do,
+/// whatever the callback does. Other queries of theirs, and other managers, do not.
 enum class FclTree {
   kUpdate,  ///< bring it up to date
   kSkip     ///< leave it; discrete queries throw until updateFclTree()
@@ -39,7 +42,8 @@ enum class FclTree {
 /// may be half done: until updateFrames(), updateTopology() or a replacement has given
 /// both frames, every query and copy of the model throws fcl::Exception and
 /// beginUpdateModel() is refused. beginModel() and the add... functions are FCL's own:
-/// called out of order they print, and beginModel() clears a model that is built.
+/// called out of order they print, and beginModel() of a model that is built clears it
+/// and returns an error; a second one begins.
 ///
 /// Inherited behaviour that differs from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
@@ -47,9 +51,9 @@ enum class FclTree {
 ///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN: FCL's tree is still to be
 ///   built;
 /// - prev_vertices is never null in a built model;
-/// - getNodeType() throws fcl::Exception while FCL's tree is out of date, or an update
-/// has
-///   failed: every discrete query of FCL starts with it;
+/// - getNodeType() throws fcl::Exception while FCL's tree is out of date
+/// (FclTree::kSkip),
+///   or an update has failed: every discrete query of FCL starts with it;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
 /// No update function of BVHModel is virtual. One called through a pointer or reference
@@ -81,7 +85,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
   /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
   /// coordinates that are not finite and vertex indices out of range
-  /// (BVH_ERR_INCORRECT_DATA); the model stays open for correction.
+  /// (BVH_ERR_INCORRECT_DATA); the model stays open: `vertices` and `tri_indices` may be
+  /// corrected in their places, more be added, and endModel() called again.
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
 
   /// @name Replace the current frame; both frames become equal (no motion).
@@ -109,7 +114,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// @param previous, current  num_vertices x 3 coordinates each (x y z x y z ...), model
   /// frame, copied; may be the model's own arrays.
   /// @param num_vertices  must equal the model's.
-  /// @param fcl_tree  whether FCL's own tree follows.
+  /// @param fcl_tree  whether FCL's own tree follows; see there what throws if not.
   int updateFrames(const S* previous, const S* current, std::size_t num_vertices,
                    FclTree fcl_tree = FclTree::kSkip);
 
@@ -139,7 +144,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// FCL's own.
   int updateFclTree();
 
-  /// @brief Whether FCL's own tree is up to date, that is, discrete queries are allowed.
+  /// @brief Whether FCL's own tree is built and up to date, that is, discrete queries are
+  /// allowed.
   bool isFclTreeUpToDate() const;
 
   /// @brief What the last refused call found, for example "vertex 17 of the current frame
@@ -183,6 +189,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int stage(const Vector3<S>* points, std::size_t count, Open expected);
   int close(Open expected, const char* caller);
   bool isHalfUpdated() const;
+  bool isFclTreeBehind() const;
   void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
   void seal();
