@@ -77,9 +77,11 @@ bool pairCandidates(const CollisionGeometry<S>* o1, const Placement<S>& placemen
   detail::require(o1, "o1");
   detail::require(o2, "o2");
   require(sink);
-  detail::requireFinite(*o1, placement1, *o2, placement2);
-  if (!detail::isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
+  if (!detail::isAnsweredHere(*o1, placement1.isRotating(), *o2,
+                              placement2.isRotating())) {
+    detail::requireFinite(*o1, placement1, *o2, placement2);
     throw Exception(std::string("candidates") + detail::kNotAnsweredHere);
+  }
   const PreparedMesh mesh1(*o1, placement1.beginning, placement1.end, "o1", 1,
                            FeatureOwners::kAlways);
   const PreparedMesh mesh2(*o2, placement2.beginning, placement2.end, "o2", 1,

@@ -269,12 +269,12 @@ S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
   if (areMeshes(*o1, *o2)) {
     const std::optional<Placement<S>> ends1 = placementOf(*motion1),
                                       ends2 = placementOf(*motion2);
-    if (ends1) requireFinite(*ends1, "o1");
-    if (ends2) requireFinite(*ends2, "o2");
     if (isAnsweredHere(*o1, isRotation(*motion1, ends1), *o2,
                        isRotation(*motion2, ends2)))
       return collideMeshes(*o1, ends1 ? *ends1 : integratedEnds(*motion1), *o2,
                            ends2 ? *ends2 : integratedEnds(*motion2), request, result);
+    if (ends1) requireFinite(*ends1, "o1");
+    if (ends2) requireFinite(*ends2, "o2");
   }
   return collideInFcl(o1, motion1, o2, motion2, request, result);
 }
@@ -285,9 +285,9 @@ S collideTransforms(const CollisionGeometry<S>* o1, const Placement<S>& placemen
                     const Request& request, Result& result) {
   require(o1, "o1");
   require(o2, "o2");
-  requireFinite(*o1, placement1, *o2, placement2);
   if (isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
     return collideMeshes(*o1, placement1, *o2, placement2, request, result);
+  requireFinite(*o1, placement1, *o2, placement2);
   const auto motionOf = [&request](const Placement<S>& placement) {
     return detail::stockMotion(placement.beginning, placement.end,
                                request.ccd_motion_type);

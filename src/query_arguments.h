@@ -51,7 +51,8 @@ bool areMeshes(const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2) {
          deformable::meshKindOf(o2) != deformable::MeshKind::kNotAMesh;
 }
 
-/// Of two meshes; all else is FCL's to look at.
+/// Of a pair for which isAnsweredHere() is false (a rotation that is not finite counts as
+/// one); the others are PreparedMesh's, and what is no mesh is FCL's.
 template <typename S>
 void requireFinite(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
                    const CollisionGeometry<S>& o2, const Placement<S>& placement2) {

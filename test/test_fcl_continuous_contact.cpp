@@ -494,8 +494,8 @@ TEST(ContinuousContacts, RequestsInBraces) {
   EXPECT_TRUE(base.is_collide);
   continuousCollide(a.get(), pose, pose, b.get(), pose, pose, {}, result);
   EXPECT_FALSE(result.contacts.empty());
-  continuousSelfCollide(a.get(), {}, base);
-  continuousSelfCollide(a.get(), {}, result);
+  EXPECT_EQ(continuousSelfCollide(a.get(), {}, base),
+            continuousSelfCollide(a.get(), {}, result));
 }
 
 TEST(ContinuousContacts, QueriesRunSideBySide) {
