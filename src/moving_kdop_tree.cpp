@@ -332,8 +332,9 @@ void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
 void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) const {
   node.count = from.count;
   std::copy(from.child, from.child + kWidth, node.child);
+  node.markTriangles();
   for (int lane = 0; lane < kWidth; ++lane) {
-    const bool is_triangle = lane < node.count && node.isTriangle(lane);
+    const bool is_triangle = (node.triangles >> lane & 1U) != 0;
     for (int k = 0; k < 3; ++k)
       node.places[k][lane] =
           is_triangle ? triangles_[static_cast<std::size_t>(node.triangle(lane))].place[k]

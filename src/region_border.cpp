@@ -244,6 +244,7 @@ void RegionBorder::makeNode(std::size_t i, std::size_t first, std::size_t last,
   MovingKdopNode& node = boxes_.nodes[i];
   node.count = count;
   std::copy(numbers, numbers + count, node.child);
+  node.markTriangles();
   for (int lane = 0; lane < count; ++lane) node.setBox(lane, boxes[lane]);
   // Nobody asks how far its edges go.
   std::fill(node.displacement, node.displacement + count,

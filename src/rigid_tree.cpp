@@ -318,6 +318,7 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, i);
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
+  out.markTriangles();
   (this->*volumes_.set_rows)(nodes, out);
   std::fill(out.displacement, out.displacement + kWidth, 0.f);
   out.clearRest();

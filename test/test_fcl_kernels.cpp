@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cfloat>
 #include <cmath>
 #include <cstdint>
@@ -619,6 +620,7 @@ MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
     node.setBox(lane, randomBounds(random, halves, scale));
     node.displacement[lane] = randomDisplacement(random, scale);
   }
+  node.markTriangles();
   return node;
 }
 
@@ -635,8 +637,7 @@ struct ExpectedPair {
   float lo;
 };
 
-// Two leaves or one with itself, moved against each other or not, with and without fans;
-// pairs come in ascending order.
+// Two leaves or one with itself, moved against each other or not, with and without fans.
 TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
@@ -672,7 +673,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
           embedded.insert(p);
         }
     }
-    const auto lanes = static_cast<unsigned>(random.next()) & a.triangles();
+    const auto lanes = static_cast<unsigned>(random.next()) & a.triangles;
     const OverlapRequest request =
         randomRequest(random, depthAtStart(a.box(0), b.box(b.count - 1)),
                       a.displacement[0] + b.displacement[b.count - 1]);
@@ -700,19 +701,24 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
       k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
                            has_fans ? table.data() : nullptr, request},
                           pairs);
-      ASSERT_EQ(pairs.size, expected.size()) << k->name;
+      std::uint64_t expected_bits = 0;
+      for (const ExpectedPair& pair : expected)
+        expected_bits |= std::uint64_t{1} << (kWidth * pair.a + pair.b);
+      ASSERT_EQ(pairs.pairs, expected_bits) << k->name;
       EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
+      EXPECT_EQ(pairs.compared,
+                static_cast<std::size_t>(b.count) * std::bitset<kWidth>(lanes).count())
+          << k->name;
       if (k == allSets().front()) first = pairs;
-      for (std::size_t n = 0; n < pairs.size; ++n) {
-        EXPECT_EQ(pairs.a[n], expected[n].a) << k->name;
-        EXPECT_EQ(pairs.b[n], expected[n].b) << k->name;
+      for (const ExpectedPair& pair : expected) {
+        const float earliest = pairs.earliest[pair.a][pair.b];
         if (request.timed)
-          EXPECT_EQ(pairs.earliest[n], expected[n].lo) << k->name;
+          EXPECT_EQ(earliest, pair.lo) << k->name;
         else
-          expectUntimed(pairs.earliest[n],
-                        shifted(a.box(expected[n].a), has_shift ? &shift : nullptr),
-                        b.box(expected[n].b), expected[n].lo);
-        EXPECT_EQ(std::memcmp(&pairs.earliest[n], &first.earliest[n], sizeof(float)), 0)
+          expectUntimed(earliest, shifted(a.box(pair.a), has_shift ? &shift : nullptr),
+                        b.box(pair.b), pair.lo);
+        EXPECT_EQ(std::memcmp(&earliest, &first.earliest[pair.a][pair.b], sizeof(float)),
+                  0)
             << k->name;
       }
       ASSERT_FALSE(HasFailure()) << k->name;

@@ -198,7 +198,7 @@ int countDisplaced(const detail::deformable::RigidTree& tree, int i) {
     if (node.isTriangle(lane)) continue;
     const int k = node.child[lane];
     tree.open(k, child);
-    is_displaced |= node.triangles() != 0 && child.triangles() == child.lanes() &&
+    is_displaced |= node.triangles != 0 && child.triangles == child.lanes() &&
                     (k - i) % detail::deformable::RigidTreeReader::kSlots == 0;
     count += countDisplaced(tree, k);
   }

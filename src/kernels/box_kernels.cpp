@@ -125,41 +125,28 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                          : overlapChildren<kInNode, false>(box, node, request, earliest);
 }
 
-/// Which of the node's triangles have one of `count` vertices (places in the tree).
-HWY_INLINE unsigned trianglesAt(const std::uint32_t* places, std::size_t count,
-                                const MovingKdopNode& node) {
-  const auto first = load<kEight>(node.places[0]), second = load<kEight>(node.places[1]),
-             third = load<kEight>(node.places[2]);
-  unsigned found = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto place = broadcast<kEight>(places[i]);
-    found |= bits((first == place) | (second == place) | (third == place));
-  }
-  return found;
-}
-
-/// The triangles of a node that lie in an embedded fan with a triangle of another.
+/// The triangles of node b that lie in an embedded fan with a triangle of node a.
 HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
                                     const MovingKdopNode& b,
                                     const std::uint8_t* embedded) {
-  std::uint32_t places[3];
-  std::size_t count = 0;
-  for (const auto& row : a.places) {
-    places[count] = row[lane];
-    count += embedded[row[lane]];
-  }
-  return trianglesAt(places, count, b);
+  const auto first = load<kEight>(b.places[0]), second = load<kEight>(b.places[1]),
+             third = load<kEight>(b.places[2]);
+  const auto at = [&](std::uint32_t vertex) {
+    // No place of a triangle where the fan is not embedded.
+    const auto place = broadcast<kEight>(vertex | (std::uint32_t{embedded[vertex]} - 1));
+    return (first == place) | (second == place) | (third == place);
+  };
+  return bits(at(a.places[0][lane]) | at(a.places[1][lane]) | at(a.places[2][lane]));
 }
 
 template <bool kShifted, bool kLeavesOut>
 HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
-  const unsigned triangles = b.triangles();
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
-    float earliest[MovingKdopNode::kWidth];
-    unsigned left = triangles;
+    unsigned left = b.triangles;
     if (&a == &b) left &= ~((2U << lane) - 1);
+    out.compared += static_cast<std::size_t>(b.count);
     if (left == 0) continue;
     if constexpr (kShifted) {
       float moved[2][16];
@@ -167,30 +154,27 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
         moved[0][r] = shifted(a.rows[r].t0[lane], leaves.shift[0][r]);
         moved[1][r] = shifted(a.rows[r].t1[lane], leaves.shift[1][r]);
       }
-      left &= overlapChildren<1, kLeavesOut>(
-          {moved[0], moved[1], 1, a.displacement[lane]}, b, leaves.request, earliest);
+      left &=
+          overlapChildren<1, kLeavesOut>({moved[0], moved[1], 1, a.displacement[lane]}, b,
+                                         leaves.request, out.earliest[lane]);
     } else {
       const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode,
                         a.displacement[lane]};
-      left &=
-          overlapChildren<BoxView::kInNode, kLeavesOut>(box, b, leaves.request, earliest);
+      left &= overlapChildren<BoxView::kInNode, kLeavesOut>(box, b, leaves.request,
+                                                            out.earliest[lane]);
     }
-    if (left != 0 && leaves.embedded) {
+    if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
       out.fan_culled += static_cast<std::size_t>(__builtin_popcount(fan));
       left &= ~fan;
     }
-    for (; left != 0; left &= left - 1, ++out.size) {
-      const int other = __builtin_ctz(left);
-      out.a[out.size] = static_cast<std::uint8_t>(lane);
-      out.b[out.size] = static_cast<std::uint8_t>(other);
-      out.earliest[out.size] = earliest[other];
-    }
+    out.pairs |= std::uint64_t{left} << (LanePairs::kWidth * lane);
   }
 }
 
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
-  out.size = out.fan_culled = 0;
+  out.pairs = 0;
+  out.compared = out.fan_culled = 0;
   if (leaves.request.leavesOut())
     leaves.shift ? overlapTriangles<true, true>(leaves, out)
                  : overlapTriangles<false, true>(leaves, out);

@@ -47,14 +47,12 @@ struct Points {
   template <typename Vertex>
   HWY_INLINE explicit Points(const Vertex& vertex) {
     for (std::size_t i = 0; i < 4; ++i) {
-      const double *rows0[kEight], *rows1[kEight];
-      for (std::size_t lane = 0; lane < kEight; ++lane) {
-        const TreeVertex& x = vertex(i, lane);
-        rows0[lane] = x.t0;
-        rows1[lane] = x.t1;
-      }
-      loadColumns(rows0, t0[i].x, t0[i].y, t0[i].z);
-      loadColumns(rows1, t1[i].x, t1[i].y, t1[i].z);
+      const TreeVertex* x[kEight];
+      for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);
+      loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, t0[i].x,
+                  t0[i].y, t0[i].z);
+      loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, t1[i].x,
+                  t1[i].y, t1[i].z);
     }
   }
 };
@@ -314,11 +312,11 @@ struct TrianglePoints {
 
   HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
     for (std::size_t i = 0; i < 6; ++i) {
-      const double* rows[kEight];
       // The last pair fills up the eight.
-      for (std::size_t lane = 0; lane < kEight; ++lane)
-        rows[lane] = pairs[lane < count ? lane : count - 1].x[i]->t0;
-      loadColumns(rows, x[i].x, x[i].y, x[i].z);
+      const auto row = [=](std::size_t lane) HWY_ATTR {
+        return pairs[lane < count ? lane : count - 1].x[i]->t0;
+      };
+      loadColumns(row, x[i].x, x[i].y, x[i].z);
     }
     norm = broadcast<kEight>(0.);
     for (std::size_t i = 6; i-- > 0;) {
@@ -354,9 +352,9 @@ unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* ap
 unsigned mayCrossOfEight(const EightCrossings& pairs) {
   Vectors x[5];
   for (std::size_t i = 0; i < 5; ++i) {
-    const double* rows[kEight];
-    for (std::size_t lane = 0; lane < kEight; ++lane) rows[lane] = pairs.x[i][lane]->t0;
-    loadColumns(rows, x[i].x, x[i].y, x[i].z);
+    const auto row = [&pairs, i](std::size_t lane)
+                         HWY_ATTR { return pairs.x[i][lane]->t0; };
+    loadColumns(row, x[i].x, x[i].y, x[i].z);
   }
   const auto& [p, q, a, b, c] = x;
   const Vectors v = b - a, w = c - a, normal = cross(v, w);

@@ -42,35 +42,51 @@ HWY_INLINE Vector sumOfLanes(const Vectors& a) {
   return {sumOfLanes(a.x), sumOfLanes(a.y), sumOfLanes(a.z)};
 }
 
-/// The spokes of a fan as differences to its center at one time, with room for whole
-/// lanes: a closed fan is followed by its first spoke, an open one by its last, so that
-/// what follows spans no triangle.
+/// The spokes of a fan, with room for whole lanes: a closed fan is followed by its first
+/// spoke, an open one by its last, so that what follows spans no triangle.
 class Spokes {
  public:
-  HWY_INLINE void set(std::size_t i, const double* spoke) { rows_[i] = spoke; }
+  HWY_INLINE Spokes(const TreeVertex* vertices, const TreeVertex& center,
+                    const VertexFan& fan, std::size_t num_blocks)
+      : center_(center) {
+    std::size_t i = 0;
+    for (; i < fan.count; ++i) spokes_[i] = vertices + fan.spokes[i];
+    const TreeVertex* next = spokes_[fan.is_closed ? 0 : i - 1];
+    for (; i <= num_blocks * kEight; ++i) spokes_[i] = next;
+  }
 
-  /// Eight from spoke i on.
-  HWY_INLINE Vectors from(std::size_t i, const double* center) const {
+  const TreeVertex& operator[](std::size_t i) const { return *spokes_[i]; }
+
+  /// Eight from spoke i on, as differences to the center, at t = 0 and at t = 1.
+  HWY_INLINE Vectors at0(std::size_t i) const {
+    const TreeVertex* const* from = spokes_ + i;
+    return minus(center_.t0,
+                 [from](std::size_t lane) HWY_ATTR { return from[lane]->t0; });
+  }
+  HWY_INLINE Vectors at1(std::size_t i) const {
+    const TreeVertex* const* from = spokes_ + i;
+    return minus(center_.t1,
+                 [from](std::size_t lane) HWY_ATTR { return from[lane]->t1; });
+  }
+
+ private:
+  template <typename Row>
+  HWY_INLINE Vectors minus(const double (&center)[4], const Row& spoke) const {
     Vectors p;
-    loadColumns(rows_ + i, p.x, p.y, p.z);
+    loadColumns(spoke, p.x, p.y, p.z);
     return {p.x - broadcast<kEight>(center[0]), p.y - broadcast<kEight>(center[1]),
             p.z - broadcast<kEight>(center[2])};
   }
 
- private:
-  const double* rows_[VertexFans::kMaxSpokes + kEight];
+  const TreeVertex& center_;
+  const TreeVertex* spokes_[VertexFans::kMaxSpokes + kEight];
 };
 
 bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
                    const VertexFan& fan) {
   if (fan.count < 2) return false;
   const std::size_t num_blocks = (fan.count + kEight - 1) / kEight;
-  Spokes spokes0, spokes1;
-  for (std::size_t i = 0; i <= num_blocks * kEight; ++i) {
-    const std::size_t k = i < fan.count ? i : fan.is_closed ? 0 : fan.count - 1;
-    spokes0.set(i, vertices[fan.spokes[k]].t0);
-    spokes1.set(i, vertices[fan.spokes[k]].t1);
-  }
+  const Spokes spokes(vertices, center, fan, num_blocks);
 
   constexpr std::size_t kMaxBlocks = VertexFans::kMaxSpokes / kEight;
   Vectors u0[kMaxBlocks], u1[kMaxBlocks];
@@ -78,10 +94,9 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
   Vector d = {0, 0, 0};
   Doubles norm = broadcast<kEight>(kLeastNorm);
   for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Vectors v0 = u0[b] = spokes0.from(b * kEight, center.t0),
-                  v1 = u1[b] = spokes1.from(b * kEight, center.t1),
-                  w0 = spokes0.from(b * kEight + 1, center.t0),
-                  w1 = spokes1.from(b * kEight + 1, center.t1);
+    const Vectors v0 = u0[b] = spokes.at0(b * kEight),
+                  v1 = u1[b] = spokes.at1(b * kEight), w0 = spokes.at0(b * kEight + 1),
+                  w1 = spokes.at1(b * kEight + 1);
     norm = max(norm, max(maxNorm(v0), maxNorm(v1)));
     first[b] = cross(v0, w0);
     middle[b] = cross(v0, w1) + cross(v1, w0);
@@ -107,15 +122,14 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
   // one.
   Vector r = {0, 0, 0};
   if (fan.is_closed) {
-    const Vector p = difference(vertices[fan.spokes[0]].t0, center.t0),
-                 q = difference(vertices[fan.spokes[1]].t0, center.t0);
+    const Vector p = difference(spokes[0].t0, center.t0),
+                 q = difference(spokes[1].t0, center.t0);
     const double a = maxNorm(p), b = maxNorm(q);
     r = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
   } else {
     for (std::size_t i = 0; i < fan.count; ++i) {
-      const TreeVertex& spoke = vertices[fan.spokes[i]];
-      const Vector p = difference(center.t0, spoke.t0),
-                   q = difference(center.t1, spoke.t1);
+      const Vector p = difference(center.t0, spokes[i].t0),
+                   q = difference(center.t1, spokes[i].t1);
       r = {r.x + (p.x + q.x), r.y + (p.y + q.y), r.z + (p.z + q.z)};
     }
   }
@@ -125,19 +139,23 @@ bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
   const Doubles bound = broadcast<kEight>(kRayBound * ray_size);
   const Doubles minus_bound = broadcast<kEight>(-kRayBound * ray_size);
   // Spokes that lie before and after the ray beyond doubt, turning the fan's way.
-  unsigned before0 = 0, after0 = 0, before1 = 0, after1 = 0;
+  unsigned before0 = 0, after0 = 0;
   for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Doubles g0 = dot(u0[b], e), g1 = dot(u1[b], e);
-    before0 |= bits(g0 > bound) << (b * kEight);
-    after0 |= bits(g0 < minus_bound) << (b * kEight);
-    before1 |= bits(g1 > bound) << (b * kEight);
-    after1 |= bits(g1 < minus_bound) << (b * kEight);
+    const Doubles g = dot(u0[b], e);
+    before0 |= bits(g > bound) << (b * kEight);
+    after0 |= bits(g < minus_bound) << (b * kEight);
   }
   if (fan.is_closed) {
     if (((before0 | after0) & triangles_bits) != triangles_bits) return false;
     const unsigned after_next = (after0 & triangles_bits) >> 1 | (after0 & 1U)
                                                                      << (fan.count - 1);
     return __builtin_popcount(before0 & after_next & triangles_bits) == 1;
+  }
+  unsigned before1 = 0, after1 = 0;
+  for (std::size_t b = 0; b < num_blocks; ++b) {
+    const Doubles g = dot(u1[b], e);
+    before1 |= bits(g > bound) << (b * kEight);
+    after1 |= bits(g < minus_bound) << (b * kEight);
   }
   // A sector misses the ray while its first spoke is after it or its last one before.
   const unsigned misses = (after0 & after1) | (before0 & before1) >> 1;

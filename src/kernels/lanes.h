@@ -32,6 +32,14 @@ namespace HWY_NAMESPACE {
 
 constexpr std::size_t kEight = 8;
 
+#undef FCL_CCD_IS_X86
+#if defined(FCL_CCD_USE_HIGHWAY) && HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && \
+    HWY_TARGET != HWY_EMU128
+#define FCL_CCD_IS_X86 1
+#else
+#define FCL_CCD_IS_X86 0
+#endif
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -262,38 +270,64 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// Columns k and k + 1 of every second row, row after row.
-template <typename Tag, typename T>
-HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const T* const* rows, std::size_t k) {
+/// Columns k and k + 1 of every second row, from row i on, row after row.
+template <typename Tag, typename Row>
+HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const Row& row, std::size_t i, std::size_t k) {
   if constexpr (hn::MaxLanes(Tag()) == 2) {
-    return hn::LoadU(tag, rows[0] + k);
+    return hn::LoadU(tag, row(i) + k);
   } else {
     const hn::Half<Tag> half;
-    return hn::Combine(tag, loadTwos(half, rows + hn::MaxLanes(half), k),
-                       loadTwos(half, rows, k));
+    return hn::Combine(tag, loadTwos(half, row, i + hn::MaxLanes(half), k),
+                       loadTwos(half, row, i, k));
+  }
+}
+
+/// The sum of the lanes, the upper half of what is left added to the lower one.
+template <typename Tag>
+HWY_INLINE hn::TFromD<Tag> sumOfHalves(Tag, const hn::Vec<Tag>& a) {
+  if constexpr (hn::MaxLanes(Tag()) == 1) {
+    return hn::GetLane(a);
+  } else {
+    const hn::Half<Tag> half;
+    return sumOfHalves(half, hn::Add(hn::LowerHalf(half, a), hn::UpperHalf(half, a)));
   }
 }
 #endif
 
 /// Columns 0, 1 and 2 of N rows of four.
-template <typename T, std::size_t N>
-HWY_INLINE void loadColumns(const T* const* rows, Lanes<T, N>& x, Lanes<T, N>& y,
+/// @param row  row(i) points to row i
+template <typename Row, typename T, std::size_t N>
+HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
                             Lanes<T, N>& z) {
   const typename Lanes<T, N>::Tag tag;
   FCL_CCD_FOR_PARTS {
-    const T* const* first = rows + p * Lanes<T, N>::kWidth;
+    const std::size_t i = p * Lanes<T, N>::kWidth;
 #if HWY_TARGET == HWY_SCALAR
-    x.part[p] = hn::LoadU(tag, first[0]);
-    y.part[p] = hn::LoadU(tag, first[0] + 1);
-    z.part[p] = hn::LoadU(tag, first[0] + 2);
+    x.part[p] = hn::LoadU(tag, row(i));
+    y.part[p] = hn::LoadU(tag, row(i) + 1);
+    z.part[p] = hn::LoadU(tag, row(i) + 2);
 #else
-    const auto even = loadTwos(tag, first, 0), odd = loadTwos(tag, first + 1, 0);
+    const auto even = loadTwos(tag, row, i, 0), odd = loadTwos(tag, row, i + 1, 0);
     x.part[p] = hn::InterleaveLower(tag, even, odd);
     y.part[p] = hn::InterleaveUpper(tag, even, odd);
     z.part[p] =
-        hn::InterleaveLower(tag, loadTwos(tag, first, 2), loadTwos(tag, first + 1, 2));
+        hn::InterleaveLower(tag, loadTwos(tag, row, i, 2), loadTwos(tag, row, i + 1, 2));
 #endif
   }
+}
+
+/// In the same order everywhere.
+HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
+  using Parts = Lanes<double, kEight>;
+  Parts sum = a;
+  for (std::size_t half = Parts::kParts / 2; half > 0; half /= 2)
+    for (std::size_t p = 0; p < half; ++p)
+      sum.part[p] = hn::Add(sum.part[p], sum.part[p + half]);
+#if HWY_TARGET == HWY_SCALAR
+  return hn::GetLane(sum.part[0]);
+#else
+  return sumOfHalves(Parts::Tag(), sum.part[0]);
+#endif
 }
 
 #undef FCL_CCD_FOR_PARTS
@@ -456,37 +490,42 @@ inline T largest(const Lanes<T, N>& a) {
   return most;
 }
 
-template <typename T, std::size_t N>
-inline void loadColumns(const T* const* rows, Lanes<T, N>& x, Lanes<T, N>& y,
-                        Lanes<T, N>& z) {
+template <typename Row, typename T, std::size_t N>
+inline void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y, Lanes<T, N>& z) {
   FCL_CCD_FOR_LANES {
-    x.lane[i] = rows[i][0];
-    y.lane[i] = rows[i][1];
-    z.lane[i] = rows[i][2];
+    x.lane[i] = row(i)[0];
+    y.lane[i] = row(i)[1];
+    z.lane[i] = row(i)[2];
   }
+}
+
+inline double sumOfLanes(const Lanes<double, kEight>& a) {
+  const double(&x)[kEight] = a.lane;
+  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
 
 #undef FCL_CCD_FOR_LANES
 
 #endif  // FCL_CCD_USE_HIGHWAY
 
-/// The larger (smaller) of two; b where one is a NaN. Not Highway's, whose answer to a
-/// NaN depends on the target.
+/// The larger (smaller) of two; b where one is a NaN. Highway's answer to a NaN depends
+/// on the target, and is this one where the machine has an instruction of x86 for it.
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> max(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+#if FCL_CCD_IS_X86
+  return larger(a, b);
+#else
   return select(a > b, a, b);
+#endif
 }
 
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> min(const Lanes<T, N>& a, const Lanes<T, N>& b) {
+#if FCL_CCD_IS_X86
+  return smaller(a, b);
+#else
   return select(a < b, a, b);
-}
-
-/// In the same order everywhere.
-HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
-  double x[kEight];
-  store(a, x);
-  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
+#endif
 }
 
 using Floats = Lanes<float, kEight>;

@@ -67,25 +67,26 @@ struct EdgePairs {
   Vectors v, w;
 };
 
-HWY_INLINE EdgePairs edgesOf(const double* const (&rows)[3][kEight]) {
-  Vectors a, b, c;
-  loadColumns(rows[0], a.x, a.y, a.z);
-  loadColumns(rows[1], b.x, b.y, b.z);
-  loadColumns(rows[2], c.x, c.y, c.z);
-  return {b - a, c - a};
+/// @param row  row(k, i) points to vertex k of triangle i
+template <typename Row>
+HWY_INLINE EdgePairs edgesOf(const Row& row) {
+  Vectors x[3];
+  for (std::size_t k = 0; k < 3; ++k)
+    loadColumns([&row, k](std::size_t i) HWY_ATTR { return row(k, i); }, x[k].x, x[k].y,
+                x[k].z);
+  return {x[1] - x[0], x[2] - x[0]};
 }
 
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count) {
-  const double* rows0[3][kEight];
-  const double* rows1[3][kEight];
+  const TreeVertex* x[3][kEight];
   for (std::size_t i = 0; i < kEight; ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const TreeVertex& x = vertices[triangles[i < count ? i : 0].place[k]];
-      rows0[k][i] = x.t0;
-      rows1[k][i] = x.t1;
-    }
-  const EdgePairs e0 = edgesOf(rows0), e1 = edgesOf(rows1);
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+  const EdgePairs e0 = edgesOf([&x](std::size_t k, std::size_t i)
+                                   HWY_ATTR { return x[k][i]->t0; }),
+                  e1 = edgesOf([&x](std::size_t k, std::size_t i)
+                                   HWY_ATTR { return x[k][i]->t1; });
   MovingNormals n;
   n.first = cross(e0.v, e0.w);
   n.middle = cross(e0.v, e1.w) + cross(e1.v, e0.w);

@@ -77,14 +77,15 @@ struct LeafPairing {
 
 /// @brief Pairs of children of two nodes, and from when on they overlap.
 struct LanePairs {
-  static constexpr std::size_t kMax =
-      std::size_t{MovingKdopNode::kWidth} * MovingKdopNode::kWidth;
-  std::size_t size;
+  static constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+  /// Child i of one and j of the other: bit kWidth * i + j.
+  std::uint64_t pairs;
+  /// For those that are set.
+  float earliest[kWidth][kWidth];
+  /// Boxes that were compared.
+  std::size_t compared;
   /// Pairs that overlap and lie in an embedded fan.
   std::size_t fan_culled;
-  std::uint8_t a[kMax];
-  std::uint8_t b[kMax];
-  float earliest[kMax];
 };
 
 /// @brief Two triangles: vertices 0-2 are a's, 3-5 b's.

@@ -38,6 +38,8 @@ struct alignas(64) MovingKdopNode {
   /// >= 0: a node; < 0: ~triangle. The first `count` are in use.
   std::int32_t child[kWidth];
   std::int32_t count;
+  /// Lanes that are triangles, a bit each: markTriangles().
+  std::uint32_t triangles;
 
   bool isTriangle(int lane) const { return child[lane] < 0; }
   int triangle(int lane) const { return ~child[lane]; }
@@ -45,11 +47,11 @@ struct alignas(64) MovingKdopNode {
   /// @brief Lanes that are in use, a bit each.
   unsigned lanes() const { return (1U << count) - 1; }
 
-  /// @brief Those of them that are triangles.
-  unsigned triangles() const {
-    unsigned found = 0;
-    for (unsigned i = 0; i < kWidth; ++i) found |= unsigned{child[i] < 0} << i;
-    return found & lanes();
+  /// @brief To be called when the children are set.
+  void markTriangles() {
+    triangles = 0;
+    for (int lane = 0; lane < count; ++lane)
+      triangles |= unsigned{isTriangle(lane)} << lane;
   }
 
   /// @brief Half-axis of Kdop16 that a row holds.

@@ -56,19 +56,13 @@ class WorkList {
   std::size_t size_{0};
 };
 
-/// @brief Sizes by which the larger of two boxes is opened, of all children: extents
-/// along the axes at t = 0.
-struct ChildExtents {
-  float of[MovingKdopNode::kWidth];
-
-  explicit ChildExtents(const MovingKdopNode& node) {
-    for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane)
-      of[lane] = node.rows[0].t0[lane];
-    for (int r = 1; r < 6; ++r)
-      for (int lane = 0; lane < MovingKdopNode::kWidth; ++lane)
-        of[lane] += node.rows[r].t0[lane];
-  }
-};
+/// @brief Size of a child, by which the larger of two is opened: the extents along the
+/// axes at t = 0.
+inline float extentOf(const MovingKdopNode& node, int lane) {
+  float sum = node.rows[0].t0[lane];
+  for (int r = 1; r < 6; ++r) sum += node.rows[r].t0[lane];
+  return sum;
+}
 
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
@@ -141,7 +135,7 @@ class Traversal {
   /// if four of its children are triangles.
   static constexpr std::size_t maxPairs() {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-    std::size_t most = LanePairs::kMax;
+    std::size_t most = kWidth * kWidth;
     for (std::size_t i = 1; kSelf && i <= kWidth; ++i)
       most = std::max(most, i * (i - 1) / 2 + i * (kWidth - i) * kWidth);
     return most;
@@ -167,8 +161,7 @@ class Traversal {
   void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
     // A node of a reader is valid until another is asked for, which compare() does: there
     // it is asked for anew, and as both trees' node.
-    const unsigned lanes = tree_a_.node(i).lanes(),
-                   triangles = tree_a_.node(i).triangles();
+    const unsigned lanes = tree_a_.node(i).lanes(), triangles = tree_a_.node(i).triangles;
     if (triangles)
       visitTriangles<false>(tree_a_.node(i), triangles, tree_a_.node(i), visit);
     for (int lane = 0; lanes >> lane != 0; ++lane) {
@@ -189,7 +182,7 @@ class Traversal {
                const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
                Visit& visit) {
     const bool is_triangle = parent.isTriangle(lane);
-    const unsigned triangles = node.triangles();
+    const unsigned triangles = node.triangles;
     if (is_triangle) {
       if (triangles & lanes) visitTriangles<kSwapped>(parent, 1U << lane, node, visit);
       lanes &= ~triangles & node.lanes();
@@ -211,19 +204,18 @@ class Traversal {
     if (left == 0) return;
     // The parent is not looked at again: its child may take its place.
     const std::int32_t mine = parent.child[lane];
-    const float size = is_triangle ? 0.f : ChildExtents(parent).of[lane];
+    const float size = is_triangle ? 0.f : extentOf(parent, lane);
     if (!is_triangle && (left & triangles)) {
       const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
-      if (child.triangles() == child.lanes()) {
+      if (child.triangles == child.lanes()) {
         visitTriangles<!kSwapped>(node, left & triangles, child, visit);
         left &= ~triangles;
       }
     }
-    const ChildExtents extents(node);
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
-      const float other = both_nodes ? extents.of[k] : 0.f;
+      const float other = both_nodes ? extentOf(node, k) : 0.f;
       if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
           axes_->areApart(kSwapped ? node.child[k] : mine,
                           kSwapped ? mine : node.child[k]))
@@ -240,14 +232,17 @@ class Traversal {
   template <bool kSwapped, typename Visit>
   void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
                       const MovingKdopNode& theirs, Visit& visit) {
-    compared_ += numBits(lanes) * static_cast<std::uint64_t>(theirs.count);
     kernels_.overlapTriangles(
         {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, request_},
         pairs_);
+    compared_ += pairs_.compared;
     fan_culled_ += pairs_.fan_culled;
-    for (std::size_t i = 0; i < pairs_.size; ++i) {
-      const int x = mine.triangle(pairs_.a[i]), y = theirs.triangle(pairs_.b[i]);
-      kSwapped ? visit(y, x, pairs_.earliest[i]) : visit(x, y, pairs_.earliest[i]);
+    for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
+      const int pair = __builtin_ctzll(left);
+      const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
+      const int x = mine.triangle(i), y = theirs.triangle(j);
+      const float earliest = pairs_.earliest[i][j];
+      kSwapped ? visit(y, x, earliest) : visit(x, y, earliest);
     }
   }
 
