@@ -129,16 +129,6 @@ FeatureBatch::List::List(std::size_t pairs_each)
     : codes(new std::uint32_t[kMaxPairs * pairs_each + 16]),
       windows(new TimeWindow[kMaxPairs * pairs_each]) {}
 
-/// Those that the triangle owns and that share no vertex with the other one.
-unsigned FeatureBatch::ownedEdges(const TrianglePair& pair, unsigned shared) {
-  // Vertices of a that are b's too, and the reverse.
-  const unsigned shared_a =
-      (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
-  const unsigned shared_b = (shared | shared >> 3 | shared >> 6) & 7U;
-  return (pair.a->owned >> 3 & 7U & ~edgesAt(shared_a)) |
-         (pair.b->owned >> 3 & 7U & ~edgesAt(shared_b)) << 3;
-}
-
 void FeatureBatch::clear() {
   num_pairs_ = num_crossings_ = 0;
   has_edges_ = false;

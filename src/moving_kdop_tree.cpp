@@ -98,10 +98,10 @@ void bound(const MovingKdopNode& node, MovingKdop& out) {
   for (int q = 0; q < 4; ++q) {
     Float4 t0[4], t1[4];
     for (int i = 0; i < 4; ++i) {
-      const MovingKdopNode::Row& row = node.rows[MovingKdopNode::rowOf(4 * q + i)];
+      const int r = MovingKdopNode::rowOf(4 * q + i);
       // Lanes that are not in use are below all others.
-      t0[i] = larger(load(row.t0), load(row.t0 + 4));
-      t1[i] = larger(load(row.t1), load(row.t1 + 4));
+      t0[i] = larger(load(node.t0[r]), load(node.t0[r] + 4));
+      t1[i] = larger(load(node.t1[r]), load(node.t1[r] + 4));
     }
     transpose(t0);
     transpose(t1);
@@ -131,9 +131,9 @@ void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node,
       transpose(t0);
       transpose(t1);
       for (int i = 0; i < 4; ++i) {
-        MovingKdopNode::Row& row = node.rows[MovingKdopNode::rowOf(4 * q + i)];
-        store(t0[i], row.t0 + lane);
-        store(t1[i], row.t1 + lane);
+        const int r = MovingKdopNode::rowOf(4 * q + i);
+        store(t0[i], node.t0[r] + lane);
+        store(t1[i], node.t1[r] + lane);
         sum += t0[i] + t1[i];
       }
     }

@@ -86,9 +86,9 @@ void requireFinite(const Vector3<S>* vertices, int count, const std::string& wha
 bool areBoxesBounded(const MovingKdopTree& tree) {
   const MovingKdopNode& root = tree.node(0);
   float most = 0;
-  for (const MovingKdopNode::Row& row : root.rows)
+  for (int r = 0; r < 16; ++r)
     for (int lane = 0; lane < root.count; ++lane)
-      most = std::max(most, std::max(row.t0[lane], row.t1[lane]));
+      most = std::max(most, std::max(root.t0[r][lane], root.t1[r][lane]));
   return std::isfinite(most);
 }
 

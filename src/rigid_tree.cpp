@@ -164,8 +164,8 @@ void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
     for (int k = 0; k < 3; ++k) alongDirections(boxes.half_axis[k], axis[k]);
     for (int j = 0; j < 8; ++j) {
       const Float4 spread = abs(axis[0][j]) + abs(axis[1][j]) + abs(axis[2][j]);
-      store(spread - center[j], out.rows[2 * j].t0 + q);
-      store(spread + center[j], out.rows[2 * j + 1].t0 + q);
+      store(spread - center[j], out.t0[2 * j] + q);
+      store(spread + center[j], out.t0[2 * j + 1] + q);
     }
   }
 }
@@ -268,8 +268,8 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
       for (int lane = 0; lane < kWidth; ++lane) {
         const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
         for (int j = 0; j < 8; ++j) {
-          out.rows[2 * j].t0[lane] = static_cast<float>(origin[j] - slabs.lo[j]);
-          out.rows[2 * j + 1].t0[lane] = static_cast<float>(slabs.hi[j] - origin[j]);
+          out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
+          out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
         }
       }
       // The bounds along x, y, z are those of coordinates, without error; a sum of two
@@ -302,13 +302,13 @@ void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
     // Along x, y and z: the center's distance from the origin and half the width.
     Float4 size{};
     for (int r = 0; r < 6; r += 2)
-      size += larger(abs(load(out.rows[r].t0 + q)), abs(load(out.rows[r + 1].t0 + q)));
+      size += larger(abs(load(out.t0[r] + q)), abs(load(out.t0[r + 1] + q)));
     const Float4 pad = size * rounding + (size + origin_size_) * slack + FLT_MIN;
-    for (MovingKdopNode::Row& row : out.rows) {
-      const Float4 half = load(row.t0 + q);
+    for (int r = 0; r < 16; ++r) {
+      const Float4 half = load(out.t0[r] + q);
       const Float4 up = bounded(half + (abs(half) * kOutward + pad));
-      store(up, row.t0 + q);
-      store(up, row.t1 + q);
+      store(up, out.t0[r] + q);
+      store(up, out.t1[r] + q);
     }
   }
 }

@@ -147,8 +147,8 @@ class MovingKdopTree::TopologyUpdate {
         float distance = 0;
         for (int k = 0; k < 3; ++k) {
           const float x = 0.25f * place[k];
-          distance += std::max(0.f, std::max(-x - node.rows[2 * k].t1[lane],
-                                             x - node.rows[2 * k + 1].t1[lane]));
+          distance += std::max(
+              0.f, std::max(-x - node.t1[2 * k][lane], x - node.t1[2 * k + 1][lane]));
         }
         if (nearest >= 0 && !(distance < least)) continue;
         nearest = lane;

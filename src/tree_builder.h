@@ -86,8 +86,9 @@ inline float placeOf(double coordinate) {
 /// @brief Four times the center of a child's box, over both frames.
 inline void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
   for (int k = 0; k < 3; ++k) {
-    const MovingKdopNode::Row &lo = node.rows[2 * k], &hi = node.rows[2 * k + 1];
-    place[k] = placeOf(double{(hi.t0[lane] - lo.t0[lane]) + (hi.t1[lane] - lo.t1[lane])});
+    const int lo = 2 * k, hi = lo + 1;
+    place[k] = placeOf(double{(node.t0[hi][lane] - node.t0[lo][lane]) +
+                              (node.t1[hi][lane] - node.t1[lo][lane])});
   }
 }
 

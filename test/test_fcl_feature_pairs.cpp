@@ -201,8 +201,40 @@ TEST(FCL_FEATURE_PAIRS, ownedPairsByDefinition) {
                                : first.ownsVertex(pair.first) && second.ownsFace();
         expected |= unsigned{owned} << bit;
       }
-      ASSERT_EQ(ownedPairs(a, b, 0), expected) << a << ' ' << b;
+      ASSERT_EQ(ownedPairs(a, b), expected) << a << ' ' << b;
+      unsigned expected_edges = 0;
+      for (unsigned k = 0; k < 3; ++k)
+        expected_edges |= unsigned{ta.ownsEdge(k)} << k | unsigned{tb.ownsEdge(k)}
+                                                              << (3 + k);
+      ASSERT_EQ(ownedEdges(a, b), expected_edges) << a << ' ' << b;
     }
+}
+
+// What two triangles share that have common vertices, each two of them or none.
+TEST(FCL_FEATURE_PAIRS, pairsAndEdgesAtSharedVertices) {
+  for (unsigned shared = 0; shared < 1U << 9; ++shared) {
+    const auto isShared = [shared](unsigned i, unsigned j) {
+      return (shared >> (3 * i + j) & 1U) != 0;
+    };
+    unsigned pairs = 0, edges = 0;
+    for (int bit = 0; bit < kNumFeaturePairs; ++bit) {
+      // Two points to the left of a pair of edges, one to the left of a vertex and a
+      // face.
+      const unsigned char(&x)[4] = kFeaturePoints[bit];
+      const int left = bit < kNumVertexFacePairs ? 1 : 2;
+      for (int p = 0; p < left; ++p)
+        for (int q = left; q < 4; ++q)
+          if (isShared(std::min(x[p], x[q]), std::max(x[p], x[q]) - 3U))
+            pairs |= 1U << bit;
+    }
+    for (unsigned k = 0; k < 3; ++k)
+      for (unsigned end = k; end < k + 2; ++end)
+        for (unsigned other = 0; other < 3; ++other)
+          edges |= unsigned{isShared(end % 3, other)} << k |
+                   unsigned{isShared(other, end % 3)} << (3 + k);
+    ASSERT_EQ(pairsAt(shared), pairs) << shared;
+    ASSERT_EQ(edgesAtBoth(shared), edges) << shared;
+  }
 }
 
 TEST(FCL_FEATURE_PAIRS, pointsOfPairs) {

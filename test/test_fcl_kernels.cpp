@@ -358,8 +358,8 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
     const OverlapRequest request = randomRequest(random, depthAtStart(box, node.box(0)),
                                                  moved + node.displacement[0]);
     for (const BoxView& view :
-         {rows.view(moved), BoxView{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane],
-                                    2 * kWidth, moved}}) {
+         {rows.view(moved),
+          BoxView{&parent.t0[0][lane], &parent.t1[0][lane], kWidth, moved}}) {
       expectRightChildren(view, box, node, tally);
       expectRightRequest(view, box, node, request, left_out);
     }

@@ -474,8 +474,9 @@ void expectSameModel(const Model& x, const Model& y) {
   ASSERT_EQ(a.numNodes(), b.numNodes());
   for (int i = 0; i < static_cast<int>(a.numNodes()); ++i) {
     const auto &p = a.node(i), &q = b.node(i);
-    ASSERT_TRUE(areSame(p.rows, q.rows) && areSame(p.places, q.places) &&
-                areSame(p.child, q.child) && p.count == q.count)
+    ASSERT_TRUE(areSame(p.t0, q.t0) && areSame(p.t1, q.t1) &&
+                areSame(p.places, q.places) && areSame(p.child, q.child) &&
+                p.count == q.count)
         << "node " << i;
   }
   ASSERT_EQ(a.triangles().size(), b.triangles().size());

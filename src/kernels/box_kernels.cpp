@@ -63,7 +63,7 @@ HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
                                  const OverlapRequest& request, unsigned& apart) {
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
-    s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
+    s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
   // The least, two by two: each of a chain of sixteen would wait for the one before.
   for (std::size_t half = 8; half > 0; half /= 2)
     for (std::size_t r = 0; r < half; ++r) s[r] = smaller(s[r], s[r + half]);
@@ -94,8 +94,8 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
   Floats apart = broadcast<kEight>(1.f), cut0 = apart, cut1 = apart;
   for (std::size_t r = 0; r < kRows; ++r) {
     // Row r ^ 1 is the opposite half-axis.
-    s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.rows[r ^ 1].t0);
-    s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.rows[r ^ 1].t1);
+    s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
+    s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.t1[r ^ 1]);
     apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
     cut0 = eitherNegative(cut0, s0[r]);
     cut1 = eitherNegative(cut1, s1[r]);
@@ -151,14 +151,14 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
     if constexpr (kShifted) {
       float moved[2][16];
       for (std::size_t r = 0; r < 16; ++r) {
-        moved[0][r] = shifted(a.rows[r].t0[lane], leaves.shift[0][r]);
-        moved[1][r] = shifted(a.rows[r].t1[lane], leaves.shift[1][r]);
+        moved[0][r] = shifted(a.t0[r][lane], leaves.shift[0][r]);
+        moved[1][r] = shifted(a.t1[r][lane], leaves.shift[1][r]);
       }
       left &=
           overlapChildren<1, kLeavesOut>({moved[0], moved[1], 1, a.displacement[lane]}, b,
                                          leaves.request, out.earliest[lane]);
     } else {
-      const BoxView box{&a.rows[0].t0[lane], &a.rows[0].t1[lane], BoxView::kInNode,
+      const BoxView box{&a.t0[0][lane], &a.t1[0][lane], BoxView::kInNode,
                         a.displacement[lane]};
       left &= overlapChildren<BoxView::kInNode, kLeavesOut>(box, b, leaves.request,
                                                             out.earliest[lane]);

@@ -23,9 +23,10 @@ class SweptTree {
     nodes_.reserve(tree.numNodes());
     for (std::size_t i = 0; i < tree.numNodes(); ++i) {
       detail::deformable::MovingKdopNode node = tree.node(static_cast<int>(i));
-      for (detail::deformable::MovingKdopNode::Row& row : node.rows)
+      for (int r = 0; r < 16; ++r)
         for (int lane = 0; lane < node.count; ++lane)
-          row.t0[lane] = row.t1[lane] = std::max(row.t0[lane], row.t1[lane]);
+          node.t0[r][lane] = node.t1[r][lane] =
+              std::max(node.t0[r][lane], node.t1[r][lane]);
       nodes_.push_back(node);
     }
   }

@@ -52,13 +52,12 @@ class MeshConnectivity {
 
   /// @brief Of two triangles every pair of features without a common vertex.
   unsigned allPairs(int i, int j) const {
-    return detail::deformable::ownedPairs(present(i), present(j),
-                                          areAdjacent(i, j) ? shared(i, j) : 0U);
+    return withoutShared(i, j, detail::deformable::ownedPairs(present(i), present(j)));
   }
   /// @brief Those of them that they own: over all triangles, each pair of features once.
   unsigned ownedPairs(int i, int j) const {
-    return detail::deformable::ownedPairs(triangle(i).owned, triangle(j).owned,
-                                          areAdjacent(i, j) ? shared(i, j) : 0U);
+    return withoutShared(
+        i, j, detail::deformable::ownedPairs(triangle(i).owned, triangle(j).owned));
   }
 
   /// @brief Of two triangles that are not adjacent the pairs of features that they test
@@ -87,6 +86,11 @@ class MeshConnectivity {
   }
   Range aroundEdge(std::uint32_t e) const {
     return around(edge_starts_, edge_triangles_, e);
+  }
+
+  /// Those of the pairs of features that share no vertex.
+  unsigned withoutShared(int i, int j, unsigned pairs) const {
+    return areAdjacent(i, j) ? pairs & ~detail::deformable::pairsAt(shared(i, j)) : pairs;
   }
 
   detail::deformable::ThreeIds ids(int i) const {

@@ -104,13 +104,16 @@ class FeatureBatch {
     TrianglePair& pair = pairs_[num_pairs_];
     pair.a = reader_a_.read(i, pair.x);
     pair.b = reader_b_.read(j, pair.x + 3);
-    const bool do_share = self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b));
-    const unsigned shared = do_share ? sharedVertices(pair.a->id, pair.b->id) : 0U;
-    const unsigned owned = ownedPairs(pair.a->owned, pair.b->owned, shared);
+    unsigned owned = ownedPairs(pair.a->owned, pair.b->owned);
+    unsigned edges = ownedEdges(pair.a->owned, pair.b->owned) & (0U - with_crossing);
     ++counts.triangle_pairs;
-    counts.adjacent_pairs += do_share;
+    if (self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b))) {
+      const unsigned shared = sharedVertices(pair.a->id, pair.b->id);
+      owned &= ~pairsAt(shared);
+      edges &= ~edgesAtBoth(shared);
+      ++counts.adjacent_pairs;
+    }
     owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
-    const unsigned edges = with_crossing ? ownedEdges(pair, shared) : 0U;
     edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
     has_edges_ |= edges != 0;
     // Three pairs of ten own nothing together: no branch, nobody could foretell it.
@@ -170,7 +173,6 @@ class FeatureBatch {
   const List& list(FeatureKind kind) const {
     return lists_[kind == FeatureKind::kEdgeEdge];
   }
-  static unsigned ownedEdges(const TrianglePair& pair, unsigned shared);
   void leaveOutApart(double latest, StageCounts& counts);
   void cull(FeatureKind kind, double latest, List& list, StageCounts& counts);
 

@@ -110,16 +110,33 @@ constexpr OwnedParts makeOwnedParts() {
 
 constexpr OwnedParts kOwnedParts = makeOwnedParts();
 
-/// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned) and
-/// that share no vertex (sharedVertices(); 0 for triangles of two meshes).
-inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b, unsigned shared) {
-  unsigned pairs = kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
+/// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned).
+inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b) {
+  return kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
+}
+
+/// @brief The pairs of features of two triangles that share a vertex (sharedVertices()).
+inline unsigned pairsAt(unsigned shared) {
+  unsigned pairs = 0;
   for (; shared != 0; shared &= shared - 1) {
     const unsigned bit = static_cast<unsigned>(__builtin_ctz(shared));
     const unsigned i = 1U << bit / 3, j = 1U << bit % 3;
-    pairs &= ~(i | j << 3 | product(edgesAt(i), edgesAt(j)) << 6);
+    pairs |= i | j << 3 | product(edgesAt(i), edgesAt(j)) << 6;
   }
   return pairs;
+}
+
+/// @brief The edges that two triangles own, bits 0-2 for a's, 3-5 for b's.
+inline unsigned ownedEdges(unsigned owned_a, unsigned owned_b) {
+  return (owned_a >> 3 & 7U) | (owned_b >> 3 & 7U) << 3;
+}
+
+/// @brief The edges of two triangles that have a vertex of the other one.
+inline unsigned edgesAtBoth(unsigned shared) {
+  const unsigned of_a =
+      (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
+  const unsigned of_b = (shared | shared >> 3 | shared >> 6) & 7U;
+  return edgesAt(of_a) | edgesAt(of_b) << 3;
 }
 
 /// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own;
@@ -127,7 +144,8 @@ inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b, unsigned shared) 
 /// @tparam kSelf  a and b index the same vertices: pairs that share one are left out.
 template <bool kSelf, typename Visit>
 void forEachFeaturePair(const MeshTriangle& a, const MeshTriangle& b, Visit&& visit) {
-  unsigned pairs = ownedPairs(a.owned, b.owned, kSelf ? sharedVertices(a.v, b.v) : 0U);
+  unsigned pairs = ownedPairs(a.owned, b.owned);
+  if (kSelf) pairs &= ~pairsAt(sharedVertices(a.v, b.v));
   for (; pairs != 0; pairs &= pairs - 1) visit(featurePair(__builtin_ctz(pairs)));
 }
 

@@ -22,7 +22,7 @@ namespace deformable {
 /// @brief A moving box, row r of MovingKdopNode at t0[r * stride] and t1[r * stride]; the
 /// stride is 1, or that of a box in a node.
 struct BoxView {
-  static constexpr std::size_t kInNode = sizeof(MovingKdopNode::Row) / sizeof(float);
+  static constexpr std::size_t kInNode = MovingKdopNode::kWidth;
   const float* t0;
   const float* t1;
   std::size_t stride;

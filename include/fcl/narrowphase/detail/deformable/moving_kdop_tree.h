@@ -20,17 +20,16 @@ namespace detail {
 namespace deformable {
 
 /// @brief Up to eight children, each a subtree or a triangle, with their moving boxes. A
-/// row, one cache line, holds one half-axis of all children, so that one box is compared
-/// with eight at once; the two half-axes of a direction follow each other.
+/// row holds one half-axis of all children, so that one box is compared with eight at
+/// once; the two half-axes of a direction follow each other. What holds at t = 0 lies
+/// together: much of a first-contact query reads nothing else.
 struct alignas(64) MovingKdopNode {
   static constexpr int kWidth = 8;
   static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
 
-  struct Row {
-    float t0[kWidth];
-    float t1[kWidth];
-  };
-  Row rows[16];
+  /// Row r at t = 0 and at t = 1.
+  float t0[16][kWidth];
+  float t1[16][kWidth];
   /// Vertices of the triangles, as places in the tree's order; kNoPlace for a node.
   std::uint32_t places[3][kWidth];
   /// Bound on the change of a coordinate of a vertex of the child in the step.
@@ -62,15 +61,15 @@ struct alignas(64) MovingKdopNode {
 
   void setBox(int lane, const MovingKdop& box) {
     for (int r = 0; r < 16; ++r) {
-      rows[r].t0[lane] = box.t0.half[halfAxis(r)];
-      rows[r].t1[lane] = box.t1.half[halfAxis(r)];
+      t0[r][lane] = box.t0.half[halfAxis(r)];
+      t1[r][lane] = box.t1.half[halfAxis(r)];
     }
   }
   MovingKdop box(int lane) const {
     MovingKdop out;
     for (int r = 0; r < 16; ++r) {
-      out.t0.half[halfAxis(r)] = rows[r].t0[lane];
-      out.t1.half[halfAxis(r)] = rows[r].t1[lane];
+      out.t0.half[halfAxis(r)] = t0[r][lane];
+      out.t1.half[halfAxis(r)] = t1[r][lane];
     }
     return out;
   }
@@ -79,7 +78,7 @@ struct alignas(64) MovingKdopNode {
     for (int i = count; i < kWidth; ++i) {
       child[i] = 0;
       displacement[i] = 0;
-      for (Row& row : rows) row.t0[i] = row.t1[i] = kLeastHalf;
+      for (int r = 0; r < 16; ++r) t0[r][i] = t1[r][i] = kLeastHalf;
     }
   }
 };

@@ -59,8 +59,8 @@ class WorkList {
 /// @brief Size of a child, by which the larger of two is opened: the extents along the
 /// axes at t = 0.
 inline float extentOf(const MovingKdopNode& node, int lane) {
-  float sum = node.rows[0].t0[lane];
-  for (int r = 1; r < 6; ++r) sum += node.rows[r].t0[lane];
+  float sum = node.t0[0][lane];
+  for (int r = 1; r < 6; ++r) sum += node.t0[r][lane];
   return sum;
 }
 
@@ -188,7 +188,7 @@ class Traversal {
       lanes &= ~triangles & node.lanes();
       if (lanes == 0) return;
     }
-    BoxView box{&parent.rows[0].t0[lane], &parent.rows[0].t1[lane], BoxView::kInNode,
+    BoxView box{&parent.t0[0][lane], &parent.t1[0][lane], BoxView::kInNode,
                 parent.displacement[lane]};
     float moved[2][16];
     if (!kSelf) {
