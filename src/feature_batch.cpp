@@ -40,8 +40,11 @@ NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
     : std::domain_error("vertex " + std::to_string(vertex) + " is not finite"),
       vertex_(vertex) {}
 
-TriangleReader::TriangleReader(const MeshInstance& mesh)
-    : mesh_(mesh), direct_(mesh.isInPlace()) {}
+TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
+  if (!mesh.isInPlace()) return;
+  tree_triangles_ = mesh.tree->triangles().data();
+  tree_vertices_ = mesh.tree->vertices().data();
+}
 
 void TriangleReader::readIntoStore(int i) {
   const auto index = static_cast<std::size_t>(i);

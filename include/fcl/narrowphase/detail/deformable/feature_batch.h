@@ -47,19 +47,14 @@ class TriangleReader {
   /// @param[out] x  its vertices
   /// @throws NonFiniteVertex
   const TreeTriangle* read(int i, const TreeVertex** x) {
-    const TreeTriangle* triangle = nullptr;
-    const TreeVertex* vertices = nullptr;
-    if (direct_) {
-      triangle = &mesh_.tree->triangles()[static_cast<std::size_t>(i)];
-      vertices = mesh_.tree->vertices().data();
-      for (int k = 0; k < 3; ++k) x[k] = vertices + triangle->place[k];
-    } else {
-      if (i != index_) readIntoStore(i);
-      triangle = &triangles_[stored_];
-      vertices = &vertices_[3 * stored_];
-      for (int k = 0; k < 3; ++k) x[k] = vertices + k;
+    if (tree_triangles_) {
+      const TreeTriangle& triangle = tree_triangles_[i];
+      for (int k = 0; k < 3; ++k) x[k] = tree_vertices_ + triangle.place[k];
+      return &triangle;
     }
-    return triangle;
+    if (i != index_) readIntoStore(i);
+    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * stored_ + k];
+    return &triangles_[stored_];
   }
 
  private:
@@ -67,7 +62,9 @@ class TriangleReader {
   void pose(std::uint32_t id, TreeVertex& out) const;
 
   const MeshInstance& mesh_;
-  bool direct_;
+  /// Those of the tree, if they are read where they lie; else null.
+  const TreeTriangle* tree_triangles_{nullptr};
+  const TreeVertex* tree_vertices_{nullptr};
   /// The triangle that was read last into the store, and where it is.
   int index_{-1};
   std::size_t stored_{0};
