@@ -168,9 +168,10 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
       // No branch, nobody could foretell it.
       const auto kept = static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
       edges_[first + i] &= kept;
-      if (is_early) owned_[first + i] &= kept;
+      if (!is_early) continue;
+      owned_[first + i] &= kept;
+      counts.plane_culled += apart >> i & 1U;
     }
-    if (is_early) counts.plane_culled += numBits(apart);
   }
 }
 

@@ -282,7 +282,7 @@ void expectRightRequest(const BoxView& view, const MovingKdop& box,
           expectUntimed(earliest[lane], box, node.box(lane),
                         overlapWindow<false>(box, node.box(lane), nullptr).lo);
       }
-    left_out += static_cast<int>(numBits(all & ~near));
+    left_out += __builtin_popcount(all & ~near);
   }
 }
 
@@ -906,7 +906,7 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
     const unsigned found = allSets().front()->areApart(separated.data(), count, scaled);
     for (const Kernels* k : allSets())
       EXPECT_EQ(k->areApart(separated.data(), count, scaled), found) << k->name;
-    apart += static_cast<int>(numBits(found));
+    apart += __builtin_popcount(found);
     total += static_cast<int>(count);
     ASSERT_FALSE(HasFailure());
   }

@@ -43,12 +43,6 @@ inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {
 constexpr int kNumVertexFacePairs = 6;
 constexpr int kNumFeaturePairs = 15;
 
-inline unsigned numBits(unsigned pairs) {
-  unsigned n = 0;
-  for (; pairs != 0; pairs &= pairs - 1) ++n;
-  return n;
-}
-
 inline FeaturePair featurePair(int bit) {
   const auto k = static_cast<unsigned>(bit);
   if (k < 3) return {FeatureKind::kVertexFace, true, k, 0};
