@@ -32,14 +32,6 @@ namespace HWY_NAMESPACE {
 
 constexpr std::size_t kEight = 8;
 
-#undef FCL_CCD_IS_X86
-#if defined(FCL_CCD_USE_HIGHWAY) && HWY_ARCH_X86 && HWY_TARGET != HWY_SCALAR && \
-    HWY_TARGET != HWY_EMU128
-#define FCL_CCD_IS_X86 1
-#else
-#define FCL_CCD_IS_X86 0
-#endif
-
 #if defined(FCL_CCD_USE_HIGHWAY)
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -508,24 +500,16 @@ inline double sumOfLanes(const Lanes<double, kEight>& a) {
 
 #endif  // FCL_CCD_USE_HIGHWAY
 
-/// The larger (smaller) of two; b where one is a NaN. Highway's answer to a NaN depends
-/// on the target, and is this one where the machine has an instruction of x86 for it.
+/// The larger (smaller) of two; b where one is a NaN. Not Highway's, whose answer to a
+/// NaN depends on the target.
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> max(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-#if FCL_CCD_IS_X86
-  return larger(a, b);
-#else
   return select(a > b, a, b);
-#endif
 }
 
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> min(const Lanes<T, N>& a, const Lanes<T, N>& b) {
-#if FCL_CCD_IS_X86
-  return smaller(a, b);
-#else
   return select(a < b, a, b);
-#endif
 }
 
 using Floats = Lanes<float, kEight>;
