@@ -26,6 +26,25 @@ struct Segments {
   Doubles norm;
 };
 
+/// Eight pairs of features of triangle pairs.
+class EightFeatures {
+ public:
+  HWY_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
+    for (std::size_t lane = 0; lane < kEight; ++lane) {
+      vertices_[lane] = pairs[codes[lane] / 16].x;
+      places_[lane] = kFeaturePoints[codes[lane] % 16];
+    }
+  }
+  HWY_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {
+    return *vertices_[lane][places_[lane][i]];
+  }
+
+ private:
+  /// Of both triangles, and which of them the points are.
+  const TreeVertex* const* vertices_[kEight];
+  const unsigned char* places_[kEight];
+};
+
 /// The points of eight pairs at both times.
 struct Points {
   Vectors t0[4], t1[4];
@@ -34,13 +53,9 @@ struct Points {
       : Points([&pairs](std::size_t i, std::size_t lane)
                    HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; }) {}
 
-  /// @param count  1 to 8; the last one fills up the eight
-  HWY_INLINE Points(const TrianglePair* pairs, const std::uint32_t* codes,
-                    std::size_t count)
-      : Points([=](std::size_t i, std::size_t lane) HWY_ATTR -> const TreeVertex& {
-          const std::uint32_t code = codes[lane < count ? lane : count - 1];
-          return *pairs[code / 16].x[kFeaturePoints[code % 16][i]];
-        }) {}
+  HWY_INLINE explicit Points(const EightFeatures& features)
+      : Points([&features](std::size_t i, std::size_t lane)
+                   HWY_ATTR -> const TreeVertex& { return features.point(i, lane); }) {}
 
  private:
   /// @param vertex  point i of a pair
@@ -98,10 +113,6 @@ struct Cubics {
   Doubles b0, b1, b2, b3, outer, inner;
   DoubleMask has_bounds;
 
-  HWY_INLINE Doubles at(const Doubles& s) const {
-    const Doubles r = broadcast<kEight>(1.) - s;
-    return r * r * (b0 * r + b1 * s) + s * s * (b2 * r + b3 * s);
-  }
   HWY_INLINE DoubleMask hasNoRoot() const {
     const Doubles zero = broadcast<kEight>(0.), outer_n = zero - outer,
                   inner_n = zero - inner;
@@ -131,19 +142,27 @@ EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* p
                                          const std::uint32_t* codes,
                                          const TimeWindow* windows, std::size_t count,
                                          double latest) {
-  const bool vf = kind == FeatureKind::kVertexFace;
-  const Points x(pairs, codes, count);
-  double starts[kEight], ends[kEight];
-  for (std::size_t lane = 0; lane < kEight; ++lane) {
-    const TimeWindow& window = windows[lane < count ? lane : count - 1];
-    starts[lane] = double{window.lo};
-    ends[lane] = double{window.hi};
+  // The last one fills up the eight.
+  std::uint32_t eight_codes[kEight];
+  TimeWindow eight_windows[kEight];
+  if (count < kEight) {
+    for (std::size_t lane = 0; lane < kEight; ++lane) {
+      eight_codes[lane] = codes[lane < count ? lane : count - 1];
+      eight_windows[lane] = windows[lane < count ? lane : count - 1];
+    }
+    codes = eight_codes;
+    windows = eight_windows;
   }
+  const bool vf = kind == FeatureKind::kVertexFace;
+  const Points x(EightFeatures(pairs, codes));
+  Doubles starts, ends;
+  static_assert(sizeof(TimeWindow) == 2 * sizeof(float), "two floats each");
+  loadTwoEach(&windows->lo, starts, ends);
   // windowLo() and windowHi().
   const Doubles margin = broadcast<kEight>(kWindowMargin);
-  const Doubles lo = max(broadcast<kEight>(0.), load<kEight>(starts) - margin),
+  const Doubles lo = max(broadcast<kEight>(0.), starts - margin),
                 hi = min(broadcast<kEight>(latest),
-                         min(broadcast<kEight>(1.), load<kEight>(ends) + margin));
+                         min(broadcast<kEight>(1.), ends + margin));
   const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
   const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
   const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
@@ -222,26 +241,37 @@ HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles
   return sides;
 }
 
-/// Where the cubics that change sign are zero, by false position (Illinois), each until
-/// it moves by no more than its tolerance: no lane's answer depends on the others.
-HWY_INLINE Doubles root(const Cubics& f, const Doubles& tolerance) {
+/// Where cubics that change sign are zero: false position, then Halley's method, whose
+/// steps leave the third power of a distance, and halving where it leaves the bracket.
+/// Each lane until the square of its step is within its tolerance: no lane's answer
+/// depends on the others. What follows from it is for the caller to prove.
+/// @param open  the lanes that count, a bit each
+HWY_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance) {
   constexpr int kMaxSteps = 24;
-  const Doubles zero = broadcast<kEight>(0.), half = broadcast<kEight>(0.5);
-  Doubles a = zero, b = broadcast<kEight>(1.), fa = f.b0, fb = f.b3, x = zero;
-  DoubleMask moves = zero <= zero;
-  for (int i = 0; i < kMaxSteps; ++i) {
-    const Doubles next = a + (b - a) * (fa / (fa - fb));
-    const Doubles fx = f.at(next);
-    const DoubleMask moved = abs(next - x) > tolerance;
-    x = select(moves, next, x);
-    moves = moves & moved;
-    if (bits(moves) == 0) break;
-    // The end that the root is not at: kept, its value halved.
-    const DoubleMask beyond = ((fx > zero) & (fb > zero)) | ((fx < zero) & (fb < zero));
-    a = select(beyond, a, b);
-    fa = select(beyond, half * fa, fb);
-    b = next;
-    fb = fx;
+  const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.),
+                half = broadcast<kEight>(0.5), two = broadcast<kEight>(2.),
+                three = broadcast<kEight>(3.);
+  // c0 + c1 x + c2 x^2 + c3 x^3, scaled so that it falls by 1 from 0 to 1.
+  const Doubles scale = one / (f.b0 - f.b3);
+  const Doubles c0 = f.b0 * scale, b1 = f.b1 * scale, b2 = f.b2 * scale,
+                b3 = f.b3 * scale;
+  const Doubles c1 = b1 - three * c0, c2 = b2 - two * b1 + three * c0,
+                c3 = (b3 - b2) + (b1 - c0);
+  const Doubles twice_c2 = two * c2, thrice_c3 = three * c3;
+  Doubles a = zero, b = one, x = c0;
+  DoubleMask arrived = zero > zero;
+  for (int i = 0; i < kMaxSteps && (open & ~bits(arrived)) != 0; ++i) {
+    const Doubles value = ((c3 * x + c2) * x + c1) * x + c0,
+                  slope = (thrice_c3 * x + twice_c2) * x + c1,
+                  half_bend = thrice_c3 * x + c2;
+    const Doubles step = value * slope / (slope * slope - value * half_bend);
+    const DoubleMask is_before = value > zero;
+    a = select(is_before, x, a);
+    b = select(is_before, b, x);
+    const Doubles next = x - step;
+    const DoubleMask is_inside = (next >= a) & (next <= b);
+    x = select(arrived, x, select(is_inside, next, half * (a + b)));
+    arrived = arrived | (is_inside & (step * step <= tolerance));
   }
   return x;
 }
@@ -258,9 +288,10 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const unsigned open = bits(f.changesSign());
   if (open == 0) return answers;
 
-  // [a, b] around the root: before it and behind it there is none.
+  // [a, b] around the root: before it and behind it there is none. A step d leaves some
+  // d^3; where other roots are near, many times that: hence d^2 far below the width.
   const Doubles half = broadcast<kEight>(0.25 * toc_err);
-  const Doubles t = lo + root(f, broadcast<kEight>(0.125) * half / width) * width;
+  const Doubles t = lo + root(f, open, broadcast<kEight>(0x1p-10) * half / width) * width;
   const Doubles a = max(lo, t - half), b = min(hi, t + half);
   const Segments ua = restrict(pairs.u, a, b), va = restrict(pairs.v, a, b),
                  wa = restrict(pairs.w, a, b);

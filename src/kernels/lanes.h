@@ -234,6 +234,20 @@ HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
   return out;
 }
 
+/// Eight pairs of numbers: the first ones and the second ones.
+HWY_INLINE void loadTwoEach(const float* from, Lanes<double, kEight>& first,
+                            Lanes<double, kEight>& second) {
+  using Parts = Lanes<double, kEight>;
+  const Parts::Tag tag;
+  const hn::Rebind<float, Parts::Tag> floats;
+  for (std::size_t p = 0; p < Parts::kParts; ++p) {
+    hn::Vec<decltype(floats)> even, odd;
+    hn::LoadInterleaved2(floats, from + 2 * p * Parts::kWidth, even, odd);
+    first.part[p] = hn::PromoteTo(tag, even);
+    second.part[p] = hn::PromoteTo(tag, odd);
+  }
+}
+
 /// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
 /// are written.
 HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
@@ -488,6 +502,14 @@ inline void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y, Lanes<T,
     x.lane[i] = row(i)[0];
     y.lane[i] = row(i)[1];
     z.lane[i] = row(i)[2];
+  }
+}
+
+inline void loadTwoEach(const float* from, Lanes<double, kEight>& first,
+                        Lanes<double, kEight>& second) {
+  for (std::size_t i = 0; i < kEight; ++i) {
+    first.lane[i] = double{from[2 * i]};
+    second.lane[i] = double{from[2 * i + 1]};
   }
 }
 
