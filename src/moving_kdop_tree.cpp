@@ -38,12 +38,6 @@ constexpr std::size_t kAhead = 8;
 
 Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
 
-Float4 load(const float* from) {
-  Float4 v;
-  __builtin_memcpy(&v, from, sizeof(v));
-  return v;
-}
-
 void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
 
 typedef float Float2 __attribute__((vector_size(8)));
@@ -60,85 +54,10 @@ Float4 roundUp(Double2 a, Double2 b, float pad) {
   return up == up ? up : Float4{} + std::numeric_limits<float>::infinity();
 }
 
-/// Rows become columns.
-void transpose(Float4 (&x)[4]) {
-  const Float4 a = __builtin_shufflevector(x[0], x[1], 0, 4, 1, 5),
-               b = __builtin_shufflevector(x[0], x[1], 2, 6, 3, 7),
-               c = __builtin_shufflevector(x[2], x[3], 0, 4, 1, 5),
-               d = __builtin_shufflevector(x[2], x[3], 2, 6, 3, 7);
-  x[0] = __builtin_shufflevector(a, c, 0, 1, 4, 5);
-  x[1] = __builtin_shufflevector(a, c, 2, 3, 6, 7);
-  x[2] = __builtin_shufflevector(b, d, 0, 1, 4, 5);
-  x[3] = __builtin_shufflevector(b, d, 2, 3, 6, 7);
-}
-
-/// Sets the boxes of up to eight vertices in one frame, from rows of their half-axes.
-void setVertexBoxes(const float (&halves)[16][8], int frame, std::size_t count,
-                    TreeVertex* vertices) {
-  for (std::size_t i = 0; i < count; i += 4)
-    for (int q = 0; q < 4; ++q) {
-      Float4 half[4];
-      for (int k = 0; k < 4; ++k) half[k] = load(halves[4 * q + k] + i);
-      transpose(half);
-      for (std::size_t k = i; k < std::min(i + 4, count); ++k) {
-        MovingKdop& box = vertices[k].box;
-        store(half[k - i], (frame == 0 ? box.t0 : box.t1).half + 4 * q);
-      }
-    }
-}
-
-/// The smallest box around three.
-void merge(const Kdop16& a, const Kdop16& b, const Kdop16& c, Kdop16& out) {
-  for (int q = 0; q < 4; ++q)
-    store(larger(larger(quad(a, q), quad(b, q)), quad(c, q)), out.half + 4 * q);
-}
-
-/// The smallest box around all children.
-void bound(const MovingKdopNode& node, MovingKdop& out) {
-  for (int q = 0; q < 4; ++q) {
-    Float4 t0[4], t1[4];
-    for (int i = 0; i < 4; ++i) {
-      const int r = MovingKdopNode::rowOf(4 * q + i);
-      // Lanes that are not in use are below all others.
-      t0[i] = larger(load(node.t0[r]), load(node.t0[r] + 4));
-      t1[i] = larger(load(node.t1[r]), load(node.t1[r] + 4));
-    }
-    transpose(t0);
-    transpose(t1);
-    store(larger(larger(t0[0], t0[1]), larger(t0[2], t0[3])), out.t0.half + 4 * q);
-    store(larger(larger(t1[0], t1[1]), larger(t1[2], t1[3])), out.t1.half + 4 * q);
-  }
-}
-
 /// Brings a node's boxes near, which are about to be written.
 void prefetchRows(const MovingKdopNode& node) {
   const char* at = reinterpret_cast<const char*>(&node);
   for (std::size_t i = 0; i < sizeof(node); i += 64) __builtin_prefetch(at + i, 1);
-}
-
-/// Sets the boxes of all children.
-/// @param extents  along all directions, in both frames
-void setBoxes(const MovingKdop (&boxes)[kWidth], MovingKdopNode& node,
-              float (&extents)[kWidth]) {
-  for (int lane = 0; lane < kWidth; lane += 4) {
-    Float4 sum{};
-    for (int q = 0; q < 4; ++q) {
-      Float4 t0[4], t1[4];
-      for (int i = 0; i < 4; ++i) {
-        t0[i] = quad(boxes[lane + i].t0, q);
-        t1[i] = quad(boxes[lane + i].t1, q);
-      }
-      transpose(t0);
-      transpose(t1);
-      for (int i = 0; i < 4; ++i) {
-        const int r = MovingKdopNode::rowOf(4 * q + i);
-        store(t0[i], node.t0[r] + lane);
-        store(t1[i], node.t1[r] + lane);
-        sum += t0[i] + t1[i];
-      }
-    }
-    store(sum, extents + lane);
-  }
 }
 
 }  // namespace
@@ -403,30 +322,8 @@ void MovingKdopTree::setReach(const Range& range) {
 
 /// Sets the boxes of a node whose children have theirs.
 void MovingKdopTree::refit(MovingKdopNode& node) {
-  MovingKdop boxes[kWidth];
-  for (int lane = 0; lane < kWidth; ++lane) {
-    MovingKdop& box = boxes[lane];
-    if (lane >= node.count) {
-      std::fill(box.t0.half, box.t0.half + 16, kLeastHalf);
-      std::fill(box.t1.half, box.t1.half + 16, kLeastHalf);
-      node.displacement[lane] = 0;
-    } else if (node.isTriangle(lane)) {
-      const TreeVertex& a = vertices_[node.places[0][lane]];
-      const TreeVertex& b = vertices_[node.places[1][lane]];
-      const TreeVertex& c = vertices_[node.places[2][lane]];
-      merge(a.box.t0, b.box.t0, c.box.t0, box.t0);
-      merge(a.box.t1, b.box.t1, c.box.t1, box.t1);
-      node.displacement[lane] = detail::deformable::roundUp(
-          std::max(std::max(a.displacement(), b.displacement()), c.displacement()), 0.f);
-    } else {
-      const MovingKdopNode& child = nodes_[static_cast<std::size_t>(node.child[lane])];
-      bound(child, box);
-      node.displacement[lane] =
-          *std::max_element(child.displacement, child.displacement + kWidth);
-    }
-  }
   float extents[kWidth];
-  setBoxes(boxes, node, extents);
+  kernels().fitNode(vertices_.data(), nodes_.data(), node, extents);
   NodeSize& size = sizes_[static_cast<std::size_t>(&node - nodes_.data())];
   size.triangles = 0;
   size.blurred = 0;
@@ -463,11 +360,8 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
       }
       vertices[i].setPath(path[0], path[1]);
     }
-    for (int frame = 0; frame < 2; ++frame) {
-      float halves[16][kEight];
-      kernel.fitPoints(offsets[frame], halves);
-      setVertexBoxes(halves, frame, count, vertices);
-    }
+    for (int frame = 0; frame < 2; ++frame)
+      kernel.fitPoints(offsets[frame], frame, count, vertices);
   }
 }
 

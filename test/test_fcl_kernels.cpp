@@ -286,7 +286,7 @@ void expectRightRequest(const BoxView& view, const MovingKdop& box,
 }
 
 // Boxes of points, as fitPoint() makes them: near and far, on the axes, beyond the range
-// of a float, and not finite.
+// of a float, and not finite; of so many vertices in one frame, and of no others.
 TEST(FCL_KERNELS, pointsAsFitPoint) {
   constexpr std::uint64_t kSeed = 76;
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -303,12 +303,18 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
       for (double& x : axis)
         x = special && random.index(2) ? specials[random.index(std::size(specials))]
                                        : scale * random.uniform(-1, 1);
-    float first[16][8];
-    allSets().front()->fitPoints(offsets, first);
+    const int frame = static_cast<int>(random.index(2));
+    const std::size_t count = 1 + random.index(8);
+    const auto boxOf = [](const TreeVertex& x, int k) -> const Kdop16& {
+      return k == 0 ? x.box.t0 : x.box.t1;
+    };
+    std::vector<TreeVertex> before(8), first;
+    for (TreeVertex& x : before) x.box = randomBounds(random, randomHalves(random), 1);
     for (const Kernels* k : allSets()) {
-      float halves[16][8];
-      k->fitPoints(offsets, halves);
-      ASSERT_EQ(std::memcmp(halves, first, sizeof(first)), 0)
+      std::vector<TreeVertex> vertices = before;
+      k->fitPoints(offsets, frame, count, vertices.data());
+      if (first.empty()) first = vertices;
+      ASSERT_EQ(std::memcmp(vertices.data(), first.data(), 8 * sizeof(TreeVertex)), 0)
           << k->name << ", seed " << kSeed << ", " << i;
     }
     for (std::size_t n = 0; n < 8; ++n) {
@@ -319,15 +325,119 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
         size = size < std::abs(point[k]) ? std::abs(point[k]) : size;
       Kdop16 box;
       fitPoint(point, origin, offsetPad(size), box);
+      const Kdop16& same = boxOf(before[n], 1 - frame);
       for (std::size_t j = 0; j < 16; ++j) {
-        ASSERT_EQ(first[j][n], box.half[j])
+        const float expected = n < count ? box.half[j] : boxOf(before[n], frame).half[j];
+        ASSERT_EQ(boxOf(first[n], frame).half[j], expected)
             << j << ", seed " << kSeed << ", " << i << ", " << n;
+        ASSERT_EQ(boxOf(first[n], 1 - frame).half[j], same.half[j]);
         ++(box.half[j] <= FLT_MAX ? bounded : unbounded);
       }
     }
   }
   EXPECT_GT(bounded, 1000000);
   EXPECT_GT(unbounded, 100000);
+}
+
+/// A node with triangles of few vertices and, here and there, a node among them.
+MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
+  MovingKdopNode node;
+  node.count = 1 + static_cast<int>(random.index(kWidth));
+  // Few vertices, or places that differ in a high bit alone.
+  const unsigned high = random.index(2) ? 0 : 31;
+  const auto place = [&] {
+    return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
+           static_cast<std::uint32_t>(random.index(high ? 4 : 1));
+  };
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const bool is_triangle = lane < node.count && random.index(8) != 0;
+    node.child[lane] = is_triangle ? -1 - lane : lane;
+    for (auto& row : node.places)
+      row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
+    node.setBox(lane, randomBounds(random, halves, scale));
+    node.displacement[lane] = randomDisplacement(random, scale);
+  }
+  node.markTriangles();
+  return node;
+}
+
+// A node's children hold what is below them, no more: triangles their vertices, nodes
+// their children, and lanes that are not in use nothing.
+TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
+  constexpr std::uint64_t kSeed = 80;
+  Random random(kSeed);
+  constexpr std::size_t kVertices = 20, kNodes = 4;
+  int summed = 0;
+  for (int i = 0; i < 20000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const Halves halves = randomHalves(random);
+    const float scale = randomScale(random);
+    std::vector<TreeVertex> vertices(kVertices);
+    for (TreeVertex& x : vertices) {
+      x.box = randomBounds(random, halves, scale);
+      x.t0[3] = double{randomDisplacement(random, scale)};
+    }
+    std::vector<MovingKdopNode> nodes;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      nodes.push_back(randomLeaf(random, halves, scale));
+      nodes.back().clearRest();
+    }
+    MovingKdopNode before = randomLeaf(random, halves, scale);
+    for (int lane = 0; lane < kWidth; ++lane) {
+      for (auto& row : before.places)
+        if (row[lane] != MovingKdopNode::kNoPlace) row[lane] %= kVertices;
+      if (!before.isTriangle(lane)) before.child[lane] %= kNodes;
+    }
+
+    MovingKdopNode expected = before;
+    double sums[kWidth] = {}, sizes[kWidth] = {};
+    for (int lane = 0; lane < kWidth; ++lane) {
+      MovingKdop all;
+      std::fill(all.t0.half, all.t0.half + 16, kLeastHalf);
+      std::fill(all.t1.half, all.t1.half + 16, kLeastHalf);
+      float moved = 0;
+      const auto add = [&](const MovingKdop& box, float displacement) {
+        for (int j = 0; j < 16; ++j) {
+          all.t0.half[j] = std::max(all.t0.half[j], box.t0.half[j]);
+          all.t1.half[j] = std::max(all.t1.half[j], box.t1.half[j]);
+        }
+        moved = std::max(moved, displacement);
+      };
+      if (lane < before.count && before.isTriangle(lane)) {
+        for (const auto& row : before.places)
+          add(vertices[row[lane]].box,
+              static_cast<float>(vertices[row[lane]].displacement()));
+      } else if (lane < before.count) {
+        const MovingKdopNode& child = nodes[static_cast<std::size_t>(before.child[lane])];
+        for (int k = 0; k < child.count; ++k) add(child.box(k), child.displacement[k]);
+      }
+      expected.setBox(lane, all);
+      expected.displacement[lane] = moved;
+      for (int j = 0; j < 16; ++j)
+        for (const float half : {all.t0.half[j], all.t1.half[j]}) {
+          sums[lane] += double{half};
+          sizes[lane] += std::abs(double{half});
+        }
+    }
+
+    float first[kWidth];
+    for (const Kernels* k : allSets()) {
+      MovingKdopNode node = before;
+      float extents[kWidth];
+      k->fitNode(vertices.data(), nodes.data(), node, extents);
+      ASSERT_EQ(std::memcmp(&node, &expected, sizeof(node)), 0) << k->name;
+      if (k == allSets().front()) std::copy(extents, extents + kWidth, first);
+      for (int lane = 0; lane < kWidth; ++lane) {
+        ASSERT_TRUE(extents[lane] == first[lane] ||
+                    (std::isnan(extents[lane]) && std::isnan(first[lane])))
+            << k->name;
+        if (sizes[lane] > FLT_MAX) continue;
+        ASSERT_NEAR(double{extents[lane]}, sums[lane], 1e-5 * sizes[lane]) << k->name;
+        ++summed;
+      }
+    }
+  }
+  EXPECT_GT(summed, 10000);
 }
 
 TEST(FCL_KERNELS, childrenAsOverlapWindow) {
@@ -599,28 +709,6 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   }
   EXPECT_GT(late, 1000);
   EXPECT_GT(far, 1000);
-}
-
-/// A node with triangles of few vertices and, here and there, a node among them.
-MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
-  MovingKdopNode node;
-  node.count = 1 + static_cast<int>(random.index(kWidth));
-  // Few vertices, or places that differ in a high bit alone.
-  const unsigned high = random.index(2) ? 0 : 31;
-  const auto place = [&] {
-    return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
-           static_cast<std::uint32_t>(random.index(high ? 4 : 1));
-  };
-  for (int lane = 0; lane < kWidth; ++lane) {
-    const bool is_triangle = lane < node.count && random.index(8) != 0;
-    node.child[lane] = is_triangle ? -1 - lane : lane;
-    for (auto& row : node.places)
-      row[lane] = is_triangle ? place() : MovingKdopNode::kNoPlace;
-    node.setBox(lane, randomBounds(random, halves, scale));
-    node.displacement[lane] = randomDisplacement(random, scale);
-  }
-  node.markTriangles();
-  return node;
 }
 
 bool doShareEmbedded(const MovingKdopNode& a, int i, const MovingKdopNode& b, int j,

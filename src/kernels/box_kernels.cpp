@@ -28,7 +28,8 @@ HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
   return select(up == up, up, broadcast<kEight>(std::numeric_limits<float>::infinity()));
 }
 
-void fitPoints(const double (&offsets)[3][8], float (&halves)[16][8]) {
+void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
+               TreeVertex* vertices) {
   const Doubles x = load<kEight>(offsets[0]), y = load<kEight>(offsets[1]),
                 z = load<kEight>(offsets[2]);
   // As kdopCoordinates().
@@ -39,10 +40,102 @@ void fitPoints(const double (&offsets)[3][8], float (&halves)[16][8]) {
   const Floats pad = select(narrow >= broadcast<kEight>(FLT_MAX), infinity, narrow) +
                      broadcast<kEight>(FLT_MIN);
   const Doubles zero = broadcast<kEight>(0.);
+  Floats lower[8], upper[8];
   for (std::size_t j = 0; j < 8; ++j) {
-    store(roundedUp(zero - d[j], pad), halves[j]);
-    store(roundedUp(d[j], pad), halves[j + 8]);
+    lower[j] = roundedUp(zero - d[j], pad);
+    upper[j] = roundedUp(d[j], pad);
   }
+  transpose(lower);
+  transpose(upper);
+  for (std::size_t i = 0; i < count; ++i) {
+    MovingKdop& box = vertices[i].box;
+    float(&half)[16] = frame == 0 ? box.t0.half : box.t1.half;
+    store(lower[i], half);
+    store(upper[i], half + 8);
+  }
+}
+
+/// The largest of eight, or their sum, two by two: each of a chain would wait for the one
+/// before.
+template <typename Operation>
+HWY_INLINE Floats foldEight(const Floats (&x)[8], const Operation& operation) {
+  return operation(operation(operation(x[0], x[4]), operation(x[2], x[6])),
+                   operation(operation(x[1], x[5]), operation(x[3], x[7])));
+}
+
+HWY_INLINE float largest(float a, float b, float c) {
+  const float ab = a < b ? b : a;
+  return ab < c ? c : ab;
+}
+
+/// Half of the half-axes of boxes in one frame.
+/// @tparam kFirst  0 for the lower bounds, 8 for the upper ones
+template <int kFrame, int kFirst>
+struct HalfOfBoxes {
+  template <typename Node>
+  static HWY_INLINE auto& row(Node& node, int i) {
+    return (kFrame == 0 ? node.t0 : node.t1)[MovingKdopNode::rowOf(kFirst + i)];
+  }
+  static HWY_INLINE Floats of(const TreeVertex& x) {
+    return load<kEight>((kFrame == 0 ? x.box.t0 : x.box.t1).half + kFirst);
+  }
+  /// Of the box around three vertices.
+  static HWY_INLINE Floats around(const TreeVertex& a, const TreeVertex& b,
+                                  const TreeVertex& c) {
+    return larger(larger(of(a), of(b)), of(c));
+  }
+  /// Of the box around all children. Lanes that are not in use are below all others.
+  static HWY_INLINE Floats around(const MovingKdopNode& node) {
+    Floats x[8];
+    for (int i = 0; i < 8; ++i) x[i] = load<kEight>(row(node, i));
+    transpose(x);
+    return foldEight(
+        x, [](const Floats& a, const Floats& b) HWY_ATTR { return larger(a, b); });
+  }
+  /// Sets the rows of a node, from the boxes of its children; returns the sums of these.
+  static HWY_INLINE Floats set(Floats (&x)[8], MovingKdopNode& node) {
+    transpose(x);
+    for (int i = 0; i < 8; ++i) store(x[i], row(node, i));
+    return foldEight(x, [](const Floats& a, const Floats& b) HWY_ATTR { return a + b; });
+  }
+};
+
+void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
+             MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+  using Lower0 = HalfOfBoxes<0, 0>;
+  using Upper0 = HalfOfBoxes<0, 8>;
+  using Lower1 = HalfOfBoxes<1, 0>;
+  using Upper1 = HalfOfBoxes<1, 8>;
+  Floats lower0[8], upper0[8], lower1[8], upper1[8];
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (node.isTriangle(lane)) {
+      const TreeVertex &a = vertices[node.places[0][lane]],
+                       &b = vertices[node.places[1][lane]],
+                       &c = vertices[node.places[2][lane]];
+      lower0[lane] = Lower0::around(a, b, c);
+      upper0[lane] = Upper0::around(a, b, c);
+      lower1[lane] = Lower1::around(a, b, c);
+      upper1[lane] = Upper1::around(a, b, c);
+      node.displacement[lane] = largest(static_cast<float>(a.displacement()),
+                                        static_cast<float>(b.displacement()),
+                                        static_cast<float>(c.displacement()));
+    } else {
+      const MovingKdopNode& child = nodes[node.child[lane]];
+      lower0[lane] = Lower0::around(child);
+      upper0[lane] = Upper0::around(child);
+      lower1[lane] = Lower1::around(child);
+      upper1[lane] = Upper1::around(child);
+      node.displacement[lane] = largest(load<kEight>(child.displacement));
+    }
+  }
+  for (int lane = node.count; lane < MovingKdopNode::kWidth; ++lane) {
+    lower0[lane] = upper0[lane] = lower1[lane] = upper1[lane] =
+        broadcast<kEight>(kLeastHalf);
+    node.displacement[lane] = 0;
+  }
+  store((Lower0::set(lower0, node) + Upper0::set(upper0, node)) +
+            (Lower1::set(lower1, node) + Upper1::set(upper1, node)),
+        extents);
 }
 
 /// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and

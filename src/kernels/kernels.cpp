@@ -24,10 +24,11 @@ inline const char* targetName() { return "plain"; }
 #endif
 
 extern const Kernels kKernels = {
-    targetName(),     &fitPoints,      &overlapChildrenOf, &overlapTrianglesOf,
-    &listFeatures,    &cullFeaturesOf, &cullCrossings,     &areApart,
-    &mayCrossOfEight, &isFanEmbedded,  &facedDirections,   &coplanarityOfFeatures,
-    &solveEight,      &divideEight};
+    targetName(),           &fitPoints,          &fitNode,
+    &overlapChildrenOf,     &overlapTrianglesOf, &listFeatures,
+    &cullFeaturesOf,        &cullCrossings,      &areApart,
+    &mayCrossOfEight,       &isFanEmbedded,      &facedDirections,
+    &coplanarityOfFeatures, &solveEight,         &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

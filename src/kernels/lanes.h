@@ -322,6 +322,49 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
   }
 }
 
+/// Eight rows of eight become columns.
+HWY_INLINE void transpose(Lanes<float, kEight> (&x)[kEight]) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto kept = x[i].part[j];
+      x[i].part[j] = x[j].part[i];
+      x[j].part[i] = kept;
+    }
+#else
+  using Parts = Lanes<float, kEight>;
+  const Parts::Tag tag;
+  const hn::Repartition<std::uint64_t, Parts::Tag> twos;
+  // Four by four, in blocks of four lanes: column 4 b + i of rows g to g + 3 is block b
+  // of x[g + i] then.
+  for (std::size_t g = 0; g < kEight; g += 4)
+    for (std::size_t p = 0; p < Parts::kParts; ++p) {
+      auto& x0 = x[g].part[p];
+      auto& x1 = x[g + 1].part[p];
+      auto& x2 = x[g + 2].part[p];
+      auto& x3 = x[g + 3].part[p];
+      const auto a = hn::BitCast(twos, hn::InterleaveLower(tag, x0, x1)),
+                 b = hn::BitCast(twos, hn::InterleaveUpper(tag, x0, x1)),
+                 c = hn::BitCast(twos, hn::InterleaveLower(tag, x2, x3)),
+                 d = hn::BitCast(twos, hn::InterleaveUpper(tag, x2, x3));
+      x0 = hn::BitCast(tag, hn::InterleaveLower(twos, a, c));
+      x1 = hn::BitCast(tag, hn::InterleaveUpper(twos, a, c));
+      x2 = hn::BitCast(tag, hn::InterleaveLower(twos, b, d));
+      x3 = hn::BitCast(tag, hn::InterleaveUpper(twos, b, d));
+    }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Parts low = x[i], high = x[i + 4];
+    if constexpr (Parts::kParts == 1) {
+      x[i].part[0] = hn::ConcatLowerLower(tag, high.part[0], low.part[0]);
+      x[i + 4].part[0] = hn::ConcatUpperUpper(tag, high.part[0], low.part[0]);
+    } else {
+      x[i].part[1] = high.part[0];
+      x[i + 4].part[0] = low.part[1];
+    }
+  }
+#endif
+}
+
 /// In the same order everywhere.
 HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
   using Parts = Lanes<double, kEight>;
@@ -511,6 +554,15 @@ inline void loadTwoEach(const float* from, Lanes<double, kEight>& first,
     first.lane[i] = double{from[2 * i]};
     second.lane[i] = double{from[2 * i + 1]};
   }
+}
+
+inline void transpose(Lanes<float, kEight> (&x)[kEight]) {
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const float kept = x[i].lane[j];
+      x[i].lane[j] = x[j].lane[i];
+      x[j].lane[i] = kept;
+    }
 }
 
 inline double sumOfLanes(const Lanes<double, kEight>& a) {

@@ -158,9 +158,17 @@ struct Kernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
 
-  /// The 16-DOPs of eight points that lie at offsets[axis][point] from the origin:
-  /// half-axis j of point i is halves[j][i], roundUp() of it with a pad of offsetPad().
-  void (*fitPoints)(const double (&offsets)[3][8], float (&halves)[16][8]);
+  /// Sets the boxes in one frame of up to eight vertices that lie at
+  /// offsets[axis][vertex] from the origin: roundUp() with a pad of offsetPad().
+  /// @param count  1 to 8; so many vertices are written
+  void (*fitPoints)(const double (&offsets)[3][8], int frame, std::size_t count,
+                    TreeVertex* vertices);
+
+  /// Sets the boxes and displacements of a node's children, from those of the vertices
+  /// and of the nodes below: the smallest that hold for all of them.
+  /// @param[out] extents  of each, along all directions, in both frames
+  void (*fitNode)(const TreeVertex* vertices, const MovingKdopNode* nodes,
+                  MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]);
 
   /// Which children of the node overlap the box at some time, a bit each, and from when
   /// on: overlapWindow() of each, unless the request leaves it out.

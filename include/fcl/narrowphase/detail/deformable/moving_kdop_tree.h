@@ -103,7 +103,7 @@ inline ThreeIds idsOf(const TreeTriangle& t) {
 }
 
 /// @brief A vertex where the tests read it: its path, t0[3] a bound on the change of a
-/// coordinate in the step (t1[3] is not used); and its moving box.
+/// coordinate in the step, which is a float (t1[3] is not used); and its moving box.
 struct alignas(64) TreeVertex {
   double t0[4];
   double t1[4];
@@ -111,7 +111,8 @@ struct alignas(64) TreeVertex {
 
   double displacement() const { return t0[3]; }
 
-  /// @brief Sets the path. Differences of doubles are rounded by 2^-53 of themselves.
+  /// @brief Sets the path. Differences of doubles are rounded by 2^-53 of themselves,
+  /// much less than roundUp() adds.
   void setPath(const double (&from)[3], const double (&to)[3]) {
     double moved = 0;
     for (int k = 0; k < 3; ++k) {
@@ -119,7 +120,7 @@ struct alignas(64) TreeVertex {
       t1[k] = to[k];
       moved = std::max(moved, std::fabs(to[k] - from[k]));
     }
-    t0[3] = moved * (1 + 0x1p-52);
+    t0[3] = double{roundUp(moved, 0.f)};
     t1[3] = 0;
   }
 };
