@@ -1731,6 +1731,45 @@ long double volumeAt(const MovingPair& pair, double t) {
   return volume;
 }
 
+// Where a volume goes through zero once, beyond doubt, the root is found and the pair
+// decided; but for few whose features meet at their borders.
+TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
+  constexpr std::uint64_t kSeed = 84;
+  Random random(kSeed);
+  int decided = 0, open = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const FeatureKind kind = oneOfTwo(random);
+    FilterQuery queries[8];
+    for (FilterQuery& q : queries) {
+      q.pair = randomPair(random, kind);
+      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
+      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
+    }
+    const double kErrors[] = {1e-2, 1e-4, 1e-8};
+    const EightAnswers found =
+        solveAll(EightPoints(queries).pairs(queries), kErrors[random.index(3)]);
+    for (int lane = 0; lane < 8; ++lane) {
+      const FilterQuery& q = queries[lane];
+      constexpr int kParts = 64;
+      long double volumes[kParts + 1], size = 0;
+      int changes = 0;
+      for (int k = 0; k <= kParts; ++k) {
+        volumes[k] = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / kParts);
+        size = std::max(size, std::abs(volumes[k]));
+        changes += k > 0 && volumes[k] * volumes[k - 1] <= 0;
+      }
+      const long double clear = 1e-3L * size;
+      if (changes != 1 || std::abs(volumes[0]) < clear ||
+          std::abs(volumes[kParts]) < clear)
+        continue;
+      ++((found.yes | found.no) >> lane & 1U ? decided : open);
+    }
+    ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
+  }
+  EXPECT_GT(decided, 10000);
+  EXPECT_LT(open, decided / 50);
+}
+
 // Where a volume goes through zero and back, the window is divided at the farthest point
 // beyond, so that each part has one root; and not where it begins or ends at zero.
 TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
