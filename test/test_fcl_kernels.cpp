@@ -1731,6 +1731,16 @@ long double volumeAt(const MovingPair& pair, double t) {
   return volume;
 }
 
+/// Pairs of one kind, in most or all of the step.
+void randomLongWindows(Random& random, FilterQuery (&queries)[8]) {
+  const FeatureKind kind = oneOfTwo(random);
+  for (FilterQuery& q : queries) {
+    q.pair = randomPair(random, kind);
+    q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
+    q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
+  }
+}
+
 // Where a volume goes through zero once, beyond doubt, the root is found and the pair
 // decided; but for few whose features meet at their borders.
 TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
@@ -1738,13 +1748,8 @@ TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
   Random random(kSeed);
   int decided = 0, open = 0;
   for (int i = 0; i < 20000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
     FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
-      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
-      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
-    }
+    randomLongWindows(random, queries);
     const double kErrors[] = {1e-2, 1e-4, 1e-8};
     const EightAnswers found =
         solveAll(EightPoints(queries).pairs(queries), kErrors[random.index(3)]);
@@ -1777,13 +1782,8 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
   Random random(kSeed);
   int returning = 0, touching = 0;
   for (int i = 0; i < 20000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
     FilterQuery queries[8];
-    for (FilterQuery& q : queries) {
-      q.pair = randomPair(random, kind);
-      q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
-      q.hi = random.index(2) ? 1 : random.uniform(0.6, 1);
-    }
+    randomLongWindows(random, queries);
     const EightPoints points(queries);
     const EightDivisions divided = divideAll(points.pairs(queries));
     for (int lane = 0; lane < 8; ++lane) {

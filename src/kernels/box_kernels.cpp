@@ -55,12 +55,13 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
   }
 }
 
-/// The largest of eight, or their sum, two by two: each of a chain would wait for the one
-/// before.
-template <typename Operation>
-HWY_INLINE Floats foldEight(const Floats (&x)[8], const Operation& operation) {
-  return operation(operation(operation(x[0], x[4]), operation(x[2], x[6])),
-                   operation(operation(x[1], x[5]), operation(x[3], x[7])));
+/// The least or the largest of all, or their sum; the numbers are used up. Two by two:
+/// each of a chain would wait for the one before.
+template <std::size_t kCount, typename Operation>
+HWY_INLINE Floats fold(Floats (&x)[kCount], const Operation& operation) {
+  for (std::size_t half = kCount / 2; half > 0; half /= 2)
+    for (std::size_t i = 0; i < half; ++i) x[i] = operation(x[i], x[i + half]);
+  return x[0];
 }
 
 HWY_INLINE float largest(float a, float b, float c) {
@@ -89,14 +90,14 @@ struct HalfOfBoxes {
     Floats x[8];
     for (int i = 0; i < 8; ++i) x[i] = load<kEight>(row(node, i));
     transpose(x);
-    return foldEight(
-        x, [](const Floats& a, const Floats& b) HWY_ATTR { return larger(a, b); });
+    return fold(x,
+                [](const Floats& a, const Floats& b) HWY_ATTR { return larger(a, b); });
   }
   /// Sets the rows of a node, from the boxes of its children; returns the sums of these.
   static HWY_INLINE Floats set(Floats (&x)[8], MovingKdopNode& node) {
     transpose(x);
     for (int i = 0; i < 8; ++i) store(x[i], row(node, i));
-    return foldEight(x, [](const Floats& a, const Floats& b) HWY_ATTR { return a + b; });
+    return fold(x, [](const Floats& a, const Floats& b) HWY_ATTR { return a + b; });
   }
 };
 
@@ -157,15 +158,14 @@ HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
     s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
-  // The least, two by two: each of a chain of sixteen would wait for the one before.
-  for (std::size_t half = 8; half > 0; half /= 2)
-    for (std::size_t r = 0; r < half; ++r) s[r] = smaller(s[r], s[r + half]);
+  const Floats least =
+      fold(s, [](const Floats& a, const Floats& b) HWY_ATTR { return smaller(a, b); });
   const Floats displacement =
       load<kEight>(node.displacement) + broadcast<kEight>(box.displacement);
   const Floats bridged =
       displacement * broadcast<kEight>(request.share) + broadcast<kEight>(request.slack);
-  const unsigned near = bits(s[0] + bridged >= broadcast<kEight>(0.f)) & node.lanes();
-  apart = signs(s[0]) & near;
+  const unsigned near = bits(least + bridged >= broadcast<kEight>(0.f)) & node.lanes();
+  apart = signs(least) & near;
   return near;
 }
 

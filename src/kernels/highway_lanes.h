@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Lanes in as many of Highway's vectors as they take. Part of lanes.h, which includes it
+// once for each of Highway's targets.
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename T, std::size_t N>
+struct Lanes {
+  using Tag = hn::CappedTag<T, N>;
+  static constexpr std::size_t kWidth = hn::MaxLanes(Tag());
+  static constexpr std::size_t kParts = N / kWidth;
+  hn::Vec<Tag> part[kParts];
+};
+
+template <typename T, std::size_t N>
+struct LaneMask {
+  hn::Mask<typename Lanes<T, N>::Tag> part[Lanes<T, N>::kParts];
+};
+
+#define FCL_CCD_FOR_PARTS for (std::size_t p = 0; p < Lanes<T, N>::kParts; ++p)
+
+template <std::size_t N, typename T>
+HWY_INLINE Lanes<T, N> load(const T* from) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] = hn::LoadU(typename Lanes<T, N>::Tag(), from + p * Lanes<T, N>::kWidth);
+  return out;
+}
+
+template <std::size_t N, typename T>
+HWY_INLINE Lanes<T, N> broadcast(T value) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Set(typename Lanes<T, N>::Tag(), value);
+  return out;
+}
+
+template <typename T, std::size_t N>
+HWY_INLINE void store(const Lanes<T, N>& a, T* to) {
+  FCL_CCD_FOR_PARTS
+  hn::StoreU(a.part[p], typename Lanes<T, N>::Tag(), to + p * Lanes<T, N>::kWidth);
+}
+
+#define FCL_CCD_BINARY(NAME, OP)                                            \
+  template <typename T, std::size_t N>                                      \
+  HWY_INLINE Lanes<T, N> NAME(const Lanes<T, N>& a, const Lanes<T, N>& b) { \
+    Lanes<T, N> out;                                                        \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);           \
+    return out;                                                             \
+  }
+FCL_CCD_BINARY(operator+, Add)
+FCL_CCD_BINARY(operator-, Sub)
+FCL_CCD_BINARY(operator*, Mul)
+FCL_CCD_BINARY(operator/, Div)
+// The larger and the smaller of two numbers, neither of which is a NaN.
+FCL_CCD_BINARY(larger, Max)
+FCL_CCD_BINARY(smaller, Min)
+// Negative where both are, and where one is, for numbers that are neither NaN nor -0.
+FCL_CCD_BINARY(bothNegative, And)
+FCL_CCD_BINARY(eitherNegative, Or)
+#undef FCL_CCD_BINARY
+
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> abs(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Abs(a.part[p]);
+  return out;
+}
+
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> squareRoot(const Lanes<T, N>& a) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::Sqrt(a.part[p]);
+  return out;
+}
+
+#define FCL_CCD_COMPARISON(NAME, OP)                                           \
+  template <typename T, std::size_t N>                                         \
+  HWY_INLINE LaneMask<T, N> NAME(const Lanes<T, N>& a, const Lanes<T, N>& b) { \
+    LaneMask<T, N> out;                                                        \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);              \
+    return out;                                                                \
+  }
+FCL_CCD_COMPARISON(operator==, Eq)
+FCL_CCD_COMPARISON(operator<, Lt)
+FCL_CCD_COMPARISON(operator>, Gt)
+FCL_CCD_COMPARISON(operator<=, Le)
+FCL_CCD_COMPARISON(operator>=, Ge)
+#undef FCL_CCD_COMPARISON
+
+#define FCL_CCD_LOGICAL(NAME, OP)                                                    \
+  template <typename T, std::size_t N>                                               \
+  HWY_INLINE LaneMask<T, N> NAME(const LaneMask<T, N>& a, const LaneMask<T, N>& b) { \
+    LaneMask<T, N> out;                                                              \
+    FCL_CCD_FOR_PARTS out.part[p] = hn::OP(a.part[p], b.part[p]);                    \
+    return out;                                                                      \
+  }
+FCL_CCD_LOGICAL(operator&, And)
+FCL_CCD_LOGICAL(operator|, Or)
+#undef FCL_CCD_LOGICAL
+
+/// a where the mask is set, b elsewhere.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> select(const LaneMask<T, N>& mask, const Lanes<T, N>& a,
+                              const Lanes<T, N>& b) {
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] = hn::IfThenElse(mask.part[p], a.part[p], b.part[p]);
+  return out;
+}
+
+/// One bit a lane.
+template <typename T, std::size_t N>
+HWY_INLINE unsigned bits(const LaneMask<T, N>& mask) {
+  unsigned out = 0;
+  FCL_CCD_FOR_PARTS {
+    std::uint8_t bytes[8] = {};
+    hn::StoreMaskBits(typename Lanes<T, N>::Tag(), mask.part[p], bytes);
+    out |= (bytes[0] | unsigned{bytes[1]} << 8) << (p * Lanes<T, N>::kWidth);
+  }
+  return out;
+}
+
+/// The two halves exchanged.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> swapHalves(const Lanes<T, N>& a) {
+  constexpr std::size_t kParts = Lanes<T, N>::kParts;
+  Lanes<T, N> out;
+#if HWY_MAX_BYTES >= 64
+  if constexpr (kParts == 1) {
+    out.part[0] = hn::ConcatLowerUpper(typename Lanes<T, N>::Tag(), a.part[0], a.part[0]);
+    return out;
+  }
+#endif
+  FCL_CCD_FOR_PARTS out.part[p] = a.part[p ^ (kParts / 2)];
+  return out;
+}
+
+/// Where the sign bit is set. As integers, since what bothNegative() leaves is no number
+/// but for its sign.
+template <typename T, std::size_t N>
+HWY_INLINE LaneMask<T, N> isNegative(const Lanes<T, N>& a) {
+  const typename Lanes<T, N>::Tag tag;
+  const hn::RebindToSigned<decltype(tag)> integers;
+  LaneMask<T, N> out;
+  FCL_CCD_FOR_PARTS
+  out.part[p] =
+      hn::RebindMask(tag, hn::Lt(hn::BitCast(integers, a.part[p]), hn::Zero(integers)));
+  return out;
+}
+
+/// a where s is negative, 0 elsewhere.
+template <typename T, std::size_t N>
+HWY_INLINE Lanes<T, N> whereNegative(const Lanes<T, N>& s, const Lanes<T, N>& a) {
+  const LaneMask<T, N> mask = isNegative(s);
+  Lanes<T, N> out;
+  FCL_CCD_FOR_PARTS out.part[p] = hn::IfThenElseZero(mask.part[p], a.part[p]);
+  return out;
+}
+
+/// One bit a lane: its sign.
+template <typename T, std::size_t N>
+HWY_INLINE unsigned signs(const Lanes<T, N>& a) {
+  return bits(isNegative(a));
+}
+
+/// Whether the sign bit of a lane is set.
+template <typename T, std::size_t N>
+HWY_INLINE bool isAnyNegative(const Lanes<T, N>& a) {
+  auto any = a.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) any = hn::Or(any, a.part[p]);
+  const typename Lanes<T, N>::Tag tag;
+  const hn::RebindToSigned<decltype(tag)> integers;
+  return !hn::AllFalse(integers, hn::Lt(hn::BitCast(integers, any), hn::Zero(integers)));
+}
+
+template <typename T, std::size_t N>
+HWY_INLINE bool isAll(const LaneMask<T, N>& mask) {
+  auto all = mask.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) all = hn::And(all, mask.part[p]);
+  return hn::AllTrue(typename Lanes<T, N>::Tag(), all);
+}
+
+/// Rounded to floats; beyond their range FLT_MAX or infinity, whatever the machine has.
+template <std::size_t N>
+HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
+  const typename Lanes<float, N>::Tag tag;
+  Lanes<float, N> out;
+  for (std::size_t p = 0; p < Lanes<float, N>::kParts; ++p) {
+    // As many parts of floats as of doubles, or half as many.
+#if HWY_TARGET == HWY_SCALAR
+    out.part[p] = hn::DemoteTo(tag, a.part[p]);
+#else
+    if constexpr (Lanes<float, N>::kParts == Lanes<double, N>::kParts) {
+      out.part[p] = hn::DemoteTo(tag, a.part[p]);
+    } else {
+      const hn::Half<decltype(tag)> half;
+      out.part[p] = hn::Combine(tag, hn::DemoteTo(half, a.part[2 * p + 1]),
+                                hn::DemoteTo(half, a.part[2 * p]));
+    }
+#endif
+  }
+  return out;
+}
+
+/// Eight pairs of numbers: the first ones and the second ones.
+HWY_INLINE void loadTwoEach(const float* from, Lanes<double, kEight>& first,
+                            Lanes<double, kEight>& second) {
+  using Parts = Lanes<double, kEight>;
+  const Parts::Tag tag;
+  const hn::Rebind<float, Parts::Tag> floats;
+  for (std::size_t p = 0; p < Parts::kParts; ++p) {
+    hn::Vec<decltype(floats)> even, odd;
+    hn::LoadInterleaved2(floats, from + 2 * p * Parts::kWidth, even, odd);
+    first.part[p] = hn::PromoteTo(tag, even);
+    second.part[p] = hn::PromoteTo(tag, odd);
+  }
+}
+
+/// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
+/// are written.
+HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  static constexpr std::uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                 8, 9, 10, 11, 12, 13, 14, 15};
+  const hn::CappedTag<std::uint32_t, 16> tag;
+  constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
+  for (std::size_t i = 0; i < 16; i += kWidth) {
+    // Eight bytes may be read.
+    const std::uint64_t part = mask >> i;
+    std::uint8_t bytes[8];
+    __builtin_memcpy(bytes, &part, sizeof(bytes));
+    const auto counted = hn::Add(hn::Set(tag, first), hn::LoadU(tag, kNumbers + i));
+    hn::StoreU(hn::Compress(counted, hn::LoadMaskBits(tag, bytes)), tag, to);
+    to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
+  }
+}
+
+/// The largest lane; none is a NaN.
+template <typename T, std::size_t N>
+HWY_INLINE T largest(const Lanes<T, N>& a) {
+  auto most = a.part[0];
+  for (std::size_t p = 1; p < Lanes<T, N>::kParts; ++p) most = hn::Max(most, a.part[p]);
+  typename Lanes<T, N>::Tag tag;
+  return hn::GetLane(hn::MaxOfLanes(tag, most));
+}
+
+#if HWY_TARGET != HWY_SCALAR
+/// Columns k and k + 1 of every second row, from row i on, row after row.
+template <typename Tag, typename Row>
+HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const Row& row, std::size_t i, std::size_t k) {
+  if constexpr (hn::MaxLanes(Tag()) == 2) {
+    return hn::LoadU(tag, row(i) + k);
+  } else {
+    const hn::Half<Tag> half;
+    return hn::Combine(tag, loadTwos(half, row, i + hn::MaxLanes(half), k),
+                       loadTwos(half, row, i, k));
+  }
+}
+
+/// The sum of the lanes, the upper half of what is left added to the lower one.
+template <typename Tag>
+HWY_INLINE hn::TFromD<Tag> sumOfHalves(Tag, const hn::Vec<Tag>& a) {
+  if constexpr (hn::MaxLanes(Tag()) == 1) {
+    return hn::GetLane(a);
+  } else {
+    const hn::Half<Tag> half;
+    return sumOfHalves(half, hn::Add(hn::LowerHalf(half, a), hn::UpperHalf(half, a)));
+  }
+}
+#endif
+
+/// Columns 0, 1 and 2 of N rows of four.
+/// @param row  row(i) points to row i
+template <typename Row, typename T, std::size_t N>
+HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
+                            Lanes<T, N>& z) {
+  const typename Lanes<T, N>::Tag tag;
+  FCL_CCD_FOR_PARTS {
+    const std::size_t i = p * Lanes<T, N>::kWidth;
+#if HWY_TARGET == HWY_SCALAR
+    x.part[p] = hn::LoadU(tag, row(i));
+    y.part[p] = hn::LoadU(tag, row(i) + 1);
+    z.part[p] = hn::LoadU(tag, row(i) + 2);
+#else
+    const auto even = loadTwos(tag, row, i, 0), odd = loadTwos(tag, row, i + 1, 0);
+    x.part[p] = hn::InterleaveLower(tag, even, odd);
+    y.part[p] = hn::InterleaveUpper(tag, even, odd);
+    z.part[p] =
+        hn::InterleaveLower(tag, loadTwos(tag, row, i, 2), loadTwos(tag, row, i + 1, 2));
+#endif
+  }
+}
+
+/// Eight rows of eight become columns.
+HWY_INLINE void transpose(Lanes<float, kEight> (&x)[kEight]) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto kept = x[i].part[j];
+      x[i].part[j] = x[j].part[i];
+      x[j].part[i] = kept;
+    }
+#else
+  using Parts = Lanes<float, kEight>;
+  const Parts::Tag tag;
+  const hn::Repartition<std::uint64_t, Parts::Tag> twos;
+  // Four by four, in blocks of four lanes: column 4 b + i of rows g to g + 3 is block b
+  // of x[g + i] then.
+  for (std::size_t g = 0; g < kEight; g += 4)
+    for (std::size_t p = 0; p < Parts::kParts; ++p) {
+      auto& x0 = x[g].part[p];
+      auto& x1 = x[g + 1].part[p];
+      auto& x2 = x[g + 2].part[p];
+      auto& x3 = x[g + 3].part[p];
+      const auto a = hn::BitCast(twos, hn::InterleaveLower(tag, x0, x1)),
+                 b = hn::BitCast(twos, hn::InterleaveUpper(tag, x0, x1)),
+                 c = hn::BitCast(twos, hn::InterleaveLower(tag, x2, x3)),
+                 d = hn::BitCast(twos, hn::InterleaveUpper(tag, x2, x3));
+      x0 = hn::BitCast(tag, hn::InterleaveLower(twos, a, c));
+      x1 = hn::BitCast(tag, hn::InterleaveUpper(twos, a, c));
+      x2 = hn::BitCast(tag, hn::InterleaveLower(twos, b, d));
+      x3 = hn::BitCast(tag, hn::InterleaveUpper(twos, b, d));
+    }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Parts low = x[i], high = x[i + 4];
+    if constexpr (Parts::kParts == 1) {
+      x[i].part[0] = hn::ConcatLowerLower(tag, high.part[0], low.part[0]);
+      x[i + 4].part[0] = hn::ConcatUpperUpper(tag, high.part[0], low.part[0]);
+    } else {
+      x[i].part[1] = high.part[0];
+      x[i + 4].part[0] = low.part[1];
+    }
+  }
+#endif
+}
+
+/// In the same order everywhere.
+HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
+  using Parts = Lanes<double, kEight>;
+  Parts sum = a;
+  for (std::size_t half = Parts::kParts / 2; half > 0; half /= 2)
+    for (std::size_t p = 0; p < half; ++p)
+      sum.part[p] = hn::Add(sum.part[p], sum.part[p + half]);
+#if HWY_TARGET == HWY_SCALAR
+  return hn::GetLane(sum.part[0]);
+#else
+  return sumOfHalves(Parts::Tag(), sum.part[0]);
+#endif
+}
+
+#undef FCL_CCD_FOR_PARTS
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
