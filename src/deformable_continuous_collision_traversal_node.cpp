@@ -236,7 +236,10 @@ template <typename S>
 void DeformableContinuousCollisionTraversalNode<S>::leafTesting(int b1, int b2) const {
   const deformable::DefaultFloatingPoint mode;
   try {
-    test_->visit(view1_->triangle(b1), view2().triangle(b2), window(b1, b2).lo);
+    const deformable::LeafPair pair{view1_->triangle(b1), view2().triangle(b2),
+                                    window(b1, b2).lo};
+    const deformable::LeafPair* next = &pair;
+    test_->visit(next, next + 1);
     test_->flush();
   } catch (const deformable::NonFiniteVertex& error) {
     throw Exception(error.what());

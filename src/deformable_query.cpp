@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/detail/deformable/embedded_fans.h"
 #include "fcl/narrowphase/detail/deformable/embedded_regions.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "parallel.h"
@@ -25,11 +26,6 @@ using Clock = std::chrono::steady_clock;
 double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
-
-struct LeafPair {
-  std::int32_t a, b;
-  float earliest;
-};
 
 /// Triangle pairs are visited in blocks, so that the tree and the vertices do not push
 /// each other out of the cache at every pair. A first-contact query begins with small
@@ -147,16 +143,15 @@ class Part {
   void visitBlock() {
     if (count_ == 0) return;
     const auto start = Clock::now();
-    for (std::size_t first = 0; first < count_ && !leaves_->isDone();) {
-      const double latest = leaves_->latest();
-      const std::size_t last = std::min(first + blockFor(latest), count_);
+    const LeafPair* next = block_.data();
+    const LeafPair* end = next + count_;
+    while (next != end && !leaves_->isDone()) {
+      const std::size_t size =
+          std::min(blockFor(leaves_->latest()), static_cast<std::size_t>(end - next));
       try {
-        for (; first < last; ++first) {
-          const LeafPair& p = block_[first];
-          if (p.earliest <= latest) leaves_->visit(p.a, p.b, p.earliest);
-        }
+        leaves_->visit(next, next + size);
       } catch (const NonFiniteVertex& error) {
-        leaves_->refuse(error, block_[first++].earliest);
+        leaves_->refuse(error, (next++)->earliest);
       }
       leaves_->flush();
     }
@@ -251,24 +246,14 @@ SelfCulling cullSelf(const MeshInstance& mesh, bool with_regions, int num_thread
   if (!mesh.tree || !mesh.isInPlace()) return culling;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
-  const std::size_t count = tree.vertices().size();
-  std::vector<std::uint8_t> interior(count, 0);
+  std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (with_regions) {
     EmbeddedRegions regions = findEmbeddedRegions(tree, kernels(), num_threads);
     culling.regions = std::move(regions.nodes);
     interior = std::move(regions.interior);
   }
-  constexpr std::size_t kBlock = 4096, kAhead = 64;
-  culling.fans.resize(count);
-  parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
-    for (; i < last; ++i) {
-      __builtin_prefetch(&tree.vertices()[std::min(i + kAhead, count - 1)]);
-      // No pair of triangles around a vertex inside of a region is met.
-      culling.fans[i] =
-          !interior[i] && kernels().isFanEmbedded(tree.vertices().data(),
-                                                  tree.vertices()[i], tree.fans()[i]);
-    }
-  });
+  // No pair of triangles around a vertex inside of a region is met.
+  culling.fans = findEmbeddedFans(tree, interior, kernels(), num_threads);
   times.traverse += secondsSince(start);
   return culling;
 }

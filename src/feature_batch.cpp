@@ -42,8 +42,7 @@ NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
 
 TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
   if (!mesh.isInPlace()) return;
-  tree_triangles_ = mesh.tree->triangles().data();
-  tree_vertices_ = mesh.tree->vertices().data();
+  in_place_ = {mesh.tree->triangles().data(), mesh.tree->vertices().data()};
 }
 
 void TriangleReader::readIntoStore(int i) {
@@ -136,6 +135,47 @@ void FeatureBatch::clear() {
   num_pairs_ = num_crossings_ = 0;
   has_edges_ = false;
   for (List& list : lists_) list.size = 0;
+}
+
+template <typename ReaderA, typename ReaderB>
+void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
+                           const LeafPair* last, double latest, bool with_crossings,
+                           StageCounts& counts) {
+  // Triangles lie anywhere in memory: the cache is told before they are read.
+  constexpr std::ptrdiff_t kAhead = 8;
+  for (; next != last; ++next) {
+    const LeafPair& ahead = *std::min(next + kAhead, last - 1);
+    reader_a.prefetch(ahead.a);
+    reader_b.prefetch(ahead.b);
+    if (next->earliest > latest) continue;
+    TrianglePair& pair = pairs_[num_pairs_];
+    pair.a = reader_a.read(next->a, pair.x);
+    pair.b = reader_b.read(next->b, pair.x + 3);
+    const bool with_crossing = with_crossings && next->earliest <= 0.f;
+    unsigned owned = ownedPairs(pair.a->owned, pair.b->owned);
+    unsigned edges = ownedEdges(pair.a->owned, pair.b->owned) & (0U - with_crossing);
+    ++counts.triangle_pairs;
+    if (self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b))) {
+      const unsigned shared = sharedVertices(pair.a->id, pair.b->id);
+      owned &= ~pairsAt(shared);
+      edges &= ~edgesAtBoth(shared);
+      ++counts.adjacent_pairs;
+    }
+    owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
+    edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
+    has_edges_ |= edges != 0;
+    // Three pairs of ten own nothing together: no branch, nobody could foretell it.
+    num_pairs_ += (owned | edges) != 0;
+  }
+}
+
+void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double latest,
+                       bool with_crossings, StageCounts& counts) {
+  TrianglesInPlace a = reader_a_.inPlace(), b = reader_b_.inPlace();
+  if (a.triangles && b.triangles)
+    addFrom(a, b, next, last, latest, with_crossings, counts);
+  else
+    addFrom(reader_a_, reader_b_, next, last, latest, with_crossings, counts);
 }
 
 void FeatureBatch::cull(double latest, StageCounts& counts) {

@@ -18,6 +18,7 @@
 
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "fcl/narrowphase/detail/deformable/embedded_fans.h"
 #include "fcl/narrowphase/detail/deformable/instant_test.h"
 #include "moving_mesh.h"
 #include "traverse.h"
@@ -360,6 +361,51 @@ TEST(FCL_VERTEX_FANS, cullingChangesNoAnswer) {
   EXPECT_GT(contacts, 2000U);
   EXPECT_GT(crossing, 20);
   for (const int n : culled_by) EXPECT_GT(n, 5);
+}
+
+/// Whether the fan of a vertex is embedded, asked for alone.
+bool isEmbedded(const MovingKdopTree& tree, std::size_t vertex) {
+  const VertexFan fan = tree.fans()[vertex];
+  if (fan.count == 0) return false;
+  EightFans eight;
+  std::fill(eight.center, eight.center + 8, &tree.vertices()[vertex]);
+  std::fill(eight.spokes, eight.spokes + 8, fan.spokes);
+  eight.count = fan.count;
+  eight.is_closed = fan.is_closed;
+  return kernels().areFansEmbedded(tree.vertices().data(), eight) & 1U;
+}
+
+// Fans of all kinds, eight together in blocks of vertices, are as each alone.
+TEST(FCL_VERTEX_FANS, fansTogetherAreAsAlone) {
+  constexpr std::uint64_t kSeed = 95;
+  Random random(kSeed);
+  std::set<std::pair<std::uint32_t, bool>> kinds;
+  std::size_t embedded = 0, folded = 0;
+  for (int i = 0; i < 12; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    // With holes: fans of all lengths. More vertices than a block has.
+    const int n = i % 2 ? 80 : 3;
+    MovingMesh mesh = test::crumpledSheet(random, n, 0.5 / n);
+    mesh.triangles.erase(
+        std::remove_if(mesh.triangles.begin() + 1, mesh.triangles.end(),
+                       [&](const Triangle&) { return random.index(8) == 0; }),
+        mesh.triangles.end());
+    const PreparedMovingMesh prepared(mesh);
+    const MovingKdopTree& tree = prepared.tree();
+    const std::size_t count = tree.vertices().size();
+    std::vector<std::uint8_t> left_out(count, 0), expected(count);
+    for (std::size_t v = 0; v < count; ++v) {
+      left_out[v] = i % 4 > 1 && random.index(3) == 0;
+      expected[v] = !left_out[v] && isEmbedded(tree, v);
+      ++(expected[v] ? embedded : folded);
+      kinds.insert({tree.fans()[v].count, tree.fans()[v].is_closed});
+    }
+    for (const int num_threads : {1, 2})
+      EXPECT_EQ(findEmbeddedFans(tree, left_out, kernels(), num_threads), expected);
+  }
+  EXPECT_GT(kinds.size(), 7U);
+  EXPECT_GT(embedded, 1000U);
+  EXPECT_GT(folded, 1000U);
 }
 
 // What the traversal leaves out is exactly the pairs that share a vertex whose fan is

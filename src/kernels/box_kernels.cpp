@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Boxes against boxes: of nodes, triangles and features.
-#include <algorithm>
 #include <cfloat>
 #include <limits>
 
@@ -322,6 +321,22 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
   return first + swapHalves(second);
 }
 
+/// Leaves the codes of which keeps(code) is true; returns how many. Sixteen at a time:
+/// where one goes depends on all before, and whoever reads on would wait for it.
+template <typename Keeps>
+HWY_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
+                                 const Keeps& keeps) {
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < count; first += kSixteen) {
+    const std::size_t size = count - first < kSixteen ? count - first : kSixteen;
+    unsigned mask = 0;
+    for (std::size_t i = 0; i < size; ++i) mask |= unsigned{keeps(codes[first + i])} << i;
+    storeSelected(mask, codes + first, codes + kept);
+    kept += static_cast<std::size_t>(__builtin_popcount(mask));
+  }
+  return kept;
+}
+
 template <FeatureKind kind, bool kShifted>
 HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
                                     const KdopShift* turned_shift, float latest,
@@ -334,30 +349,31 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
     return depths<kind, kShifted, 1>(pairs[code / 16], code % 16, shift, turned_shift);
   };
   // A loop for each look at the boxes: none has a branch that depends on them.
-  if (gaps) {
-    std::size_t near = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint32_t code = codes[i];
-      codes[near] = code;
-      near += isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));
-    }
-    count = near;
-  }
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t code = codes[i];
-    codes[left] = code;
-    left += !isAnyNegative(bothNegative(at0(code), at1(code)));
-  }
+  if (gaps)
+    count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
+      return isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));
+    });
+  count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
+    return !isAnyNegative(bothNegative(at0(code), at1(code)));
+  });
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < left; ++i) {
-    const std::uint32_t code = codes[i];
-    HalfAxes before = broadcast<16>(0.f), after = before;
-    addLoss(at0(code), at1(code), before, after);
-    const float lo = largest(before), hi = kWindowEnd - largest(after);
-    codes[kept] = code;
-    windows[kept] = {lo, hi < 1.f ? hi : 1.f};
-    kept += lo <= (hi < latest ? hi : latest);
+  for (std::size_t first = 0; first < count; first += kSixteen) {
+    TimeWindow found[kSixteen];
+    const std::size_t size = count - first < kSixteen ? count - first : kSixteen;
+    unsigned meets = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      const std::uint32_t code = codes[first + i];
+      HalfAxes before = broadcast<16>(0.f), after = before;
+      addLoss(at0(code), at1(code), before, after);
+      const float lo = largest(before), hi = kWindowEnd - largest(after);
+      found[i] = {lo, hi < 1.f ? hi : 1.f};
+      meets |= unsigned{lo <= (hi < latest ? hi : latest)} << i;
+    }
+    storeSelected(meets, codes + first, codes + kept);
+    for (std::size_t i = 0; i < size; ++i) {
+      windows[kept] = found[i];
+      kept += meets >> i & 1U;
+    }
   }
   return kept;
 }
@@ -376,22 +392,16 @@ std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count) {
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint32_t code = codes[i];
+  return keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
     const std::size_t edge = code % 16, on_b = edge / 3, k = edge % 3;
     const TreeVertex* const* mine = pairs[code / 16].x + 3 * on_b;
     const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
-    HalfAxes ends =
-        larger(load<16>(mine[k]->box.t0.half), load<16>(mine[(k + 1) % 3]->box.t0.half));
+    HalfAxes ends = larger(boxOf<0>(*mine[k]), boxOf<0>(*mine[(k + 1) % 3]));
     if (shift) ends = shifted(ends, (on_b ? turned_shift : shift)->t0);
     const HalfAxes all =
-        larger(larger(load<16>(face[0]->box.t0.half), load<16>(face[1]->box.t0.half)),
-               load<16>(face[2]->box.t0.half));
-    codes[left] = code;
-    left += !isAnyNegative(ends + swapHalves(all));
-  }
-  return left;
+        larger(larger(boxOf<0>(*face[0]), boxOf<0>(*face[1])), boxOf<0>(*face[2]));
+    return !isAnyNegative(ends + swapHalves(all));
+  });
 }
 
 }  // namespace HWY_NAMESPACE

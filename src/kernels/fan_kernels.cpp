@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof that a fan stays embedded.
-#include <algorithm>
-#include <cmath>
-
+// The proof that fans stay embedded.
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/fan_kernels.cpp"
@@ -21,145 +18,125 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-struct Vector {
-  double x, y, z;
+/// A vertex of each of eight fans, at both ends of the step; or a spoke, from the center.
+struct FanPoints {
+  Vectors t0, t1;
 };
 
-HWY_INLINE double maxNorm(const Vector& a) {
-  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+HWY_INLINE FanPoints loadPoints(const TreeVertex* const (&x)[kEight]) {
+  FanPoints p;
+  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, p.t0.x, p.t0.y,
+              p.t0.z);
+  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, p.t1.x, p.t1.y,
+              p.t1.z);
+  return p;
 }
 
-HWY_INLINE Vector difference(const double* p, const double* q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
-
-HWY_INLINE Doubles dot(const Vectors& a, const Vector& b) {
-  return a.x * broadcast<kEight>(b.x) + a.y * broadcast<kEight>(b.y) +
-         a.z * broadcast<kEight>(b.z);
-}
-
-HWY_INLINE Vector sumOfLanes(const Vectors& a) {
-  return {sumOfLanes(a.x), sumOfLanes(a.y), sumOfLanes(a.z)};
-}
-
-/// The spokes of a fan, with room for whole lanes: a closed fan is followed by its first
-/// spoke, an open one by its last, so that what follows spans no triangle.
-class Spokes {
- public:
-  HWY_INLINE Spokes(const TreeVertex* vertices, const TreeVertex& center,
-                    const VertexFan& fan, std::size_t num_blocks)
-      : center_(center) {
-    std::size_t i = 0;
-    for (; i < fan.count; ++i) spokes_[i] = vertices + fan.spokes[i];
-    const TreeVertex* next = spokes_[fan.is_closed ? 0 : i - 1];
-    for (; i <= num_blocks * kEight; ++i) spokes_[i] = next;
-  }
-
-  const TreeVertex& operator[](std::size_t i) const { return *spokes_[i]; }
-
-  /// Eight from spoke i on, as differences to the center, at t = 0 and at t = 1.
-  HWY_INLINE Vectors at0(std::size_t i) const {
-    const TreeVertex* const* from = spokes_ + i;
-    return minus(center_.t0,
-                 [from](std::size_t lane) HWY_ATTR { return from[lane]->t0; });
-  }
-  HWY_INLINE Vectors at1(std::size_t i) const {
-    const TreeVertex* const* from = spokes_ + i;
-    return minus(center_.t1,
-                 [from](std::size_t lane) HWY_ATTR { return from[lane]->t1; });
-  }
-
- private:
-  template <typename Row>
-  HWY_INLINE Vectors minus(const double (&center)[4], const Row& spoke) const {
-    Vectors p;
-    loadColumns(spoke, p.x, p.y, p.z);
-    return {p.x - broadcast<kEight>(center[0]), p.y - broadcast<kEight>(center[1]),
-            p.z - broadcast<kEight>(center[2])};
-  }
-
-  const TreeVertex& center_;
-  const TreeVertex* spokes_[VertexFans::kMaxSpokes + kEight];
+/// Normals of the triangles between two spokes: Bernstein coefficients in t.
+struct FanNormals {
+  Vectors first, middle, last;
 };
 
-bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
-                   const VertexFan& fan) {
-  if (fan.count < 2) return false;
-  const std::size_t num_blocks = (fan.count + kEight - 1) / kEight;
-  const Spokes spokes(vertices, center, fan, num_blocks);
+HWY_INLINE FanNormals normalsBetween(const FanPoints& v, const FanPoints& w) {
+  return {cross(v.t0, w.t0), cross(v.t0, w.t1) + cross(v.t1, w.t0), cross(v.t1, w.t1)};
+}
 
-  constexpr std::size_t kMaxBlocks = VertexFans::kMaxSpokes / kEight;
-  Vectors u0[kMaxBlocks], u1[kMaxBlocks];
-  Vectors first[kMaxBlocks], middle[kMaxBlocks], last[kMaxBlocks];
-  Vector d = {0, 0, 0};
-  Doubles norm = broadcast<kEight>(kLeastNorm);
-  for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Vectors v0 = u0[b] = spokes.at0(b * kEight),
-                  v1 = u1[b] = spokes.at1(b * kEight), w0 = spokes.at0(b * kEight + 1),
-                  w1 = spokes.at1(b * kEight + 1);
-    norm = max(norm, max(maxNorm(v0), maxNorm(v1)));
-    first[b] = cross(v0, w0);
-    middle[b] = cross(v0, w1) + cross(v1, w0);
-    last[b] = cross(v1, w1);
-    const Vector sum = sumOfLanes(first[b] + last[b]);
-    d = {d.x + sum.x, d.y + sum.y, d.z + sum.z};
+/// Where no product that matters underflows or overflows.
+HWY_INLINE DoubleMask isInRange(const Doubles& factor, const Doubles& product) {
+  return (factor >= broadcast<kEight>(kTiny)) & (product >= broadcast<kEight>(kTiny)) &
+         (product <= broadcast<kEight>(kHuge));
+}
+
+/// On which side of a ray the spokes of eight fans lie at one time: a bit a fan where
+/// spoke i lies before (after) it beyond doubt, turning the fan's way.
+struct Sides {
+  unsigned before[VertexFans::kMaxSpokes], after[VertexFans::kMaxSpokes];
+
+  /// @param across  its product with what lies before the ray is above the bound
+  HWY_INLINE void set(std::size_t i, const Vectors& spoke, const Vectors& across,
+                      const Doubles& bound, const Doubles& minus_bound) {
+    const Doubles g = dot(spoke, across);
+    before[i] = bits(g > bound);
+    after[i] = bits(g < minus_bound);
   }
-  const double u_norm = largest(norm), d_norm = maxNorm(d);
-  const double size = u_norm * u_norm * d_norm;
-  if (!(u_norm * u_norm >= kTiny && size >= kTiny && size <= kHuge)) return false;
+};
 
-  const std::size_t num_triangles = fan.is_closed ? fan.count : fan.count - 1;
-  const auto triangles_bits = (1U << num_triangles) - 1;
-  const Doubles turned = broadcast<kEight>(kFanBound * size);
-  unsigned keep = 0;
-  for (std::size_t b = 0; b < num_blocks; ++b)
-    keep |= bits((dot(first[b], d) > turned) & (dot(middle[b], d) > turned) &
-                 (dot(last[b], d) > turned))
-            << (b * kEight);
-  if ((keep & triangles_bits) != triangles_bits) return false;
+/// Fans that go round once: the ray lies in one sector.
+HWY_INLINE unsigned goRoundOnce(const Sides& at0, std::size_t count) {
+  unsigned decided = ~0U, once = 0, again = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const unsigned within = at0.before[i] & at0.after[i + 1 < count ? i + 1 : 0];
+    decided &= at0.before[i] | at0.after[i];
+    again |= once & within;
+    once |= within;
+  }
+  return decided & once & ~again;
+}
+
+/// Fans of which no sector ever covers the ray: each has its first spoke after it all the
+/// time, or its last one before.
+HWY_INLINE unsigned leaveFree(const Sides& at0, const Sides& at1, std::size_t count) {
+  unsigned free = ~0U;
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    free &= (at0.after[i] & at1.after[i]) | (at0.before[i + 1] & at1.before[i + 1]);
+  return free;
+}
+
+unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
+  const std::size_t count = fans.count;
+  const FanPoints center = loadPoints(fans.center);
+  FanPoints spokes[VertexFans::kMaxSpokes + 1];
+  Doubles u_norm = broadcast<kEight>(kLeastNorm);
+  for (std::size_t i = 0; i < count; ++i) {
+    const TreeVertex* x[kEight];
+    for (std::size_t lane = 0; lane < kEight; ++lane)
+      x[lane] = vertices + fans.spokes[lane][i];
+    const FanPoints p = loadPoints(x);
+    spokes[i] = {p.t0 - center.t0, p.t1 - center.t1};
+    u_norm = max(u_norm, max(maxNorm(spokes[i].t0), maxNorm(spokes[i].t1)));
+  }
+  spokes[count] = spokes[0];
+
+  // All triangles face d.
+  const std::size_t num_triangles = fans.is_closed ? count : count - 1;
+  FanNormals normals[VertexFans::kMaxSpokes];
+  const Doubles zero = broadcast<kEight>(0.);
+  Vectors d = {zero, zero, zero};
+  for (std::size_t i = 0; i < num_triangles; ++i) {
+    normals[i] = normalsBetween(spokes[i], spokes[i + 1]);
+    d = d + (normals[i].first + normals[i].last);
+  }
+  const Doubles d_norm = maxNorm(d), size = u_norm * u_norm * d_norm;
+  const Doubles turned = broadcast<kEight>(kFanBound) * size;
+  DoubleMask facing = isInRange(u_norm * u_norm, size);
+  for (std::size_t i = 0; i < num_triangles; ++i)
+    facing = facing & (dot(normals[i].first, d) > turned) &
+             (dot(normals[i].middle, d) > turned) & (dot(normals[i].last, d) > turned);
+  const unsigned left = bits(facing);
+  if (left == 0) return 0;
 
   // The ray: through the middle of the first sector of a closed fan; away from an open
   // one.
-  Vector r = {0, 0, 0};
-  if (fan.is_closed) {
-    const Vector p = difference(spokes[0].t0, center.t0),
-                 q = difference(spokes[1].t0, center.t0);
-    const double a = maxNorm(p), b = maxNorm(q);
-    r = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
+  Vectors ray = {zero, zero, zero};
+  if (fans.is_closed) {
+    const Vectors &p = spokes[0].t0, &q = spokes[1].t0;
+    const Doubles a = maxNorm(p), b = maxNorm(q);
+    ray = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
   } else {
-    for (std::size_t i = 0; i < fan.count; ++i) {
-      const Vector p = difference(center.t0, spokes[i].t0),
-                   q = difference(center.t1, spokes[i].t1);
-      r = {r.x + (p.x + q.x), r.y + (p.y + q.y), r.z + (p.z + q.z)};
-    }
+    for (std::size_t i = 0; i < count; ++i) ray = ray - (spokes[i].t0 + spokes[i].t1);
   }
-  const Vector e = {r.y * d.z - r.z * d.y, r.z * d.x - r.x * d.z, r.x * d.y - r.y * d.x};
-  const double r_norm = maxNorm(r), ray_size = u_norm * r_norm * d_norm;
-  if (!(r_norm * d_norm >= kTiny && ray_size >= kTiny && ray_size <= kHuge)) return false;
-  const Doubles bound = broadcast<kEight>(kRayBound * ray_size);
-  const Doubles minus_bound = broadcast<kEight>(-kRayBound * ray_size);
-  // Spokes that lie before and after the ray beyond doubt, turning the fan's way.
-  unsigned before0 = 0, after0 = 0;
-  for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Doubles g = dot(u0[b], e);
-    before0 |= bits(g > bound) << (b * kEight);
-    after0 |= bits(g < minus_bound) << (b * kEight);
+  const Doubles ray_norm = maxNorm(ray), ray_size = u_norm * ray_norm * d_norm;
+  const unsigned in_range = bits(isInRange(ray_norm * d_norm, ray_size));
+  const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
+                minus_bound = zero - bound;
+  const Vectors across = cross(ray, d);
+  Sides at0, at1;
+  for (std::size_t i = 0; i < count; ++i) {
+    at0.set(i, spokes[i].t0, across, bound, minus_bound);
+    if (!fans.is_closed) at1.set(i, spokes[i].t1, across, bound, minus_bound);
   }
-  if (fan.is_closed) {
-    if (((before0 | after0) & triangles_bits) != triangles_bits) return false;
-    const unsigned after_next = (after0 & triangles_bits) >> 1 | (after0 & 1U)
-                                                                     << (fan.count - 1);
-    return __builtin_popcount(before0 & after_next & triangles_bits) == 1;
-  }
-  unsigned before1 = 0, after1 = 0;
-  for (std::size_t b = 0; b < num_blocks; ++b) {
-    const Doubles g = dot(u1[b], e);
-    before1 |= bits(g > bound) << (b * kEight);
-    after1 |= bits(g < minus_bound) << (b * kEight);
-  }
-  // A sector misses the ray while its first spoke is after it or its last one before.
-  const unsigned misses = (after0 & after1) | (before0 & before1) >> 1;
-  return (misses & triangles_bits) == triangles_bits;
+  return left & in_range &
+         (fans.is_closed ? goRoundOnce(at0, count) : leaveFree(at0, at1, count));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -223,22 +223,40 @@ HWY_INLINE void loadTwoEach(const float* from, Lanes<double, kEight>& first,
   }
 }
 
-/// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
-/// are written.
-HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
-  static constexpr std::uint32_t kNumbers[16] = {0, 1, 2,  3,  4,  5,  6,  7,
-                                                 8, 9, 10, 11, 12, 13, 14, 15};
-  const hn::CappedTag<std::uint32_t, 16> tag;
+/// Of 16 numbers those whose bit is set, in their order; up to 16 are written.
+/// @param numbers  numbers(tag, i): as many as the tag has lanes, from number i on
+template <typename Numbers>
+HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32_t* to) {
+  const hn::CappedTag<std::uint32_t, kSixteen> tag;
   constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
-  for (std::size_t i = 0; i < 16; i += kWidth) {
+  for (std::size_t i = 0; i < kSixteen; i += kWidth) {
     // Eight bytes may be read.
     const std::uint64_t part = mask >> i;
     std::uint8_t bytes[8];
     __builtin_memcpy(bytes, &part, sizeof(bytes));
-    const auto counted = hn::Add(hn::Set(tag, first), hn::LoadU(tag, kNumbers + i));
-    hn::StoreU(hn::Compress(counted, hn::LoadMaskBits(tag, bytes)), tag, to);
+    hn::StoreU(hn::Compress(numbers(tag, i), hn::LoadMaskBits(tag, bytes)), tag, to);
     to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
   }
+}
+
+/// Of the 16 numbers at `from` those whose bit is set; up to 16 are written. They may be
+/// written where they are, or before that.
+HWY_INLINE void storeSelected(unsigned mask, const std::uint32_t* from,
+                              std::uint32_t* to) {
+  const auto numbers = [from](auto tag, std::size_t i)
+                           HWY_ATTR { return hn::LoadU(tag, from + i); };
+  storeWhereSet(mask, numbers, to);
+}
+
+/// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
+/// are written.
+HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
+  static constexpr std::uint32_t kNumbers[kSixteen] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                       8, 9, 10, 11, 12, 13, 14, 15};
+  const auto numbers = [first](auto tag, std::size_t i) HWY_ATTR {
+    return hn::Add(hn::Set(tag, first), hn::LoadU(tag, kNumbers + i));
+  };
+  storeWhereSet(mask, numbers, to);
 }
 
 /// The largest lane; none is a NaN.
@@ -260,17 +278,6 @@ HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const Row& row, std::size_t i, std::si
     const hn::Half<Tag> half;
     return hn::Combine(tag, loadTwos(half, row, i + hn::MaxLanes(half), k),
                        loadTwos(half, row, i, k));
-  }
-}
-
-/// The sum of the lanes, the upper half of what is left added to the lower one.
-template <typename Tag>
-HWY_INLINE hn::TFromD<Tag> sumOfHalves(Tag, const hn::Vec<Tag>& a) {
-  if constexpr (hn::MaxLanes(Tag()) == 1) {
-    return hn::GetLane(a);
-  } else {
-    const hn::Half<Tag> half;
-    return sumOfHalves(half, hn::Add(hn::LowerHalf(half, a), hn::UpperHalf(half, a)));
   }
 }
 #endif
@@ -337,20 +344,6 @@ HWY_INLINE void transpose(Lanes<float, kEight> (&x)[kEight]) {
       x[i + 4].part[0] = low.part[1];
     }
   }
-#endif
-}
-
-/// In the same order everywhere.
-HWY_INLINE double sumOfLanes(const Lanes<double, kEight>& a) {
-  using Parts = Lanes<double, kEight>;
-  Parts sum = a;
-  for (std::size_t half = Parts::kParts / 2; half > 0; half /= 2)
-    for (std::size_t p = 0; p < half; ++p)
-      sum.part[p] = hn::Add(sum.part[p], sum.part[p + half]);
-#if HWY_TARGET == HWY_SCALAR
-  return hn::GetLane(sum.part[0]);
-#else
-  return sumOfHalves(Parts::Tag(), sum.part[0]);
 #endif
 }
 

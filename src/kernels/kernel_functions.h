@@ -39,8 +39,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           std::size_t count);
 unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* approach);
 unsigned mayCrossOfEight(const EightCrossings& pairs);
-bool isFanEmbedded(const TreeVertex* vertices, const TreeVertex& center,
-                   const VertexFan& fan);
+unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
 EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* pairs,

@@ -27,7 +27,7 @@ extern const Kernels kKernels = {
     targetName(),           &fitPoints,          &fitNode,
     &overlapChildrenOf,     &overlapTrianglesOf, &listFeatures,
     &cullFeaturesOf,        &cullCrossings,      &areApart,
-    &mayCrossOfEight,       &isFanEmbedded,      &facedDirections,
+    &mayCrossOfEight,       &areFansEmbedded,    &facedDirections,
     &coplanarityOfFeatures, &solveEight,         &divideEight};
 
 const Kernels* table() { return &kKernels; }

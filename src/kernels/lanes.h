@@ -30,7 +30,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kEight = 8;
+constexpr std::size_t kEight = 8, kSixteen = 16;
 
 }  // namespace HWY_NAMESPACE
 }  // namespace deformable

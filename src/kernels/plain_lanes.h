@@ -157,6 +157,10 @@ inline void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) 
     *to++ = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
 }
 
+inline void storeSelected(unsigned mask, const std::uint32_t* from, std::uint32_t* to) {
+  for (; mask != 0; mask &= mask - 1) *to++ = from[__builtin_ctz(mask)];
+}
+
 template <typename T, std::size_t N>
 inline T largest(const Lanes<T, N>& a) {
   T most = a.lane[0];
@@ -188,11 +192,6 @@ inline void transpose(Lanes<float, kEight> (&x)[kEight]) {
       x[i].lane[j] = x[j].lane[i];
       x[j].lane[i] = kept;
     }
-}
-
-inline double sumOfLanes(const Lanes<double, kEight>& a) {
-  const double(&x)[kEight] = a.lane;
-  return ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]));
 }
 
 #undef FCL_CCD_FOR_LANES

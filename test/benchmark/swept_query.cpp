@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 
 #include "swept_tree.h"
 #include "timing.h"
@@ -34,19 +33,23 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   deformable::TrianglePairTest leaves(instance, instance, nullptr,
                                       deformable::QueryOptions());
   SweptContacts found;
-  std::vector<std::pair<int, int>> pairs;
+  std::vector<deformable::LeafPair> pairs;
   found.ms_traverse = millisecondsOf([&] {
     std::vector<std::uint8_t> embedded;
     if (with_fans) embedded = embeddedFans(model.movingTree());
     leaves.counts().node_pairs = traverse<true>(
-        tree, tree, nullptr, [&](int a, int b, float) { pairs.emplace_back(a, b); }, 1,
-        with_fans ? embedded.data() : nullptr);
+        tree, tree, nullptr,
+        [&](int a, int b, float) {
+          pairs.push_back({a, b, 0.f});
+        },
+        1, with_fans ? embedded.data() : nullptr);
   });
   found.ms_test = millisecondsOf([&] {
-    for (std::size_t i = 0; i < pairs.size(); leaves.flush()) {
-      const std::size_t end =
-          std::min(i + deformable::FeatureBatch::kMaxPairs, pairs.size());
-      for (; i < end; ++i) leaves.visit(pairs[i].first, pairs[i].second, 0.f);
+    const deformable::LeafPair* next = pairs.data();
+    for (std::size_t left = pairs.size(); left > 0; leaves.flush()) {
+      const std::size_t size = std::min(deformable::FeatureBatch::kMaxPairs, left);
+      leaves.visit(next, next + size);
+      left -= size;
     }
   });
   found.counts = leaves.counts();

@@ -71,7 +71,9 @@ class CullCheck {
   void addVisited(int a, int b) {
     std::vector<PairKey> left;
     StageCounts counts;
-    batch_.add(a, b, false, counts);
+    const deformable::LeafPair leaves{a, b, 0.f};
+    const deformable::LeafPair* next = &leaves;
+    batch_.add(next, next + 1, 1, false, counts);
     batch_.cull(1, counts);
     for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
       for (std::size_t i = 0; i < batch_.size(kind); ++i) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fcl/narrowphase/detail/deformable/embedded_fans.h"
 #include "fcl/narrowphase/detail/deformable/mesh_topology.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
 
@@ -41,12 +42,8 @@ std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* 
 /// @brief For each vertex of the tree, whether its fan is embedded, as queries find out.
 inline std::vector<std::uint8_t> embeddedFans(
     const detail::deformable::MovingKdopTree& tree) {
-  std::vector<std::uint8_t> embedded;
-  embedded.reserve(tree.vertices().size());
-  for (std::size_t i = 0; i < tree.vertices().size(); ++i)
-    embedded.push_back(detail::deformable::kernels().isFanEmbedded(
-        tree.vertices().data(), tree.vertices()[i], tree.fans()[i]));
-  return embedded;
+  const std::vector<std::uint8_t> left_out(tree.vertices().size(), 0);
+  return findEmbeddedFans(tree, left_out, detail::deformable::kernels(), 1);
 }
 
 /// @brief The user's ids and the features of triangle i as the tree counts them.

@@ -27,10 +27,14 @@ class CandidateCollector {
                      const CandidateSink& sink)
       : batch_(a, b, shift, kernels()), sink_(sink) {}
 
-  /// @brief Takes triangle i of a and triangle j of b, as their trees count them; at most
-  /// FeatureBatch::kMaxPairs between two calls of flush().
+  /// @brief Takes pairs of triangles; between two calls of flush() at most
+  /// FeatureBatch::kMaxPairs.
+  /// @param next  the first of them; after an error the one that it is about, and in the
+  /// end `last`
   /// @throws NonFiniteVertex
-  void visit(int i, int j, float) { batch_.add(i, j, false, counts_); }
+  void visit(const LeafPair*& next, const LeafPair* last) {
+    batch_.add(next, last, latest(), false, counts_);
+  }
 
   /// @brief What visit() threw ends the query: all candidates are wanted.
   [[noreturn]] void refuse(const NonFiniteVertex& error, float) { throw error; }

@@ -33,6 +33,31 @@ class NonFiniteVertex : public std::domain_error {
   std::size_t vertex_;
 };
 
+/// @brief Two triangles, as their trees count them, whose boxes do not overlap before
+/// `earliest`.
+struct LeafPair {
+  std::int32_t a, b;
+  float earliest;
+};
+
+/// @brief The triangles of a tree that are read where they lie.
+struct TrianglesInPlace {
+  const TreeTriangle* triangles;
+  const TreeVertex* vertices;
+
+  /// @param[out] x  the vertices, which the cache is told of
+  const TreeTriangle* read(int i, const TreeVertex** x) const {
+    const TreeTriangle& triangle = triangles[i];
+    for (int k = 0; k < 3; ++k) {
+      x[k] = vertices + triangle.place[k];
+      for (int line = 0; line < 3; ++line)
+        __builtin_prefetch(reinterpret_cast<const char*>(x[k]) + 64 * line);
+    }
+    return &triangle;
+  }
+  void prefetch(int i) const { __builtin_prefetch(triangles + i); }
+};
+
 /// @brief Reads the triangles of one mesh: those of a tree as they lie there, others into
 /// a store of its own.
 class TriangleReader {
@@ -47,24 +72,25 @@ class TriangleReader {
   /// @param[out] x  its vertices
   /// @throws NonFiniteVertex
   const TreeTriangle* read(int i, const TreeVertex** x) {
-    if (tree_triangles_) {
-      const TreeTriangle& triangle = tree_triangles_[i];
-      for (int k = 0; k < 3; ++k) x[k] = tree_vertices_ + triangle.place[k];
-      return &triangle;
-    }
+    if (in_place_.triangles) return in_place_.read(i, x);
     if (i != index_) readIntoStore(i);
     for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * stored_ + k];
     return &triangles_[stored_];
   }
+
+  void prefetch(int i) const {
+    if (in_place_.triangles) in_place_.prefetch(i);
+  }
+
+  /// @brief What read() does for a tree in place; of no triangles for another mesh.
+  const TrianglesInPlace& inPlace() const { return in_place_; }
 
  private:
   void readIntoStore(int i);
   void pose(std::uint32_t id, TreeVertex& out) const;
 
   const MeshInstance& mesh_;
-  /// Those of the tree, if they are read where they lie; else null.
-  const TreeTriangle* tree_triangles_{nullptr};
-  const TreeVertex* tree_vertices_{nullptr};
+  TrianglesInPlace in_place_{nullptr, nullptr};
   /// The triangle that was read last into the store, and where it is.
   int index_{-1};
   std::size_t stored_{0};
@@ -92,30 +118,15 @@ class FeatureBatch {
 
   bool isSelf() const { return self_; }
 
-  /// @brief Adds triangle i of a and triangle j of b, as their trees count them; at most
-  /// kMaxPairs until clear().
-  /// @param with_crossing  whether they may cross at t = 0
+  /// @brief Adds pairs that overlap no later than `latest`; at most kMaxPairs until
+  /// clear().
+  /// @param next  the first of them; after an error the one that it is about, and in the
+  /// end `last`
+  /// @param with_crossings  whether edges may cross faces at t = 0
   /// @param counts  triangle_pairs and adjacent_pairs are counted
   /// @throws NonFiniteVertex
-  void add(int i, int j, bool with_crossing, StageCounts& counts) {
-    TrianglePair& pair = pairs_[num_pairs_];
-    pair.a = reader_a_.read(i, pair.x);
-    pair.b = reader_b_.read(j, pair.x + 3);
-    unsigned owned = ownedPairs(pair.a->owned, pair.b->owned);
-    unsigned edges = ownedEdges(pair.a->owned, pair.b->owned) & (0U - with_crossing);
-    ++counts.triangle_pairs;
-    if (self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b))) {
-      const unsigned shared = sharedVertices(pair.a->id, pair.b->id);
-      owned &= ~pairsAt(shared);
-      edges &= ~edgesAtBoth(shared);
-      ++counts.adjacent_pairs;
-    }
-    owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
-    edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
-    has_edges_ |= edges != 0;
-    // Three pairs of ten own nothing together: no branch, nobody could foretell it.
-    num_pairs_ += (owned | edges) != 0;
-  }
+  void add(const LeafPair*& next, const LeafPair* last, double latest,
+           bool with_crossings, StageCounts& counts);
 
   void clear();
 
@@ -170,6 +181,10 @@ class FeatureBatch {
   const List& list(FeatureKind kind) const {
     return lists_[kind == FeatureKind::kEdgeEdge];
   }
+  template <typename ReaderA, typename ReaderB>
+  void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
+               const LeafPair* last, double latest, bool with_crossings,
+               StageCounts& counts);
   void leaveOutApart(double latest, StageCounts& counts);
   void cull(FeatureKind kind, double latest, List& list, StageCounts& counts);
 

@@ -126,6 +126,15 @@ struct EightCrossings {
   const TreeVertex* x[5][8];
 };
 
+/// @brief Eight fans of equally many spokes, all closed or all open.
+struct EightFans {
+  const TreeVertex* center[8];
+  const std::uint32_t* spokes[8];
+  /// 2 to VertexFans::kMaxSpokes, of closed fans 3 or more.
+  std::uint32_t count;
+  bool is_closed;
+};
+
 /// @brief What coplanarityInDoubles() says of up to eight pairs, a bit each; where
 /// neither is set, kNever.
 struct EightCoplanarities {
@@ -193,6 +202,7 @@ struct Kernels {
   /// @param latest  windows that begin later are left out
   /// @param gaps  for each triangle pair: its features are left out if they are further
   /// apart at t = 0, along one of the directions; null: none are
+  /// @param codes  with room for 15 more, which may be written
   std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
                               float latest, const float* gaps, std::uint32_t* codes,
@@ -200,6 +210,7 @@ struct Kernels {
 
   /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2
   /// of the code for an edge of a, 3-5 of b.
+  /// @param codes  with room for 15 more, which may be written
   std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
                                const KdopShift* turned_shift, std::uint32_t* codes,
                                std::size_t count);
@@ -216,14 +227,13 @@ struct Kernels {
   /// says no to all others.
   unsigned (*mayCross)(const EightCrossings& pairs);
 
-  /// Proves that the triangles around a vertex meet nowhere but in what they share, at
-  /// every time of the step; false: not proved. Along a direction d they all keep turning
-  /// the same way, n(t) . d > 0, so that their shadows along d are sectors that follow
-  /// each other and the angle that a closed fan goes through cannot change with t; at t =
-  /// 0 it goes round once, a ray lies in one sector. The sectors of an open fan never
-  /// cover a fixed ray. Then no two sectors overlap.
-  bool (*isFanEmbedded)(const TreeVertex* vertices, const TreeVertex& center,
-                        const VertexFan& fan);
+  /// Which of eight fans provably stay embedded, a bit each: their triangles meet nowhere
+  /// but in what they share, at every time of the step. Along a direction d they all keep
+  /// turning the same way, n(t) . d > 0, so that their shadows along d are sectors that
+  /// follow each other and the angle that a closed fan goes through cannot change with t;
+  /// at t = 0 it goes round once, a ray lies in one sector. The sectors of an open fan
+  /// never cover a fixed ray. Then no two sectors overlap.
+  unsigned (*areFansEmbedded)(const TreeVertex* vertices, const EightFans& fans);
 
   /// The directions d that all of up to eight triangles provably face at every time of
   /// the step, n(t) . d > 0, a bit each.

@@ -73,7 +73,7 @@ class Traversal {
  public:
   /// @param shift  between the two trees' origins and translations; null for kSelf
   /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
-  /// (Kernels::isFanEmbedded): pairs of triangles in one are left out; null: unknown
+  /// (findEmbeddedFans()): pairs of triangles in one are left out; null: unknown
   /// @param regions  kSelf: for each node of the tree, whether pairs of triangles below
   /// it are left out (EmbeddedRegions::nodes); null: none are
   /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none

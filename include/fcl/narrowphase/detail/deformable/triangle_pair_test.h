@@ -82,12 +82,13 @@ class TrianglePairTest {
                    const QueryOptions& options, QueryProgress* progress = nullptr,
                    std::size_t task = 0);
 
-  /// @brief Takes triangle i of a and triangle j of b (as their trees count them), whose
-  /// boxes overlap from `earliest` on; between two calls of flush() at most
-  /// FeatureBatch::kMaxPairs pairs.
+  /// @brief Takes pairs of triangles; between two calls of flush() at most
+  /// FeatureBatch::kMaxPairs.
+  /// @param next  the first of them; after an error the one that it is about, and in the
+  /// end `last`
   /// @throws NonFiniteVertex
-  void visit(int i, int j, float earliest) {
-    batch_.add(i, j, earliest <= 0.f && !has_crossing_, counts_);
+  void visit(const LeafPair*& next, const LeafPair* last) {
+    batch_.add(next, last, latest(), !has_crossing_, counts_);
   }
 
   /// @brief Notes what visit() threw for a pair; the pair is left out. Whether the query
