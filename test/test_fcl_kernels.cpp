@@ -786,17 +786,24 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
     LanePairs first;
     for (const Kernels* k : allSets()) {
       LanePairs pairs;
-      k->overlapTriangles({a, b, lanes, has_shift ? rows : nullptr,
-                           has_fans ? table.data() : nullptr, request},
-                          pairs);
+      const LeafPairing leaves{
+          a,      b, lanes, has_shift ? rows : nullptr, has_fans ? table.data() : nullptr,
+          request};
+      k->overlapTriangles(leaves, pairs);
       std::uint64_t expected_bits = 0;
       for (const ExpectedPair& pair : expected)
         expected_bits |= std::uint64_t{1} << (kWidth * pair.a + pair.b);
       ASSERT_EQ(pairs.pairs, expected_bits) << k->name;
       EXPECT_EQ(pairs.fan_culled, expected_fans) << k->name;
-      EXPECT_EQ(pairs.compared, static_cast<std::size_t>(b.count) *
+      EXPECT_EQ(pairs.compared, static_cast<std::uint64_t>(b.count) *
                                     static_cast<std::size_t>(__builtin_popcount(lanes)))
           << k->name;
+      // Another call leaves nothing of the pairs and adds to the counts.
+      LanePairs twice = pairs;
+      k->overlapTriangles(leaves, twice);
+      EXPECT_EQ(twice.pairs, pairs.pairs) << k->name;
+      EXPECT_EQ(twice.compared, 2 * pairs.compared) << k->name;
+      EXPECT_EQ(twice.fan_culled, 2 * pairs.fan_culled) << k->name;
       if (k == allSets().front()) first = pairs;
       for (const ExpectedPair& pair : expected) {
         const float earliest = pairs.earliest[pair.a][pair.b];

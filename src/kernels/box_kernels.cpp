@@ -234,11 +234,12 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
 template <bool kShifted, bool kLeavesOut>
 HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
+  std::uint64_t pairs = 0;
+  unsigned fan_culled = 0;
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
     unsigned left = b.triangles;
     if (&a == &b) left &= ~((2U << lane) - 1);
-    out.compared += static_cast<std::size_t>(b.count);
     if (left == 0) continue;
     if constexpr (kShifted) {
       float moved[2][16];
@@ -257,16 +258,17 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
     }
     if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
-      out.fan_culled += static_cast<std::size_t>(__builtin_popcount(fan));
+      fan_culled += static_cast<unsigned>(__builtin_popcount(fan));
       left &= ~fan;
     }
-    out.pairs |= std::uint64_t{left} << (LanePairs::kWidth * lane);
+    pairs |= std::uint64_t{left} << (LanePairs::kWidth * lane);
   }
+  out.pairs = pairs;
+  out.compared += static_cast<unsigned>(b.count * __builtin_popcount(leaves.lanes));
+  out.fan_culled += fan_culled;
 }
 
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
-  out.pairs = 0;
-  out.compared = out.fan_culled = 0;
   if (leaves.request.leavesOut())
     leaves.shift ? overlapTriangles<true, true>(leaves, out)
                  : overlapTriangles<false, true>(leaves, out);

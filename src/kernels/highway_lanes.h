@@ -269,15 +269,15 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// Columns k and k + 1 of every second row, from row i on, row after row.
+/// Of the rows of four that an inner vector of Lanes stands for the i-th, and behind it,
+/// if there is room, the fourth one after that.
 template <typename Tag, typename Row>
-HWY_INLINE hn::Vec<Tag> loadTwos(Tag tag, const Row& row, std::size_t i, std::size_t k) {
-  if constexpr (hn::MaxLanes(Tag()) == 2) {
-    return hn::LoadU(tag, row(i) + k);
+HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
+  if constexpr (hn::MaxLanes(Tag()) == 4) {
+    return hn::LoadU(tag, row(i));
   } else {
     const hn::Half<Tag> half;
-    return hn::Combine(tag, loadTwos(half, row, i + hn::MaxLanes(half), k),
-                       loadTwos(half, row, i, k));
+    return hn::Combine(tag, loadRows(half, row, i + 4), loadRows(half, row, i));
   }
 }
 #endif
@@ -295,11 +295,24 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
     y.part[p] = hn::LoadU(tag, row(i) + 1);
     z.part[p] = hn::LoadU(tag, row(i) + 2);
 #else
-    const auto even = loadTwos(tag, row, i, 0), odd = loadTwos(tag, row, i + 1, 0);
-    x.part[p] = hn::InterleaveLower(tag, even, odd);
-    y.part[p] = hn::InterleaveUpper(tag, even, odd);
-    z.part[p] =
-        hn::InterleaveLower(tag, loadTwos(tag, row, i, 2), loadTwos(tag, row, i + 1, 2));
+    if constexpr (Lanes<T, N>::kWidth == 2) {
+      const auto a = hn::LoadU(tag, row(i)), b = hn::LoadU(tag, row(i + 1));
+      x.part[p] = hn::InterleaveLower(tag, a, b);
+      y.part[p] = hn::InterleaveUpper(tag, a, b);
+      z.part[p] = hn::InterleaveLower(tag, hn::LoadU(tag, row(i) + 2),
+                                      hn::LoadU(tag, row(i + 1) + 2));
+    } else {
+      // In blocks of two lanes: x z of rows 0 and 1, of 2 and 3; then y.
+      const auto r0 = loadRows(tag, row, i), r1 = loadRows(tag, row, i + 1),
+                 r2 = loadRows(tag, row, i + 2), r3 = loadRows(tag, row, i + 3);
+      const auto xz01 = hn::InterleaveLower(tag, r0, r1),
+                 xz23 = hn::InterleaveLower(tag, r2, r3),
+                 y01 = hn::InterleaveUpper(tag, r0, r1),
+                 y23 = hn::InterleaveUpper(tag, r2, r3);
+      x.part[p] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01);
+      y.part[p] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01);
+      z.part[p] = hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01));
+    }
 #endif
   }
 }

@@ -82,10 +82,10 @@ struct LanePairs {
   std::uint64_t pairs;
   /// For those that are set.
   float earliest[kWidth][kWidth];
-  /// Boxes that were compared.
-  std::size_t compared;
-  /// Pairs that overlap and lie in an embedded fan.
-  std::size_t fan_culled;
+  /// Boxes that were compared, in all calls.
+  std::uint64_t compared{0};
+  /// Pairs that overlap and lie in an embedded fan, in all calls.
+  std::uint64_t fan_culled{0};
 };
 
 /// @brief Two triangles: vertices 0-2 are a's, 3-5 b's.

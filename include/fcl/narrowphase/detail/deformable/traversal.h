@@ -142,12 +142,12 @@ class Traversal {
   }
 
   /// @brief Number of boxes that were compared.
-  std::uint64_t compared() const { return compared_; }
+  std::uint64_t compared() const { return pairs_.compared; }
 
   /// @brief Pairs of triangles that overlap and lie in an embedded fan.
-  std::uint64_t fanCulled() const { return fan_culled_; }
+  std::uint64_t fanCulled() const { return pairs_.fan_culled; }
 
-  void clearCounts() { compared_ = fan_culled_ = 0; }
+  void clearCounts() { pairs_.compared = pairs_.fan_culled = 0; }
 
  private:
   static constexpr unsigned kAllLanes = (1U << MovingKdopNode::kWidth) - 1;
@@ -198,7 +198,7 @@ class Traversal {
       }
       box = {moved[0], moved[1], 1, box.displacement};
     }
-    compared_ += static_cast<std::uint64_t>(node.count);
+    pairs_.compared += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
     unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;
     if (left == 0) return;
@@ -235,8 +235,6 @@ class Traversal {
     kernels_.overlapTriangles(
         {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, request_},
         pairs_);
-    compared_ += pairs_.compared;
-    fan_culled_ += pairs_.fan_culled;
     for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
       const int pair = __builtin_ctzll(left);
       const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
@@ -255,8 +253,6 @@ class Traversal {
   OverlapRequest request_;
   float shift_[2][2][16];
   LanePairs pairs_;
-  std::uint64_t compared_{0};
-  std::uint64_t fan_culled_{0};
 };
 
 }  // namespace deformable
