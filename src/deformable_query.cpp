@@ -133,34 +133,38 @@ class Part {
       pair.b = b;
       pair.earliest = earliest;
     });
-    if (count_ >= blockFor(latest)) visitBlock();
+    if (count_ >= blockFor(latest)) visitBlocks(false);
   }
 
   std::size_t blockFor(double latest) const {
     return isEarly(latest) ? schedule_.block : schedule_.first_block;
   }
 
-  void visitBlock() {
-    if (count_ == 0) return;
+  /// Tests what was found, block by block.
+  /// @param with_rest  what does not fill a block as well; else it is kept for later
+  void visitBlocks(bool with_rest) {
     const auto start = Clock::now();
     const LeafPair* next = block_.data();
     const LeafPair* end = next + count_;
     while (next != end && !leaves_->isDone()) {
-      const std::size_t size =
-          std::min(blockFor(leaves_->latest()), static_cast<std::size_t>(end - next));
+      const auto left = static_cast<std::size_t>(end - next);
+      const std::size_t size = blockFor(leaves_->latest());
+      if (left < size && !with_rest) break;
       try {
-        leaves_->visit(next, next + size);
+        leaves_->visit(next, next + std::min(size, left));
       } catch (const NonFiniteVertex& error) {
         leaves_->refuse(error, (next++)->earliest);
       }
       leaves_->flush();
     }
-    count_ = 0;
+    std::copy(next, end, block_.data());
+    count_ = static_cast<std::size_t>(end - next);
     test_time_ += secondsSince(start);
   }
 
   void finish() {
-    visitBlock();
+    if (count_ > 0) visitBlocks(true);
+    count_ = 0;
     leaves_->addTraversal(traversal_.compared(), traversal_.fanCulled());
     traversal_.clearCounts();
   }

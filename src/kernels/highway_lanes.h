@@ -269,8 +269,7 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// Of the rows of four that an inner vector of Lanes stands for the i-th, and behind it,
-/// if there is room, the fourth one after that.
+/// Row i, of four numbers; in a vector of eight with row i + 4 behind it.
 template <typename Tag, typename Row>
 HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
   if constexpr (hn::MaxLanes(Tag()) == 4) {
