@@ -557,8 +557,6 @@ std::pair<MovingKdop, MovingKdop> boxesOf(int bit, const ScalarBoxes& a,
 
 struct TrianglePairBoxes {
   TreeVertex a[3], b[3];
-  const TreeVertex* pa[3];
-  const TreeVertex* pb[3];
   KdopShift shift;
   bool has_shift;
 
@@ -569,8 +567,6 @@ struct TrianglePairBoxes {
     for (int k = 0; k < 3; ++k) {
       a[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
       b[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
-      pa[k] = &a[k];
-      pb[k] = &b[k];
     }
     // Many come apart along an axis, at the start, at the end or all the time.
     if (random.index(3)) {
@@ -603,7 +599,7 @@ struct TrianglePairBoxes {
   }
 
   TrianglePair pair() const {
-    return {{pa[0], pa[1], pa[2], pb[0], pb[1], pb[2]}, nullptr, nullptr};
+    return {{&a[0], &a[1], &a[2], &b[0], &b[1], &b[2]}, nullptr, nullptr};
   }
 };
 
@@ -632,6 +628,16 @@ TEST(FCL_KERNELS, featuresOfMasks) {
   }
 }
 
+std::vector<TrianglePairBoxes> boxesWithOneShift(Random& random, std::size_t count) {
+  std::vector<TrianglePairBoxes> boxes;
+  for (std::size_t k = 0; k < count; ++k) {
+    boxes.emplace_back(random);
+    boxes[k].has_shift = boxes[0].has_shift;
+    boxes[k].shift = boxes[0].shift;
+  }
+  return boxes;
+}
+
 // Several triangle pairs at a time; codes and windows of what is left, in order.
 TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 72;
@@ -641,15 +647,9 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   int late = 0, far = 0;
   for (int i = 0; i < 12000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
-    std::vector<TrianglePairBoxes> boxes;
-    boxes.reserve(kPairs);  // they point to themselves
+    const std::vector<TrianglePairBoxes> boxes = boxesWithOneShift(random, kPairs);
     std::vector<TrianglePair> pairs;
-    for (std::uint32_t k = 0; k < kPairs; ++k) {
-      boxes.emplace_back(random);
-      boxes[k].has_shift = boxes[0].has_shift;
-      boxes[k].shift = boxes[0].shift;
-      pairs.push_back(boxes[k].pair());
-    }
+    for (const TrianglePairBoxes& b : boxes) pairs.push_back(b.pair());
     const KdopShift turned_shift = boxes[0].turnedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
     const float latest =
@@ -836,15 +836,9 @@ TEST(FCL_KERNELS, edgesAndFacesAtStart) {
   int overlaps[6] = {}, apart[6] = {};
   for (int i = 0; i < 2000; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
-    std::vector<TrianglePairBoxes> boxes;
-    boxes.reserve(kPairs);  // they point to themselves
+    const std::vector<TrianglePairBoxes> boxes = boxesWithOneShift(random, kPairs);
     std::vector<TrianglePair> pairs;
-    for (std::uint32_t k = 0; k < kPairs; ++k) {
-      boxes.emplace_back(random);
-      boxes[k].has_shift = boxes[0].has_shift;
-      boxes[k].shift = boxes[0].shift;
-      pairs.push_back(boxes[k].pair());
-    }
+    for (const TrianglePairBoxes& b : boxes) pairs.push_back(b.pair());
     const KdopShift turned_shift = boxes[0].turnedShift();
     const KdopShift* shift = boxes[0].shiftOrNull();
     std::vector<std::uint32_t> codes, left;

@@ -18,35 +18,6 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// A vertex of each of eight fans, at both ends of the step; or a spoke, from the center.
-struct FanPoints {
-  Vectors t0, t1;
-};
-
-HWY_INLINE FanPoints loadPoints(const TreeVertex* const (&x)[kEight]) {
-  FanPoints p;
-  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, p.t0.x, p.t0.y,
-              p.t0.z);
-  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, p.t1.x, p.t1.y,
-              p.t1.z);
-  return p;
-}
-
-/// Normals of the triangles between two spokes: Bernstein coefficients in t.
-struct FanNormals {
-  Vectors first, middle, last;
-};
-
-HWY_INLINE FanNormals normalsBetween(const FanPoints& v, const FanPoints& w) {
-  return {cross(v.t0, w.t0), cross(v.t0, w.t1) + cross(v.t1, w.t0), cross(v.t1, w.t1)};
-}
-
-/// Where no product that matters underflows or overflows.
-HWY_INLINE DoubleMask isInRange(const Doubles& factor, const Doubles& product) {
-  return (factor >= broadcast<kEight>(kTiny)) & (product >= broadcast<kEight>(kTiny)) &
-         (product <= broadcast<kEight>(kHuge));
-}
-
 /// On which side of a ray the spokes of eight fans lie at one time: a bit a fan where
 /// spoke i lies before (after) it beyond doubt, turning the fan's way.
 struct Sides {
@@ -84,31 +55,30 @@ HWY_INLINE unsigned leaveFree(const Sides& at0, const Sides& at1, std::size_t co
 
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
   const std::size_t count = fans.count;
-  const FanPoints center = loadPoints(fans.center);
-  FanPoints spokes[VertexFans::kMaxSpokes + 1];
+  const MovingVectors center = loadPaths(fans.center);
+  MovingVectors spokes[VertexFans::kMaxSpokes + 1];
   Doubles u_norm = broadcast<kEight>(kLeastNorm);
   for (std::size_t i = 0; i < count; ++i) {
     const TreeVertex* x[kEight];
     for (std::size_t lane = 0; lane < kEight; ++lane)
       x[lane] = vertices + fans.spokes[lane][i];
-    const FanPoints p = loadPoints(x);
-    spokes[i] = {p.t0 - center.t0, p.t1 - center.t1};
+    spokes[i] = loadPaths(x) - center;
     u_norm = max(u_norm, max(maxNorm(spokes[i].t0), maxNorm(spokes[i].t1)));
   }
   spokes[count] = spokes[0];
 
   // All triangles face d.
   const std::size_t num_triangles = fans.is_closed ? count : count - 1;
-  FanNormals normals[VertexFans::kMaxSpokes];
+  MovingNormals normals[VertexFans::kMaxSpokes];
   const Doubles zero = broadcast<kEight>(0.);
   Vectors d = {zero, zero, zero};
   for (std::size_t i = 0; i < num_triangles; ++i) {
-    normals[i] = normalsBetween(spokes[i], spokes[i + 1]);
+    normals[i] = cross(spokes[i], spokes[i + 1]);
     d = d + (normals[i].first + normals[i].last);
   }
   const Doubles d_norm = maxNorm(d), size = u_norm * u_norm * d_norm;
   const Doubles turned = broadcast<kEight>(kFanBound) * size;
-  DoubleMask facing = isInRange(u_norm * u_norm, size);
+  DoubleMask facing = isInRange(u_norm * u_norm) & isInRange(size);
   for (std::size_t i = 0; i < num_triangles; ++i)
     facing = facing & (dot(normals[i].first, d) > turned) &
              (dot(normals[i].middle, d) > turned) & (dot(normals[i].last, d) > turned);
@@ -126,7 +96,7 @@ unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
     for (std::size_t i = 0; i < count; ++i) ray = ray - (spokes[i].t0 + spokes[i].t1);
   }
   const Doubles ray_norm = maxNorm(ray), ray_size = u_norm * ray_norm * d_norm;
-  const unsigned in_range = bits(isInRange(ray_norm * d_norm, ray_size));
+  const unsigned in_range = bits(isInRange(ray_norm * d_norm) & isInRange(ray_size));
   const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
                 minus_bound = zero - bound;
   const Vectors across = cross(ray, d);

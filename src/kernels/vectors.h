@@ -3,6 +3,8 @@
 // Vectors of three coordinates, eight side by side.
 //
 // Included once for each of Highway's targets, hence no ordinary include guard.
+#include "error_bounds.h"
+#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "kernels/lanes.h"
 
 #if defined(FCL_CCD_VECTORS_INCLUDED) == defined(HWY_TARGET_TOGGLE)
@@ -38,6 +40,39 @@ HWY_INLINE Vectors cross(const Vectors& a, const Vectors& b) {
 
 HWY_INLINE Doubles maxNorm(const Vectors& a) {
   return max(max(abs(a.x), abs(a.y)), abs(a.z));
+}
+
+/// Where the bounds on errors of this size hold: see kTiny.
+HWY_INLINE DoubleMask isInRange(const Doubles& size) {
+  return (size >= broadcast<kEight>(kTiny)) & (size <= broadcast<kEight>(kHuge));
+}
+
+/// Vectors at both ends of the step.
+struct MovingVectors {
+  Vectors t0, t1;
+};
+
+HWY_INLINE MovingVectors operator-(const MovingVectors& a, const MovingVectors& b) {
+  return {a.t0 - b.t0, a.t1 - b.t1};
+}
+
+HWY_INLINE MovingVectors loadPaths(const TreeVertex* const (&x)[kEight]) {
+  MovingVectors p;
+  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, p.t0.x, p.t0.y,
+              p.t0.z);
+  loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, p.t1.x, p.t1.y,
+              p.t1.z);
+  return p;
+}
+
+/// The cross product of two moving vectors: Bernstein coefficients in t, the middle one
+/// twice.
+struct MovingNormals {
+  Vectors first, middle, last;
+};
+
+HWY_INLINE MovingNormals cross(const MovingVectors& v, const MovingVectors& w) {
+  return {cross(v.t0, w.t0), cross(v.t0, w.t1) + cross(v.t1, w.t0), cross(v.t1, w.t1)};
 }
 
 }  // namespace HWY_NAMESPACE
