@@ -50,7 +50,7 @@ struct IntegerPaths {
   explicit IntegerPaths(const FeaturePoints& x) {
     // The larger numbers of one power for both cost less than fractions for t.
     constexpr int kMaxCommonSpread = 64;
-    ExponentRange range[2];
+    DigitRange range[2];
     for (int i = 0; i < 4; ++i)
       for (int k = 0; k < 3; ++k) {
         range[0].add(x[i].t0[k]);

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <type_traits>
 
 #include "double2.h"
 #include "error_bounds.h"
@@ -18,16 +17,25 @@ namespace {
 
 namespace mp = boost::multiprecision;
 
-/// Enough for 53 + 100 bits in a coordinate: a difference has one bit more, a product of
-/// three of them three times as many, the sum of six such three bits more: 3 (53 + 100 +
-/// 1) + 3 = 465.
-constexpr int kMaxSpread = 100;
-using ShortInteger =
+/// What an orientation of coordinates of n digits needs: a difference has one more, a
+/// product of three of them three times as many, the sum of six such three more.
+constexpr int orientationDigits(int n) { return 3 * (n + 1) + 3; }
+constexpr int kFewDigits = 40, kManyDigits = 168;
+static_assert(orientationDigits(kFewDigits) <= 128, "digits of FewDigits");
+static_assert(orientationDigits(kManyDigits) <= 512, "digits of ManyDigits");
+
+using FewDigits = mp::int128_t;
+using ManyDigits =
     mp::number<mp::cpp_int_backend<512, 512, mp::signed_magnitude, mp::unchecked, void>,
                mp::et_off>;
 
-bool isShort(const ExponentRange& range) {
-  return range.highest - range.lowest <= kMaxSpread;
+/// compute(zero) for a zero of integers that are long enough for an orientation.
+/// @param digits  of a coordinate
+template <typename Compute>
+int withIntegers(int digits, Compute&& compute) {
+  if (digits <= kFewDigits) return compute(FewDigits{0});
+  if (digits <= kManyDigits) return compute(ManyDigits{0});
+  return compute(mp::cpp_int{0});
 }
 
 template <typename Integer>
@@ -73,12 +81,13 @@ int accurateOrientation(const double (&p)[3], const double (&a)[3], const double
 int exactOrientation(const double (&p)[3], const double (&a)[3], const double (&b)[3],
                      const double (&c)[3]) {
   const double* const points[4] = {p, a, b, c};
-  ExponentRange range;
+  DigitRange range;
   for (const double* point : points)
     for (int k = 0; k < 3; ++k) range.add(point[k]);
   if (range.isEmpty()) return 0;
-  return isShort(range) ? orientationOfIntegers<ShortInteger>(points, range.lowest)
-                        : orientationOfIntegers<mp::cpp_int>(points, range.lowest);
+  return withIntegers(range.numDigits(), [&](const auto& zero) {
+    return orientationOfIntegers<std::decay_t<decltype(zero)>>(points, range.lowest);
+  });
 }
 
 /// Sign of (b0 - a0) (d1 - c1) - (b1 - a1) (d0 - c0).
@@ -92,11 +101,12 @@ int crossSignOfIntegers(const double (&x)[8], int lowest) {
 }
 
 int exactCrossSign(const double (&x)[8]) {
-  ExponentRange range;
+  DigitRange range;
   for (const double value : x) range.add(value);
   if (range.isEmpty()) return 0;
-  const int sign = isShort(range) ? crossSignOfIntegers<ShortInteger>(x, range.lowest)
-                                  : crossSignOfIntegers<mp::cpp_int>(x, range.lowest);
+  const int sign = withIntegers(range.numDigits(), [&](const auto& zero) {
+    return crossSignOfIntegers<std::decay_t<decltype(zero)>>(x, range.lowest);
+  });
   return sign < 0 ? -1 : sign > 0 ? 1 : 0;
 }
 

@@ -170,6 +170,42 @@ TEST(FCL_CROSSING_TEST, orientationIsExact) {
   EXPECT_GT(flat, 1000);
 }
 
+// The integers are as long as the coordinates have digits: around each length up to which
+// shorter ones do, differences of opposite corners are the largest that there are.
+TEST(FCL_CROSSING_TEST, orientationOfIntegersOfAnyLength) {
+  constexpr std::uint64_t kSeed = 25;
+  Random random(kSeed);
+  int flat = 0;
+  for (const int digits : {24, 39, 40, 41, 42, 53, 100, 167, 168, 169, 170, 240, 400})
+    for (int i = 0; i < 500; ++i) {
+      const auto sign = [&random] { return random.index(2) ? 1. : -1.; };
+      const int cut = std::min(digits, 53);
+      const double largest = std::ldexp(std::ldexp(1., cut) - 1, digits - cut);
+      // Two opposite corners, another one and what is in the middle, or at a corner; or
+      // one unit beside.
+      Tetrahedron t;
+      const bool at_corner = random.index(2);
+      for (int k = 0; k < 3; ++k) {
+        t.p[1][k] = sign() * largest;
+        t.p[2][k] = sign() * largest;
+        t.p[3][k] = at_corner ? sign() * largest : -t.p[2][k];
+        t.p[0][k] = at_corner ? t.p[2][k] : 0;
+        if (i % 3 && random.index(2))
+          t.p[0][k] = at_corner ? std::nextafter(t.p[0][k], 0) : 1;
+      }
+      if (at_corner) t.p[1][random.index(3)] = 1;
+      std::swap(t.p[random.index(4)], t.p[random.index(4)]);
+      const double scale = std::ldexp(1., static_cast<int>(random.index(800)) - 400);
+      for (auto& point : t.p)
+        for (double& c : point) c *= scale;
+      const int truth = t.truth();
+      flat += truth == 0;
+      ASSERT_EQ(t.sign(), truth) << "seed " << kSeed << ", " << digits << ", " << i;
+    }
+  EXPECT_GT(flat, 2000);
+  EXPECT_LT(flat, 5000);
+}
+
 /// Four points, often in degenerate places.
 Tetrahedron degeneratePoints(Random& random, int i) {
   Tetrahedron t;
