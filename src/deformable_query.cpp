@@ -57,12 +57,14 @@ bool isEarlierWork(const NodePair& x, const NodePair& y) {
   return x.earliest < y.earliest;
 }
 
-/// Works that overlap from the start on, as most do, are in order already.
+/// Works that overlap from the start on, as most do, are in order already, and stay so
+/// whatever else is in the list: tasks leave out different works, but meet what touches
+/// at t = 0 in the same order.
 void sortLatestFirst(NodePair* first, NodePair* last) {
   const auto isLater = [](const NodePair& x, const NodePair& y) {
     return isEarlierWork(y, x);
   };
-  if (!std::is_sorted(first, last, isLater)) std::sort(first, last, isLater);
+  if (!std::is_sorted(first, last, isLater)) std::stable_sort(first, last, isLater);
 }
 
 /// Part of a traversal: its work, and what is done to the triangle pairs that it finds.
@@ -157,7 +159,7 @@ class Part {
       }
       leaves_->flush();
     }
-    std::copy(next, end, block_.data());
+    if (next != block_.data()) std::copy(next, end, block_.data());
     count_ = static_cast<std::size_t>(end - next);
     test_time_ += secondsSince(start);
   }

@@ -988,6 +988,46 @@ TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
   }
 }
 
+/// Triangles without neighbours, each of which moves as a whole.
+MovingMesh looseTriangles(Random& random, std::size_t count, double size, double step) {
+  MovingMesh mesh;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3<double> center = random.point(0.5), motion = random.point(step);
+    for (int k = 0; k < 3; ++k) {
+      mesh.t0.push_back(center + random.point(size));
+      mesh.t1.push_back(mesh.t0.back() + motion);
+    }
+    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return mesh;
+}
+
+// How much of the traversal is left out depends on when the first contact is found, and
+// on how sharp its bracket is; which crossing is met first does not.
+TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    Random random(seed);
+    const MovingMesh mesh = looseTriangles(random, 1500 + random.index(1500),
+                                           random.uniform(0.015, 0.05), 0.3);
+    const PreparedMovingMesh prepared(mesh);
+    QueryOptions options;
+    options.goal = QueryGoal::kFirst;
+    const auto crossing = [&](int num_threads, double toc_err) {
+      options.num_threads = num_threads;
+      options.toc_err = toc_err;
+      const QueryAnswer answer = querySelf(prepared.instance(), options);
+      EXPECT_TRUE(answer.has_crossing);
+      return std::make_tuple(Ids(answer.crossing.edge, answer.crossing.edge + 2),
+                             Ids(answer.crossing.face, answer.crossing.face + 3));
+    };
+    const auto expected = crossing(1, 1e-6);
+    for (const double toc_err : {0.5, 1e-3, 1e-6})
+      for (const int num_threads : {1, 2})
+        ASSERT_EQ(crossing(num_threads, toc_err), expected)
+            << "seed " << seed << ", " << num_threads << " threads, " << toc_err;
+  }
+}
+
 // What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of
 // ids all the same.
 TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithDuplicateFaces) {
