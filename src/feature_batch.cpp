@@ -144,7 +144,7 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
   // Triangles lie anywhere in memory: the cache is told before they are read.
   constexpr std::ptrdiff_t kAhead = 8;
   for (; next != last; ++next) {
-    const LeafPair& ahead = *std::min(next + kAhead, last - 1);
+    const LeafPair& ahead = next[std::min(kAhead, last - 1 - next)];
     reader_a.prefetch(ahead.a);
     reader_b.prefetch(ahead.b);
     if (next->earliest > latest) continue;

@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 
 /// On which side of a ray the spokes of eight fans lie at one time: a bit a fan where
 /// spoke i lies before (after) it beyond doubt, turning the fan's way.
-struct Sides {
+struct SidesOfRay {
   unsigned before[VertexFans::kMaxSpokes], after[VertexFans::kMaxSpokes];
 
   /// @param across  its product with what lies before the ray is above the bound
@@ -33,7 +33,7 @@ struct Sides {
 };
 
 /// Fans that go round once: the ray lies in one sector.
-HWY_INLINE unsigned goRoundOnce(const Sides& at0, std::size_t count) {
+HWY_INLINE unsigned goRoundOnce(const SidesOfRay& at0, std::size_t count) {
   unsigned decided = ~0U, once = 0, again = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const unsigned within = at0.before[i] & at0.after[i + 1 < count ? i + 1 : 0];
@@ -46,7 +46,8 @@ HWY_INLINE unsigned goRoundOnce(const Sides& at0, std::size_t count) {
 
 /// Fans of which no sector ever covers the ray: each has its first spoke after it all the
 /// time, or its last one before.
-HWY_INLINE unsigned leaveFree(const Sides& at0, const Sides& at1, std::size_t count) {
+HWY_INLINE unsigned leaveFree(const SidesOfRay& at0, const SidesOfRay& at1,
+                              std::size_t count) {
   unsigned free = ~0U;
   for (std::size_t i = 0; i + 1 < count; ++i)
     free &= (at0.after[i] & at1.after[i]) | (at0.before[i + 1] & at1.before[i + 1]);
@@ -100,7 +101,7 @@ unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
   const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
                 minus_bound = zero - bound;
   const Vectors across = cross(ray, d);
-  Sides at0, at1;
+  SidesOfRay at0, at1;
   for (std::size_t i = 0; i < count; ++i) {
     at0.set(i, spokes[i].t0, across, bound, minus_bound);
     if (!fans.is_closed) at1.set(i, spokes[i].t1, across, bound, minus_bound);

@@ -230,10 +230,9 @@ HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32
   const hn::CappedTag<std::uint32_t, kSixteen> tag;
   constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
   for (std::size_t i = 0; i < kSixteen; i += kWidth) {
-    // Eight bytes may be read.
-    const std::uint64_t part = mask >> i;
-    std::uint8_t bytes[8];
-    __builtin_memcpy(bytes, &part, sizeof(bytes));
+    // Eight may be read.
+    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(mask >> i),
+                                   static_cast<std::uint8_t>(mask >> i >> 8)};
     hn::StoreU(hn::Compress(numbers(tag, i), hn::LoadMaskBits(tag, bytes)), tag, to);
     to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
   }
