@@ -9,7 +9,7 @@
 // - what is still in contact after that moves with the obstacle it touches, or not at all
 //   (the rigid impact zones of Provot 1997, with the simplest rigid motion);
 // - if that does not help, because obstacles crush what is between them, these stop for
-//   the step, and in the end everything does.
+//   the step, what is around a contact is held with it, and in the end everything.
 #ifndef FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 #define FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 
@@ -281,6 +281,8 @@ class ClothSimulator {
   void projectContacts();
   void respond(int step_of_frame, FrameReport& report);
   void holdInContact(int step_of_frame, FrameReport& report);
+  std::size_t holdContacts(const std::vector<ContinuousContact<double>>& contacts,
+                           bool with_neighbours);
   void slowDown(const std::vector<ContinuousContact<double>>& contacts);
   int carrierOf(const ContinuousContact<double>& contact) const;
   int carrierOf(int vertex) const;

@@ -231,7 +231,8 @@ void ClothSimulator::slowDown(const std::vector<ContinuousContact<double>>& cont
 
 /// Lets what is still in contact move with the obstacle that it touches, directly or
 /// through what is held, or not at all. The step in which everything stands still ends
-/// the loop: it began without contact.
+/// the loop: it began without contact. But the next one would be the same again, so that
+/// much is done to have something move.
 void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
   std::fill(held_with_.begin(), held_with_.end(), -1);
   for (Solid& s : solids_) s.body.held_with = -1;
@@ -251,12 +252,34 @@ void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
       ++report.stopped_steps;
     }
     if (round == kRoundsWithCloth) stopAll();
-    for (const auto& contact : result.contacts) {
-      const int carrier = carrierOf(contact);
-      for (int k = 0; k < 4; ++k)
-        if (hold(contact.vertices[k], carrier)) ++report.held_vertices;
+    report.held_vertices +=
+        holdContacts(result.contacts, /*with_neighbours=*/round >= kRoundsWithMotion);
+  }
+}
+
+/// @param with_neighbours  whether what is around a vertex of cloth is held with it:
+/// layer by layer, vertex by vertex, dense cloth has been seen to come to rest as a whole
+/// first
+/// @return how many vertices were not held before
+std::size_t ClothSimulator::holdContacts(
+    const std::vector<ContinuousContact<double>>& contacts, bool with_neighbours) {
+  std::size_t held = 0;
+  std::vector<int> carriers(with_neighbours ? moved_.size() : 0, -1);
+  for (const auto& contact : contacts) {
+    const int carrier = carrierOf(contact);
+    for (int k = 0; k < 4; ++k) {
+      const int v = contact.vertices[k];
+      held += hold(v, carrier);
+      if (with_neighbours && solid_of_[v] < 0) carriers[v] = carrier;
     }
   }
+  if (!with_neighbours) return held;
+  for (const Triangle& t : mesh_.triangles) {
+    const int carrier = std::max({carriers[t[0]], carriers[t[1]], carriers[t[2]]});
+    for (int k = 0; k < 3 && carrier >= 0; ++k)
+      if (held_with_[t[k]] < 0) held += hold(static_cast<int>(t[k]), carrier);
+  }
+  return held;
 }
 
 /// The obstacle that a contact is with, directly or through what is held, or the body of

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "fcl/common/exception.h"
 #include "figures.h"
 #include "fragile_designs.h"
 
@@ -326,6 +328,10 @@ void generateScene(SceneKind kind, const SceneOptions& options, const SceneSink&
                          : sceneInfos()[static_cast<std::size_t>(kind)].frames;
   for (int i = 0; i < frames; ++i) {
     const FrameReport report = simulator.advanceFrame();
+    // The next frame would begin as this one did.
+    if (simulator.frameBegin() == simulator.mesh().vertices)
+      throw Exception("generateScene: nothing moves in frame " + std::to_string(i + 1) +
+                      ", nor would it in any after that");
     if (!sink({i, simulator.time(), simulator.mesh().triangles, simulator.frameBegin(),
                simulator.freeMotion(), simulator.mesh().vertices,
                simulator.topologyChange(), report, simulator.bodies(), stage->roles}))
