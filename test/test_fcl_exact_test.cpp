@@ -3,6 +3,7 @@
 // The exact stages against the definition, evaluated a second time with other formulas.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
