@@ -988,16 +988,13 @@ TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
   }
 }
 
-/// Triangles without neighbours, each of which moves as a whole.
-MovingMesh looseTriangles(Random& random, std::size_t count, double size, double step) {
-  MovingMesh mesh;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vector3<double> center = random.point(0.5), motion = random.point(step);
-    for (int k = 0; k < 3; ++k) {
-      mesh.t0.push_back(center + random.point(size));
-      mesh.t1.push_back(mesh.t0.back() + motion);
-    }
-    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+/// Loose triangles, each of which moves as a whole.
+MovingMesh movingTriangles(Random& random, int count, double size, double step) {
+  const TestMesh soup = test::makeTriangleSoup(count, 0.5, size, random.index(1U << 30));
+  MovingMesh mesh{soup.vertices, soup.vertices, soup.triangles};
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Vector3<double> motion = random.point(step);
+    for (int k = 0; k < 3; ++k) mesh.t1[mesh.id(i, k)] += motion;
   }
   return mesh;
 }
@@ -1007,8 +1004,9 @@ MovingMesh looseTriangles(Random& random, std::size_t count, double size, double
 TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
-    const MovingMesh mesh = looseTriangles(random, 1500 + random.index(1500),
-                                           random.uniform(0.015, 0.05), 0.3);
+    const MovingMesh mesh =
+        movingTriangles(random, 1500 + static_cast<int>(random.index(1500)),
+                        random.uniform(0.03, 0.1), 0.3);
     const PreparedMovingMesh prepared(mesh);
     QueryOptions options;
     options.goal = QueryGoal::kFirst;
