@@ -42,13 +42,19 @@ constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, FeatureBatch::kMaxPairs
                                 256};
 constexpr Schedule kFirstSchedule{32, 128, true, 64};
 
-/// What a query of a mesh with itself leaves out: for each vertex of the tree whether
-/// its fan is embedded, for each node whether it is the root of an embedded region; empty
-/// if unknown.
-struct SelfCulling {
+/// What is proved of a mesh, so that a query of it with itself can leave it out; empty if
+/// nothing is.
+struct SelfProofs {
   std::vector<std::uint8_t> fans, regions;
+  std::vector<std::uint32_t> nodes_in_fans;
 
-  static const std::uint8_t* dataOf(const std::vector<std::uint8_t>& x) {
+  SelfCulling culling() const {
+    return {dataOf(fans), dataOf(nodes_in_fans), dataOf(regions)};
+  }
+
+ private:
+  template <typename T>
+  static const T* dataOf(const std::vector<T>& x) {
     return x.empty() ? nullptr : x.data();
   }
 };
@@ -75,9 +81,7 @@ class Part {
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
        const SeparatingAxes* axes, double pose_displacement, const Schedule& schedule,
        Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, SelfCulling::dataOf(culling.fans),
-                   SelfCulling::dataOf(culling.regions), axes, kernels(),
-                   schedule.in_order),
+      : traversal_(tree_a, tree_b, shift, culling, axes, kernels(), schedule.in_order),
         pose_displacement_(pose_displacement),
         schedule_(schedule),
         leaves_(&leaves),
@@ -200,7 +204,7 @@ struct Scene {
   const MeshInstance& a;
   const MeshInstance& b;
   const KdopShift* shift;
-  SelfCulling culling;
+  SelfProofs proofs;
 
   bool isSelf() const { return &a == &b; }
 
@@ -220,6 +224,7 @@ struct Scene {
   template <typename Leaves, typename Visit>
   void makePart(const Schedule& schedule, Leaves& leaves, Visit&& visit) const {
     const double pose_displacement = a.poseDisplacement() + b.poseDisplacement();
+    const SelfCulling culling = proofs.culling();
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
           *a.tree, *a.tree, shift, culling, nullptr, pose_displacement, schedule, leaves);
@@ -246,22 +251,23 @@ struct Scene {
 };
 
 /// What a query of the mesh with itself leaves out.
-SelfCulling cullSelf(const MeshInstance& mesh, bool with_regions, int num_threads,
+SelfProofs proveSelf(const MeshInstance& mesh, bool with_regions, int num_threads,
                      StageTimes& times) {
-  SelfCulling culling;
-  if (!mesh.tree || !mesh.isInPlace()) return culling;
+  SelfProofs proofs;
+  if (!mesh.tree || !mesh.isInPlace()) return proofs;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (with_regions) {
     EmbeddedRegions regions = findEmbeddedRegions(tree, kernels(), num_threads);
-    culling.regions = std::move(regions.nodes);
+    proofs.regions = std::move(regions.nodes);
     interior = std::move(regions.interior);
   }
   // No pair of triangles around a vertex inside of a region is met.
-  culling.fans = findEmbeddedFans(tree, interior, kernels(), num_threads);
+  proofs.fans = findEmbeddedFans(tree, interior, kernels(), num_threads);
+  proofs.nodes_in_fans = findNodesInFans(tree, proofs.fans);
   times.traverse += secondsSince(start);
-  return culling;
+  return proofs;
 }
 
 /// The answer of one task.
@@ -352,10 +358,10 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
     ++task_options.max_contacts;
 
   StageTimes times;
-  SelfCulling culling;
+  SelfProofs proofs;
   if (&a == &b)
-    culling = cullSelf(a, options.leaves_out_regions, options.num_threads, times);
-  const Scene scene{a, b, shift, std::move(culling)};
+    proofs = proveSelf(a, options.leaves_out_regions, options.num_threads, times);
+  const Scene scene{a, b, shift, std::move(proofs)};
   QueryProgress progress;
   std::vector<NodePair> works;
   std::vector<TaskAnswer> answers(1);
@@ -401,9 +407,9 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* s
                 const CandidateSink& sink) {
   CandidateCollector leaves(a, b, shift, sink);
   StageTimes times;
-  SelfCulling culling;
-  if (&a == &b) culling = cullSelf(a, true, 1, times);
-  const Scene scene{a, b, shift, std::move(culling)};
+  SelfProofs proofs;
+  if (&a == &b) proofs = proveSelf(a, true, 1, times);
+  const Scene scene{a, b, shift, std::move(proofs)};
   scene.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
     part.divide(works);

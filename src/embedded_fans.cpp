@@ -18,15 +18,21 @@ class FanQueue {
       : tree_(tree), kernels_(kernels), embedded_(embedded) {}
 
   void add(std::uint32_t vertex, const VertexFan& fan) {
-    Alike& alike = alike_[fan.is_closed][fan.count];
+    const bool is_short = fan.count <= VertexFans::kShort;
+    Alike& alike = is_short ? short_[fan.is_closed][fan.count] : long_;
+    if (!is_short && alike.size > 0) {
+      const VertexFan first = tree_.fans()[alike.vertices[0]];
+      if (first.count != fan.count || first.is_closed != fan.is_closed) prove(alike);
+    }
     alike.vertices[alike.size++] = vertex;
     if (alike.size == 8) prove(alike);
   }
 
   void finish() {
-    for (auto& kind : alike_)
+    for (auto& kind : short_)
       for (Alike& alike : kind)
         if (alike.size > 0) prove(alike);
+    if (long_.size > 0) prove(long_);
   }
 
  private:
@@ -56,7 +62,9 @@ class FanQueue {
   const Kernels& kernels_;
   std::vector<std::uint8_t>& embedded_;
   /// By kind, open and closed, and number of spokes.
-  Alike alike_[2][VertexFans::kMaxSpokes + 1];
+  Alike short_[2][VertexFans::kShort + 1];
+  /// Those that follow each other.
+  Alike long_;
 };
 
 }  // namespace
@@ -77,6 +85,41 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
     queue.finish();
   });
   return embedded;
+}
+
+std::vector<std::uint32_t> findNodesInFans(const MovingKdopTree& tree,
+                                           const std::vector<std::uint8_t>& embedded) {
+  // Pairs in smaller ones are not worth a look at all nodes.
+  constexpr std::uint32_t kLeastSpokes = 64, kNoPlace = MovingKdopNode::kNoPlace;
+  if (tree.fans().longest() < kLeastSpokes) return {};
+  std::vector<std::uint32_t> centers(tree.numNodes(), kNoPlace);
+  const auto isIn = [&](const MovingKdopNode& node, int lane, std::uint32_t center) {
+    if (!node.isTriangle(lane))
+      return centers[static_cast<std::size_t>(node.child[lane])] == center;
+    return node.places[0][lane] == center || node.places[1][lane] == center ||
+           node.places[2][lane] == center;
+  };
+  const auto areAllIn = [&](const MovingKdopNode& node, std::uint32_t center) {
+    for (int lane = 1; lane < node.count; ++lane)
+      if (!isIn(node, lane, center)) return false;
+    return true;
+  };
+  // Children come after their parents.
+  for (std::size_t i = centers.size(); i-- > 0;) {
+    const MovingKdopNode& node = tree.node(static_cast<int>(i));
+    if (!node.isTriangle(0)) {
+      const std::uint32_t center = centers[static_cast<std::size_t>(node.child[0])];
+      if (center != kNoPlace && areAllIn(node, center)) centers[i] = center;
+      continue;
+    }
+    for (const auto& places : node.places) {
+      const std::uint32_t center = places[0];
+      if (embedded[center] && tree.fans()[center].count >= kLeastSpokes &&
+          areAllIn(node, center))
+        centers[i] = center;
+    }
+  }
+  return centers;
 }
 
 }  // namespace deformable

@@ -57,7 +57,7 @@ struct OpenNode {
 };
 
 /// What is left to be searched, and the triangles of the regions that were found, and of
-/// those whose borders were looked at in vain.
+/// those whose borders were looked at in vain: not even a part was a region.
 struct Searched {
   std::vector<OpenNode> rest;
   std::size_t embedded{0}, in_vain{0};
@@ -95,6 +95,7 @@ class RegionSearch {
       const Region region = regionOf(chain[largest]);
       found_.nodes[static_cast<std::size_t>(chain[largest].node)] = 1;
       out.embedded = region.last - region.first;
+      out.in_vain = 0;
     }
     if (largest > 0) {
       // The last try, which failed, has written there.

@@ -74,9 +74,10 @@ constexpr double kRayBound = 64 * kUnit;
 // R L. What is above the bound has L > 40 u R: products of two errors, (12 u R)^2 each,
 // add less than 15 u R L.
 constexpr double kBorderTurnBound = 192 * kUnit;
-// w . x for exact w of size W: products 4 + 2, sum 4: 16 u W R, two of which are
+// w . x for exact w of size W: products 4 + 2, sum 4: 16 u W R. The middle coefficient of
+// moving ones is the sum of two of these: 40 u W R, of size 8 W R; two of them are
 // compared.
-constexpr double kBorderSideBound = 40 * kUnit;
+constexpr double kBorderSideBound = 96 * kUnit;
 // w x (2 p - a - b): the second is 32 u R off, 8 R in size; products (32 + 8) u W R, sum
 // 16: 96 u W R.
 constexpr double kBorderRayBound = 112 * kUnit;

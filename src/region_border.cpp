@@ -2,6 +2,7 @@
 #include "region_border.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "error_bounds.h"
@@ -45,14 +46,6 @@ struct PlaneAxes {
   }
 };
 
-/// The same half-axis bounds for what is in either.
-void extend(MovingKdop& box, const MovingKdop& by) {
-  for (int j = 0; j < 16; ++j) {
-    box.t0.half[j] = std::max(box.t0.half[j], by.t0.half[j]);
-    box.t1.half[j] = std::max(box.t1.half[j], by.t1.half[j]);
-  }
-}
-
 }  // namespace
 
 bool RegionBorder::find(const Region& region, std::uint8_t* interior) {
@@ -80,7 +73,7 @@ void RegionBorder::markInterior(const Region& region, std::uint8_t* interior) co
   for (std::uint32_t i = region.first; i < region.last; ++i)
     for (const std::uint32_t place : tree_.triangles()[i].place)
       if (place >= region.first_place) ++interior[place];
-  // A count that is too large for its byte is of a vertex without a fan.
+  // A count that is too large for its byte is never that of a fan.
   for (std::uint32_t v = region.first_place; v < region.last_place; ++v) {
     const VertexFan fan = tree_.fans()[v];
     interior[v] = fan.is_closed && interior[v] == fan.count;
@@ -183,82 +176,96 @@ void RegionBorder::project(int direction) {
   int d[3];
   directionOf(direction, d);
   const PlaneAxes plane(d);
-  const auto at = [&](const double* p, int frame) {
-    const double(&o)[3] = tree_.origin(frame);
-    const double q[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
-    const auto along = [&q](const int(&u)[3]) {
-      return u[0] * q[0] + u[1] * q[1] + u[2] * q[2];
-    };
-    return Point{along(plane.axes[0]), along(plane.axes[1])};
-  };
-  planar_.clear();
-  for (const Edge& edge : edges_) {
-    const TreeVertex &a = tree_.vertices()[edge.from], &b = tree_.vertices()[edge.to];
-    planar_.push_back({{at(a.t0, 0), at(a.t1, 1)}, {at(b.t0, 0), at(b.t1, 1)}});
-  }
-}
-
-/// The box of a point that moves in the plane, whose third coordinate is there for two
-/// more directions.
-MovingKdop RegionBorder::boxOf(const Point (&path)[2]) const {
-  // Coordinates are 2^-51 of the reach off, those of a box four times that, and less than
-  // 2^-50 more where two are added.
-  const float pad = roundUp(tree_.reach() * 0x1p-48, 0.f);
-  const double zero[3] = {0, 0, 0};
-  const double p[3] = {path[0].x, path[0].y, 2 * path[0].y},
-               q[3] = {path[1].x, path[1].y, 2 * path[1].y};
-  MovingKdop box;
-  fitPoint(p, zero, pad, box.t0);
-  fitPoint(q, zero, pad, box.t1);
-  return box;
-}
-
-/// Makes node i, of edges [first, last), and what is below it.
-void RegionBorder::makeNode(std::size_t i, std::size_t first, std::size_t last,
-                            MovingKdop& box) {
-  constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-  std::size_t length = 1;
-  while (length * kWidth < last - first) length *= kWidth;
-  MovingKdop boxes[kWidth], end;
-  std::int32_t numbers[kWidth];
-  int count = 0;
-  for (; first < last; ++count, first += length) {
-    numbers[count] = ~static_cast<std::int32_t>(first);
-    if (length == 1) {
-      // Most edges begin where the one before ends.
-      const bool goes_on = count > 0 && edges_[first].from == edges_[first - 1].to;
-      boxes[count] = goes_on ? end : boxOf(planar_[first].from);
-      end = boxOf(planar_[first].to);
-      extend(boxes[count], end);
-    } else {
-      numbers[count] = static_cast<std::int32_t>(boxes_.nodes.size());
-      boxes_.nodes.emplace_back();
-      makeNode(boxes_.nodes.size() - 1, first, std::min(first + length, last),
-               boxes[count]);
+  points_.clear();
+  begins_.clear();
+  const auto add = [&](std::uint32_t place) {
+    const TreeVertex& vertex = tree_.vertices()[place];
+    MovingPoint point;
+    for (int frame = 0; frame < 2; ++frame) {
+      const double(&p)[4] = frame == 0 ? vertex.t0 : vertex.t1;
+      const double(&o)[3] = tree_.origin(frame);
+      const double q[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
+      const auto along = [&q](const int(&u)[3]) {
+        return u[0] * q[0] + u[1] * q[1] + u[2] * q[2];
+      };
+      point.at[frame] = {along(plane.axes[0]), along(plane.axes[1])};
     }
-    if (count == 0)
-      box = boxes[0];
-    else
-      extend(box, boxes[count]);
+    points_.push_back(point);
+  };
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    // Most edges begin where the one before ends.
+    if (i == 0 || edges_[i].from != edges_[i - 1].to) add(edges_[i].from);
+    begins_.push_back(static_cast<std::uint32_t>(points_.size() - 1));
+    add(edges_[i].to);
   }
-  MovingKdopNode& node = boxes_.nodes[i];
-  node.count = count;
-  std::copy(numbers, numbers + count, node.child);
-  node.markTriangles();
-  for (int lane = 0; lane < count; ++lane) node.setBox(lane, boxes[lane]);
-  // Nobody asks how far its edges go.
-  std::fill(node.displacement, node.displacement + count,
-            std::numeric_limits<float>::infinity());
-  node.clearRest();
+}
+
+/// Sets the boxes of the points, whose third coordinate is the same for all: the pad of
+/// Kernels::fitPoints is of the largest one, here twice the reach. That makes it reach *
+/// 2^-48. Coordinates are 2^-51 of the reach off, those of a box four times that, and
+/// less than 2^-50 more where two are added.
+void RegionBorder::fitPoints() {
+  boxes_.points.resize(points_.size());
+  for (std::size_t first = 0; first < points_.size(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, points_.size() - first);
+    double offsets[2][3][8] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t frame = 0; frame < 2; ++frame) {
+        const Point& p = points_[first + i].at[frame];
+        offsets[frame][0][i] = p.x;
+        offsets[frame][1][i] = p.y;
+        offsets[frame][2][i] = 2 * tree_.reach();
+      }
+      // Nobody asks how far an edge goes.
+      boxes_.points[first + i].t0[3] = std::numeric_limits<double>::infinity();
+    }
+    for (int frame = 0; frame < 2; ++frame)
+      kernels_.fitPoints(offsets[frame], frame, count, &boxes_.points[first]);
+  }
+}
+
+/// Makes the tree of the edges: eight that follow each other in each of its lowest nodes,
+/// eight of these in each of the next ones, the root first.
+void RegionBorder::fitTree() {
+  fitPoints();
+  constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+  // How many nodes each level has, the lowest first.
+  std::vector<std::size_t> levels;
+  std::size_t num_nodes = 0;
+  for (std::size_t count = edges_.size(); levels.empty() || count > 1;) {
+    count = (count + kWidth - 1) / kWidth;
+    levels.push_back(count);
+    num_nodes += count;
+  }
+  boxes_.nodes.resize(num_nodes);
+  std::size_t first = num_nodes, below = edges_.size(), first_below = 0;
+  for (const std::size_t count : levels) {
+    first -= count;
+    const bool is_lowest = first + count == num_nodes;
+    for (std::size_t i = 0; i < count; ++i) {
+      MovingKdopNode& node = boxes_.nodes[first + i];
+      node.count = static_cast<std::int32_t>(std::min(kWidth, below - i * kWidth));
+      for (int lane = 0; lane < node.count; ++lane) {
+        const std::size_t child = i * kWidth + static_cast<std::size_t>(lane);
+        node.child[lane] = static_cast<std::int32_t>(first_below + child);
+        if (!is_lowest) continue;
+        node.child[lane] = ~node.child[lane];
+        node.places[0][lane] = begins_[child];
+        node.places[1][lane] = node.places[2][lane] = begins_[child] + 1;
+      }
+      node.markTriangles();
+      float extents[kWidth];
+      kernels_.fitNode(boxes_.points.data(), boxes_.nodes.data(), node, extents);
+    }
+    below = count;
+    first_below = first;
+  }
 }
 
 bool RegionBorder::isSimple() {
-  boxes_.nodes.clear();
-  boxes_.nodes.emplace_back();
-  MovingKdop box;
-  makeNode(0, 0, planar_.size(), box);
+  fitTree();
   Traversal<true, const BorderTree, const BorderTree> traversal(
-      boxes_, boxes_, nullptr, nullptr, nullptr, nullptr, kernels_, false);
+      boxes_, boxes_, nullptr, SelfCulling(), nullptr, kernels_, false);
   bool simple = true;
   WorkList open;
   traversal.start(open);
@@ -275,7 +282,7 @@ bool RegionBorder::isSimple() {
 /// Whether two edges provably meet at no time but in a vertex that they share.
 bool RegionBorder::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   const Edge &e = edges_[i], &f = edges_[j];
-  const PlanarEdge &x = planar_[i], &y = planar_[j];
+  const PlanarEdge x = planarEdge(i), y = planarEdge(j);
   const bool ff = e.from == f.from, ft = e.from == f.to, tf = e.to == f.from,
              tt = e.to == f.to;
   if (ff + ft + tf + tt == 0) return areApart(x, y);
@@ -284,8 +291,8 @@ bool RegionBorder::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   Point p[2], q[2];
   double length = 0;
   for (int k = 0; k < 2; ++k) {
-    p[k] = ff || ft ? x.to[k] - x.from[k] : x.from[k] - x.to[k];
-    q[k] = ff || tf ? y.to[k] - y.from[k] : y.from[k] - y.to[k];
+    p[k] = ff || ft ? x.to.at[k] - x.from.at[k] : x.from.at[k] - x.to.at[k];
+    q[k] = ff || tf ? y.to.at[k] - y.from.at[k] : y.from.at[k] - y.to.at[k];
     for (const Point& a : {p[k], q[k]})
       length = std::max(length, std::max(std::abs(a.x), std::abs(a.y)));
   }
@@ -301,28 +308,37 @@ bool RegionBorder::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   return all_below(turn, 1) || all_below(turn, -1) || all_below(same, 1);
 }
 
-/// Whether a fixed line separates two edges at all times.
+/// Whether a line separates two edges at all times. It turns as they do.
 bool RegionBorder::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
-  const Point along_e = (e.to[0] - e.from[0]) + (e.to[1] - e.from[1]);
-  const Point along_f = (f.to[0] - f.from[0]) + (f.to[1] - f.from[1]);
-  const Point between = ((f.from[0] + f.to[0]) + (f.from[1] + f.to[1])) -
-                        ((e.from[0] + e.to[0]) + (e.from[1] + e.to[1]));
-  return areApart(e, f, {-along_e.y, along_e.x}) ||
-         areApart(e, f, {-along_f.y, along_f.x}) || areApart(e, f, between);
+  Point across_e[2], across_f[2], between[2];
+  for (int k = 0; k < 2; ++k) {
+    const Point along_e = e.to.at[k] - e.from.at[k], along_f = f.to.at[k] - f.from.at[k];
+    across_e[k] = {-along_e.y, along_e.x};
+    across_f[k] = {-along_f.y, along_f.x};
+    between[k] = (f.from.at[k] + f.to.at[k]) - (e.from.at[k] + e.to.at[k]);
+  }
+  return areApart(e, f, across_e) || areApart(e, f, across_f) || areApart(e, f, between);
 }
 
-/// Whether e stays on one side and f on the other along w.
+/// Whether e stays on one side and f on the other along a direction that is w[0] at t = 0
+/// and w[1] at t = 1.
 bool RegionBorder::areApart(const PlanarEdge& e, const PlanarEdge& f,
-                            const Point& w) const {
-  const double size = std::max(std::abs(w.x), std::abs(w.y)) * tree_.reach();
+                            const Point (&w)[2]) const {
+  double size = 0;
+  for (const Point& p : w) size = std::max(size, std::max(std::abs(p.x), std::abs(p.y)));
+  size *= tree_.reach();
   if (!(size >= kTiny)) return false;
   const double bound = kBorderSideBound * size;
+  // Bernstein coefficients in t, the middle one twice.
+  const auto place = [&w](const MovingPoint& p) -> std::array<double, 3> {
+    return {dot(w[0], p.at[0]), dot(w[0], p.at[1]) + dot(w[1], p.at[0]),
+            dot(w[1], p.at[1])};
+  };
+  const auto a = place(e.from), b = place(e.to), c = place(f.from), d = place(f.to);
   bool above = true, below = true;
-  for (int k = 0; k < 2; ++k) {
-    const double a = dot(w, e.from[k]), b = dot(w, e.to[k]), c = dot(w, f.from[k]),
-                 d = dot(w, f.to[k]);
-    above = above && std::min(a, b) - std::max(c, d) > bound;
-    below = below && std::min(c, d) - std::max(a, b) > bound;
+  for (std::size_t k = 0; k < 3; ++k) {
+    above = above && std::min(a[k], b[k]) - std::max(c[k], d[k]) > bound;
+    below = below && std::min(c[k], d[k]) - std::max(a[k], b[k]) > bound;
   }
   return above || below;
 }
@@ -339,7 +355,7 @@ bool RegionBorder::windsOnce() const {
 /// Whether the border provably winds once round a point just left of the middle of edge i
 /// at t = 0: counts what crosses a ray from there.
 bool RegionBorder::windsOnceLeftOf(std::size_t i) const {
-  const Point a = planar_[i].from[0], b = planar_[i].to[0], e = b - a;
+  const Point a = planarEdge(i).from.at[0], b = planarEdge(i).to.at[0], e = b - a;
   // To the left, and in no direction that edges of a regular mesh have.
   constexpr double kTilt = 0.2360679774997897;
   const Point ray = {kTilt * e.x - e.y, kTilt * e.y + e.x};
@@ -355,9 +371,9 @@ bool RegionBorder::windsOnceLeftOf(std::size_t i) const {
   };
   if (side(a) != 1 || side(b) != -1) return false;
   int winding = 0;
-  for (std::size_t j = 0; j < planar_.size(); ++j) {
+  for (std::size_t j = 0; j < edges_.size(); ++j) {
     if (j == i) continue;
-    const Point &p = planar_[j].from[0], &q = planar_[j].to[0];
+    const Point &p = planarEdge(j).from.at[0], &q = planarEdge(j).to.at[0];
     const int from = side(p), to = side(q);
     if (from == 0 || to == 0) return false;
     if (from == to) continue;

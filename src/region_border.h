@@ -22,8 +22,10 @@ struct Region {
   std::uint32_t first, last, first_place, last_place;
 };
 
-/// @brief Moving boxes of the edges of a border, as Traversal takes them.
+/// @brief Moving boxes of the edges of a border, as Traversal takes them: triangles
+/// between two points.
 struct BorderTree {
+  UninitializedVector<TreeVertex> points;
   UninitializedVector<MovingKdopNode> nodes;
 
   const MovingKdopNode& node(int i) const { return nodes[static_cast<std::size_t>(i)]; }
@@ -58,9 +60,12 @@ class RegionBorder {
   struct Point {
     double x, y;
   };
-  /// An edge in the plane, at t = 0 and at t = 1.
+  /// At t = 0 and at t = 1.
+  struct MovingPoint {
+    Point at[2];
+  };
   struct PlanarEdge {
-    Point from[2], to[2];
+    const MovingPoint &from, &to;
   };
 
   friend Point operator-(const Point& a, const Point& b) {
@@ -76,12 +81,15 @@ class RegionBorder {
   bool linkPaths();
   int widest(std::uint32_t directions) const;
   void project(int direction);
-  MovingKdop boxOf(const Point (&path)[2]) const;
-  void makeNode(std::size_t i, std::size_t first, std::size_t last, MovingKdop& box);
+  PlanarEdge planarEdge(std::size_t i) const {
+    return {points_[begins_[i]], points_[begins_[i] + 1]};
+  }
+  void fitPoints();
+  void fitTree();
   bool isSimple();
   bool meetOnlyAtVertices(std::size_t i, std::size_t j) const;
   bool areApart(const PlanarEdge& e, const PlanarEdge& f) const;
-  bool areApart(const PlanarEdge& e, const PlanarEdge& f, const Point& w) const;
+  bool areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2]) const;
   bool windsOnce() const;
   bool windsOnceLeftOf(std::size_t i) const;
 
@@ -96,7 +104,9 @@ class RegionBorder {
   std::vector<Edge> unlinked_;
   std::vector<std::uint8_t> taken_;
   bool is_one_loop_{false};
-  std::vector<PlanarEdge> planar_;
+  /// In the plane: where each edge begins, and that it ends at the next point.
+  std::vector<MovingPoint> points_;
+  std::vector<std::uint32_t> begins_;
   BorderTree boxes_;
 };
 

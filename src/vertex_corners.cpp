@@ -59,11 +59,54 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
     sorted[i] = corners[at % kWidth];
     at = static_cast<std::uint32_t>(__builtin_ctz(after[at] | 1U << kWidth));
   }
-  const bool is_fan = surplus == 0 && met == all &&
-                      (is_closed ? count >= 3 : count < VertexFans::kMaxSpokes);
+  const bool is_fan = surplus == 0 && met == all && (!is_closed || count >= 3);
   if (!is_fan) return CornersAtVertex::kNoFan;
   std::copy(sorted, sorted + count, corners);
   return is_closed ? CornersAtVertex::kClosedFan : CornersAtVertex::kOpenFan;
+}
+
+/// The same for more corners.
+CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
+  std::vector<Corner> by_next(corners, corners + count);
+  std::vector<std::uint32_t> lasts;
+  for (const Corner& c : by_next) lasts.push_back(c.last);
+  std::sort(by_next.begin(), by_next.end(),
+            [](const Corner& a, const Corner& b) { return a.next < b.next; });
+  std::sort(lasts.begin(), lasts.end());
+  const auto begin_together = [](const Corner& a, const Corner& b) {
+    return a.next == b.next;
+  };
+  // Of each spoke that is not met twice one corner may begin and one end there.
+  if (std::adjacent_find(lasts.begin(), lasts.end()) != lasts.end() ||
+      std::adjacent_find(by_next.begin(), by_next.end(), begin_together) != by_next.end())
+    return CornersAtVertex::kNoFan;
+  const auto first =
+      std::find_if(by_next.begin(), by_next.end(), [&lasts](const Corner& c) {
+        return !std::binary_search(lasts.begin(), lasts.end(), c.next);
+      });
+  const bool is_closed = first == by_next.end();
+  const Corner begin = is_closed ? corners[0] : *first;
+  // All are on one way.
+  std::vector<Corner> sorted{begin};
+  while (sorted.size() < count) {
+    const auto next = std::lower_bound(
+        by_next.begin(), by_next.end(), sorted.back().last,
+        [](const Corner& c, std::uint32_t spoke) { return c.next < spoke; });
+    if (next == by_next.end() || next->next != sorted.back().last ||
+        next->next == begin.next)
+      return CornersAtVertex::kNoFan;
+    sorted.push_back(*next);
+  }
+  std::copy(sorted.begin(), sorted.end(), corners);
+  return is_closed ? CornersAtVertex::kClosedFan : CornersAtVertex::kOpenFan;
+}
+
+/// Brings the corners at a vertex into order.
+CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
+  if (count == 0) return CornersAtVertex::kNoFan;
+  if (count <= 8) return sortIntoFan<2>(corners, count);
+  if (count <= 16) return sortIntoFan<4>(corners, count);
+  return sortIntoLongFan(corners, count);
 }
 
 /// What each corner's triangle owns of the features at a vertex: the vertex, and the
@@ -149,14 +192,8 @@ VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
   }
   parallelForBlocks(
       num_vertices, kBlock, num_threads, [&](std::size_t v, std::size_t last) {
-        for (; v < last; ++v) {
-          const std::uint32_t count = first_[v + 1] - first_[v];
-          Corner* corners = corners_.data() + first_[v];
-          kinds_[v] =
-              count == 0 || count > VertexFans::kMaxSpokes ? CornersAtVertex::kNoFan
-              : count <= 8 ? sortIntoFan<2>(corners, count)
-                           : sortIntoFan<VertexFans::kMaxSpokes / 4>(corners, count);
-        }
+        for (; v < last; ++v)
+          kinds_[v] = sortCorners(corners_.data() + first_[v], first_[v + 1] - first_[v]);
       });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/deformable/vertex_fans.h"
 
+#include <algorithm>
+
 #include "parallel.h"
 #include "vertex_corners.h"
 
@@ -33,6 +35,7 @@ VertexFans::VertexFans(const VertexCorners& corners, int num_threads)
     first_[v] = num_spokes;
     closed_[v] = corners[v].kind == CornersAtVertex::kClosedFan;
     num_spokes += numSpokes(corners[v]);
+    longest_ = std::max(longest_, num_spokes - first_[v]);
   }
   first_[corners.size()] = num_spokes;
   spokes_.resize(num_spokes);
@@ -57,6 +60,7 @@ VertexFans::VertexFans(const VertexFans& before,
     closed_[v] = is_new ? corners[v].kind == CornersAtVertex::kClosedFan
                         : before.closed_[old_places[v]];
     num_spokes += is_new ? numSpokes(corners[v]) : before[old_places[v]].count;
+    longest_ = std::max(longest_, num_spokes - first_[v]);
   }
   first_[corners.size()] = num_spokes;
   spokes_.resize(num_spokes);

@@ -206,6 +206,38 @@ TEST(FCL_EMBEDDED_REGIONS, turningAndStretching) {
   EXPECT_TRUE(find(mesh).isWhole(mesh));
 }
 
+// The teeth of a comb that turns: each stays on its side of a line that turns as well.
+TEST(FCL_EMBEDDED_REGIONS, turningComb) {
+  for (const double angle : {0., 0.05, 0.4, -0.4}) {
+    MovingMesh mesh;
+    for (int i = 0; i < 20; ++i) {
+      const double x = 0.02 * i;
+      for (const auto& p : {Vector3<double>(x, 0, 0), Vector3<double>(x + 0.015, 0, 0),
+                            Vector3<double>(x + 0.01, 1, 0)})
+        mesh.t0.push_back(p);
+      mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    for (const auto& p : mesh.t0)
+      mesh.t1.push_back(AngleAxis<double>(angle, Vector3<double>::UnitZ()) * p);
+    EXPECT_TRUE(find(mesh).isWhole(mesh)) << angle;
+    // One that leans over touches the next.
+    mesh.t1[32] += 0.04 * (mesh.t1[31] - mesh.t1[30]).normalized();
+    const Found found = find(mesh);
+    EXPECT_FALSE(found.isWhole(mesh)) << angle;
+    expectNoContact(mesh, found);
+  }
+}
+
+// All that is above a plane of two triangles is one with it until the mesh is divided.
+TEST(FCL_EMBEDDED_REGIONS, aSheetOverAPlane) {
+  MovingMesh mesh = still(square(60, 1, 0));
+  append(mesh, still(square(1, 20, -0.5)));
+  const PreparedMovingMesh prepared(mesh);
+  const EmbeddedRegions found = regionsOf(prepared.tree(), kLeastRegion);
+  const auto inside = std::count(found.interior.begin(), found.interior.end(), 1);
+  EXPECT_GT(inside, 60 * 60 / 2);
+}
+
 // Two layers of a folded sheet are proved each.
 TEST(FCL_EMBEDDED_REGIONS, aFoldHasTwoSides) {
   constexpr double kRadius = 0.2;
@@ -664,8 +696,8 @@ TEST(FCL_EMBEDDED_REGIONS, traversalLeavesOutRegionsOnly) {
       };
     };
     test::traverse<true>(tree, tree, nullptr, into(all));
-    test::traverse<true>(tree, tree, nullptr, into(some), 1, nullptr, nullptr,
-                         nodes.data());
+    test::traverse<true>(tree, tree, nullptr, into(some), 1,
+                         {nullptr, nullptr, nodes.data()});
     std::vector<std::set<int>> nodes_of(tree.triangles().size());
     for (std::size_t n = 0; n < nodes.size(); ++n)
       if (nodes[n])

@@ -602,7 +602,7 @@ TEST(FCL_MOVING_KDOP_TREE, pairsOfAStep) {
     tree.refit(VertexFrames(mesh.previous(), mesh.current(), mesh.t0.size()));
     ASSERT_EQ(tree.node(0).count, 8);
     ASSERT_EQ(tree.node(0).triangles, 0xffU & (0xffU << num_nodes));
-    SelfTraversal traversal(tree, tree, nullptr, nullptr, nullptr, nullptr,
+    SelfTraversal traversal(tree, tree, nullptr, deformable::SelfCulling(), nullptr,
                             deformable::kernels(), false);
     deformable::WorkList open;
     traversal.start(open);

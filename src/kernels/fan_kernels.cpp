@@ -18,96 +18,147 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// On which side of a ray the spokes of eight fans lie at one time: a bit a fan where
-/// spoke i lies before (after) it beyond doubt, turning the fan's way.
-struct SidesOfRay {
-  unsigned before[VertexFans::kMaxSpokes], after[VertexFans::kMaxSpokes];
-
-  /// @param across  its product with what lies before the ray is above the bound
-  HWY_INLINE void set(std::size_t i, const Vectors& spoke, const Vectors& across,
-                      const Doubles& bound, const Doubles& minus_bound) {
-    const Doubles g = dot(spoke, across);
-    before[i] = bits(g > bound);
-    after[i] = bits(g < minus_bound);
+/// The spokes of eight short fans, and the normals of their triangles.
+class ShortFans {
+ public:
+  HWY_INLINE ShortFans(const TreeVertex* vertices, const EightFans& fans) {
+    const MovingVectors center = loadPaths(fans.center);
+    for (std::size_t i = 0; i < fans.count; ++i)
+      spokes_[i] = loadSpokes(vertices, fans, i) - center;
+    spokes_[fans.count] = spokes_[0];
   }
-};
 
-/// Fans that go round once: the ray lies in one sector.
-HWY_INLINE unsigned goRoundOnce(const SidesOfRay& at0, std::size_t count) {
-  unsigned decided = ~0U, once = 0, again = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const unsigned within = at0.before[i] & at0.after[i + 1 < count ? i + 1 : 0];
-    decided &= at0.before[i] | at0.after[i];
-    again |= once & within;
-    once |= within;
+  HWY_INLINE const MovingVectors& spoke(std::size_t i) const { return spokes_[i]; }
+  HWY_INLINE const MovingNormals& makeNormal(std::size_t i) {
+    return normals_[i] = cross(spokes_[i], spokes_[i + 1]);
   }
-  return decided & once & ~again;
-}
+  HWY_INLINE const MovingNormals& normal(std::size_t i) const { return normals_[i]; }
 
-/// Fans of which no sector ever covers the ray: each has its first spoke after it all the
-/// time, or its last one before.
-HWY_INLINE unsigned leaveFree(const SidesOfRay& at0, const SidesOfRay& at1,
-                              std::size_t count) {
-  unsigned free = ~0U;
-  for (std::size_t i = 0; i + 1 < count; ++i)
-    free &= (at0.after[i] & at1.after[i]) | (at0.before[i + 1] & at1.before[i + 1]);
-  return free;
-}
-
-unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
-  const std::size_t count = fans.count;
-  const MovingVectors center = loadPaths(fans.center);
-  MovingVectors spokes[VertexFans::kMaxSpokes + 1];
-  Doubles u_norm = broadcast<kEight>(kLeastNorm);
-  for (std::size_t i = 0; i < count; ++i) {
+  static HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices,
+                                             const EightFans& fans, std::size_t i) {
     const TreeVertex* x[kEight];
     for (std::size_t lane = 0; lane < kEight; ++lane)
       x[lane] = vertices + fans.spokes[lane][i];
-    spokes[i] = loadPaths(x) - center;
-    u_norm = max(u_norm, max(maxNorm(spokes[i].t0), maxNorm(spokes[i].t1)));
+    return loadPaths(x);
   }
-  spokes[count] = spokes[0];
+
+ private:
+  MovingVectors spokes_[VertexFans::kShort + 1];
+  MovingNormals normals_[VertexFans::kShort];
+};
+
+/// Those of long ones, made whenever they are asked for.
+class LongFans {
+ public:
+  HWY_INLINE LongFans(const TreeVertex* vertices, const EightFans& fans)
+      : vertices_(vertices), fans_(fans), center_(loadPaths(fans.center)) {}
+
+  HWY_INLINE MovingVectors spoke(std::size_t i) const {
+    return ShortFans::loadSpokes(vertices_, fans_, i < fans_.count ? i : 0) - center_;
+  }
+  HWY_INLINE MovingNormals makeNormal(std::size_t i) const { return normal(i); }
+  HWY_INLINE MovingNormals normal(std::size_t i) const {
+    return cross(spoke(i), spoke(i + 1));
+  }
+
+ private:
+  const TreeVertex* vertices_;
+  const EightFans& fans_;
+  MovingVectors center_;
+};
+
+/// On which side of a ray spokes of eight fans lie at one time: a bit a fan where they
+/// lie before (after) it beyond doubt, turning the fan's way.
+struct SideOfRay {
+  unsigned before, after;
+};
+
+/// @param across  its product with what lies before the ray is above the bound
+HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
+                               const Doubles& bound, const Doubles& minus_bound) {
+  const Doubles g = dot(spoke, across);
+  return {bits(g > bound), bits(g < minus_bound)};
+}
+
+template <typename Fans>
+HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) {
+  Doubles u_norm = broadcast<kEight>(kLeastNorm);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MovingVectors spoke = fans.spoke(i);
+    u_norm = max(u_norm, max(maxNorm(spoke.t0), maxNorm(spoke.t1)));
+  }
 
   // All triangles face d.
-  const std::size_t num_triangles = fans.is_closed ? count : count - 1;
-  MovingNormals normals[VertexFans::kMaxSpokes];
+  const std::size_t num_triangles = is_closed ? count : count - 1;
   const Doubles zero = broadcast<kEight>(0.);
   Vectors d = {zero, zero, zero};
   for (std::size_t i = 0; i < num_triangles; ++i) {
-    normals[i] = cross(spokes[i], spokes[i + 1]);
-    d = d + (normals[i].first + normals[i].last);
+    const MovingNormals normal = fans.makeNormal(i);
+    d = d + (normal.first + normal.last);
   }
   const Doubles d_norm = maxNorm(d), size = u_norm * u_norm * d_norm;
   const Doubles turned = broadcast<kEight>(kFanBound) * size;
   DoubleMask facing = isInRange(u_norm * u_norm) & isInRange(size);
-  for (std::size_t i = 0; i < num_triangles; ++i)
-    facing = facing & (dot(normals[i].first, d) > turned) &
-             (dot(normals[i].middle, d) > turned) & (dot(normals[i].last, d) > turned);
+  for (std::size_t i = 0; i < num_triangles; ++i) {
+    const MovingNormals normal = fans.normal(i);
+    facing = facing & (dot(normal.first, d) > turned) & (dot(normal.middle, d) > turned) &
+             (dot(normal.last, d) > turned);
+  }
   const unsigned left = bits(facing);
   if (left == 0) return 0;
 
   // The ray: through the middle of the first sector of a closed fan; away from an open
   // one.
   Vectors ray = {zero, zero, zero};
-  if (fans.is_closed) {
-    const Vectors &p = spokes[0].t0, &q = spokes[1].t0;
+  if (is_closed) {
+    const Vectors p = fans.spoke(0).t0, q = fans.spoke(1).t0;
     const Doubles a = maxNorm(p), b = maxNorm(q);
     ray = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
   } else {
-    for (std::size_t i = 0; i < count; ++i) ray = ray - (spokes[i].t0 + spokes[i].t1);
+    for (std::size_t i = 0; i < count; ++i) {
+      const MovingVectors spoke = fans.spoke(i);
+      ray = ray - (spoke.t0 + spoke.t1);
+    }
   }
   const Doubles ray_norm = maxNorm(ray), ray_size = u_norm * ray_norm * d_norm;
   const unsigned in_range = bits(isInRange(ray_norm * d_norm) & isInRange(ray_size));
   const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
                 minus_bound = zero - bound;
   const Vectors across = cross(ray, d);
-  SidesOfRay at0, at1;
-  for (std::size_t i = 0; i < count; ++i) {
-    at0.set(i, spokes[i].t0, across, bound, minus_bound);
-    if (!fans.is_closed) at1.set(i, spokes[i].t1, across, bound, minus_bound);
+  const auto side = [&](const Vectors& spoke)
+                        HWY_ATTR { return sideOfRay(spoke, across, bound, minus_bound); };
+
+  if (is_closed) {
+    // Those go round once of which one sector has the ray.
+    const SideOfRay first = side(fans.spoke(0).t0);
+    SideOfRay at = first;
+    unsigned decided = ~0U, once = 0, again = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const SideOfRay next = i + 1 < count ? side(fans.spoke(i + 1).t0) : first;
+      const unsigned within = at.before & next.after;
+      decided &= at.before | at.after;
+      again |= once & within;
+      once |= within;
+      at = next;
+    }
+    return left & in_range & decided & once & ~again;
   }
-  return left & in_range &
-         (fans.is_closed ? goRoundOnce(at0, count) : leaveFree(at0, at1, count));
+  // No sector ever covers the ray: each has its first spoke after it all the time, or its
+  // last one before.
+  unsigned free = ~0U, after = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const MovingVectors spoke = fans.spoke(i);
+    const SideOfRay at0 = side(spoke.t0), at1 = side(spoke.t1);
+    if (i > 0) free &= after | (at0.before & at1.before);
+    after = at0.after & at1.after;
+  }
+  return left & in_range & free;
+}
+
+unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
+  if (fans.count <= VertexFans::kShort)
+    return areEmbedded(ShortFans(vertices, fans), fans.count, fans.is_closed);
+  return areEmbedded(LongFans(vertices, fans), fans.count, fans.is_closed);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -37,12 +37,12 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   found.ms_traverse = millisecondsOf([&] {
     std::vector<std::uint8_t> embedded;
     if (with_fans) embedded = embeddedFans(model.movingTree());
-    leaves.counts().node_pairs = traverse<true>(
-        tree, tree, nullptr,
-        [&](int a, int b, float) {
-          pairs.push_back({a, b, 0.f});
-        },
-        1, with_fans ? embedded.data() : nullptr);
+    leaves.counts().node_pairs =
+        traverse<true>(tree, tree, nullptr,
+                       [&](int a, int b, float) {
+                         pairs.push_back({a, b, 0.f});
+                       },
+                       1, {with_fans ? embedded.data() : nullptr});
   });
   found.ms_test = millisecondsOf([&] {
     const deformable::LeafPair* next = pairs.data();

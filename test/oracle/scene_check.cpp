@@ -217,7 +217,7 @@ CullReport checkCulledPairs(const FramePairMesh& mesh, const CullCheckOptions& o
     visited.push_back(inOrder(a, b));
     check.addVisited(a, b);
   };
-  traverse<true>(tree, tree, nullptr, visit, 1, embedded.data());
+  traverse<true>(tree, tree, nullptr, visit, 1, {embedded.data()});
   std::sort(visited.begin(), visited.end());
   const auto isVisited = [&visited](int a, int b) {
     return std::binary_search(visited.begin(), visited.end(), inOrder(a, b));

@@ -15,17 +15,16 @@ namespace test {
 /// @brief All steps of a traversal, without a query around them: visit(i, j, earliest)
 /// for triangles i and j as the trees count them.
 /// @param latest  what starts later is left out
-/// @param embedded, axes, regions  as Traversal takes them
+/// @param culling, axes  as Traversal takes them
 /// @return number of boxes that were compared
 template <bool kSelf, typename TreeA, typename TreeB, typename Visit>
 std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* shift,
                        Visit&& visit, double latest = 1,
-                       const std::uint8_t* embedded = nullptr,
-                       const detail::deformable::SeparatingAxes* axes = nullptr,
-                       const std::uint8_t* regions = nullptr) {
+                       const detail::deformable::SelfCulling& culling = {},
+                       const detail::deformable::SeparatingAxes* axes = nullptr) {
   namespace deformable = detail::deformable;
-  deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, embedded, regions,
-                                                       axes, deformable::kernels(), true);
+  deformable::Traversal<kSelf, TreeA, TreeB> traversal(a, b, shift, culling, axes,
+                                                       deformable::kernels(), true);
   deformable::WorkList open;
   traversal.start(open);
   while (open.size() > 0) {

@@ -63,7 +63,8 @@ class WideTree {
   static void traverse(const Tree& tree, IsLeftOut& isLeftOut, Visit& visit) {
     namespace deformable = detail::deformable;
     deformable::Traversal<true, const Tree, const Tree> traversal(
-        tree, tree, nullptr, nullptr, nullptr, nullptr, deformable::kernels(), false);
+        tree, tree, nullptr, deformable::SelfCulling(), nullptr, deformable::kernels(),
+        false);
     deformable::WorkList open;
     traversal.start(open);
     while (open.size() > 0) {

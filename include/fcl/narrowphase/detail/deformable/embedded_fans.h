@@ -26,6 +26,14 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
                                            const std::vector<std::uint8_t>& left_out,
                                            const Kernels& kernels, int num_threads);
 
+/// @brief For each node of the tree a vertex in whose embedded fan all triangles below it
+/// lie, MovingKdopNode::kNoPlace if there is none; empty: no node has one. Only fans of
+/// many spokes are looked at: each two triangles of one overlap, and a query would meet
+/// every two of thousands.
+/// @param embedded  of findEmbeddedFans()
+std::vector<std::uint32_t> findNodesInFans(const MovingKdopTree& tree,
+                                           const std::vector<std::uint8_t>& embedded);
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

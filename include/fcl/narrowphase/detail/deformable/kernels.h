@@ -130,7 +130,7 @@ struct EightCrossings {
 struct EightFans {
   const TreeVertex* center[8];
   const std::uint32_t* spokes[8];
-  /// 2 to VertexFans::kMaxSpokes, of closed fans 3 or more.
+  /// 2 or more, of closed fans 3 or more.
   std::uint32_t count;
   bool is_closed;
 };

@@ -18,7 +18,7 @@ struct StageCounts {
   /// of those, the pairs that share a vertex
   std::uint64_t adjacent_pairs{0};
   /// of those, the pairs that provably meet nowhere else: the triangles around the shared
-  /// vertex stay a fan
+  /// vertex stay a fan; nothing is counted where whole nodes of the tree are in a fan
   std::uint64_t fan_culled{0};
   /// triangle pairs that a plane keeps apart until the latest time that still matters,
   /// once contacts that were found leave only the beginning of the step

@@ -64,6 +64,18 @@ inline float extentOf(const MovingKdopNode& node, int lane) {
   return sum;
 }
 
+/// @brief What a traversal of a tree with itself leaves out; null: nothing.
+struct SelfCulling {
+  /// For each vertex of the tree, whether its fan is embedded (findEmbeddedFans()): pairs
+  /// of triangles in one.
+  const std::uint8_t* fans{nullptr};
+  /// For each node, the vertex in whose embedded fan it lies (findNodesInFans()): pairs
+  /// below two nodes in the same one.
+  const std::uint32_t* nodes_in_fans{nullptr};
+  /// For each node, whether it is a region (EmbeddedRegions::nodes): pairs below it.
+  const std::uint8_t* regions{nullptr};
+};
+
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
 /// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
@@ -72,19 +84,14 @@ template <bool kSelf, typename TreeA, typename TreeB>
 class Traversal {
  public:
   /// @param shift  between the two trees' origins and translations; null for kSelf
-  /// @param embedded  kSelf: for each vertex of the tree, whether its fan is embedded
-  /// (findEmbeddedFans()): pairs of triangles in one are left out; null: unknown
-  /// @param regions  kSelf: for each node of the tree, whether pairs of triangles below
-  /// it are left out (EmbeddedRegions::nodes); null: none are
   /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
   /// @param timed  as in OverlapRequest
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
-            const std::uint8_t* embedded, const std::uint8_t* regions,
-            const SeparatingAxes* axes, const Kernels& kernels, bool timed)
+            const SelfCulling& culling, const SeparatingAxes* axes,
+            const Kernels& kernels, bool timed)
       : tree_a_(tree_a),
         tree_b_(tree_b),
-        embedded_(embedded),
-        regions_(regions),
+        culling_(culling),
         axes_(axes),
         kernels_(kernels),
         request_{timed} {
@@ -154,7 +161,15 @@ class Traversal {
 
   /// A node with itself.
   void addSelf(std::int32_t i, WorkList& open) const {
-    if (!regions_ || !regions_[i]) open.add(0, -1, i, false, 0.f);
+    if (culling_.regions && culling_.regions[i]) return;
+    if (!areInFan(i, i)) open.add(0, -1, i, false, 0.f);
+  }
+
+  /// Two nodes in the same fan.
+  bool areInFan(std::int32_t i, std::int32_t j) const {
+    const std::uint32_t* centers = culling_.nodes_in_fans;
+    return kSelf && centers && centers[i] != MovingKdopNode::kNoPlace &&
+           centers[i] == centers[j];
   }
 
   template <typename Visit>
@@ -215,6 +230,7 @@ class Traversal {
     for (; left != 0; left &= left - 1) {
       const int k = __builtin_ctz(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
+      if (both_nodes && areInFan(mine, node.child[k])) continue;
       const float other = both_nodes ? extentOf(node, k) : 0.f;
       if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
           axes_->areApart(kSwapped ? node.child[k] : mine,
@@ -232,9 +248,9 @@ class Traversal {
   template <bool kSwapped, typename Visit>
   void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
                       const MovingKdopNode& theirs, Visit& visit) {
-    kernels_.overlapTriangles(
-        {mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped], embedded_, request_},
-        pairs_);
+    kernels_.overlapTriangles({mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped],
+                               culling_.fans, request_},
+                              pairs_);
     for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
       const int pair = __builtin_ctzll(left);
       const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
@@ -246,8 +262,7 @@ class Traversal {
 
   TreeA& tree_a_;
   TreeB& tree_b_;
-  const std::uint8_t* embedded_;
-  const std::uint8_t* regions_;
+  const SelfCulling culling_;
   const SeparatingAxes* axes_;
   const Kernels& kernels_;
   OverlapRequest request_;

@@ -29,10 +29,11 @@ struct VertexFan {
 };
 
 /// @brief The fans of a mesh. A vertex whose triangles form no fan (several sheets, edges
-/// with three triangles, opposite windings) and one with more than kMaxSpokes has none.
+/// with three triangles, opposite windings) has none.
 class VertexFans {
  public:
-  static constexpr std::uint32_t kMaxSpokes = 16;
+  /// Most fans have no more spokes. The others are long: a pole, the middle of a lid.
+  static constexpr std::uint32_t kShort = 16;
 
   VertexFans() = default;
 
@@ -64,6 +65,9 @@ class VertexFans {
     return {spokes_.data() + first, first_[place + 1] - first, closed_[place] != 0};
   }
 
+  /// @brief The largest number of spokes.
+  std::uint32_t longest() const { return longest_; }
+
   std::size_t memUsage() const {
     return (first_.capacity() + spokes_.capacity()) * sizeof(std::uint32_t) +
            closed_.capacity();
@@ -73,6 +77,7 @@ class VertexFans {
   UninitializedVector<std::uint32_t> first_;
   UninitializedVector<std::uint32_t> spokes_;
   UninitializedVector<std::uint8_t> closed_;
+  std::uint32_t longest_{0};
 };
 
 }  // namespace deformable
