@@ -274,6 +274,9 @@ TEST_F(CcdTool, ReadsVariantsOfTheFormats) {
       {"full.obj",
        "mtllib m.mtl\r\no square\r\nv\t0 0 0 1\r\nv 1 0 0 1\r\nv 1 1 0 1\r\nv 0 1 0 1\r\n"
        "vt 0 0\r\nvn 0 0 1\r\nusemtl red\r\nf\t1/1/1 2//1 \\\r\n 3/1 4 # done\r\nl 1 2"},
+      {"comments.obj",
+       "# from C:\\meshes\\\nv 0 0 0 # \\\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 \\\n3 4\n"},
+      {"mark.obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n"},
       {"quad.off",
        "# c\nCOFF 4 1 0\n0 0 0 255 0 0\n1 0 0 1 1 1\n\n1 1 0 # here\n"
        "0 1 0\n4 0 1 2 3 0.5 0.5 0.5\n"},
@@ -346,6 +349,15 @@ std::vector<BrokenFile> brokenFiles() {
       {"nan.ply", with(ply, "4 -4 0", "4 -NaN 0"), "'-NaN' is not finite"},
       {"inf.ply", toBinaryPly<double>(infinite, true), "vertex 4"},
       {"word.ply", with(ply, "4 -4 0", "4 -4x 0"), "'-4x' is not a number"},
+      {"count.ply", with(ply, "3 3 4 5", "259 3 4 5"), "'259' does not fit its type"},
+      {"large_id.ply",
+       with(with(ply, "uchar int", "uchar uint"), "3 3 4 5", "3 3 4 -4294967291"),
+       "'-4294967291' does not fit its type"},
+      {"large.ply", with(with(ply, "double z", "float z"), "4 -4 0", "4 -4 1e300"),
+       "does not fit its type"},
+      {"name.ply",
+       with(ply, "element face 2", "element \x1b[31m 99\nproperty int x\nelement face 2"),
+       "'?[31m'"},
       {"no_z.ply", with(ply, "property double z\n", ""), "no coordinate z"},
       {"int_z.ply", with(ply, "property double z", "property int z"), "no coordinate z"},
       {"type.ply", with(ply, "property double z", "property float80 z"), "'float80'"},
@@ -468,6 +480,48 @@ TEST_F(CcdTool, CrossingAtRestIsFirst) {
   EXPECT_EQ(first.at("toc_lo"), 0.0);
   EXPECT_EQ(first.at("toc_hi"), 0.0);
   EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
+}
+
+// Whatever is asked for, and whatever touches later.
+TEST_F(CcdTool, CrossingComesBeforeContacts) {
+  Mesh from = floorAndTip(0), to = floorAndTip(2);
+  const Mesh crossing = floorAndTip(2);
+  for (Mesh* frame : {&from, &to}) {
+    for (const auto& p : crossing.vertices)
+      frame->vertices.push_back({p[0] + 100, p[1], p[2]});
+    for (const auto& t : crossing.triangles)
+      frame->triangles.push_back({t[0] + 6, t[1] + 6, t[2] + 6});
+  }
+  writeText(path("from.obj"), toObj(from));
+  writeText(path("to.obj"), toObj(to));
+  for (const char* query : {"all", "first", "any"}) {
+    SCOPED_TRACE(query);
+    ASSERT_EQ(
+        run("run from.obj to.obj --json r.json --query " + std::string(query)).exit_code,
+        0);
+    const Json step = json("r.json").at("steps").at(0);
+    EXPECT_EQ(step.at("initially_crossing"), true);
+    EXPECT_EQ(step.at("first").at("kind"), "crossing");
+    EXPECT_EQ(step.at("first").at("toc_lo"), 0.0);
+  }
+}
+
+TEST_F(CcdTool, FirstOfTwoMeshesIsTheFirstOfAll) {
+  writeTip();
+  // A second floor, which the tip meets after its own.
+  const Mesh whole = floorAndTip(0);
+  Mesh floor{{whole.vertices.begin(), whole.vertices.begin() + 3}, {{0, 1, 2}}};
+  for (auto& p : floor.vertices) p[2] -= 0.25;
+  writeText(path("floor.obj"), toObj(floor));
+  const std::string pair =
+      "run tip0.obj tip1.obj --against floor.obj floor.obj --contacts c.csv --query ";
+  ASSERT_EQ(run(pair + "all").exit_code, 0);
+  const std::vector<std::string> all = linesOf(readText(path("c.csv")));
+  ASSERT_EQ(all.size(), 3u);
+  ASSERT_EQ(run(pair + "first").exit_code, 0);
+  const std::vector<std::string> first = linesOf(readText(path("c.csv")));
+  ASSERT_EQ(first.size(), 2u);
+  EXPECT_EQ(first[1], all[1]);
 }
 
 TEST_F(CcdTool, WithoutContactFirstIsNull) {
@@ -602,6 +656,7 @@ TEST_F(CcdTool, BadOutputsExitWithTwoAndWriteNothing) {
   expectFailure(good + " --json .", ".: cannot write");
   expectFailure(good + " --json c.csv", "c.csv: cannot write");
   expectFailure(good + " --json ./c.csv", "c.csv: cannot write");
+  expectFailure(good + " --json ''", "no file is named");
   expectFailure(good + " --paint tip1.obj", "tip1.obj: cannot write");
   EXPECT_EQ(readText(path("tip1.obj")), toObj(floorAndTip(2)));
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
@@ -631,6 +686,18 @@ TEST_F(CcdTool, FollowsLinksAndKeepsPermissions) {
   EXPECT_EQ(json("r.json").count("steps"), 1u);
   EXPECT_EQ(fs::status(path("r.json")).permissions(),
             fs::perms::owner_read | fs::perms::owner_write);
+  // To a file that does not exist yet.
+  fs::create_symlink("new.json", path("new_link.json"));
+  ASSERT_EQ(run("run tip0.obj tip1.obj --json new_link.json").exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(path("new_link.json")));
+  EXPECT_EQ(json("new.json").count("steps"), 1u);
+}
+
+TEST_F(CcdTool, WritesToTheLongestName) {
+  writeTip();
+  const std::string name = std::string(250, 'r') + ".json";
+  ASSERT_EQ(run("run tip0.obj tip1.obj --json " + name).exit_code, 0);
+  EXPECT_EQ(json(name).count("steps"), 1u);
 }
 
 TEST_F(CcdTool, WritesToStdoutInPlace) {
@@ -647,14 +714,26 @@ TEST_F(CcdTool, WritesToStdoutInPlace) {
 TEST_F(CcdTool, UsageErrorsExitWithTwo) {
   writeTip();
   for (const char* arguments :
-       {"", "walk", "run", "run tip0.obj", "run tip0.obj tip1.obj --against tip0.obj",
+       {"",
+        "walk",
+        "run",
+        "run tip0.obj",
+        "run tip0.obj tip1.obj --against tip0.obj",
         "run tip0.obj tip1.obj tip0.obj --against tip0.obj tip1.obj",
-        "run tip0.obj tip1.obj --no-self", "run tip0.obj tip1.obj --query some",
-        "run tip0.obj tip1.obj --repeat 0", "run tip0.obj tip1.obj --repeat x",
-        "run tip0.obj tip1.obj --toc-err 0", "run tip0.obj tip1.obj --toc-err -1",
-        "run tip0.obj tip1.obj --toc-err nan", "run tip0.obj tip1.obj --toc-err inf",
-        "run tip0.obj tip1.obj --colour red", "queries --kind vf", "queries q.csv",
-        "queries q.csv --kind fv"}) {
+        "run tip0.obj tip1.obj --no-self",
+        "run tip0.obj tip1.obj --query some",
+        "run tip0.obj tip1.obj --repeat 0",
+        "run tip0.obj tip1.obj --repeat x",
+        "run tip0.obj tip1.obj --toc-err 0",
+        "run tip0.obj tip1.obj --toc-err -1",
+        "run tip0.obj tip1.obj --toc-err nan",
+        "run tip0.obj tip1.obj --toc-err inf",
+        "run tip0.obj tip1.obj --colour red",
+        "queries --kind vf",
+        "queries q.csv",
+        "queries q.csv --kind fv",
+        "queries q.csv --kind 0",
+        "run tip0.obj tip1.obj --query 1"}) {
     SCOPED_TRACE(arguments);
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2);

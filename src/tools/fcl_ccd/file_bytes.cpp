@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 namespace fcl_ccd {
@@ -19,6 +20,10 @@ std::string readBytes(const std::string& path) {
   while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
     bytes.append(block, n);
   if (std::ferror(file.get())) throw std::runtime_error("cannot read: " + reason());
+  // The mark that some editors put before text.
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (bytes.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
+    bytes.erase(0, kByteOrderMark.size());
   if (bytes.empty()) throw std::runtime_error("the file is empty");
   return bytes;
 }

@@ -88,6 +88,26 @@ CLI::Validator positive(const char* what) {
           ""};
 }
 
+/// @brief A validator that takes the names of a map and hands on their values.
+template <typename Value>
+CLI::Validator oneOf(const std::map<std::string, Value>& names, const char* what) {
+  return {[&names, what](std::string& text) {
+            const auto found = names.find(text);
+            if (found == names.end()) return "'" + text + "' is not " + what;
+            text = std::to_string(static_cast<int>(found->second));
+            return std::string();
+          },
+          ""};
+}
+
+/// @brief A validator of files to be written.
+CLI::Validator named() {
+  return {[](const std::string& text) {
+            return text.empty() ? "no file is named" : std::string();
+          },
+          ""};
+}
+
 void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
                       std::string& json_path) {
   command.add_option("--toc-err", toc_err, "Width of a contact's time bracket")
@@ -98,7 +118,9 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
       ->type_name("N")
       ->check(positive<int>("a positive whole number"))
       ->capture_default_str();
-  command.add_option("--json", json_path, "Write the results as JSON")->type_name("FILE");
+  command.add_option("--json", json_path, "Write the results as JSON")
+      ->type_name("FILE")
+      ->check(named());
 }
 
 CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
@@ -122,7 +144,7 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
       {"any", ContinuousQuery::kAny}};
   run->add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
-      ->transform(CLI::CheckedTransformer(kQueries).description(""));
+      ->transform(oneOf(kQueries, "all, first or any"));
   run->add_option("--threads", options.settings.num_threads,
                   "Threads of a build, an update or a query; 0: as many as there are")
       ->type_name("N")
@@ -135,10 +157,12 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
           ""))
       ->capture_default_str();
   run->add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(named());
   run->add_option("--paint", options.paint_path,
                   "Write the last frame as PLY, contacts in colour")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(named());
   addCommonOptions(*run, options.settings.toc_err, options.settings.repeat,
                    options.json_path);
   return run;
@@ -156,7 +180,7 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
   queries->add_option("--kind", options.kind, "vf (vertex-face) or ee (edge-edge)")
       ->type_name("KIND")
       ->required()
-      ->transform(CLI::CheckedTransformer(kKinds).description(""));
+      ->transform(oneOf(kKinds, "vf or ee"));
   queries->add_flag("--print", options.print_answers, "One line a query on stdout");
   addCommonOptions(*queries, options.toc_err, options.repeat, options.json_path);
   return queries;

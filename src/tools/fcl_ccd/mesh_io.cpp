@@ -9,6 +9,7 @@
 #include <cstring>
 #include <istream>
 #include <limits>
+#include <new>
 #include <stdexcept>
 #include <streambuf>
 
@@ -68,6 +69,7 @@ PolygonSoup readSoup(const std::string& path) {
     read = CGAL::IO::read_OFF(stream, soup.points, soup.polygons, quiet);
   else
     read = CGAL::IO::read_PLY(stream, soup.points, soup.polygons, quiet);
+  if (!read && !stream.eof()) throw std::runtime_error("a value does not fit its type");
   if (soup.points.empty()) throw std::runtime_error("the mesh has no vertices");
   if (soup.polygons.empty()) throw std::runtime_error("the mesh has no faces");
   if (!read) throw std::runtime_error("a value does not fit its type");
@@ -133,6 +135,8 @@ Mesh readMesh(const std::string& path) {
   try {
     const PolygonSoup soup = readSoup(path);
     return {takeVertices(soup.points), fanTriangles(soup)};
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error(path + ": out of memory");
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": " + error.what());
   }

@@ -69,6 +69,10 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (path.empty()) fail("cannot write", ENOENT);
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
+    // A link to a file that does not exist yet.
+    std::error_code error;
+    const fs::path link = fs::read_symlink(path, error);
+    if (!error) target_ = (fs::path(path).parent_path() / link).string();
     openTemporary();
     return;
   }
@@ -102,7 +106,8 @@ void OutputFile::openTemporary() {
   const fs::path target(target_);
   constexpr int kAttempts = 100;  // left-overs of processes that had the same id
   for (int i = 0; i < kAttempts; ++i) {
-    const std::string name = "." + target.filename().string() + "." +
+    // Room for the rest in the 255 characters that a name may have.
+    const std::string name = "." + target.filename().string().substr(0, 200) + "." +
                              std::to_string(getpid()) + "." + std::to_string(i) + ".tmp";
     const std::string candidate = (target.parent_path() / name).string();
     file_ = std::fopen(candidate.c_str(), "wbx");
@@ -143,6 +148,8 @@ void OutputFile::fail(const std::string& what, int error) const {
 }
 
 void removeTemporariesOnSignal() {
+  // A file that grows too large is an error of writing.
+  std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     const auto previous = std::signal(signal_number, removeTemporariesAndRaise);
     if (previous == SIG_IGN) std::signal(signal_number, SIG_IGN);

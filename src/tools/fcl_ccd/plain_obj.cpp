@@ -28,11 +28,13 @@ bool isIgnored(std::string_view keyword) {
          std::end(kIgnored);
 }
 
-/// Takes one statement, joining lines that end in a backslash.
+/// Takes one statement without its comments, joining lines that end in a backslash
+/// outside of one.
 bool takeStatement(std::string_view& text, std::string& statement, std::size_t& line_no) {
   statement.clear();
   for (std::string_view line; takeLine(text, line);) {
     ++line_no;
+    line = line.substr(0, line.find('#'));
     const bool continued = !line.empty() && line.back() == '\\';
     if (continued) line.remove_suffix(1);
     statement.append(line).append(1, ' ');
@@ -116,8 +118,7 @@ std::string plainObj(std::string_view file) {
   Tokens tokens;
   std::size_t line_no = 0;
   while (takeStatement(file, statement, line_no)) {
-    const std::size_t code_size = std::min(statement.find('#'), statement.size());
-    splitTokens(std::string_view(statement.data(), code_size), tokens);
+    splitTokens(statement, tokens);
     if (tokens.empty()) continue;
     namingPlace([&] { return "line " + std::to_string(line_no); },
                 [&] { plain.add(tokens, line_no); });

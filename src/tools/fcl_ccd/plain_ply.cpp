@@ -16,8 +16,8 @@ class AsciiBody {
  public:
   explicit AsciiBody(std::string_view body) : body_(body) {}
 
-  unsigned long long takeCount(PlyType) {
-    const long long count = takeInteger();
+  unsigned long long takeCount(PlyType type) {
+    const long long count = takeInteger(type);
     if (count < 0) throw std::runtime_error("a list has a negative length");
     return static_cast<unsigned long long>(count);
   }
@@ -35,7 +35,7 @@ class AsciiBody {
  private:
   void skipValue(PlyType type) {
     if (!isFloating(type)) {
-      takeInteger();
+      takeInteger(type);
       return;
     }
     std::string_view token;
@@ -43,12 +43,16 @@ class AsciiBody {
     requireFinite(token);
   }
 
-  long long takeInteger() {
+  long long takeInteger(PlyType type) {
     std::string_view token;
     if (!takeToken(body_, token)) failAtEnd();
     long long value = 0;
     if (!parseInteger(token, value))
       throw std::runtime_error(quoted(token) + " is not an integer");
+    const int bits = static_cast<int>(8 * sizeOf(type)) - (isSigned(type) ? 1 : 0);
+    const long long end = 1LL << bits;
+    if (value >= end || value < (isSigned(type) ? -end : 0))
+      throw std::runtime_error(quoted(token) + " does not fit its type");
     return value;
   }
 
@@ -70,9 +74,7 @@ class BinaryBody {
       value |= std::uint32_t{static_cast<unsigned char>(body_[i])} << shift;
     }
     body_.remove_prefix(size);
-    const bool is_signed =
-        type == PlyType::kInt8 || type == PlyType::kInt16 || type == PlyType::kInt32;
-    if (is_signed && (value >> (8 * size - 1)) != 0)
+    if (isSigned(type) && (value >> (8 * size - 1)) != 0)
       throw std::runtime_error("a list has a negative length");
     return value;
   }
@@ -105,8 +107,9 @@ void walk(const PlyHeader& header, Body body) {
     if (element.properties.empty()) continue;
     for (unsigned long long i = 0; i < element.count; ++i) {
       const auto place = [&] {
-        return element.name + ' ' + std::to_string(i) + " of " +
-               std::to_string(element.count) + " (counted from 0)";
+        const bool is_ours = element.isVertex() || element.isFace();
+        return (is_ours ? element.name : quoted(element.name)) + ' ' + std::to_string(i) +
+               " of " + std::to_string(element.count) + " (counted from 0)";
       };
       namingPlace(place, [&] { walkItem(element, body); });
     }

@@ -122,6 +122,11 @@ bool isFloating(PlyType type) {
   return type == PlyType::kFloat || type == PlyType::kDouble;
 }
 
+bool isSigned(PlyType type) {
+  return isFloating(type) || type == PlyType::kInt8 || type == PlyType::kInt16 ||
+         type == PlyType::kInt32;
+}
+
 const PlyProperty* PlyElement::find(std::string_view property) const {
   for (const PlyProperty& candidate : properties)
     if (candidate.name == property) return &candidate;

@@ -15,6 +15,7 @@ enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kD
 
 std::size_t sizeOf(PlyType type);
 bool isFloating(PlyType type);
+bool isSigned(PlyType type);
 
 struct PlyProperty {
   std::string name;

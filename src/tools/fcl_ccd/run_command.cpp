@@ -2,6 +2,7 @@
 #include "run_command.h"
 
 #include <cstddef>
+#include <new>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -83,6 +84,8 @@ template <typename Call>
 auto namingFiles(const std::string& files, Call call) {
   try {
     return call();
+  } catch (const std::bad_alloc&) {
+    throw std::runtime_error(files + ": out of memory");
   } catch (const std::exception& error) {
     throw std::runtime_error(files + ": " + error.what());
   }

@@ -90,15 +90,26 @@ SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) 
   return out;
 }
 
-bool isEarlier(const SceneContact& a, const SceneContact& b) {
-  return a.toc_lo < b.toc_lo;
+/// Puts the contacts of two queries in the order of time.
+void sortContacts(std::vector<SceneContact>& contacts) {
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [](const auto& a, const auto& b) { return a.toc_lo < b.toc_lo; });
+}
+
+/// Of the first contacts of two queries leaves those that may be the first of both.
+void keepFirst(std::vector<SceneContact>& contacts) {
+  double first_hi = std::numeric_limits<double>::infinity();
+  for (const SceneContact& c : contacts) first_hi = std::min(first_hi, c.toc_hi);
+  const auto later = std::find_if(contacts.begin(), contacts.end(),
+                                  [&](const auto& c) { return c.toc_lo > first_hi; });
+  contacts.erase(later, contacts.end());
 }
 
 }  // namespace
 
 const SceneContact* StepResult::first() const {
-  if (!contacts.empty()) return &contacts.front();
-  return crossing ? &*crossing : nullptr;
+  if (crossing) return &*crossing;
+  return contacts.empty() ? nullptr : &contacts.front();
 }
 
 Scene::Scene(const SceneFrame& frame, const QuerySettings& settings)
@@ -155,7 +166,8 @@ StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
                         (!step.contacts.empty() || step.initially_crossing);
   if (b_ != nullptr && !answered) {
     query(*a_, *b_, step);
-    std::stable_sort(step.contacts.begin(), step.contacts.end(), isEarlier);
+    sortContacts(step.contacts);
+    if (settings_.query == fcl::ContinuousQuery::kFirst) keepFirst(step.contacts);
   }
   return step;
 }
