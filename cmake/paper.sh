@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian), builds in Release, simulates the scenes of the paper's
 # evaluation and runs its experiments on them; doc/reproduction.md explains the report.
-#   bash cmake/paper.sh                            # everything: three to four hours
+#   bash cmake/paper.sh                            # everything: two to three hours
 #   bash cmake/paper.sh --short                    # small scenes: minutes
 #   bash cmake/paper.sh --scenes balls alphabets   # some of them
 # Frames go to build/scenes, or build/scenes_short, and are kept: what is there is
@@ -34,7 +34,7 @@ frames=build/scenes
 if $is_short; then
   frames=build/scenes_short
   case " ${options[*]-} " in
-    *" --every "*) ;;
+    *" --every "* | *" --every="*) ;;
     *) options+=(--every 3) ;;
   esac
 fi

@@ -36,6 +36,7 @@ build() {
 if $all; then
   build clang-werror
   echo "== clang-tidy"
+  command -v clang-tidy-14 >/dev/null || { echo "clang-tidy-14 is not there" >&2; exit 1; }
   # Its stderr only counts the findings in other people's headers.
   find src -name '*.cpp' -print0 |
     xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
