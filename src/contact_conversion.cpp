@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace fcl {
@@ -66,11 +67,20 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
     (i < 2 ? first : second)
         .frames.at(0, i < 2 ? crossing.edge[i] : crossing.face[i - 2], point[i]);
   const auto vec = [&point](int i) { return toVector<double>(point[i]); };
+  // So that no product of tiny or huge meshes leaves the range of numbers.
+  const auto scaled = [](const Vector3<double>& v) -> Vector3<double> {
+    const double size = v.cwiseAbs().maxCoeff();
+    if (!(size > 0) || !std::isfinite(size)) return v;
+    return v * std::ldexp(1, std::min(-std::ilogb(size), 1000));
+  };
   const Vector3<double> edge = vec(1) - vec(0);
-  Vector3<double> normal = (vec(3) - vec(2)).cross(vec(4) - vec(2));
-  const double along = edge.dot(normal);
-  const double s = along != 0 ? (vec(2) - vec(0)).dot(normal) / along : 0.5;
-  out.pos = (vec(0) + s * edge).template cast<S>();
+  const Vector3<double> normal =
+      scaled(scaled(vec(3) - vec(2)).cross(scaled(vec(4) - vec(2))));
+  const double below = (vec(0) - vec(2)).dot(normal),
+               above = (vec(1) - vec(2)).dot(normal);
+  // The ends are on different sides; of an edge in the plane the middle.
+  const double s = above != below ? below / (below - above) : 0.5;
+  out.pos = (vec(0) + std::min(std::max(s, 0.), 1.) * edge).template cast<S>();
   const double length = normal.norm();
   if (length > 0 && std::isfinite(length))
     out.normal = (normal / length).template cast<S>();

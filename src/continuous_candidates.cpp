@@ -77,14 +77,15 @@ bool pairCandidates(const CollisionGeometry<S>* o1, const Placement<S>& placemen
   detail::require(o1, "o1");
   detail::require(o2, "o2");
   require(sink);
-  if (!detail::isAnsweredHere(*o1, placement1.isRotating(), *o2,
-                              placement2.isRotating())) {
+  const Placement<S> placed1 = detail::withoutRounding(*o1, placement1),
+                     placed2 = detail::withoutRounding(*o2, placement2);
+  if (!detail::isAnsweredHere(*o1, placed1.isRotating(), *o2, placed2.isRotating())) {
     detail::requireFinite(*o1, placement1, *o2, placement2);
     throw Exception(std::string("candidates") + detail::kNotAnsweredHere);
   }
-  const PreparedMesh mesh1(*o1, placement1.beginning, placement1.end, "o1", 1,
+  const PreparedMesh mesh1(*o1, placed1.beginning, placed1.end, "o1", 1,
                            FeatureOwners::kAlways);
-  const PreparedMesh mesh2(*o2, placement2.beginning, placement2.end, "o2", 1,
+  const PreparedMesh mesh2(*o2, placed2.beginning, placed2.end, "o2", 1,
                            FeatureOwners::kAlways);
   return handOut(sink, [&](const auto& inner) {
     return detail::deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);

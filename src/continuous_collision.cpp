@@ -12,6 +12,7 @@
 #include "fcl/common/exception.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "parallel.h"
@@ -154,6 +155,7 @@ S collideMeshes(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
                 const Request& request, Result& result) {
   const QueryOptions options = makeOptions(request);
   inArena(options.num_threads, [&] {
+    const detail::deformable::DefaultFloatingPoint mode;
     const PreparedMesh mesh1(o1, placement1.beginning, placement1.end, "o1",
                              options.num_threads);
     const PreparedMesh mesh2(o2, placement2.beginning, placement2.end, "o2",
@@ -173,6 +175,7 @@ S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& res
   requireMesh(*o, "continuousSelfCollide");
   const Placement<S> still{Transform3<S>::Identity(), Transform3<S>::Identity()};
   inArena(options.num_threads, [&] {
+    const detail::deformable::DefaultFloatingPoint mode;
     const PreparedMesh mesh(*o, still.beginning, still.end, "o", options.num_threads);
     const QueryAnswer answer =
         answerOf([&] { return querySelf(mesh.instance(), options); });
@@ -180,15 +183,6 @@ S selfCollide(const CollisionGeometry<S>* o, const Request& request, Result& res
     fill(answer, still, still, result);
   });
   return result.time_of_contact;
-}
-
-/// FCL's motions rotate by quaternions: a rotation that stays the same may differ at the
-/// end, by a few roundings (one as a rule).
-template <typename S>
-bool isConstantRotation(const Placement<S>& placement) {
-  constexpr S kRounding = 8 * std::numeric_limits<S>::epsilon();
-  return (placement.end.linear() - placement.beginning.linear()).cwiseAbs().maxCoeff() <=
-         kRounding;
 }
 
 template <typename Motion, typename S>
@@ -204,7 +198,7 @@ bool readMotion(const MotionBase<S>& motion, Placement<S>& placement) {
     copy.getCurrentTransform(placement.beginning);
     copy.integrate(1);
     copy.getCurrentTransform(placement.end);
-    if (isConstantRotation(placement))
+    if (detail::isConstantRotation(placement))
       placement.end.linear() = placement.beginning.linear();
     return true;
   }
@@ -285,8 +279,10 @@ S collideTransforms(const CollisionGeometry<S>* o1, const Placement<S>& placemen
                     const Request& request, Result& result) {
   require(o1, "o1");
   require(o2, "o2");
-  if (isAnsweredHere(*o1, placement1.isRotating(), *o2, placement2.isRotating()))
-    return collideMeshes(*o1, placement1, *o2, placement2, request, result);
+  const Placement<S> placed1 = detail::withoutRounding(*o1, placement1),
+                     placed2 = detail::withoutRounding(*o2, placement2);
+  if (isAnsweredHere(*o1, placed1.isRotating(), *o2, placed2.isRotating()))
+    return collideMeshes(*o1, placed1, *o2, placed2, request, result);
   requireFinite(*o1, placement1, *o2, placement2);
   const auto motionOf = [&request](const Placement<S>& placement) {
     return detail::stockMotion(placement.beginning, placement.end,

@@ -11,6 +11,7 @@
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "query_arguments.h"
 
 namespace fcl {
 namespace detail {
@@ -65,7 +66,10 @@ class BinaryView {
   static int endLane(int b) { return firstLane(b) + width(b); }
 
   const MovingKdopNode& node(int b) const {
-    return tree_ ? tree_->node(b / 16) : reader_->node(b / 16);
+    if (tree_) return tree_->node(b / 16);
+    // It may have to be made.
+    const DefaultFloatingPoint mode;
+    return reader_->node(b / 16);
   }
 
   const MovingKdopTree* tree_;
@@ -142,12 +146,12 @@ void DeformableContinuousCollisionTraversalNode<S>::begin(
     std::unique_ptr<deformable::PreparedMesh> prepared1,
     std::unique_ptr<deformable::PreparedMesh> prepared2,
     const CollisionRequest<S>& request, CollisionResult<S>& result) {
+  const deformable::DefaultFloatingPoint mode;
   const deformable::MeshInstance &mesh1 = prepared1->instance(),
                                  &mesh2 = (prepared2 ? prepared2 : prepared1)->instance();
   std::unique_ptr<deformable::KdopShift> shift;
   std::unique_ptr<deformable::BinaryView> view2;
   if (prepared2) {
-    const deformable::DefaultFloatingPoint mode;
     shift =
         std::make_unique<deformable::KdopShift>(deformable::relativeShift(mesh1, mesh2));
     view2 = std::make_unique<deformable::BinaryView>(mesh2);
@@ -226,6 +230,7 @@ TimeWindow DeformableContinuousCollisionTraversalNode<S>::window(int b1, int b2)
 
 template <typename S>
 bool DeformableContinuousCollisionTraversalNode<S>::BVTesting(int b1, int b2) const {
+  const deformable::DefaultFloatingPoint mode;
   if (view1_->isEmpty(b1) || view2().isEmpty(b2)) return true;
   ++test_->counts().node_pairs;
   const TimeWindow w = window(b1, b2);
@@ -307,16 +312,12 @@ bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
                 const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
                 const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
                 const CollisionRequest<S>& request, CollisionResult<S>& result) {
-  using deformable::MeshKind;
-  const auto accepts = [](const CollisionGeometry<S>& model, const Transform3<S>& beg,
-                          const Transform3<S>& end) {
-    const MeshKind kind = deformable::meshKindOf(model);
-    return kind == MeshKind::kDeforming ||
-           (kind == MeshKind::kRigid && beg.linear() == end.linear());
-  };
-  if (!accepts(model1, tf1_beg, tf1_end) || !accepts(model2, tf2_beg, tf2_end))
+  const auto placed1 = withoutRounding(model1, Placement<S>{tf1_beg, tf1_end}),
+             placed2 = withoutRounding(model2, Placement<S>{tf2_beg, tf2_end});
+  if (!isAnsweredHere(model1, placed1.isRotating(), model2, placed2.isRotating()))
     return false;
-  node.start(model1, tf1_beg, tf1_end, model2, tf2_beg, tf2_end, request, result);
+  node.start(model1, placed1.beginning, placed1.end, model2, placed2.beginning,
+             placed2.end, request, result);
   return true;
 }
 

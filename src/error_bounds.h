@@ -4,6 +4,12 @@
 #ifndef FCL_CCD_ERROR_BOUNDS_H
 #define FCL_CCD_ERROR_BOUNDS_H
 
+#include <cfloat>
+
+#if defined(__FAST_MATH__) || FLT_EVAL_METHOD != 0
+#error "the bounds are of IEEE's operations, each rounded to its own type"
+#endif
+
 namespace fcl {
 namespace detail {
 namespace deformable {

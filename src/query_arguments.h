@@ -4,6 +4,7 @@
 #ifndef FCL_CCD_SRC_QUERY_ARGUMENTS_H
 #define FCL_CCD_SRC_QUERY_ARGUMENTS_H
 
+#include <limits>
 #include <string>
 
 #include "fcl/common/exception.h"
@@ -23,6 +24,25 @@ struct Placement {
 
   bool isRotating() const { return beginning.linear() != end.linear(); }
 };
+
+/// Rotations are made of quaternions and products: one that stays the same may differ at
+/// the end, by a few roundings (one as a rule).
+template <typename S>
+bool isConstantRotation(const Placement<S>& placement) {
+  constexpr S kRounding = 8 * std::numeric_limits<S>::epsilon();
+  return ((placement.end.linear() - placement.beginning.linear()).array().abs() <=
+          kRounding)
+      .all();
+}
+
+/// The placement of a rigid mesh with one rotation, if it is constant.
+template <typename S>
+Placement<S> withoutRounding(const CollisionGeometry<S>& o, Placement<S> placement) {
+  if (isConstantRotation(placement) &&
+      deformable::meshKindOf(o) == deformable::MeshKind::kRigid)
+    placement.end.linear() = placement.beginning.linear();
+  return placement;
+}
 
 inline void require(const void* argument, const char* name) {
   if (!argument) throw Exception(std::string(name) + " is null");

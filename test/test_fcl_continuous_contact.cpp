@@ -293,6 +293,137 @@ TEST(ContinuousContacts, CrossingAtTheStart) {
   }
 }
 
+std::shared_ptr<Model> deformableOf(const TestMesh& mesh) {
+  const auto model = std::make_shared<Model>();
+  model->beginModel();
+  model->addSubModel(mesh.vertices, mesh.triangles);
+  EXPECT_EQ(model->endModel(), BVH_OK);
+  return model;
+}
+
+// Two objects that share a geometry are answered as two with one each.
+TEST(ContinuousContacts, OneModelInTwoPoses) {
+  TestMesh one;
+  one.vertices = {{-1, -1, -0.1}, {1, -1, 0.1}, {0, 1, 0}};
+  one.triangles = {Triangle(0, 1, 2)};
+  std::size_t contacts = 0;
+  for (const TestMesh& mesh :
+       {one, makeTetrahedronSoup(2, 0.5, 0.6, 7), makeTriangleSoup(300, 1, 0.2, 8)}) {
+    const auto model = deformableOf(mesh), copy = deformableOf(mesh);
+    Pose from = Pose::Identity(), to = Pose::Identity();
+    from.translation() = Vector3<double>(0.05, 0.02, 3);
+    to.translation() = Vector3<double>(0.01, -0.03, -3);
+    const auto ask = [&](const Model& other, ContinuousQuery query, int num_threads) {
+      Request request;
+      request.query = query;
+      request.num_threads = num_threads;
+      Result result;
+      continuousCollide(model.get(), Pose::Identity(), Pose::Identity(), &other, from, to,
+                        request, result);
+      return result;
+    };
+    const auto candidates = [&](const Model& other) {
+      std::size_t count = 0;
+      continuousCandidates(model.get(), Pose::Identity(), Pose::Identity(), &other, from,
+                           to, [&](const ContinuousCandidate*, std::size_t n) {
+                             count += n;
+                             return true;
+                           });
+      return count;
+    };
+    for (const int num_threads : {1, 2})
+      for (const ContinuousQuery query :
+           {ContinuousQuery::kAll, ContinuousQuery::kFirst, ContinuousQuery::kAny}) {
+        const Result shared = ask(*model, query, num_threads),
+                     own = ask(*copy, query, num_threads);
+        EXPECT_TRUE(own.is_collide);
+        EXPECT_EQ(shared.is_collide, own.is_collide);
+        EXPECT_EQ(shared.time_of_contact, own.time_of_contact);
+        ASSERT_EQ(shared.contacts.size(), own.contacts.size());
+        for (std::size_t i = 0; i < own.contacts.size(); ++i) {
+          EXPECT_EQ(shared.contacts[i].vertices, own.contacts[i].vertices);
+          EXPECT_EQ(shared.contacts[i].toc_lo, own.contacts[i].toc_lo);
+        }
+        contacts += own.contacts.size();
+      }
+    EXPECT_EQ(candidates(*model), candidates(*copy));
+  }
+  EXPECT_GT(contacts, 1000U);
+}
+
+// A rotation that went through a quaternion is the same rotation.
+TEST(ContinuousContacts, RotationsThatDifferByRounding) {
+  Random random(31);
+  TestMesh one;
+  one.vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  one.triangles = {Triangle(0, 1, 2)};
+  const auto floor = makeModel<Plain>(one), bullet = makeModel<Plain>(one);
+  int differing = 0;
+  for (int i = 0; i < 50; ++i) {
+    Pose from = Pose::Identity(), to = Pose::Identity();
+    from.linear() = AngleAxis<double>(random.uniform(0, 3), random.point(1).normalized())
+                        .toRotationMatrix();
+    to.linear() = Quaternion<double>(from.linear()).toRotationMatrix();
+    differing += from.linear() != to.linear();
+    // So fast that ten samples see nothing.
+    from.translation() = Vector3<double>(0, 0, 50);
+    to.translation() = Vector3<double>(0, 0, -71);
+    BaseResult base;
+    continuousCollide(floor.get(), Pose::Identity(), Pose::Identity(), bullet.get(), from,
+                      to, BaseRequest(), base);
+    EXPECT_TRUE(base.is_collide);
+    Result result;
+    continuousCollide(floor.get(), Pose::Identity(), Pose::Identity(), bullet.get(), from,
+                      to, Request(), result);
+    EXPECT_EQ(result.time_of_contact, base.time_of_contact);
+    EXPECT_FALSE(result.contacts.empty());
+    std::size_t count = 0;
+    continuousCandidates(floor.get(), Pose::Identity(), Pose::Identity(), bullet.get(),
+                         from, to, [&](const ContinuousCandidate*, std::size_t n) {
+                           count += n;
+                           return true;
+                         });
+    EXPECT_GE(count, result.contacts.size());
+  }
+  EXPECT_GT(differing, 20);
+}
+
+// Where an edge passes through a face, in meshes of all sizes and of faces that the edge
+// hardly leaves.
+TEST(ContinuousContacts, CrossingsLieOnTheirEdge) {
+  Random random(32);
+  int crossings = 0;
+  for (int i = 0; i < 600; ++i) {
+    const double size = std::pow(10., random.uniform(-110, 110)),
+                 flat = std::pow(10., random.uniform(-17, 0));
+    const auto turn =
+        AngleAxis<double>(random.uniform(0, 3), random.point(1).normalized());
+    TestMesh mesh;
+    for (const Vector3<double>& p :
+         {Vector3<double>(-1, -1, 0), Vector3<double>(1, -1, 0), Vector3<double>(0, 1, 0),
+          Vector3<double>(-0.2, 0, -flat), Vector3<double>(0.2, 0.1, flat),
+          Vector3<double>(0, 9, 9)})
+      mesh.vertices.push_back(size * (turn * p));
+    mesh.triangles = {Triangle(0, 1, 2), Triangle(3, 4, 5)};
+    const auto model = deformableOf(mesh);
+    Result result;
+    continuousSelfCollide(model.get(), Request(), result);
+    if (!result.initially_crossing) continue;
+    ++crossings;
+    const auto& c = result.crossing;
+    const auto at = [&](std::size_t k) {
+      return mesh.vertices[static_cast<std::size_t>(c.vertices[k])];
+    };
+    const Vector3<double> edge = (at(1) - at(0)) / size, place = (c.pos - at(0)) / size;
+    EXPECT_NEAR(c.normal.norm(), 1, 1e-12);
+    const double s = place.dot(edge) / edge.squaredNorm();
+    EXPECT_GE(s, -1e-9);
+    EXPECT_LE(s, 1 + 1e-9);
+    EXPECT_LT((place - s * edge).norm(), 1e-9);
+  }
+  EXPECT_GT(crossings, 300);
+}
+
 TEST(ContinuousContacts, FloatIsDoubleOfTheFloats) {
   ContinuousContactRequest<float> request_f;
   Request request_d;

@@ -492,6 +492,12 @@ TYPED_TEST(DeformableModel, GrowsAfterSteps) {
                                90, FclTree::kSkip),
             BVH_OK);
   add(model, 30, 60);
+  // In between it is a model that is being built, and can be looked at and copied.
+  model.computeLocalAABB();
+  for (const auto& p : points) EXPECT_LE(p[0], model.aabb_local.max_[0]);
+  Model copy(model);
+  expectRefused([&] { selfContacts<S>(copy); }, "is not built");
+  expectRefused([&] { selfContacts<S>(model); }, "has grown since endModel()");
   ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
   ASSERT_EQ(model.updateFrames(points[0].data(), this->points(next)[0].data(),
                                points.size(), FclTree::kSkip),

@@ -388,9 +388,19 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
   }
 }
 
-// The caller's floating-point mode changes no answer, and is the same afterwards.
+// The caller's floating-point mode changes no answer, and is the same afterwards. Even
+// where a pose is smaller than what it keeps.
 TEST(FCL_THREADS, callersFloatingPointMode) {
-  for (const Scene& scene : scenes())
+  std::vector<Scene> all = scenes();
+  TestMesh face, tip;
+  face.vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
+  tip.vertices = {{0, 0, -1e-310}, {0.1, 0, -1}, {0, 0.1, -1}};
+  face.triangles = tip.triangles = {Triangle(0, 1, 2)};
+  all.push_back({"tiny motion", makeModel<Plain>(tip), makeModel<Plain>(face),
+                 translation(0, 0, 2e-310)});
+  all.push_back({"tiny motion of a deformable model", makeModel<Model>(tip),
+                 makeModel<Model>(face), translation(0, 0, 2e-310)});
+  for (const Scene& scene : all)
     for (const int threads : {1, 4, 0}) {
       SCOPED_TRACE(scene.name + ", " + std::to_string(threads) + " threads");
       const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads);

@@ -239,7 +239,8 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
     unsigned left = b.triangles;
-    if (&a == &b) left &= ~((2U << lane) - 1);
+    // Without a shift the trees are one; with it, a node of a tree in two poses.
+    if (!kShifted && &a == &b) left &= ~((2U << lane) - 1);
     if (left == 0) continue;
     if constexpr (kShifted) {
       float moved[2][16];

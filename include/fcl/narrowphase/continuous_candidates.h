@@ -55,8 +55,8 @@ using ContinuousCandidateSink =
 /// touches need not be). (2) No pair comes twice; faces with the same three vertices are
 /// one face. (3) The order depends on the trees, and is the same in every call. (4)
 /// vertexFace() and edgeEdge() on all of them give the contacts of the query, if they are
-/// given its vertex paths: the transform of the vertex, each coordinate rounded once to
-/// double.
+/// given its vertex paths: the transform of the vertex, each coordinate ((r0 x + r1 y) +
+/// r2 z) + t in doubles.
 ///
 /// Nothing is stored but one block. A rigid BVHModel that is no DeformableBVHModel keeps
 /// no table of which triangle owns which feature, which (2) needs: it is made for each

@@ -58,8 +58,9 @@ struct ContinuousContact {
   /// o2, that is, o2's point moves against it relative to o1's; where the relative
   /// velocity along it is zero, it points to the side on which o2's feature is at t = 0,
   /// and where that is zero too, along the winding (VF) or edge a x edge b (EE). In a
-  /// self-collision "o1" is the vertex (VF) or edge a (EE). Zero vector where the face
-  /// has no area or the edges are parallel at that time.
+  /// self-collision "o1" is the vertex (VF) or edge a (EE). A crossing's is along the
+  /// winding. Zero vector where the face has no area or the edges are parallel at that
+  /// time.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief Number of entries of `vertices` in use.
@@ -109,7 +110,8 @@ template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S> {
   /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
   /// ContinuousQuery::kFirst those that may be the first: whose bracket begins no later
-  /// than the earliest one ends; with kAny at most one.
+  /// than the earliest one ends (of a rigid mesh's, which may be met several times with
+  /// different brackets, than the shortest of those); with kAny at most one.
   std::vector<ContinuousContact<S>> contacts;
 
   /// @brief Whether contacts were dropped because of num_max_contacts.

@@ -53,7 +53,7 @@ DeformableBVHModel<BV>::~DeformableBVHModel() = default;
 
 template <typename BV>
 DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
-    : Base(other),
+    : Base(copyable(other)),
       detail::DeformableMesh(other),
       staged_(other.staged_),
       fcl_tree_built_(other.fcl_tree_built_),
@@ -149,6 +149,22 @@ bool DeformableBVHModel<BV>::isHalfUpdated() const {
   return is_changing_ && this->build_state == BVH_BUILD_STATE_UPDATE_BEGUN;
 }
 
+/// Whether vertices were added, through the base class, to a model that ended without
+/// FCL's tree: its array of the previous frame has no room for them.
+template <typename BV>
+bool DeformableBVHModel<BV>::isPreviousShort() const {
+  return this->prev_vertices && seal_.prev_vertices == this->prev_vertices &&
+         seal_.num_vertices < this->num_vertices;
+}
+
+// FCL copies as many vertices of both frames.
+template <typename BV>
+const BVHModel<BV>& DeformableBVHModel<BV>::copyable(const DeformableBVHModel& model) {
+  if (model.isPreviousShort())
+    throw Exception("DeformableBVHModel: copied after vertices were added to its base");
+  return model;
+}
+
 template <typename BV>
 bool DeformableBVHModel<BV>::isBuilt() const {
   return isInStep() || isHalfUpdated() ||
@@ -237,6 +253,42 @@ int DeformableBVHModel<BV>::setNumThreads(int num_threads) {
 }
 
 template <typename BV>
+template <typename Add>
+int DeformableBVHModel<BV>::grow(Add&& add) {
+  if (isHalfUpdated())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "the model grows after an update that failed");
+  if (this->build_state == BVH_BUILD_STATE_BEGUN) {
+    delete[] this->prev_vertices;
+    this->prev_vertices = nullptr;
+  }
+  const int code = add();
+  return code == BVH_OK ? accept() : refuse(code, "FCL refused what was added");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addVertex(const Vector3<S>& p) {
+  return grow([&] { return Base::addVertex(p); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                        const Vector3<S>& p3) {
+  return grow([&] { return Base::addTriangle(p1, p2, p3); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps) {
+  return grow([&] { return Base::addSubModel(ps); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
+                                        const std::vector<Triangle>& ts) {
+  return grow([&] { return Base::addSubModel(ps, ts); });
+}
+
+template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
@@ -253,6 +305,8 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   std::copy(this->vertices, this->vertices + count, previous.get());
   delete[] this->prev_vertices;
   this->prev_vertices = previous.release();
+  seal_.prev_vertices = this->prev_vertices;
+  seal_.num_vertices = this->num_vertices;
   buildTree(this->tri_indices, num_triangles, frames());
   refitTree(frames());
   computeLocalAABB();
@@ -431,6 +485,8 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   is_changing_ = true;
   this->build_state = next.build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   swapBase(next);
+  seal_.prev_vertices = this->prev_vertices;
+  seal_.num_vertices = this->num_vertices;
   fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
   refitChangedTree(frames());
   computeLocalAABB();
@@ -446,7 +502,13 @@ void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool r
                                      bool bottomup) {
   const auto count = static_cast<std::size_t>(this->num_vertices);
   const bool rebuild = !isInStep(), repair = isHalfUpdated();
-  if (!this->prev_vertices) this->prev_vertices = new Vector3<S>[count];
+  if (!this->prev_vertices || isPreviousShort()) {
+    std::unique_ptr<Vector3<S>[]> room(new Vector3<S>[count]);
+    delete[] this->prev_vertices;
+    this->prev_vertices = room.release();
+    seal_.prev_vertices = this->prev_vertices;
+    seal_.num_vertices = this->num_vertices;
+  }
   is_changing_ = true;
   this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   // After a change through the base class the base alone knows what the model is.
@@ -542,6 +604,9 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
     throw Exception(
         "DeformableBVHModel: the last update failed, for want of memory or in an "
         "exception; give both frames first, through updateFrames() or a replacement");
+  if (isFclTreeBehind() && !isInStep())
+    throw Exception(
+        "DeformableBVHModel: the model has grown since endModel(); call that again");
   if (isFclTreeBehind())
     throw Exception(
         "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
@@ -554,8 +619,9 @@ template <typename BV>
 void DeformableBVHModel<BV>::computeLocalAABB() {
   // A model that was never begun has no array.
   const S* current = this->vertices ? this->vertices->data() : nullptr;
+  const bool has_previous = this->prev_vertices && !isPreviousShort();
   const auto bounds = detail::deformable::boundFrames(
-      this->prev_vertices ? this->prev_vertices->data() : current, current,
+      has_previous ? this->prev_vertices->data() : current, current,
       static_cast<std::size_t>(this->num_vertices), num_threads_);
   this->aabb_local.min_ = Vector3<S>(bounds.lo);
   this->aabb_local.max_ = Vector3<S>(bounds.hi);

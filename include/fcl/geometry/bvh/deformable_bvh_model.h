@@ -82,6 +82,15 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// (BVH_ERR_INCORRECT_DATA).
   int setNumThreads(int num_threads);
 
+  /// @name Add to a model that is open, or that ended with FclTree::kSkip, which opens it
+  /// again. Errors: FCL's own; after an update that failed BVH_ERR_BUILD_OUT_OF_SEQUENCE.
+  /// @{
+  int addVertex(const Vector3<S>& p);
+  int addTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
+  int addSubModel(const std::vector<Vector3<S>>& ps);
+  int addSubModel(const std::vector<Vector3<S>>& ps, const std::vector<Triangle>& ts);
+  /// @}
+
   /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
   /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
   /// coordinates that are not finite and vertex indices out of range
@@ -188,7 +197,11 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int open(Open what, const char* caller);
   int stage(const Vector3<S>* points, std::size_t count, Open expected);
   int close(Open expected, const char* caller);
+  template <typename Add>
+  int grow(Add&& add);
   bool isHalfUpdated() const;
+  bool isPreviousShort() const;
+  static const Base& copyable(const DeformableBVHModel& model);
   bool isFclTreeBehind() const;
   void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();

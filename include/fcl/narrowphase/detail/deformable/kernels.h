@@ -60,8 +60,8 @@ struct OverlapRequest {
   bool leavesOut() const { return share <= FLT_MAX; }
 };
 
-/// @brief Two nodes whose triangles are compared, or one twice: then each pair of
-/// different triangles once.
+/// @brief Two nodes whose triangles are compared, or, without a shift, one twice: then
+/// each pair of different triangles once.
 struct LeafPairing {
   const MovingKdopNode& a;
   const MovingKdopNode& b;
