@@ -68,8 +68,9 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
 /// The same for more corners.
 CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
   std::vector<Corner> by_next(corners, corners + count);
-  std::vector<std::uint32_t> lasts;
-  for (const Corner& c : by_next) lasts.push_back(c.last);
+  std::vector<std::uint32_t> lasts(count);
+  std::transform(by_next.begin(), by_next.end(), lasts.begin(),
+                 [](const Corner& c) { return c.last; });
   std::sort(by_next.begin(), by_next.end(),
             [](const Corner& a, const Corner& b) { return a.next < b.next; });
   std::sort(lasts.begin(), lasts.end());
