@@ -59,12 +59,20 @@ void require(const ContinuousCandidateSink& sink) {
 }
 
 template <typename S>
+PreparedMesh prepared(const CollisionGeometry<S>& o, const Placement<S>& placement,
+                      const char* name) {
+  const detail::deformable::DefaultFloatingPoint mode;
+  return PreparedMesh(o, placement.beginning, placement.end, name, 1,
+                      FeatureOwners::kAlways);
+}
+
+template <typename S>
 bool selfCandidates(const CollisionGeometry<S>* o, const ContinuousCandidateSink& sink) {
   detail::require(o, "o");
   require(sink);
   detail::requireMesh(*o, "continuousSelfCandidates");
   const Transform3<S> still = Transform3<S>::Identity();
-  const PreparedMesh mesh(*o, still, still, "o", 1, FeatureOwners::kAlways);
+  const PreparedMesh mesh = prepared(*o, {still, still}, "o");
   return handOut(sink, [&](const auto& inner) {
     return detail::deformable::candidatesSelf(mesh.instance(), inner);
   });
@@ -83,10 +91,8 @@ bool pairCandidates(const CollisionGeometry<S>* o1, const Placement<S>& placemen
     detail::requireFinite(*o1, placement1, *o2, placement2);
     throw Exception(std::string("candidates") + detail::kNotAnsweredHere);
   }
-  const PreparedMesh mesh1(*o1, placed1.beginning, placed1.end, "o1", 1,
-                           FeatureOwners::kAlways);
-  const PreparedMesh mesh2(*o2, placed2.beginning, placed2.end, "o2", 1,
-                           FeatureOwners::kAlways);
+  const PreparedMesh mesh1 = prepared(*o1, placed1, "o1"),
+                     mesh2 = prepared(*o2, placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
     return detail::deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);
   });

@@ -111,6 +111,7 @@ void DeformableContinuousCollisionTraversalNode<S>::start(
     const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
     const CollisionRequest<S>& request, CollisionResult<S>& result) {
   requireValid(request);
+  const deformable::DefaultFloatingPoint mode;
   begin(std::make_unique<deformable::PreparedMesh>(model1, tf1_beg, tf1_end, "model1"),
         std::make_unique<deformable::PreparedMesh>(model2, tf2_beg, tf2_end, "model2"),
         request, result);
@@ -125,6 +126,7 @@ void DeformableContinuousCollisionTraversalNode<S>::startSelf(
     const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
     CollisionResult<S>& result) {
   requireValid(request);
+  const deformable::DefaultFloatingPoint mode;
   const Transform3<S> identity = Transform3<S>::Identity();
   begin(std::make_unique<deformable::PreparedMesh>(model, identity, identity, "model"),
         nullptr, request, result);
@@ -146,7 +148,6 @@ void DeformableContinuousCollisionTraversalNode<S>::begin(
     std::unique_ptr<deformable::PreparedMesh> prepared1,
     std::unique_ptr<deformable::PreparedMesh> prepared2,
     const CollisionRequest<S>& request, CollisionResult<S>& result) {
-  const deformable::DefaultFloatingPoint mode;
   const deformable::MeshInstance &mesh1 = prepared1->instance(),
                                  &mesh2 = (prepared2 ? prepared2 : prepared1)->instance();
   std::unique_ptr<deformable::KdopShift> shift;

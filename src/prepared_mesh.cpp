@@ -137,7 +137,6 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
                            const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
                            const std::string& name, int num_threads,
                            FeatureOwners owners) {
-  const DefaultFloatingPoint mode;
   const Pose beginning = toPose<S>(tf_beg, name), end = toPose<S>(tf_end, name);
   for (int k = 0; k < 3; ++k) {
     instance_.translation[0][k] = beginning.translation[k];

@@ -38,8 +38,8 @@ class PreparedMesh {
  public:
   /// @param name  how errors call the geometry, for example "o1"
   /// @param num_threads  for boxes, as in parallelFor(); the mesh does not depend on it
-  /// @pre meshKindOf(geometry) != kNotAMesh; a rigid mesh is not rotated between the
-  /// poses
+  /// @pre the floating-point mode is the default one; meshKindOf(geometry) != kNotAMesh;
+  /// a rigid mesh is not rotated between the poses
   /// @throws fcl::Exception  model not built or being updated, or too large, pose or
   /// frame not finite, vertex index out of range, a vertex that leaves the range of
   /// double in its pose (not of a rigid mesh, whose vertices are not looked at)
