@@ -18,6 +18,15 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
+/// The ends of spoke i of eight fans.
+HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices, const EightFans& fans,
+                                    std::size_t i) {
+  const TreeVertex* x[kEight];
+  for (std::size_t lane = 0; lane < kEight; ++lane)
+    x[lane] = vertices + fans.spokes[lane][i];
+  return loadPaths(x);
+}
+
 /// The spokes of eight short fans, and the normals of their triangles.
 class ShortFans {
  public:
@@ -34,14 +43,6 @@ class ShortFans {
   }
   HWY_INLINE const MovingNormals& normal(std::size_t i) const { return normals_[i]; }
 
-  static HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices,
-                                             const EightFans& fans, std::size_t i) {
-    const TreeVertex* x[kEight];
-    for (std::size_t lane = 0; lane < kEight; ++lane)
-      x[lane] = vertices + fans.spokes[lane][i];
-    return loadPaths(x);
-  }
-
  private:
   MovingVectors spokes_[VertexFans::kShort + 1];
   MovingNormals normals_[VertexFans::kShort];
@@ -54,7 +55,7 @@ class LongFans {
       : vertices_(vertices), fans_(fans), center_(loadPaths(fans.center)) {}
 
   HWY_INLINE MovingVectors spoke(std::size_t i) const {
-    return ShortFans::loadSpokes(vertices_, fans_, i < fans_.count ? i : 0) - center_;
+    return loadSpokes(vertices_, fans_, i < fans_.count ? i : 0) - center_;
   }
   HWY_INLINE MovingNormals makeNormal(std::size_t i) const { return normal(i); }
   HWY_INLINE MovingNormals normal(std::size_t i) const {
