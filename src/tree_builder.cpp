@@ -4,241 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
-#include <limits>
 
+#include "component_groups.h"
+#include "item_splitter.h"
 #include "parallel.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr float kInf = std::numeric_limits<float>::infinity();
-
-using Item = TreeItem;
-
-Float4 vectorOf(const Item& item) {
-  Float4 v;
-  __builtin_memcpy(&v, &item, sizeof(v));
-  return v;
-}
-
-/// At once: three parts of it take longer.
-void setItem(const Float4& v, Item& item) { __builtin_memcpy(&item, &v, sizeof(v)); }
-
-struct Bounds {
-  Float4 lo{kInf, kInf, kInf, kInf};
-  Float4 hi{-kInf, -kInf, -kInf, -kInf};
-
-  void add(const Float4& p) { add({p, p}); }
-  void add(const Bounds& b) {
-    lo = lo < b.lo ? lo : b.lo;
-    hi = hi > b.hi ? hi : b.hi;
-  }
-  float halfArea() const {
-    const Float4 d = hi - lo;
-    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
-  }
-};
-
-/// Cuts the longest extent of items, of which every stride-th is looked at, into slabs of
-/// one width.
-class Slabs {
- public:
-  Slabs(const Item* items, std::size_t count, std::size_t stride, int num_slabs)
-      : last_(num_slabs - 1) {
-    // Of every fourth item apart: one minimum would wait for the one before.
-    Bounds of[4];
-    std::size_t i = 0;
-    for (; i + 3 * stride < count; i += 4 * stride)
-      for (std::size_t k = 0; k < 4; ++k) of[k].add(vectorOf(items[i + k * stride]));
-    for (; i < count; i += stride) of[0].add(vectorOf(items[i]));
-    Bounds all;
-    for (const Bounds& bounds : of) all.add(bounds);
-    const Float4 width = all.hi - all.lo;
-    for (int k = 1; k < 3; ++k)
-      if (width[k] > width[axis_]) axis_ = k;
-    lo_ = all.lo[axis_];
-    // 64 / 2^-120 is still a float; what is less wide counts as one place.
-    if (width[axis_] >= 0x1p-120f) scale_ = static_cast<float>(num_slabs) / width[axis_];
-  }
-
-  int axis() const { return axis_; }
-
-  /// Whether all items that were looked at fall together.
-  bool isOne() const { return scale_ == 0; }
-
-  /// The slab of an item that was looked at.
-  int operator()(const Item& item) const {
-    return std::min(static_cast<int>(coordinate(item)), last_);
-  }
-
-  /// Whether an item lies before a slab, which is neither the first nor beyond the last.
-  bool isBefore(const Item& item, int slab) const {
-    return coordinate(item) < static_cast<float>(slab);
-  }
-
- private:
-  float coordinate(const Item& item) const { return (item.place[axis_] - lo_) * scale_; }
-
-  int axis_{0};
-  int last_;
-  float lo_;
-  float scale_{0};
-};
-
-/// Splits ranges of items, which are brought into order; different ranges at the same
-/// time.
-class Splitter {
- public:
-  explicit Splitter(UninitializedVector<Item> items)
-      : items_(std::move(items)), scratch_(items_.size()) {}
-
-  struct Range {
-    std::size_t first, count;
-  };
-
-  std::uint32_t index(std::size_t i) const { return items_[i].index; }
-
-  /// Splits a range into at most `max_parts`, which are no more than eight. None is
-  /// empty.
-  std::size_t split(Range all, std::size_t max_parts, int depth,
-                    Range (&out)[MovingKdopNode::kWidth]) {
-    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-    std::size_t n = 1;
-    out[0] = all;
-    max_parts = std::min(max_parts, kWidth);
-    if (all.count <= max_parts) {
-      for (; n < all.count; ++n) out[n] = {all.first + n, 1};
-      out[0].count = 1;
-      return n;
-    }
-    const bool by_area = all.count > kMaxHalved && depth < kMaxAreaDepth;
-    // The lowest level that holds all: each child is one unit.
-    std::size_t unit = 1;
-    while (unit * kWidth < all.count) unit *= kWidth;
-    while (n < max_parts) {
-      Range* largest = std::max_element(
-          out, out + n, [](const Range& a, const Range& b) { return a.count < b.count; });
-      const Range r = *largest;
-      if (r.count <= (by_area ? 1 : unit)) break;
-      const std::size_t first = by_area ? splitByArea(r) : splitInUnits(r, unit);
-      *largest = {r.first, first};
-      out[n++] = {r.first + first, r.count - first};
-    }
-    // In the order of the items: neighbours in the tree are neighbours in memory.
-    std::sort(out, out + n,
-              [](const Range& a, const Range& b) { return a.first < b.first; });
-    return n;
-  }
-
- private:
-  /// Up to so many triangles are halved, which is faster than looking for the best place
-  /// and fills the nodes; above, area decides (objects of a scene come apart).
-  static constexpr std::size_t kMaxHalved = 512;
-
-  /// Area is estimated from about so many triangles.
-  static constexpr std::size_t kMaxSample = 512;
-
-  /// From this depth on everything is halved: no input makes a deep tree.
-  static constexpr int kMaxAreaDepth = 24;
-
-  /// Moves the items before a slab to the front, in the order that they have, and returns
-  /// how many there are.
-  std::size_t partition(Range r, const Slabs& slabs, int slab) {
-    Item* items = items_.data() + r.first;
-    Item* scratch = scratch_.data() + r.first;
-    std::size_t before = 0, after = 0;
-    for (std::size_t i = 0; i < r.count; ++i) {
-      // No branch: nobody could foretell it.
-      const bool is_before = slabs.isBefore(items[i], slab);
-      const Float4 item = vectorOf(items[i]);
-      setItem(item, items[before]);
-      setItem(item, scratch[after]);
-      before += is_before;
-      after += !is_before;
-    }
-    std::copy(scratch, scratch + after, items + before);
-    return before;
-  }
-
-  /// Moves the `first` items that lie lowest along the axis to the front.
-  void splitAt(Range r, std::size_t first) {
-    constexpr int kSlabs = 64;
-    const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
-    if (slabs.isOne()) return;
-    std::uint32_t count[kSlabs] = {};
-    for (std::size_t i = r.first; i < r.first + r.count; ++i) ++count[slabs(items_[i])];
-    // The slab where the cut is.
-    std::size_t before = 0;
-    int slab = 0;
-    for (; before + count[slab] <= first; ++slab) before += count[slab];
-    if (slab > 0) partition(r, slabs, slab);
-    if (before == first) return;
-    Range rest{r.first + before, r.count - before};
-    if (slab + 1 < kSlabs) rest.count = partition(rest, slabs, slab + 1);
-    Item* items = items_.data() + rest.first;
-    std::nth_element(items, items + (first - before), items + rest.count,
-                     [axis = slabs.axis()](const Item& a, const Item& b) {
-                       return a.place[axis] != b.place[axis]
-                                  ? a.place[axis] < b.place[axis]
-                                  : a.index < b.index;
-                     });
-  }
-
-  /// Splits a range where area times count of the parts' centroid boxes, along the
-  /// longest axis, is least; in the middle where all centroids fall together. Returns the
-  /// size of the first part; none is empty.
-  std::size_t splitByArea(Range r) {
-    constexpr int kSlabs = 8;
-    const std::size_t stride = 1 + r.count / kMaxSample;
-    const Slabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
-    if (slabs.isOne()) return r.count / 2;
-    Bounds bounds[kSlabs];
-    std::size_t count[kSlabs] = {};
-    for (std::size_t i = r.first; i < r.first + r.count; i += stride) {
-      const int s = slabs(items_[i]);
-      bounds[s].add(vectorOf(items_[i]));
-      ++count[s];
-    }
-    // The first and the last slab are not empty.
-    float cost_after[kSlabs];
-    Bounds side;
-    std::size_t n = 0;
-    for (int s = kSlabs - 1; s > 0; --s) {
-      side.add(bounds[s]);
-      n += count[s];
-      cost_after[s] = side.halfArea() * static_cast<float>(n);
-    }
-    side = Bounds();
-    n = 0;
-    int best = 1;
-    float best_cost = kInf;
-    for (int s = 1; s < kSlabs; ++s) {
-      side.add(bounds[s - 1]);
-      n += count[s - 1];
-      const float cost = side.halfArea() * static_cast<float>(n) + cost_after[s];
-      if (cost < best_cost) {
-        best_cost = cost;
-        best = s;
-      }
-    }
-    return partition(r, slabs, best);
-  }
-
-  /// Splits a range near the middle, the first part a multiple of `unit`, so that units
-  /// of the lower levels come out full.
-  std::size_t splitInUnits(Range r, std::size_t unit) {
-    const std::size_t units = (r.count + unit - 1) / unit;
-    const std::size_t first = units / 2 * unit;
-    splitAt(r, first);
-    return first;
-  }
-
-  UninitializedVector<Item> items_;
-  UninitializedVector<Item> scratch_;
-};
 
 /// Where most of a mesh is: the median of a few vertices' coordinates.
 void findMiddle(const Triangle* triangles, std::size_t num_triangles,
@@ -259,8 +33,9 @@ void findMiddle(const Triangle* triangles, std::size_t num_triangles,
 }
 
 /// Centroids relative to the middle, so that far from the origin nothing is lost.
-UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_triangles,
-                                  const VertexFrames& frames, int num_threads) {
+UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
+                                      std::size_t num_triangles,
+                                      const VertexFrames& frames, int num_threads) {
   constexpr std::size_t kBlock = 8192;
   double middle[3];
   findMiddle(triangles, num_triangles, frames, middle);
@@ -275,7 +50,7 @@ UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_tri
                         places[i] = place;
                       }
                     });
-  UninitializedVector<Item> items(num_triangles);
+  UninitializedVector<TreeItem> items(num_triangles);
   parallelForBlocks(
       num_triangles, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
@@ -286,6 +61,22 @@ UninitializedVector<Item> itemsOf(const Triangle* triangles, std::size_t num_tri
         }
       });
   return items;
+}
+
+/// Of each triangle, by a vertex.
+std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
+                                        std::size_t num_triangles,
+                                        std::size_t num_vertices) {
+  const std::vector<std::uint32_t> component_of = findComponents(
+      num_vertices, num_triangles,
+      [triangles](std::size_t i, std::uint32_t(&v)[3]) { vertexIds(triangles[i], v); });
+  std::vector<std::uint32_t> components(num_triangles);
+  for (std::size_t i = 0; i < num_triangles; ++i) {
+    std::uint32_t v[3];
+    vertexIds(triangles[i], v);
+    components[i] = component_of[v[0]];
+  }
+  return components;
 }
 
 /// A range of items, the node that it becomes, and the first leaf of that.
@@ -340,12 +131,13 @@ std::vector<Open> split(Splitter& splitter, const Open& root, std::size_t max_le
 
 }  // namespace
 
-TreeStructure splitItems(UninitializedVector<TreeItem> items, std::size_t max_parts,
+TreeStructure splitItems(UninitializedVector<TreeItem> items,
+                         std::vector<std::size_t> ends, std::size_t max_parts,
                          int depth) {
   TreeStructure tree;
   const std::size_t count = items.size();
   tree.leaves.resize(count);
-  Splitter splitter(std::move(items));
+  Splitter splitter(std::move(items), std::move(ends));
   std::vector<TreeChildren> nodes(1);
   split(splitter, {{0, count}, 0, 0, depth}, 0, max_parts, nodes, tree.leaves);
   tree.nodes.assign(nodes.begin(), nodes.end());
@@ -359,7 +151,12 @@ TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangle
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
   TreeStructure tree;
   tree.leaves.resize(num_triangles);
-  Splitter splitter(itemsOf(triangles, num_triangles, frames, num_threads));
+  UninitializedVector<TreeItem> items =
+      itemsOf(triangles, num_triangles, frames, num_threads);
+  std::vector<std::size_t> ends =
+      groupItems(componentsOf(triangles, num_triangles, frames.size()), frames.size(),
+                 kLeastComponent, items);
+  Splitter splitter(std::move(items), std::move(ends));
   std::vector<TreeChildren> top(1);
   const std::vector<Open> roots =
       split(splitter, {{0, num_triangles}, 0, 0, 0}, kMaxTask, kWidth, top, tree.leaves);

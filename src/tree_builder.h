@@ -92,15 +92,20 @@ inline void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
   }
 }
 
+/// @brief So many triangles make a component of a mesh a large one, see groupItems():
+/// eight of the lowest nodes.
+constexpr std::size_t kLeastComponent = 64;
+
 /// @brief Splits items into a tree, whose leaves are their indices: by surface area at
 /// the top, and into halves at the bottom, so that the lowest nodes are full.
+/// @param ends  as groupItems() returns it: each group becomes a node
 /// @param max_parts  the root has at most so many children
 /// @param depth  of the root in the tree that it is for: deep down all is halved
-TreeStructure splitItems(UninitializedVector<TreeItem> items, std::size_t max_parts,
-                         int depth);
+TreeStructure splitItems(UninitializedVector<TreeItem> items,
+                         std::vector<std::size_t> ends, std::size_t max_parts, int depth);
 
 /// @brief Splits the triangles into a tree by their centroids in frame 0, as splitItems()
-/// does.
+/// does, their components into groups.
 /// @param num_threads  as in parallelFor(); the tree does not depend on it
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads);

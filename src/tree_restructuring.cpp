@@ -7,6 +7,7 @@
 #include <new>
 #include <utility>
 
+#include "component_groups.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "tree_builder.h"
 
@@ -31,7 +32,12 @@ constexpr float kAgedNode = 1.15f;
 /// triangles where these have aged too.
 class MovingKdopTree::Restructuring {
  public:
-  explicit Restructuring(const MovingKdopTree& tree) : tree_(tree) {
+  explicit Restructuring(const MovingKdopTree& tree)
+      : tree_(tree),
+        component_of_(findComponents(tree.vertex_ids_.size(), tree.triangles_.size(),
+                                     [&tree](std::size_t i, std::uint32_t (&v)[3]) {
+                                       std::copy_n(tree.triangles_[i].place, 3, v);
+                                     })) {
     nodes_.reserve(tree.numNodes() + tree.numNodes() / 8);
     first_sizes_.reserve(nodes_.capacity());
     take(0, 0);
@@ -64,6 +70,13 @@ class MovingKdopTree::Restructuring {
     const MovingKdopNode& node = tree_.node(i);
     return std::all_of(node.child, node.child + node.count,
                        [](std::int32_t child) { return child < 0; });
+  }
+
+  /// That of the first triangle of a child.
+  std::uint32_t componentOf(std::int32_t child) const {
+    const std::uint32_t first =
+        child < 0 ? static_cast<std::uint32_t>(~child) : tree_.firstTriangle(child);
+    return component_of_[tree_.triangles_[first].place[0]];
   }
 
   std::size_t add(const NodeSize& first_size) {
@@ -128,7 +141,13 @@ class MovingKdopTree::Restructuring {
 
   /// Appends the items to a node, in so many parts.
   void split(std::size_t to, std::size_t max_parts, int depth) {
-    const TreeStructure tree = splitItems(items_, max_parts, depth);
+    std::vector<std::uint32_t> components(names_.size());
+    std::transform(names_.begin(), names_.end(), components.begin(),
+                   [this](std::int32_t name) { return componentOf(name); });
+    std::vector<std::size_t> ends =
+        groupItems(std::move(components), component_of_.size(),
+                   kLeastComponent / MovingKdopNode::kWidth, items_);
+    const TreeStructure tree = splitItems(items_, std::move(ends), max_parts, depth);
     const auto& parts = tree.nodes;
     std::vector<std::size_t> place(parts.size(), to);
     // Children come after their parents.
@@ -147,6 +166,8 @@ class MovingKdopTree::Restructuring {
   }
 
   const MovingKdopTree& tree_;
+  /// By the place of a vertex.
+  std::vector<std::uint32_t> component_of_;
   std::vector<TreeChildren> nodes_;
   std::vector<NodeSize> first_sizes_;
   /// What is still to be copied.

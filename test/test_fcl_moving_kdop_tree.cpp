@@ -17,6 +17,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -178,6 +179,110 @@ TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
   for (const std::size_t count : {64U, 100U, 513U, 3000U, 20000U}) {
     const MovingMesh mesh = test::randomSoup(random, count, count, 1, 0.1);
     EXPECT_LE(PreparedMovingMesh(mesh).tree().numNodes(), count / 5) << count;
+  }
+}
+
+/// For each triangle a number that its component alone has.
+std::vector<std::size_t> componentsOf(const MovingMesh& mesh) {
+  std::vector<std::size_t> of_vertex(mesh.t0.size());
+  std::iota(of_vertex.begin(), of_vertex.end(), std::size_t{0});
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (const Triangle& t : mesh.triangles) {
+      const std::size_t least =
+          std::min({of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]});
+      for (int k = 0; k < 3; ++k) {
+        changes |= of_vertex[t[k]] != least;
+        of_vertex[t[k]] = least;
+      }
+    }
+  }
+  std::vector<std::size_t> components;
+  for (const Triangle& t : mesh.triangles) components.push_back(of_vertex[t[0]]);
+  return components;
+}
+
+/// Sheets in each other's way, and loose triangles, in any order.
+MovingMesh scatteredSheets(Random& random, std::size_t count) {
+  MovingMesh mesh;
+  for (std::size_t i = 0; i < count; ++i) {
+    const test::TestMesh sheet = test::makeSheet(1 + static_cast<int>(random.index(12)),
+                                                 1 + static_cast<int>(random.index(12)));
+    const std::size_t first = mesh.t0.size();
+    const Vector3<double> at = random.point(random.index(3) ? 0.2 : 5);
+    for (const auto& p : sheet.vertices) mesh.t0.push_back(p + at);
+    for (const Triangle& t : sheet.triangles)
+      mesh.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
+  }
+  const std::size_t num_loose = random.index(100);
+  for (std::size_t i = 0; i < num_loose; ++i) {
+    const std::size_t first = mesh.t0.size();
+    for (int k = 0; k < 3; ++k) mesh.t0.push_back(random.point(1));
+    mesh.triangles.emplace_back(first, first + 1, first + 2);
+  }
+  std::vector<std::size_t> order(mesh.t0.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t k = order.size(); k > 1; --k)
+    std::swap(order[k - 1], order[random.index(k)]);
+  std::vector<Vector3<double>> points(mesh.t0.size());
+  for (std::size_t i = 0; i < order.size(); ++i) points[order[i]] = mesh.t0[i];
+  mesh.t0 = mesh.t1 = points;
+  for (Triangle& t : mesh.triangles) t = {order[t[0]], order[t[1]], order[t[2]]};
+  for (std::size_t k = mesh.triangles.size(); k > 1; --k)
+    std::swap(mesh.triangles[k - 1], mesh.triangles[random.index(k)]);
+  return mesh;
+}
+
+// A component of 64 triangles is what a node has below, and nothing else; all that are
+// smaller are together.
+TEST(FCL_MOVING_KDOP_TREE, largeComponentsHaveTreesOfTheirOwn) {
+  constexpr std::uint64_t kSeed = 52;
+  constexpr std::size_t kLarge = 64;
+  Random random(kSeed);
+  for (int i = 0; i < 40; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t count = i < 30 ? static_cast<std::size_t>(i) + 1 : 100;
+    const MovingMesh mesh = scatteredSheets(random, count);
+    const PreparedMovingMesh prepared(mesh);
+    const MovingKdopTree& tree = prepared.tree();
+    expectStructure(tree, assignFeatures(mesh.triangles.data(), mesh.triangles.size(),
+                                         mesh.t0.size()));
+    std::map<std::size_t, std::size_t> sizes;
+    std::vector<std::size_t> component_of = componentsOf(mesh);
+    for (const std::size_t c : component_of) ++sizes[c];
+    // kSmall: one for all.
+    const std::size_t kSmall = mesh.t0.size();
+    for (std::size_t& c : component_of)
+      if (sizes[c] < kLarge) c = kSmall;
+    const std::set<std::size_t> groups(component_of.begin(), component_of.end());
+    // In the tree's order each group is one run, and a node begins and ends with it.
+    std::set<std::size_t> begun;
+    const auto& triangles = tree.triangles();
+    const auto groupAt = [&](std::size_t k) { return component_of[triangles[k].index]; };
+    std::set<std::pair<std::size_t, std::size_t>> ranges;
+    std::vector<std::size_t> size(tree.numNodes(), 0);
+    for (std::size_t n = tree.numNodes(); n-- > 0;) {
+      const MovingKdopNode& node = tree.node(static_cast<int>(n));
+      for (int lane = 0; lane < node.count; ++lane) {
+        if (node.isTriangle(lane)) {
+          const auto t = static_cast<std::size_t>(node.triangle(lane));
+          ranges.emplace(t, t + 1);
+          ++size[n];
+        } else {
+          size[n] += size[static_cast<std::size_t>(node.child[lane])];
+        }
+      }
+      const std::size_t first = tree.firstTriangle(static_cast<int>(n));
+      ranges.emplace(first, first + size[n]);
+    }
+    for (std::size_t k = 0; k < triangles.size();) {
+      const std::size_t first = k;
+      while (k < triangles.size() && groupAt(k) == groupAt(first)) ++k;
+      EXPECT_TRUE(begun.insert(groupAt(first)).second);
+      EXPECT_TRUE(ranges.count({first, k})) << k - first << " triangles";
+    }
+    EXPECT_EQ(begun, groups);
+    ASSERT_FALSE(HasFailure());
   }
 }
 

@@ -93,8 +93,10 @@ void expectSameContacts(const Model& x, const Model& y) {
 
 TEST(FCL_TREE_RESTRUCTURING, onlyWhereBoxesGrow) {
   const int mix = countRestructurings(makeMixingBalls(61));
-  EXPECT_GE(mix, 3);
+  EXPECT_GE(mix, 2);
   EXPECT_LE(mix, 10);
+  // Large components have trees of their own.
+  EXPECT_EQ(countRestructurings(makeMixingBalls(61, 8)), 0);
   const int unfold = countRestructurings(reversed(makeCrumplingSheet(61)));
   EXPECT_GE(unfold, 1);
   EXPECT_LE(unfold, 4);
@@ -213,6 +215,35 @@ TEST(FCL_TREE_RESTRUCTURING, onlyTheAgedPart) {
     (i < balls.triangles.size() ? changed_balls : changed_cloth) += first[i] != last[i];
   EXPECT_LT(changed_cloth, cloth.triangles.size() / 100);
   EXPECT_GT(changed_balls, balls.triangles.size() / 20);
+}
+
+// Sheets that unfold on each other stay apart in the tree.
+TEST(FCL_TREE_RESTRUCTURING, componentsStayApart) {
+  const FrameSequence sheet = reversed(makeCrumplingSheet(13));
+  FrameSequence stack = sheet;
+  const std::size_t num_triangles = sheet.triangles.size(),
+                    num_vertices = sheet.frames[0].size();
+  constexpr std::size_t kSheets = 3;
+  for (std::size_t k = 1; k < kSheets; ++k) {
+    for (const Triangle& t : sheet.triangles)
+      stack.triangles.emplace_back(t[0] + k * num_vertices, t[1] + k * num_vertices,
+                                   t[2] + k * num_vertices);
+    for (std::size_t i = 0; i < stack.frames.size(); ++i)
+      for (const auto& p : sheet.frames[i])
+        stack.frames[i].push_back(p + Vector3<double>(0, 0, 0.001 * double(k)));
+  }
+  MovingTree moving(stack);
+  int count = 0;
+  for (std::size_t i = 0; i + 1 < stack.frames.size(); ++i) {
+    count += moving.step(stack.frames[i], stack.frames[i + 1]);
+    std::size_t num_changes = 0;
+    const auto& triangles = moving.tree.triangles();
+    for (std::size_t t = 1; t < triangles.size(); ++t)
+      num_changes +=
+          triangles[t].index / num_triangles != triangles[t - 1].index / num_triangles;
+    EXPECT_EQ(num_changes, kSheets - 1);
+  }
+  EXPECT_GE(count, 1);
 }
 
 // Balls that mix keep their shape: what is split anew are their patches.

@@ -220,15 +220,15 @@ FrameSequence makeWavingCloth(int frames, std::uint64_t seed) {
   return sequence;
 }
 
-FrameSequence makeMixingBalls(int frames, std::uint64_t seed) {
-  constexpr int kBalls = 256;
+FrameSequence makeMixingBalls(int frames, int slices) {
+  constexpr int kBalls = 340;
   struct Orbit {
     double radius, height, phase, speed;
   };
-  Random random(seed);
+  Random random(1);
   std::vector<Orbit> orbits;
   TestMesh mesh;
-  const TestMesh ball = makeIcosphere(1, 0.05);
+  const TestMesh ball = makeUvSphere(slices, 6, 0.05);
   for (int i = 0; i < kBalls; ++i) {
     const double radius = random.uniform(0.1, 1), height = random.uniform(-0.5, 0.5);
     orbits.push_back({radius, height, random.uniform(0, 2 * kPi),

@@ -53,9 +53,11 @@ FrameSequence makeCrumplingSheet(int frames);
 /// lip rises and sinks.
 FrameSequence makeWavingCloth(int frames, std::uint64_t seed = 1);
 
-/// @brief 256 balls of 80 triangles on orbits of different speed, which mix them: a tree
-/// that was made for the first frame holds together what has moved apart.
-FrameSequence makeMixingBalls(int frames, std::uint64_t seed = 1);
+/// @brief 340 balls on orbits of different speed, which mix them: a tree that was made
+/// for the first frame holds together what has moved apart, unless they are large enough
+/// for trees of their own.
+/// @param slices  for ten triangles each
+FrameSequence makeMixingBalls(int frames, int slices = 6);
 
 }  // namespace test
 }  // namespace fcl
