@@ -111,11 +111,11 @@ class Part {
     if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
   }
 
-  /// Does a work to its end.
-  void run(const NodePair& work) {
+  /// Does a work to its end, or no more than so many steps of it.
+  void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
     open_.cut(0);
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
-    while (open_.size() > 0 && !leaves_->isDone()) {
+    while (open_.size() > 0 && !leaves_->isDone() && steps-- > 0) {
       const std::size_t first = open_.size() - 1;
       const NodePair& last = open_[first];
       open_.cut(first);
@@ -347,6 +347,18 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   return answer;
 }
 
+/// How many steps of each work a first contact of a mesh with itself does before all
+/// others, so that an early contact prunes the whole traversal, wherever it is. A work
+/// has about as many steps as triangles; where it has few, one contact is as good as
+/// another.
+std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b, QueryGoal goal) {
+  constexpr std::size_t kTrianglesPerStep = 32, kLeast = 32;
+  if (&a != &b || !a.tree || goal != QueryGoal::kFirst) return 0;
+  const std::size_t steps =
+      a.tree->triangles().size() / kFirstSchedule.tasks / kTrianglesPerStep;
+  return steps < kLeast ? 0 : steps;
+}
+
 QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                   const QueryOptions& options) {
   const auto start = Clock::now();
@@ -367,10 +379,20 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
   std::vector<TaskAnswer> answers(1);
   const bool parallel = numThreads(options.num_threads) > 1;
   StageTimes opening_times;
+  const std::size_t sample = sampleOf(a, b, options.goal);
   TrianglePairTest opening(a, b, shift, task_options, &progress, 0);
   scene.visitPart(schedule, opening, opening_times, [&](auto& part) {
     part.divide(works);
     answers.resize(1 + works.size());
+    if (sample > 0) {
+      // Not one of the tasks, which meet all of it again. Earlier than that, little is
+      // left to prune.
+      constexpr double kEarlyEnough = 0x1p-10;
+      TrianglePairTest task(a, b, shift, task_options, &progress, 1 + works.size());
+      part.use(task);
+      for (const NodePair& work : works)
+        if (task.latest() > kEarlyEnough) part.run(work, sample);
+    }
     if (parallel) return;
     // One part for all tasks: what it has read of a rigid tree stays.
     for (std::size_t i = 0; i < works.size(); ++i) {

@@ -595,6 +595,29 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
   EXPECT_GT(left_out, 10000U);
 }
 
+// A query of a large mesh begins with a look at all parts of it.
+TEST(FCL_DEFORMABLE_QUERY, firstContactOfALargeMesh) {
+  constexpr std::size_t kCount = 33000;  // pairs of triangles
+  std::uint64_t left_out = 0;
+  for (std::uint64_t seed = 6100; seed < 6106; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    HeadOn scene;
+    const std::size_t first = random.index(kCount);
+    for (std::size_t i = 0; i < kCount; ++i)
+      scene.add(
+          {10. * static_cast<double>(i % 30), 10. * static_cast<double>(i / 30 % 30),
+           10. * static_cast<double>(i / 900)},
+          {1, 0, 0}, 1, i == first ? 0.01 : random.uniform(0.02, 1));
+    const MovingMesh mesh = scene.both();
+    const PreparedMovingMesh prepared(mesh);
+    const Body body{prepared.instance(), mesh.triangles};
+    expectFirstOfAll(body, body, kCount, left_out);
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(left_out, 10000U);
+}
+
 template <typename S>
 Transform3<S> pose(Random& random, const Matrix3<S>& rotation, double step) {
   Transform3<S> tf = Transform3<S>::Identity();
