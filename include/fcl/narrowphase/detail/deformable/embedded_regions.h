@@ -27,9 +27,9 @@ struct EmbeddedRegions {
   std::vector<std::uint8_t> interior;
 };
 
-/// @brief Smaller regions are not worth their borders: to prove one of 128 triangles
-/// takes as long as it saves.
-constexpr std::uint32_t kLeastRegion = 256;
+/// @brief Smaller regions are not worth their borders: to find those of 64 triangles
+/// takes longer than it saves.
+constexpr std::uint32_t kLeastRegion = 128;
 
 /// @brief Finds the largest ones.
 /// @param kernels  the answer is the same for all
