@@ -385,8 +385,8 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
     part.divide(works);
     answers.resize(1 + works.size());
     if (sample > 0) {
-      // Not one of the tasks, which meet all of it again. Earlier than that, little is
-      // left to prune.
+      // Not one of the tasks, which meet all of it again and count it. Earlier than that,
+      // little is left to prune.
       constexpr double kEarlyEnough = 0x1p-10;
       TrianglePairTest task(a, b, shift, task_options, &progress, 1 + works.size());
       part.use(task);
