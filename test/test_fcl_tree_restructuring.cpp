@@ -327,6 +327,8 @@ TEST(FCL_TREE_RESTRUCTURING, contactsStayTheSame) {
       ASSERT_EQ(kept.updateSubModel(sequence.frames[i + 1]), BVH_OK);
       ASSERT_EQ(kept.endUpdateModel(), BVH_OK);
     }
+    // Wherever the tree has changed, and now and then where it has not.
+    if (kept.numRestructurings() == before && i % 4 != 0) continue;
     Model fresh;
     build(sequence, i, fresh);
     update(sequence, i, fresh);
