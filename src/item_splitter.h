@@ -100,8 +100,7 @@ class Splitter {
  public:
   /// @param ends  where each of the groups ends in which the items lie, if they do: a
   /// range of several is split between them
-  explicit Splitter(UninitializedVector<TreeItem> items,
-                    std::vector<std::size_t> ends = {})
+  Splitter(UninitializedVector<TreeItem> items, std::vector<std::size_t> ends)
       : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {}
 
   struct Range {

@@ -26,6 +26,7 @@
 #include <xmmintrin.h>
 #endif
 
+#include "components.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
@@ -182,26 +183,6 @@ TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
   }
 }
 
-/// For each triangle a number that its component alone has.
-std::vector<std::size_t> componentsOf(const MovingMesh& mesh) {
-  std::vector<std::size_t> of_vertex(mesh.t0.size());
-  std::iota(of_vertex.begin(), of_vertex.end(), std::size_t{0});
-  for (bool changes = true; changes;) {
-    changes = false;
-    for (const Triangle& t : mesh.triangles) {
-      const std::size_t least =
-          std::min({of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]});
-      for (int k = 0; k < 3; ++k) {
-        changes |= of_vertex[t[k]] != least;
-        of_vertex[t[k]] = least;
-      }
-    }
-  }
-  std::vector<std::size_t> components;
-  for (const Triangle& t : mesh.triangles) components.push_back(of_vertex[t[0]]);
-  return components;
-}
-
 /// Sheets in each other's way, and loose triangles, in any order.
 MovingMesh scatteredSheets(Random& random, std::size_t count) {
   MovingMesh mesh;
@@ -248,7 +229,9 @@ TEST(FCL_MOVING_KDOP_TREE, largeComponentsHaveTreesOfTheirOwn) {
     expectStructure(tree, assignFeatures(mesh.triangles.data(), mesh.triangles.size(),
                                          mesh.t0.size()));
     std::map<std::size_t, std::size_t> sizes;
-    std::vector<std::size_t> component_of = componentsOf(mesh);
+    const auto of_vertex = test::componentsOf(mesh.triangles, mesh.t0.size());
+    std::vector<std::size_t> component_of;
+    for (const Triangle& t : mesh.triangles) component_of.push_back(of_vertex[t[0]]);
     for (const std::size_t c : component_of) ++sizes[c];
     // kSmall: one for all.
     const std::size_t kSmall = mesh.t0.size();

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <numeric>
 #include <vector>
 
+#include "components.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "scene_data.h"
@@ -16,24 +16,6 @@ namespace test {
 namespace {
 
 using BV = KDOP<double, 16>;
-
-/// Number of the connected component of each vertex.
-std::vector<std::size_t> componentsOf(const FramePairMesh& mesh) {
-  std::vector<std::size_t> parent(mesh.previous.size());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&parent](std::size_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
-  for (const Triangle& t : mesh.triangles)
-    for (int k = 1; k < 3; ++k) parent[root(t[k])] = root(t[0]);
-  std::vector<std::size_t> number(parent.size(), 0), name(parent.size(), 0);
-  std::size_t count = 0;
-  for (std::size_t v = 0; v < parent.size(); ++v)
-    if (root(v) == v) name[v] = count++;
-  for (std::size_t v = 0; v < parent.size(); ++v) number[v] = name[root(v)];
-  return number;
-}
 
 /// The bodies with an even (odd) number; vertices of the others stay, unused.
 FramePairMesh halfOf(const FramePairMesh& mesh, const std::vector<std::size_t>& component,
@@ -59,7 +41,7 @@ void fill(const FramePairMesh& mesh, Model& model) {
 void benchmarkAgainstStock(const SceneFiles& files, int repeats) {
   const FramePairMesh mesh =
       readFramePair(files.folder + files.previous, files.folder + files.current);
-  const auto component = componentsOf(mesh);
+  const auto component = componentsOf(mesh.triangles, mesh.previous.size());
   const FramePairMesh halves[2] = {halfOf(mesh, component, 0),
                                    halfOf(mesh, component, 1)};
   DeformableBVHModel<BV> ours[2];
