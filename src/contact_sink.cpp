@@ -61,6 +61,13 @@ bool ContactSink::add(const FeatureContact& contact) {
   return true;
 }
 
+void ContactSink::clear() {
+  cut_ = false;
+  first_hi_ = 1;
+  contacts_.clear();
+  seen_.clear();
+}
+
 SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     : lists_(std::move(lists)) {
   std::size_t count = 0;

@@ -84,11 +84,8 @@ class Part {
       : traversal_(tree_a, tree_b, shift, culling, axes, kernels(), schedule.in_order),
         pose_displacement_(pose_displacement),
         schedule_(schedule),
-        leaves_(&leaves),
+        leaves_(leaves),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
-
-  /// From here on for another task.
-  void use(Leaves& leaves) { leaves_ = &leaves; }
 
   /// Seconds in the leaves.
   double testTime() const { return test_time_; }
@@ -99,15 +96,14 @@ class Part {
     open_.cut(0);
     traversal_.start(open_);
     for (; next < open_.size() && open_.size() - next < schedule_.tasks &&
-           !leaves_->isDone();
+           !leaves_.isDone();
          ++next) {
       const NodePair work = open_[next];
-      const double latest = leaves_->latest();
+      const double latest = leaves_.latest();
       if (work.earliest <= latest) step(work, latest);
     }
     finish();
-    if (!leaves_->isDone())
-      works.assign(open_.data() + next, open_.data() + open_.size());
+    if (!leaves_.isDone()) works.assign(open_.data() + next, open_.data() + open_.size());
     if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
   }
 
@@ -115,11 +111,11 @@ class Part {
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
     open_.cut(0);
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
-    while (open_.size() > 0 && !leaves_->isDone() && steps-- > 0) {
+    while (open_.size() > 0 && !leaves_.isDone() && steps-- > 0) {
       const std::size_t first = open_.size() - 1;
       const NodePair& last = open_[first];
       open_.cut(first);
-      const double latest = leaves_->latest();
+      const double latest = leaves_.latest();
       if (last.earliest > latest) continue;
       step(last, latest);
       if (schedule_.in_order)
@@ -152,16 +148,16 @@ class Part {
     const auto start = Clock::now();
     const LeafPair* next = block_.data();
     const LeafPair* end = next + count_;
-    while (next != end && !leaves_->isDone()) {
+    while (next != end && !leaves_.isDone()) {
       const auto left = static_cast<std::size_t>(end - next);
-      const std::size_t size = blockFor(leaves_->latest());
+      const std::size_t size = blockFor(leaves_.latest());
       if (left < size && !with_rest) break;
       try {
-        leaves_->visit(next, next + std::min(size, left));
+        leaves_.visit(next, next + std::min(size, left));
       } catch (const NonFiniteVertex& error) {
-        leaves_->refuse(error, (next++)->earliest);
+        leaves_.refuse(error, (next++)->earliest);
       }
-      leaves_->flush();
+      leaves_.flush();
     }
     if (next != block_.data()) std::copy(next, end, block_.data());
     count_ = static_cast<std::size_t>(end - next);
@@ -171,7 +167,7 @@ class Part {
   void finish() {
     if (count_ > 0) visitBlocks(true);
     count_ = 0;
-    leaves_->addTraversal(traversal_.compared(), traversal_.fanCulled());
+    leaves_.addTraversal(traversal_.compared(), traversal_.fanCulled());
     traversal_.clearCounts();
   }
 
@@ -181,7 +177,7 @@ class Part {
   /// As it was in the last step.
   double latest_{1};
   const Schedule& schedule_;
-  Leaves* leaves_;
+  Leaves& leaves_;
   double test_time_{0};
   WorkList open_;
   std::vector<LeafPair> block_;
@@ -272,7 +268,8 @@ SelfProofs proveSelf(const MeshInstance& mesh, bool with_regions, int num_thread
 
 /// The answer of one task.
 struct TaskAnswer {
-  std::deque<FeatureContact> contacts;
+  /// Without a list where there is none, which most tasks of a first contact are.
+  std::optional<std::deque<FeatureContact>> contacts;
   bool cut{false};
   bool has_crossing{false};
   Crossing crossing{};
@@ -284,7 +281,7 @@ struct TaskAnswer {
     cut = leaves.sink().isCut();
     has_crossing = leaves.hasCrossing();
     crossing = leaves.crossing();
-    contacts = leaves.sink().takeContacts();
+    if (!leaves.sink().contacts().empty()) contacts = leaves.sink().takeContacts();
     error = leaves.error();
     counts = leaves.counts();
   }
@@ -319,7 +316,8 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   const bool first = options.goal == QueryGoal::kFirst;
   const bool any = options.goal == QueryGoal::kAny;
   std::size_t count = 0;
-  for (const TaskAnswer& task : tasks) count += task.contacts.size();
+  for (const TaskAnswer& task : tasks)
+    if (task.contacts) count += task.contacts->size();
   // A sink only where something may have to be left out.
   const bool keeps_all = !first && !any && !may_repeat && count <= options.max_contacts;
   std::vector<std::deque<FeatureContact>> lists;
@@ -334,11 +332,12 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
       answer.crossing = task.crossing;
     }
     answer.cut |= task.cut && !first && !any;
+    if (!task.contacts) continue;
     if (keeps_all) {
-      lists.push_back(std::move(task.contacts));
+      lists.push_back(std::move(*task.contacts));
       continue;
     }
-    for (const FeatureContact& c : task.contacts)
+    for (const FeatureContact& c : *task.contacts)
       if (!first || c.toc_lo <= first_hi) sink.add(c);
   }
   answer.cut |= sink.isCut() && !any;
@@ -380,29 +379,27 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
   const bool parallel = numThreads(options.num_threads) > 1;
   StageTimes opening_times;
   const std::size_t sample = sampleOf(a, b, options.goal);
-  TrianglePairTest opening(a, b, shift, task_options, &progress, 0);
-  scene.visitPart(schedule, opening, opening_times, [&](auto& part) {
+  TrianglePairTest leaves(a, b, shift, task_options, &progress, 0);
+  scene.visitPart(schedule, leaves, opening_times, [&](auto& part) {
     part.divide(works);
     answers.resize(1 + works.size());
+    answers[0].take(leaves);
     if (sample > 0) {
       // Not one of the tasks, which meet all of it again and count it. Earlier than that,
       // little is left to prune.
       constexpr double kEarlyEnough = 0x1p-10;
-      TrianglePairTest task(a, b, shift, task_options, &progress, 1 + works.size());
-      part.use(task);
+      leaves.begin(1 + works.size());
       for (const NodePair& work : works)
-        if (task.latest() > kEarlyEnough) part.run(work, sample);
+        if (leaves.latest() > kEarlyEnough) part.run(work, sample);
     }
     if (parallel) return;
     // One part for all tasks: what it has read of a rigid tree stays.
     for (std::size_t i = 0; i < works.size(); ++i) {
-      TrianglePairTest task(a, b, shift, task_options, &progress, i + 1);
-      part.use(task);
+      leaves.begin(i + 1);
       part.run(works[i]);
-      answers[i + 1].take(task);
+      answers[i + 1].take(leaves);
     }
   });
-  answers[0].take(opening);
   answers[0].times = opening_times;
   if (parallel)
     parallelFor(works.size(), options.num_threads, [&](std::size_t i) {

@@ -44,6 +44,15 @@ TrianglePairTest::TrianglePairTest(const MeshInstance& a, const MeshInstance& b,
       progress_(progress),
       task_(task) {}
 
+void TrianglePairTest::begin(std::size_t task) {
+  sink_.clear();
+  task_ = task;
+  has_crossing_ = false;
+  crossing_ = {};
+  error_.reset();
+  counts_ = {};
+}
+
 void TrianglePairTest::refuse(const NonFiniteVertex& error, float earliest) {
   if (error_ && error_->earliest <= earliest) return;
   error_ = QueryError{earliest, error.vertex()};

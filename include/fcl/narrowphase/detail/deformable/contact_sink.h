@@ -53,8 +53,11 @@ class ContactSink {
   /// that some are dropped.
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
-  /// @brief The contacts in no order; leaves the sink empty.
+  /// @brief The contacts in no order; the sink is to be cleared before it is used again.
   std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
+
+  /// @brief Forgets all contacts.
+  void clear();
 
  private:
   using PairKey = std::array<std::uint32_t, 5>;

@@ -82,6 +82,10 @@ class TrianglePairTest {
                    const QueryOptions& options, QueryProgress* progress = nullptr,
                    std::size_t task = 0);
 
+  /// @brief Forgets what was found, for another task of the same query.
+  /// @param task  its number
+  void begin(std::size_t task);
+
   /// @brief Takes pairs of triangles; between two calls of flush() at most
   /// FeatureBatch::kMaxPairs.
   /// @param next  the first of them; after an error the one that it is about, and in the
