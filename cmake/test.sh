@@ -56,5 +56,4 @@ else
   build release
 fi
 echo "== release: tests ($((SECONDS / 60)) min so far)"
-# One at a time: tests that measure time are not disturbed by others.
-ctest --preset release
+ctest --preset release -j "$jobs"

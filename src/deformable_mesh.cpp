@@ -34,6 +34,7 @@ void DeformableMesh::refitChangedTree(const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
   deformable::inArena(num_threads_, [&] { tree_.refit(frames, num_threads_); });
   is_deforming_ = false;
+  if (frames.isStill()) return;
   for (std::size_t i = 0; i < frames.size() && !is_deforming_; ++i) {
     const deformable::VertexPath path = frames[i];
     for (int k = 0; k < 3; ++k) is_deforming_ |= path.t0[k] != path.t1[k];

@@ -390,7 +390,7 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
       constexpr double kEarlyEnough = 0x1p-10;
       leaves.begin(1 + works.size());
       for (const NodePair& work : works)
-        if (leaves.latest() > kEarlyEnough) part.run(work, sample);
+        if (progress.first_hi.load() > kEarlyEnough) part.run(work, sample);
     }
     if (parallel) return;
     // One part for all tasks: what it has read of a rigid tree stays.

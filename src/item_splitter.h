@@ -151,9 +151,10 @@ class Splitter {
     if (first == ends_.end() || *first >= end_of_all) return 1;
     const auto last = std::lower_bound(first, ends_.end(), end_of_all);
     const auto groups = static_cast<std::size_t>(last - first) + 1;
-    // Below, each part is a tree of full nodes.
+    // Groups in a part: where that can be, as many as make a tree of full nodes.
     std::size_t unit = 1;
     while (unit * max_parts < groups) unit *= MovingKdopNode::kWidth;
+    if (unit >= groups) unit = (groups + max_parts - 1) / max_parts;
     std::size_t n = 0, begin = all.first;
     for (std::size_t next = unit; begin < end_of_all; next += unit) {
       const std::size_t end =

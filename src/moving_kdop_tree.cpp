@@ -321,9 +321,9 @@ void MovingKdopTree::setReach(const Range& range) {
 }
 
 /// Sets the boxes of a node whose children have theirs.
-void MovingKdopTree::refit(MovingKdopNode& node) {
+void MovingKdopTree::refit(MovingKdopNode& node, bool is_still) {
   float extents[kWidth];
-  kernels().fitNode(vertices_.data(), nodes_.data(), node, extents);
+  kernels().fitNode(vertices_.data(), nodes_.data(), is_still, node, extents);
   NodeSize& size = sizes_[static_cast<std::size_t>(&node - nodes_.data())];
   size.triangles = 0;
   size.blurred = 0;
@@ -360,18 +360,21 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
       }
       vertices[i].setPath(path[0], path[1]);
     }
-    for (int frame = 0; frame < 2; ++frame)
-      kernel.fitPoints(offsets[frame], frame, count, vertices);
+    kernel.fitPoints(offsets[0], 0, count, vertices);
+    if (!frames.isStill())
+      kernel.fitPoints(offsets[1], 1, count, vertices);
+    else
+      for (std::size_t i = 0; i < count; ++i) vertices[i].box.t1 = vertices[i].box.t0;
   }
 }
 
 /// Sets the boxes of a subtree whose vertices have theirs.
-void MovingKdopTree::refit(const Subtree& subtree) {
+void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
   for (std::size_t i = subtree.last_node; i-- > subtree.first_node;) {
     if (i > subtree.first_node + 1) prefetchRows(nodes_[i - 2]);
-    refit(nodes_[i]);
+    refit(nodes_[i], is_still);
   }
-  refit(nodes_[subtree.root]);
+  refit(nodes_[subtree.root], is_still);
 }
 
 /// The boxes are floats: relative to an origin that is far from most of a mesh, since
@@ -401,10 +404,10 @@ void MovingKdopTree::fit(const VertexFrames& frames, int num_threads) {
   } else {
     for (const Subtree& subtree : subtrees_) {
       fitVertices(subtree, frames);
-      refit(subtree);
+      refit(subtree, frames.isStill());
     }
   }
-  for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]]);
+  for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]], frames.isStill());
 }
 
 /// Refits the subtrees, which have vertices that those before them were the first to
@@ -419,7 +422,7 @@ void MovingKdopTree::refitGroups(const VertexFrames& frames, int num_threads) {
                       });
     parallelForBlocks(count, kSubtreeBlock, num_threads,
                       [&](std::size_t i, std::size_t last) {
-                        for (; i < last; ++i) refit(subtrees[i]);
+                        for (; i < last; ++i) refit(subtrees[i], frames.isStill());
                       });
   }
 }

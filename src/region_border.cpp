@@ -255,7 +255,7 @@ void RegionBorder::fitTree() {
       }
       node.markTriangles();
       float extents[kWidth];
-      kernels_.fitNode(boxes_.points.data(), boxes_.nodes.data(), node, extents);
+      kernels_.fitNode(boxes_.points.data(), boxes_.nodes.data(), false, node, extents);
     }
     below = count;
     first_below = first;

@@ -98,7 +98,8 @@ constexpr std::size_t kLeastComponent = 64;
 
 /// @brief Splits items into a tree, whose leaves are their indices: by surface area at
 /// the top, and into halves at the bottom, so that the lowest nodes are full.
-/// @param ends  as groupItems() returns it: each group becomes a node
+/// @param ends  as groupItems() returns it: a part of the tree has several groups, or
+/// lies within one
 /// @param max_parts  the root has at most so many children
 /// @param depth  of the root in the tree that it is for: deep down all is halved
 TreeStructure splitItems(UninitializedVector<TreeItem> items,

@@ -144,8 +144,16 @@ class MovingKdopTree::Restructuring {
     std::vector<std::uint32_t> components(names_.size());
     std::transform(names_.begin(), names_.end(), components.begin(),
                    [this](std::int32_t name) { return componentOf(name); });
+    // Numbered one after the other: the mesh may have far more of them than there are
+    // here.
+    std::vector<std::uint32_t> numbers = components;
+    std::sort(numbers.begin(), numbers.end());
+    numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+    for (std::uint32_t& component : components)
+      component = static_cast<std::uint32_t>(
+          std::lower_bound(numbers.begin(), numbers.end(), component) - numbers.begin());
     std::vector<std::size_t> ends =
-        groupItems(std::move(components), component_of_.size(),
+        groupItems(std::move(components), numbers.size(),
                    kLeastComponent / MovingKdopNode::kWidth, items_);
     const TreeStructure tree = splitItems(items_, std::move(ends), max_parts, depth);
     const auto& parts = tree.nodes;

@@ -362,7 +362,8 @@ MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
 }
 
 // A node's children hold what is below them, no more: triangles their vertices, nodes
-// their children, and lanes that are not in use nothing.
+// their children, and lanes that are not in use nothing; in one frame, too, if nothing
+// moves.
 TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
   constexpr std::uint64_t kSeed = 80;
   Random random(kSeed);
@@ -372,15 +373,18 @@ TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const Halves halves = randomHalves(random);
     const float scale = randomScale(random);
+    const bool is_still = i % 4 == 0;
     std::vector<TreeVertex> vertices(kVertices);
     for (TreeVertex& x : vertices) {
       x.box = randomBounds(random, halves, scale);
+      if (is_still) x.box.t1 = x.box.t0;
       x.t0[3] = double{randomDisplacement(random, scale)};
     }
     std::vector<MovingKdopNode> nodes;
     for (std::size_t n = 0; n < kNodes; ++n) {
       nodes.push_back(randomLeaf(random, halves, scale));
       nodes.back().clearRest();
+      if (is_still) std::memcpy(nodes.back().t1, nodes.back().t0, sizeof(nodes[0].t0));
     }
     MovingKdopNode before = randomLeaf(random, halves, scale);
     for (int lane = 0; lane < kWidth; ++lane) {
@@ -424,7 +428,7 @@ TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
     for (const Kernels* k : allSets()) {
       MovingKdopNode node = before;
       float extents[kWidth];
-      k->fitNode(vertices.data(), nodes.data(), node, extents);
+      k->fitNode(vertices.data(), nodes.data(), is_still, node, extents);
       ASSERT_EQ(std::memcmp(&node, &expected, sizeof(node)), 0) << k->name;
       if (k == allSets().front()) std::copy(extents, extents + kWidth, first);
       for (int lane = 0; lane < kWidth; ++lane) {

@@ -95,6 +95,12 @@ void testContainment(std::uint64_t seed) {
       expectContainment(tree, triangles, back);
       tree.refit(frames);
       expectSameBoxes(tree, before);
+      // One array as both frames is no different from two equal ones.
+      tree.refit({t0.data(), t0.data(), mesh.t0.size()});
+      const MovingKdopTree still = tree;
+      const std::vector<S> again = t0;
+      tree.refit({t0.data(), again.data(), mesh.t0.size()});
+      expectSameBoxes(tree, still);
       if (testing::Test::HasFailure()) return;
     }
 }

@@ -16,6 +16,7 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "generated_scenes.h"
+#include "mesh_generators.h"
 #include "moving_mesh.h"
 #include "test_models.h"
 #include "tree_checks.h"
@@ -244,6 +245,37 @@ TEST(FCL_TREE_RESTRUCTURING, componentsStayApart) {
     EXPECT_EQ(num_changes, kSheets - 1);
   }
   EXPECT_GE(count, 1);
+}
+
+// Sheets that are too small for trees of their own when the mesh is built, and lie in
+// each other's nodes, come apart in the tree once they have come apart in space: what is
+// made anew are some children of a node, of which there are fewer than sheets.
+TEST(FCL_TREE_RESTRUCTURING, componentsComeApart) {
+  constexpr std::size_t kSheets = 6;
+  const TestMesh sheet = makeSheet(4, 4);
+  FrameSequence stack{{}, {{}, {}}};
+  for (std::size_t k = 0; k < kSheets; ++k) {
+    const std::size_t first = stack.frames[0].size();
+    for (const Triangle& t : sheet.triangles)
+      stack.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
+    for (const auto& p : sheet.vertices) {
+      stack.frames[0].push_back(p + Vector3<double>(0, 0, 0.001 * double(k)));
+      stack.frames[1].push_back(p + Vector3<double>(0, 0, 10 * double(k)));
+    }
+  }
+  const auto countChanges = [&](const MovingKdopTree& tree) {
+    const auto& triangles = tree.triangles();
+    std::size_t count = 0;
+    for (std::size_t t = 1; t < triangles.size(); ++t)
+      count += triangles[t].index / sheet.triangles.size() !=
+               triangles[t - 1].index / sheet.triangles.size();
+    return count;
+  };
+  MovingTree moving(stack);
+  EXPECT_GE(countChanges(moving.tree), 4 * kSheets);
+  EXPECT_FALSE(moving.step(stack.frames[0], stack.frames[1]));
+  EXPECT_TRUE(moving.step(stack.frames[1], stack.frames[1]));
+  EXPECT_EQ(countChanges(moving.tree), kSheets - 1);
 }
 
 // Balls that mix keep their shape: what is split anew are their patches.

@@ -100,8 +100,9 @@ struct HalfOfBoxes {
   }
 };
 
-void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
-             MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+template <bool kIsStill>
+HWY_INLINE void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
+                        MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
   using Lower0 = HalfOfBoxes<0, 0>;
   using Upper0 = HalfOfBoxes<0, 8>;
   using Lower1 = HalfOfBoxes<1, 0>;
@@ -114,8 +115,10 @@ void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
                        &c = vertices[node.places[2][lane]];
       lower0[lane] = Lower0::around(a, b, c);
       upper0[lane] = Upper0::around(a, b, c);
-      lower1[lane] = Lower1::around(a, b, c);
-      upper1[lane] = Upper1::around(a, b, c);
+      if (!kIsStill) {
+        lower1[lane] = Lower1::around(a, b, c);
+        upper1[lane] = Upper1::around(a, b, c);
+      }
       node.displacement[lane] = largest(static_cast<float>(a.displacement()),
                                         static_cast<float>(b.displacement()),
                                         static_cast<float>(c.displacement()));
@@ -123,8 +126,10 @@ void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
       const MovingKdopNode& child = nodes[node.child[lane]];
       lower0[lane] = Lower0::around(child);
       upper0[lane] = Upper0::around(child);
-      lower1[lane] = Lower1::around(child);
-      upper1[lane] = Upper1::around(child);
+      if (!kIsStill) {
+        lower1[lane] = Lower1::around(child);
+        upper1[lane] = Upper1::around(child);
+      }
       node.displacement[lane] = largest(load<kEight>(child.displacement));
     }
   }
@@ -133,9 +138,21 @@ void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
         broadcast<kEight>(kLeastHalf);
     node.displacement[lane] = 0;
   }
-  store((Lower0::set(lower0, node) + Upper0::set(upper0, node)) +
-            (Lower1::set(lower1, node) + Upper1::set(upper1, node)),
-        extents);
+  const Floats before = Lower0::set(lower0, node) + Upper0::set(upper0, node);
+  if (kIsStill) {
+    for (int r = 0; r < 16; ++r) store(load<kEight>(node.t0[r]), node.t1[r]);
+    store(before + before, extents);
+  } else {
+    store(before + (Lower1::set(lower1, node) + Upper1::set(upper1, node)), extents);
+  }
+}
+
+void fitNodeOf(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
+               MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+  if (is_still)
+    fitNode<true>(vertices, nodes, node, extents);
+  else
+    fitNode<false>(vertices, nodes, node, extents);
 }
 
 /// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and

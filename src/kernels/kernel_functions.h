@@ -22,8 +22,8 @@ namespace HWY_NAMESPACE {
 
 void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
                TreeVertex* vertices);
-void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
-             MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]);
+void fitNodeOf(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
+               MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]);
 unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                            const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]);

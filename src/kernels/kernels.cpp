@@ -24,7 +24,7 @@ inline const char* targetName() { return "plain"; }
 #endif
 
 extern const Kernels kKernels = {
-    targetName(),           &fitPoints,          &fitNode,
+    targetName(),           &fitPoints,          &fitNodeOf,
     &overlapChildrenOf,     &overlapTrianglesOf, &listFeatures,
     &cullFeaturesOf,        &cullCrossings,      &areApart,
     &mayCrossOfEight,       &areFansEmbedded,    &facedDirections,

@@ -95,7 +95,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// @brief Threads that the query may use: 1, the caller's own and no task (the default,
   /// as in FCL, whose callers run their own queries side by side); n, at most n; 0, as
   /// many as the oneTBB task arena around has; not negative. The answer does not depend
-  /// on it.
+  /// on it; how much was pruned before a first contact was found, which StageCounts tell,
+  /// does.
   int num_threads{1};
 };
 

@@ -307,8 +307,10 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   this->prev_vertices = previous.release();
   seal_.prev_vertices = this->prev_vertices;
   seal_.num_vertices = this->num_vertices;
-  buildTree(this->tri_indices, num_triangles, frames());
-  refitTree(frames());
+  const detail::deformable::VertexFrames still(this->vertices->data(),
+                                               this->vertices->data(), count);
+  buildTree(this->tri_indices, num_triangles, still);
+  refitTree(still);
   computeLocalAABB();
   if (fcl_tree == FclTree::kUpdate) {
     if (const int code = Base::endModel())
@@ -610,8 +612,7 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
   if (isFclTreeBehind())
     throw Exception(
         "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
-        "queries "
-        "need it; call updateFclTree() first");
+        "queries need it; call updateFclTree() first");
   return Base::getNodeType();
 }
 

@@ -13,13 +13,14 @@
 namespace fcl {
 
 /// @brief What a build or an update does with FCL's own tree, which discrete queries
-/// (collide, distance) need and continuous ones do not. Of the broadphase managers the
+/// (collide, distance) need, and continuous ones that FCL answers (shapes, rotating rigid
+/// meshes), but none that is answered here. Of the broadphase managers the
 /// DynamicAABBTree ones ask the object that they are queried with, collide(&object, ...)
 /// or distance(&object, ...), for its node type: they throw as discrete queries do,
 /// whatever the callback does. Other queries of theirs, and other managers, do not.
 enum class FclTree {
   kUpdate,  ///< bring it up to date
-  kSkip     ///< leave it; discrete queries throw until updateFclTree()
+  kSkip     ///< leave it; queries that need it throw until updateFclTree()
 };
 
 /// @brief A triangle mesh that deforms between two frames: BVHModel<BV> with a moving
@@ -51,14 +52,13 @@ enum class FclTree {
 ///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN: FCL's tree is still to be
 ///   built;
 /// - prev_vertices is never null in a built model;
-/// - getNodeType() throws fcl::Exception while FCL's tree is out of date
-/// (FclTree::kSkip),
-///   or an update has failed: every discrete query of FCL starts with it;
+/// - getNodeType() throws fcl::Exception while FCL's tree is out of date, which it is
+///   after FclTree::kSkip, or an update has failed: every query of FCL's starts with it;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
 /// No update function of BVHModel is virtual. One called through a pointer or reference
-/// to BVHModel<BV> is noticed: continuous queries then read the base's frames and refit
-/// per call, as for a plain BVHModel, until the next update through this class.
+/// to BVHModel<BV> is noticed: continuous queries then read the base's frames and build
+/// a tree per call, as for a plain BVHModel, until the next update through this class.
 ///
 /// Thread-safety: concurrent const access is safe; copies are deep and independent. A
 /// build or an update runs on the caller's thread alone unless setNumThreads() allows

@@ -175,8 +175,9 @@ struct Kernels {
 
   /// Sets the boxes and displacements of a node's children, from those of the vertices
   /// and of the nodes below: the smallest that hold for all of them.
+  /// @param is_still  the boxes of these are the same in both frames
   /// @param[out] extents  of each, along all directions, in both frames
-  void (*fitNode)(const TreeVertex* vertices, const MovingKdopNode* nodes,
+  void (*fitNode)(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
                   MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]);
 
   /// Which children of the node overlap the box at some time, a bit each, and from when

@@ -139,8 +139,9 @@ struct TreeStructure;
 /// below a node lies together and is refit in one backward pass.
 class MovingKdopTree {
  public:
-  /// @brief Makes the structure: surface-area splits of the triangles' centroids in frame
-  /// 0, and halving at the bottom so that the lowest nodes are full.
+  /// @brief Makes the structure: large components apart from each other, surface-area
+  /// splits of the triangles' centroids in frame 0, and halving at the bottom so that the
+  /// lowest nodes are full.
   /// @param triangles  at least one, indices below frames.size() (not checked here)
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   void build(const Triangle* triangles, std::size_t num_triangles,
@@ -248,8 +249,8 @@ class MovingKdopTree {
   void setReach(const Range& range);
   void fit(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames);
-  void refit(MovingKdopNode& node);
-  void refit(const Subtree& subtree);
+  void refit(MovingKdopNode& node, bool is_still);
+  void refit(const Subtree& subtree, bool is_still);
   void refitGroups(const VertexFrames& frames, int num_threads);
 
   UninitializedVector<MovingKdopNode> nodes_;

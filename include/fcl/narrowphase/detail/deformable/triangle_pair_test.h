@@ -77,7 +77,7 @@ class TrianglePairTest {
   /// @param a, b  kept by reference; the same object twice for a self-collision.
   /// @param shift  between their trees; null for a self-collision
   /// @param progress  of the query; null: this is all of it
-  /// @param task  number of this part of the query
+  /// @param task  number of this part of the query, until begin()
   TrianglePairTest(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                    const QueryOptions& options, QueryProgress* progress = nullptr,
                    std::size_t task = 0);

@@ -49,6 +49,11 @@ class VertexFrames {
   }
 
   std::size_t size() const { return count_; }
+
+  /// @brief Whether both frames are the same arrays and in no pose: then nothing moves.
+  bool isStill() const {
+    return !posed_ && double_[0] == double_[1] && float_[0] == float_[1];
+  }
   bool isPosed() const { return posed_; }
   const Pose& pose(int frame) const { return pose_[frame]; }
 
