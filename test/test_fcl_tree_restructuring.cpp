@@ -248,11 +248,11 @@ TEST(FCL_TREE_RESTRUCTURING, componentsStayApart) {
 }
 
 // Sheets that are too small for trees of their own when the mesh is built, and lie in
-// each other's nodes, come apart in the tree once they have come apart in space: what is
-// made anew are some children of a node, of which there are fewer than sheets.
+// each other's nodes, come apart in the tree once they slide apart in space: what is made
+// anew are the children of a node, of which there are fewer than sheets.
 TEST(FCL_TREE_RESTRUCTURING, componentsComeApart) {
   constexpr std::size_t kSheets = 6;
-  const TestMesh sheet = makeSheet(4, 4);
+  const TestMesh sheet = makeSheet(5, 4);
   FrameSequence stack{{}, {{}, {}}};
   for (std::size_t k = 0; k < kSheets; ++k) {
     const std::size_t first = stack.frames[0].size();
@@ -260,7 +260,8 @@ TEST(FCL_TREE_RESTRUCTURING, componentsComeApart) {
       stack.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
     for (const auto& p : sheet.vertices) {
       stack.frames[0].push_back(p + Vector3<double>(0, 0, 0.001 * double(k)));
-      stack.frames[1].push_back(p + Vector3<double>(0, 0, 10 * double(k)));
+      stack.frames[1].push_back(p +
+                                Vector3<double>(0.5 * double(k), 0, 0.001 * double(k)));
     }
   }
   const auto countChanges = [&](const MovingKdopTree& tree) {
