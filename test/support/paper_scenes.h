@@ -71,8 +71,8 @@ struct SceneFrame {
 using SceneSink = std::function<bool(const SceneFrame& frame)>;
 
 /// @brief Simulates a scene and hands out its frames. Same options, same bits.
-/// @throws fcl::Exception if the simulation fails, or comes to a stop that it cannot
-/// leave.
+/// @throws fcl::Exception if the simulation fails, or comes before its last frame to a
+/// stop that it cannot leave.
 void generateScene(SceneKind kind, const SceneOptions& options, const SceneSink& sink);
 
 /// @brief The first mesh of a scene, without simulating it.
