@@ -16,18 +16,6 @@ namespace {
 /// Of two triangles.
 constexpr std::size_t kEdges = 6;
 
-/// By how much at most vertices of the two come closer to each other along an axis in the
-/// step.
-double approachOf(const TrianglePair& pair) {
-  double moved[2];
-  for (int on_b = 0; on_b < 2; ++on_b) {
-    const TreeVertex* const* x = pair.x + 3 * on_b;
-    moved[on_b] = std::max(std::max(x[0]->displacement(), x[1]->displacement()),
-                           x[2]->displacement());
-  }
-  return moved[0] + moved[1];
-}
-
 bool isFinite(const TreeVertex& x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
@@ -189,30 +177,34 @@ void FeatureBatch::cull(double latest, StageCounts& counts) {
                                           crossings_.get(), size);
 }
 
-/// Takes from triangle pairs that are apart what cannot touch until `latest`: features if
-/// that isEarly(), edges that may cross at t = 0 in any case.
+/// Leaves out triangle pairs that are apart until `latest` if that isEarly(), else only
+/// their edges that may cross at t = 0.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   const bool is_early = isEarly(latest);
   if (!is_early && !has_edges_) return;
-  // Rounded up by more than a sum and a product round.
+  // A sum and a product round by 2^-53 each.
   const double share = is_early ? latest * (1 + 0x1p-50) : 0;
+  std::size_t kept = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
-    double approach[8] = {};
-    for (std::size_t i = 0; i < count && is_early; ++i) {
-      approach[i] = share * approachOf(pairs_[first + i]);
-      gaps_[first + i] = roundUp(2 * approach[i], 0.f);
-    }
-    const unsigned apart = kernels_.areApart(&pairs_[first], count, approach);
-    for (std::size_t i = 0; i < count; ++i) {
+    float gaps[8];
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, gaps);
+    if (!is_early) {
       // No branch, nobody could foretell it.
-      const auto kept = static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
-      edges_[first + i] &= kept;
-      if (!is_early) continue;
-      owned_[first + i] &= kept;
-      counts.plane_culled += apart >> i & 1U;
+      for (std::size_t i = 0; i < count; ++i)
+        edges_[first + i] &= static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
+      continue;
+    }
+    counts.plane_culled += static_cast<unsigned>(__builtin_popcount(apart));
+    for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+      pairs_[kept] = pairs_[first + lane];
+      owned_[kept] = owned_[first + lane];
+      edges_[kept] = edges_[first + lane];
+      gaps_[kept++] = gaps[lane];
     }
   }
+  if (is_early) num_pairs_ = kept;
 }
 
 void FeatureBatch::cull(FeatureKind kind, double latest, List& list,

@@ -191,16 +191,10 @@ void TrianglePairTest::solve(const FeatureCandidate& candidate) {
 void TrianglePairTest::testCrossings() {
   const std::size_t size = batch_.numCrossings();
   for (std::size_t first = 0; first < size && !has_crossing_; first += 8) {
-    // The last pair fills up the last eight.
-    EightCrossings eight;
-    for (std::size_t lane = 0; lane < 8; ++lane) {
-      const TreeVertex* x[5];
-      batch_.crossingPoints(std::min(first + lane, size - 1), x);
-      for (std::size_t i = 0; i < 5; ++i) eight.x[i][lane] = x[i];
-    }
     const std::size_t count = std::min<std::size_t>(size - first, 8);
     counts_.crossing_tests += count;
-    for (unsigned left = kernels_.mayCross(eight) & ((1U << count) - 1);
+    for (unsigned left =
+             kernels_.mayCross(batch_.pairs(), batch_.crossings() + first, count);
          left != 0 && !has_crossing_; left &= left - 1)
       testCrossing(first + static_cast<std::size_t>(__builtin_ctz(left)));
   }
@@ -208,7 +202,7 @@ void TrianglePairTest::testCrossings() {
 
 void TrianglePairTest::testCrossing(std::size_t i) {
   const TreeVertex* x[5];
-  batch_.crossingPoints(i, x);
+  crossingPoints(batch_.pairs(), batch_.crossings()[i], x);
   const auto start = [&x](int k) -> const double(&)[3] {
     return reinterpret_cast<const double(&)[3]>(x[k]->t0);
   };

@@ -1049,6 +1049,77 @@ TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
   }
 }
 
+/// Each triangle is cut into nine, and gets two others like it, one close above the
+/// other. What most of the nine own is less than all of their edges.
+MovingMesh withLayers(const MovingMesh& mesh) {
+  MovingMesh out;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
+    for (int layer = 0; layer < 3; ++layer) {
+      const auto corner = [&](const std::vector<Vector3<double>>& x, int k) {
+        return x[mesh.id(i, k)];
+      };
+      const Vector3<double> v = corner(mesh.t0, 1) - corner(mesh.t0, 0),
+                            w = corner(mesh.t0, 2) - corner(mesh.t0, 0),
+                            up = 1e-4 * layer * v.cross(w).normalized(),
+                            motion = corner(mesh.t1, 0) - corner(mesh.t0, 0);
+      std::size_t rows[4][4] = {};
+      for (int r = 0; r < 4; ++r)
+        for (int k = 0; k <= r; ++k) {
+          rows[r][k] = out.t0.size();
+          out.t0.push_back(corner(mesh.t0, 0) + (r - k) / 3. * v + k / 3. * w + up);
+          out.t1.push_back(out.t0.back() + motion);
+        }
+      for (int r = 0; r < 3; ++r)
+        for (int k = 0; k <= r; ++k) {
+          out.triangles.emplace_back(rows[r][k], rows[r + 1][k], rows[r + 1][k + 1]);
+          if (k < r)
+            out.triangles.emplace_back(rows[r][k], rows[r + 1][k + 1], rows[r][k + 1]);
+        }
+    }
+  return out;
+}
+
+/// Adds a triangle that moves.
+void addTriangle(const Vector3<double> (&corners)[3], const Vector3<double>& motion,
+                 MovingMesh& mesh) {
+  const std::size_t first = mesh.t0.size();
+  for (const Vector3<double>& c : corners) {
+    mesh.t0.push_back(c);
+    mesh.t1.push_back(c + motion);
+  }
+  mesh.triangles.emplace_back(first, first + 1, first + 2);
+}
+
+// A contact that was found leaves out pairs that do not meet before it, but nothing that
+// crosses: wherever that is, and though it is all that does.
+TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
+  int scenes = 0;
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    MovingMesh mesh = withLayers(movingTriangles(random, 400, 0.02, 1e-3));
+    if (querySelf(PreparedMovingMesh(mesh).instance(), QueryOptions()).has_crossing)
+      continue;
+    ++scenes;
+    const Vector3<double> x(0.02, 0, 0), y(0, 0.02, 0), z(0, 0, 0.02), rest(0, 0, 0);
+    const Vector3<double> contact = random.point(0.5), crossing = random.point(0.5);
+    addTriangle({contact, contact + x, contact + y}, rest, mesh);
+    addTriangle({contact + 1e-3 * z, contact + x + z, contact + y + z}, -0.1 * z, mesh);
+    addTriangle({crossing + 2 * x, crossing + 2 * y, crossing}, rest, mesh);
+    const Vector3<double> inside = crossing + 0.5 * (x + y);
+    // What crosses are the first edges of both.
+    addTriangle({inside - z, inside + z, inside + 3 * x + z}, rest, mesh);
+    const PreparedMovingMesh prepared(mesh);
+    QueryOptions options;
+    options.goal = QueryGoal::kFirst;
+    const QueryAnswer answer = querySelf(prepared.instance(), options);
+    EXPECT_TRUE(answer.has_crossing);
+    EXPECT_TRUE(isEarly(answer.contacts[0].toc_hi));
+    EXPECT_GT(answer.counts.plane_culled, 1000U);
+  }
+  EXPECT_GE(scenes, 10);
+}
+
 // What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of
 // ids all the same.
 TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithDuplicateFaces) {

@@ -12,20 +12,13 @@
 
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
+#include "kernels/vectors.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
-
-/// roundUp() of eight numbers.
-/// @param pad  with FLT_MIN
-HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
-  const Floats f = narrowed(max(broadcast<kEight>(double{kLeastHalf}), value));
-  const Floats up = f + (abs(f) * broadcast<kEight>(kOutward) + pad);
-  return select(up == up, up, broadcast<kEight>(std::numeric_limits<float>::infinity()));
-}
 
 void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
                TreeVertex* vertices) {

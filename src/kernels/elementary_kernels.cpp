@@ -2,6 +2,8 @@
 //
 // The elementary test of eight pairs: coplanarity filter, solve, division of windows; and
 // the crossings of eight edges and faces at t = 0.
+#include <cfloat>
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/elementary_kernels.cpp"
@@ -333,19 +335,24 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
-/// The points of eight triangle pairs at t = 0, relative to the first.
+/// The points of eight triangle pairs at t = 0, relative to the first, and by how much
+/// those of the two come closer to each other at most along an axis in the step.
 struct TrianglePoints {
   Vectors x[6];
-  Doubles norm;
+  Doubles norm, approach;
 
   HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
+    Doubles moved[6];
     for (std::size_t i = 0; i < 6; ++i) {
       // The last pair fills up the eight.
       const auto row = [=](std::size_t lane) HWY_ATTR {
         return pairs[lane < count ? lane : count - 1].x[i]->t0;
       };
-      loadColumns(row, x[i].x, x[i].y, x[i].z);
+      // See TreeVertex.
+      loadColumns(row, x[i].x, x[i].y, x[i].z, moved[i]);
     }
+    approach =
+        max(max(moved[0], moved[1]), moved[2]) + max(max(moved[3], moved[4]), moved[5]);
     norm = broadcast<kEight>(0.);
     for (std::size_t i = 6; i-- > 0;) {
       x[i] = x[i] - x[0];
@@ -368,20 +375,27 @@ HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
   return isInRange(volume) & ((above > least) | (below > least));
 }
 
-unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* approach) {
+unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
+                  float (&gaps)[8]) {
   const TrianglePoints p(pairs, count);
-  const Doubles bridged = load<kEight>(approach);
+  const Doubles bridged = broadcast<kEight>(share) * p.approach;
+  store(roundedUp(bridged + bridged, broadcast<kEight>(FLT_MIN)), gaps);
   const DoubleMask apart =
       areSeparated(p, cross(p.x[1], p.x[2]), bridged) |
       areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged);
   return bits(apart) & ((1U << count) - 1);
 }
 
-unsigned mayCrossOfEight(const EightCrossings& pairs) {
+unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
+                         std::size_t count) {
+  const TreeVertex* points[kEight][5];
+  for (std::size_t lane = 0; lane < kEight; ++lane)
+    // The last one fills up the eight.
+    crossingPoints(pairs, codes[lane < count ? lane : count - 1], points[lane]);
   Vectors x[5];
   for (std::size_t i = 0; i < 5; ++i) {
-    const auto row = [&pairs, i](std::size_t lane)
-                         HWY_ATTR { return pairs.x[i][lane]->t0; };
+    const auto row = [&points, i](std::size_t lane)
+                         HWY_ATTR { return points[lane][i]->t0; };
     loadColumns(row, x[i].x, x[i].y, x[i].z);
   }
   const auto& [p, q, a, b, c] = x;
@@ -390,14 +404,15 @@ unsigned mayCrossOfEight(const EightCrossings& pairs) {
   const Orientations from(p - a, normal, norms), to(q - a, normal, norms);
   const unsigned on_one_side =
       bits((from.positive & to.positive) | (from.negative & to.negative));
-  if (on_one_side == (1U << kEight) - 1) return 0;
+  const unsigned open = ((1U << count) - 1) & ~on_one_side;
+  if (open == 0) return 0;
   // The line turns one way around an edge and the other way around another.
   const Vectors along = q - p, pa = a - p, pb = b - p, pc = c - p;
   const Orientations ab = turnsOf(along, pa, pb), bc = turnsOf(along, pb, pc),
                      ca = turnsOf(along, pc, pa);
   const unsigned beside = bits((ab.positive | bc.positive | ca.positive) &
                                (ab.negative | bc.negative | ca.negative));
-  return ((1U << kEight) - 1) & ~(on_one_side | beside);
+  return open & ~beside;
 }
 
 /// Where the cubics that have one sign at 0 and at 1 come nearest to zero in between, as

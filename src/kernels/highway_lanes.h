@@ -280,11 +280,11 @@ HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
 }
 #endif
 
-/// Columns 0, 1 and 2 of N rows of four.
+/// The columns of N rows of four.
 /// @param row  row(i) points to row i
 template <typename Row, typename T, std::size_t N>
 HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
-                            Lanes<T, N>& z) {
+                            Lanes<T, N>& z, Lanes<T, N>& w) {
   const typename Lanes<T, N>::Tag tag;
   FCL_CCD_FOR_PARTS {
     const std::size_t i = p * Lanes<T, N>::kWidth;
@@ -292,27 +292,38 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
     x.part[p] = hn::LoadU(tag, row(i));
     y.part[p] = hn::LoadU(tag, row(i) + 1);
     z.part[p] = hn::LoadU(tag, row(i) + 2);
+    w.part[p] = hn::LoadU(tag, row(i) + 3);
 #else
     if constexpr (Lanes<T, N>::kWidth == 2) {
       const auto a = hn::LoadU(tag, row(i)), b = hn::LoadU(tag, row(i + 1));
       x.part[p] = hn::InterleaveLower(tag, a, b);
       y.part[p] = hn::InterleaveUpper(tag, a, b);
-      z.part[p] = hn::InterleaveLower(tag, hn::LoadU(tag, row(i) + 2),
-                                      hn::LoadU(tag, row(i + 1) + 2));
+      const auto c = hn::LoadU(tag, row(i) + 2), d = hn::LoadU(tag, row(i + 1) + 2);
+      z.part[p] = hn::InterleaveLower(tag, c, d);
+      w.part[p] = hn::InterleaveUpper(tag, c, d);
     } else {
-      // In blocks of two lanes: x z of rows 0 and 1, of 2 and 3; then y.
+      // In blocks of two lanes: x z of rows 0 and 1, of 2 and 3; then y w.
       const auto r0 = loadRows(tag, row, i), r1 = loadRows(tag, row, i + 1),
                  r2 = loadRows(tag, row, i + 2), r3 = loadRows(tag, row, i + 3);
       const auto xz01 = hn::InterleaveLower(tag, r0, r1),
                  xz23 = hn::InterleaveLower(tag, r2, r3),
-                 y01 = hn::InterleaveUpper(tag, r0, r1),
-                 y23 = hn::InterleaveUpper(tag, r2, r3);
+                 yw01 = hn::InterleaveUpper(tag, r0, r1),
+                 yw23 = hn::InterleaveUpper(tag, r2, r3);
       x.part[p] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(xz23), xz01);
-      y.part[p] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(y23), y01);
+      y.part[p] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(yw23), yw01);
       z.part[p] = hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01));
+      w.part[p] = hn::OddEvenBlocks(yw23, hn::SwapAdjacentBlocks(yw01));
     }
 #endif
   }
+}
+
+/// The first three of them.
+template <typename Row, typename T, std::size_t N>
+HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
+                            Lanes<T, N>& z) {
+  Lanes<T, N> w;
+  loadColumns(row, x, y, z, w);
 }
 
 /// Eight rows of eight become columns.

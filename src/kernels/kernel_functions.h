@@ -37,8 +37,10 @@ std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
 std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
-unsigned areApart(const TrianglePair* pairs, std::size_t count, const double* approach);
-unsigned mayCrossOfEight(const EightCrossings& pairs);
+unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
+                  float (&gaps)[8]);
+unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
+                         std::size_t count);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);

@@ -177,6 +177,13 @@ inline void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y, Lanes<T,
   }
 }
 
+template <typename Row, typename T, std::size_t N>
+inline void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y, Lanes<T, N>& z,
+                        Lanes<T, N>& w) {
+  loadColumns(row, x, y, z);
+  FCL_CCD_FOR_LANES w.lane[i] = row(i)[3];
+}
+
 inline void loadTwoEach(const float* from, Lanes<double, kEight>& first,
                         Lanes<double, kEight>& second) {
   for (std::size_t i = 0; i < kEight; ++i) {

@@ -3,6 +3,8 @@
 // Vectors of three coordinates, eight side by side.
 //
 // Included once for each of Highway's targets, hence no ordinary include guard.
+#include <limits>
+
 #include "error_bounds.h"
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "kernels/lanes.h"
@@ -19,6 +21,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
+
+/// roundUp() of eight numbers.
+/// @param pad  with FLT_MIN
+HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
+  const Floats f = narrowed(max(broadcast<kEight>(double{kLeastHalf}), value));
+  const Floats up = f + (abs(f) * broadcast<kEight>(kOutward) + pad);
+  return select(up == up, up, broadcast<kEight>(std::numeric_limits<float>::infinity()));
+}
 
 /// Three coordinates of eight vectors.
 struct Vectors {

@@ -156,17 +156,9 @@ class FeatureBatch {
     bool edge_on_a;
   };
   std::size_t numCrossings() const { return num_crossings_; }
+  /// @brief They as Kernels::mayCross() takes them.
+  const std::uint32_t* crossings() const { return crossings_.get(); }
   EdgeAndFace crossing(std::size_t i) const;
-
-  /// @brief The ends of that edge, then the corners of that face.
-  void crossingPoints(std::size_t i, const TreeVertex* (&x)[5]) const {
-    const EdgeAndFace c = crossing(i);
-    const TreeVertex* const* edge = c.pair->x + (c.edge_on_a ? 0 : 3);
-    const TreeVertex* const* face = c.pair->x + (c.edge_on_a ? 3 : 0);
-    x[0] = edge[c.edge];
-    x[1] = edge[(c.edge + 1) % 3];
-    for (int k = 0; k < 3; ++k) x[2 + k] = face[k];
-  }
 
  private:
   /// Has room for all pairs that kMaxPairs triangle pairs can own; not initialized.

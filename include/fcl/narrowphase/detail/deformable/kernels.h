@@ -101,6 +101,18 @@ inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 
+/// @brief The ends of an edge and the corners of a face of a triangle pair.
+/// @param code  as of Kernels::cullCrossings()
+inline void crossingPoints(const TrianglePair* pairs, std::uint32_t code,
+                           const TreeVertex* (&x)[5]) {
+  const std::uint32_t on_b = code % 16 / 3, k = code % 16 % 3;
+  const TreeVertex* const* edge = pairs[code / 16].x + 3 * on_b;
+  const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
+  x[0] = edge[k];
+  x[1] = edge[(k + 1) % 3];
+  for (int i = 0; i < 3; ++i) x[2 + i] = face[i];
+}
+
 /// @brief The windows of pairs of features as the tests take them, with a margin.
 inline double windowLo(const TimeWindow& w) { return std::max(w.lo - kWindowMargin, 0.); }
 inline double windowHi(const TimeWindow& w) { return std::min(w.hi + kWindowMargin, 1.); }
@@ -119,11 +131,6 @@ struct EightPairs {
     lo[lane] = window_lo;
     hi[lane] = window_hi;
   }
-};
-
-/// @brief Eight edges, from x[0][k] to x[1][k], and faces.
-struct EightCrossings {
-  const TreeVertex* x[5][8];
 };
 
 /// @brief Eight fans of equally many spokes, all closed or all open.
@@ -217,16 +224,22 @@ struct Kernels {
                                std::size_t count);
 
   /// Which of up to eight pairs of triangles are apart at t = 0, a bit each, and stay so
-  /// as long as their vertices come no closer to each other than by `approach` along x, y
-  /// or z: the plane of one of the two provably separates them by more.
+  /// during the first part of the step: the plane of one of the two provably separates
+  /// them by more than their vertices can come closer to each other.
   /// @param count  1 to 8
-  /// @param approach  of each; eight numbers are read
-  unsigned (*areApart)(const TrianglePair* pairs, std::size_t count,
-                       const double* approach);
+  /// @param share  how much of the step that is, with room for the rounding of a sum and
+  /// a product
+  /// @param[out] gaps  of each: what is further apart at t = 0, along one of the
+  /// directions, does not meet in that part of the step
+  unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
+                       float (&gaps)[8]);
 
-  /// Which of eight edges may pass through their faces at t = 0, a bit each: isCrossing()
-  /// says no to all others.
-  unsigned (*mayCross)(const EightCrossings& pairs);
+  /// Which of up to eight edges may pass through their faces at t = 0, a bit each:
+  /// isCrossing() says no to all others.
+  /// @param codes  as of cullCrossings()
+  /// @param count  1 to 8
+  unsigned (*mayCross)(const TrianglePair* pairs, const std::uint32_t* codes,
+                       std::size_t count);
 
   /// Which of eight fans provably stay embedded, a bit each: their triangles meet nowhere
   /// but in what they share, at every time of the step. Along a direction d they all keep
