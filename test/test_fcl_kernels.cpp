@@ -1068,7 +1068,7 @@ TEST(FCL_KERNELS, layersAreApart) {
     for (const double height : {1., -1.})
       // Which of them stands upright, so that its plane cuts the other one.
       for (const int upright : {-1, 0, 1}) {
-        TreeVertex x[2][3];
+        TreeVertex x[2][3] = {};
         for (int t = 0; t < 2; ++t) {
           const double corners[3][3] = {{0, -4, 0}, {8, -4, 0}, {4, 4, 0}};
           for (int i = 0; i < 3; ++i)
