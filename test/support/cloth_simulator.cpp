@@ -202,8 +202,7 @@ void ClothSimulator::advanceStep(int step_of_frame, FrameReport& report) {
   contacts_.clear();
   predict();
   pushApart();
-  for (const auto& contact : query(step_of_frame, report).contacts)
-    addConstraint(contact.kind, weightsAt(contact), -contact.normal);
+  addConstraints(query(step_of_frame, report).contacts);
   for (Spring& s : edge_springs_) s.multiplier = 0;
   for (Spring& s : bend_springs_) s.multiplier = 0;
   solve(options_.iterations);

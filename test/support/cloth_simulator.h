@@ -59,8 +59,14 @@ struct SimulatorOptions {
   double cloth_density{0.2};
   /// XPBD compliance of the bending springs, metres a newton
   double bend_compliance{0.5};
-  /// rounds of query and correction in a step before what is in contact is held
+  /// rounds of query and correction in a step before what is in contact is slowed down
   int response_rounds{4};
+  /// rounds after those in which it goes half as far, before it is held
+  int slowing_rounds{3};
+  /// most contacts of the same two solids in a query that become constraints, spread over
+  /// all. The motions of two solids have no more than 24 unknowns, but where they overlap
+  /// many thousands of contacts
+  int contacts_per_pair{std::numeric_limits<int>::max()};
   /// whether surfaces that are near each other are pushed apart (see `thickness`) before
   /// they touch; without, only contacts are answered, which is cheaper
   bool push_apart{true};
@@ -93,7 +99,7 @@ struct FragileOptions {
   double reach{0.1};
   /// how far borders of parted pieces draw back, in lengths of their edges
   double gap{0.02};
-  /// speed at which parts leave the middle of what broke, metres a second; a random part
+  /// speed at which parts leave the middle of the shell, metres a second; a random part
   /// of it is missing
   double burst{0};
 };
@@ -232,7 +238,8 @@ class ClothSimulator {
   struct Shell {
     FragileShell surface;
     FragileOptions options;
-    double vertex_mass;  // kg
+    double vertex_mass;      // kg
+    Vector3<double> middle;  // of the design
     std::vector<int> solid_of_piece;
     bool is_loaded;  // bonds broke since its surface was parted
   };
@@ -294,6 +301,7 @@ class ClothSimulator {
 
   ContinuousContactResult<double> query(int step_of_frame, FrameReport& report);
   ContactWeights weightsAt(const ContinuousContact<double>& contact) const;
+  void addConstraints(const std::vector<ContinuousContact<double>>& contacts);
   void addConstraint(ContinuousContactKind kind, ContactWeights where,
                      Vector3<double> direction);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "cloth_simulator.h"
 #include "fcl/common/exception.h"
@@ -23,9 +25,6 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
 /// ten.
 const int kRoundsWithMotion = 20;
 const int kRoundsWithCloth = 50;
-
-/// Rounds before that in which motion is halved.
-const int kRoundsOfSlowing = 3;
 
 /// Weights of the points of lines a0 a1 and b0 b1 closest to each other, kept on the
 /// segments.
@@ -143,6 +142,26 @@ void ClothSimulator::addConstraint(ContinuousContactKind kind, ContactWeights wh
   contacts_.push_back(contact);
 }
 
+/// @param contacts  of a query on the step's motion
+void ClothSimulator::addConstraints(
+    const std::vector<ContinuousContact<double>>& contacts) {
+  const auto pairOf = [&](const ContinuousContact<double>& c) {
+    const int one = solid_of_[c.vertices[0]];
+    const int other = solid_of_[c.vertices[3]];
+    return std::make_pair(std::min(one, other), std::max(one, other));
+  };
+  std::map<std::pair<int, int>, std::size_t> counts;
+  for (const auto& c : contacts) ++counts[pairOf(c)];
+  const std::size_t most = options_.contacts_per_pair;
+  std::map<std::pair<int, int>, std::size_t> seen;
+  for (const auto& c : contacts) {
+    const auto pair = pairOf(c);
+    const bool are_solids = pair.first >= 0 && pair.second >= 0;
+    const std::size_t stride = are_solids ? 1 + (counts[pair] - 1) / most : 1;
+    if (seen[pair]++ % stride == 0) addConstraint(c.kind, weightsAt(c), -c.normal);
+  }
+}
+
 Vector3<double> ClothSimulator::separationNow(const ContactConstraint& contact) const {
   Vector3<double> sum = separation(contact.where, moved_);
   for (const SolidShare& share : contact.solids)
@@ -193,8 +212,7 @@ void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
   for (int round = 0; round < options_.response_rounds; ++round) {
     const auto result = query(step_of_frame, report);
     if (result.contacts.empty()) return;
-    for (const auto& contact : result.contacts)
-      addConstraint(contact.kind, weightsAt(contact), -contact.normal);
+    addConstraints(result.contacts);
     solve(2);
     for (int i = 0; i < options_.iterations; ++i) projectContacts();
     placeSolids();
@@ -239,7 +257,7 @@ void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
   for (int round = 0;; ++round) {
     const auto result = query(step_of_frame, report);
     if (result.contacts.empty()) return;
-    if (round < kRoundsOfSlowing) {
+    if (round < options_.slowing_rounds) {
       slowDown(result.contacts);
       continue;
     }

@@ -65,7 +65,9 @@ int ClothSimulator::addFragile(const ShellDesign& design, const SolidOptions& op
   solids_.back().pieces = surface.numPieces();
   const std::vector<int> solid_of_piece(surface.numPieces(),
                                         static_cast<int>(solids_.size()) - 1);
-  shells_.push_back({std::move(surface), fragile, vertex_mass, solid_of_piece, false});
+  const Vector3<double> middle = solids_.back().offset;
+  shells_.push_back(
+      {std::move(surface), fragile, vertex_mass, middle, solid_of_piece, false});
   return first;
 }
 
@@ -171,8 +173,9 @@ void ClothSimulator::divideSolids(int shell_id, const std::vector<int>& part_of_
     solid.body.begin = solid.body.end = carried(whole.body.begin);
     solid.body.velocity = carried(whole.body.velocity);
     if (from_whole.norm() > 0)
-      solid.body.velocity.centre += shell.options.burst * random_.uniform(0.3, 1) *
-                                    (whole.body.begin.shape * from_whole).normalized();
+      solid.body.velocity.centre +=
+          shell.options.burst * random_.uniform(0.3, 1) *
+          (whole.body.begin.shape * (solid.offset - shell.middle)).normalized();
     part_index[part] = static_cast<int>(parts.size());
     parts.push_back({old, std::move(solid)});
   }
