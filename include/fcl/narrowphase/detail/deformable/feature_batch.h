@@ -156,7 +156,7 @@ class FeatureBatch {
     bool edge_on_a;
   };
   std::size_t numCrossings() const { return num_crossings_; }
-  /// @brief They as Kernels::mayCross() takes them.
+  /// @brief The same as Kernels::mayCross() takes them.
   const std::uint32_t* crossings() const { return crossings_.get(); }
   EdgeAndFace crossing(std::size_t i) const;
 
