@@ -51,6 +51,12 @@ bool visitModel(const CollisionGeometry<S>& geometry, Visit&& visit) {
   }
 }
 
+/// Whether a model has a previous frame that counts.
+template <typename BV>
+bool isDeforming(const BVHModel<BV>& model) {
+  return model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
+}
+
 /// The geometry as a model of ours whose own tree can be used.
 template <typename S>
 const DeformableMesh* deformableMeshOf(const CollisionGeometry<S>& geometry) {
@@ -125,9 +131,7 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
   MeshKind kind = MeshKind::kNotAMesh;
   visitModel(geometry, [&kind](const auto& model) {
     if (model.num_vertices > 0 && model.num_tris == 0) return;  // a point cloud
-    const bool moved =
-        model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
-    kind = moved ? MeshKind::kDeforming : MeshKind::kRigid;
+    kind = isDeforming(model) ? MeshKind::kDeforming : MeshKind::kRigid;
   });
   return kind;
 }
@@ -170,8 +174,7 @@ template <typename BV>
 void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning,
                                 const Pose& end, const std::string& name, int num_threads,
                                 FeatureOwners owners) {
-  const bool deforming =
-      model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
+  const bool deforming = isDeforming(model);
   if (!deforming && model.build_state != BVH_BUILD_STATE_PROCESSED)
     throw Exception(name +
                     ": the model is not built, or an update has begun and not ended");
@@ -214,7 +217,7 @@ void PreparedMesh::requireIndices(const BVHModel<BV>& model, const std::string& 
 template <typename BV>
 void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string& name,
                                     int num_threads) {
-  if (model.prev_vertices)
+  if (isDeforming(model))
     requireFinite(model.prev_vertices, model.num_vertices, name + ", previous frame");
   requireFinite(model.vertices, model.num_vertices, name + ", current frame");
   std::vector<std::int32_t> links(static_cast<std::size_t>(model.getNumBVs()));

@@ -14,6 +14,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
+#include "fcl/narrowphase/distance.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -509,6 +510,129 @@ TYPED_TEST(DeformableModel, GrowsAfterSteps) {
   ASSERT_EQ(update(whole, next), BVH_OK);
   expectSameContacts(selfContacts<S>(model), selfContacts<S>(whole));
   EXPECT_GT(selfContacts<S>(whole).contacts.size(), 0U);
+}
+
+// FCL takes triangles before anything has begun, beyond its arrays, and after an update,
+// without a previous frame for them.
+TYPED_TEST(DeformableModel, RefusesToAddWhereNothingHasBegun) {
+  USING_FIXTURE;
+  const int wrong = BVH_ERR_BUILD_OUT_OF_SEQUENCE;
+  const auto p = this->points(frame(3));
+  const std::vector<Triangle> triangles = {Triangle(0, 1, 2)};
+  Model empty;
+  ::testing::internal::CaptureStderr();
+  EXPECT_EQ(empty.addVertex(p[0]), wrong);
+  EXPECT_EQ(empty.addTriangle(p[0], p[1], p[2]), wrong);
+  EXPECT_EQ(empty.addSubModel(p), wrong);
+  EXPECT_EQ(empty.addSubModel(p, triangles), wrong);
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(empty.num_vertices, 0);
+  EXPECT_EQ(empty.num_tris, 0);
+
+  const auto model = makeModel<Model>(frame(1), frame(2));
+  Plain& base = *model;
+  for (int i = 0; i < 2; ++i) {
+    const auto refuse = [&](auto call) {
+      this->expectRefusal(*model, wrong, "beginModel", call);
+    };
+    refuse([&] { return model->addVertex(p[0]); });
+    refuse([&] { return model->addTriangle(p[0], p[1], p[2]); });
+    refuse([&] { return model->addSubModel(p); });
+    refuse([&] { return model->addSubModel(p, triangles); });
+    // And again, where FCL's state is that of an update.
+    ASSERT_EQ(update(base, frame(3)), BVH_OK);
+  }
+}
+
+// Its motion would be lost.
+TYPED_TEST(DeformableModel, EndsOnceUnlessItGrows) {
+  USING_FIXTURE;
+  Model model;
+  ASSERT_EQ(model.beginModel(), BVH_OK);
+  ASSERT_EQ(model.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+  ASSERT_EQ(this->updateFrames(model, this->points(frame(1)), this->points(frame(2))),
+            BVH_OK);
+  this->expectRefusal(model, BVH_ERR_BUILD_OUT_OF_SEQUENCE, "updateFclTree",
+                      [&] { return model.endModel(); });
+  ASSERT_EQ(model.addSubModel({}), BVH_OK) << "nothing is added";
+  this->expectFrames(model, frame(1), frame(2));
+  ASSERT_EQ(model.updateFclTree(), BVH_OK);
+  this->expectFrames(model, frame(1), frame(2));
+  EXPECT_TRUE(model.isFclTreeUpToDate());
+}
+
+// FCL's copy of a model without vertices has no room for any, and does not know it.
+TYPED_TEST(DeformableModel, CopiesGrowFromNothing) {
+  USING_FIXTURE;
+  const auto points = this->points(kSheet);
+  for (const bool has_triangles : {false, true}) {
+    Model original;
+    ASSERT_EQ(original.beginModel(), BVH_OK);
+    if (has_triangles) {
+      ASSERT_EQ(original.addSubModel({}, kSheet.triangles), BVH_OK);
+    }
+    Model copy(original), assigned;
+    assigned = original;
+    for (Model* model : {&original, &copy, &assigned}) {
+      if (has_triangles) {
+        for (const Vector3<S>& p : points) ASSERT_EQ(model->addVertex(p), BVH_OK);
+      } else {
+        ASSERT_EQ(model->addSubModel(points, kSheet.triangles), BVH_OK);
+      }
+      ASSERT_EQ(model->endModel(), BVH_OK) << model->lastError();
+      ASSERT_EQ(update(*model, frame(1)), BVH_OK);
+      this->expectFrames(*model, kSheet, frame(1));
+    }
+  }
+}
+
+// FCL's queries would read a tree that is not there.
+TYPED_TEST(DeformableModel, DiscreteQueriesRefuseWhatIsNotBuilt) {
+  USING_FIXTURE;
+  const auto built = makeModel<Model>(kSheet);
+  const auto expectThrow = [&](const Model& model, const char* word) {
+    EXPECT_FALSE(model.isFclTreeUpToDate());
+    const auto tf = Transform3<S>::Identity();
+    CollisionResult<S> result;
+    expectRefused(
+        [&] { collide(&model, tf, built.get(), tf, CollisionRequest<S>(), result); },
+        word);
+    DistanceResult<S> distances;
+    expectRefused(
+        [&] { distance(built.get(), tf, &model, tf, DistanceRequest<S>(), distances); },
+        word);
+  };
+  Model model;
+  expectThrow(model, "not built");
+  ASSERT_EQ(model.beginModel(), BVH_OK);
+  ASSERT_EQ(model.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  expectThrow(model, "not built");
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+  expectThrow(model, "updateFclTree");
+  ASSERT_EQ(model.addVertex(this->points(kSheet)[0]), BVH_OK);
+  expectThrow(model, "has grown");
+  expectThrow(Model(model), "not built");
+}
+
+// What a rigid model has in its previous frame is nobody's concern, nor how much.
+TYPED_TEST(DeformableModel, GrowsThroughTheBase) {
+  USING_FIXTURE;
+  Model model;
+  ASSERT_EQ(model.beginModel(), BVH_OK);
+  ASSERT_EQ(model.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  ASSERT_EQ(model.endModel(FclTree::kSkip), BVH_OK);
+  Plain& base = model;
+  const TestMesh other = moved(frame(1), 0.05, 0.03, 0.02);
+  ASSERT_EQ(base.addSubModel(this->points(other), other.triangles), BVH_OK);
+  ASSERT_EQ(base.endModel(), BVH_OK);
+  Plain plain;
+  ASSERT_EQ(plain.beginModel(), BVH_OK);
+  ASSERT_EQ(plain.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
+  ASSERT_EQ(plain.addSubModel(this->points(other), other.triangles), BVH_OK);
+  ASSERT_EQ(plain.endModel(), BVH_OK);
+  expectIdentical(selfContacts<S>(model), selfContacts<S>(plain));
+  EXPECT_TRUE(selfContacts<S>(model).is_collide);
 }
 
 TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {

@@ -5,7 +5,9 @@
 // Copies, the state that a model is in, the checks of what it is given and what it says
 // of itself. How it is built and updated is in deformable_bvh_model_update-inl.h.
 
+#include <algorithm>
 #include <memory>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -51,8 +53,20 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
   // FCL shares these between copies, although building writes to them.
   this->bv_splitter = std::make_shared<detail::BVSplitter<BV>>(detail::SPLIT_METHOD_MEAN);
   this->bv_fitter = std::make_shared<detail::BVFitter<BV>>();
+  if (this->build_state == BVH_BUILD_STATE_BEGUN && this->num_vertices == 0) makeRoom();
   if (other.isInStep()) seal_ = currentSeal();
   if (other.opened_ == other.currentSeal()) opened_ = currentSeal();
+}
+
+/// FCL's copy of a model that has begun has room for as many vertices as there are, and
+/// doubles that when more come, even where there are none.
+template <typename BV>
+void DeformableBVHModel<BV>::makeRoom() {
+  delete[] std::exchange(this->vertices, nullptr);
+  const std::unique_ptr<Triangle[]> triangles(std::exchange(this->tri_indices, nullptr));
+  this->build_state = BVH_BUILD_STATE_EMPTY;
+  if (Base::beginModel(this->num_tris) != BVH_OK) throw std::bad_alloc();
+  std::copy_n(triangles.get(), this->num_tris, this->tri_indices);
 }
 
 template <typename BV>
@@ -275,6 +289,8 @@ NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
     throw Exception(
         "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
         "queries need it; call updateFclTree() first");
+  if (this->getNumBVs() == 0)
+    throw Exception("DeformableBVHModel: the model is not built");
   return Base::getNodeType();
 }
 

@@ -42,9 +42,9 @@ enum class FclTree {
 /// endModel() leaves the model open, as an error does. An update that an exception ends
 /// may be half done: until updateFrames(), updateTopology() or a replacement has given
 /// both frames, every query and copy of the model throws fcl::Exception and
-/// beginUpdateModel() is refused. beginModel() and the add... functions are FCL's own:
-/// called out of order they print, and beginModel() of a model that is built clears it
-/// and returns an error; a second one begins.
+/// beginUpdateModel() is refused. A begin... while an update is open drops what was given
+/// since the one before. beginModel() is FCL's own: called for a model that is built it
+/// prints, clears it and returns an error; a second one begins.
 ///
 /// Inherited behaviour that differs from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
@@ -53,16 +53,19 @@ enum class FclTree {
 ///   built;
 /// - prev_vertices is never null in a built model;
 /// - getNodeType() throws fcl::Exception while FCL's tree is out of date, which it is
-///   after FclTree::kSkip, or an update has failed: every query of FCL's starts with it;
+///   after FclTree::kSkip, or an update has failed, or there is none, since the model is
+///   not built: every query of FCL's starts with it;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
 /// No update function of BVHModel is virtual. One called through a pointer or reference
 /// to BVHModel<BV> is noticed: continuous queries then read the base's frames and build
 /// a tree per call, as for a plain BVHModel, until the next update through this class.
+/// Nothing may be added through the base to a model that ended with FclTree::kSkip: FCL
+/// would write its next update beyond the end of the previous frame.
 ///
-/// Thread-safety: concurrent const access is safe; copies are deep and independent. A
-/// build or an update runs on the caller's thread alone unless setNumThreads() allows
-/// more.
+/// Thread-safety: concurrent const access is safe; copies are deep and independent, with
+/// FCL's own bv_splitter and bv_fitter, whatever the original has. A build or an update
+/// runs on the caller's thread alone unless setNumThreads() allows more.
 template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:
@@ -83,7 +86,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int setNumThreads(int num_threads);
 
   /// @name Add to a model that is open, or that ended with FclTree::kSkip, which opens it
-  /// again. Errors: FCL's own; after an update that failed BVH_ERR_BUILD_OUT_OF_SEQUENCE.
+  /// again; refused for any other (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
   /// @{
   int addVertex(const Vector3<S>& p);
   int addTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
@@ -95,7 +98,8 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
   /// coordinates that are not finite and vertex indices out of range
   /// (BVH_ERR_INCORRECT_DATA); the model stays open: `vertices` and `tri_indices` may be
-  /// corrected in their places, more be added, and endModel() called again.
+  /// corrected in their places, more be added, and endModel() called again. Refuses a
+  /// model that has ended and not grown since (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
 
   /// @name Replace the current frame; both frames become equal (no motion).
@@ -206,6 +210,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
   void seal();
+  void makeRoom();
   void swapBase(Base& other);
 
   /// Coordinates given since begin..., so that a refused frame changes nothing.

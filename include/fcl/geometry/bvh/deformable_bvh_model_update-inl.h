@@ -33,18 +33,19 @@ struct RefitsBottomUp<KDOP<S, N>> : std::true_type {};
 
 }  // namespace detail
 
+// FCL itself writes beyond its arrays where none was begun, and forgets the previous
+// frame of a model that was updated.
 template <typename BV>
 template <typename Add>
 int DeformableBVHModel<BV>::grow(Add&& add) {
-  if (isHalfUpdated())
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "the model grows after an update that failed");
-  if (this->build_state == BVH_BUILD_STATE_BEGUN) {
+  if (this->build_state != BVH_BUILD_STATE_BEGUN)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "an add...() without beginModel()");
+  if (const int code = add()) return refuse(code, "FCL refused what was added");
+  if (!isInStep()) {
     delete[] this->prev_vertices;
     this->prev_vertices = nullptr;
   }
-  const int code = add();
-  return code == BVH_OK ? accept() : refuse(code, "FCL refused what was added");
+  return accept();
 }
 
 template <typename BV>
@@ -73,6 +74,11 @@ template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
+  if (isInStep())
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        "endModel() of a model that has not grown; the tree that was skipped is "
+        "built by updateFclTree()");
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
   if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
