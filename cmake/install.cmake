@@ -6,11 +6,14 @@ include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl)
 
-# The overlay includes the stock header of the same name, so it cannot replace it.
+# Before all else: the overlay includes the stock header of the same name, so it cannot
+# replace it.
+install(CODE "set(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")")
 install(
   CODE [[
-  if(EXISTS "${CMAKE_INSTALL_PREFIX}/include/fcl/config.h")
-    message(FATAL_ERROR "Stock FCL is installed in ${CMAKE_INSTALL_PREFIX} and would be "
+  cmake_path(ABSOLUTE_PATH include_dir BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
+  if(EXISTS "$ENV{DESTDIR}${include_dir}/fcl/config.h")
+    message(FATAL_ERROR "Stock FCL is installed in $ENV{DESTDIR}${include_dir} and would be "
                         "overwritten: choose another prefix.")
   endif()
 ]])
@@ -19,6 +22,9 @@ install(
   TARGETS fcl_ccd
   EXPORT fcl_ccd-targets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TARGET fcl-ccd)
+  install(TARGETS fcl-ccd RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
 install(EXPORT fcl_ccd-targets DESTINATION ${package_dir})
 install(
   DIRECTORY ${PROJECT_SOURCE_DIR}/include/fcl
@@ -46,7 +52,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
         DESTINATION ${package_dir})
 
 # pkg-config cannot chain to a package of the same name: fcl.pc repeats what stock says.
-file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+     ${CMAKE_INSTALL_PREFIX})
+file(RELATIVE_PATH FCL_CCD_PC_TO_INCLUDE ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+     ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 set(FCL_CCD_STOCK_PC_CFLAGS "")
 set(FCL_CCD_STOCK_PC_LIBS "")
 cmake_path(GET FCL_INCLUDE_DIRS PARENT_PATH stock_prefix)

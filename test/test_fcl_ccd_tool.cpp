@@ -659,6 +659,11 @@ TEST_F(CcdTool, BadOutputsExitWithTwoAndWriteNothing) {
   expectFailure(good + " --json ''", "no file is named");
   expectFailure(good + " --paint tip1.obj", "tip1.obj: cannot write");
   EXPECT_EQ(readText(path("tip1.obj")), toObj(floorAndTip(2)));
+  // Closed: no file may take its place.
+  const Outcome closed = run(good, "&-");
+  EXPECT_EQ(closed.exit_code, 2);
+  EXPECT_NE(closed.err.find("standard output"), std::string::npos) << closed.err;
+  EXPECT_FALSE(fs::exists(path("c.csv")));
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
   expectFailure(good + " --json /dev/full", "/dev/full: writing failed");
   const Outcome outcome = run(good, "/dev/full");

@@ -33,6 +33,15 @@ sed -i "s|$recorded|set(_fcl_ccd_stock_dir /gone)|" "$work/prefix2/$config"
 package package2 "$work/prefix2" "-DCMAKE_PREFIX_PATH=$work/prefix2;$prefix"
 package package2 "$work/prefix2"
 
+step "a prefix that has stock FCL is left as it is"
+mkdir -p "$work/dest/taken/include/fcl"
+touch "$work/dest/taken/include/fcl/config.h"
+if DESTDIR=$work/dest cmake --install "$build_dir" --prefix /taken >/dev/null 2>&1; then
+  echo "installed over stock FCL" >&2
+  exit 1
+fi
+[ "$(find "$work/dest" -type f)" = "$work/dest/taken/include/fcl/config.h" ]
+
 step "control: with stock FCL alone the program fails"
 cmake -S "$source_dir" -B "$work/stock" -Dfcl_DIR="$stock_dir" >/dev/null
 cmake --build "$work/stock" --target app
@@ -53,7 +62,8 @@ step "pkg-config"
 export PKG_CONFIG_PATH=$prefix/$lib/pkgconfig
 read -ra cflags <<<"$(pkg-config --cflags fcl)"
 read -ra libs <<<"$(pkg-config --libs fcl)"
-"$CXX" "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
+# With the standard that stock FCL's fcl.pc asks for.
+"$CXX" -std=c++11 "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
   -Wl,--as-needed "${libs[@]}"
 LD_LIBRARY_PATH=$prefix/$lib "$work/pc_app"
 # What FCL does not have needs C++17, which fcl.pc leaves to the program.

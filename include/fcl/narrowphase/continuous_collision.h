@@ -18,11 +18,11 @@ namespace detail {
 
 /// A request and a result of which one is for contacts and the other is not.
 template <typename S, typename Request, typename Result>
-using IfMixed =
-    std::enable_if_t<std::is_base_of<ContinuousCollisionRequest<S>, Request>::value &&
-                     std::is_base_of<ContinuousCollisionResult<S>, Result>::value &&
-                     std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
-                         std::is_base_of<ContinuousContactResult<S>, Result>::value>;
+using IfMixed = typename std::enable_if<
+    std::is_base_of<ContinuousCollisionRequest<S>, Request>::value &&
+    std::is_base_of<ContinuousCollisionResult<S>, Result>::value &&
+    std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
+        std::is_base_of<ContinuousContactResult<S>, Result>::value>::type;
 
 }  // namespace detail
 
@@ -45,8 +45,8 @@ using IfMixed =
 /// (current frame), each evaluated in double; a contact is a VF or EE pair of closed
 /// features that touch at some t in [0, 1] (an edge of a vertex with itself is none: its
 /// triangle has that vertex). The choice depends on the geometry and its motion, never on
-/// request.ccd_solver_type. Models are not changed; two calls give the same answer;
-/// concurrent calls on the same models are safe.
+/// request.ccd_solver_type or ccd_motion_type. Models are not changed; two calls give the
+/// same answer; concurrent calls on the same models are safe.
 ///
 /// @throws fcl::Exception that names the object, when it or its motion is null, when a
 /// mesh is not built or is in the middle of an update, has more than 2^29 triangles or

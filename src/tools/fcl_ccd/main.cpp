@@ -3,6 +3,8 @@
 // The command line: options, help, exit codes. 0: done (with or without contacts).
 // 2: anything else; nothing was written then.
 #include <fcl/config.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -186,6 +188,15 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
   return queries;
 }
 
+/// Gives standard streams that are closed to what cannot be written to: else a file that
+/// is opened would take the place of one, and the table be written into it.
+void occupyStandardStreams() {
+  int file;
+  do file = open("/dev/null", O_RDONLY);
+  while (file >= 0 && file <= STDERR_FILENO);
+  if (file >= 0) close(file);
+}
+
 int reportFailure(const char* what) {
   std::fprintf(stderr, "fcl-ccd: %s\n", what);
   return kFailure;
@@ -194,6 +205,7 @@ int reportFailure(const char* what) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  occupyStandardStreams();
   CLI::App app("Continuous collision detection for triangle meshes that deform");
   app.name("fcl-ccd");
   app.footer(kMainExamples);
