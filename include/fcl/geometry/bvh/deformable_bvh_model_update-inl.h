@@ -40,7 +40,23 @@ template <typename Add>
 int DeformableBVHModel<BV>::grow(Add&& add) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "an add...() without beginModel()");
-  if (const int code = add()) return refuse(code, "FCL refused what was added");
+  // FCL may have moved the vertices and taken new ones when it finds no room for
+  // triangles.
+  const int num_vertices = this->num_vertices;
+  const bool was_in_step = isInStep();
+  const auto restore = [&] {
+    this->num_vertices = num_vertices;
+    if (was_in_step) seal_.vertices = this->vertices;
+  };
+  try {
+    if (const int code = add()) {
+      restore();
+      return refuse(code, "FCL has no room for what was added");
+    }
+  } catch (...) {
+    restore();
+    throw;
+  }
   if (!isInStep()) {
     delete[] this->prev_vertices;
     this->prev_vertices = nullptr;
