@@ -5,6 +5,7 @@
 // queries: test_fcl_deformable_discrete.cpp.
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
+#include <limits>
 #include <memory>
 #include <utility>
 
@@ -290,6 +291,7 @@ TYPED_TEST(DeformableModel, GrowsThroughTheBase) {
   const TestMesh other = moved(frame(1), 0.05, 0.03, 0.02);
   ASSERT_EQ(base.addSubModel(this->points(other), other.triangles), BVH_OK);
   ASSERT_EQ(base.endModel(), BVH_OK);
+  base.prev_vertices[0][0] = std::numeric_limits<S>::quiet_NaN();
   Plain plain;
   ASSERT_EQ(plain.beginModel(), BVH_OK);
   ASSERT_EQ(plain.addSubModel(this->points(kSheet), kSheet.triangles), BVH_OK);
