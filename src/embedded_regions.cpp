@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "border_proof.h"
+#include "fcl/narrowphase/detail/deformable/region_border.h"
 #include "parallel.h"
-#include "region_border.h"
 
 namespace fcl {
 namespace detail {
@@ -63,6 +64,15 @@ struct Searched {
   std::size_t embedded{0}, in_vain{0};
 };
 
+/// Finds borders and looks at them; one for each thread.
+struct BorderSearch {
+  BorderFinder finder;
+  BorderProof proof;
+
+  BorderSearch(const MovingKdopTree& tree, const Kernels& kernels)
+      : finder(tree), proof(tree, kernels) {}
+};
+
 class RegionSearch {
  public:
   /// @param found  of the tree's size, all 0
@@ -82,27 +92,19 @@ class RegionSearch {
   /// upwards, as far as they are, so that no large border is looked at in vain where
   /// layers lie on each other. Different nodes at the same time, none below another.
   /// @return with the other parts of those that are not embedded
-  Searched search(const OpenNode& open, RegionBorder& border) {
+  Searched search(const OpenNode& open, BorderSearch& borders) {
     std::vector<OpenNode> chain{open};
     for (std::vector<OpenNode> parts = partsOf(open); !parts.empty();
          parts = partsOf(parts.front()))
       chain.push_back(parts.front());
     Searched out;
     std::size_t largest = chain.size();
-    while (largest > 0 && isEmbedded(chain[largest - 1], border, out.in_vain)) --largest;
-    const bool is_found = largest < chain.size();
-    if (is_found) {
+    while (largest > 0 && isEmbedded(chain[largest - 1], borders, out.in_vain)) --largest;
+    if (largest < chain.size()) {
+      take(chain[largest], borders);
       const Region region = regionOf(chain[largest]);
-      found_.nodes[static_cast<std::size_t>(chain[largest].node)] = 1;
       out.embedded = region.last - region.first;
       out.in_vain = 0;
-    }
-    if (largest > 0) {
-      // The last try, which failed, has written there.
-      const Region tried = regionOf(chain[largest - 1]);
-      std::fill(found_.interior.begin() + tried.first_place,
-                found_.interior.begin() + tried.last_place, std::uint8_t{0});
-      if (is_found) border.markInterior(regionOf(chain[largest]), found_.interior.data());
     }
     for (std::size_t i = 0; i < largest; ++i) {
       const std::vector<OpenNode> parts = partsOf(chain[i]);
@@ -127,19 +129,33 @@ class RegionSearch {
   }
 
   Region regionOf(const OpenNode& open) const {
-    const std::uint32_t first = tree_.firstTriangle(open.node);
-    return {first, open.last, tree_.placesBefore(first), tree_.placesBefore(open.last)};
+    return deformable::regionOf(tree_, open.node, open.last);
   }
 
-  /// Writes to what is interior of the node.
-  bool isEmbedded(const OpenNode& open, RegionBorder& border, std::size_t& in_vain) {
+  const RegionBorder& borderOf(const OpenNode& open, BorderSearch& borders) const {
+    return tree_.regionBorders().of(open.node,
+                                    [&] { return borders.finder.find(regionOf(open)); });
+  }
+
+  bool isEmbedded(const OpenNode& open, BorderSearch& borders, std::size_t& in_vain) {
     const Region region = regionOf(open);
     const std::uint32_t directions = faced_.of(region.first, region.last);
     if (directions == 0) return false;
-    if (border.find(region, found_.interior.data()) && border.isEmbedded(directions))
-      return true;
+    const RegionBorder& border = borderOf(open, borders);
+    if (border.size() > 0 && borders.proof.isEmbedded(border, directions)) return true;
     in_vain += region.last - region.first;
     return false;
+  }
+
+  /// Takes a node as a region, and the vertices inside: those that the region is the
+  /// first to have, with a closed fan that no border passes.
+  void take(const OpenNode& open, BorderSearch& borders) {
+    found_.nodes[static_cast<std::size_t>(open.node)] = 1;
+    const Region region = regionOf(open);
+    for (std::uint32_t v = region.first_place; v < region.last_place; ++v)
+      found_.interior[v] = tree_.fans()[v].is_closed;
+    for (const std::uint32_t v : borderOf(open, borders).points)
+      if (v >= region.first_place) found_.interior[v] = 0;
   }
 
   const MovingKdopTree& tree_;
@@ -165,9 +181,9 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
     std::vector<Searched> searched(open.size());
     parallelForBlocks(open.size(), open.size() / kTasks + 1, num_threads,
                       [&](std::size_t i, std::size_t last) {
-                        RegionBorder border(tree, kernels);
+                        BorderSearch borders(tree, kernels);
                         for (; i < last; ++i)
-                          searched[i] = regions.search(open[i], border);
+                          searched[i] = regions.search(open[i], borders);
                       });
     open.clear();
     for (const Searched& s : searched) {

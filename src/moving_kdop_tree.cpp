@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "fcl/narrowphase/detail/deformable/region_border.h"
 #include "parallel.h"
 #include "tree_builder.h"
 #include "vertex_corners.h"
@@ -127,6 +128,7 @@ void MovingKdopTree::takeMemory(const MovingKdopTree& other,
                                 const TreeStructure& structure) {
   const std::size_t num_nodes = structure.nodes.size(), num_vertices = vertex_ids_.size();
   sizes_.resize(num_nodes);
+  region_borders_ = std::make_shared<RegionBorders>(num_nodes);
   // Trees that change have a few more each time.
   if (other.nodes_.capacity() < num_nodes) nodes_.reserve(num_nodes + num_nodes / 16);
   if (other.vertices_.capacity() < num_vertices)
@@ -243,6 +245,7 @@ void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
                     [&](std::size_t i, std::size_t last) {
                       for (; i < last; ++i) setNode(structure.nodes[i], nodes_[i]);
                     });
+  region_borders_ = std::make_shared<RegionBorders>(count);
   sizes_.assign(nodes_.size(), {});
   first_sizes_.assign(nodes_.size(), {});
 }
@@ -435,7 +438,7 @@ std::size_t MovingKdopTree::memUsage() const {
          vertices_.capacity() * sizeof(vertices_[0]) +
          vertex_ids_.capacity() * sizeof(vertex_ids_[0]) +
          (sizes_.capacity() + first_sizes_.capacity()) * sizeof(NodeSize) +
-         fans_.memUsage();
+         fans_.memUsage() + (region_borders_ ? region_borders_->memUsage() : 0);
 }
 
 KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b) {

@@ -205,12 +205,13 @@ struct MovingTree {
   MovingKdopTree tree;
 };
 
-/// What holds of every tree, owners and fans too.
+/// What holds of every tree, owners, fans and borders too.
 void expectSound(const MovingKdopTree& tree, const ChangingMesh& mesh, const Points& t1) {
   const auto owners =
       assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.points.size());
   expectContainment(tree, owners, framesOf(mesh.points, t1));
   expectFans(tree);
+  expectBorders(tree);
 }
 
 TEST(FCL_TOPOLOGY_CHANGE, randomChanges) {

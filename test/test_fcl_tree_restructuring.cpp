@@ -130,6 +130,7 @@ TEST(FCL_TREE_RESTRUCTURING, notByRigidMotionOrSize) {
 TEST(FCL_TREE_RESTRUCTURING, structureAndBoxes) {
   for (const auto& sequence : {makeMixingBalls(16), reversed(makeCrumplingSheet(13))}) {
     MovingTree moving(sequence);
+    ASSERT_NO_FATAL_FAILURE(expectBorders(moving.tree));
     int count = 0;
     for (std::size_t i = 0; i + 1 < sequence.frames.size(); ++i) {
       const Points &t0 = sequence.frames[i], &t1 = sequence.frames[i + 1];
@@ -137,6 +138,7 @@ TEST(FCL_TREE_RESTRUCTURING, structureAndBoxes) {
       ++count;
       expectContainment(moving.tree, moving.triangles, MovingTree::framesOf(t0, t1));
       ASSERT_NO_FATAL_FAILURE(expectFans(moving.tree));
+      ASSERT_NO_FATAL_FAILURE(expectBorders(moving.tree));
     }
     EXPECT_GE(count, 1);
   }

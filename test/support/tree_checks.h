@@ -15,17 +15,22 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "fcl/narrowphase/detail/deformable/region_border.h"
 
 namespace fcl {
 namespace test {
 
+using detail::deformable::BorderFinder;
 using detail::deformable::kLeastHalf;
 using detail::deformable::MeshTriangle;
 using detail::deformable::MovingKdopNode;
 using detail::deformable::MovingKdopTree;
+using detail::deformable::RegionBorder;
+using detail::deformable::regionOf;
 using detail::deformable::TreeTriangle;
 using detail::deformable::TreeVertex;
 using detail::deformable::VertexFan;
@@ -201,6 +206,78 @@ inline void expectFans(const MovingKdopTree& tree) {
       std::rotate(spokes.begin(), std::find(spokes.begin(), spokes.end(), its.spokes[0]),
                   spokes.end());
     ASSERT_TRUE(std::equal(spokes.begin(), spokes.end(), its.spokes)) << "vertex " << v;
+  }
+}
+
+/// The border is what is left of the triangles' edges: each as often as its vertices
+/// follow each other in that order, less how often the other way.
+inline void expectBorder(const RegionBorder& border, const MovingKdopTree& tree,
+                         std::uint32_t first, std::uint32_t last) {
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<Edge, int> count;
+  for (std::uint32_t i = first; i < last; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const auto& place = tree.triangles()[i].place;
+      const Edge edge{place[k], place[(k + 1) % 3]};
+      ++count[edge];
+      if (edge.first != edge.second) --count[{edge.second, edge.first}];
+    }
+  std::set<Edge> left;
+  bool is_simple = true;
+  for (const auto& [edge, times] : count) {
+    if (times > 0) left.insert(edge);
+    is_simple = is_simple && times <= 1;
+  }
+  if (!is_simple) left.clear();
+  std::set<Edge> edges;
+  for (std::size_t i = 0; i < border.size(); ++i)
+    edges.insert({border.from(i), border.to(i)});
+  ASSERT_EQ(edges.size(), border.size()) << "an edge twice";
+  ASSERT_EQ(edges, left);
+  if (left.empty()) return;
+
+  // Paths begin where the border passes more than once, and pass no other such vertex;
+  // where there is none they are closed.
+  std::map<std::uint32_t, int> passes;
+  for (const Edge& edge : edges) ++passes[edge.first];
+  ASSERT_FALSE(border.paths.empty());
+  ASSERT_EQ(border.paths[0], 0U);
+  for (std::size_t p = 0; p < border.paths.size(); ++p) {
+    const std::size_t begin = border.paths[p], end = p + 1 < border.paths.size()
+                                                         ? border.paths[p + 1]
+                                                         : border.size();
+    ASSERT_LT(begin, end);
+    for (std::size_t i = begin; i + 1 < end; ++i) {
+      ASSERT_EQ(border.to(i), border.from(i + 1));
+      ASSERT_EQ(passes.at(border.to(i)), 1);
+    }
+    const bool is_closed = border.from(begin) == border.to(end - 1);
+    ASSERT_TRUE(is_closed || passes.at(border.from(begin)) > 1);
+    ASSERT_TRUE(is_closed || passes.at(border.to(end - 1)) > 1);
+  }
+  const bool is_passed_once = std::all_of(passes.begin(), passes.end(),
+                                          [](const auto& p) { return p.second == 1; });
+  ASSERT_EQ(border.is_one_loop, border.paths.size() == 1 && is_passed_once);
+}
+
+/// The borders that the tree keeps are those of its nodes; all of them are kept from then
+/// on, as if queries had asked for them.
+inline void expectBorders(const MovingKdopTree& tree) {
+  std::vector<std::uint32_t> last(tree.numNodes(), 0);
+  BorderFinder finder(tree);
+  for (std::size_t i = last.size(); i-- > 0;) {
+    const auto number = static_cast<int>(i);
+    const MovingKdopNode& node = tree.node(number);
+    for (int lane = 0; lane < node.count; ++lane)
+      last[i] =
+          std::max(last[i], node.isTriangle(lane)
+                                ? static_cast<std::uint32_t>(node.triangle(lane)) + 1
+                                : last[static_cast<std::size_t>(node.child[lane])]);
+    const RegionBorder& border = tree.regionBorders().of(
+        number, [&] { return finder.find(regionOf(tree, number, last[i])); });
+    ASSERT_NO_FATAL_FAILURE(
+        expectBorder(border, tree, tree.firstTriangle(number), last[i]))
+        << "node " << i;
   }
 }
 

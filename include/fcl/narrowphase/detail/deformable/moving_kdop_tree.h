@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <vector>
 
 #include "fcl/math/bv/moving_kdop.h"
@@ -125,6 +126,7 @@ struct alignas(64) TreeVertex {
   }
 };
 
+class RegionBorders;
 class TopologyDifference;
 struct TreeChildren;
 struct TreeStructure;
@@ -197,6 +199,9 @@ class MovingKdopTree {
   /// @brief The fans of the vertices in the tree's order.
   const VertexFans& fans() const { return fans_; }
 
+  /// @brief The borders of nodes that queries have asked for; for any number of threads.
+  RegionBorders& regionBorders() const { return *region_borders_; }
+
   /// @brief World point that the boxes of a frame (0 or 1) are relative to; the same of
   /// both, unless most of the mesh is far away from it.
   const double (&origin(int frame) const)[3] { return origin_[frame]; }
@@ -262,6 +267,8 @@ class MovingKdopTree {
   /// The user's id of each vertex.
   std::vector<std::uint32_t> vertex_ids_;
   VertexFans fans_;
+  /// Of the structure as it is, also of copies that have the same.
+  std::shared_ptr<RegionBorders> region_borders_;
   /// What is refit independently, and the nodes above, parents first.
   std::vector<Subtree> subtrees_;
   std::vector<std::uint32_t> top_;
