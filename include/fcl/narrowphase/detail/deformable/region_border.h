@@ -65,7 +65,8 @@ class BorderFinder {
   RegionBorder border() const;
 
   const MovingKdopTree& tree_;
-  /// How many of the region's triangles have each of its vertices.
+  /// How many of the region's triangles have each of its vertices; then only whether
+  /// edges of it may be left.
   std::vector<std::uint32_t> counts_;
   /// Edges by their vertices, the lower place first, and whether it comes last.
   std::vector<std::uint64_t> keys_;
