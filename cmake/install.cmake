@@ -7,21 +7,27 @@ include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl)
 
 # Before all else: the overlay includes the stock header of the same name, so it cannot
-# replace it.
+# replace it. An installation that is staged with DESTDIR is looked at in both places: it
+# ends in the prefix.
 install(CODE "set(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")")
 install(
   CODE [[
   cmake_path(ABSOLUTE_PATH include_dir BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
-  if(EXISTS "$ENV{DESTDIR}${include_dir}/fcl/config.h")
-    message(FATAL_ERROR "Stock FCL is installed in $ENV{DESTDIR}${include_dir} and would be "
-                        "overwritten: choose another prefix.")
-  endif()
+  foreach(place IN ITEMS "$ENV{DESTDIR}${include_dir}" "${include_dir}")
+    if(EXISTS "${place}/fcl/config.h")
+      message(FATAL_ERROR
+              "Stock FCL is installed in ${place}, and files of its would be overwritten: this "
+              "package stands in front of FCL and needs a prefix of its own, for example\n"
+              "  cmake --install BUILD_FOLDER --prefix $ENV{HOME}/.local/fcl-ccd")
+    endif()
+  endforeach()
 ]])
 
 install(
   TARGETS fcl_ccd
   EXPORT fcl_ccd-targets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(TARGET fcl-ccd)
   install(TARGETS fcl-ccd RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
@@ -32,6 +38,25 @@ install(
   FILES_MATCHING
   PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+
+# What a program links besides the library and FCL: nothing where the library is shared.
+set(FCL_CCD_PRIVATE_LIBS "")
+set(FCL_CCD_STATIC_PACKAGES "")
+set(FCL_CCD_LINKED_FILE $<TARGET_FILE_NAME:fcl_ccd>)
+get_target_property(library_type fcl_ccd TYPE)
+if(library_type STREQUAL "SHARED_LIBRARY")
+  # Not linked where nothing of it is called.
+  set(FCL_CCD_LINKED_FILE "AS_NEEDED ( $<TARGET_LINKER_FILE_NAME:fcl_ccd> )")
+else()
+  if(FCL_CCD_USE_HIGHWAY)
+    string(APPEND FCL_CCD_PRIVATE_LIBS " -lhwy")
+    list(APPEND FCL_CCD_STATIC_PACKAGES HWY)
+  endif()
+  if(FCL_CCD_USE_TBB)
+    string(APPEND FCL_CCD_PRIVATE_LIBS " -ltbb")
+    list(APPEND FCL_CCD_STATIC_PACKAGES TBB)
+  endif()
+endif()
 
 # The package states the version of the FCL that it extends, by FCL's own rule.
 write_basic_package_version_file(
@@ -50,6 +75,19 @@ configure_package_config_file(
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake
         DESTINATION ${package_dir})
+
+# -lfcl, written out, has to mean both libraries. The name is that of an archive, which a
+# linker takes as it takes libfcl.so, and a program that loads "libfcl.so" at run time does
+# not find: that wants a library, and goes on to FCL's own. The directory of this file is
+# searched for the library first.
+file(
+  GENERATE
+  OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
+  CONTENT "/* GNU ld script: FCL as extended by fcl_ccd */
+GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_LINKER_FILE:fcl>${FCL_CCD_PRIVATE_LIBS} )
+")
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
+        DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 # pkg-config cannot chain to a package of the same name: fcl.pc repeats what stock says.
 file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig

@@ -13,13 +13,13 @@
 #include "query_arguments.h"
 
 namespace fcl {
+namespace detail {
 namespace {
 
-using detail::Placement;
-using detail::deformable::FeatureCandidate;
-using detail::deformable::FeatureKind;
-using detail::deformable::FeatureOwners;
-using detail::deformable::PreparedMesh;
+using deformable::FeatureCandidate;
+using deformable::FeatureKind;
+using deformable::FeatureOwners;
+using deformable::PreparedMesh;
 
 ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
   ContinuousCandidate out;
@@ -43,12 +43,12 @@ bool handOut(const ContinuousCandidateSink& sink, Query&& query) {
   std::fenv_t callers_mode;
   std::fegetenv(&callers_mode);
   std::vector<ContinuousCandidate> block;
-  return detail::answerOf([&] {
+  return answerOf([&] {
     return query([&](const FeatureCandidate* candidates, std::size_t count) {
       block.clear();
       for (std::size_t i = 0; i < count; ++i)
         block.push_back(toContinuousCandidate(candidates[i]));
-      const detail::deformable::CallersFloatingPoint mode(callers_mode);
+      const deformable::CallersFloatingPoint mode(callers_mode);
       return sink(block.data(), block.size());
     });
   });
@@ -59,61 +59,51 @@ void require(const ContinuousCandidateSink& sink) {
 }
 
 template <typename S>
-PreparedMesh prepared(const CollisionGeometry<S>& o, const Placement<S>& placement,
-                      const char* name) {
-  const detail::deformable::DefaultFloatingPoint mode;
-  return PreparedMesh(o, placement.beginning, placement.end, name, 1,
+PreparedMesh prepared(const PlacedGeometry<S>& placed, const char* name) {
+  const deformable::DefaultFloatingPoint mode;
+  return PreparedMesh(placed.geometry(), placed.beginning(), placed.end(), name, 1,
                       FeatureOwners::kAlways);
-}
-
-template <typename S>
-bool selfCandidates(const CollisionGeometry<S>* o, const ContinuousCandidateSink& sink) {
-  detail::require(o, "o");
-  require(sink);
-  detail::requireMesh(*o, "continuousSelfCandidates");
-  const Transform3<S> still = Transform3<S>::Identity();
-  const PreparedMesh mesh = prepared(*o, {still, still}, "o");
-  return handOut(sink, [&](const auto& inner) {
-    return detail::deformable::candidatesSelf(mesh.instance(), inner);
-  });
-}
-
-template <typename S>
-bool pairCandidates(const CollisionGeometry<S>* o1, const Placement<S>& placement1,
-                    const CollisionGeometry<S>* o2, const Placement<S>& placement2,
-                    const ContinuousCandidateSink& sink) {
-  detail::require(o1, "o1");
-  detail::require(o2, "o2");
-  require(sink);
-  const Placement<S> placed1 = detail::withoutRounding(*o1, placement1),
-                     placed2 = detail::withoutRounding(*o2, placement2);
-  if (!detail::isAnsweredHere(*o1, placed1.isRotating(), *o2, placed2.isRotating())) {
-    detail::requireFinite(*o1, placement1, *o2, placement2);
-    throw Exception(std::string("candidates") + detail::kNotAnsweredHere);
-  }
-  const PreparedMesh mesh1 = prepared(*o1, placed1, "o1"),
-                     mesh2 = prepared(*o2, placed2, "o2");
-  return handOut(sink, [&](const auto& inner) {
-    return detail::deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);
-  });
 }
 
 }  // namespace
 
-#define FCL_CCD_DEFINE_CANDIDATES(S)                                                    \
-  bool continuousSelfCandidates(const CollisionGeometry<S>* o,                          \
-                                const ContinuousCandidateSink& sink) {                  \
-    return selfCandidates(o, sink);                                                     \
-  }                                                                                     \
-  bool continuousCandidates(const CollisionGeometry<S>* o1,                             \
-                            const Transform3<S>& tf1_beg, const Transform3<S>& tf1_end, \
-                            const CollisionGeometry<S>* o2,                             \
-                            const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end, \
-                            const ContinuousCandidateSink& sink) {                      \
-    return pairCandidates<S>(o1, {tf1_beg, tf1_end}, o2, {tf2_beg, tf2_end}, sink);     \
-  }
-FCL_CCD_DEFINE_CANDIDATES(double)
-FCL_CCD_DEFINE_CANDIDATES(float)
-#undef FCL_CCD_DEFINE_CANDIDATES
+template <typename S>
+bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& sink) {
+  require(o, "o");
+  require(sink);
+  requireMesh(*o, "continuousSelfCandidates");
+  const MovingGeometry<S> still{o,
+                                {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
+                                 {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}},
+                                true};
+  const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
+  return handOut(sink, [&](const auto& inner) {
+    return deformable::candidatesSelf(mesh.instance(), inner);
+  });
+}
 
+template <typename S>
+bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                      const CandidateSink& sink) {
+  require(o1.geometry, "o1");
+  require(o2.geometry, "o2");
+  require(sink);
+  const PlacedGeometry<S> placed1(o1), placed2(o2);
+  if (!isAnsweredHere(placed1, placed2))
+    throw Exception(std::string("candidates") + kNotAnsweredHere);
+  const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
+  return handOut(sink, [&](const auto& inner) {
+    return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);
+  });
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                           \
+  template bool answerSelfCandidates(const CollisionGeometry<S>*, const CandidateSink&); \
+  template bool answerCandidates(const MovingGeometry<S>&, const MovingGeometry<S>&,     \
+                                 const CandidateSink&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace detail
 }  // namespace fcl

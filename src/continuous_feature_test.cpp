@@ -10,6 +10,7 @@
 #include "fcl/narrowphase/detail/deformable/contact_conversion.h"
 #include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "query_arguments.h"
 
 namespace fcl {
 namespace {
@@ -41,7 +42,7 @@ ContinuousFeatureTestResult<S> test(FeatureKind kind,
                                     double toc_err) {
   // Before floats are converted: other modes may lose the subnormal ones.
   const detail::deformable::DefaultFloatingPoint mode;
-  if (!(toc_err > 0)) throw Exception("toc_err is not positive");
+  toc_err = detail::requireTocErr(toc_err, "toc_err");
   VertexPath x[4];
   read<S>(t0, names, "_t0", &VertexPath::t0, x);
   read<S>(t1, names, "_t1", &VertexPath::t1, x);

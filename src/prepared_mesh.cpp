@@ -65,22 +65,6 @@ const DeformableMesh* deformableMeshOf(const CollisionGeometry<S>& geometry) {
 }
 
 template <typename S>
-Pose toPose(const Transform3<S>& tf, const std::string& name) {
-  Pose pose;
-  bool is_finite = true;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      pose.rotation[3 * i + k] = static_cast<double>(tf.linear()(i, k));
-      is_finite &= std::isfinite(pose.rotation[3 * i + k]);
-    }
-    pose.translation[i] = static_cast<double>(tf.translation()[i]);
-    is_finite &= std::isfinite(pose.translation[i]);
-  }
-  if (!is_finite) throw Exception(name + ": the transform is not finite");
-  return pose;
-}
-
-template <typename S>
 void requireFinite(const Vector3<S>* vertices, int count, const std::string& what) {
   for (int i = 0; i < count; ++i)
     if (!vertices[i].allFinite())
@@ -124,6 +108,14 @@ void requireFinite(const MovingKdopTree& tree, const VertexFrames& frames,
 
 }  // namespace
 
+void requireFinite(const Pose& beginning, const Pose& end, const std::string& name) {
+  const auto isFinite = [](double x) { return std::isfinite(x); };
+  for (const Pose* pose : {&beginning, &end})
+    if (!std::all_of(pose->rotation, pose->rotation + 9, isFinite) ||
+        !std::all_of(pose->translation, pose->translation + 3, isFinite))
+      throw Exception(name + ": the transform is not finite");
+}
+
 template <typename S>
 MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
   if (const DeformableMesh* mesh = deformableMeshOf(geometry))
@@ -137,11 +129,10 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
 }
 
 template <typename S>
-PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry,
-                           const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
-                           const std::string& name, int num_threads,
+PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
+                           const Pose& end, const std::string& name, int num_threads,
                            FeatureOwners owners) {
-  const Pose beginning = toPose<S>(tf_beg, name), end = toPose<S>(tf_end, name);
+  requireFinite(beginning, end, name);
   for (int k = 0; k < 3; ++k) {
     instance_.translation[0][k] = beginning.translation[k];
     instance_.translation[1][k] = end.translation[k];
@@ -247,10 +238,10 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
     std::fill(translation, translation + 3, 0.);
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                           \
-  template MeshKind meshKindOf(const CollisionGeometry<S>&);                             \
-  template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Transform3<S>&, \
-                                      const Transform3<S>&, const std::string&, int,     \
+#define FCL_CCD_INSTANTIATE(S)                                                  \
+  template MeshKind meshKindOf(const CollisionGeometry<S>&);                    \
+  template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Pose&, \
+                                      const Pose&, const std::string&, int,     \
                                       FeatureOwners);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

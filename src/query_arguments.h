@@ -1,58 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the public queries of scenes share: their arguments and their errors.
+// What the public queries share: their arguments and their errors.
 #ifndef FCL_CCD_SRC_QUERY_ARGUMENTS_H
 #define FCL_CCD_SRC_QUERY_ARGUMENTS_H
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 
 #include "fcl/common/exception.h"
-#include "fcl/common/types.h"
 #include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {
 namespace detail {
 
-/// Poses at t = 0 and t = 1.
-template <typename S>
-struct Placement {
-  Transform3<S> beginning;
-  Transform3<S> end;
-
-  bool isRotating() const { return beginning.linear() != end.linear(); }
-};
-
-/// Rotations are made of quaternions and products: one that stays the same may differ at
-/// the end, by a few roundings (one as a rule).
-template <typename S>
-bool isConstantRotation(const Placement<S>& placement) {
-  constexpr S kRounding = 8 * std::numeric_limits<S>::epsilon();
-  return ((placement.end.linear() - placement.beginning.linear()).array().abs() <=
-          kRounding)
-      .all();
-}
-
-/// The placement of a rigid mesh with one rotation, if it is constant.
-template <typename S>
-Placement<S> withoutRounding(const CollisionGeometry<S>& o, Placement<S> placement) {
-  if (isConstantRotation(placement) &&
-      deformable::meshKindOf(o) == deformable::MeshKind::kRigid)
-    placement.end.linear() = placement.beginning.linear();
-  return placement;
-}
-
 inline void require(const void* argument, const char* name) {
   if (!argument) throw Exception(std::string(name) + " is null");
-}
-
-template <typename S>
-void requireFinite(const Placement<S>& placement, const char* name) {
-  for (const Transform3<S>* tf : {&placement.beginning, &placement.end})
-    if (!tf->linear().allFinite() || !tf->translation().allFinite())
-      throw Exception(std::string(name) + ": the transform is not finite");
 }
 
 template <typename S>
@@ -61,36 +29,68 @@ void requireMesh(const CollisionGeometry<S>& o, const char* function) {
     throw Exception(std::string(function) + ": the geometry is not a triangle mesh");
 }
 
-/// What errors say of a pair for which isAnsweredHere() is false.
-constexpr const char* kNotAnsweredHere =
-    " of continuous collision need two triangle meshes that deform or translate";
-
-template <typename S>
-bool areMeshes(const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2) {
-  return deformable::meshKindOf(o1) != deformable::MeshKind::kNotAMesh &&
-         deformable::meshKindOf(o2) != deformable::MeshKind::kNotAMesh;
+/// The width of a time bracket that the engine is given for the one asked for: 0 is the
+/// least that doubles can be asked for.
+inline double requireTocErr(double toc_err, const char* name) {
+  if (!(toc_err >= 0)) throw Exception(std::string(name) + " is negative or NaN");
+  return std::max(toc_err, std::numeric_limits<double>::min());
 }
 
-/// Of a pair for which isAnsweredHere() is false (a rotation that is not finite counts as
-/// one); the others are PreparedMesh's, and what is no mesh is FCL's.
 template <typename S>
-void requireFinite(const CollisionGeometry<S>& o1, const Placement<S>& placement1,
-                   const CollisionGeometry<S>& o2, const Placement<S>& placement2) {
-  if (!areMeshes(o1, o2)) return;
-  requireFinite(placement1, "o1");
-  requireFinite(placement2, "o2");
+deformable::Pose toPose(const PoseNumbers<S>& numbers) {
+  deformable::Pose pose;
+  std::copy(numbers.rotation, numbers.rotation + 9, pose.rotation);
+  std::copy(numbers.translation, numbers.translation + 3, pose.translation);
+  return pose;
 }
+
+/// A geometry and the poses in which a query prepares it.
+template <typename S>
+class PlacedGeometry {
+ public:
+  explicit PlacedGeometry(const MovingGeometry<S>& moving)
+      : geometry_(*moving.geometry), kind_(deformable::meshKindOf(geometry_)) {
+    using deformable::MeshKind;
+    // Before floats are converted: other modes may lose the subnormal ones.
+    const deformable::DefaultFloatingPoint mode;
+    beginning_ = toPose(moving.pose[0]);
+    end_ = toPose(moving.pose[1]);
+    const bool is_constant = isConstantRotation(moving.pose[0], moving.pose[1]);
+    // The few roundings of a rotation that is constant are no rotation.
+    if (kind_ == MeshKind::kRigid && is_constant)
+      std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
+    goes_straight_ = kind_ == MeshKind::kDeforming ||
+                     (kind_ == MeshKind::kRigid && moving.is_straight && is_constant);
+  }
+
+  const CollisionGeometry<S>& geometry() const { return geometry_; }
+  const deformable::Pose& beginning() const { return beginning_; }
+  const deformable::Pose& end() const { return end_; }
+
+  bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
+
+  /// Whether all vertices go on straight lines: what is answered by this library.
+  bool goesStraight() const { return goes_straight_; }
+
+ private:
+  const CollisionGeometry<S>& geometry_;
+  deformable::MeshKind kind_;
+  deformable::Pose beginning_, end_;
+  bool goes_straight_;
+};
 
 /// Whether the pair is answered by this library and not left to FCL.
+/// @throws fcl::Exception  meshes that are left to FCL, in a pose that is not finite (a
+/// rotation that is not finite is not constant; the poses of others are PreparedMesh's to
+/// look at, and what is no mesh is FCL's)
 template <typename S>
-bool isAnsweredHere(const CollisionGeometry<S>& o1, bool rotates1,
-                    const CollisionGeometry<S>& o2, bool rotates2) {
-  const auto accepts = [](const CollisionGeometry<S>& o, bool rotates) {
-    const deformable::MeshKind kind = deformable::meshKindOf(o);
-    return kind == deformable::MeshKind::kDeforming ||
-           (kind == deformable::MeshKind::kRigid && !rotates);
-  };
-  return accepts(o1, rotates1) && accepts(o2, rotates2);
+bool isAnsweredHere(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  if (o1.goesStraight() && o2.goesStraight()) return true;
+  if (o1.isMesh() && o2.isMesh()) {
+    deformable::requireFinite(o1.beginning(), o1.end(), "o1");
+    deformable::requireFinite(o2.beginning(), o2.end(), "o2");
+  }
+  return false;
 }
 
 /// Runs a query; what it finds wrong with a vertex becomes FCL's exception.

@@ -110,8 +110,9 @@ TYPED_TEST(ContinuousFeatureTest, UnusableInputIsRefusedByName) {
         expectRefused([&] { call(kind, bad, 1e-6); },
                       std::string(names[kind][i]) + " is not finite");
       }
-    for (const double toc_err : {0., -1., std::numeric_limits<double>::quiet_NaN()})
-      expectRefused([&] { call(kind, good, toc_err); }, "toc_err is not positive");
+    for (const double toc_err : {-1., std::numeric_limits<double>::quiet_NaN()})
+      expectRefused([&] { call(kind, good, toc_err); }, "toc_err is negative or NaN");
+    EXPECT_TRUE(call(kind, good, 0).is_contact);
     EXPECT_TRUE(call(kind, good, std::numeric_limits<double>::denorm_min()).is_contact);
     EXPECT_TRUE(call(kind, good, std::numeric_limits<double>::infinity()).is_contact);
   }
@@ -121,7 +122,7 @@ TYPED_TEST(ContinuousFeatureTest, UnusableInputIsRefusedByName) {
 TEST(FCL_CONTINUOUS_FEATURE_TEST, tinyTolerances) {
   using V = Vector3<double>;
   const V a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);
-  for (const double toc_err : {1e-16, 1e-300, 1e-310, 5e-324}) {
+  for (const double toc_err : {1e-16, 1e-300, 1e-310, 5e-324, 0.}) {
     const auto third =
         vertexFace<double>(V(0.2, 0.2, 1), a, b, c, V(0.2, 0.2, -2), a, b, c, toc_err);
     EXPECT_TRUE(third.is_contact);

@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 #include <new>
+#include <type_traits>
 #include <utility>
 
 #include "allocation_failures.h"
@@ -247,10 +248,13 @@ TYPED_TEST(DeformableModel, DiscreteQueriesRefuseWhatIsNotBuilt) {
     expectRefused(
         [&] { collide(&model, tf, built.get(), tf, CollisionRequest<S>(), result); },
         word);
-    DistanceResult<S> distances;
-    expectRefused(
-        [&] { distance(built.get(), tf, &model, tf, DistanceRequest<S>(), distances); },
-        word);
+    // Of float the compiler would have to make all of FCL's functions.
+    if constexpr (std::is_same_v<S, double>) {
+      DistanceResult<S> distances;
+      expectRefused(
+          [&] { distance(built.get(), tf, &model, tf, DistanceRequest<S>(), distances); },
+          word);
+    }
   };
   Model model;
   expectThrow(model, "not built");

@@ -303,7 +303,7 @@ TEST(TraversalNode, UnusableInputIsRefused) {
         detail::initialize(node, *model, CollisionRequest<double>(0, true), result);
       },
       "num_max_contacts");
-  node.toc_err = 0;
+  node.toc_err = -1;
   expectRefused(
       [&] { detail::initialize(node, *model, CollisionRequest<double>(), result); },
       "toc_err");

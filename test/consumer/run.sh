@@ -1,72 +1,247 @@
 #!/usr/bin/env bash
-# Installs the built package in a prefix of its own and builds the consumer against it,
-# through find_package and through pkg-config.
-#   run.sh BUILD_DIR COMPILER WORK_DIR
+# The doors through which a program comes to this package: each is built and run.
+#   run.sh BUILD_DIR COMPILER WORK_DIR [DOOR ...]
+# BUILD_DIR is a built tree of this project; it is installed into WORK_DIR. Without DOORs:
+# all of them.
 set -euo pipefail
 source_dir=$(cd "$(dirname "$0")" && pwd)
 build_dir=$1
 export CXX=$2
 work=$3
+shift 3
+project_dir=$(cd "$source_dir/../.." && pwd)
 
 step() { echo "== $*"; }
+fail() {
+  echo "$*" >&2
+  exit 1
+}
+
+all_doors=(
+  package stock_gone taken_prefix stock
+  cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
+  spaces standards cxx14_message two_consumers lto
+  flags_baseline flags_v3 flags_native
+  add_subdirectory static
+)
+doors=("$@")
+if [ $# -eq 0 ]; then doors=("${all_doors[@]}"); fi
 
 rm -rf "$work"
 mkdir -p "$work"
+work=$(cd "$work" && pwd)
 step "install, then move the prefix"
 cmake --install "$build_dir" --prefix "$work/installed" >/dev/null
 mv "$work/installed" "$work/prefix"
-prefix=$(cd "$work/prefix" && pwd)
+prefix=$work/prefix
 lib=$(cd "$prefix" && dirname lib*/pkgconfig)
 config=$lib/cmake/fcl/fcl-config.cmake
-
-step "what the package says of itself, also when configured again"
-package() { cmake -S "$source_dir/package" -B "$work/$1" -DFCL_CCD_PREFIX="$2" "${@:3}" >/dev/null; }
-package package "$prefix" -DCMAKE_PREFIX_PATH="$prefix"
-package package "$prefix"
-
-step "the same when stock FCL is no longer where it was"
-# A second copy of the package lies on the path and must not pass for stock FCL.
 recorded='^set(_fcl_ccd_stock_dir "\(.*\)")$'
 stock_dir=$(sed -n "s|$recorded|\1|p" "$prefix/$config")
-cp -r "$prefix" "$work/prefix2"
-sed -i "s|$recorded|set(_fcl_ccd_stock_dir /gone)|" "$work/prefix2/$config"
-package package2 "$work/prefix2" "-DCMAKE_PREFIX_PATH=$work/prefix2;$prefix"
-package package2 "$work/prefix2"
 
-step "a prefix that has stock FCL is left as it is"
-mkdir -p "$work/dest/taken/include/fcl"
-touch "$work/dest/taken/include/fcl/config.h"
-if DESTDIR=$work/dest cmake --install "$build_dir" --prefix /taken >/dev/null 2>&1; then
-  echo "installed over stock FCL" >&2
-  exit 1
-fi
-[ "$(find "$work/dest" -type f)" = "$work/dest/taken/include/fcl/config.h" ]
+# What a makefile written by hand says of the packages around FCL.
+read -ra around <<<"$(pkg-config --cflags eigen3 ccd octomap)"
+run_with() { LD_LIBRARY_PATH=$1/$lib "${@:2}"; }
 
-step "control: with stock FCL alone the program fails"
-cmake -S "$source_dir" -B "$work/stock" -Dfcl_DIR="$stock_dir" >/dev/null
-cmake --build "$work/stock" --target app
-if "$work/stock/app" >"$work/stock/output"; then
-  echo "app succeeded with stock FCL: it tests nothing" >&2
-  exit 1
-fi
+# configure_and_run NAME PREFIX [OPTION ...]: the consumer's programs through CMake.
+configure_and_run() {
+  local name=$1 where=$2
+  shift 2
+  cmake -S "$source_dir" -B "$work/$name" -DCMAKE_PREFIX_PATH="$where" "$@" \
+    >"$work/$name.log"
+  cmake --build "$work/$name" --target app deforming >>"$work/$name.log"
+  "$work/$name/app"
+  "$work/$name/deforming"
+}
 
-step "find_package"
-# As some distributions link by default: a library that nothing needs is dropped.
-LDFLAGS=-Wl,--as-needed cmake -S "$source_dir" -B "$work/cmake" \
-  -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
-cmake --build "$work/cmake" --target app deforming
-"$work/cmake/app"
-"$work/cmake/deforming"
+package() {
+  cmake -S "$source_dir/package" -B "$work/$1" -DFCL_CCD_PREFIX="$2" "${@:3}" >/dev/null
+}
 
-step "pkg-config"
-export PKG_CONFIG_PATH=$prefix/$lib/pkgconfig
-read -ra cflags <<<"$(pkg-config --cflags fcl)"
-read -ra libs <<<"$(pkg-config --libs fcl)"
-# With the standard that stock FCL's fcl.pc asks for.
-"$CXX" -std=c++11 "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
-  -Wl,--as-needed "${libs[@]}"
-LD_LIBRARY_PATH=$prefix/$lib "$work/pc_app"
-# What FCL does not have needs C++17, which fcl.pc leaves to the program.
-"$CXX" -std=c++17 "${cflags[@]}" "$source_dir/deforming.cpp" -o "$work/pc_deforming" \
-  "${libs[@]}"
-LD_LIBRARY_PATH=$prefix/$lib "$work/pc_deforming"
+door_package() { # what the package says of itself, also when configured again
+  package package "$prefix" -DCMAKE_PREFIX_PATH="$prefix"
+  package package "$prefix"
+}
+
+door_stock_gone() { # the same when stock FCL is no longer where it was
+  # A second copy of the package lies on the path and must not pass for stock FCL.
+  cp -r "$prefix" "$work/prefix2"
+  sed -i "s|$recorded|set(_fcl_ccd_stock_dir /gone)|" "$work/prefix2/$config"
+  package package2 "$work/prefix2" "-DCMAKE_PREFIX_PATH=$work/prefix2;$prefix"
+  package package2 "$work/prefix2"
+}
+
+door_taken_prefix() { # a prefix that has stock FCL is left as it is, staged or not
+  local taken=$work/taken
+  mkdir -p "$work/dest$taken/include/fcl" "$taken/include/fcl"
+  touch "$work/dest$taken/include/fcl/config.h"
+  if DESTDIR=$work/dest cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
+    fail "installed over stock FCL"
+  fi
+  [ "$(find "$work/dest" -type f)" = "$work/dest$taken/include/fcl/config.h" ]
+  # Staged elsewhere, it would end over stock FCL all the same.
+  touch "$taken/include/fcl/config.h"
+  if DESTDIR=$work/dest2 cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
+    fail "staged for a place that stock FCL has"
+  fi
+  if [ -n "$(find "$work/dest2" -type f 2>/dev/null)" ]; then fail "staged some files"; fi
+}
+
+door_stock() { # control: with stock FCL alone the program fails
+  cmake -S "$source_dir" -B "$work/stock" -Dfcl_DIR="$stock_dir" >/dev/null
+  cmake --build "$work/stock" --target app >/dev/null
+  if "$work/stock/app" >"$work/stock/output"; then
+    fail "app succeeded with stock FCL: it tests nothing"
+  fi
+}
+
+door_cmake_target() { # find_package, target fcl; FCL's part in C++11 as in C++17
+  # As some distributions link by default: a library that nothing needs is dropped.
+  LDFLAGS=-Wl,--as-needed configure_and_run cmake_target "$prefix"
+  grep -q "extended by fcl_ccd .* $prefix/$lib" "$work/cmake_target.log" ||
+    fail "CMake does not say which FCL is used"
+}
+
+door_cmake_variables() { # find_package, FCL_INCLUDE_DIRS and FCL_LIBRARIES
+  configure_and_run cmake_variables "$prefix" -DCONSUMER_USES_VARIABLES=ON
+}
+
+door_pkg_config() {
+  export PKG_CONFIG_PATH=$prefix/$lib/pkgconfig
+  local cflags libs
+  read -ra cflags <<<"$(pkg-config --cflags fcl)"
+  read -ra libs <<<"$(pkg-config --libs fcl)"
+  unset PKG_CONFIG_PATH
+  # With the standard that stock FCL's fcl.pc asks for.
+  "$CXX" -std=c++11 "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
+    -Wl,--as-needed "${libs[@]}"
+  run_with "$prefix" "$work/pc_app"
+  # What FCL does not have needs C++17, which fcl.pc leaves to the program.
+  "$CXX" -std=c++17 "${cflags[@]}" "$source_dir/deforming.cpp" -o "$work/pc_deforming" \
+    "${libs[@]}"
+  run_with "$prefix" "$work/pc_deforming"
+}
+
+# by_hand NAME PREFIX LIBRARIES...: compiled and linked with flags written out.
+by_hand() {
+  local name=$1 where=$2
+  shift 2
+  "$CXX" -std=c++17 -I"$where/include" "${around[@]}" "$source_dir"/{main,fcl_header}.cpp \
+    -o "$work/${name}_app" -L"$where/$lib" "$@" -lccd
+  run_with "$where" "$work/${name}_app"
+  "$CXX" -std=c++17 -I"$where/include" "${around[@]}" "$source_dir/deforming.cpp" \
+    -o "$work/${name}_deforming" -L"$where/$lib" "$@" -lccd
+  run_with "$where" "$work/${name}_deforming"
+}
+
+door_plain_flags() { by_hand plain "$prefix" -lfcl_ccd -lfcl; }
+
+door_lfcl() { # -lfcl written out, also by path, for another linker, and in a plugin
+  by_hand lfcl "$prefix" -lfcl
+  "$CXX" -std=c++17 -I"$prefix/include" "${around[@]}" "$source_dir/deforming.cpp" \
+    -o "$work/lfcl_path" "$prefix/$lib/libfcl.a" -lccd
+  run_with "$prefix" "$work/lfcl_path"
+  local linker
+  for linker in lld gold; do
+    if ! command -v "ld.$linker" >/dev/null; then continue; fi
+    "$CXX" -std=c++17 -fuse-ld=$linker -I"$prefix/include" "${around[@]}" \
+      "$source_dir/deforming.cpp" -o "$work/lfcl_$linker" -L"$prefix/$lib" -lfcl -lccd
+    run_with "$prefix" "$work/lfcl_$linker"
+  done
+  # A plugin, as a Python extension is one, may leave symbols open: they have to be there
+  # when it is loaded.
+  "$CXX" -std=c++17 -shared -fPIC -Dmain=run_deforming -I"$prefix/include" "${around[@]}" \
+    "$source_dir/deforming.cpp" -o "$work/plugin.so" -L"$prefix/$lib" -lfcl
+  "$CXX" -std=c++17 "$source_dir/load.cpp" -o "$work/load" -ldl
+  run_with "$prefix" "$work/load" "$work/plugin.so" run_deforming
+}
+
+door_dlopen() { # a program that loads "libfcl.so" at run time gets FCL's own
+  "$CXX" -std=c++17 "$source_dir/load.cpp" -o "$work/load" -ldl
+  run_with "$prefix" "$work/load" libfcl.so ""
+}
+
+door_spaces() { # a prefix with spaces in its path
+  cp -r "$prefix" "$work/a prefix"
+  configure_and_run spaces "$work/a prefix"
+  by_hand spaces_by_hand "$work/a prefix" -lfcl
+}
+
+door_standards() { # FCL's part from C++11 on, all of it from C++17 on
+  local standard
+  for standard in 11 14 17 20; do
+    "$CXX" -std=c++$standard -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
+      -isystem /usr/include/eigen3 "$source_dir"/{main,fcl_header}.cpp \
+      -o "$work/app_$standard" -L"$prefix/$lib" -lfcl
+    run_with "$prefix" "$work/app_$standard" >/dev/null
+  done
+  "$CXX" -std=c++20 -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
+    -isystem /usr/include/eigen3 "$source_dir/deforming.cpp" -o "$work/deforming_20" \
+    -L"$prefix/$lib" -lfcl
+  run_with "$prefix" "$work/deforming_20"
+}
+
+door_cxx14_message() { # what is new says which standard it needs
+  if "$CXX" -std=c++14 -fsyntax-only -I"$prefix/include" "${around[@]}" \
+    "$source_dir/deforming.cpp" 2>"$work/cxx14"; then
+    fail "DeformableBVHModel compiles as C++14: the message is not needed"
+  fi
+  grep -q "needs C++17" "$work/cxx14" || fail "the error does not say C++17"
+}
+
+door_two_consumers() { # two parts of one program that each look for FCL
+  cmake -S "$source_dir/two_consumers" -B "$work/two" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+  cmake --build "$work/two" >/dev/null
+  "$work/two/first/first"
+  "$work/two/second/second"
+}
+
+door_lto() {
+  "$CXX" -std=c++17 -O2 -flto -I"$prefix/include" "${around[@]}" \
+    "$source_dir"/{main,fcl_header}.cpp -o "$work/lto_app" -L"$prefix/$lib" -lfcl
+  run_with "$prefix" "$work/lto_app"
+}
+
+# every_overload NAME FLAGS...: in a program compiled with FLAGS, with and without NDEBUG.
+every_overload() {
+  local name=$1 assertions
+  shift
+  for assertions in -DNDEBUG -UNDEBUG; do
+    "$CXX" -std=c++17 "$@" "$assertions" -I"$prefix/include" "${around[@]}" \
+      "$source_dir/every_overload.cpp" -o "$work/flags_$name" -L"$prefix/$lib" -lfcl -lccd
+    run_with "$prefix" "$work/flags_$name"
+  done
+}
+
+door_flags_baseline() { every_overload baseline -O1; }
+door_flags_v3() { every_overload v3 -O1 -march=x86-64-v3; }
+door_flags_native() { every_overload native -O1 -march=native; }
+
+door_add_subdirectory() { # part of a larger build, with flags that move Eigen's types
+  cmake -S "$source_dir/subproject" -B "$work/sub" -DFCL_CCD_SOURCE_DIR="$project_dir" \
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-march=native" \
+    -DCMAKE_CXX_FLAGS_RELEASE="-O1" >/dev/null
+  cmake --build "$work/sub" -j "$(nproc)" >"$work/sub.log"
+  local program
+  for program in with_fcl with_fcl_ccd app; do "$work/sub/$program"; done
+}
+
+door_static() { # BUILD_SHARED_LIBS=OFF, installed
+  cmake -S "$project_dir" -B "$work/static" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
+    -DFCL_CCD_BUILD_TOOLS=OFF -DFCL_CCD_BUILD_BENCHMARKS=OFF \
+    -DCMAKE_CXX_FLAGS_RELEASE="-O0" >/dev/null
+  cmake --build "$work/static" -j "$(nproc)" >"$work/static.log"
+  cmake --install "$work/static" --prefix "$work/static_prefix" >/dev/null
+  [ -f "$work/static_prefix/$lib/libfcl_ccd.a" ] || fail "no static library"
+  configure_and_run static_cmake "$work/static_prefix"
+  by_hand static_lfcl "$work/static_prefix" -lfcl
+  PKG_CONFIG_PATH=$work/static_prefix/$lib/pkgconfig pkg-config --libs fcl >"$work/static_libs"
+  local libs
+  read -ra libs <"$work/static_libs"
+  by_hand static_pc "$work/static_prefix" "${libs[@]}"
+}
+
+for door in "${doors[@]}"; do
+  step "$door"
+  "door_$door"
+done

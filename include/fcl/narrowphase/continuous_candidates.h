@@ -74,19 +74,34 @@ using ContinuousCandidateSink =
 /// triangle index out of range. A vertex that is not finite may be noticed after
 /// candidates were handed out.
 /// @{
-#define FCL_CCD_DECLARE_CANDIDATES(S)                                            \
-  FCL_EXPORT bool continuousSelfCandidates(const CollisionGeometry<S>* o,        \
-                                           const ContinuousCandidateSink& sink); \
-  FCL_EXPORT bool continuousCandidates(                                          \
-      const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,              \
-      const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,              \
-      const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,                \
-      const ContinuousCandidateSink& sink);
-FCL_CCD_DECLARE_CANDIDATES(double)
-FCL_CCD_DECLARE_CANDIDATES(float)
-#undef FCL_CCD_DECLARE_CANDIDATES
+
+/// @brief The candidates of a mesh with itself.
+bool continuousSelfCandidates(const CollisionGeometry<double>* o,
+                              const ContinuousCandidateSink& sink);
+/// @overload
+bool continuousSelfCandidates(const CollisionGeometry<float>* o,
+                              const ContinuousCandidateSink& sink);
+
+/// @brief The candidates of two meshes that go from one transform to another.
+bool continuousCandidates(const CollisionGeometry<double>* o1,
+                          const Transform3<double>& tf1_beg,
+                          const Transform3<double>& tf1_end,
+                          const CollisionGeometry<double>* o2,
+                          const Transform3<double>& tf2_beg,
+                          const Transform3<double>& tf2_end,
+                          const ContinuousCandidateSink& sink);
+/// @overload
+bool continuousCandidates(const CollisionGeometry<float>* o1,
+                          const Transform3<float>& tf1_beg,
+                          const Transform3<float>& tf1_end,
+                          const CollisionGeometry<float>* o2,
+                          const Transform3<float>& tf2_beg,
+                          const Transform3<float>& tf2_end,
+                          const ContinuousCandidateSink& sink);
 /// @}
 
 }  // namespace fcl
+
+#include "fcl/narrowphase/continuous_candidates-inl.h"
 
 #endif

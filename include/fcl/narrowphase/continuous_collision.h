@@ -9,30 +9,19 @@
 
 #include <type_traits>
 
+#include "fcl/ccd_version.h"
+#include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/stock_continuous_collision.h"
 
-#include "fcl/narrowphase/continuous_contact.h"
-
 namespace fcl {
-namespace detail {
-
-/// A request and a result of which one is for contacts and the other is not.
-template <typename S, typename Request, typename Result>
-using IfMixed = typename std::enable_if<
-    std::is_base_of<ContinuousCollisionRequest<S>, Request>::value &&
-    std::is_base_of<ContinuousCollisionResult<S>, Result>::value &&
-    std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
-        std::is_base_of<ContinuousContactResult<S>, Result>::value>::type;
-
-}  // namespace detail
 
 /// @defgroup continuous_queries Continuous collision queries
 ///
 /// Two triangle meshes are answered here, exactly in the sense below, when each of them
 /// deforms (a DeformableBVHModel, or a BVHModel of any BV type in FCL's updated state) or
 /// moves in translation; everything else (shapes, octrees, rigid meshes that rotate, user
-/// defined motions of rigid meshes) reaches FCL's own function unchanged. A
-/// DeformableBVHModel whose frames are equal is a rigid mesh.
+/// defined motions of rigid meshes) reaches FCL's own function. A DeformableBVHModel
+/// whose frames are equal is a rigid mesh.
 ///
 /// FCL takes a mesh as it is in the current frame and knows nothing of the previous one:
 /// a mesh that deforms stands still where the other object is a shape or a rigid mesh
@@ -45,83 +34,233 @@ using IfMixed = typename std::enable_if<
 /// (current frame), each evaluated in double; a contact is a VF or EE pair of closed
 /// features that touch at some t in [0, 1] (an edge of a vertex with itself is none: its
 /// triangle has that vertex). The choice depends on the geometry and its motion, never on
-/// request.ccd_solver_type or ccd_motion_type. Models are not changed; two calls give the
-/// same answer; concurrent calls on the same models are safe.
+/// request.ccd_solver_type or ccd_motion_type. Of a motion of FCL's the transforms that
+/// it was made from count.
+///
+/// Result: time_of_contact is the lower end of the first contact's time bracket, never
+/// later than the contact; contact_tf1 and contact_tf2 are the poses at the bracket's
+/// upper end, never earlier than it, where the objects have met as a rule, so that
+/// collide() there finds contacts. Where the bracket is as narrow as rounding (a
+/// request.toc_err of that size, or a time found exactly), or the objects touch without
+/// passing into each other, these poses may only touch.
+///
+/// request.toc_err is the width of the bracket; 0 means as narrow as doubles allow.
+///
+/// Models are not changed; two calls give the same answer. Concurrent calls on the same
+/// models are safe, those that FCL answers included (FCL is given a copy of a model that
+/// it would write to); a motion object of a class of the program's own is not to be
+/// shared by them, since it is moved by being asked where it is.
 ///
 /// @throws fcl::Exception that names the object, when it or its motion is null, when a
 /// mesh is not built or is in the middle of an update, has more than 2^29 triangles or
 /// vertices, holds a coordinate that is not finite or a triangle index out of range, when
 /// a transform is not finite, a geometry that has to be a mesh is none, or the request is
-/// not usable (toc_err not positive, num_max_contacts 0, num_threads negative). A
+/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative). A
 /// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
 /// that cannot change the answer (too late for the first contact, or, with kAny, behind
 /// what has the answer) may go unnoticed, for any number of threads alike.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
 /// at t = 0; 1 without collision.
 /// @{
-#define FCL_CCD_DECLARE_QUERIES(S, Request, Result)                   \
-  FCL_EXPORT S continuousCollide(                                     \
-      const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,   \
-      const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,   \
-      const Request<S>& request, Result<S>& result);                  \
-  FCL_EXPORT S continuousCollide(                                     \
-      const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,   \
-      const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,   \
-      const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,     \
-      const Request<S>& request, Result<S>& result);                  \
-  FCL_EXPORT S continuousCollide(                                     \
-      const CollisionObject<S>* o1, const Transform3<S>& tf1_end,     \
-      const CollisionObject<S>* o2, const Transform3<S>& tf2_end,     \
-      const Request<S>& request, Result<S>& result);                  \
-  FCL_EXPORT S collide(const ContinuousCollisionObject<S>* o1,        \
-                       const ContinuousCollisionObject<S>* o2,        \
-                       const Request<S>& request, Result<S>& result); \
-  FCL_EXPORT S continuousSelfCollide(const CollisionGeometry<S>* o,   \
-                                     const Request<S>& request, Result<S>& result);
 
-FCL_CCD_DECLARE_QUERIES(double, ContinuousCollisionRequest, ContinuousCollisionResult)
-FCL_CCD_DECLARE_QUERIES(float, ContinuousCollisionRequest, ContinuousCollisionResult)
+/// @brief The first contact of two geometries that follow motions.
+double continuousCollide(const CollisionGeometry<double>* o1,
+                         const MotionBase<double>* motion1,
+                         const CollisionGeometry<double>* o2,
+                         const MotionBase<double>* motion2,
+                         const ContinuousCollisionRequest<double>& request,
+                         ContinuousCollisionResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionGeometry<float>* o1,
+                        const MotionBase<float>* motion1,
+                        const CollisionGeometry<float>* o2,
+                        const MotionBase<float>* motion2,
+                        const ContinuousCollisionRequest<float>& request,
+                        ContinuousCollisionResult<float>& result);
 
-// With contacts. Only meshes that are answered here have contacts to give; for other
-// objects these throw fcl::Exception.
-FCL_CCD_DECLARE_QUERIES(double, ContinuousContactRequest, ContinuousContactResult)
-FCL_CCD_DECLARE_QUERIES(float, ContinuousContactRequest, ContinuousContactResult)
+/// @brief The first contact of two geometries that go from one transform to another.
+/// Where FCL answers, request.ccd_motion_type says how; FCL has no interpolated and no
+/// screw motion in float: those throw.
+double continuousCollide(const CollisionGeometry<double>* o1,
+                         const Transform3<double>& tf1_beg,
+                         const Transform3<double>& tf1_end,
+                         const CollisionGeometry<double>* o2,
+                         const Transform3<double>& tf2_beg,
+                         const Transform3<double>& tf2_end,
+                         const ContinuousCollisionRequest<double>& request,
+                         ContinuousCollisionResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionGeometry<float>* o1,
+                        const Transform3<float>& tf1_beg,
+                        const Transform3<float>& tf1_end,
+                        const CollisionGeometry<float>* o2,
+                        const Transform3<float>& tf2_beg,
+                        const Transform3<float>& tf2_end,
+                        const ContinuousCollisionRequest<float>& request,
+                        ContinuousCollisionResult<float>& result);
+
+/// @brief The first contact of two objects that go from their transform to another.
+double continuousCollide(const CollisionObject<double>* o1,
+                         const Transform3<double>& tf1_end,
+                         const CollisionObject<double>* o2,
+                         const Transform3<double>& tf2_end,
+                         const ContinuousCollisionRequest<double>& request,
+                         ContinuousCollisionResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionObject<float>* o1,
+                        const Transform3<float>& tf1_end,
+                        const CollisionObject<float>* o2,
+                        const Transform3<float>& tf2_end,
+                        const ContinuousCollisionRequest<float>& request,
+                        ContinuousCollisionResult<float>& result);
+
+/// @brief The first contact of two objects that follow motions.
+double collide(const ContinuousCollisionObject<double>* o1,
+               const ContinuousCollisionObject<double>* o2,
+               const ContinuousCollisionRequest<double>& request,
+               ContinuousCollisionResult<double>& result);
+/// @overload
+float collide(const ContinuousCollisionObject<float>* o1,
+              const ContinuousCollisionObject<float>* o2,
+              const ContinuousCollisionRequest<float>& request,
+              ContinuousCollisionResult<float>& result);
+
+/// @brief The first contact of a mesh with itself; its pose does not matter.
+double continuousSelfCollide(const CollisionGeometry<double>* o,
+                             const ContinuousCollisionRequest<double>& request,
+                             ContinuousCollisionResult<double>& result);
+/// @overload
+float continuousSelfCollide(const CollisionGeometry<float>* o,
+                            const ContinuousCollisionRequest<float>& request,
+                            ContinuousCollisionResult<float>& result);
+
+/// @name With contacts
+/// Only meshes that are answered here have contacts to give; for other objects these
+/// throw fcl::Exception.
+/// @{
+
+/// @brief The contacts of two geometries that follow motions.
+double continuousCollide(const CollisionGeometry<double>* o1,
+                         const MotionBase<double>* motion1,
+                         const CollisionGeometry<double>* o2,
+                         const MotionBase<double>* motion2,
+                         const ContinuousContactRequest<double>& request,
+                         ContinuousContactResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionGeometry<float>* o1,
+                        const MotionBase<float>* motion1,
+                        const CollisionGeometry<float>* o2,
+                        const MotionBase<float>* motion2,
+                        const ContinuousContactRequest<float>& request,
+                        ContinuousContactResult<float>& result);
+
+/// @brief The contacts of two geometries that go from one transform to another.
+double continuousCollide(const CollisionGeometry<double>* o1,
+                         const Transform3<double>& tf1_beg,
+                         const Transform3<double>& tf1_end,
+                         const CollisionGeometry<double>* o2,
+                         const Transform3<double>& tf2_beg,
+                         const Transform3<double>& tf2_end,
+                         const ContinuousContactRequest<double>& request,
+                         ContinuousContactResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionGeometry<float>* o1,
+                        const Transform3<float>& tf1_beg,
+                        const Transform3<float>& tf1_end,
+                        const CollisionGeometry<float>* o2,
+                        const Transform3<float>& tf2_beg,
+                        const Transform3<float>& tf2_end,
+                        const ContinuousContactRequest<float>& request,
+                        ContinuousContactResult<float>& result);
+
+/// @brief The contacts of two objects that go from their transform to another.
+double continuousCollide(const CollisionObject<double>* o1,
+                         const Transform3<double>& tf1_end,
+                         const CollisionObject<double>* o2,
+                         const Transform3<double>& tf2_end,
+                         const ContinuousContactRequest<double>& request,
+                         ContinuousContactResult<double>& result);
+/// @overload
+float continuousCollide(const CollisionObject<float>* o1,
+                        const Transform3<float>& tf1_end,
+                        const CollisionObject<float>* o2,
+                        const Transform3<float>& tf2_end,
+                        const ContinuousContactRequest<float>& request,
+                        ContinuousContactResult<float>& result);
+
+/// @brief The contacts of two objects that follow motions.
+double collide(const ContinuousCollisionObject<double>* o1,
+               const ContinuousCollisionObject<double>* o2,
+               const ContinuousContactRequest<double>& request,
+               ContinuousContactResult<double>& result);
+/// @overload
+float collide(const ContinuousCollisionObject<float>* o1,
+              const ContinuousCollisionObject<float>* o2,
+              const ContinuousContactRequest<float>& request,
+              ContinuousContactResult<float>& result);
+
+/// @brief The contacts of a mesh with itself; its pose does not matter.
+double continuousSelfCollide(const CollisionGeometry<double>* o,
+                             const ContinuousContactRequest<double>& request,
+                             ContinuousContactResult<double>& result);
+/// @overload
+float continuousSelfCollide(const CollisionGeometry<float>* o,
+                            const ContinuousContactRequest<float>& request,
+                            ContinuousContactResult<float>& result);
+/// @}
+
+/// @}
+
+namespace detail {
+
+/// A request and a result of which one is for contacts and the other is not.
+template <typename S, typename Request, typename Result>
+using IfMixed = typename std::enable_if<
+    std::is_base_of<ContinuousCollisionRequest<S>, Request>::value &&
+    std::is_base_of<ContinuousCollisionResult<S>, Result>::value &&
+    std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
+        std::is_base_of<ContinuousContactResult<S>, Result>::value>::type;
+
+/// Transform3<S> where S is told by another argument, so that what converts to it does.
+template <typename S>
+using ConvertedTransform3 = typename std::common_type<Transform3<S>>::type;
+
+}  // namespace detail
 
 // FCL's request and result are not polymorphic: one with contacts and one without would
 // silently lose what is asked for, so they do not compile.
-#define FCL_CCD_DELETE_QUERIES(S)                                                   \
-  template <typename Request, typename Result,                                      \
-            typename = detail::IfMixed<S, Request, Result>>                         \
-  S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1, \
-                      const CollisionGeometry<S>* o2, const MotionBase<S>* motion2, \
-                      const Request& request, Result& result) = delete;             \
-  template <typename Request, typename Result,                                      \
-            typename = detail::IfMixed<S, Request, Result>>                         \
-  S continuousCollide(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg, \
-                      const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2, \
-                      const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,   \
-                      const Request& request, Result& result) = delete;             \
-  template <typename Request, typename Result,                                      \
-            typename = detail::IfMixed<S, Request, Result>>                         \
-  S continuousCollide(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,   \
-                      const CollisionObject<S>* o2, const Transform3<S>& tf2_end,   \
-                      const Request& request, Result& result) = delete;             \
-  template <typename Request, typename Result,                                      \
-            typename = detail::IfMixed<S, Request, Result>>                         \
-  S collide(const ContinuousCollisionObject<S>* o1,                                 \
-            const ContinuousCollisionObject<S>* o2, const Request& request,         \
-            Result& result) = delete;                                               \
-  template <typename Request, typename Result,                                      \
-            typename = detail::IfMixed<S, Request, Result>>                         \
-  S continuousSelfCollide(const CollisionGeometry<S>* o, const Request& request,    \
-                          Result& result) = delete;
-FCL_CCD_DELETE_QUERIES(double)
-FCL_CCD_DELETE_QUERIES(float)
-
-#undef FCL_CCD_DECLARE_QUERIES
-#undef FCL_CCD_DELETE_QUERIES
-/// @}
+template <typename S, typename Request, typename Result,
+          typename = detail::IfMixed<S, Request, Result>>
+S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                    const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                    const Request& request, Result& result) = delete;
+template <typename S, typename Request, typename Result,
+          typename = detail::IfMixed<S, Request, Result>>
+S continuousCollide(const CollisionGeometry<S>* o1,
+                    const detail::ConvertedTransform3<S>& tf1_beg,
+                    const detail::ConvertedTransform3<S>& tf1_end,
+                    const CollisionGeometry<S>* o2,
+                    const detail::ConvertedTransform3<S>& tf2_beg,
+                    const detail::ConvertedTransform3<S>& tf2_end, const Request& request,
+                    Result& result) = delete;
+template <typename S, typename Request, typename Result,
+          typename = detail::IfMixed<S, Request, Result>>
+S continuousCollide(const CollisionObject<S>* o1,
+                    const detail::ConvertedTransform3<S>& tf1_end,
+                    const CollisionObject<S>* o2,
+                    const detail::ConvertedTransform3<S>& tf2_end, const Request& request,
+                    Result& result) = delete;
+template <typename S, typename Request, typename Result,
+          typename = detail::IfMixed<S, Request, Result>>
+S collide(const ContinuousCollisionObject<S>* o1, const ContinuousCollisionObject<S>* o2,
+          const Request& request, Result& result) = delete;
+template <typename S, typename Request, typename Result,
+          typename = detail::IfMixed<S, Request, Result>>
+S continuousSelfCollide(const CollisionGeometry<S>* o, const Request& request,
+                        Result& result) = delete;
 
 }  // namespace fcl
+
+#include "fcl/narrowphase/detail/continuous_query_bodies.h"
 
 #endif

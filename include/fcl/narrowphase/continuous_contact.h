@@ -103,12 +103,9 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 using ContinuousContactRequestf = ContinuousContactRequest<float>;
 using ContinuousContactRequestd = ContinuousContactRequest<double>;
 
-/// @brief FCL's continuous result (is_collide, time_of_contact, contact_tf1, contact_tf2)
-/// with every contact. time_of_contact is never later than the true first time: toc_lo of
-/// the earliest contact (rounded down when S is float), 0 when the surfaces cross at
-/// t = 0, and 1 without collision.
+/// @brief What a query for contacts adds to FCL's result.
 template <typename S>
-struct ContinuousContactResult : ContinuousCollisionResult<S> {
+struct ContinuousContacts {
   /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
   /// ContinuousQuery::kFirst those that may be the first: whose bracket begins no later
   /// than the earliest one ends (of a rigid mesh's, which may be met several times with
@@ -129,6 +126,14 @@ struct ContinuousContactResult : ContinuousCollisionResult<S> {
   StageCounts counts;
   StageTimes times;
 };
+
+/// @brief FCL's continuous result (is_collide, time_of_contact, contact_tf1, contact_tf2)
+/// with every contact. time_of_contact is never later than the true first time: toc_lo of
+/// the earliest contact (rounded down when S is float), 0 when the surfaces cross at
+/// t = 0, and 1 without collision. contact_tf1 and contact_tf2 are the poses at toc_hi of
+/// that contact; see @ref continuous_queries.
+template <typename S>
+struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContacts<S> {};
 
 using ContinuousContactResultf = ContinuousContactResult<float>;
 using ContinuousContactResultd = ContinuousContactResult<double>;

@@ -44,11 +44,11 @@ using ContinuousFeatureTestResultd = ContinuousFeatureTestResult<double>;
 /// doc/pipeline.md.
 ///
 /// @tparam S  double or float; deduced from vectors, to be given for expressions of them
-/// @param toc_err  width of [toc_lo, toc_hi] in units of t; > 0. Where less than a few
-/// units in the last place (of S) is asked for, the bracket is that wide; rounding to
-/// float may add a unit. It does not change the decision.
+/// @param toc_err  width of [toc_lo, toc_hi] in units of t; 0: as narrow as doubles
+/// allow. Where less than a few units in the last place (of S) is asked for, the bracket
+/// is that wide; rounding to float may add a unit. It does not change the decision.
 /// @throws fcl::Exception when a coordinate is not finite (it names the point, as the
-/// parameters are called) or toc_err is not positive.
+/// parameters are called), or toc_err is negative or NaN.
 /// @{
 
 /// @brief Vertex v against triangle f0 f1 f2.

@@ -13,6 +13,7 @@
 #include <map>
 #include <string>
 
+#include "fcl/ccd_version.h"
 #include "output_file.h"
 #include "queries_command.h"
 #include "run_command.h"

@@ -33,7 +33,9 @@ FCL_CCD_EXTERN_MODELS(float)
 #undef FCL_CCD_EXTERN_MODELS
 
 template <typename BV>
-DeformableBVHModel<BV>::DeformableBVHModel() = default;
+DeformableBVHModel<BV>::DeformableBVHModel() {
+  fitPerThread();
+}
 
 template <typename BV>
 DeformableBVHModel<BV>::~DeformableBVHModel() = default;
@@ -50,9 +52,7 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
   // FCL copies the nodes that a tree has; one that is half made has less than it needs.
   if (isHalfUpdated())
     throw Exception("DeformableBVHModel: copied after an update that failed");
-  // FCL shares these between copies, although building writes to them.
-  this->bv_splitter = std::make_shared<detail::BVSplitter<BV>>(detail::SPLIT_METHOD_MEAN);
-  this->bv_fitter = std::make_shared<detail::BVFitter<BV>>();
+  fitPerThread();
   if (this->build_state == BVH_BUILD_STATE_BEGUN && this->num_vertices == 0) makeRoom();
   if (other.isInStep()) seal_ = currentSeal();
   if (other.opened_ == other.currentSeal()) opened_ = currentSeal();

@@ -2,6 +2,10 @@
 #ifndef FCL_BVH_DEFORMABLE_BVH_MODEL_H
 #define FCL_BVH_DEFORMABLE_BVH_MODEL_H
 
+#if __cplusplus < 201703L
+#error "DeformableBVHModel needs C++17: compile with -std=c++17 or later"
+#endif
+
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -63,9 +67,14 @@ enum class FclTree {
 /// Nothing may be added through the base to a model that ended with FclTree::kSkip: FCL
 /// would write its next update beyond the end of the previous frame.
 ///
-/// Thread-safety: concurrent const access is safe; copies are deep and independent, with
-/// FCL's own bv_splitter and bv_fitter, whatever the original has. A build or an update
-/// runs on the caller's thread alone unless setNumThreads() allows more.
+/// Thread-safety: concurrent const access is safe, and so are FCL's discrete queries of
+/// one model in several threads: its bv_splitter and bv_fitter, which FCL's queries use
+/// and copies share, are FCL's for each thread. (Of a BVHModel that is no
+/// DeformableBVHModel FCL's own keep a state, and concurrent discrete queries of one AABB
+/// or KDOP model crash, as in stock FCL: give each thread a bv_splitter and bv_fitter of
+/// its own with its copy.) Copies are deep and independent, with these too, whatever the
+/// original has. A build or an update runs on the caller's thread alone unless
+/// setNumThreads() allows more.
 template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:
@@ -210,6 +219,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
   void seal();
+  void fitPerThread();
   void makeRoom();
   void swapBase(Base& other);
 

@@ -29,6 +29,9 @@ enum class FeatureOwners {
 template <typename S>
 MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
+/// @throws fcl::Exception that calls the geometry `name`, when a number is not finite
+void requireFinite(const Pose& beginning, const Pose& end, const std::string& name);
+
 /// @brief A geometry made ready for one query, with what had to be computed for it:
 /// nothing for a DeformableBVHModel that is only translated and for a rigid mesh (but see
 /// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state, and for
@@ -44,8 +47,8 @@ class PreparedMesh {
   /// frame not finite, vertex index out of range, a vertex that leaves the range of
   /// double in its pose (not of a rigid mesh, whose vertices are not looked at)
   template <typename S>
-  PreparedMesh(const CollisionGeometry<S>& geometry, const Transform3<S>& tf_beg,
-               const Transform3<S>& tf_end, const std::string& name, int num_threads = 1,
+  PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
+               const Pose& end, const std::string& name, int num_threads = 1,
                FeatureOwners owners = FeatureOwners::kIfKept);
 
   PreparedMesh(const PreparedMesh&) = delete;

@@ -2,22 +2,14 @@
 #ifndef FCL_TRAVERSAL_DEFORMABLECONTINUOUSCOLLISIONTRAVERSALNODE_H
 #define FCL_TRAVERSAL_DEFORMABLECONTINUOUSCOLLISIONTRAVERSALNODE_H
 
-#include <cstddef>
-#include <memory>
-#include <vector>
-
 #include "fcl/narrowphase/collision_result.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
+#include "fcl/narrowphase/detail/deformable_traversal.h"
+#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/traversal/collision/collision_traversal_node_base.h"
 
 namespace fcl {
 namespace detail {
-
-namespace deformable {
-class BinaryView;
-}
 
 /// @brief Traversal node for continuous collision between two meshes that deform or
 /// translate, or of one with itself; made by initialize(), driven by FCL's collide(&node)
@@ -29,72 +21,75 @@ class BinaryView;
 /// the request.num_max_contacts earliest ones, in no order. Surfaces that cross at t = 0
 /// without a VF or EE contact are one Contact too.
 template <typename S>
-class FCL_EXPORT DeformableContinuousCollisionTraversalNode
-    : public CollisionTraversalNodeBase<S> {
+class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNodeBase<S> {
  public:
-  DeformableContinuousCollisionTraversalNode();
-  ~DeformableContinuousCollisionTraversalNode() override;
-
-  bool isFirstNodeLeaf(int b) const override;
-  bool isSecondNodeLeaf(int b) const override;
-  bool firstOverSecond(int b1, int b2) const override;
-  int getFirstLeftChild(int b) const override;
-  int getFirstRightChild(int b) const override;
-  int getSecondLeftChild(int b) const override;
-  int getSecondRightChild(int b) const override;
+  bool isFirstNodeLeaf(int b) const override { return traversal_.isFirstLeaf(b); }
+  bool isSecondNodeLeaf(int b) const override { return traversal_.isSecondLeaf(b); }
+  bool firstOverSecond(int b1, int b2) const override {
+    return traversal_.firstOverSecond(b1, b2);
+  }
+  int getFirstLeftChild(int b) const override { return traversal_.firstLeftChild(b); }
+  int getFirstRightChild(int b) const override {
+    return traversal_.firstLeftChild(b) + 1;
+  }
+  int getSecondLeftChild(int b) const override { return traversal_.secondLeftChild(b); }
+  int getSecondRightChild(int b) const override {
+    return traversal_.secondLeftChild(b) + 1;
+  }
 
   /// @brief Whether the two nodes' moving boxes never overlap, or only after the earliest
   /// time that still matters.
-  bool BVTesting(int b1, int b2) const override;
-  void leafTesting(int b1, int b2) const override;
-  bool canStop() const override;
+  bool BVTesting(int b1, int b2) const override { return traversal_.areApart(b1, b2); }
+  void leafTesting(int b1, int b2) const override {
+    traversal_.testLeaves(b1, b2);
+    time_of_contact = traversal_.timeOfContact();
+  }
+  bool canStop() const override { return traversal_.isDone(); }
 
   /// @brief First time of contact found so far, never later than the true one once the
   /// traversal is over; 0 when the surfaces cross at t = 0; 1 without contact.
   mutable S time_of_contact{1};
 
   /// @brief Whether an edge passes through a face at t = 0.
-  bool isInitiallyCrossing() const;
+  bool isInitiallyCrossing() const { return traversal_.isInitiallyCrossing(); }
 
-  const StageCounts& counts() const;
+  const StageCounts& counts() const { return traversal_.counts(); }
 
   /// @brief Width of the contacts' time brackets; set before initialize().
   S toc_err{S(1e-4)};
 
   /// @brief What initialize() does.
-  void start(const CollisionGeometry<S>& model1, const Transform3<S>& tf1_beg,
+  bool start(const CollisionGeometry<S>& model1, const Transform3<S>& tf1_beg,
              const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
              const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
-             const CollisionRequest<S>& request, CollisionResult<S>& result);
+             const CollisionRequest<S>& request, CollisionResult<S>& result) {
+    if (!traversal_.start(movingGeometry(&model1, tf1_beg, tf1_end),
+                          movingGeometry(&model2, tf2_beg, tf2_end), toc_err, request,
+                          result))
+      return false;
+    begin(tf1_beg, tf2_beg, request, result);
+    return true;
+  }
 
   /// @brief What initialize() does for a model with itself.
-  void startSelf(const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
-                 CollisionResult<S>& result);
+  bool startSelf(const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
+                 CollisionResult<S>& result) {
+    if (!traversal_.startSelf(model, toc_err, request, result)) return false;
+    begin(Transform3<S>::Identity(), Transform3<S>::Identity(), request, result);
+    return true;
+  }
 
  private:
-  const deformable::MeshInstance& mesh1() const;
-  const deformable::MeshInstance& mesh2() const;
-  const deformable::BinaryView& view2() const;
-  TimeWindow window(int b1, int b2) const;
-  void requireValid(const CollisionRequest<S>& request) const;
-  void begin(std::unique_ptr<deformable::PreparedMesh> prepared1,
-             std::unique_ptr<deformable::PreparedMesh> prepared2,
-             const CollisionRequest<S>& request, CollisionResult<S>& result);
-  void report() const;
-  Contact<S> toFcl(ContinuousContact<S> contact) const;
+  void begin(const Transform3<S>& tf1, const Transform3<S>& tf2,
+             const CollisionRequest<S>& request, CollisionResult<S>& result) {
+    this->tf1 = tf1;
+    this->tf2 = tf2;
+    this->request = request;
+    this->result = &result;
+    time_of_contact = 1;
+  }
 
-  const CollisionGeometry<S>* model1_{nullptr};
-  const CollisionGeometry<S>* model2_{nullptr};
-  std::unique_ptr<deformable::PreparedMesh> prepared1_;
-  std::unique_ptr<deformable::PreparedMesh> prepared2_;  // null: with itself
-  std::unique_ptr<deformable::TrianglePairTest> test_;
-  std::unique_ptr<deformable::BinaryView> view1_;
-  std::unique_ptr<deformable::BinaryView> view2_;  // null: with itself
-  std::unique_ptr<deformable::KdopShift> shift_;   // null: with itself
-  /// What the result held before.
-  CollisionResult<S> earlier_;
-  mutable std::size_t reported_{0};
-  mutable bool crossing_reported_{false};
+  mutable DeformableTraversal<S> traversal_;
 };
 
 using DeformableContinuousCollisionTraversalNoded =
@@ -107,13 +102,13 @@ using DeformableContinuousCollisionTraversalNodef =
 /// rigid one that rotates between its transforms.
 /// @throws fcl::Exception as continuousCollide()
 template <typename S>
-FCL_EXPORT bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
-                           const CollisionGeometry<S>& model1,
-                           const Transform3<S>& tf1_beg, const Transform3<S>& tf1_end,
-                           const CollisionGeometry<S>& model2,
-                           const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
-                           const CollisionRequest<S>& request,
-                           CollisionResult<S>& result);
+bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
+                const CollisionGeometry<S>& model1, const Transform3<S>& tf1_beg,
+                const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
+                const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
+                const CollisionRequest<S>& request, CollisionResult<S>& result) {
+  return node.start(model1, tf1_beg, tf1_end, model2, tf2_beg, tf2_end, request, result);
+}
 
 /// @brief The same for models whose transforms do not change during the step.
 template <typename S>
@@ -126,10 +121,11 @@ bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
 
 /// @brief Makes the node ready for FCL's selfCollide(&node).
 template <typename S>
-FCL_EXPORT bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
-                           const CollisionGeometry<S>& model,
-                           const CollisionRequest<S>& request,
-                           CollisionResult<S>& result);
+bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
+                const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
+                CollisionResult<S>& result) {
+  return node.startSelf(model, request, result);
+}
 
 }  // namespace detail
 }  // namespace fcl

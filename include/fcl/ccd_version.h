@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The version of fcl_ccd, which extends FCL; FCL's own is in <fcl/config.h>. A program
+// tells whether it is compiled with this package by FCL_CCD_VERSION, which is defined
+// after any header of continuous collision, <fcl/narrowphase/distance.h> or <fcl/fcl.h>.
+#ifndef FCL_CCD_VERSION_H
+#define FCL_CCD_VERSION_H
+
+#define FCL_CCD_VERSION "0.1.0"
+#define FCL_CCD_MAJOR_VERSION 0
+#define FCL_CCD_MINOR_VERSION 1
+#define FCL_CCD_PATCH_VERSION 0
+
+#define FCL_CCD_VERSION_AT_LEAST(x, y, z) \
+  (FCL_CCD_MAJOR_VERSION > x ||           \
+   (FCL_CCD_MAJOR_VERSION == x &&         \
+    (FCL_CCD_MINOR_VERSION > y ||         \
+     (FCL_CCD_MINOR_VERSION == y && FCL_CCD_PATCH_VERSION >= z))))
+
+#endif

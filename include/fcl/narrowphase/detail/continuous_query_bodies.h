@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_DETAIL_CONTINUOUS_QUERY_BODIES_H
+#define FCL_NARROWPHASE_DETAIL_CONTINUOUS_QUERY_BODIES_H
+
+// The queries take FCL's types apart, ask the library, and put its answer back; or hand
+// the query to FCL.
+
+#include <string>
+#include <typeinfo>
+
+#include "fcl/common/exception.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/detail/fcl_queries.h"
+#include "fcl/narrowphase/detail/pose_numbers.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+
+namespace fcl {
+namespace detail {
+
+inline void requireNotNull(const void* argument, const char* name) {
+  if (!argument) throw Exception(std::string(name) + " is null");
+}
+
+template <typename S>
+QuerySettings settingsOf(const ContinuousCollisionRequest<S>& request) {
+  return {
+      static_cast<double>(request.toc_err), false, ContinuousQuery::kFirst, 1, false, 1};
+}
+
+template <typename S>
+QuerySettings settingsOf(const ContinuousContactRequest<S>& request) {
+  return {static_cast<double>(request.toc_err),
+          true,
+          request.query,
+          request.num_max_contacts,
+          request.enable_contact,
+          request.num_threads};
+}
+
+template <typename S>
+ContinuousContacts<S>* contactsOf(ContinuousCollisionResult<S>&) {
+  return nullptr;
+}
+
+template <typename S>
+ContinuousContacts<S>* contactsOf(ContinuousContactResult<S>& result) {
+  return &result;
+}
+
+/// Translation on a straight line, rotation at constant speed (a deforming mesh only:
+/// its vertices do not follow it).
+template <typename S>
+Transform3<S> poseAt(const MovingGeometry<S>& o, S t) {
+  Transform3<S> tf = toTransform(o.pose[0]);
+  const Transform3<S> end = toTransform(o.pose[1]);
+  tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();
+  if (!isConstantRotation(o.pose[0], o.pose[1]))
+    tf.linear() = Quaternion<S>(tf.linear())
+                      .slerp(t, Quaternion<S>(end.linear()))
+                      .toRotationMatrix();
+  return tf;
+}
+
+/// The part of the result that FCL's own type has.
+template <typename S>
+void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
+                const MovingGeometry<S>& o2, ContinuousCollisionResult<S>& result) {
+  const deformable::DefaultFloatingPoint mode;
+  result.is_collide = outcome.is_collide;
+  result.time_of_contact = outcome.toc_lo;
+  result.contact_tf1 = poseAt(o1, outcome.toc_hi);
+  result.contact_tf2 = poseAt(o2, outcome.toc_hi);
+}
+
+/// FCL's own classes of motion in float are compiled with the program, as here.
+template <typename Motion, typename S>
+bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
+  // Of this class and of none derived from it, which may move otherwise.
+  if (typeid(motion) != typeid(Motion)) return false;
+  // integrate() changes the motion.
+  const Motion copy(static_cast<const Motion&>(motion));
+  for (int end = 0; end < 2; ++end) {
+    Transform3<S> tf;
+    copy.integrate(S(end));
+    copy.getCurrentTransform(tf);
+    pose[end] = toNumbers(tf);
+  }
+  return true;
+}
+
+/// Of float, in which FCL's other two motions are abstract.
+template <typename S>
+bool readMotion(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2],
+                bool& is_straight) {
+  is_straight = readMotionAs<TranslationMotion<S>>(motion, pose);
+  return is_straight || readMotionAs<SplineMotion<S>>(motion, pose);
+}
+
+inline bool readMotion(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2],
+                       bool& is_straight) {
+  return readFclMotion(motion, pose, is_straight);
+}
+
+/// A geometry that follows a motion. A motion of the program's own, which nobody can
+/// copy, is asked only for a mesh that deforms, and is at its beginning afterwards: a
+/// rigid mesh that follows it is FCL's.
+template <typename S>
+MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
+                                 const MotionBase<S>* motion) {
+  MovingGeometry<S> moving{o, {}, false};
+  if (readMotion(*motion, moving.pose, moving.is_straight)) return moving;
+  Transform3<S> tf = Transform3<S>::Identity();
+  moving.pose[0] = moving.pose[1] = toNumbers(tf);
+  if (isDeformingMesh(*o))
+    for (int end = 1; end >= 0; --end) {
+      motion->integrate(S(end));
+      motion->getCurrentTransform(tf);
+      moving.pose[end] = toNumbers(tf);
+    }
+  return moving;
+}
+
+/// Where an object is; its transform is read through numbers, since it is laid out as in
+/// libfcl.
+template <typename S>
+Transform3<S> transformOf(const CollisionObject<S>& o) {
+  return toTransform(toNumbers<S>(o.getRotation(), o.getTranslation()));
+}
+
+/// @return false when the pair is FCL's; nothing has changed then.
+template <typename S, typename Request, typename Result>
+bool collideHere(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                 const Request& request, Result& result) {
+  QueryOutcome<S> outcome;
+  if (!answerPair(o1, o2, settingsOf(request), outcome, contactsOf(result))) return false;
+  fillResult(outcome, o1, o2, result);
+  return true;
+}
+
+template <typename S, typename Request, typename Result>
+S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                 const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                 const Request& request, Result& result) {
+  requireNotNull(o1, "o1");
+  requireNotNull(o2, "o2");
+  requireNotNull(motion1, "motion1");
+  requireNotNull(motion2, "motion2");
+  if (collideHere(movingGeometry(o1, motion1), movingGeometry(o2, motion2), request,
+                  result))
+    return result.time_of_contact;
+  return askFcl(o1, motion1, o2, motion2, request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideTransforms(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,
+                    const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,
+                    const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
+                    const Request& request, Result& result) {
+  requireNotNull(o1, "o1");
+  requireNotNull(o2, "o2");
+  const MovingGeometry<S> moving1 = movingGeometry(o1, tf1_beg, tf1_end),
+                          moving2 = movingGeometry(o2, tf2_beg, tf2_end);
+  if (collideHere(moving1, moving2, request, result)) return result.time_of_contact;
+  return askFcl(moving1, moving2, request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
+                 const CollisionObject<S>* o2, const Transform3<S>& tf2_end,
+                 const Request& request, Result& result) {
+  requireNotNull(o1, "o1");
+  requireNotNull(o2, "o2");
+  return collideTransforms<S>(o1->collisionGeometry().get(), transformOf(*o1), tf1_end,
+                              o2->collisionGeometry().get(), transformOf(*o2), tf2_end,
+                              request, result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideMovingObjects(const ContinuousCollisionObject<S>* o1,
+                       const ContinuousCollisionObject<S>* o2, const Request& request,
+                       Result& result) {
+  requireNotNull(o1, "o1");
+  requireNotNull(o2, "o2");
+  return collideMotions<S>(o1->collisionGeometry().get(), o1->getMotion(),
+                           o2->collisionGeometry().get(), o2->getMotion(), request,
+                           result);
+}
+
+template <typename S, typename Request, typename Result>
+S collideSelf(const CollisionGeometry<S>* o, const Request& request, Result& result) {
+  const Transform3<S> still = Transform3<S>::Identity();
+  const MovingGeometry<S> moving = movingGeometry(o, still, still);
+  QueryOutcome<S> outcome;
+  answerSelf(o, settingsOf(request), outcome, contactsOf(result));
+  fillResult(outcome, moving, moving, result);
+  return result.time_of_contact;
+}
+
+}  // namespace detail
+
+/// The bodies of the queries. A friend that is defined in a class template is compiled
+/// only where it is called: a program that asks nothing in float compiles nothing of
+/// FCL's in float.
+template <typename S>
+class ContinuousQueryBodies {
+  friend S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                             const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                             const ContinuousCollisionRequest<S>& request,
+                             ContinuousCollisionResult<S>& result) {
+    return detail::collideMotions(o1, motion1, o2, motion2, request, result);
+  }
+  friend S continuousCollide(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,
+                             const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,
+                             const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
+                             const ContinuousCollisionRequest<S>& request,
+                             ContinuousCollisionResult<S>& result) {
+    return detail::collideTransforms(o1, tf1_beg, tf1_end, o2, tf2_beg, tf2_end, request,
+                                     result);
+  }
+  friend S continuousCollide(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
+                             const CollisionObject<S>* o2, const Transform3<S>& tf2_end,
+                             const ContinuousCollisionRequest<S>& request,
+                             ContinuousCollisionResult<S>& result) {
+    return detail::collideObjects(o1, tf1_end, o2, tf2_end, request, result);
+  }
+  friend S collide(const ContinuousCollisionObject<S>* o1,
+                   const ContinuousCollisionObject<S>* o2,
+                   const ContinuousCollisionRequest<S>& request,
+                   ContinuousCollisionResult<S>& result) {
+    return detail::collideMovingObjects(o1, o2, request, result);
+  }
+  friend S continuousSelfCollide(const CollisionGeometry<S>* o,
+                                 const ContinuousCollisionRequest<S>& request,
+                                 ContinuousCollisionResult<S>& result) {
+    return detail::collideSelf(o, request, result);
+  }
+  friend S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                             const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                             const ContinuousContactRequest<S>& request,
+                             ContinuousContactResult<S>& result) {
+    return detail::collideMotions(o1, motion1, o2, motion2, request, result);
+  }
+  friend S continuousCollide(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg,
+                             const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,
+                             const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
+                             const ContinuousContactRequest<S>& request,
+                             ContinuousContactResult<S>& result) {
+    return detail::collideTransforms(o1, tf1_beg, tf1_end, o2, tf2_beg, tf2_end, request,
+                                     result);
+  }
+  friend S continuousCollide(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
+                             const CollisionObject<S>* o2, const Transform3<S>& tf2_end,
+                             const ContinuousContactRequest<S>& request,
+                             ContinuousContactResult<S>& result) {
+    return detail::collideObjects(o1, tf1_end, o2, tf2_end, request, result);
+  }
+  friend S collide(const ContinuousCollisionObject<S>* o1,
+                   const ContinuousCollisionObject<S>* o2,
+                   const ContinuousContactRequest<S>& request,
+                   ContinuousContactResult<S>& result) {
+    return detail::collideMovingObjects(o1, o2, request, result);
+  }
+  friend S continuousSelfCollide(const CollisionGeometry<S>* o,
+                                 const ContinuousContactRequest<S>& request,
+                                 ContinuousContactResult<S>& result) {
+    return detail::collideSelf(o, request, result);
+  }
+};
+
+// Tells the compiler of the friends.
+static_assert(sizeof(ContinuousQueryBodies<double>) == 1, "");
+static_assert(sizeof(ContinuousQueryBodies<float>) == 1, "");
+
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// FCL's own continuous queries, for what is not answered here. What stock FCL compiles
+// with the program is compiled with it.
+#ifndef FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
+#define FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
+
+#include <memory>
+#include <string>
+
+#include "fcl/common/exception.h"
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/math/bv/utility.h"
+#include "fcl/math/motion/interp_motion.h"
+#include "fcl/math/motion/screw_motion.h"
+#include "fcl/math/motion/spline_motion.h"
+#include "fcl/math/motion/translation_motion.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "fcl/narrowphase/detail/pose_numbers.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+#include "fcl/narrowphase/detail/stock_continuous_collision.h"
+
+namespace fcl {
+namespace detail {
+
+/// @brief The motion that FCL makes of two transforms. Its own getMotionBase() leaves the
+/// reference point of an interpolation as memory happens to be; it is the origin here.
+inline std::shared_ptr<MotionBase<double>> makeFclMotion(const Transform3<double>& beg,
+                                                         const Transform3<double>& end,
+                                                         CCDMotionType type) {
+  switch (type) {
+    case CCDM_TRANS:
+      return std::make_shared<TranslationMotion<double>>(beg, end);
+    case CCDM_LINEAR:
+      return std::make_shared<InterpMotion<double>>(beg.linear(), beg.translation(),
+                                                    end.linear(), end.translation(),
+                                                    Vector3<double>::Zero());
+    case CCDM_SCREW:
+      return std::make_shared<ScrewMotion<double>>(beg, end);
+    case CCDM_SPLINE:
+      return std::make_shared<SplineMotion<double>>(beg, end);
+  }
+  throw Exception("request.ccd_motion_type is no motion of FCL's");
+}
+
+/// @brief Whether FCL, asked this, would write to what a model shares with its copies: it
+/// copies a model whose volumes cannot be turned and builds the copy's tree anew in each
+/// pose, with the fitter and the splitter that all copies share; conservative advancement
+/// does so with OBBs and kIOSs too. The polynomial solver moves the models themselves.
+template <typename S>
+bool isWrittenTo(NODE_TYPE type, const ContinuousCollisionRequest<S>& request) {
+  if (request.ccd_solver_type == CCDC_POLYNOMIAL_SOLVER) return true;
+  switch (type) {
+    case BV_AABB:
+    case BV_KDOP16:
+    case BV_KDOP18:
+    case BV_KDOP24:
+      return true;
+    case BV_OBB:
+    case BV_kIOS:
+      return request.ccd_solver_type == CCDC_CONSERVATIVE_ADVANCEMENT;
+    default:
+      return false;
+  }
+}
+
+/// @brief A copy of a model that shares nothing with it.
+template <typename BV>
+std::shared_ptr<const CollisionGeometry<typename BV::S>> copyModel(
+    const CollisionGeometry<typename BV::S>& o) {
+  auto copy = std::make_shared<BVHModel<BV>>(static_cast<const BVHModel<BV>&>(o));
+  copy->bv_splitter = std::make_shared<BVSplitter<BV>>(SPLIT_METHOD_MEAN);
+  copy->bv_fitter = std::make_shared<BVFitter<BV>>();
+  return copy;
+}
+
+/// @brief What FCL is given of a geometry: itself, or a copy that FCL may write to. The
+/// copy takes a small part of the time that FCL then needs for its own.
+template <typename S>
+std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
+    const CollisionGeometry<S>* o, const ContinuousCollisionRequest<S>& request) {
+  if (o->getObjectType() == OT_BVH && isWrittenTo(o->getNodeType(), request)) {
+    switch (o->getNodeType()) {
+      case BV_AABB:
+        return copyModel<AABB<S>>(*o);
+      case BV_OBB:
+        return copyModel<OBB<S>>(*o);
+      case BV_RSS:
+        return copyModel<RSS<S>>(*o);
+      case BV_kIOS:
+        return copyModel<kIOS<S>>(*o);
+      case BV_OBBRSS:
+        return copyModel<OBBRSS<S>>(*o);
+      case BV_KDOP16:
+        return copyModel<KDOP<S, 16>>(*o);
+      case BV_KDOP18:
+        return copyModel<KDOP<S, 18>>(*o);
+      case BV_KDOP24:
+        return copyModel<KDOP<S, 24>>(*o);
+      default:
+        break;
+    }
+  }
+  return {std::shared_ptr<const CollisionGeometry<S>>(), o};
+}
+
+/// @brief FCL's answer about geometries that follow motions.
+template <typename S>
+S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+         const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+         const ContinuousCollisionRequest<S>& request,
+         ContinuousCollisionResult<S>& result) {
+  return continuousCollide<S>(geometryForFcl(o1, request).get(), motion1,
+                              geometryForFcl(o2, request).get(), motion2, request,
+                              result);
+}
+
+/// @brief FCL's answer about geometries that go from one transform to another.
+inline double askFcl(const MovingGeometry<double>& o1, const MovingGeometry<double>& o2,
+                     const ContinuousCollisionRequest<double>& request,
+                     ContinuousCollisionResult<double>& result) {
+  const auto motionOf = [&request](const MovingGeometry<double>& o) {
+    return makeFclMotion(toTransform(o.pose[0]), toTransform(o.pose[1]),
+                         request.ccd_motion_type);
+  };
+  return askFcl(o1.geometry, motionOf(o1).get(), o2.geometry, motionOf(o2).get(), request,
+                result);
+}
+
+/// @brief In float stock FCL does not compile there; the library does.
+inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2,
+                    const ContinuousCollisionRequest<float>& request,
+                    ContinuousCollisionResult<float>& result) {
+  FclOutcome outcome{result.is_collide, result.time_of_contact, {}};
+  const float answer = askFclInFloat(o1, o2, request, outcome);
+  result.is_collide = outcome.is_collide;
+  result.time_of_contact = outcome.time_of_contact;
+  if (outcome.is_collide) {
+    result.contact_tf1 = toTransform(outcome.contact_pose[0]);
+    result.contact_tf2 = toTransform(outcome.contact_pose[1]);
+  }
+  return answer;
+}
+
+/// @brief FCL reports no contacts.
+template <typename S>
+S askFcl(const CollisionGeometry<S>*, const MotionBase<S>*, const CollisionGeometry<S>*,
+         const MotionBase<S>*, const ContinuousContactRequest<S>&,
+         ContinuousContactResult<S>&) {
+  throw Exception(std::string("contacts") + kNotAnsweredHere);
+}
+template <typename S>
+S askFcl(const MovingGeometry<S>&, const MovingGeometry<S>&,
+         const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
+  throw Exception(std::string("contacts") + kNotAnsweredHere);
+}
+
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// FCL's own continuous query in float, between two transforms. libfcl has none, and
+// stock's header does not compile there: FCL's getMotionBase<float>() makes motions that
+// are abstract.
+#include <memory>
+
+#include "fcl/common/exception.h"
+#include "fcl/narrowphase/continuous_collision.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+std::shared_ptr<MotionBase<float>> motionOf(const MovingGeometry<float>& o,
+                                            CCDMotionType type) {
+  const Transform3<float> beg = toTransform(o.pose[0]), end = toTransform(o.pose[1]);
+  if (type == CCDM_TRANS) return std::make_shared<TranslationMotion<float>>(beg, end);
+  if (type == CCDM_SPLINE) return std::make_shared<SplineMotion<float>>(beg, end);
+  throw Exception("FCL has no interpolated and no screw motion in float");
+}
+
+}  // namespace
+
+float askFclInFloat(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2,
+                    const ContinuousCollisionRequest<float>& request,
+                    FclOutcome& outcome) {
+  const auto motion1 = motionOf(o1, request.ccd_motion_type),
+             motion2 = motionOf(o2, request.ccd_motion_type);
+  ContinuousCollisionResult<float> result;
+  result.is_collide = outcome.is_collide;
+  result.time_of_contact = outcome.time_of_contact;
+  const float answer =
+      askFcl(o1.geometry, motion1.get(), o2.geometry, motion2.get(), request, result);
+  outcome.is_collide = result.is_collide;
+  outcome.time_of_contact = result.time_of_contact;
+  if (result.is_collide) {
+    outcome.contact_pose[0] = toNumbers(result.contact_tf1);
+    outcome.contact_pose[1] = toNumbers(result.contact_tf2);
+  }
+  return answer;
+}
+
+}  // namespace detail
+}  // namespace fcl
