@@ -16,7 +16,7 @@ install(
   foreach(place IN ITEMS "$ENV{DESTDIR}${include_dir}" "${include_dir}")
     if(EXISTS "${place}/fcl/config.h")
       message(FATAL_ERROR
-              "Stock FCL is installed in ${place}, and files of its would be overwritten: this "
+              "Stock FCL is installed in ${place}, and some of its files would be overwritten. This "
               "package stands in front of FCL and needs a prefix of its own, for example\n"
               "  cmake --install BUILD_FOLDER --prefix $ENV{HOME}/.local/fcl-ccd")
     endif()
@@ -84,7 +84,7 @@ file(
   GENERATE
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
   CONTENT "/* GNU ld script: FCL as extended by fcl_ccd */
-GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_LINKER_FILE:fcl>${FCL_CCD_PRIVATE_LIBS} )
+GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_FILE_DIR:fcl>/$<TARGET_SONAME_FILE_NAME:fcl>${FCL_CCD_PRIVATE_LIBS} )
 ")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
         DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -1,23 +1,27 @@
 #!/usr/bin/env bash
 # Installs what is missing (Debian), builds in Release and runs the tests.
-#   bash cmake/test.sh         the test suite
-#   bash cmake/test.sh --all   also: sanitizers, clang with -Werror, clang-tidy, the
-#                              reference, a build without vectors and threads, and the
-#                              checks that need clang (what CI runs; CI=true means the same)
+#   bash cmake/test.sh           the test suite
+#   bash cmake/test.sh --all     also: sanitizers, clang with -Werror, clang-tidy, the
+#                                reference, a build without vectors and threads, and the
+#                                checks that need clang (what CI runs; CI=true means the same)
+#   bash cmake/test.sh --doors   only: every way to link the package (test/consumer), with
+#                                gcc and clang and each set of flags; half an hour
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/dependencies.sh
 source cmake/dependencies.sh
 
 all=false
+doors=false
 case "${1-}" in
   --all) all=true ;;
+  --doors) doors=true ;;
   "") ;;
-  *) echo "usage: bash cmake/test.sh [--all]" >&2; exit 2 ;;
+  *) echo "usage: bash cmake/test.sh [--all | --doors]" >&2; exit 2 ;;
 esac
-if [ "${CI-}" = true ]; then all=true; fi
+if [ "${CI-}" = true ] && ! $doors; then all=true; fi
 
-if $all; then
+if $all || $doors; then
   fcl_ccd_install_dependencies all
 else
   fcl_ccd_install_dependencies build
@@ -31,6 +35,14 @@ build() {
   cmake --preset "$preset" "$@"
   cmake --build --preset "$preset" -j "$jobs"
 }
+
+if $doors; then
+  build release
+  for compiler in g++ clang++; do
+    bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
+  done
+  exit
+fi
 
 # The Release run is the last, so that its summary closes the output.
 if $all; then

@@ -2,6 +2,8 @@
 //
 // FCL's motions in double, which are compiled in libfcl, read where their layout is
 // libfcl's.
+#include <cstddef>
+#include <new>
 #include <typeinfo>
 
 #include "fcl/math/motion/interp_motion.h"
@@ -39,22 +41,66 @@ const Motion* as(const MotionBase<double>& motion) {
   return typeid(motion) == typeid(Motion) ? static_cast<const Motion*>(&motion) : nullptr;
 }
 
+/// More than Eigen aligns to on any machine, and so right for a libfcl compiled for any.
+constexpr std::size_t kMostAlignment = 64;
+
+void integrate(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2]) {
+  for (int end = 1; end >= 0; --end) {
+    alignas(kMostAlignment) Transform3<double> tf;
+    motion.integrate(end);
+    motion.getCurrentTransform(tf);
+    pose[end] = toNumbers(tf);
+  }
+}
+
 template <typename Motion>
 void integrateCopy(const Motion& motion, PoseNumbers<double> (&pose)[2]) {
   // integrate() changes the motion.
   const Motion copy(motion);
-  for (int end = 0; end < 2; ++end) {
-    Transform3<double> tf;
-    copy.integrate(end);
-    copy.getCurrentTransform(tf);
-    pose[end] = toNumbers(tf);
-  }
+  integrate(copy, pose);
+}
+
+/// Whether libfcl lays its motions out as this file does: asked of one that libfcl makes,
+/// by what it says of itself and what is read.
+bool isLaidOutAsHere() {
+  alignas(kMostAlignment) Transform3<double> beg = Transform3<double>::Identity();
+  alignas(kMostAlignment) Transform3<double> end = beg;
+  end.translation() = Vector3<double>(1, 2, 3);
+  // With room for more than this file believes it to need.
+  using Motion = InterpMotion<double>;
+  alignas(kMostAlignment) unsigned char memory[2 * sizeof(Motion)] = {};
+  auto* motion = new (memory) Motion(beg, end);
+  PoseNumbers<double> pose[2];
+  MotionEnds<Motion>::read(*motion, pose);
+  const bool ends_are_there = pose[0].rotation[8] == 1 && pose[1].translation[0] == 1 &&
+                              pose[1].translation[1] == 2 && pose[1].translation[2] == 3;
+  motion->~Motion();
+
+  // Where Eigen aligns to 32 bytes this class alone differs, by a gap before its last member.
+  using Translation = TranslationMotion<double>;
+  alignas(kMostAlignment) unsigned char more_memory[2 * sizeof(Translation)] = {};
+  auto* translation = new (more_memory) Translation(beg, end);
+  const Translation copy(*translation);
+  alignas(kMostAlignment) Transform3<double> copied;
+  copy.getCurrentTransform(copied);
+  const bool copies_are_whole = toNumbers(copied).rotation[8] == 1;
+  translation->~Translation();
+  return ends_are_there && copies_are_whole;
 }
 
 }  // namespace
 
 bool readFclMotion(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2],
                    bool& is_straight) {
+  static const bool is_laid_out_as_here = isLaidOutAsHere();
+  if (!is_laid_out_as_here) {
+    // A libfcl compiled for another machine: only its own functions know its motions.
+    is_straight = as<TranslationMotion<double>>(motion) ||
+                  as<InterpMotion<double>>(motion) || as<ScrewMotion<double>>(motion);
+    if (!is_straight && !as<SplineMotion<double>>(motion)) return false;
+    integrate(motion, pose);
+    return true;
+  }
   is_straight = true;
   if (const auto* translation = as<TranslationMotion<double>>(motion)) {
     integrateCopy(*translation, pose);

@@ -27,6 +27,7 @@
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "fcl/narrowphase/detail/deformable/separating_axes.h"
 #include "moving_mesh.h"
+#include "placed_mesh.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -427,7 +428,7 @@ TEST(FCL_DEFORMABLE_QUERY, farVerticesOfARigidMeshCostLittle) {
     Transform3<double> begin = still, end = still;
     begin.translation() << 0.02, 0.1, 0.05;
     end.translation() << 0.02, 0.1, -0.02;
-    const PreparedMesh px(*model, begin, end, "x"), py(*sheet, still, still, "y");
+    const test::PlacedMesh px(*model, begin, end, "x"), py(*sheet, still, still, "y");
     return std::array<std::uint64_t, 2>{
         queryPair(px.instance(), py.instance(), QueryOptions()).counts.node_pairs,
         queryPair(py.instance(), px.instance(), QueryOptions()).counts.node_pairs};
@@ -655,7 +656,7 @@ void expectRightAnswersOfModels(std::uint64_t first_seed) {
     const Transform3<S> a_beg = pose<S>(random, rotation_a, 0.3),
                         a_end = pose<S>(random, rotation_a, 0.5);
     const Transform3<S> b_beg = pose<S>(random, rotation_b, 0.3);
-    const PreparedMesh pa(*a, a_beg, a_end, "a"), pb(*b, b_beg, b_beg, "b");
+    const test::PlacedMesh pa(*a, a_beg, a_end, "a"), pb(*b, b_beg, b_beg, "b");
     // Nothing is computed for a rigid mesh, but for RSS, whose trees are no bounds.
     constexpr bool kPrepared = std::is_same_v<BV, RSS<S>>;
     EXPECT_EQ(pa.instance().hasOwners(), kPrepared);
@@ -835,7 +836,7 @@ template <typename BV>
 struct RigidPair {
   using S = typename BV::S;
   std::shared_ptr<BVHModel<BV>> model;
-  PreparedMesh a, b;
+  test::PlacedMesh a, b;
   SeparatingAxes axes;
 
   static Transform3<S> at(const Matrix3<S>& rotation, const Vector3<S>& translation) {
@@ -974,7 +975,7 @@ std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles
   const Transform3<double> begin = Transform3<double>::Identity();
   Transform3<double> end = begin;
   end.translation() = Vector3<double>(-2, 0, -2);
-  const PreparedMesh pa(*a, begin, begin, "a"), pb(*b, begin, end, "b");
+  const test::PlacedMesh pa(*a, begin, begin, "a"), pb(*b, begin, end, "b");
   return expectRightAnswers({pa.instance(), triangles},
                             {pb.instance(), needles.triangles});
 }

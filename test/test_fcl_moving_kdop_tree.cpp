@@ -33,6 +33,7 @@
 #include "fcl/narrowphase/detail/deformable/deformable_query.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "moving_mesh.h"
+#include "placed_mesh.h"
 #include "test_models.h"
 #include "traverse.h"
 #include "tree_checks.h"
@@ -755,7 +756,8 @@ void expectVisitsOfRigidTrees(std::uint64_t seed) {
                                            random.point(1).cast<S>().normalized())
                                   .toRotationMatrix();
     const Matrix3<S> rotation = i < 3 ? Matrix3<S>(Matrix3<S>::Identity()) : turned;
-    const PreparedMesh pa(*model_a, random_pose(rotation), random_pose(rotation), "a"),
+    const test::PlacedMesh pa(*model_a, random_pose(rotation), random_pose(rotation),
+                              "a"),
         pb(*model_b, random_pose(turned), random_pose(turned), "b");
     ASSERT_EQ(pa.instance().tree, nullptr);
     ASSERT_EQ(pb.instance().tree, nullptr);

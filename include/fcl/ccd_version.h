@@ -2,7 +2,8 @@
 //
 // The version of fcl_ccd, which extends FCL; FCL's own is in <fcl/config.h>. A program
 // tells whether it is compiled with this package by FCL_CCD_VERSION, which is defined
-// after any header of continuous collision, <fcl/narrowphase/distance.h> or <fcl/fcl.h>.
+// after <fcl/fcl.h>, <fcl/narrowphase/continuous_collision.h>,
+// <fcl/narrowphase/distance.h> and each header that this package adds.
 #ifndef FCL_CCD_VERSION_H
 #define FCL_CCD_VERSION_H
 

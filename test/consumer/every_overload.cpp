@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include <fcl/common/exception.h>
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
@@ -73,10 +74,12 @@ class Checks {
     node();
     discrete();
     shapes();
+    exceptions();
   }
 
  private:
-  using Model = fcl::DeformableBVHModel<fcl::OBBRSS<S>>;
+  /// A program may derive from the model.
+  struct Model : fcl::DeformableBVHModel<fcl::OBBRSS<S>> {};
   using Vector = fcl::Vector3<S>;
   using Transform = fcl::Transform3<S>;
 
@@ -332,6 +335,25 @@ class Checks {
         fcl::continuousCollide(ball.get(), at<S>(0, 0, 0), at<S>(0, 0, 0), ball.get(),
                                at<S>(0, 0, 6), at<S>(0, 0, -2), request, result);
     check(result.is_collide && std::abs(time - S(.5)) < S(.02), "shapes");
+    if (sizeof(S) == sizeof(float)) {
+      const S z = result.contact_tf2.translation()[2];
+      check(std::abs(z - (6 - 8 * time)) < S(1e-5), "pose of shapes");
+      check(result.contact_tf1.isApprox(Transform::Identity(), 0), "pose of shapes");
+    }
+  }
+
+  /// What the library throws, the program catches.
+  void exceptions() {
+    fcl::ContinuousCollisionRequest<S> request;
+    request.toc_err = -1;
+    fcl::ContinuousCollisionResult<S> result;
+    bool caught = false;
+    try {
+      fcl::continuousSelfCollide(makeFold().get(), request, result);
+    } catch (const fcl::Exception&) {
+      caught = true;
+    }
+    check(caught, "exceptions");
   }
 
   const char* type_;

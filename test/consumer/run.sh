@@ -2,7 +2,7 @@
 # The doors through which a program comes to this package: each is built and run.
 #   run.sh BUILD_DIR COMPILER WORK_DIR [DOOR ...]
 # BUILD_DIR is a built tree of this project; it is installed into WORK_DIR. Without DOORs:
-# all of them.
+# all of them, a quarter of an hour with each compiler.
 set -euo pipefail
 source_dir=$(cd "$(dirname "$0")" && pwd)
 build_dir=$1
@@ -21,7 +21,7 @@ all_doors=(
   package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
   spaces standards cxx14_message two_consumers lto
-  flags_baseline flags_v3 flags_native
+  flags_cxx11 flags_baseline flags_v3 flags_native
   add_subdirectory static
 )
 doors=("$@")
@@ -122,15 +122,26 @@ door_pkg_config() {
   run_with "$prefix" "$work/pc_deforming"
 }
 
-# by_hand NAME PREFIX LIBRARIES...: compiled and linked with flags written out.
+# object NAME SOURCE FLAGS...: compiles a source once, and says where the object is.
+object() {
+  local out=$work/objects/$1.o source=$2
+  shift 2
+  mkdir -p "$work/objects"
+  if [ ! -f "$out" ]; then
+    "$CXX" "$@" -fPIC -I"$prefix/include" "${around[@]}" -c "$source_dir/$source" -o "$out"
+  fi
+  echo "$out"
+}
+
+# by_hand NAME PREFIX LIBRARIES...: linked with flags written out, and run.
 by_hand() {
   local name=$1 where=$2
   shift 2
-  "$CXX" -std=c++17 -I"$where/include" "${around[@]}" "$source_dir"/{main,fcl_header}.cpp \
+  "$CXX" "$(object main main.cpp -std=c++17)" "$(object header fcl_header.cpp -std=c++17)" \
     -o "$work/${name}_app" -L"$where/$lib" "$@" -lccd
   run_with "$where" "$work/${name}_app"
-  "$CXX" -std=c++17 -I"$where/include" "${around[@]}" "$source_dir/deforming.cpp" \
-    -o "$work/${name}_deforming" -L"$where/$lib" "$@" -lccd
+  "$CXX" "$(object deforming deforming.cpp -std=c++17)" -o "$work/${name}_deforming" \
+    -L"$where/$lib" "$@" -lccd
   run_with "$where" "$work/${name}_deforming"
 }
 
@@ -138,20 +149,19 @@ door_plain_flags() { by_hand plain "$prefix" -lfcl_ccd -lfcl; }
 
 door_lfcl() { # -lfcl written out, also by path, for another linker, and in a plugin
   by_hand lfcl "$prefix" -lfcl
-  "$CXX" -std=c++17 -I"$prefix/include" "${around[@]}" "$source_dir/deforming.cpp" \
-    -o "$work/lfcl_path" "$prefix/$lib/libfcl.a" -lccd
+  "$CXX" "$(object deforming deforming.cpp -std=c++17)" -o "$work/lfcl_path" \
+    "$prefix/$lib/libfcl.a" -lccd
   run_with "$prefix" "$work/lfcl_path"
   local linker
   for linker in lld gold; do
-    if ! command -v "ld.$linker" >/dev/null; then continue; fi
-    "$CXX" -std=c++17 -fuse-ld=$linker -I"$prefix/include" "${around[@]}" \
-      "$source_dir/deforming.cpp" -o "$work/lfcl_$linker" -L"$prefix/$lib" -lfcl -lccd
-    run_with "$prefix" "$work/lfcl_$linker"
+    if command -v "ld.$linker" >/dev/null; then
+      by_hand "lfcl_$linker" "$prefix" -fuse-ld=$linker -lfcl
+    fi
   done
   # A plugin, as a Python extension is one, may leave symbols open: they have to be there
   # when it is loaded.
-  "$CXX" -std=c++17 -shared -fPIC -Dmain=run_deforming -I"$prefix/include" "${around[@]}" \
-    "$source_dir/deforming.cpp" -o "$work/plugin.so" -L"$prefix/$lib" -lfcl
+  "$CXX" -shared "$(object plugin deforming.cpp -std=c++17 -Dmain=run_deforming)" \
+    -o "$work/plugin.so" -L"$prefix/$lib" -lfcl
   "$CXX" -std=c++17 "$source_dir/load.cpp" -o "$work/load" -ldl
   run_with "$prefix" "$work/load" "$work/plugin.so" run_deforming
 }
@@ -169,7 +179,7 @@ door_spaces() { # a prefix with spaces in its path
 
 door_standards() { # FCL's part from C++11 on, all of it from C++17 on
   local standard
-  for standard in 11 14 17 20; do
+  for standard in 11 14 20; do
     "$CXX" -std=c++$standard -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
       -isystem /usr/include/eigen3 "$source_dir"/{main,fcl_header}.cpp \
       -o "$work/app_$standard" -L"$prefix/$lib" -lfcl
@@ -213,6 +223,11 @@ every_overload() {
   done
 }
 
+door_flags_cxx11() { # FCL's part in C++11, where memory is not aligned as types ask
+  "$CXX" -std=c++11 -O1 -march=native -I"$prefix/include" "${around[@]}" \
+    "$source_dir/rotation.cpp" -o "$work/flags_cxx11" -L"$prefix/$lib" -lfcl -lccd
+  run_with "$prefix" "$work/flags_cxx11"
+}
 door_flags_baseline() { every_overload baseline -O1; }
 door_flags_v3() { every_overload v3 -O1 -march=x86-64-v3; }
 door_flags_native() { every_overload native -O1 -march=native; }

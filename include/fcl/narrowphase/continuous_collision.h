@@ -48,14 +48,16 @@ namespace fcl {
 ///
 /// Models are not changed; two calls give the same answer. Concurrent calls on the same
 /// models are safe, those that FCL answers included (FCL is given a copy of a model that
-/// it would write to); a motion object of a class of the program's own is not to be
-/// shared by them, since it is moved by being asked where it is.
+/// it would write to). Motion objects that FCL answers about, and those of a class of the
+/// program's own, must not be shared by concurrent calls: asking where they are moves
+/// them.
 ///
 /// @throws fcl::Exception that names the object, when it or its motion is null, when a
 /// mesh is not built or is in the middle of an update, has more than 2^29 triangles or
 /// vertices, holds a coordinate that is not finite or a triangle index out of range, when
 /// a transform is not finite, a geometry that has to be a mesh is none, or the request is
-/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative). A
+/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative). FCL
+/// checks nothing of what it answers. A
 /// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
 /// that cannot change the answer (too late for the first contact, or, with kAny, behind
 /// what has the answer) may go unnoticed, for any number of threads alike.
@@ -221,7 +223,7 @@ using IfMixed = typename std::enable_if<
     std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
         std::is_base_of<ContinuousContactResult<S>, Result>::value>::type;
 
-/// Transform3<S> where S is told by another argument, so that what converts to it does.
+/// `Transform3<S>` where S is told by another argument, so that what converts to it does.
 template <typename S>
 using ConvertedTransform3 = typename std::common_type<Transform3<S>>::type;
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <vector>
 
+#include "fcl/ccd_version.h"
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/continuous_collision_request.h"
 #include "fcl/narrowphase/continuous_collision_result.h"

@@ -4,6 +4,7 @@
 #ifndef FCL_NARROWPHASE_CONTINUOUS_FEATURE_TEST_H
 #define FCL_NARROWPHASE_CONTINUOUS_FEATURE_TEST_H
 
+#include "fcl/ccd_version.h"
 #include "fcl/common/types.h"
 #include "fcl/export.h"
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "fcl/ccd_version.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
@@ -69,12 +70,12 @@ enum class FclTree {
 ///
 /// Thread-safety: concurrent const access is safe, and so are FCL's discrete queries of
 /// one model in several threads: its bv_splitter and bv_fitter, which FCL's queries use
-/// and copies share, are FCL's for each thread. (Of a BVHModel that is no
-/// DeformableBVHModel FCL's own keep a state, and concurrent discrete queries of one AABB
-/// or KDOP model crash, as in stock FCL: give each thread a bv_splitter and bv_fitter of
-/// its own with its copy.) Copies are deep and independent, with these too, whatever the
-/// original has. A build or an update runs on the caller's thread alone unless
-/// setNumThreads() allows more.
+/// and copies share, are FCL's for each thread. (FCL's own keep a state: concurrent
+/// discrete queries of one AABB, KDOP or RSS model that is no DeformableBVHModel crash,
+/// as in stock FCL. Give each thread its own copy of the model, with its own bv_splitter
+/// and bv_fitter.) Copies are deep and independent, with these too, whatever the original
+/// has. A build or an update runs on the caller's thread alone unless setNumThreads()
+/// allows more.
 template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:

@@ -7,6 +7,10 @@
 #ifndef FCL_BV_MOVING_KDOP_H
 #define FCL_BV_MOVING_KDOP_H
 
+#if __cplusplus < 201703L
+#error "The moving trees of fcl_ccd need C++17: compile with -std=c++17 or later"
+#endif
+
 #include <algorithm>
 #include <cfloat>
 #include <cmath>

@@ -103,16 +103,17 @@ inline bool readMotion(const MotionBase<double>& motion, PoseNumbers<double> (&p
 }
 
 /// A geometry that follows a motion. A motion of the program's own, which nobody can
-/// copy, is asked only for a mesh that deforms, and is at its beginning afterwards: a
-/// rigid mesh that follows it is FCL's.
+/// copy, is asked only for a mesh that deforms, beside another mesh, and is at its
+/// beginning afterwards: other geometries that follow it are FCL's.
 template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
-                                 const MotionBase<S>* motion) {
+                                 const MotionBase<S>* motion,
+                                 const CollisionGeometry<S>* other) {
   MovingGeometry<S> moving{o, {}, false};
   if (readMotion(*motion, moving.pose, moving.is_straight)) return moving;
   Transform3<S> tf = Transform3<S>::Identity();
   moving.pose[0] = moving.pose[1] = toNumbers(tf);
-  if (isDeformingMesh(*o))
+  if (other->getObjectType() == OT_BVH && isDeformingMesh(*o))
     for (int end = 1; end >= 0; --end) {
       motion->integrate(S(end));
       motion->getCurrentTransform(tf);
@@ -146,8 +147,8 @@ S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
   requireNotNull(o2, "o2");
   requireNotNull(motion1, "motion1");
   requireNotNull(motion2, "motion2");
-  if (collideHere(movingGeometry(o1, motion1), movingGeometry(o2, motion2), request,
-                  result))
+  if (collideHere(movingGeometry(o1, motion1, o2), movingGeometry(o2, motion2, o1),
+                  request, result))
     return result.time_of_contact;
   return askFcl(o1, motion1, o2, motion2, request, result);
 }

@@ -30,38 +30,31 @@ inline std::shared_ptr<MotionBase<double>> makeFclMotion(const Transform3<double
                                                          CCDMotionType type) {
   switch (type) {
     case CCDM_TRANS:
-      return std::make_shared<TranslationMotion<double>>(beg, end);
+      return make_aligned_shared<TranslationMotion<double>>(beg, end);
     case CCDM_LINEAR:
-      return std::make_shared<InterpMotion<double>>(beg.linear(), beg.translation(),
-                                                    end.linear(), end.translation(),
-                                                    Vector3<double>::Zero());
+      return make_aligned_shared<InterpMotion<double>>(beg.linear(), beg.translation(),
+                                                       end.linear(), end.translation(),
+                                                       Vector3<double>::Zero());
     case CCDM_SCREW:
-      return std::make_shared<ScrewMotion<double>>(beg, end);
+      return make_aligned_shared<ScrewMotion<double>>(beg, end);
     case CCDM_SPLINE:
-      return std::make_shared<SplineMotion<double>>(beg, end);
+      return make_aligned_shared<SplineMotion<double>>(beg, end);
   }
   throw Exception("request.ccd_motion_type is no motion of FCL's");
 }
 
 /// @brief Whether FCL, asked this, would write to what a model shares with its copies: it
-/// copies a model whose volumes cannot be turned and builds the copy's tree anew in each
-/// pose, with the fitter and the splitter that all copies share; conservative advancement
-/// does so with OBBs and kIOSs too. The polynomial solver moves the models themselves.
+/// copies a model whose volumes it does not turn and builds the copy's tree anew in each
+/// pose, with the fitter and the splitter that all copies share. These are AABBs and
+/// KDOPs, RSSs of two meshes, and in conservative advancement all. The polynomial solver
+/// moves the models themselves.
 template <typename S>
-bool isWrittenTo(NODE_TYPE type, const ContinuousCollisionRequest<S>& request) {
-  if (request.ccd_solver_type == CCDC_POLYNOMIAL_SOLVER) return true;
-  switch (type) {
-    case BV_AABB:
-    case BV_KDOP16:
-    case BV_KDOP18:
-    case BV_KDOP24:
-      return true;
-    case BV_OBB:
-    case BV_kIOS:
-      return request.ccd_solver_type == CCDC_CONSERVATIVE_ADVANCEMENT;
-    default:
-      return false;
-  }
+bool isWrittenTo(NODE_TYPE type, OBJECT_TYPE other,
+                 const ContinuousCollisionRequest<S>& request) {
+  return request.ccd_solver_type == CCDC_CONSERVATIVE_ADVANCEMENT ||
+         request.ccd_solver_type == CCDC_POLYNOMIAL_SOLVER || type == BV_AABB ||
+         type == BV_KDOP16 || type == BV_KDOP18 || type == BV_KDOP24 ||
+         (type == BV_RSS && other == OT_BVH);
 }
 
 /// @brief A copy of a model that shares nothing with it.
@@ -78,8 +71,10 @@ std::shared_ptr<const CollisionGeometry<typename BV::S>> copyModel(
 /// copy takes a small part of the time that FCL then needs for its own.
 template <typename S>
 std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
-    const CollisionGeometry<S>* o, const ContinuousCollisionRequest<S>& request) {
-  if (o->getObjectType() == OT_BVH && isWrittenTo(o->getNodeType(), request)) {
+    const CollisionGeometry<S>* o, const CollisionGeometry<S>* other,
+    const ContinuousCollisionRequest<S>& request) {
+  if (o->getObjectType() == OT_BVH &&
+      isWrittenTo(o->getNodeType(), other->getObjectType(), request)) {
     switch (o->getNodeType()) {
       case BV_AABB:
         return copyModel<AABB<S>>(*o);
@@ -110,8 +105,8 @@ S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
          const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
          const ContinuousCollisionRequest<S>& request,
          ContinuousCollisionResult<S>& result) {
-  return continuousCollide<S>(geometryForFcl(o1, request).get(), motion1,
-                              geometryForFcl(o2, request).get(), motion2, request,
+  return continuousCollide<S>(geometryForFcl(o1, o2, request).get(), motion1,
+                              geometryForFcl(o2, o1, request).get(), motion2, request,
                               result);
 }
 

@@ -4,8 +4,9 @@
 // flags allow, so that with -march=native a Transform3, and what contains one, has
 // another layout than in the library. Functions that are compiled with the program take
 // FCL's types apart into the plain numbers below and put the answer back; only these
-// numbers, and types without alignment of their own (geometries, vectors of three),
-// cross.
+// numbers, and types without alignment of their own (geometries, requests, contacts,
+// vectors of three), cross. FCL's motions in double cross too: they are compiled, and
+// laid out, in libfcl.
 #ifndef FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 #define FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 
