@@ -76,7 +76,8 @@ bool isLaidOutAsHere() {
                               pose[1].translation[1] == 2 && pose[1].translation[2] == 3;
   motion->~Motion();
 
-  // Where Eigen aligns to 32 bytes this class alone differs, by a gap before its last member.
+  // Where Eigen aligns to 32 bytes this class alone differs, by a gap before its last
+  // member.
   using Translation = TranslationMotion<double>;
   alignas(kMostAlignment) unsigned char more_memory[2 * sizeof(Translation)] = {};
   auto* translation = new (more_memory) Translation(beg, end);
