@@ -88,7 +88,11 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   require(o1.geometry, "o1");
   require(o2.geometry, "o2");
   require(sink);
-  const PlacedGeometry<S> placed1(o1), placed2(o2);
+  const auto place = [](const MovingGeometry<S>& o) {
+    const deformable::DefaultFloatingPoint mode;
+    return PlacedGeometry<S>(o);
+  };
+  const PlacedGeometry<S> placed1 = place(o1), placed2 = place(o2);
   if (!isAnsweredHere(placed1, placed2))
     throw Exception(std::string("candidates") + kNotAnsweredHere);
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");

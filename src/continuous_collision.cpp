@@ -111,11 +111,11 @@ template <typename S>
 bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                 const QuerySettings& settings, QueryOutcome<S>& outcome,
                 ContinuousContacts<S>* contacts) {
+  const DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed1(o1), placed2(o2);
   if (!isAnsweredHere(placed1, placed2)) return false;
   const QueryOptions options = makeOptions(settings);
-  inArena(options.num_threads, [&] {
-    const DefaultFloatingPoint mode;
+  const auto answer_pair = [&] {
     const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
                              options.num_threads);
     const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",
@@ -126,6 +126,14 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
       fillContacts(answer, Scene<S>{*o1.geometry, *o2.geometry, mesh1, mesh2}, settings,
                    *contacts);
     outcome = outcomeOf<S>(answer);
+  };
+  if (options.num_threads == 1) {
+    answer_pair();
+    return true;
+  }
+  inArena(options.num_threads, [&] {
+    const DefaultFloatingPoint mode_of_its_thread;
+    answer_pair();
   });
   return true;
 }

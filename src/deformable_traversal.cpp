@@ -159,10 +159,10 @@ bool DeformableTraversal<S>::start(const MovingGeometry<S>& o1,
                                    const MovingGeometry<S>& o2, S toc_err,
                                    const CollisionRequest<S>& request,
                                    CollisionResult<S>& result) {
+  const deformable::DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed1(o1), placed2(o2);
   if (!placed1.goesStraight() || !placed2.goesStraight()) return false;
   const deformable::QueryOptions options = makeOptions(toc_err, request);
-  const deformable::DefaultFloatingPoint mode;
   const auto prepared = [](const PlacedGeometry<S>& o, const char* name) {
     return std::make_unique<deformable::PreparedMesh>(o.geometry(), o.beginning(),
                                                       o.end(), name);

@@ -11,7 +11,6 @@
 
 #include "fcl/common/exception.h"
 #include "fcl/geometry/collision_geometry.h"
-#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
 #include "fcl/narrowphase/detail/deformable/feature_batch.h"
 #include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -44,15 +43,14 @@ deformable::Pose toPose(const PoseNumbers<S>& numbers) {
   return pose;
 }
 
-/// A geometry and the poses in which a query prepares it.
+/// A geometry and the poses in which a query prepares it. Made in the default
+/// floating-point mode: others may lose subnormal floats that are converted.
 template <typename S>
 class PlacedGeometry {
  public:
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
       : geometry_(*moving.geometry), kind_(deformable::meshKindOf(geometry_)) {
     using deformable::MeshKind;
-    // Before floats are converted: other modes may lose the subnormal ones.
-    const deformable::DefaultFloatingPoint mode;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
     const bool is_constant = isConstantRotation(moving.pose[0], moving.pose[1]);

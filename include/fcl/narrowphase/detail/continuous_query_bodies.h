@@ -66,9 +66,14 @@ Transform3<S> poseAt(const MovingGeometry<S>& o, S t) {
 template <typename S>
 void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
                 const MovingGeometry<S>& o2, ContinuousCollisionResult<S>& result) {
-  const deformable::DefaultFloatingPoint mode;
   result.is_collide = outcome.is_collide;
   result.time_of_contact = outcome.toc_lo;
+  if (!outcome.is_collide) {
+    result.contact_tf1 = toTransform(o1.pose[1]);
+    result.contact_tf2 = toTransform(o2.pose[1]);
+    return;
+  }
+  const deformable::DefaultFloatingPoint mode;
   result.contact_tf1 = poseAt(o1, outcome.toc_hi);
   result.contact_tf2 = poseAt(o2, outcome.toc_hi);
 }
