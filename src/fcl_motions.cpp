@@ -55,7 +55,8 @@ void integrate(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2])
 
 template <typename Motion>
 void integrateCopy(const Motion& motion, PoseNumbers<double> (&pose)[2]) {
-  // integrate() changes the motion.
+  // integrate() changes the motion, const or not.
+  // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const Motion copy(motion);
   integrate(copy, pose);
 }
