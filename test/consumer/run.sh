@@ -182,12 +182,12 @@ door_standards() { # FCL's part from C++11 on, all of it from C++17 on
   for standard in 11 14 20; do
     "$CXX" -std=c++$standard -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
       -isystem /usr/include/eigen3 "$source_dir"/{main,fcl_header}.cpp \
-      -o "$work/app_$standard" -L"$prefix/$lib" -lfcl
+      -o "$work/app_$standard" -L"$prefix/$lib" -lfcl -lccd
     run_with "$prefix" "$work/app_$standard" >/dev/null
   done
   "$CXX" -std=c++20 -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
     -isystem /usr/include/eigen3 "$source_dir/deforming.cpp" -o "$work/deforming_20" \
-    -L"$prefix/$lib" -lfcl
+    -L"$prefix/$lib" -lfcl -lccd
   run_with "$prefix" "$work/deforming_20"
 }
 
@@ -208,7 +208,7 @@ door_two_consumers() { # two parts of one program that each look for FCL
 
 door_lto() {
   "$CXX" -std=c++17 -O2 -flto -I"$prefix/include" "${around[@]}" \
-    "$source_dir"/{main,fcl_header}.cpp -o "$work/lto_app" -L"$prefix/$lib" -lfcl
+    "$source_dir"/{main,fcl_header}.cpp -o "$work/lto_app" -L"$prefix/$lib" -lfcl -lccd
   run_with "$prefix" "$work/lto_app"
 }
 
