@@ -22,7 +22,7 @@ all_doors=(
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
   spaces standards cxx14_message two_consumers lto
   flags_cxx11 flags_baseline flags_v3 flags_native
-  add_subdirectory static
+  add_subdirectory add_subdirectory_native static
 )
 doors=("$@")
 if [ $# -eq 0 ]; then doors=("${all_doors[@]}"); fi
@@ -232,14 +232,18 @@ door_flags_baseline() { every_overload baseline -O1; }
 door_flags_v3() { every_overload v3 -O1 -march=x86-64-v3; }
 door_flags_native() { every_overload native -O1 -march=native; }
 
-door_add_subdirectory() { # part of a larger build, with flags that move Eigen's types
-  cmake -S "$source_dir/subproject" -B "$work/sub" -DFCL_CCD_SOURCE_DIR="$project_dir" \
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="-march=native" \
-    -DCMAKE_CXX_FLAGS_RELEASE="-O1" >/dev/null
-  cmake --build "$work/sub" -j "$(nproc)" >"$work/sub.log"
-  local program
-  for program in with_fcl with_fcl_ccd app; do "$work/sub/$program"; done
+# subproject NAME FLAGS OPTIMISATION: part of a larger build, which has flags of its own.
+subproject() {
+  local name=$1 flags=$2 optimisation=$3 program
+  cmake -S "$source_dir/subproject" -B "$work/$name" -DFCL_CCD_SOURCE_DIR="$project_dir" \
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" \
+    -DCMAKE_CXX_FLAGS_RELEASE="$optimisation" >/dev/null
+  cmake --build "$work/$name" -j "$(nproc)" >"$work/$name.log"
+  for program in with_fcl with_fcl_ccd app; do "$work/$name/$program"; done
 }
+
+door_add_subdirectory() { subproject sub "" -O0; }
+door_add_subdirectory_native() { subproject sub_native -march=native -O1; }
 
 door_static() { # BUILD_SHARED_LIBS=OFF, installed
   cmake -S "$project_dir" -B "$work/static" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
