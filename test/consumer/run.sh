@@ -21,8 +21,8 @@ all_doors=(
   package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
   spaces standards cxx14_message two_consumers lto
-  flags_cxx11 flags_baseline flags_v3 flags_native
-  add_subdirectory add_subdirectory_native static
+  flags_cxx11 flags_baseline flags_v3 flags_native flags_native_O0
+  add_subdirectory add_subdirectory_native add_subdirectory_static
 )
 doors=("$@")
 if [ $# -eq 0 ]; then doors=("${all_doors[@]}"); fi
@@ -212,15 +212,13 @@ door_lto() {
   run_with "$prefix" "$work/lto_app"
 }
 
-# every_overload NAME FLAGS...: in a program compiled with FLAGS, with and without NDEBUG.
+# every_overload NAME FLAGS...: in a program compiled with FLAGS.
 every_overload() {
-  local name=$1 assertions
+  local name=$1
   shift
-  for assertions in -DNDEBUG -UNDEBUG; do
-    "$CXX" -std=c++17 "$@" "$assertions" -I"$prefix/include" "${around[@]}" \
-      "$source_dir/every_overload.cpp" -o "$work/flags_$name" -L"$prefix/$lib" -lfcl -lccd
-    run_with "$prefix" "$work/flags_$name"
-  done
+  "$CXX" -std=c++17 "$@" -I"$prefix/include" "${around[@]}" \
+    "$source_dir/every_overload.cpp" -o "$work/flags_$name" -L"$prefix/$lib" -lfcl -lccd
+  run_with "$prefix" "$work/flags_$name"
 }
 
 door_flags_cxx11() { # FCL's part in C++11, where memory is not aligned as types ask
@@ -228,28 +226,40 @@ door_flags_cxx11() { # FCL's part in C++11, where memory is not aligned as types
     "$source_dir/rotation.cpp" -o "$work/flags_cxx11" -L"$prefix/$lib" -lfcl -lccd
   run_with "$prefix" "$work/flags_cxx11"
 }
-door_flags_baseline() { every_overload baseline -O1; }
-door_flags_v3() { every_overload v3 -O1 -march=x86-64-v3; }
-door_flags_native() { every_overload native -O1 -march=native; }
+door_flags_baseline() { # with and without assertions, as those that follow
+  every_overload baseline -O1
+  every_overload baseline_ndebug -O1 -DNDEBUG
+}
+door_flags_v3() {
+  every_overload v3 -O1 -march=x86-64-v3
+  every_overload v3_ndebug -O1 -DNDEBUG -march=x86-64-v3
+}
+door_flags_native() {
+  every_overload native -O1 -march=native
+  every_overload native_ndebug -O1 -DNDEBUG -march=native
+}
+# The one of these that CI has time for: Eigen's assertions and the answers.
+door_flags_native_O0() { every_overload native_O0 -O0 -march=native; }
 
-# subproject NAME FLAGS OPTIMISATION: part of a larger build, which has flags of its own.
+# subproject NAME OPTION...: part of a larger build, which has flags of its own.
 subproject() {
-  local name=$1 flags=$2 optimisation=$3 program
+  local name=$1 program
+  shift
   cmake -S "$source_dir/subproject" -B "$work/$name" -DFCL_CCD_SOURCE_DIR="$project_dir" \
-    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS="$flags" \
-    -DCMAKE_CXX_FLAGS_RELEASE="$optimisation" >/dev/null
+    "$@" >/dev/null
   cmake --build "$work/$name" -j "$(nproc)" >"$work/$name.log"
   for program in with_fcl with_fcl_ccd app; do "$work/$name/$program"; done
 }
 
-door_add_subdirectory() { subproject sub "" -O0; }
-door_add_subdirectory_native() { subproject sub_native -march=native -O1; }
+door_add_subdirectory() { subproject sub -DCMAKE_BUILD_TYPE=Debug; }
+door_add_subdirectory_native() {
+  subproject sub_native -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS=-march=native \
+    -DCMAKE_CXX_FLAGS_RELEASE=-O1
+}
 
-door_static() { # BUILD_SHARED_LIBS=OFF, installed
-  cmake -S "$project_dir" -B "$work/static" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
-    -DFCL_CCD_BUILD_TOOLS=OFF -DFCL_CCD_BUILD_BENCHMARKS=OFF \
-    -DCMAKE_CXX_FLAGS_RELEASE="-O0" >/dev/null
-  cmake --build "$work/static" -j "$(nproc)" >"$work/static.log"
+door_add_subdirectory_static() { # BUILD_SHARED_LIBS=OFF, and installed from there
+  subproject static -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
+    -DBUILD_SHARED_LIBS=OFF -DFCL_CCD_INSTALL=ON
   cmake --install "$work/static" --prefix "$work/static_prefix" >/dev/null
   [ -f "$work/static_prefix/$lib/libfcl_ccd.a" ] || fail "no static library"
   configure_and_run static_cmake "$work/static_prefix"

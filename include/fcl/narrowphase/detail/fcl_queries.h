@@ -9,8 +9,6 @@
 #include <string>
 
 #include "fcl/common/exception.h"
-#include "fcl/geometry/bvh/BVH_model.h"
-#include "fcl/math/bv/utility.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
@@ -25,20 +23,21 @@ namespace detail {
 
 /// @brief The motion that FCL makes of two transforms. Its own getMotionBase() leaves the
 /// reference point of an interpolation as memory happens to be; it is the origin here.
-inline std::shared_ptr<MotionBase<double>> makeFclMotion(const Transform3<double>& beg,
-                                                         const Transform3<double>& end,
-                                                         CCDMotionType type) {
+template <typename S>
+std::shared_ptr<MotionBase<S>> makeFclMotion(const Transform3<S>& beg,
+                                             const Transform3<S>& end,
+                                             CCDMotionType type) {
   switch (type) {
     case CCDM_TRANS:
-      return make_aligned_shared<TranslationMotion<double>>(beg, end);
+      return make_aligned_shared<TranslationMotion<S>>(beg, end);
     case CCDM_LINEAR:
-      return make_aligned_shared<InterpMotion<double>>(beg.linear(), beg.translation(),
-                                                       end.linear(), end.translation(),
-                                                       Vector3<double>::Zero());
+      return make_aligned_shared<InterpMotion<S>>(beg.linear(), beg.translation(),
+                                                  end.linear(), end.translation(),
+                                                  Vector3<S>::Zero());
     case CCDM_SCREW:
-      return make_aligned_shared<ScrewMotion<double>>(beg, end);
+      return make_aligned_shared<ScrewMotion<S>>(beg, end);
     case CCDM_SPLINE:
-      return make_aligned_shared<SplineMotion<double>>(beg, end);
+      return make_aligned_shared<SplineMotion<S>>(beg, end);
   }
   throw Exception("request.ccd_motion_type is no motion of FCL's");
 }
@@ -57,16 +56,6 @@ bool isWrittenTo(NODE_TYPE type, OBJECT_TYPE other,
          (type == BV_RSS && other == OT_BVH);
 }
 
-/// @brief A copy of a model that shares nothing with it.
-template <typename BV>
-std::shared_ptr<const CollisionGeometry<typename BV::S>> copyModel(
-    const CollisionGeometry<typename BV::S>& o) {
-  auto copy = std::make_shared<BVHModel<BV>>(static_cast<const BVHModel<BV>&>(o));
-  copy->bv_splitter = std::make_shared<BVSplitter<BV>>(SPLIT_METHOD_MEAN);
-  copy->bv_fitter = std::make_shared<BVFitter<BV>>();
-  return copy;
-}
-
 /// @brief What FCL is given of a geometry: itself, or a copy that FCL may write to. The
 /// copy takes a small part of the time that FCL then needs for its own.
 template <typename S>
@@ -74,28 +63,8 @@ std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
     const CollisionGeometry<S>* o, const CollisionGeometry<S>* other,
     const ContinuousCollisionRequest<S>& request) {
   if (o->getObjectType() == OT_BVH &&
-      isWrittenTo(o->getNodeType(), other->getObjectType(), request)) {
-    switch (o->getNodeType()) {
-      case BV_AABB:
-        return copyModel<AABB<S>>(*o);
-      case BV_OBB:
-        return copyModel<OBB<S>>(*o);
-      case BV_RSS:
-        return copyModel<RSS<S>>(*o);
-      case BV_kIOS:
-        return copyModel<kIOS<S>>(*o);
-      case BV_OBBRSS:
-        return copyModel<OBBRSS<S>>(*o);
-      case BV_KDOP16:
-        return copyModel<KDOP<S, 16>>(*o);
-      case BV_KDOP18:
-        return copyModel<KDOP<S, 18>>(*o);
-      case BV_KDOP24:
-        return copyModel<KDOP<S, 24>>(*o);
-      default:
-        break;
-    }
-  }
+      isWrittenTo(o->getNodeType(), other->getObjectType(), request))
+    return copyModel(*o);
   return {std::shared_ptr<const CollisionGeometry<S>>(), o};
 }
 
@@ -111,12 +80,13 @@ S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
 }
 
 /// @brief FCL's answer about geometries that go from one transform to another.
-inline double askFcl(const MovingGeometry<double>& o1, const MovingGeometry<double>& o2,
-                     const ContinuousCollisionRequest<double>& request,
-                     ContinuousCollisionResult<double>& result) {
-  const auto motionOf = [&request](const MovingGeometry<double>& o) {
-    return makeFclMotion(toTransform(o.pose[0]), toTransform(o.pose[1]),
-                         request.ccd_motion_type);
+template <typename S>
+S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+         const ContinuousCollisionRequest<S>& request,
+         ContinuousCollisionResult<S>& result) {
+  const auto motionOf = [&request](const MovingGeometry<S>& o) {
+    return makeFclMotion<S>(toTransform(o.pose[0]), toTransform(o.pose[1]),
+                            request.ccd_motion_type);
   };
   return askFcl(o1.geometry, motionOf(o1).get(), o2.geometry, motionOf(o2).get(), request,
                 result);

@@ -14,6 +14,7 @@
 #include <cstddef>
 #include <functional>
 #include <limits>
+#include <memory>
 
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/math/motion/motion_base.h"
@@ -123,6 +124,12 @@ FCL_EXPORT bool isDeformableModel(const CollisionGeometry<S>& o);
 /// out as there.
 FCL_EXPORT bool readFclMotion(const MotionBase<double>& motion,
                               PoseNumbers<double> (&pose)[2], bool& is_straight);
+
+/// @brief A copy of a BVHModel that shares nothing with it; the model itself when its
+/// bounding volumes are none of FCL's.
+template <typename S>
+FCL_EXPORT std::shared_ptr<const CollisionGeometry<S>> copyModel(
+    const CollisionGeometry<S>& o);
 
 /// @brief The part of FCL's result that its function may set; poses only with a
 /// collision.
