@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian), builds in Release and runs the demo; its output goes
-# to build/demo. Options are handed to the demo.
+# Installs missing packages (Debian), builds in Release and runs the demo. Its output is in
+# build/demo. Options are passed to the demo; --help lists them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/dependencies.sh
 source cmake/dependencies.sh
 
 fcl_ccd_install_dependencies build
+echo "== Building library and demo (about five minutes on two cores the first time)"
 cmake --preset release
 cmake --build --preset release -j "$(nproc)" --target fcl_ccd_demo
+echo "== Demo (half a minute)"
 build/release/test/fcl_ccd_demo build/demo "$@"

@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# Installs the Debian packages that the project needs and the system lacks. Sourced by
-# test.sh, demo.sh and report.sh.
+# Installs the Debian packages that the project needs and the system does not have. Sourced
+# by test.sh, demo.sh and report.sh.
 
 # fcl_ccd_install_dependencies build|all [PACKAGE ...]
 fcl_ccd_install_dependencies() {
@@ -31,12 +31,12 @@ fcl_ccd_install_dependencies() {
   if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo -n)
     if ! sudo -n true 2>/dev/null; then
-      echo "Packages are missing. Install them as root, then run this again:" >&2
-      echo "  apt-get update && ${install[*]}" >&2
+      echo "Packages are missing. Install them with this line, then run the script again:" >&2
+      echo "  sudo apt-get update && sudo ${install[*]}" >&2
       exit 1
     fi
   fi
-  echo "Installing: ${missing[*]}"
-  "${as_root[@]}" apt-get update >/dev/null
-  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive "${install[@]}" >/dev/null
+  echo "== Installing ${#missing[@]} packages (one to five minutes): ${missing[*]}"
+  "${as_root[@]}" apt-get update
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive "${install[@]}"
 }

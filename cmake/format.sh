@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 # Everything in the source folders, so that files new to git are checked as well.
-files() { find include src test \( -name '*.h' -o -name '*.cpp' \) -print0; }
+files() { find examples include src test \( -name '*.h' -o -name '*.cpp' \) -print0; }
 
 if [ "${1-}" = --fix ]; then
   files | xargs -0 clang-format-14 -i

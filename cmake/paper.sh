@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian), builds in Release, simulates the scenes of the paper's
+# Installs missing packages (Debian), builds in Release, simulates the scenes of the paper's
 # evaluation and runs its experiments on them; doc/reproduction.md explains the report.
 #   bash cmake/paper.sh                            # everything: two to three hours
 #   bash cmake/paper.sh --short                    # small scenes: minutes
 #   bash cmake/paper.sh --scenes balls alphabets   # some of them
 # Frames go to build/scenes, or build/scenes_short, and are kept: what is there is
 # not simulated again. Tables, pictures and page go to build/paper; those of everything
-# also replace the ones in doc/results. Other options are handed to fcl_ccd_paper.
+# also replace the ones in doc/results. Other options are passed to fcl_ccd_paper.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
@@ -39,8 +39,8 @@ if $is_short; then
   esac
 fi
 
-# Of the lion a hundredth is as much as a tenth of the others, and letters of a tenth would be
-# too few to break. frames.csv is written last.
+# A hundredth of the lion is as large as a tenth of the others, and a tenth of the letters would
+# be too few to break. frames.csv is written last: a scene without it is not complete.
 fcl_ccd_simulate() {
   local scene=$1 scale=1
   if [ -f "$frames/$scene/frames.csv" ]; then return; fi
@@ -54,7 +54,9 @@ fcl_ccd_simulate() {
 }
 
 fcl_ccd_build_report paper fcl_ccd_scenes
+echo "== Simulating the scenes that $frames lacks (everything: an hour and a half; --short: minutes)"
 for scene in "${scenes[@]}"; do fcl_ccd_simulate "$scene"; done
+echo "== Measuring (everything: an hour; --short: minutes)"
 rm -rf "$out"
 build/release/test/fcl_ccd_paper "$out" --frames "$frames" --scenes "${scenes[@]}" \
   "${options[@]}"

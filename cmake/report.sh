@@ -5,7 +5,7 @@
 
 # fcl_ccd_build_report NAME [TARGET ...]
 #
-# Installs what is missing (Debian), builds in Release: the report's program, and TARGETs.
+# Installs missing packages (Debian), builds in Release: the report's program, and TARGETs.
 # Goes to the project's folder. Sets `out`, where the tables are, and `sources`.
 fcl_ccd_build_report() {
   local name=$1
@@ -14,6 +14,7 @@ fcl_ccd_build_report() {
   # shellcheck source=cmake/dependencies.sh
   source cmake/dependencies.sh
   fcl_ccd_install_dependencies build gnuplot-nox
+  echo "== Building (about ten minutes on two cores the first time)"
   cmake --preset release
   cmake --build --preset release -j "$(nproc)" --target "fcl_ccd_$name" "$@"
 
@@ -24,7 +25,8 @@ fcl_ccd_build_report() {
 
 # fcl_ccd_begin_report NAME [DATA_FOLDER] [OPTION ...]
 #
-# Builds and measures. Sets `is_whole`: whether everything was measured.
+# Builds and measures, which takes `duration`. Sets `is_whole`: whether everything was
+# measured.
 fcl_ccd_begin_report() {
   local name=$1 data=
   shift
@@ -35,6 +37,8 @@ fcl_ccd_begin_report() {
   is_whole=false
   if [ -n "$data" ] && [ $# -eq 0 ]; then is_whole=true; fi
   fcl_ccd_build_report "$name"
+  # shellcheck disable=SC2154
+  echo "== Measuring ($duration when everything is measured)"
   rm -rf "$out"
   "build/release/test/fcl_ccd_$name" "$out" ${data:+--data "$data"} "$@"
 }

@@ -1,14 +1,16 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian), builds in Release, and measures the speed of whole
+# Installs missing packages (Debian), builds in Release, and measures the speed of whole
 # queries, the library's beside the paper's method; doc/speed.md explains the report.
 #   bash cmake/speed.sh [DATA_FOLDER] [OPTION ...]
 # Tables, pictures and page go to build/speed. With DATA_FOLDER (scenes/) and no options
 # they also replace those in doc/results; without it the generated scenes are measured
-# alone. Options are handed to fcl_ccd_speed: --groups smooth,size --repeats 3
+# alone. Options are passed to fcl_ccd_speed: --groups smooth,size --repeats 3
 # A quarter of an hour; the largest scene needs 6 GiB of memory.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
+# shellcheck disable=SC2034
+duration='a quarter of an hour'
 fcl_ccd_begin_report speed "$@"
 gnuplot -e "folder='$out'" "$sources/plot.gp"
 awk -F, -f "$sources/tables.awk" "$out"/speed{,_baselines,_sequence}.csv >"$out/speed.md"

@@ -88,7 +88,7 @@ class Scenes : public ::testing::TestWithParam<SceneFiles> {
 };
 
 TEST_P(Scenes, ContactsAreTheTruth) {
-  if (!load()) GTEST_SKIP() << "the public scenes are not here";
+  if (!load()) GTEST_SKIP() << kNoSharedData;
   const auto model = makeModel<Model>(t0_, t1_);
   const Result all = selfContacts<double>(*model);
   expectPairs(pairsOf(all), truth_);
@@ -119,7 +119,7 @@ TEST_P(Scenes, ContactsAreTheTruth) {
 
 // The files' coordinates are floats.
 TEST_P(Scenes, FloatModelsFindTheSame) {
-  if (!load()) GTEST_SKIP() << "the public scenes are not here";
+  if (!load()) GTEST_SKIP() << kNoSharedData;
   ContinuousContactRequest<float> request_f;
   Request request_d;
   request_f.toc_err = 0x1p-13f;
@@ -132,7 +132,7 @@ TEST_P(Scenes, FloatModelsFindTheSame) {
 }
 
 TEST_P(Scenes, TraversalNodeFindsTheSame) {
-  if (!load()) GTEST_SKIP() << "the public scenes are not here";
+  if (!load()) GTEST_SKIP() << kNoSharedData;
   const auto model = makeModel<Model>(t0_, t1_);
   const Result all = selfContacts<double>(*model);
   detail::DeformableContinuousCollisionTraversalNode<double> node;
@@ -176,7 +176,7 @@ TEST_P(Scenes, TraversalNodeFindsTheSame) {
 // own must agree. On a grid that the shift keeps exactly, it has the same contacts there
 // as here.
 TEST_P(Scenes, FarFromTheOrigin) {
-  if (!load()) GTEST_SKIP() << "the public scenes are not here";
+  if (!load()) GTEST_SKIP() << kNoSharedData;
   const TestMesh far0 = moved(t0_, 1e6, -1e6, 1e6), far1 = moved(t1_, 1e6, -1e6, 1e6);
   const Result own = selfContacts<double>(*makeModel<Model>(far0, far1));
   EXPECT_GT(own.contacts.size(), truth_.size() / 2);

@@ -14,6 +14,11 @@
 namespace fcl {
 namespace test {
 
+/// @brief What a test says that is skipped without these data.
+constexpr const char* kNoSharedData =
+    "the public data are not here; doc/data.md says where they come from, and "
+    "FCL_CCD_TEST_DATA=FOLDER tells the tests where they are";
+
 /// @brief Path of a file or folder of the data that lies outside the project: under
 /// $FCL_CCD_TEST_DATA, or beside the project. Nothing if it is not there; that is said,
 /// and where CI=true, it fails the test.
