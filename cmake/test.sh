@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what is missing (Debian), builds in Release and runs the tests.
+# Installs missing packages (Debian), builds in Release and runs the tests.
 #   bash cmake/test.sh           the test suite
 #   bash cmake/test.sh --all     also: sanitizers, clang with -Werror, clang-tidy, the
 #                                reference, a build without vectors and threads, and the
@@ -27,6 +27,9 @@ else
   fcl_ccd_install_dependencies build
 fi
 jobs=$(nproc)
+if ! $all && ! $doors; then
+  echo "== About 15 to 30 minutes on two cores the first time, nearly all of it compiling"
+fi
 
 build() {
   local preset=$1
@@ -69,3 +72,7 @@ else
 fi
 echo "== release: tests ($((SECONDS / 60)) min so far)"
 ctest --preset release -j "$jobs"
+if [ ! -d "${FCL_CCD_TEST_DATA:-../shared/data}" ]; then
+  echo "Tests of the public data were skipped. doc/data.md says where the data come from;"
+  echo "FCL_CCD_TEST_DATA=FOLDER bash cmake/test.sh runs them."
+fi

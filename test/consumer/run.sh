@@ -20,7 +20,7 @@ fail() {
 all_doors=(
   package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
-  spaces standards cxx14_message two_consumers lto
+  spaces standards cxx14_message two_consumers examples lto
   flags_cxx11 flags_baseline flags_v3 flags_native flags_native_O0
   add_subdirectory add_subdirectory_native add_subdirectory_static
 )
@@ -204,6 +204,13 @@ door_two_consumers() { # two parts of one program that each look for FCL
   cmake --build "$work/two" >/dev/null
   "$work/two/first/first"
   "$work/two/second/second"
+}
+
+door_examples() { # the examples on their own
+  cmake -S "$project_dir/examples" -B "$work/examples" -DCMAKE_PREFIX_PATH="$prefix" \
+    >"$work/examples.log"
+  cmake --build "$work/examples" >>"$work/examples.log"
+  ctest --test-dir "$work/examples" --output-on-failure
 }
 
 door_lto() {
