@@ -5,7 +5,7 @@
 // first time of contact is in [toc_lo, toc_hi].
 #include <cstdio>
 
-#include <fcl/narrowphase/continuous_feature_test.h>
+#include <fcl/narrowphase/continuous_features.h>
 
 namespace {
 

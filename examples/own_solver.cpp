@@ -11,7 +11,7 @@
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
 #include <fcl/narrowphase/continuous_candidates.h>
 #include <fcl/narrowphase/continuous_collision.h>
-#include <fcl/narrowphase/continuous_feature_test.h>
+#include <fcl/narrowphase/continuous_features.h>
 
 namespace {
 

@@ -20,7 +20,7 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
-#include "fcl/narrowphase/continuous_feature_test.h"
+#include "fcl/narrowphase/continuous_features.h"
 #include "moving_mesh.h"
 #include "test_models.h"
 

@@ -128,9 +128,8 @@ class ContinuousCollide : public ::testing::Test {
   }
 };
 
-using BVs =
-    ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
-                     KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
+using BVs = ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
+                             KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
 TYPED_TEST_SUITE(ContinuousCollide, BVs, );
 
 TYPED_TEST(ContinuousCollide, SheetsMeetOnTime) {

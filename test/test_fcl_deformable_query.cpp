@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Whole queries against brute force: every feature pair of the scene by the exact test.
-#include "fcl/narrowphase/detail/deformable/deformable_query.h"
+#include "query/deformable_query.h"
 
 #include <gtest/gtest.h>
 
@@ -20,15 +20,16 @@
 #include <utility>
 #include <vector>
 
+#include "api/prepared_mesh.h"
+#include "elementary/exact.h"
+#include "elementary/predicates.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
-#include "fcl/narrowphase/detail/deformable/instant_test.h"
-#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
-#include "fcl/narrowphase/detail/deformable/separating_axes.h"
 #include "moving_mesh.h"
 #include "placed_mesh.h"
 #include "test_models.h"
+#include "tree/separating_axes.h"
 
 namespace fcl {
 namespace detail {

@@ -23,7 +23,7 @@
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/continuous_feature_test.h"
+#include "fcl/narrowphase/continuous_features.h"
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 #include "fcl/narrowphase/detail/traversal/collision_node.h"
 #include "fcl/narrowphase/distance.h"

@@ -2,7 +2,7 @@
 //
 // What is called an embedded region has no contact, whatever the mesh is like; smooth
 // surfaces are proved; and queries answer the same with and without.
-#include "fcl/narrowphase/detail/deformable/embedded_regions.h"
+#include "self_culling/embedded_regions.h"
 
 #include <gtest/gtest.h>
 
@@ -18,11 +18,11 @@
 #include <vector>
 
 #include "brute_force.h"
-#include "fcl/narrowphase/detail/deformable/deformable_query.h"
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
-#include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "elementary/predicates.h"
 #include "generated_scenes.h"
+#include "mesh/feature_pairs.h"
 #include "moving_mesh.h"
+#include "query/deformable_query.h"
 #include "traverse.h"
 
 namespace fcl {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Every VF and EE pair of a scene is met exactly once, whatever the mesh looks like.
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "mesh/feature_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,9 @@
 #include <utility>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "mesh/mesh_topology.h"
 #include "mesh_generators.h"
+#include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace detail {

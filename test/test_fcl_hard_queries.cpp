@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
 #include "query_csv.h"
 #include "shared_data.h"
 

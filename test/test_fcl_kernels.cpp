@@ -2,7 +2,7 @@
 //
 // The kernels decide as the scalar functions do, on every instruction set of the machine
 // and with the same bits.
-#include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "kernels/kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -19,12 +19,16 @@
 #include <utility>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
-#include "fcl/narrowphase/detail/deformable/instant_test.h"
-#include "fcl/narrowphase/detail/deformable/vertex_fans.h"
+#include "elementary/coplanarity_filter.h"
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
+#include "elementary/predicates.h"
 #include "feature_pair_generators.h"
+#include "mesh/feature_pairs.h"
+#include "mesh/mesh_topology.h"
+#include "mesh/vertex_fans.h"
 #include "mesh_generators.h"
+#include "tree/box_place.h"
 
 namespace fcl {
 namespace detail {

@@ -2,7 +2,7 @@
 //
 // The moving tree: its boxes contain what they should at every time, and no pair that
 // meets is lost on the way down.
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "tree/moving_kdop_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -26,16 +26,17 @@
 #include <xmmintrin.h>
 #endif
 
+#include "api/prepared_mesh.h"
 #include "components.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
-#include "fcl/narrowphase/detail/deformable/deformable_query.h"
-#include "fcl/narrowphase/detail/deformable/prepared_mesh.h"
 #include "moving_mesh.h"
 #include "placed_mesh.h"
+#include "query/deformable_query.h"
 #include "test_models.h"
 #include "traverse.h"
+#include "tree/box_place.h"
 #include "tree_checks.h"
 
 namespace fcl {

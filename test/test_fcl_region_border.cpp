@@ -2,7 +2,7 @@
 //
 // Borders of a tree's nodes are what is left of their triangles' edges, are found once,
 // and are kept for as long as the structure stays; nobody sees whether they were.
-#include "fcl/narrowphase/detail/deformable/region_border.h"
+#include "tree/border_finder.h"
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@
 #include <thread>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/embedded_regions.h"
-#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "generated_scenes.h"
+#include "kernels/kernels.h"
 #include "mesh_generators.h"
 #include "moving_mesh.h"
+#include "self_culling/embedded_regions.h"
 #include "tree_checks.h"
 
 namespace fcl {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Rigid models whose trees FCL made badly: their contacts are the others'.
-#include "fcl/narrowphase/detail/deformable/rigid_tree.h"
+#include "tree/rigid_tree.h"
 
 #include <gtest/gtest.h>
 

@@ -18,6 +18,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/collision.h"
 #include "generated_scenes.h"
+#include "mesh/mesh_topology.h"
 #include "test_models.h"
 #include "tree_checks.h"
 

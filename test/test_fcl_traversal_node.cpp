@@ -16,9 +16,9 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
-#include "fcl/narrowphase/detail/deformable/rigid_tree.h"
 #include "fcl/narrowphase/detail/traversal/collision_node.h"
 #include "test_models.h"
+#include "tree/rigid_tree.h"
 
 namespace fcl {
 namespace test {

@@ -2,7 +2,7 @@
 //
 // Which vertices have a fan, and that leaving out the pairs in an embedded one never
 // changes what a query answers.
-#include "fcl/narrowphase/detail/deformable/vertex_fans.h"
+#include "mesh/vertex_fans.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,12 @@
 #include <utility>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/deformable_query.h"
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
-#include "fcl/narrowphase/detail/deformable/embedded_fans.h"
-#include "fcl/narrowphase/detail/deformable/instant_test.h"
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
+#include "elementary/predicates.h"
 #include "moving_mesh.h"
+#include "query/deformable_query.h"
+#include "self_culling/embedded_fans.h"
 #include "traverse.h"
 
 namespace fcl {

@@ -10,10 +10,10 @@
 #include "hwy/foreach_target.h"
 #endif
 
-#include "error_bounds.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
+#include "numerics/error_bounds.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {

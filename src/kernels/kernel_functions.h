@@ -4,7 +4,7 @@
 // See kernels.h.
 //
 // Included once for each of Highway's targets, hence no ordinary include guard.
-#include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "kernels/kernels.h"
 #include "kernels/lanes.h"
 
 #if defined(FCL_CCD_KERNEL_FUNCTIONS_INCLUDED) == defined(HWY_TARGET_TOGGLE)

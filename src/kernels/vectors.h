@@ -5,9 +5,9 @@
 // Included once for each of Highway's targets, hence no ordinary include guard.
 #include <limits>
 
-#include "error_bounds.h"
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
 #include "kernels/lanes.h"
+#include "mesh/tree_nodes.h"
+#include "numerics/error_bounds.h"
 
 #if defined(FCL_CCD_VECTORS_INCLUDED) == defined(HWY_TARGET_TOGGLE)
 #ifdef FCL_CCD_VECTORS_INCLUDED

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "fcl/narrowphase/detail/deformable/kernels.h"
+#include "kernels/kernels.h"
 
 namespace fcl {
 namespace test {

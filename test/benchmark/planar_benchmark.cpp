@@ -12,10 +12,11 @@
 #include <utility>
 #include <vector>
 
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
 #include "mesh_generators.h"
 #include "timing.h"
 

@@ -30,8 +30,7 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   deformable::MeshInstance instance;
   instance.frames = model.frames();
   instance.tree = &model.movingTree();
-  deformable::TrianglePairTest leaves(instance, instance, nullptr,
-                                      deformable::QueryOptions());
+  deformable::NarrowPhase leaves(instance, instance, nullptr, deformable::QueryOptions());
   SweptContacts found;
   std::vector<deformable::LeafPair> pairs;
   found.ms_traverse = millisecondsOf([&] {

@@ -7,8 +7,8 @@
 
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
-#include "fcl/narrowphase/detail/deformable/triangle_pair_test.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "query/narrow_phase.h"
 #include "scene_data.h"
 
 namespace fcl {

@@ -10,7 +10,7 @@
 #include <boost/multiprecision/cpp_int.hpp>
 #include <memory>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 
 namespace fcl {
 namespace test {

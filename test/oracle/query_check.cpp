@@ -8,6 +8,9 @@
 #include <sstream>
 #include <vector>
 
+#include "elementary/axis_window.h"
+#include "elementary/coplanarity_filter.h"
+#include "elementary/exact.h"
 #include "exact_oracle.h"
 #include "query_generators.h"
 

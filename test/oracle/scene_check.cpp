@@ -8,12 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "elementary/coplanarity_filter.h"
+#include "elementary/exact.h"
 #include "exact_oracle.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
-#include "fcl/narrowphase/detail/deformable/feature_batch.h"
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
-#include "fcl/narrowphase/detail/deformable/kernels.h"
 #include "feature_pair_generators.h"
+#include "kernels/kernels.h"
+#include "mesh/feature_pairs.h"
+#include "query/feature_batch.h"
 #include "swept_tree.h"
 #include "traverse.h"
 

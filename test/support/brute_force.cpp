@@ -5,7 +5,7 @@
 #include <array>
 #include <set>
 
-#include "fcl/narrowphase/continuous_feature_test.h"
+#include "fcl/narrowphase/continuous_features.h"
 #include "mesh_generators.h"
 
 namespace fcl {

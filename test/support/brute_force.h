@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 #include "scene_data.h"
 
 namespace fcl {

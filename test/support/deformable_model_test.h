@@ -85,9 +85,8 @@ class DeformableModel : public ::testing::Test {
   }
 };
 
-using BVs =
-    ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
-                     KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
+using BVs = ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
+                             KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
 TYPED_TEST_SUITE(DeformableModel, BVs, );
 
 #define USING_FIXTURE                        \

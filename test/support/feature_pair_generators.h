@@ -9,7 +9,7 @@
 #include <cstddef>
 #include <ostream>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 #include "mesh_generators.h"
 
 namespace fcl {

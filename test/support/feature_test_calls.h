@@ -4,7 +4,7 @@
 #ifndef FCL_TEST_SUPPORT_FEATURE_TEST_CALLS_H
 #define FCL_TEST_SUPPORT_FEATURE_TEST_CALLS_H
 
-#include "fcl/narrowphase/continuous_feature_test.h"
+#include "fcl/narrowphase/continuous_features.h"
 #include "feature_pair_generators.h"
 
 namespace fcl {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/mesh_instance.h"
 #include "mesh_generators.h"
+#include "tree/mesh_instance.h"
 
 namespace fcl {
 namespace test {

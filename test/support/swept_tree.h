@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
+#include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace test {

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/embedded_fans.h"
-#include "fcl/narrowphase/detail/deformable/mesh_topology.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
+#include "mesh/mesh_topology.h"
+#include "self_culling/embedded_fans.h"
+#include "tree/traversal.h"
 
 namespace fcl {
 namespace test {

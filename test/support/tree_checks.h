@@ -18,8 +18,8 @@
 #include <utility>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
-#include "fcl/narrowphase/detail/deformable/region_border.h"
+#include "tree/border_finder.h"
+#include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace test {

@@ -12,6 +12,8 @@
 
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/continuous_contact.h"
+#include "fcl/narrowphase/detail/pose_numbers.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {
 
@@ -100,8 +102,38 @@ bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const ContinuousCandidateSink& sink);
 /// @}
 
-}  // namespace fcl
+inline bool continuousSelfCandidates(const CollisionGeometry<double>* o,
+                                     const ContinuousCandidateSink& sink) {
+  return detail::answerSelfCandidates(o, sink);
+}
 
-#include "fcl/narrowphase/continuous_candidates-inl.h"
+inline bool continuousSelfCandidates(const CollisionGeometry<float>* o,
+                                     const ContinuousCandidateSink& sink) {
+  return detail::answerSelfCandidates(o, sink);
+}
+
+inline bool continuousCandidates(const CollisionGeometry<double>* o1,
+                                 const Transform3<double>& tf1_beg,
+                                 const Transform3<double>& tf1_end,
+                                 const CollisionGeometry<double>* o2,
+                                 const Transform3<double>& tf2_beg,
+                                 const Transform3<double>& tf2_end,
+                                 const ContinuousCandidateSink& sink) {
+  return detail::answerCandidates(detail::movingGeometry(o1, tf1_beg, tf1_end),
+                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink);
+}
+
+inline bool continuousCandidates(const CollisionGeometry<float>* o1,
+                                 const Transform3<float>& tf1_beg,
+                                 const Transform3<float>& tf1_end,
+                                 const CollisionGeometry<float>* o2,
+                                 const Transform3<float>& tf2_beg,
+                                 const Transform3<float>& tf2_end,
+                                 const ContinuousCandidateSink& sink) {
+  return detail::answerCandidates(detail::movingGeometry(o1, tf1_beg, tf1_end),
+                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink);
+}
+
+}  // namespace fcl
 
 #endif

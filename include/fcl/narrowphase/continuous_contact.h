@@ -12,7 +12,7 @@
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/continuous_collision_request.h"
 #include "fcl/narrowphase/continuous_collision_result.h"
-#include "fcl/narrowphase/detail/deformable/stage_counts.h"
+#include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl {
 

@@ -6,6 +6,8 @@
 #define FCL_NARROWPHASE_DISTANCE_OVERLAY_H
 
 #include "fcl/ccd_version.h"
+#include "fcl/common/exception.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
 #include "fcl/narrowphase/detail/stock_distance.h"
 
 namespace fcl {
@@ -37,8 +39,73 @@ float distance(const CollisionGeometry<float>* o1, const Transform3<float>& tf1,
 
 /// @}
 
-}  // namespace fcl
+namespace detail {
 
-#include "fcl/narrowphase/detail/deformable_distance.h"
+/// @brief Whether FCL 0.7 has a distance function for a mesh of this type and another
+/// geometry, in this order or (for a shape) the other.
+inline bool hasDistanceFunction(NODE_TYPE mesh, NODE_TYPE other) {
+  switch (other) {
+    case GEOM_BOX:
+    case GEOM_SPHERE:
+    case GEOM_ELLIPSOID:
+    case GEOM_CAPSULE:
+    case GEOM_CONE:
+    case GEOM_CYLINDER:
+    case GEOM_CONVEX:
+    case GEOM_PLANE:
+    case GEOM_HALFSPACE:
+      return mesh == BV_RSS || mesh == BV_kIOS || mesh == BV_OBBRSS;
+    case GEOM_OCTREE:
+      return FCL_HAVE_OCTOMAP != 0;
+    case BV_AABB:
+    case BV_RSS:
+    case BV_kIOS:
+    case BV_OBBRSS:
+      return mesh == other;
+    default:
+      return false;
+  }
+}
+
+template <typename S>
+void requireDistanceFunction(const CollisionGeometry<S>& o1,
+                             const CollisionGeometry<S>& o2) {
+  const bool is_first_the_mesh = o1.getObjectType() == OT_BVH,
+             is_second_a_mesh = o2.getObjectType() == OT_BVH;
+  if (!(is_first_the_mesh && isDeformableModel(o1)) &&
+      !(is_second_a_mesh && isDeformableModel(o2)))
+    return;
+  const NODE_TYPE mesh = (is_first_the_mesh ? o1 : o2).getNodeType(),
+                  other = (is_first_the_mesh ? o2 : o1).getNodeType();
+  if (!hasDistanceFunction(mesh, other))
+    throw Exception(
+        "distance: FCL has no distance function for the node types of the two objects; "
+        "models on AABB, RSS, kIOS or OBBRSS of the same type have one");
+}
+
+}  // namespace detail
+
+/// The bodies of the overloads; compiled only where they are called, see
+/// ContinuousQueryBodies.
+template <typename S>
+class DistanceBodies {
+  friend S distance(const CollisionObject<S>* o1, const CollisionObject<S>* o2,
+                    const DistanceRequest<S>& request, DistanceResult<S>& result) {
+    detail::requireDistanceFunction(*o1->collisionGeometry(), *o2->collisionGeometry());
+    return distance<S>(o1, o2, request, result);
+  }
+  friend S distance(const CollisionGeometry<S>* o1, const Transform3<S>& tf1,
+                    const CollisionGeometry<S>* o2, const Transform3<S>& tf2,
+                    const DistanceRequest<S>& request, DistanceResult<S>& result) {
+    detail::requireDistanceFunction(*o1, *o2);
+    return distance<S>(o1, tf1, o2, tf2, request, result);
+  }
+};
+
+// Tells the compiler of the friends.
+static_assert(sizeof(DistanceBodies<double>) == 1, "");
+static_assert(sizeof(DistanceBodies<float>) == 1, "");
+
+}  // namespace fcl
 
 #endif

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 
 namespace fcl_ccd {
 

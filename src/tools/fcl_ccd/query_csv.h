@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/vertex_frames.h"
+#include "mesh/vertex_frames.h"
 
 namespace fcl_ccd {
 

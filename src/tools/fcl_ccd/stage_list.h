@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "fcl/narrowphase/detail/deformable/stage_counts.h"
+#include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl_ccd {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "baselines/method.h"
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 #include "scene_data.h"
 #include "speed_error/coplanarity_cubic.h"
 

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "fcl/math/bv/moving_kdop.h"
+#include "mesh/moving_kdop.h"
 
 namespace fcl {
 namespace test {

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <vector>
 
-#include "fcl/narrowphase/detail/deformable/feature_pairs.h"
+#include "mesh/feature_pairs.h"
 
 namespace fcl {
 namespace test {

@@ -19,8 +19,8 @@
 #include "baselines/binary_structure.h"
 #include "baselines/candidates.h"
 #include "baselines/connectivity.h"
-#include "fcl/math/bv/moving_kdop.h"
-#include "fcl/narrowphase/detail/deformable/vertex_frames.h"
+#include "mesh/moving_kdop.h"
+#include "mesh/vertex_frames.h"
 #include "scene_data.h"
 
 namespace fcl {

@@ -30,7 +30,7 @@
 
 #include "baselines/candidates.h"
 #include "baselines/connectivity.h"
-#include "fcl/narrowphase/detail/deformable/vertex_frames.h"
+#include "mesh/vertex_frames.h"
 
 namespace fcl {
 namespace test {

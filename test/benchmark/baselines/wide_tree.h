@@ -12,10 +12,10 @@
 #include "baselines/candidates.h"
 #include "baselines/connectivity.h"
 #include "baselines/method.h"
-#include "fcl/narrowphase/detail/deformable/moving_kdop_tree.h"
-#include "fcl/narrowphase/detail/deformable/traversal.h"
 #include "scene_data.h"
 #include "swept_tree.h"
+#include "tree/moving_kdop_tree.h"
+#include "tree/traversal.h"
 
 namespace fcl {
 namespace test {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "elementary/coplanarity_filter.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "scene_method.h"
 #include "speed_error/plain_solvers.h"

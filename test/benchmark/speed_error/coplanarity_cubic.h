@@ -6,7 +6,7 @@
 #ifndef FCL_BENCHMARK_COPLANARITY_CUBIC_H
 #define FCL_BENCHMARK_COPLANARITY_CUBIC_H
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 
 namespace fcl {
 namespace test {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "methods.h"
 
+#include "elementary/axis_window.h"
+#include "elementary/coplanarity_filter.h"
 #include "plain_solvers.h"
 
 namespace fcl {

@@ -4,7 +4,7 @@
 #ifndef FCL_BENCHMARK_PLAIN_SOLVERS_H
 #define FCL_BENCHMARK_PLAIN_SOLVERS_H
 
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "elementary/elementary.h"
 
 namespace fcl {
 namespace test {

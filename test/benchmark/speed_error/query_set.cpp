@@ -8,9 +8,10 @@
 #include <set>
 #include <stdexcept>
 
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
-#include "fcl/narrowphase/detail/deformable/deformable_query.h"
-#include "fcl/narrowphase/detail/deformable/elementary_test.h"
+#include "query/deformable_query.h"
 #include "query_csv.h"
 #include "query_generators.h"
 #include "scene_data.h"

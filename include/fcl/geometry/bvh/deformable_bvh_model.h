@@ -7,15 +7,88 @@
 #endif
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "fcl/ccd_version.h"
 #include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
-#include "fcl/narrowphase/detail/deformable/deformable_mesh.h"
 
 namespace fcl {
+
+namespace detail {
+
+namespace deformable {
+class MovingKdopTree;
+class VertexFrames;
+}  // namespace deformable
+
+/// @brief The part of a DeformableBVHModel that does not depend on its BV: feature
+/// owners, moving tree, and what a query must know of the model's state.
+class DeformableMesh {
+ public:
+  virtual ~DeformableMesh();
+
+  const deformable::MovingKdopTree& movingTree() const { return *tree_; }
+
+  /// @brief Whether a vertex differs between the two frames.
+  bool isDeforming() const { return is_deforming_; }
+
+  /// @brief As given to setNumThreads().
+  int numThreads() const { return num_threads_; }
+
+  /// @brief How many updates since the build have made parts of the tree anew.
+  std::size_t numRestructurings() const { return num_restructurings_; }
+
+  /// @brief Whether an update or replacement has begun and not ended.
+  bool isUpdateOpen() const { return open_ != Open::kNone; }
+
+  /// @brief Whether the moving tree describes the base model's arrays as they are now;
+  /// false when they were changed through a reference to the base class.
+  virtual bool isInStep() const = 0;
+
+  /// @brief The two frames, model coordinates; only while in step.
+  virtual deformable::VertexFrames frames() const = 0;
+
+ protected:
+  enum class Open { kNone, kUpdate, kReplace };
+
+  DeformableMesh();
+  DeformableMesh(const DeformableMesh& other);
+  /// @brief Leaves a mesh behind that can only be destroyed.
+  DeformableMesh& operator=(DeformableMesh&& other) noexcept;
+
+  /// @brief Owners and tree structure anew, for triangles that have been checked.
+  void buildTree(const Triangle* triangles, std::size_t num_triangles,
+                 const deformable::VertexFrames& frames);
+
+  /// @brief Boxes for a pair of frames, in a tree whose aged parts are made anew.
+  void refitTree(const deformable::VertexFrames& frames);
+
+  /// @brief Tree and owners for triangles that have been checked, as
+  /// MovingKdopTree::changeTopology(); without boxes.
+  void changeTopology(const Triangle* triangles, std::size_t num_triangles,
+                      const std::vector<int>& origins,
+                      const deformable::VertexFrames& frames);
+
+  /// @brief Boxes for a pair of frames after a change of topology.
+  void refitChangedTree(const deformable::VertexFrames& frames);
+
+  std::size_t treeMemUsage() const;
+
+  Open open_{Open::kNone};
+  int num_threads_{1};
+
+ private:
+  std::unique_ptr<deformable::MovingKdopTree> tree_;
+  std::size_t num_restructurings_{0};
+  bool is_deforming_{false};
+};
+
+}  // namespace detail
 
 /// @brief What a build or an update does with FCL's own tree, which discrete queries
 /// (collide, distance) need, and continuous ones that FCL answers (shapes, rotating rigid
@@ -236,8 +309,19 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   std::string last_error_;
 };
 
-}  // namespace fcl
+#define FCL_CCD_EXTERN_MODELS(S)                         \
+  extern template class DeformableBVHModel<AABB<S>>;     \
+  extern template class DeformableBVHModel<OBB<S>>;      \
+  extern template class DeformableBVHModel<RSS<S>>;      \
+  extern template class DeformableBVHModel<kIOS<S>>;     \
+  extern template class DeformableBVHModel<OBBRSS<S>>;   \
+  extern template class DeformableBVHModel<KDOP<S, 16>>; \
+  extern template class DeformableBVHModel<KDOP<S, 18>>; \
+  extern template class DeformableBVHModel<KDOP<S, 24>>;
+FCL_CCD_EXTERN_MODELS(double)
+FCL_CCD_EXTERN_MODELS(float)
+#undef FCL_CCD_EXTERN_MODELS
 
-#include "fcl/geometry/bvh/deformable_bvh_model-inl.h"
+}  // namespace fcl
 
 #endif

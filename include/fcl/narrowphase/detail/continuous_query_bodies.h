@@ -9,8 +9,7 @@
 #include <typeinfo>
 
 #include "fcl/common/exception.h"
-#include "fcl/narrowphase/continuous_collision.h"
-#include "fcl/narrowphase/detail/deformable/default_floating_point.h"
+#include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/fcl_queries.h"
 #include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -48,20 +47,6 @@ ContinuousContacts<S>* contactsOf(ContinuousContactResult<S>& result) {
   return &result;
 }
 
-/// Translation on a straight line, rotation at constant speed (a deforming mesh only:
-/// its vertices do not follow it).
-template <typename S>
-Transform3<S> poseAt(const MovingGeometry<S>& o, S t) {
-  Transform3<S> tf = toTransform(o.pose[0]);
-  const Transform3<S> end = toTransform(o.pose[1]);
-  tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();
-  if (!isConstantRotation(o.pose[0], o.pose[1]))
-    tf.linear() = Quaternion<S>(tf.linear())
-                      .slerp(t, Quaternion<S>(end.linear()))
-                      .toRotationMatrix();
-  return tf;
-}
-
 /// The part of the result that FCL's own type has.
 template <typename S>
 void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
@@ -73,9 +58,8 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
     result.contact_tf2 = toTransform(o2.pose[1]);
     return;
   }
-  const deformable::DefaultFloatingPoint mode;
-  result.contact_tf1 = poseAt(o1, outcome.toc_hi);
-  result.contact_tf2 = poseAt(o2, outcome.toc_hi);
+  result.contact_tf1 = toTransform(poseAt(o1, outcome.toc_hi));
+  result.contact_tf2 = toTransform(poseAt(o2, outcome.toc_hi));
 }
 
 /// FCL's own classes of motion in float are compiled with the program, as here.

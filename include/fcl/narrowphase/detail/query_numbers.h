@@ -98,6 +98,11 @@ FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& s
 using CandidateSink =
     std::function<bool(const ContinuousCandidate* candidates, std::size_t count)>;
 
+/// @brief Where a geometry is at t: translation on a straight line, rotation at constant
+/// speed (a deforming mesh only: its vertices do not follow it).
+template <typename S>
+FCL_EXPORT PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t);
+
 /// @brief The candidates of a pair.
 template <typename S>
 FCL_EXPORT bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,

@@ -2,14 +2,61 @@
 #ifndef FCL_TRAVERSAL_DEFORMABLECONTINUOUSCOLLISIONTRAVERSALNODE_H
 #define FCL_TRAVERSAL_DEFORMABLECONTINUOUSCOLLISIONTRAVERSALNODE_H
 
+#include <memory>
+
+#include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/collision_request.h"
 #include "fcl/narrowphase/collision_result.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/deformable_traversal.h"
 #include "fcl/narrowphase/detail/pose_numbers.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
 #include "fcl/narrowphase/detail/traversal/collision/collision_traversal_node_base.h"
+#include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl {
 namespace detail {
+
+/// @brief What DeformableContinuousCollisionTraversalNode does, in the library. The node
+/// itself has FCL's transforms and is compiled with the program.
+template <typename S>
+class FCL_EXPORT DeformableTraversal {
+ public:
+  DeformableTraversal();
+  ~DeformableTraversal();
+
+  /// @return false, with nothing changed, if a geometry is not a triangle mesh, or is a
+  /// rigid one that rotates. What throws leaves a traversal that was ready as it was.
+  bool start(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2, S toc_err,
+             const CollisionRequest<S>& request, CollisionResult<S>& result);
+  bool startSelf(const CollisionGeometry<S>& model, S toc_err,
+                 const CollisionRequest<S>& request, CollisionResult<S>& result);
+
+  bool isFirstLeaf(int b) const;
+  bool isSecondLeaf(int b) const;
+  bool firstOverSecond(int b1, int b2) const;
+  /// The right child is the next node.
+  int firstLeftChild(int b) const;
+  int secondLeftChild(int b) const;
+
+  bool areApart(int b1, int b2);
+  void testLeaves(int b1, int b2);
+  bool isDone() const;
+
+  S timeOfContact() const;
+  bool isInitiallyCrossing() const;
+  const StageCounts& counts() const;
+
+ private:
+  struct State;
+
+  void report();
+
+  /// Null until start().
+  std::unique_ptr<State> state_;
+};
+
+extern template class DeformableTraversal<double>;
+extern template class DeformableTraversal<float>;
 
 /// @brief Traversal node for continuous collision between two meshes that deform or
 /// translate, or of one with itself; made by initialize(), driven by FCL's collide(&node)

@@ -1,0 +1,62 @@
+#!/bin/bash
+# SPDX-License-Identifier: BSD-3-Clause
+#
+# bash cmake/check_includes.sh [SOURCE_FOLDER]
+#
+# The folders of src/ are the stages of the pipeline. Fails and names the line when
+#  - a file includes one of a folder that comes later in the order below,
+#  - a file below api/ includes a public header, of which only stage_counts.h is plain data,
+#  - a public header includes an internal one,
+#  - files include each other in a circle (x.h and x.cpp count as one).
+set -euo pipefail
+cd "${1:-$(dirname "$0")/..}"
+
+order=(base numerics mesh elementary kernels tree self_culling query api)
+
+# Lines "file included", of quoted includes.
+includes() {
+  find "$@" \( -name '*.h' -o -name '*.cpp' \) -exec grep -H '^#include "' {} + |
+    sed 's|:#include "| |; s|".*||' | LC_ALL=C sort
+}
+
+failed=0
+complain() {
+  echo "$1" >&2
+  failed=1
+}
+
+for folder in src/*/; do
+  folder=$(basename "$folder")
+  [[ " ${order[*]} tools " == *" $folder "* ]] ||
+    complain "src/$folder: give it a place in the order of folders in cmake/check_includes.sh"
+done
+
+declare -A rank
+for i in "${!order[@]}"; do rank[${order[i]}]=$i; done
+
+while read -r file included; do
+  folder=${file#src/} folder=${folder%%/*}
+  target=${included%%/*}
+  if [[ $target == fcl ]]; then
+    [[ $folder == api || ! -e include/$included || $included == */stage_counts.h ]] ||
+      complain "$file: includes $included, a public header, which only api/ does"
+  elif [[ -n ${rank[$target]+is} ]]; then
+    [[ -e src/$included ]] || complain "$file: includes $included, which is not there"
+    ((rank[$target] <= rank[$folder])) ||
+      complain "$file: includes $included, from a folder that comes later"
+  elif [[ $target != hwy ]]; then
+    complain "$file: includes $included, which is not named by its folder"
+  fi
+done < <(includes "${order[@]/#/src/}")
+
+while read -r file included; do
+  [[ $included == fcl/* ]] ||
+    complain "$file: includes $included; public headers include public headers only"
+done < <(includes include)
+
+circle=$(includes "${order[@]/#/src/}" include |
+  sed -E 's/^(src|include)\///; s/\.(h|cpp)( |$)/\2/g' | awk '$1 != $2' |
+  tsort 2>&1 >/dev/null) || complain "files that include each other:
+${circle//tsort: -: input contains a loop:/}"
+
+exit $failed

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_STAGE_COUNTS_H
+#define FCL_NARROWPHASE_STAGE_COUNTS_H
+
+#include <cstdint>
+
+namespace fcl {
+
+/// @brief How many candidates each stage of a continuous query saw and removed, in
+/// pipeline order. Every candidate that enters a stage leaves it culled or goes on:
+/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts,
+/// but for those that a query for any contact no longer looks at.
+struct StageCounts {
+  /// node pairs whose moving boxes were compared
+  std::uint64_t node_pairs{0};
+  /// triangle pairs whose boxes meet at some time
+  std::uint64_t triangle_pairs{0};
+  /// of those, the pairs that share a vertex
+  std::uint64_t adjacent_pairs{0};
+  /// of those, the pairs that provably meet nowhere else: the triangles around the shared
+  /// vertex stay a fan; nothing is counted where whole nodes of the tree are in a fan
+  std::uint64_t fan_culled{0};
+  /// triangle pairs that a plane keeps apart until the latest time that still matters,
+  /// once contacts that were found leave only the beginning of the step
+  std::uint64_t plane_culled{0};
+  /// VF and EE pairs that the other triangle pairs own and that share no vertex
+  std::uint64_t feature_pairs{0};
+  /// feature pairs whose moving boxes do not meet, or too late to matter
+  std::uint64_t box_culled{0};
+  /// feature pairs that provably never become coplanar while their boxes meet
+  std::uint64_t filter_culled{0};
+  /// feature pairs for which the root solve proved that there is no contact
+  std::uint64_t solver_culled{0};
+  /// feature pairs that rounding left open for the solver and integers proved apart
+  std::uint64_t exact_culled{0};
+  /// feature pairs that integers had to decide, either way
+  std::uint64_t exact_tests{0};
+  /// contacts, each proved
+  std::uint64_t contacts{0};
+  /// edge-face pairs tested for crossing at t = 0
+  std::uint64_t crossing_tests{0};
+
+  StageCounts& operator+=(const StageCounts& other) {
+    node_pairs += other.node_pairs;
+    triangle_pairs += other.triangle_pairs;
+    adjacent_pairs += other.adjacent_pairs;
+    fan_culled += other.fan_culled;
+    plane_culled += other.plane_culled;
+    feature_pairs += other.feature_pairs;
+    box_culled += other.box_culled;
+    filter_culled += other.filter_culled;
+    solver_culled += other.solver_culled;
+    exact_culled += other.exact_culled;
+    exact_tests += other.exact_tests;
+    contacts += other.contacts;
+    crossing_tests += other.crossing_tests;
+    return *this;
+  }
+};
+
+/// @brief Wall time of the parts of a query, in seconds; on several threads divided in
+/// proportion to the time that all of them spent.
+struct StageTimes {
+  /// bringing the moving boxes up to date, when the query itself had to do it
+  double update{0};
+  /// moving boxes against moving boxes
+  double traverse{0};
+  /// everything done to a triangle pair, and handing over the contacts
+  double test{0};
+};
+
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_API_CONTACT_CONVERSION_H
+#define FCL_CCD_API_CONTACT_CONVERSION_H
+
+#include "fcl/narrowphase/contact.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "query/contact_sink.h"
+#include "query/narrow_phase.h"
+#include "tree/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A contact between meshes a and b (the same object twice for a self-collision)
+/// as the public type, without o1 and o2.
+template <typename S>
+ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
+                                         const MeshInstance& a, const MeshInstance& b,
+                                         bool with_geometry);
+
+/// @brief A crossing at t = 0 as the public type, without o1 and o2. Its position is
+/// where the edge meets the plane of the face.
+template <typename S>
+ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshInstance& a,
+                                         const MeshInstance& b, bool with_geometry);
+
+/// @brief The contact as FCL's type; penetration depth 0.
+template <typename S>
+Contact<S> toContact(const ContinuousContact<S>& contact);
+
+/// @brief A time in [0, 1] as S, not later than t.
+template <typename S>
+S roundTimeDown(double t);
+
+/// @brief A time in [0, 1] as S, not earlier than t.
+template <typename S>
+S roundTimeUp(double t);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/continuous_candidates.h"
+
+#include <cfenv>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "api/prepared_mesh.h"
+#include "api/query_arguments.h"
+#include "base/default_floating_point.h"
+#include "fcl/common/exception.h"
+#include "query/deformable_query.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+using deformable::FeatureCandidate;
+using deformable::FeatureKind;
+using deformable::FeatureOwners;
+using deformable::PreparedMesh;
+
+ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
+  ContinuousCandidate out;
+  out.kind = candidate.kind == FeatureKind::kVertexFace
+                 ? ContinuousContactKind::kVertexFace
+                 : ContinuousContactKind::kEdgeEdge;
+  out.first_on_o1 = candidate.first_on_a;
+  for (std::size_t i = 0; i < 4; ++i)
+    out.vertices[i] = static_cast<int>(candidate.vertices[i]);
+  out.b1 = candidate.triangles[0];
+  out.b2 = candidate.triangles[1];
+  out.window_lo = candidate.window_lo;
+  out.window_hi = candidate.window_hi;
+  return out;
+}
+
+/// Runs query(inner sink), whose blocks reach the caller's sink in public form and in the
+/// caller's floating-point mode.
+template <typename Query>
+bool handOut(const ContinuousCandidateSink& sink, Query&& query) {
+  std::fenv_t callers_mode;
+  std::fegetenv(&callers_mode);
+  std::vector<ContinuousCandidate> block;
+  return answerOf([&] {
+    return query([&](const FeatureCandidate* candidates, std::size_t count) {
+      block.clear();
+      for (std::size_t i = 0; i < count; ++i)
+        block.push_back(toContinuousCandidate(candidates[i]));
+      const deformable::CallersFloatingPoint mode(callers_mode);
+      return sink(block.data(), block.size());
+    });
+  });
+}
+
+void require(const ContinuousCandidateSink& sink) {
+  if (!sink) throw Exception("sink is null");
+}
+
+template <typename S>
+PreparedMesh prepared(const PlacedGeometry<S>& placed, const char* name) {
+  const deformable::DefaultFloatingPoint mode;
+  return PreparedMesh(placed.geometry(), placed.beginning(), placed.end(), name, 1,
+                      FeatureOwners::kAlways);
+}
+
+}  // namespace
+
+template <typename S>
+bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& sink) {
+  require(o, "o");
+  require(sink);
+  requireMesh(*o, "continuousSelfCandidates");
+  const MovingGeometry<S> still{o,
+                                {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
+                                 {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}},
+                                true};
+  const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
+  return handOut(sink, [&](const auto& inner) {
+    return deformable::candidatesSelf(mesh.instance(), inner);
+  });
+}
+
+template <typename S>
+bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                      const CandidateSink& sink) {
+  require(o1.geometry, "o1");
+  require(o2.geometry, "o2");
+  require(sink);
+  const auto place = [](const MovingGeometry<S>& o) {
+    const deformable::DefaultFloatingPoint mode;
+    return PlacedGeometry<S>(o);
+  };
+  const PlacedGeometry<S> placed1 = place(o1), placed2 = place(o2);
+  if (!isAnsweredHere(placed1, placed2))
+    throw Exception(std::string("candidates") + kNotAnsweredHere);
+  const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
+  return handOut(sink, [&](const auto& inner) {
+    return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);
+  });
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                           \
+  template bool answerSelfCandidates(const CollisionGeometry<S>*, const CandidateSink&); \
+  template bool answerCandidates(const MovingGeometry<S>&, const MovingGeometry<S>&,     \
+                                 const CandidateSink&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <string>
+
+#include "api/contact_conversion.h"
+#include "api/prepared_mesh.h"
+#include "api/query_arguments.h"
+#include "base/default_floating_point.h"
+#include "base/parallel.h"
+#include "fcl/common/exception.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+#include "query/deformable_query.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+using deformable::DefaultFloatingPoint;
+using deformable::inArena;
+using deformable::PreparedMesh;
+using deformable::QueryAnswer;
+using deformable::QueryGoal;
+using deformable::QueryOptions;
+
+QueryOptions makeOptions(const QuerySettings& settings) {
+  QueryOptions options;
+  options.goal = QueryGoal::kFirst;
+  options.max_contacts = 1;
+  options.toc_err = requireTocErr(settings.toc_err, "request.toc_err");
+  options.stop_at_crossing = !settings.with_contacts;
+  if (!settings.with_contacts) return options;
+  if (settings.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
+  options.goal = settings.query == ContinuousQuery::kAll     ? QueryGoal::kAll
+                 : settings.query == ContinuousQuery::kFirst ? QueryGoal::kFirst
+                                                             : QueryGoal::kAny;
+  options.max_contacts = settings.num_max_contacts;
+  if (settings.num_threads < 0) throw Exception("request.num_threads is negative");
+  options.num_threads = settings.num_threads;
+  return options;
+}
+
+template <typename S>
+QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
+  if (answer.has_crossing) return {true, 0, 0};
+  if (answer.contacts.empty()) return {false, 1, 1};
+  const auto& first = answer.contacts.front();
+  return {true, deformable::roundTimeDown<S>(first.toc_lo),
+          deformable::roundTimeUp<S>(first.toc_hi)};
+}
+
+/// What a query looked at, for the conversion of its contacts.
+template <typename S>
+struct Scene {
+  const CollisionGeometry<S>& o1;
+  const CollisionGeometry<S>& o2;
+  const PreparedMesh& mesh1;
+  const PreparedMesh& mesh2;
+};
+
+template <typename S>
+void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
+                  const QuerySettings& settings, ContinuousContacts<S>& result) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto convert = [&](const auto& contact) {
+    auto out = deformable::toContinuousContact<S>(
+        contact, scene.mesh1.instance(), scene.mesh2.instance(), settings.enable_contact);
+    out.o1 = &scene.o1;
+    out.o2 = &scene.o2;
+    return out;
+  };
+  const std::size_t count = answer.contacts.size();
+  const auto contactAt = [&](std::size_t i) {
+    // Contacts that follow each other in time lie anywhere in memory.
+    constexpr std::size_t kAhead = 16;
+    __builtin_prefetch(&answer.contacts[std::min(i + kAhead, count - 1)]);
+    return convert(answer.contacts[i]);
+  };
+  // Memory before anything changes.
+  result.contacts.reserve(count);
+  if (deformable::numThreads(settings.num_threads) == 1) {
+    result.contacts.clear();
+    for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
+  } else {
+    // Written twice.
+    constexpr std::size_t kBlock = 1024;
+    result.contacts.resize(count);
+    deformable::parallelForBlocks(count, kBlock, settings.num_threads,
+                                  [&](std::size_t i, std::size_t last) {
+                                    for (; i < last; ++i)
+                                      result.contacts[i] = contactAt(i);
+                                  });
+  }
+  result.contacts_cut = answer.cut;
+  result.initially_crossing = answer.has_crossing;
+  result.crossing =
+      answer.has_crossing ? convert(answer.crossing) : ContinuousContact<S>();
+  result.counts = answer.counts;
+  result.times = answer.times;
+  result.times.update += scene.mesh1.updateTime();
+  if (&scene.mesh1 != &scene.mesh2) result.times.update += scene.mesh2.updateTime();
+  result.times.test +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+}  // namespace
+
+template <typename S>
+bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                const QuerySettings& settings, QueryOutcome<S>& outcome,
+                ContinuousContacts<S>* contacts) {
+  const DefaultFloatingPoint mode;
+  const PlacedGeometry<S> placed1(o1), placed2(o2);
+  if (!isAnsweredHere(placed1, placed2)) return false;
+  const QueryOptions options = makeOptions(settings);
+  const auto answer_pair = [&] {
+    const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
+                             options.num_threads);
+    const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",
+                             options.num_threads);
+    const QueryAnswer answer =
+        answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
+    if (contacts)
+      fillContacts(answer, Scene<S>{*o1.geometry, *o2.geometry, mesh1, mesh2}, settings,
+                   *contacts);
+    outcome = outcomeOf<S>(answer);
+  };
+  if (options.num_threads == 1) {
+    answer_pair();
+    return true;
+  }
+  inArena(options.num_threads, [&] {
+    const DefaultFloatingPoint mode_of_its_thread;
+    answer_pair();
+  });
+  return true;
+}
+
+template <typename S>
+void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
+                QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+  require(o, "o");
+  const QueryOptions options = makeOptions(settings);
+  requireMesh(*o, "continuousSelfCollide");
+  const deformable::Pose still;
+  inArena(options.num_threads, [&] {
+    const DefaultFloatingPoint mode;
+    const PreparedMesh mesh(*o, still, still, "o", options.num_threads);
+    const QueryAnswer answer =
+        answerOf([&] { return querySelf(mesh.instance(), options); });
+    if (contacts) fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, settings, *contacts);
+    outcome = outcomeOf<S>(answer);
+  });
+}
+
+template <typename S>
+bool isDeformingMesh(const CollisionGeometry<S>& o) {
+  return deformable::meshKindOf(o) == deformable::MeshKind::kDeforming;
+}
+
+template <typename S>
+bool isDeformableModel(const CollisionGeometry<S>& o) {
+  return dynamic_cast<const DeformableMesh*>(&o) != nullptr;
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                 \
+  template bool answerPair(const MovingGeometry<S>&, const MovingGeometry<S>&, \
+                           const QuerySettings&, QueryOutcome<S>&,             \
+                           ContinuousContacts<S>*);                            \
+  template void answerSelf(const CollisionGeometry<S>*, const QuerySettings&,  \
+                           QueryOutcome<S>&, ContinuousContacts<S>*);          \
+  template bool isDeformingMesh(const CollisionGeometry<S>&);                  \
+  template bool isDeformableModel(const CollisionGeometry<S>&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How a model is built and brought to its next frames or triangles; its states and the
+// checks of what it is given are in deformable_bvh_model.cpp.
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "mesh/vertex_frames.h"
+
+namespace fcl {
+
+namespace {
+
+/// FCL 0.7 merges two RSSs into one that can leave points out, and the oriented boxes of
+/// single triangles that are thin or have no area are not around them, so that a
+/// bottom-up refit of a tree that holds them makes distances too large and misses
+/// contacts; from the top down each volume is fitted to the vertices.
+template <typename BV>
+struct RefitsBottomUp : std::false_type {};
+template <typename S>
+struct RefitsBottomUp<AABB<S>> : std::true_type {};
+template <typename S, std::size_t N>
+struct RefitsBottomUp<KDOP<S, N>> : std::true_type {};
+
+}  // namespace
+
+// FCL itself writes beyond its arrays where none was begun, and forgets the previous
+// frame of a model that was updated.
+template <typename BV>
+template <typename Add>
+int DeformableBVHModel<BV>::grow(Add&& add) {
+  if (this->build_state != BVH_BUILD_STATE_BEGUN)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "an add...() without beginModel()");
+  // FCL may have moved the vertices and taken new ones when it finds no room for
+  // triangles.
+  const int num_vertices = this->num_vertices;
+  const bool was_in_step = isInStep();
+  const auto restore = [&] {
+    this->num_vertices = num_vertices;
+    if (was_in_step) seal_.vertices = this->vertices;
+  };
+  try {
+    if (const int code = add()) {
+      restore();
+      return refuse(code, "FCL has no room for what was added");
+    }
+  } catch (...) {
+    restore();
+    throw;
+  }
+  if (!isInStep()) {
+    delete[] this->prev_vertices;
+    this->prev_vertices = nullptr;
+  }
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addVertex(const Vector3<S>& p) {
+  return grow([&] { return Base::addVertex(p); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                        const Vector3<S>& p3) {
+  return grow([&] { return Base::addTriangle(p1, p2, p3); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps) {
+  return grow([&] { return Base::addSubModel(ps); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
+                                        const std::vector<Triangle>& ts) {
+  return grow([&] { return Base::addSubModel(ps, ts); });
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
+  if (this->build_state != BVH_BUILD_STATE_BEGUN)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
+  if (isInStep())
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        "endModel() of a model that has not grown; the tree that was skipped is "
+        "built by updateFclTree()");
+  const auto count = static_cast<std::size_t>(this->num_vertices),
+             num_triangles = static_cast<std::size_t>(this->num_tris);
+  if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
+    return code;
+  if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
+
+  // What fails leaves an open model, which no seal fits.
+  open_ = Open::kNone;
+  seal_.build_state = BVH_BUILD_STATE_EMPTY;
+  std::unique_ptr<Vector3<S>[]> previous(new Vector3<S>[count]);
+  std::copy(this->vertices, this->vertices + count, previous.get());
+  delete[] this->prev_vertices;
+  this->prev_vertices = previous.release();
+  seal_.prev_vertices = this->prev_vertices;
+  seal_.num_vertices = this->num_vertices;
+  const detail::deformable::VertexFrames still(this->vertices->data(),
+                                               this->vertices->data(), count);
+  buildTree(this->tri_indices, num_triangles, still);
+  refitTree(still);
+  computeLocalAABB();
+  if (fcl_tree == FclTree::kUpdate) {
+    if (const int code = Base::endModel())
+      return refuse(code, "FCL refused to build its tree");
+  }
+  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  seal();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::open(Open what, const char* caller) {
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  std::string(caller) + "() on a model that is not built");
+  staged_.clear();
+  staged_.reserve(static_cast<std::size_t>(this->num_vertices));
+  open_ = what;
+  opened_ = currentSeal();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::stage(const Vector3<S>* points, std::size_t count,
+                                  Open expected) {
+  if (open_ != expected)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "a vertex without a begin...Model()");
+  staged_.insert(staged_.end(), points, points + count);
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
+  if (open_ != expected)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  std::string(caller) + "() without its begin...Model()");
+  open_ = Open::kNone;
+  if (!(opened_ == currentSeal()))
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        std::string(caller) + "() of a model that was changed since its begin...Model()");
+  const auto count = static_cast<std::size_t>(this->num_vertices);
+  if (staged_.size() != count)
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(staged_.size()) +
+                                              " vertices given for a model of " +
+                                              std::to_string(count));
+  return checkFinite(staged_.data()->data(), count, "current");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::beginUpdateModel() {
+  if (isHalfUpdated())
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+        "beginUpdateModel() after an update that failed: both frames are needed");
+  return open(Open::kUpdate, "beginUpdateModel");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateVertex(const Vector3<S>& p) {
+  return stage(&p, 1, Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                           const Vector3<S>& p3) {
+  const Vector3<S> points[3] = {p1, p2, p3};
+  return stage(points, 3, Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateSubModel(const std::vector<Vector3<S>>& ps) {
+  return stage(ps.data(), ps.size(), Open::kUpdate);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
+  if (const int code = close(Open::kUpdate, "endUpdateModel")) return code;
+  advance(nullptr, FclTree::kUpdate, refit, bottomup);
+  finish();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::beginReplaceModel() {
+  return open(Open::kReplace, "beginReplaceModel");
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceVertex(const Vector3<S>& p) {
+  return stage(&p, 1, Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
+                                            const Vector3<S>& p3) {
+  const Vector3<S> points[3] = {p1, p2, p3};
+  return stage(points, 3, Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::replaceSubModel(const std::vector<Vector3<S>>& ps) {
+  return stage(ps.data(), ps.size(), Open::kReplace);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
+  if (const int code = close(Open::kReplace, "endReplaceModel")) return code;
+  advance(staged_.data()->data(), FclTree::kUpdate, refit, bottomup);
+  finish();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
+                                         std::size_t num_vertices, FclTree fcl_tree) {
+  if (const int code = checkSteppable("updateFrames")) return code;
+  if (!previous || !current)
+    return refuse(BVH_ERR_INCORRECT_DATA, "updateFrames() with a null frame");
+  if (num_vertices != static_cast<std::size_t>(this->num_vertices))
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
+                                              " vertices given for a model of " +
+                                              std::to_string(this->num_vertices));
+  if (const int code = checkFrames(previous, current, num_vertices)) return code;
+
+  // Both copies are made before an array changes: the frames may be the model's own.
+  staged_.resize(num_vertices);
+  std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
+  const bool build = fcl_tree == FclTree::kUpdate && !fcl_tree_built_;
+  advance(previous, fcl_tree, true, true);
+  finish();
+  if (build) return updateFclTree();
+  return accept();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangles,
+                                           const std::vector<int>& origins,
+                                           const S* previous, const S* current,
+                                           std::size_t num_vertices, FclTree fcl_tree) {
+  if (const int code = checkSteppable("updateTopology")) return code;
+  if (!previous || !current)
+    return refuse(BVH_ERR_INCORRECT_DATA, "updateTopology() with a null frame");
+  if (const int code = checkTriangles(triangles.data(), triangles.size(), num_vertices))
+    return code;
+  if (const int code = checkOrigins(origins, triangles.size())) return code;
+  if (const int code = checkFrames(previous, current, num_vertices)) return code;
+
+  // All is made beside the model. What of it is no mesh stays.
+  Base next;
+  static_cast<CollisionGeometry<S>&>(next) = *this;
+  next.bv_splitter = this->bv_splitter;
+  next.bv_fitter = this->bv_fitter;
+  int code =
+      next.beginModel(static_cast<int>(triangles.size()), static_cast<int>(num_vertices));
+  if (code != BVH_OK) return refuse(code, "FCL has no memory for the mesh");
+  std::copy(triangles.begin(), triangles.end(), next.tri_indices);
+  next.num_tris = static_cast<int>(triangles.size());
+  std::memcpy(next.vertices->data(), current, 3 * num_vertices * sizeof(S));
+  next.num_vertices = static_cast<int>(num_vertices);
+  next.prev_vertices = new Vector3<S>[num_vertices];
+  std::memcpy(next.prev_vertices->data(), previous, 3 * num_vertices * sizeof(S));
+  if (fcl_tree == FclTree::kUpdate) code = next.endModel();
+  if (code != BVH_OK) return refuse(code, "FCL refused to build its tree");
+  const detail::deformable::VertexFrames new_frames(next.prev_vertices->data(),
+                                                    next.vertices->data(), num_vertices);
+  if (isInStep())
+    changeTopology(next.tri_indices, triangles.size(), origins, new_frames);
+  else
+    buildTree(next.tri_indices, triangles.size(), new_frames);
+
+  // What fails from here on leaves an update half done.
+  seal_ = {};
+  is_changing_ = true;
+  this->build_state = next.build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
+  swapBase(next);
+  seal_.prev_vertices = this->prev_vertices;
+  seal_.num_vertices = this->num_vertices;
+  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  refitChangedTree(frames());
+  computeLocalAABB();
+  seal();
+  return accept();
+}
+
+/// `previous`, or else the current frame, becomes the previous one, staged_ the current
+/// one. Until seal() the model is in the state of an update that has begun and not ended:
+/// if an exception comes between them it stays there, and no query takes it.
+template <typename BV>
+void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool refit,
+                                     bool bottomup) {
+  const auto count = static_cast<std::size_t>(this->num_vertices);
+  const bool rebuild = !isInStep(), repair = isHalfUpdated();
+  if (!this->prev_vertices || isPreviousShort()) {
+    std::unique_ptr<Vector3<S>[]> room(new Vector3<S>[count]);
+    delete[] this->prev_vertices;
+    this->prev_vertices = room.release();
+    seal_.prev_vertices = this->prev_vertices;
+    seal_.num_vertices = this->num_vertices;
+  }
+  is_changing_ = true;
+  this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
+  // After a change through the base class the base alone knows what the model is.
+  if (rebuild && !repair) fcl_tree_built_ = true;
+  // FCL's tree may have been left half made: a repair makes it anew.
+  fcl_tree_up_to_date_ = fcl_tree_built_ && (repair || fcl_tree == FclTree::kUpdate);
+  const std::size_t size = 3 * count * sizeof(S);
+  if (fcl_tree_up_to_date_) {
+    if (previous) std::memmove(this->vertices->data(), previous, size);
+    this->build_state = BVH_BUILD_STATE_PROCESSED;
+    Base::beginUpdateModel();
+    Base::updateSubModel(staged_);
+    Base::endUpdateModel(refit && !repair, bottomup && RefitsBottomUp<BV>::value);
+    this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
+  } else {
+    // Each array stays in its place: FCL may have room for more vertices in `vertices`.
+    std::memmove(this->prev_vertices->data(),
+                 previous ? previous : this->vertices->data(), size);
+    std::copy(staged_.begin(), staged_.end(), this->vertices);
+  }
+  if (rebuild)
+    buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
+}
+
+template <typename BV>
+void DeformableBVHModel<BV>::finish() {
+  refitTree(frames());
+  computeLocalAABB();
+  seal();
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::updateFclTree() {
+  if (isHalfUpdated())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  "updateFclTree() after an update that failed: both frames are needed");
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
+                  "updateFclTree() on a model that is not built");
+  if (isUpdateOpen())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "updateFclTree() between begin...Model() and end...Model()");
+  // A change through the base class has refit FCL's tree.
+  if (!isInStep()) return accept();
+  if (!fcl_tree_built_) {
+    // FCL may have moved the vertices before it fails.
+    int code;
+    try {
+      code = Base::endModel();
+    } catch (...) {
+      seal();
+      throw;
+    }
+    fcl_tree_built_ = fcl_tree_up_to_date_ = code == BVH_OK;
+    seal();
+    if (code) return refuse(code, "FCL refused to build its tree");
+  } else if (!fcl_tree_up_to_date_) {
+    staged_.assign(this->vertices, this->vertices + this->num_vertices);
+    advance(this->prev_vertices->data(), FclTree::kUpdate, true, true);
+    seal();
+  }
+  return accept();
+}
+
+#define FCL_CCD_INSTANTIATE(S)                    \
+  template class DeformableBVHModel<AABB<S>>;     \
+  template class DeformableBVHModel<OBB<S>>;      \
+  template class DeformableBVHModel<RSS<S>>;      \
+  template class DeformableBVHModel<kIOS<S>>;     \
+  template class DeformableBVHModel<OBBRSS<S>>;   \
+  template class DeformableBVHModel<KDOP<S, 16>>; \
+  template class DeformableBVHModel<KDOP<S, 18>>; \
+  template class DeformableBVHModel<KDOP<S, 24>>;
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace fcl

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "base/default_floating_point.h"
+#include "fcl/narrowphase/detail/pose_numbers.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+
+namespace fcl {
+namespace detail {
+
+template <typename S>
+PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
+  const deformable::DefaultFloatingPoint mode;
+  Transform3<S> tf = toTransform(o.pose[0]);
+  const Transform3<S> end = toTransform(o.pose[1]);
+  tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();
+  if (!isConstantRotation(o.pose[0], o.pose[1]))
+    tf.linear() = Quaternion<S>(tf.linear())
+                      .slerp(t, Quaternion<S>(end.linear()))
+                      .toRotationMatrix();
+  return toNumbers(tf);
+}
+
+template PoseNumbers<double> poseAt(const MovingGeometry<double>&, double);
+template PoseNumbers<float> poseAt(const MovingGeometry<float>&, float);
+
+}  // namespace detail
+}  // namespace fcl

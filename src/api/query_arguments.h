@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the public queries share: their arguments and their errors.
+#ifndef FCL_CCD_API_QUERY_ARGUMENTS_H
+#define FCL_CCD_API_QUERY_ARGUMENTS_H
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "api/prepared_mesh.h"
+#include "fcl/common/exception.h"
+#include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+#include "query/feature_batch.h"
+
+namespace fcl {
+namespace detail {
+
+inline void require(const void* argument, const char* name) {
+  if (!argument) throw Exception(std::string(name) + " is null");
+}
+
+template <typename S>
+void requireMesh(const CollisionGeometry<S>& o, const char* function) {
+  if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
+    throw Exception(std::string(function) + ": the geometry is not a triangle mesh");
+}
+
+/// The width of a time bracket that the engine is given for the one asked for: 0 is the
+/// least that doubles can be asked for.
+inline double requireTocErr(double toc_err, const char* name) {
+  if (!(toc_err >= 0)) throw Exception(std::string(name) + " is negative or NaN");
+  return std::max(toc_err, std::numeric_limits<double>::min());
+}
+
+template <typename S>
+deformable::Pose toPose(const PoseNumbers<S>& numbers) {
+  deformable::Pose pose;
+  std::copy(numbers.rotation, numbers.rotation + 9, pose.rotation);
+  std::copy(numbers.translation, numbers.translation + 3, pose.translation);
+  return pose;
+}
+
+/// A geometry and the poses in which a query prepares it. Made in the default
+/// floating-point mode: others may lose subnormal floats that are converted.
+template <typename S>
+class PlacedGeometry {
+ public:
+  explicit PlacedGeometry(const MovingGeometry<S>& moving)
+      : geometry_(*moving.geometry), kind_(deformable::meshKindOf(geometry_)) {
+    using deformable::MeshKind;
+    beginning_ = toPose(moving.pose[0]);
+    end_ = toPose(moving.pose[1]);
+    const bool is_constant = isConstantRotation(moving.pose[0], moving.pose[1]);
+    // The few roundings of a rotation that is constant are no rotation.
+    if (kind_ == MeshKind::kRigid && is_constant)
+      std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
+    goes_straight_ = kind_ == MeshKind::kDeforming ||
+                     (kind_ == MeshKind::kRigid && moving.is_straight && is_constant);
+  }
+
+  const CollisionGeometry<S>& geometry() const { return geometry_; }
+  const deformable::Pose& beginning() const { return beginning_; }
+  const deformable::Pose& end() const { return end_; }
+
+  bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
+
+  /// Whether all vertices go on straight lines: what is answered by this library.
+  bool goesStraight() const { return goes_straight_; }
+
+ private:
+  const CollisionGeometry<S>& geometry_;
+  deformable::MeshKind kind_;
+  deformable::Pose beginning_, end_;
+  bool goes_straight_;
+};
+
+/// Whether the pair is answered by this library and not left to FCL.
+/// @throws fcl::Exception  meshes that are left to FCL, in a pose that is not finite (a
+/// rotation that is not finite is not constant; the poses of others are PreparedMesh's to
+/// look at, and what is no mesh is FCL's)
+template <typename S>
+bool isAnsweredHere(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  if (o1.goesStraight() && o2.goesStraight()) return true;
+  if (o1.isMesh() && o2.isMesh()) {
+    deformable::requireFinite(o1.beginning(), o1.end(), "o1");
+    deformable::requireFinite(o2.beginning(), o2.end(), "o2");
+  }
+  return false;
+}
+
+/// Runs a query; what it finds wrong with a vertex becomes FCL's exception.
+template <typename Query>
+auto answerOf(Query&& query) {
+  try {
+    return query();
+  } catch (const deformable::NonFiniteVertex& error) {
+    throw Exception(error.what());
+  }
+}
+
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_BASE_UNINITIALIZED_VECTOR_H
+#define FCL_CCD_BASE_UNINITIALIZED_VECTOR_H
+
+#include <memory>
+#include <new>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Leaves elements that are given no value without one.
+template <typename T>
+struct DefaultInitAllocator : std::allocator<T> {
+  static_assert(std::is_trivial<T>::value, "what is left without a value");
+
+  DefaultInitAllocator() = default;
+  // Between types, as every allocator: a library's vector may need it for its own.
+  template <typename U>
+  DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}
+
+  template <typename U>
+  struct rebind {
+    using other = DefaultInitAllocator<U>;
+  };
+
+  template <typename U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <typename U, typename... Args>
+  void construct(U* place, Args&&... args) {
+    ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+  }
+};
+
+/// @brief A vector whose resize() writes nothing: for arrays that are filled afterwards.
+template <typename T>
+using UninitializedVector = std::vector<T, DefaultInitAllocator<T>>;
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

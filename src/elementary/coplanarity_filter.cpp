@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The filter before the root solve. After Tang, Manocha, Tong 2010, section 3.3; there,
+// signs of coefficients are taken as they come.
+#include "elementary/coplanarity_filter.h"
+
+#include <cstdint>
+
+#include "elementary/accurate_pair.h"
+#include "numerics/error_bounds.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+FramePair swapped(const FramePair& a) { return __builtin_shufflevector(a, a, 1, 0); }
+FramePair max(const FramePair& a, const FramePair& b) { return a > b ? a : b; }
+FramePair abs(const FramePair& a) {
+  typedef std::int64_t Bits __attribute__((vector_size(16)));
+  return FramePair(Bits(a) & INT64_MAX);
+}
+double smaller(const FramePair& a) { return a[0] < a[1] ? a[0] : a[1]; }
+double larger(const FramePair& a) { return a[0] > a[1] ? a[0] : a[1]; }
+
+/// The difference of two vertices at both ends of the step, or of the window.
+struct DifferencePair {
+  FramePair x, y, z;
+
+  void restrict(const FramePair& window) {
+    const FramePair rest = 1 - window;
+    for (FramePair* c : {&x, &y, &z})
+      *c = rest * __builtin_shufflevector(*c, *c, 0, 0) +
+           window * __builtin_shufflevector(*c, *c, 1, 1);
+  }
+};
+
+DifferencePair swapped(const DifferencePair& a) {
+  return {swapped(a.x), swapped(a.y), swapped(a.z)};
+}
+FramePair dot(const DifferencePair& a, const DifferencePair& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+DifferencePair cross(const DifferencePair& a, const DifferencePair& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// @param most  raised to the absolute values of the coordinates
+DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair& most) {
+  static_assert(sizeof(VertexPath) == 3 * sizeof(FramePair), "t0 and t1 in a row");
+  const auto part = [](const VertexPath& path, int i) {
+    FramePair v;
+    __builtin_memcpy(&v, reinterpret_cast<const char*>(&path) + 16 * i, sizeof(v));
+    return v;
+  };
+  const FramePair a = part(p, 0) - part(q, 0), b = part(p, 1) - part(q, 1),
+                  c = part(p, 2) - part(q, 2);
+  most = max(most, max(max(abs(a), abs(b)), abs(c)));
+  return {__builtin_shufflevector(a, b, 0, 3), __builtin_shufflevector(a, c, 1, 2),
+          __builtin_shufflevector(b, c, 0, 3)};
+}
+
+/// coplanarityInDoubles(), as this file can inline it. Both frames are computed side by
+/// side: the coefficients of the volume u . (v x w) go over into each other when time is
+/// reversed. coplanarityOfFeatures() in kernels/ has the same operations, over eight
+/// pairs.
+Coplanarity inDoubles(FeatureKind kind, const FeaturePoints& x, double window_lo,
+                      double window_hi) {
+  const bool vf = kind == FeatureKind::kVertexFace;
+  FramePair most_coordinate = {0, 0};
+  DifferencePair u = differenceOf(x[vf ? 0 : 2], x[vf ? 1 : 0], most_coordinate),
+                 v = differenceOf(x[vf ? 2 : 1], x[vf ? 1 : 0], most_coordinate),
+                 w = differenceOf(x[3], x[vf ? 1 : 2], most_coordinate);
+  if (window_lo != 0 || window_hi != 1)
+    for (DifferencePair* d : {&u, &v, &w}) d->restrict(FramePair{window_lo, window_hi});
+  const DifferencePair n = cross(v, w), half = cross(v, swapped(w));
+  const DifferencePair middle = {half.x + swapped(half.x), half.y + swapped(half.y),
+                                 half.z + swapped(half.z)};
+  const FramePair outer = dot(u, n), inner = dot(swapped(u), n) + dot(u, middle);
+
+  // A coordinate that is NaN makes both inner ones NaN, and a comparison with a NaN picks
+  // what is on the right here: least and most are NaN then, and nothing is proved.
+  const FramePair scaled = kInnerScale * inner;
+  const double least = smaller(outer < scaled ? outer : scaled),
+               most = larger(outer > scaled ? outer : scaled);
+  const double norm = larger(most_coordinate), bound = kOuterBound * (norm * norm * norm);
+  const bool is_sure = least > bound || most < -bound;
+  if (!is_sure && !(least > 0 || most < 0)) return Coplanarity::kPossible;
+  if (!(norm > kLeastFilterNorm && norm < kMostFilterNorm)) return Coplanarity::kPossible;
+  return is_sure ? Coplanarity::kNever : Coplanarity::kUnclear;
+}
+
+}  // namespace
+
+Coplanarity coplanarityInDoubles(FeatureKind kind, const FeaturePoints& x,
+                                 double window_lo, double window_hi) {
+  return inDoubles(kind, x, window_lo, window_hi);
+}
+
+// Not inlined, to stay out of the way of the filter in doubles.
+__attribute__((noinline)) bool mayBecomeCoplanarAccurately(FeatureKind kind,
+                                                           const FeaturePoints& x,
+                                                           double window_lo,
+                                                           double window_hi) {
+  return !AccuratePair(kind, x).hasNoRoot(window_lo, window_hi);
+}
+
+bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
+                       double window_hi) {
+  const Coplanarity coplanarity = inDoubles(kind, x, window_lo, window_hi);
+  if (coplanarity == Coplanarity::kUnclear)
+    return mayBecomeCoplanarAccurately(kind, x, window_lo, window_hi);
+  return coplanarity == Coplanarity::kPossible;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

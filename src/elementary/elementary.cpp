@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/elementary.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "elementary/accurate_pair.h"
+#include "elementary/axis_window.h"
+#include "elementary/coplanarity_filter.h"
+#include "elementary/exact.h"
+#include "elementary/in_plane.h"
+#include "elementary/predicates.h"
+#include "numerics/error_bounds.h"
+#include "numerics/illinois.h"
+#include "numerics/moving_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
+
+/// The difference of two vertices over the step.
+struct Difference {
+  Vec t0, t1;
+  double norm;
+
+  Difference() = default;
+  Difference(const VertexPath& p, const VertexPath& q)
+      : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
+        t1{p.t1[0] - q.t1[0], p.t1[1] - q.t1[1], p.t1[2] - q.t1[2]},
+        norm(std::max(std::max(maxNorm(t0), maxNorm(t1)), kLeastNorm)) {}
+
+  Vec at(double t) const {
+    if (t == 0) return t0;
+    if (t == 1) return t1;
+    return (1 - t) * t0 + t * t1;
+  }
+};
+
+/// A vector that moves linearly from l to h, with its norm bound over the whole step.
+struct Segment {
+  Vec l, h;
+  double norm;
+};
+
+Segment restrict(const Difference& d, double lo, double hi) {
+  return {d.at(lo), d.at(hi), d.norm};
+}
+
+Quadratic cross(const Segment& a, const Segment& b) {
+  const double norm = a.norm * b.norm;
+  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h), 2 * norm,
+          kCrossBound * norm};
+}
+
+/// f(s) = b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3] s^3, the volume spanned
+/// by u, v, w: Bernstein coefficients, the inner ones times 3.
+struct Cubic {
+  double b[4];
+  // Error bounds of the outer and inner coefficients; infinite where there are none.
+  double outer, inner;
+
+  bool hasBounds() const { return std::isfinite(outer); }
+  /// All coefficients have one sign beyond doubt: no root.
+  bool hasNoRoot() const {
+    return (b[0] > outer && b[1] > inner && b[2] > inner && b[3] > outer) ||
+           (b[0] < -outer && b[1] < -inner && b[2] < -inner && b[3] < -outer);
+  }
+  /// The ends have opposite signs beyond doubt: a root.
+  bool changesSign() const {
+    return (b[0] > outer && b[3] < -outer) || (b[0] < -outer && b[3] > outer);
+  }
+  /// Nothing but rounding: subdividing will not show a sign.
+  bool isLost() const {
+    return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
+           std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
+  }
+  double operator()(double s) const {
+    const double r = 1 - s;
+    return r * r * (b[0] * r + b[1] * s) + s * s * (b[2] * r + b[3] * s);
+  }
+};
+
+Cubic spannedVolume(const Segment& u, const Quadratic& n) {
+  const double size = u.norm * (0.5 * n.size);
+  const double bound = isInRange(size) && isInRange(n.size)
+                           ? size
+                           : std::numeric_limits<double>::infinity();
+  return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
+           dot(u.h, n.c1) + dot(u.l, n.c2), dot(u.h, n.c2)},
+          kOuterBound * bound,
+          kInnerBound * bound};
+}
+
+Cubic restrict(const AccuratePair& pair, double lo, double hi) {
+  Cubic g;
+  if (!pair.volume(lo, hi, g.b, g.outer))
+    g.outer = std::numeric_limits<double>::infinity();
+  g.b[1] *= 3;
+  g.b[2] *= 3;
+  g.inner = 4 * g.outer;
+  return g;
+}
+
+enum class Side { kNegative, kPositive, kMixed, kLost };
+
+/// Sign of the quartic q . n over the whole segment; kLost if it is nothing but rounding.
+Side sideOf(const Quadratic& q, const Quadratic& n) {
+  const double size = q.size * n.size;
+  if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
+  const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
+                       dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
+                       dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
+  const double bound = kInsideTerms * (q.size * n.error + q.error * (n.size + n.error)) +
+                       kInsideRounding * size;
+  bool positive = true, negative = true;
+  for (const double ck : c) {
+    positive &= ck > bound;
+    negative &= ck < -bound;
+  }
+  if (positive) return Side::kPositive;
+  if (negative) return Side::kNegative;
+  for (const double ck : c)
+    if (std::abs(ck) > bound) return Side::kMixed;
+  return Side::kLost;
+}
+
+/// The pair as differences. The volume is u . (v x w); v x w is normal to the triangle
+/// (VF) or to both edges (EE).
+struct Pair {
+  FeatureKind kind;
+  // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
+  // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
+  Difference u, v, w, r, q, z;
+
+  Pair(FeatureKind k, const FeaturePoints& x) : kind(k) {
+    if (kind == FeatureKind::kVertexFace) {
+      u = {x[0], x[1]};
+      v = {x[2], x[1]};
+      w = {x[3], x[1]};
+      r = {x[2], x[0]};
+      q = {x[3], x[0]};
+    } else {
+      u = {x[2], x[0]};
+      v = {x[1], x[0]};
+      w = {x[3], x[2]};
+      r = {x[1], x[2]};
+      q = {x[3], x[0]};
+      z = {x[3], x[1]};
+    }
+  }
+};
+
+/// Whether, at the times at which the four points of the pair are coplanar, the features
+/// touch: kPositive, always; kNegative, never.
+///
+/// With n = v x w, a coplanar u is a combination of v and w, and (x x y) . n / n^2 gives
+/// its coordinates: VF u = beta v + gamma w with beta n^2 = (u x w).n, gamma n^2 =
+/// (v x u).n and the third barycentric ((b-p) x (c-p)).n; EE u = s v - r w with s n^2 =
+/// (u x w).n, (1-s) n^2 = ((v-u) x w).n, r n^2 = (u x v).n, (1-r) n^2 = (v x (w+u)).n.
+/// One of them strictly negative implies n != 0 and a point outside.
+///
+/// @param accurate  null, or what n comes from; it then has what is lost to doubles
+Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
+                const Segment& v, const Segment& w, const Quadratic& n,
+                AccuratePair* accurate) {
+  const Segment r = restrict(pair.r, lo, hi), q = restrict(pair.q, lo, hi);
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  Side side = Side::kPositive;
+  int i = 0;
+  const auto require = [&](const Segment& x, const Segment& y) {
+    Side s = sideOf(cross(x, y), n);
+    if (s == Side::kLost && accurate) s = sideOf(accurate->side(i, lo, hi), n);
+    ++i;
+    if (s == Side::kNegative)
+      side = s;
+    else if (s != Side::kPositive && side == Side::kPositive)
+      side = Side::kMixed;
+    return s != Side::kNegative;
+  };
+  if (vf)
+    require(u, w) && require(v, u) && require(r, q);
+  else
+    require(u, w) && require(r, w) && require(u, v) && require(v, q);
+  return side;
+}
+
+/// Point of segment [p, q] nearest to the origin, in floating point.
+Vec nearestOnSegment(const Vec& p, const Vec& q) {
+  const Vec e = q - p;
+  const double length = dot(e, e);
+  const double s = length > 0 ? std::max(0., std::min(1., -dot(p, e) / length)) : 0.;
+  return p + s * e;
+}
+
+/// Point of triangle pqr nearest to the origin, in floating point.
+Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
+  const Vec n = cross(q - p, r - p);
+  const double area = dot(n, n);
+  if (area > 0 && dot(cross(p, q), n) >= 0 && dot(cross(q, r), n) >= 0 &&
+      dot(cross(r, p), n) >= 0)
+    return (dot(p, n) / area) * n;
+  Vec best = nearestOnSegment(p, q);
+  for (const Vec& c : {nearestOnSegment(q, r), nearestOnSegment(r, p)})
+    if (dot(c, c) < dot(best, best)) best = c;
+  return best;
+}
+
+/// Whether the direction from one feature to the other's nearest point in the middle of
+/// [lo, hi] keeps them apart at both ends, hence in between: the differences of their
+/// vertices stay on one side of a plane through the origin. The only test that decides
+/// pairs without a normal (parallel edges, triangles without area).
+bool areSeparated(const Pair& pair, double lo, double hi) {
+  const double mid = lo + 0.5 * (hi - lo);
+  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  // The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
+  const Difference* corner[4] = {&pair.u, &pair.r, &pair.q, &pair.z};
+  const double sign[4] = {1, -1, vf ? -1. : 1., 1};
+  const int corners = vf ? 3 : 4;
+  Vec at_mid[4] = {};
+  for (int i = 0; i < corners; ++i) at_mid[i] = sign[i] * corner[i]->at(mid);
+  Vec d = nearestOnTriangle(at_mid[0], at_mid[1], at_mid[vf ? 2 : 3]);
+  if (!vf) {  // the parallelogram's corners in order are u, -r, z, q
+    const Vec e = nearestOnTriangle(at_mid[0], at_mid[3], at_mid[2]);
+    if (dot(e, e) < dot(d, d)) d = e;
+  }
+  const double size = maxNorm(d);
+  for (int i = 0; i < corners; ++i) {
+    const double scale = size * corner[i]->norm;
+    if (!isInRange(scale)) return false;
+    if (!(sign[i] * dot(d, corner[i]->at(lo)) > kSideBound * scale)) return false;
+    if (!(sign[i] * dot(d, corner[i]->at(hi)) > kSideBound * scale)) return false;
+  }
+  return true;
+}
+
+bool isFinite(const FeaturePoints& x) {
+  double sum = 0;
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k) sum += 0 * x[i].t0[k] + 0 * x[i].t1[k];
+  return sum == 0;
+}
+
+/// Whether the features touch at t = 0, whatever comes later.
+bool touchAtStart(FeatureKind kind, const FeaturePoints& x) {
+  if (!isFinite(x)) return false;
+  return kind == FeatureKind::kVertexFace
+             ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
+             : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
+}
+
+bool isStill(const FeaturePoints& x) {
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k)
+      if (x[i].t0[k] != x[i].t1[k]) return false;
+  return isFinite(x);
+}
+
+/// Intervals still to be looked at, the earliest on top. Each look replaces one by at
+/// most three and the number of looks is limited, so that the stack is never full.
+class IntervalStack {
+ public:
+  static constexpr int kMaxLooks = 128;
+
+  struct Interval {
+    double lo, hi;
+  };
+
+  void push(double lo, double hi) {
+    if (lo < hi || (lo == hi && size_ == 0)) items_[size_++] = {lo, hi};
+  }
+  Interval pop() { return items_[--size_]; }
+  bool isEmpty() const { return size_ == 0; }
+  double latest() const { return items_[0].hi; }
+
+ private:
+  Interval items_[2 * kMaxLooks + 3];
+  int size_{0};
+};
+
+/// What is left undecided and proved so far.
+struct Findings {
+  bool unsure{false};
+  double unsure_lo{1};
+  double unsure_hi{0};
+
+  void addUnsure(double lo, double hi) {
+    if (!unsure) unsure_lo = lo;
+    unsure = true;
+    unsure_hi = std::max(unsure_hi, hi);
+  }
+
+  ElementaryResult withoutProof() const {
+    if (unsure) return {Answer::kUnsure, unsure_lo, unsure_hi, DecidedBy::kSolver};
+    return {Answer::kNo, 0, 0, DecidedBy::kSolver};
+  }
+  /// A contact is proved in [lo, hi]; the first one may be in what is unsure before.
+  ElementaryResult withContactIn(double lo, double hi, double toc_err) const {
+    if (unsure) lo = unsure_lo;
+    return {hi - lo <= toc_err ? Answer::kYes : Answer::kUnsure, lo, hi,
+            DecidedBy::kSolver};
+  }
+};
+
+}  // namespace
+
+ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
+                                  double window_lo, double window_hi, double toc_err,
+                                  double t_stop) {
+  // An interval this short is not cut further.
+  const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
+  // A flat interval (no sign in sight) is cut only while the inside conditions may
+  // decide.
+  constexpr double kMinFlatWidth = 0x1p-2;
+
+  // What touches at rest touches at the start.
+  if (isStill(x))
+    return {touchAtStart(kind, x) ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kSolver};
+  if (const int axis = axisOfCommonPlane(x); axis >= 0) {
+    if (window_lo == 0 && touchAtStart(kind, x))
+      return {Answer::kYes, 0, 0, DecidedBy::kSolver};
+    const ElementaryResult result =
+        solveInPlane(kind, x, axis, window_lo, window_hi, toc_err);
+    if (result.answer != Answer::kUnsure) return result;
+  }
+
+  // Looks after which doubles alone are not expected to find out.
+  constexpr int kAccurateLook = 6;
+  std::optional<AccuratePair> accurate;
+  const Pair pair(kind, x);
+  IntervalStack open;
+  open.push(window_lo, window_hi);
+  Findings found;
+  for (int look = 0; !open.isEmpty(); ++look) {
+    const auto [lo, hi] = open.pop();
+    // What is unsure so far may end in a contact that begins after t_stop.
+    if (lo > t_stop && !found.unsure) break;
+    if (look == IntervalStack::kMaxLooks) {
+      found.addUnsure(lo, open.isEmpty() ? hi : std::max(hi, open.latest()));
+      break;
+    }
+    const double width = hi - lo;
+    const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
+                  w = restrict(pair.w, lo, hi);
+    const Quadratic n = accurate ? accurate->normal(lo, hi) : cross(v, w);
+    const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
+    if (f.hasNoRoot()) continue;
+    const bool crosses = f.changesSign();
+
+    const Side side =
+        insideness(pair, lo, hi, u, v, w, n, accurate ? &*accurate : nullptr);
+    if (side == Side::kNegative) continue;
+    if (side == Side::kPositive && crosses && width <= toc_err)
+      return found.withContactIn(lo, hi, toc_err);
+    if (accurate && crosses && side == Side::kMixed) {
+      const AccuratePair::RootContact contact = accurate->contactAtRoot(lo, hi);
+      if (contact.answer == Answer::kNo) continue;
+      if (contact.answer == Answer::kYes)
+        return found.withContactIn(contact.lo, contact.hi, toc_err);
+    }
+    // A wide interval with a root is first cut close around it.
+    if (!(crosses && width > toc_err)) {
+      if (areSeparated(pair, lo, hi)) continue;
+      if (look == 0 && lo == 0 && touchAtStart(kind, x))
+        return {Answer::kYes, 0, 0, DecidedBy::kSolver};
+      if (!accurate && (f.isLost() || look >= kAccurateLook)) {
+        accurate.emplace(kind, x);
+        open.push(lo, hi);
+        continue;
+      }
+      const bool flat = !f.hasBounds() || f.isLost();
+      if (width <= min_width || (flat && width <= kMinFlatWidth)) {
+        found.addUnsure(lo, hi);
+        continue;
+      }
+    }
+    if (crosses) {
+      const double half = width > toc_err ? 0.25 * toc_err : width * 0x1p-6;
+      const double t =
+          lo + illinois(f, 0, 1, f.b[0], f.b[3], 0.125 * half / width, 24) * width;
+      const double a = std::max(lo, t - half), b = std::min(hi, t + half);
+      open.push(b, hi);
+      open.push(a, b);
+      open.push(lo, a);
+    } else {
+      const double mid = lo + 0.5 * width;
+      open.push(mid, hi);
+      open.push(lo, mid);
+    }
+  }
+  return found.withoutProof();
+}
+
+ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
+                                double window_lo, double window_hi, double toc_err,
+                                double t_stop) {
+  if (!narrowWindow(kind, x, window_lo, window_hi))
+    return {Answer::kNo, 0, 0, DecidedBy::kBox};
+  if (!mayBecomeCoplanar(kind, x, window_lo, window_hi))
+    return {Answer::kNo, 0, 0, DecidedBy::kFilter};
+  const ElementaryResult solved =
+      solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
+  return solved.answer == Answer::kUnsure ? decideExactly(kind, x, toc_err) : solved;
+}
+
+namespace {
+
+/// A factor for a vector of which the fourth power would leave the range of double.
+double scaleOf(const Vec& v) {
+  const double norm = maxNorm(v);
+  if (norm > 0x1p-100 && norm < 0x1p100) return 1;
+  const bool has_size = norm > 0 && std::isfinite(norm);
+  return has_size ? std::ldexp(1, std::min(-std::ilogb(norm), 1000)) : 1;
+}
+
+double clamped(double value) { return std::max(0., std::min(1., value)); }
+
+/// Where parallel edges meet that begin at a distance u from each other and go along v
+/// and w: the place of the second's beginning or of its end on the first, whichever is
+/// nearer to the middle of it.
+/// @return weights of the ends of both
+std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const Vec& w) {
+  const double along = dot(v, v), other = dot(w, w);
+  const auto onSecond = [&](double s) {
+    return other > 0 ? clamped((s * dot(v, w) - dot(u, w)) / other) : 0.;
+  };
+  if (!(along > 0)) return {0, onSecond(0)};
+  const double first = dot(u, v) / along, last = first + dot(w, v) / along;
+  const double nearer = std::abs(first - 0.5) <= std::abs(last - 0.5) ? first : last;
+  const double s = clamped(nearer);
+  return {s, onSecond(s)};
+}
+
+}  // namespace
+
+void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
+                     double (&position)[3], double (&normal)[3]) {
+  // Rounding is what two edges span whose cross product is smaller.
+  constexpr double kParallel = 0x1p-48;
+  const bool vf = kind == FeatureKind::kVertexFace;
+  const Pair pair(kind, x);
+  const Vec u = pair.u.at(t), v_there = pair.v.at(t), w_there = pair.w.at(t);
+  const double v_scale = scaleOf(v_there), w_scale = scaleOf(w_there);
+  const Vec v = v_scale * v_there, w = w_scale * w_there;
+  Vec n = cross(v, w);
+  // Weights of the four vertices in the two points that meet (feature 2 minus feature 1).
+  double weight[4];
+  const double area = dot(n, n);
+  // u x w and v x u on the scale of v x w.
+  const double along_w = dot(cross(v_scale * u, w), n),
+               along_v = dot(cross(v, w_scale * u), n);
+  if (vf) {
+    const double beta = area > 0 ? clamped(along_w / area) : 1. / 3;
+    const double gamma = area > 0 ? clamped(along_v / area) : 1. / 3;
+    weight[0] = -1;
+    weight[1] = 1 - beta - gamma;
+    weight[2] = beta;
+    weight[3] = gamma;
+  } else {
+    std::pair<double, double> at(clamped(along_w / area), clamped(-along_v / area));
+    if (!(area > kParallel * kParallel * (dot(v, v) * dot(w, w)))) {
+      const double scale = std::min(v_scale, w_scale);
+      at = meetingOfParallels(scale * u, scale * v_there, scale * w_there);
+    }
+    weight[0] = at.first - 1;
+    weight[1] = -at.first;
+    weight[2] = 1 - at.second;
+    weight[3] = at.second;
+  }
+  double position_1[3] = {0, 0, 0}, relative_velocity[3] = {0, 0, 0};
+  double offset_t0[3] = {0, 0, 0};
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double a = x[i].t0[k], b = x[i].t1[k];
+      if (i < (vf ? 1 : 2)) position_1[k] -= weight[i] * ((1 - t) * a + t * b);
+      relative_velocity[k] += weight[i] * (b - a);
+      offset_t0[k] += weight[i] * a;
+    }
+  std::copy(position_1, position_1 + 3, position);
+
+  const double length = std::sqrt(area);
+  if (!(length > 0) || !std::isfinite(length)) {
+    std::fill(normal, normal + 3, 0.);
+    return;
+  }
+  n = (1 / length) * n;
+  double along =
+      dot(n, {relative_velocity[0], relative_velocity[1], relative_velocity[2]});
+  if (along == 0) along = -dot(n, {offset_t0[0], offset_t0[1], offset_t0[2]});
+  if (along > 0) n = -1. * n;
+  normal[0] = n.x;
+  normal[1] = n.y;
+  normal[2] = n.z;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The elementary test of one VF or EE pair: axis test -> coplanarity filter -> certified
+// root solve -> integers for what rounding leaves open. After Tang, Manocha, Tong 2010
+// (sections 3.3, 3.4), with these differences: the filter's signs carry a bound on their
+// rounding, it looks only at the part of the step in which the pair's boxes meet, and the
+// cubic is not solved by Interval-Newton but by bisection into intervals each of which is
+// proved free of contact or proved to hold one.
+#ifndef FCL_CCD_ELEMENTARY_ELEMENTARY_H
+#define FCL_CCD_ELEMENTARY_ELEMENTARY_H
+
+#include "elementary/feature_points.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Root solve over the window. Properties:
+/// (1) kNo only with a proof that the features do not touch in the window (or only after
+///     t_stop);
+/// (2) kYes only with a proof that they touch, and the first time in the window lies in
+///     [toc_lo, toc_hi], toc_hi - toc_lo <= toc_err;
+/// (3) otherwise kUnsure: toc_lo is not later than the first time of contact, if any;
+/// (4) the same inputs give the same bits on every machine.
+ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
+                                  double window_lo, double window_hi, double toc_err,
+                                  double t_stop = 1);
+
+/// @brief All stages. 0 <= window_lo <= window_hi <= 1; toc_err > 0.
+ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
+                                double window_lo, double window_hi, double toc_err,
+                                double t_stop = 1);
+
+inline ElementaryResult elementaryTest(FeatureKind kind, const VertexPath (&x)[4],
+                                       double window_lo, double window_hi, double toc_err,
+                                       double t_stop = 1) {
+  return elementaryTest(kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, window_lo,
+                        window_hi, toc_err, t_stop);
+}
+
+/// @brief Point and unit normal of a contact at time t (see ContinuousContact::normal for
+/// the sign, with feature 1 the vertex or edge a).
+void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
+                     double (&position)[3], double (&normal)[3]);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

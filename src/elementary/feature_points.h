@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What the stages of the elementary test are given and what they answer.
+#ifndef FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
+#define FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
+
+#include "mesh/feature_kind.h"
+#include "mesh/vertex_frames.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The four moving points of a pair: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
+struct FeaturePoints {
+  const VertexPath* point[4];
+  const VertexPath& operator[](int i) const { return *point[i]; }
+};
+
+/// The same quantity at t = 0 and at t = 1; compilers use vector instructions for it.
+typedef double FramePair __attribute__((vector_size(16)));
+
+enum class Answer { kNo, kYes, kUnsure };
+
+/// @brief The stage that gave the answer.
+enum class DecidedBy { kBox, kFilter, kSolver, kExact };
+
+struct ElementaryResult {
+  Answer answer;
+  /// Bracket of the first time of contact; for kUnsure, of that time if there is one.
+  /// Without meaning for kNo.
+  double toc_lo;
+  double toc_hi;
+  DecidedBy decided_by;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/in_plane.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "numerics/illinois.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// The difference of two points, seen along the axis, at t = 0 and t = 1.
+struct Difference {
+  double x[2], y[2];
+
+  Difference(const VertexPath& p, const VertexPath& q, int axis) {
+    const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+    x[0] = p.t0[i] - q.t0[i];
+    x[1] = p.t1[i] - q.t1[i];
+    y[0] = p.t0[j] - q.t0[j];
+    y[1] = p.t1[j] - q.t1[j];
+  }
+};
+
+/// A number and a bound on its error.
+struct Bounded {
+  double value;
+  double error;
+};
+
+/// A quadratic in t: a product of two differences. Bernstein coefficients with error
+/// bounds relative to the products they are made of, so that factors of zero leave a zero
+/// that is known to be one.
+class Quadratic {
+ public:
+  static Quadratic cross(const Difference& a, const Difference& b) {
+    Quadratic q;
+    for (const auto& [k, i, j] : kTerms) {
+      q.add(k, a.x[i] * b.y[j], a.x[i] != 0 && b.y[j] != 0);
+      q.add(k, -a.y[i] * b.x[j], a.y[i] != 0 && b.x[j] != 0);
+    }
+    q.finish();
+    return q;
+  }
+  static Quadratic dot(const Difference& a, const Difference& b) {
+    Quadratic q;
+    for (const auto& [k, i, j] : kTerms) {
+      q.add(k, a.x[i] * b.x[j], a.x[i] != 0 && b.x[j] != 0);
+      q.add(k, a.y[i] * b.y[j], a.y[i] != 0 && b.y[j] != 0);
+    }
+    q.finish();
+    return q;
+  }
+
+  double at(double t) const { return blossom(t, t).value; }
+
+  /// Signs over [lo, hi], whose Bernstein coefficients are the blossom's values at (lo,
+  /// lo), (lo, hi), (hi, hi).
+  bool isNegative(double lo, double hi) const {
+    return forEachCoefficient(lo, hi, [](Bounded b) { return b.value < -b.error; });
+  }
+  bool isPositive(double lo, double hi) const {
+    return forEachCoefficient(lo, hi, [](Bounded b) { return b.value > b.error; });
+  }
+  bool isNotNegative(double lo, double hi) const {
+    return forEachCoefficient(lo, hi, [](Bounded b) { return b.value >= b.error; });
+  }
+  bool isZero() const {
+    return is_reliable_ && size_[0] == 0 && size_[1] == 0 && size_[2] == 0;
+  }
+  bool changesSign(double lo, double hi) const {
+    const Bounded a = blossom(lo, lo), b = blossom(hi, hi);
+    return is_reliable_ && ((a.value < -a.error && b.value > b.error) ||
+                            (a.value > a.error && b.value < -b.error));
+  }
+
+ private:
+  /// Which frames' products make coefficient k.
+  struct Term {
+    int k, i, j;
+  };
+  static constexpr Term kTerms[4] = {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {2, 1, 1}};
+
+  template <typename Test>
+  bool forEachCoefficient(double lo, double hi, Test&& test) const {
+    return is_reliable_ && test(blossom(lo, lo)) && test(blossom(hi, hi)) &&
+           test(blossom(lo, hi));
+  }
+
+  /// The terms of a coefficient have been rounded three times (two differences, a
+  /// product), their sum at most three times: 6 units of 2^-53 of their size. The weights
+  /// are rounded up to four times, the products with them and the sum three times more:
+  /// 13 units, and 16 with room for the rounding of the size and of the bound itself. An
+  /// underflow of weights and terms is below the smallest normal number, times size.
+  Bounded blossom(double s, double t) const {
+    const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
+    return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
+            16 * 0x1p-53 * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
+  }
+
+  /// No underflow hides in a product that is not zero, and no overflow is near.
+  void add(int k, double product, bool is_not_zero) {
+    c_[k] += product;
+    size_[k] += std::abs(product);
+    is_reliable_ &= std::abs(product) < 0x1p900;
+    is_reliable_ &= !is_not_zero || std::abs(product) > 0x1p-900;
+  }
+  void finish() {
+    c_[1] *= 0.5;
+    size_[1] *= 0.5;
+    if (!isZero())
+      underflow_ =
+          std::numeric_limits<double>::min() * (1 + size_[0] + size_[1] + size_[2]);
+  }
+
+  double c_[3]{0, 0, 0};
+  double size_[3]{0, 0, 0};
+  double underflow_{0};
+  bool is_reliable_{true};
+};
+
+constexpr Quadratic::Term Quadratic::kTerms[4];
+
+/// What is known of the first contact: it is not later than hi, if there is a proof of
+/// one, and not earlier than lo.
+struct Findings {
+  double lo{2};
+  double hi{2};
+
+  bool hasContact() const { return hi <= 1; }
+  void addUnsure(double from) { lo = std::min(lo, from); }
+  void addContact(double from, double to) {
+    lo = std::min(lo, from);
+    hi = std::min(hi, to);
+  }
+};
+
+/// Looks for times in [lo, hi] at which point p meets segment qr: where it changes sides
+/// between the segment's ends, or comes along the line from beyond one of them.
+void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPath& r,
+                        int axis, double lo, double hi, double toc_err, Findings& found) {
+  const Difference qp(p, q, axis), qr(r, q, axis);
+  const Quadratic area = Quadratic::cross(qp, qr);
+  if (area.isPositive(lo, hi) || area.isNegative(lo, hi)) return;
+  const Difference rp(p, r, axis), rq(q, r, axis);
+  const Quadratic from_q = Quadratic::dot(qp, qr), from_r = Quadratic::dot(rp, rq),
+                  length = Quadratic::dot(qr, qr);
+  const bool on_line = area.isZero();
+  const auto isProved = [&](double a, double b) {
+    if (on_line) a = b;  // being there at b is enough
+    return (on_line || area.changesSign(a, b)) && length.isPositive(a, b) &&
+           from_q.isNotNegative(a, b) && from_r.isNotNegative(a, b);
+  };
+  const auto isApart = [&](double a, double b) {
+    return area.isPositive(a, b) || area.isNegative(a, b) || from_q.isNegative(a, b) ||
+           from_r.isNegative(a, b);
+  };
+
+  // The ends of the intervals still to be looked at, the earliest on top.
+  constexpr int kMaxLooks = 32;
+  double end[2 * kMaxLooks + 1];
+  int open = 0;
+  end[open++] = hi;
+  for (int look = 0; open > 0; ++look) {
+    hi = end[open - 1];
+    const double width = hi - lo;
+    if (isApart(lo, hi)) {
+      lo = hi;
+      --open;
+      continue;
+    }
+    if (width <= toc_err && isProved(lo, hi)) return found.addContact(lo, hi);
+    if (width <= 0.25 * toc_err || look >= kMaxLooks) {
+      found.addUnsure(lo);
+      lo = hi;
+      --open;
+      continue;
+    }
+    // A wide interval is cut close around a change of sign, or in two.
+    double cut[2] = {lo + 0.5 * width, hi};
+    if (width > toc_err)
+      for (const Quadratic* f : {&area, &from_q, &from_r})
+        if (f->changesSign(lo, hi)) {
+          const double t = illinois([f](double s) { return f->at(s); }, lo, hi, f->at(lo),
+                                    f->at(hi), 0.0625 * toc_err, 24);
+          cut[0] = t - 0.125 * toc_err;
+          cut[1] = t + 0.125 * toc_err;
+          break;
+        }
+    for (const double t : {cut[1], cut[0]})
+      if (t > lo && t < end[open - 1]) end[open++] = t;
+    if (end[open - 1] == hi) {
+      found.addUnsure(lo);
+      lo = hi;
+      --open;
+    }
+  }
+}
+
+/// Whether a line of x, y, x + y or x - y = constant keeps the features apart at t.
+bool areApartAt(double t, bool vf, const FeaturePoints& x, int axis) {
+  bool all_positive[4] = {true, true, true, true};
+  bool all_negative[4] = {true, true, true, true};
+  for (int i = 0; i < (vf ? 1 : 2); ++i)
+    for (int j = vf ? 1 : 2; j < 4; ++j) {
+      const Difference d(x[i], x[j], axis);
+      const double s = 1 - t, a = s * d.x[0] + t * d.x[1], b = s * d.y[0] + t * d.y[1];
+      // Four roundings of each term, one more of the sums; what underflows is below the
+      // smallest normal number.
+      const double error = 8 * 0x1p-53 *
+                               (s * (std::abs(d.x[0]) + std::abs(d.y[0])) +
+                                t * (std::abs(d.x[1]) + std::abs(d.y[1]))) +
+                           std::numeric_limits<double>::min();
+      const double along[4] = {a, b, a + b, a - b};
+      for (int k = 0; k < 4; ++k) {
+        all_positive[k] &= along[k] > error;
+        all_negative[k] &= along[k] < -error;
+      }
+    }
+  for (int k = 0; k < 4; ++k)
+    if (all_positive[k] || all_negative[k]) return true;
+  return false;
+}
+
+}  // namespace
+
+int axisOfCommonPlane(const FeaturePoints& x) {
+  for (int k = 0; k < 3; ++k) {
+    bool same = true;
+    for (int i = 1; i < 4; ++i)
+      same &= x[i].t0[k] == x[0].t0[k] && x[i].t1[k] == x[0].t1[k];
+    if (same) return k;
+  }
+  return -1;
+}
+
+ElementaryResult solveInPlane(FeatureKind kind, const FeaturePoints& x, int axis,
+                              double window_lo, double window_hi, double toc_err) {
+  struct PointAndSegment {
+    int p, q, r;
+  };
+  static constexpr PointAndSegment kVertexFace[3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}},
+                                   kEdgeEdge[4] = {
+                                       {0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}};
+  const bool vf = kind == FeatureKind::kVertexFace;
+  if (window_lo > 0 && !areApartAt(window_lo, vf, x, axis))
+    return {Answer::kUnsure, window_lo, window_hi, DecidedBy::kSolver};
+  Findings found;
+  for (int i = 0; i < (vf ? 3 : 4); ++i) {
+    const auto [p, q, r] = vf ? kVertexFace[i] : kEdgeEdge[i];
+    findPointOnSegment(x[p], x[q], x[r], axis, window_lo, std::min(window_hi, found.hi),
+                       toc_err, found);
+  }
+  if (found.hasContact() && found.hi - found.lo <= toc_err)
+    return {Answer::kYes, found.lo, found.hi, DecidedBy::kSolver};
+  if (found.lo <= 1) return {Answer::kUnsure, found.lo, window_hi, DecidedBy::kSolver};
+  return {Answer::kNo, 0, 0, DecidedBy::kSolver};
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

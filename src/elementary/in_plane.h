@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The elementary test of a pair that stays in a plane of constant x, y or z (flat sheets
+// that slide over each other): every volume is zero, and features that are apart at t =
+// 0 meet first where a vertex of one meets an edge of the other.
+#ifndef FCL_CCD_ELEMENTARY_IN_PLANE_H
+#define FCL_CCD_ELEMENTARY_IN_PLANE_H
+
+#include "elementary/feature_points.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The axis along which all four points have the same coordinate, in each frame;
+/// -1 if there is none. The plane itself may move.
+int axisOfCommonPlane(const FeaturePoints& x);
+
+/// @brief solveCoplanarity() for a pair in a plane across axis that does not touch at t =
+/// 0, with its properties.
+ElementaryResult solveInPlane(FeatureKind kind, const FeaturePoints& x, int axis,
+                              double window_lo, double window_hi, double toc_err);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MESH_FEATURE_PAIRS_H
+#define FCL_CCD_MESH_FEATURE_PAIRS_H
+
+#include <cstdint>
+
+#include "mesh/feature_kind.h"
+#include "mesh/mesh_triangle.h"
+#include "mesh/moving_kdop.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief One feature of each of two triangles, by places in the triangles: VF, vertex
+/// `first` of one and the whole other; EE, edge `first` of a and edge `second` of b.
+struct FeaturePair {
+  FeatureKind kind;
+  /// VF: the vertex is a's.
+  bool first_on_a;
+  unsigned first;
+  unsigned second;
+};
+
+/// @brief Two features of two meshes a and b, by ids.
+struct FeatureIds {
+  FeatureKind kind;
+  /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
+  bool first_on_a;
+  /// VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
+  std::uint32_t vertices[4];
+  /// Triangle of mesh a and of mesh b.
+  std::int32_t triangles[2];
+};
+
+inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {
+  return t.v[0] == v || t.v[1] == v || t.v[2] == v;
+}
+
+/// @brief The pairs of features of two triangles a and b, a bit each: bit k, vertex k of
+/// a and the face of b; 3 + k, vertex k of b and the face of a; 6 + 3 i + j, edge i of a
+/// and edge j of b.
+constexpr int kNumVertexFacePairs = 6;
+constexpr int kNumFeaturePairs = 15;
+
+inline FeaturePair featurePair(int bit) {
+  const auto k = static_cast<unsigned>(bit);
+  if (k < 3) return {FeatureKind::kVertexFace, true, k, 0};
+  if (k < 6) return {FeatureKind::kVertexFace, false, k - 3, 0};
+  return {FeatureKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
+}
+
+/// @brief The four points of each pair of features, the vertices of a counted 0-2 and b's
+/// 3-5: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
+constexpr unsigned char kFeaturePoints[kNumFeaturePairs][4] = {
+    {0, 3, 4, 5}, {1, 3, 4, 5}, {2, 3, 4, 5}, {3, 0, 1, 2}, {4, 0, 1, 2},
+    {5, 0, 1, 2}, {0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3}, {1, 2, 3, 4},
+    {1, 2, 4, 5}, {1, 2, 5, 3}, {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}};
+
+/// @brief Edges (three bits) that end in one of the vertices (three bits).
+inline unsigned edgesAt(unsigned vertices) {
+  return vertices | (vertices >> 1) | (vertices << 2 & 4U);
+}
+
+/// @brief Bits 3 i + j for bit i of rows and bit j of columns.
+constexpr unsigned product(unsigned rows, unsigned columns) {
+  return ((rows & 1U) | (rows & 2U) << 2 | (rows & 4U) << 4) * columns;
+}
+
+/// @brief Whether one of the vertices of a is one of b's.
+inline bool doShareVertex(const ThreeIds& a, const ThreeIds& b) {
+  const auto equal = (a == __builtin_shufflevector(b, b, 0, 0, 0, 0)) |
+                     (a == __builtin_shufflevector(b, b, 1, 1, 1, 1)) |
+                     (a == __builtin_shufflevector(b, b, 2, 2, 2, 2));
+  return isAny(equal & Mask4{-1, -1, -1, 0});
+}
+
+/// @brief Bits 3 i + j for the equal ones among vertices i of a and j of b.
+inline unsigned sharedVertices(const std::uint32_t (&a)[3], const std::uint32_t (&b)[3]) {
+  unsigned shared = 0;
+  for (unsigned i = 0; i < 3; ++i)
+    for (unsigned j = 0; j < 3; ++j) shared |= unsigned{a[i] == b[j]} << (3 * i + j);
+  return shared;
+}
+
+/// @brief For each mask of MeshTriangle::owned the pairs of features of two triangles
+/// whose part is owned that is a's, or b's.
+struct OwnedParts {
+  std::uint16_t of_a[kOwnsAll + 1];
+  std::uint16_t of_b[kOwnsAll + 1];
+};
+
+constexpr OwnedParts makeOwnedParts() {
+  OwnedParts parts{};
+  for (unsigned owned = 0; owned <= kOwnsAll; ++owned) {
+    const unsigned vertices = owned & 7U, edges = owned >> 3 & 7U, face = owned >> 6 & 1U;
+    parts.of_a[owned] =
+        static_cast<std::uint16_t>(vertices | face * 7U << 3 | product(edges, 7U) << 6);
+    parts.of_b[owned] =
+        static_cast<std::uint16_t>(face * 7U | vertices << 3 | product(7U, edges) << 6);
+  }
+  return parts;
+}
+
+constexpr OwnedParts kOwnedParts = makeOwnedParts();
+
+/// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned).
+inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b) {
+  return kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
+}
+
+/// @brief The pairs of features of two triangles that share a vertex (sharedVertices()).
+inline unsigned pairsAt(unsigned shared) {
+  unsigned pairs = 0;
+  for (; shared != 0; shared &= shared - 1) {
+    const unsigned bit = static_cast<unsigned>(__builtin_ctz(shared));
+    const unsigned i = 1U << bit / 3, j = 1U << bit % 3;
+    pairs |= i | j << 3 | product(edgesAt(i), edgesAt(j)) << 6;
+  }
+  return pairs;
+}
+
+/// @brief The edges that two triangles own, bits 0-2 for a's, 3-5 for b's.
+inline unsigned ownedEdges(unsigned owned_a, unsigned owned_b) {
+  return (owned_a >> 3 & 7U) | (owned_b >> 3 & 7U) << 3;
+}
+
+/// @brief The edges of two triangles that have a vertex of the other one.
+inline unsigned edgesAtBoth(unsigned shared) {
+  const unsigned of_a =
+      (shared & 7U ? 1U : 0U) | (shared & 070U ? 2U : 0U) | (shared & 0700U ? 4U : 0U);
+  const unsigned of_b = (shared | shared >> 3 | shared >> 6) & 7U;
+  return edgesAt(of_a) | edgesAt(of_b) << 3;
+}
+
+/// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own;
+/// over all triangle pairs of a scene that is every VF and EE pair once.
+/// @tparam kSelf  a and b index the same vertices: pairs that share one are left out.
+template <bool kSelf, typename Visit>
+void forEachFeaturePair(const MeshTriangle& a, const MeshTriangle& b, Visit&& visit) {
+  unsigned pairs = ownedPairs(a.owned, b.owned);
+  if (kSelf) pairs &= ~pairsAt(sharedVertices(a.v, b.v));
+  for (; pairs != 0; pairs &= pairs - 1) visit(featurePair(__builtin_ctz(pairs)));
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Representative triangles (Curtis, Tamstorf, Manocha 2008): every vertex, edge and face
+// is owned by exactly one triangle, so that each VF and EE pair of a scene is met once.
+#ifndef FCL_CCD_MESH_MESH_TOPOLOGY_H
+#define FCL_CCD_MESH_MESH_TOPOLOGY_H
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "fcl/math/triangle.h"
+#include "mesh/mesh_triangle.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief What of a mesh is more than kMaxMeshSize, for example "536870913 triangles are
+/// more than 536870912"; empty if nothing is.
+std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices);
+
+/// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;
+/// 3 * num_triangles if there is none.
+std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,
+                           std::size_t num_vertices);
+
+/// @brief The lowest-numbered triangle that has a feature owns it. A vertex without a
+/// triangle is not a feature; of several faces with the same vertex set only the first
+/// owns its face; an edge whose two ids are equal is owned by nobody.
+/// @param triangles indices below num_vertices (not checked here).
+std::vector<MeshTriangle> assignFeatures(const Triangle* triangles,
+                                         std::size_t num_triangles,
+                                         std::size_t num_vertices);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

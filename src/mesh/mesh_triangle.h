@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A triangle as vertex ids and owned features; see mesh_topology.h for what owning is.
+#ifndef FCL_CCD_MESH_MESH_TRIANGLE_H
+#define FCL_CCD_MESH_MESH_TRIANGLE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "fcl/math/triangle.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Vertex ids of a triangle and the features that it owns. Edge k joins vertices k
+/// and (k + 1) % 3.
+struct MeshTriangle {
+  std::uint32_t v[3];
+  std::uint32_t owned;
+
+  bool ownsVertex(unsigned k) const { return (owned >> k) & 1U; }
+  bool ownsEdge(unsigned k) const { return (owned >> (3 + k)) & 1U; }
+  bool ownsFace() const { return (owned >> 6) & 1U; }
+};
+
+/// @brief Three vertices; the fourth number does not count.
+typedef std::uint32_t ThreeIds __attribute__((vector_size(16)));
+
+/// All six border features and the face.
+constexpr std::uint32_t kOwnsAll = 0x7f;
+
+/// @brief The vertex ids of a triangle, which are below 2^32; FCL's operator[] is a call
+/// into its library for each.
+inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
+  std::size_t ids[3];
+  static_assert(
+      std::is_trivially_copyable<Triangle>::value && sizeof(Triangle) == sizeof(ids),
+      "a triangle is its three ids");
+  std::memcpy(ids, &triangle, sizeof(ids));
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
+}
+
+/// @brief No mesh has more triangles, or vertices. Numbers of 32 bits then hold four for
+/// each triangle, and the spokes of all fans, of which there are six a triangle where no
+/// two share a vertex; numbers with a sign hold nodes and ~leaf.
+constexpr std::size_t kMaxMeshSize = std::size_t{1} << 29;
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

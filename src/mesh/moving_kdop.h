@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A 16-DOP (8 directions, as FCL's KDOP<S, 16>) that moves: one box at t = 0, one at t
+// = 1. For vertices on straight paths the box interpolated between the two contains the
+// subtree at every t. Tang, Manocha, Tong 2010 bound the whole sweep with one box
+// instead.
+#ifndef FCL_CCD_MESH_MOVING_KDOP_H
+#define FCL_CCD_MESH_MOVING_KDOP_H
+
+#if __cplusplus < 201703L
+#error "The moving trees of fcl_ccd need C++17: compile with -std=c++17 or later"
+#endif
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+namespace fcl {
+
+/// @brief Half-axis bounds: entries 0-7 are minus the lower, 8-15 the upper bound along
+/// x, y, z, x+y, x+z, y+z, x-y, x-z; relative to an origin that its owner knows; rounded
+/// outward, hence never below kLeastHalf; infinity where a float has no bound. No NaN.
+struct alignas(64) Kdop16 {
+  float half[16];
+};
+
+/// @brief The box at t = 0 and the box at t = 1.
+struct MovingKdop {
+  Kdop16 t0;
+  Kdop16 t1;
+};
+
+/// @brief Part of the step, 0 <= lo <= hi <= 1, in which something can happen; empty when
+/// lo > hi.
+struct TimeWindow {
+  float lo;
+  float hi;
+  bool isEmpty() const { return lo > hi; }
+};
+
+namespace detail {
+namespace deformable {
+
+/// @brief The 8 directions applied to a point, or to points in the lanes of vectors.
+template <typename T>
+inline void kdopCoordinates(const T (&p)[3], T (&d)[8]) {
+  d[0] = p[0];
+  d[1] = p[1];
+  d[2] = p[2];
+  d[3] = p[0] + p[1];
+  d[4] = p[0] + p[2];
+  d[5] = p[1] + p[2];
+  d[6] = p[0] - p[1];
+  d[7] = p[0] - p[2];
+}
+
+/// Relative outward step for a float made from a double: the conversion loses 2^-24
+/// relative, the two operations of roundUp() 2^-24 each; 2^-22 covers them.
+constexpr float kOutward = 0x1p-22f;
+
+/// @brief No half-axis bound is below this, so that the sum of two is finite or plus
+/// infinity.
+constexpr float kLeastHalf = -0.5f * FLT_MAX;
+
+/// @brief A float not less than value + pad, pad >= 0, but for 2^-22 of the pad; FLT_MIN
+/// keeps it right where a float would be subnormal. Infinity for a NaN, never below
+/// kLeastHalf.
+inline float roundUp(double value, float pad) {
+  const auto f =
+      static_cast<float>(value < double{kLeastHalf} ? double{kLeastHalf} : value);
+  const float up = f + (std::fabs(f) * kOutward + (pad + FLT_MIN));
+  return up == up ? up : std::numeric_limits<float>::infinity();
+}
+
+/// @brief What roundUp() adds for a coordinate that was rounded before it came here, of a
+/// point at most `size` away from the origin along an axis: relative to the origin by
+/// 2^-53 of itself, posed in relativeShift() by as much, and a sum of two by 2^-52 of the
+/// larger: six of 2^-53 in all.
+inline float offsetPad(double size) {
+  const auto pad = static_cast<float>(size * 0x1p-49);
+  return pad >= FLT_MAX ? std::numeric_limits<float>::infinity() : pad;
+}
+
+/// @brief A half-axis of a box that is moved, not less than the sum: that loses 2^-24 of
+/// itself where it is a normal number, and nothing where it is not.
+inline float shifted(float half, float shift) {
+  const float sum = half + shift;
+  return std::max(sum + std::fabs(sum) * kOutward, kLeastHalf);
+}
+
+/// @brief What is added to the sum of two boxes whose origins differ.
+struct KdopShift {
+  Kdop16 t0;
+  Kdop16 t1;
+};
+
+/// Four floats: compilers turn elementwise operations on it into vector instructions of
+/// whatever the target has, without a change in any result.
+typedef float Float4 __attribute__((vector_size(16)));
+
+inline Float4 quad(const Kdop16& box, int q) {
+  Float4 v;
+  __builtin_memcpy(&v, box.half + 4 * q, sizeof(v));
+  return v;
+}
+
+/// A comparison of two Float4: all bits of a lane, or none.
+typedef int Mask4 __attribute__((vector_size(16)));
+
+inline bool isAny(const Mask4& mask) {
+#if defined(__SSE__)
+  return __builtin_ia32_movmskps(reinterpret_cast<const Float4&>(mask)) != 0;
+#else
+  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+#endif
+}
+
+/// The loss of a window: rounded down by more than its own rounding, 2^-24 for each of
+/// the two sums and the difference of these in it, the quotient and this product.
+constexpr float kLossDown = 1.f - 0x1p-21f;
+/// Minus the loss at the end: 1 and more than the rounding of the subtraction.
+constexpr float kWindowEnd = 1.f + 0x1p-22f;
+
+/// @brief When boxes a and b, which move linearly, overlap in all 8 directions. Never
+/// misses a time of overlap: the window is rounded outward.
+///
+/// Along half-axis j, a's bound plus b's opposite bound (halves swapped) is the overlap
+/// depth s(t), linear in t; the boxes overlap while all 16 are >= 0. Where s0 = s(0) and
+/// s1 = s(1) have opposite signs, the part least / (least - most) of the step is lost, at
+/// the beginning (s0 < 0) or the end. It is 0 where `most` or the difference is infinite:
+/// what overflows never separates.
+template <bool kShifted>
+inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
+                                const KdopShift* shift) {
+  float before = 0.f, after = 0.f;
+  for (int j = 0; j < 16; ++j) {
+    float a0 = a.t0.half[j], a1 = a.t1.half[j];
+    if (kShifted) {
+      a0 = shifted(a0, shift->t0.half[j]);
+      a1 = shifted(a1, shift->t1.half[j]);
+    }
+    const float s0 = a0 + b.t0.half[j ^ 8], s1 = a1 + b.t1.half[j ^ 8];
+    if (s0 < 0 && s1 < 0) return {1.f, 0.f};
+    if (s0 >= 0 && s1 >= 0) continue;
+    const float least = std::min(s0, s1), most = std::max(s0, s1);
+    const float loss = least / (least - most) * kLossDown;
+    (s0 < 0 ? before : after) = std::max(s0 < 0 ? before : after, loss);
+  }
+  const float hi = kWindowEnd - after;
+  return {before, std::min(hi, 1.f)};
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

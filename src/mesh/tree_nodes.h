@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// What a moving tree is made of: its nodes, and the triangles and vertices in its order.
+#ifndef FCL_CCD_MESH_TREE_NODES_H
+#define FCL_CCD_MESH_TREE_NODES_H
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "mesh/mesh_triangle.h"
+#include "mesh/moving_kdop.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Up to eight children, each a subtree or a triangle, with their moving boxes. A
+/// row holds one half-axis of all children, so that one box is compared with eight at
+/// once; the two half-axes of a direction follow each other. What holds at t = 0 lies
+/// together: much of a first-contact query reads nothing else.
+struct alignas(64) MovingKdopNode {
+  static constexpr int kWidth = 8;
+  static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
+
+  /// Row r at t = 0 and at t = 1.
+  float t0[16][kWidth];
+  float t1[16][kWidth];
+  /// Vertices of the triangles, as places in the tree's order; kNoPlace for a node.
+  std::uint32_t places[3][kWidth];
+  /// Bound on the change of a coordinate of a vertex of the child in the step.
+  float displacement[kWidth];
+  /// >= 0: a node; < 0: ~triangle. The first `count` are in use.
+  std::int32_t child[kWidth];
+  std::int32_t count;
+  /// Lanes that are triangles, a bit each: markTriangles().
+  std::uint32_t triangles;
+
+  bool isTriangle(int lane) const { return child[lane] < 0; }
+  int triangle(int lane) const { return ~child[lane]; }
+
+  /// @brief Lanes that are in use, a bit each.
+  unsigned lanes() const { return (1U << count) - 1; }
+
+  /// @brief To be called when the children are set.
+  void markTriangles() {
+    triangles = 0;
+    for (int lane = 0; lane < count; ++lane)
+      triangles |= unsigned{isTriangle(lane)} << lane;
+  }
+
+  /// @brief Half-axis of Kdop16 that a row holds.
+  static constexpr int halfAxis(int row) { return row / 2 + row % 2 * 8; }
+
+  /// @brief Row that holds a half-axis of Kdop16.
+  static constexpr int rowOf(int half_axis) { return half_axis % 8 * 2 + half_axis / 8; }
+
+  void setBox(int lane, const MovingKdop& box) {
+    for (int r = 0; r < 16; ++r) {
+      t0[r][lane] = box.t0.half[halfAxis(r)];
+      t1[r][lane] = box.t1.half[halfAxis(r)];
+    }
+  }
+  MovingKdop box(int lane) const {
+    MovingKdop out;
+    for (int r = 0; r < 16; ++r) {
+      out.t0.half[halfAxis(r)] = t0[r][lane];
+      out.t1.half[halfAxis(r)] = t1[r][lane];
+    }
+    return out;
+  }
+  /// @brief Fills the lanes that are not in use with boxes that overlap nothing.
+  void clearRest() {
+    for (int i = count; i < kWidth; ++i) {
+      child[i] = 0;
+      displacement[i] = 0;
+      for (int r = 0; r < 16; ++r) t0[r][i] = t1[r][i] = kLeastHalf;
+    }
+  }
+};
+
+/// @brief A triangle where the tests read it.
+struct TreeTriangle {
+  /// Places of the vertices in the tree's order.
+  std::uint32_t place[3];
+  std::uint32_t owned;
+  /// The user's ids of the vertices and of the triangle.
+  std::uint32_t id[3];
+  std::uint32_t index;
+};
+
+inline ThreeIds idsOf(const TreeTriangle& t) {
+  static_assert(offsetof(TreeTriangle, id) + sizeof(ThreeIds) == sizeof(TreeTriangle),
+                "one more number may be read");
+  ThreeIds ids;
+  std::memcpy(&ids, reinterpret_cast<const char*>(&t) + offsetof(TreeTriangle, id),
+              sizeof(ids));
+  return ids;
+}
+
+/// @brief A vertex where the tests read it: its path, t0[3] a bound on the change of a
+/// coordinate in the step, which is a float (t1[3] is not used); and its moving box.
+struct alignas(64) TreeVertex {
+  double t0[4];
+  double t1[4];
+  MovingKdop box;
+
+  double displacement() const { return t0[3]; }
+
+  /// @brief Sets the path. Differences of doubles are rounded by 2^-53 of themselves,
+  /// much less than roundUp() adds.
+  void setPath(const double (&from)[3], const double (&to)[3]) {
+    double moved = 0;
+    for (int k = 0; k < 3; ++k) {
+      t0[k] = from[k];
+      t1[k] = to[k];
+      moved = std::max(moved, std::fabs(to[k] - from[k]));
+    }
+    t0[3] = double{roundUp(moved, 0.f)};
+    t1[3] = 0;
+  }
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh/vertex_corners.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "base/parallel.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// A task: the corners of so many vertices.
+constexpr std::size_t kBlock = 2048;
+
+/// Not a vertex.
+constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+/// Four numbers that are computed together, see Float4.
+typedef std::uint32_t Quad __attribute__((vector_size(16)));
+
+/// Brings corners into the order of a fan, if they form one: each begins where the one
+/// before ends.
+/// @param count  1 ... 4 * kQuads
+template <std::uint32_t kQuads>
+CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
+  constexpr std::uint32_t kWidth = 4 * kQuads;
+  std::uint32_t last[kWidth];
+  std::fill(last, last + kWidth, kNone);
+  for (std::uint32_t i = 0; i < count; ++i) last[i] = corners[i].last;
+  // Which corners begin where each ends, a bit each. No branch on what is found: nobody
+  // could foretell it.
+  Quad quads[kQuads], found[kQuads] = {};
+  std::memcpy(quads, last, sizeof(last));
+  for (std::uint32_t k = 0; k < count; ++k)
+    for (std::uint32_t q = 0; q < kQuads; ++q)
+      found[q] |= Quad(quads[q] == corners[k].next) & (1U << k);
+  std::uint32_t after[kWidth + 1];
+  std::memcpy(after, found, sizeof(found));
+  after[kWidth] = 0;
+
+  // A spoke that is met twice belongs to three triangles or to two sheets: at most one
+  // may follow each, and each may follow one.
+  std::uint32_t followers = 0, surplus = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    surplus |= (after[i] & (after[i] - 1)) | (followers & after[i]);
+    followers |= after[i];
+  }
+  // All are on one way, from the one that follows none; from any if there is none.
+  const std::uint32_t all = (1U << count) - 1, begins = all & ~followers;
+  const bool is_closed = begins == 0;
+  Corner sorted[kWidth];
+  std::uint32_t met = 0;
+  auto at = static_cast<std::uint32_t>(__builtin_ctz(is_closed ? 1 : begins));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    met |= 1U << at;
+    sorted[i] = corners[at % kWidth];
+    at = static_cast<std::uint32_t>(__builtin_ctz(after[at] | 1U << kWidth));
+  }
+  const bool is_fan = surplus == 0 && met == all && (!is_closed || count >= 3);
+  if (!is_fan) return CornersAtVertex::kNoFan;
+  std::copy(sorted, sorted + count, corners);
+  return is_closed ? CornersAtVertex::kClosedFan : CornersAtVertex::kOpenFan;
+}
+
+/// The same for more corners.
+CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
+  std::vector<Corner> by_next(corners, corners + count);
+  std::vector<std::uint32_t> lasts(count);
+  std::transform(by_next.begin(), by_next.end(), lasts.begin(),
+                 [](const Corner& c) { return c.last; });
+  std::sort(by_next.begin(), by_next.end(),
+            [](const Corner& a, const Corner& b) { return a.next < b.next; });
+  std::sort(lasts.begin(), lasts.end());
+  const auto begin_together = [](const Corner& a, const Corner& b) {
+    return a.next == b.next;
+  };
+  // Of each spoke that is not met twice one corner may begin and one end there.
+  if (std::adjacent_find(lasts.begin(), lasts.end()) != lasts.end() ||
+      std::adjacent_find(by_next.begin(), by_next.end(), begin_together) != by_next.end())
+    return CornersAtVertex::kNoFan;
+  const auto first =
+      std::find_if(by_next.begin(), by_next.end(), [&lasts](const Corner& c) {
+        return !std::binary_search(lasts.begin(), lasts.end(), c.next);
+      });
+  const bool is_closed = first == by_next.end();
+  const Corner begin = is_closed ? corners[0] : *first;
+  // All are on one way.
+  std::vector<Corner> sorted{begin};
+  while (sorted.size() < count) {
+    const auto next = std::lower_bound(
+        by_next.begin(), by_next.end(), sorted.back().last,
+        [](const Corner& c, std::uint32_t spoke) { return c.next < spoke; });
+    if (next == by_next.end() || next->next != sorted.back().last ||
+        next->next == begin.next)
+      return CornersAtVertex::kNoFan;
+    sorted.push_back(*next);
+  }
+  std::copy(sorted.begin(), sorted.end(), corners);
+  return is_closed ? CornersAtVertex::kClosedFan : CornersAtVertex::kOpenFan;
+}
+
+/// Brings the corners at a vertex into order.
+CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
+  if (count == 0) return CornersAtVertex::kNoFan;
+  if (count <= 8) return sortIntoFan<2>(corners, count);
+  if (count <= 16) return sortIntoFan<4>(corners, count);
+  return sortIntoLongFan(corners, count);
+}
+
+/// What each corner's triangle owns of the features at a vertex: the vertex, and the
+/// edges and faces that have no lower one. By the corner's slot.
+class Owned {
+ public:
+  Owned(std::uint32_t vertex, const CornersAtVertex& at, std::uint8_t* owned)
+      : vertex_(vertex), corners_(at.corners), count_(at.count), owned_(owned) {}
+
+  /// In a fan every face is there once, and every edge in two triangles that follow each
+  /// other, or at an end.
+  void ofFan(bool is_closed) const {
+    const Corner* lowest = corners_;
+    std::uint32_t before = is_closed ? lastEdge(corners_[count_ - 1]) : kNone;
+    const std::uint32_t end = is_closed ? nextEdge(corners_[0]) : kNone;
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      const Corner& c = corners_[i];
+      if (c.number < lowest->number) lowest = &c;
+      const std::uint32_t after = i + 1 < count_ ? nextEdge(corners_[i + 1]) : end;
+      const bool below_next = vertex_ < c.next, below_last = vertex_ < c.last;
+      owned_[c.slot] = bit(below_next & (nextEdge(c) < before), 3 + nextEdge(c) % 4) |
+                       bit(below_last & (lastEdge(c) < after), 3 + lastEdge(c) % 4) |
+                       bit(below_next & below_last, 6);
+      before = lastEdge(c);
+    }
+    owned_[lowest->slot] |= bit(true, lowest->number % 4);
+  }
+
+  /// Of what is claimed several times the lowest number is first.
+  void ofAny(std::vector<std::array<std::uint32_t, 5>>& claims) const {
+    claims.clear();
+    for (const Corner* c = corners_; c != corners_ + count_; ++c) {
+      owned_[c->slot] = 0;
+      claims.push_back({kNone, kNone, c->number, c->slot, c->number % 4});
+      for (const bool next : {true, false}) {
+        const std::uint32_t other = next ? c->next : c->last,
+                            edge = next ? nextEdge(*c) : lastEdge(*c);
+        if (vertex_ < other)
+          claims.push_back({other, kNone, edge, c->slot, 3 + edge % 4});
+      }
+      if (vertex_ <= c->next && vertex_ <= c->last)
+        claims.push_back({std::min(c->next, c->last), std::max(c->next, c->last),
+                          c->number, c->slot, 6});
+    }
+    std::sort(claims.begin(), claims.end());
+    for (std::size_t i = 0; i < claims.size(); ++i) {
+      const auto& c = claims[i];
+      if (i == 0 || claims[i - 1][0] != c[0] || claims[i - 1][1] != c[1])
+        owned_[c[3]] |= bit(true, c[4]);
+    }
+  }
+
+ private:
+  static std::uint8_t bit(bool is_owned, std::uint32_t place) {
+    return static_cast<std::uint8_t>(std::uint32_t{is_owned} << place);
+  }
+  /// 4 * triangle + k of the edge to the next vertex, and of that from the last.
+  static std::uint32_t nextEdge(const Corner& c) { return c.number; }
+  static std::uint32_t lastEdge(const Corner& c) {
+    return c.number % 4 == 0 ? c.number + 2 : c.number - 1;
+  }
+
+  std::uint32_t vertex_;
+  const Corner* corners_;
+  std::uint32_t count_;
+  std::uint8_t* owned_;
+};
+
+}  // namespace
+
+VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
+                             std::size_t num_vertices, int num_threads)
+    : first_(num_vertices + 2, 0), corners_(3 * triangles.size()), kinds_(num_vertices) {
+  // While corners are put down, first_[v + 1] is where the next one of v goes.
+  for (const TreeTriangle& t : triangles)
+    for (const std::uint32_t v : t.place) ++first_[v + 2];
+  for (std::size_t v = 0; v < num_vertices; ++v) first_[v + 2] += first_[v + 1];
+  for (std::uint32_t i = 0; i < triangles.size(); ++i) {
+    const TreeTriangle& t = triangles[i];
+    for (std::uint32_t k = 0; k < 3; ++k)
+      corners_[first_[t.place[k] + 1]++] = {t.place[(k + 1) % 3], t.place[(k + 2) % 3],
+                                            4 * t.index + k, 4 * i + k};
+  }
+  parallelForBlocks(
+      num_vertices, kBlock, num_threads, [&](std::size_t v, std::size_t last) {
+        for (; v < last; ++v)
+          kinds_[v] = sortCorners(corners_.data() + first_[v], first_[v + 1] - first_[v]);
+      });
+}
+
+void assignOwners(const VertexCorners& corners, int num_threads,
+                  std::vector<TreeTriangle>& triangles) {
+  UninitializedVector<std::uint8_t> owned(4 * triangles.size());
+  parallelForBlocks(corners.size(), kBlock, num_threads,
+                    [&](std::size_t v, std::size_t last) {
+                      std::vector<std::array<std::uint32_t, 5>> claims;
+                      for (; v < last; ++v) {
+                        const CornersAtVertex at = corners[v];
+                        const Owned here(static_cast<std::uint32_t>(v), at, owned.data());
+                        if (at.kind == CornersAtVertex::kNoFan)
+                          here.ofAny(claims);
+                        else
+                          here.ofFan(at.kind == CornersAtVertex::kClosedFan);
+                      }
+                    });
+  parallelForBlocks(triangles.size(), 4 * kBlock, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i) {
+                        const std::uint8_t* at = &owned[4 * i];
+                        triangles[i].owned = std::uint32_t{at[0]} | at[1] | at[2];
+                      }
+                    });
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

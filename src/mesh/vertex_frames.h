@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MESH_VERTEX_FRAMES_H
+#define FCL_CCD_MESH_VERTEX_FRAMES_H
+
+#include <cstddef>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A vertex that moves on the straight line from t0 (t = 0) to t1 (t = 1).
+struct VertexPath {
+  double t0[3];
+  double t1[3];
+};
+
+/// @brief A row-major linear map and a translation: x -> rotation * x + translation.
+struct Pose {
+  double rotation[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  double translation[3]{0, 0, 0};
+
+  bool isTranslation() const {
+    static const Pose identity;
+    for (int i = 0; i < 9; ++i)
+      if (rotation[i] != identity.rotation[i]) return false;
+    return true;
+  }
+
+  bool isIdentity() const {
+    return isTranslation() && translation[0] == 0 && translation[1] == 0 &&
+           translation[2] == 0;
+  }
+};
+
+/// @brief The paths of a mesh's vertices: two coordinate arrays (float or double, x y z
+/// per vertex, not owned) and the pose of each frame.
+class VertexFrames {
+ public:
+  VertexFrames() = default;
+  VertexFrames(const double* previous, const double* current, std::size_t count)
+      : double_{previous, current}, count_(count) {}
+  VertexFrames(const float* previous, const float* current, std::size_t count)
+      : float_{previous, current}, count_(count) {}
+
+  void setPoses(const Pose& beginning, const Pose& end) {
+    pose_[0] = beginning;
+    pose_[1] = end;
+    posed_ = !(beginning.isIdentity() && end.isIdentity());
+  }
+
+  std::size_t size() const { return count_; }
+
+  /// @brief Whether both frames are the same arrays and in no pose: then nothing moves.
+  bool isStill() const {
+    return !posed_ && double_[0] == double_[1] && float_[0] == float_[1];
+  }
+  bool isPosed() const { return posed_; }
+  const Pose& pose(int frame) const { return pose_[frame]; }
+
+  /// @brief Path of vertex i in the world. A posed coordinate is ((r0 x + r1 y) + r2 z) +
+  /// translation, evaluated in double; this value is what every contact refers to.
+  VertexPath operator[](std::size_t i) const {
+    VertexPath path;
+    at(0, i, path.t0);
+    at(1, i, path.t1);
+    return path;
+  }
+
+  /// @brief Brings vertex i near, which is about to be read.
+  void prefetch(std::size_t i) const {
+    for (int frame = 0; frame < 2; ++frame) {
+      if (double_[frame])
+        __builtin_prefetch(double_[frame] + 3 * i);
+      else
+        __builtin_prefetch(float_[frame] + 3 * i);
+    }
+  }
+
+  /// @brief Position of vertex i in one frame.
+  void at(int frame, std::size_t i, double (&out)[3]) const {
+    for (std::size_t k = 0; k < 3; ++k)
+      out[k] =
+          double_[frame] ? double_[frame][3 * i + k] : double{float_[frame][3 * i + k]};
+    if (!posed_) return;
+    const double x = out[0], y = out[1], z = out[2];
+    const Pose& p = pose_[frame];
+    for (int k = 0; k < 3; ++k)
+      out[k] = ((p.rotation[3 * k] * x + p.rotation[3 * k + 1] * y) +
+                p.rotation[3 * k + 2] * z) +
+               p.translation[k];
+  }
+
+ private:
+  const double* double_[2]{nullptr, nullptr};
+  const float* float_[2]{nullptr, nullptr};
+  std::size_t count_{0};
+  bool posed_{false};
+  Pose pose_[2];
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "numerics/exact_polynomial.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "numerics/illinois.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// k / 2^m rounded to a double below (direction -1) or above (1), or equal.
+double toDouble(const Integer& k, unsigned m, int direction) {
+  if (k.is_zero()) return 0;
+  const auto bits = static_cast<unsigned>(boost::multiprecision::msb(k)) + 1;
+  const unsigned drop = bits > 53 ? bits - 53 : 0;
+  Integer head = k >> drop;
+  if (direction > 0 && (head << drop) != k) ++head;
+  const double value = std::ldexp(static_cast<double>(head.convert_to<std::int64_t>()),
+                                  static_cast<int>(drop) - static_cast<int>(m));
+  // A subnormal has fewer bits, to which ldexp() rounds either way, up to the smallest
+  // normal number.
+  if (value > std::numeric_limits<double>::min()) return value;
+  return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
+}
+
+/// a / b <= 1 rounded likewise.
+double ratioToDouble(const Integer& a, const Integer& b, int direction) {
+  if (a.is_zero()) return 0;
+  const auto bits = static_cast<unsigned>(msb(b) - msb(a)) + 64;
+  Integer quotient, rest;
+  divide_qr(Integer(a << bits), b, quotient, rest);
+  if (direction > 0 && !rest.is_zero()) ++quotient;
+  return toDouble(quotient, bits, direction);
+}
+
+/// p divided by (2^m t - k), a root of it.
+Polynomial withoutRoot(const Polynomial& p, const Integer& k, unsigned m) {
+  return p.quotient(Polynomial{-k, Integer(1) << m}).primitive();
+}
+
+}  // namespace
+
+Polynomial& Polynomial::operator+=(const Polynomial& other) {
+  if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
+  for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] += other.c_[i];
+  trim();
+  return *this;
+}
+
+Polynomial& Polynomial::operator-=(const Polynomial& other) {
+  if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
+  for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] -= other.c_[i];
+  trim();
+  return *this;
+}
+
+Polynomial operator*(const Polynomial& a, const Polynomial& b) {
+  Polynomial product;
+  if (a.isZero() || b.isZero()) return product;
+  product.c_.resize(a.c_.size() + b.c_.size() - 1);
+  for (std::size_t i = 0; i < a.c_.size(); ++i)
+    for (std::size_t j = 0; j < b.c_.size(); ++j) product.c_[i + j] += a.c_[i] * b.c_[j];
+  return product;
+}
+
+Polynomial Polynomial::derivative() const {
+  Polynomial d;
+  for (std::size_t i = 1; i < c_.size(); ++i) d.c_.push_back(c_[i] * i);
+  return d;
+}
+
+Polynomial Polynomial::primitive() const {
+  Integer content = 0;
+  for (const Integer& c : c_) content = boost::multiprecision::gcd(content, c);
+  if (content <= 1) return *this;
+  Polynomial p = *this;
+  for (Integer& c : p.c_) c /= content;
+  return p;
+}
+
+/// Remainder of a by b, times a constant.
+Polynomial remainder(const Polynomial& a, const Polynomial& b) {
+  Polynomial rest = a;
+  const std::size_t n = b.c_.size();
+  while (rest.c_.size() >= n) {
+    const Integer top = rest.c_.back();
+    const std::size_t shift = rest.c_.size() - n;
+    for (std::size_t i = 0; i < rest.c_.size(); ++i) {
+      rest.c_[i] *= b.c_.back();
+      if (i >= shift) rest.c_[i] -= top * b.c_[i - shift];
+    }
+    rest.trim();
+  }
+  return rest;
+}
+
+Polynomial Polynomial::quotient(const Polynomial& divisor) const {
+  Polynomial rest = *this, q;
+  const std::size_t n = divisor.c_.size();
+  const Integer& lead = divisor.c_.back();
+  q.c_.resize(c_.size() - n + 1);
+  while (rest.c_.size() >= n) {
+    const Integer top = rest.c_.back();
+    const std::size_t shift = rest.c_.size() - n;
+    for (Integer& c : q.c_) c *= lead;
+    q.c_[shift] += top;
+    for (std::size_t i = 0; i < rest.c_.size(); ++i) {
+      rest.c_[i] *= lead;
+      if (i >= shift) rest.c_[i] -= top * divisor.c_[i - shift];
+    }
+    rest.trim();
+  }
+  return q;
+}
+
+int Polynomial::signAt(const Integer& k, unsigned m) const {
+  return valueAt(k, m).sign();
+}
+
+Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
+  if (isZero()) return 0;
+  Integer value = c_.back();  // Horner's rule
+  for (int i = degree() - 1; i >= 0; --i) {
+    value *= k;
+    value += (*this)[i] << (m * static_cast<unsigned>(degree() - i));
+  }
+  return value;
+}
+
+int Polynomial::signAtFraction(const Integer& numerator,
+                               const Integer& denominator) const {
+  if (isZero()) return 0;
+  Integer value = c_.back(), power = 1;
+  for (int i = degree() - 1; i >= 0; --i) {
+    power *= denominator;
+    value = value * numerator + (*this)[i] * power;
+  }
+  return value.sign();
+}
+
+Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) const {
+  const std::size_t n = c_.size();
+  // q(s) = 2^(m degree) p((k + s) / 2^m) by repeated synthetic division.
+  Coefficients q = c_;
+  for (std::size_t i = 0; i < n; ++i) q[i] <<= m * static_cast<unsigned>(n - 1 - i);
+  if (!k.is_zero())
+    for (std::size_t i = 0; i + 1 < n; ++i)
+      for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1] * k;
+  // Those of (1 + x)^degree q(1 / (1 + x)), reversed.
+  std::reverse(q.begin(), q.end());
+  for (std::size_t i = 0; i + 1 < n; ++i)
+    for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1];
+  std::reverse(q.begin(), q.end());
+  return q;
+}
+
+int Polynomial::signChanges(const Integer& k, unsigned m) const {
+  int changes = 0, last = 0;
+  for (const Integer& b : bernstein(k, m)) {
+    const int sign = b.sign();
+    if (sign == 0) continue;
+    if (last != 0 && sign != last) ++changes;
+    last = sign;
+  }
+  return changes;
+}
+
+Polynomial gcd(Polynomial a, Polynomial b) {
+  while (!b.isZero()) {
+    Polynomial rest = remainder(a, b);
+    a = std::move(b);
+    b = std::move(rest);
+  }
+  return a.degree() > 0 ? a.primitive() : a;
+}
+
+/// Where in (k, k + 1) / 2^m, 0 to 1, a polynomial of different signs at its ends seems
+/// to be zero.
+static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
+  const Polynomial::Coefficients exact = p.bernstein(k, m);
+  std::size_t bits = 0;
+  for (const Integer& b : exact)
+    if (!b.is_zero()) bits = std::max<std::size_t>(bits, msb(abs(b)));
+  const std::size_t drop = bits > 60 ? bits - 60 : 0;
+  double b[Polynomial::kMaxDegree + 1];
+  const std::size_t n = exact.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Integer head = abs(exact[i]) >> drop;
+    b[i] = static_cast<double>(head.convert_to<std::int64_t>()) * exact[i].sign();
+  }
+  const auto value = [&b, n](double s) {
+    double sum = 0, power = 1;
+    for (std::size_t j = 0; j < n; ++j) {
+      sum = sum * (1 - s) + b[j] * power;
+      power *= s;
+    }
+    return sum;
+  };
+  return illinois(value, 0, 1, b[0], b[n - 1], 0, 60);
+}
+
+std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
+  // A root of higher multiplicity keeps two sign changes at every depth.
+  constexpr int kMaxCuts = 12, kCutsOfTurn = 4;
+  constexpr unsigned kMaxJump = 256, kMaxTurnJump = 48;
+  /// The interval (k, k + 1) / 2^m, and how it was reached.
+  struct Interval {
+    Integer k;
+    unsigned m;
+    int changes;
+    int cuts;
+    unsigned jump;
+  };
+  Polynomial p = polynomial;
+  bool square_free = p.degree() <= 1;
+  std::vector<Root> roots;
+  // Roots found on the way at dyadic points are divided out, so that ends of intervals
+  // are never roots; the search then starts again.
+  const auto takeDyadic = [&](const Integer& k, unsigned m) {
+    bool taken = false;
+    while (p.degree() >= 1 && p.signAt(k, m) == 0) {
+      if (!taken) roots.emplace_back(k, m);
+      p = withoutRoot(p, k, m);
+      taken = true;
+    }
+    return taken;
+  };
+  takeDyadic(0, 0);
+  takeDyadic(1, 0);
+  for (bool again = true; again;) {
+    again = false;
+    std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
+    std::vector<Root> isolated;
+    // Roots that crowd at an end (frames of very different size) or where the polynomial
+    // turns (touching but for a rounding): a part of the interval with all its sign
+    // changes leaves none for the rest, nor a root between.
+    const auto jump = [&](const Interval& i) {
+      const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
+      const auto jumpTo = [&](const Integer& k, int cuts) {
+        if (p.signChanges(k, i.m + i.jump) != i.changes) return false;
+        open.push_back(
+            {k, i.m + i.jump, i.changes, i.cuts + cuts, std::min(2 * i.jump, kMaxJump)});
+        return true;
+      };
+      if (jumpTo(first, 0) || jumpTo(last, 0)) return true;
+      if (i.jump > kMaxTurnJump) return false;
+      const double turn =
+          std::ldexp(estimateRoot(p.derivative(), i.k, i.m), static_cast<int>(i.jump));
+      return jumpTo(first + static_cast<std::int64_t>(turn), kCutsOfTurn);
+    };
+    while (!open.empty() && !again) {
+      const Interval i = std::move(open.back());
+      open.pop_back();
+      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p);
+      if (i.changes <= 1) continue;
+      if (i.jump > 1 && jump(i)) continue;
+      if (i.cuts >= kMaxCuts && !square_free) {
+        const Polynomial repeated = gcd(p, p.derivative());
+        square_free = true;
+        if (repeated.degree() > 0) {
+          p = p.quotient(repeated).primitive();
+          again = true;
+          break;
+        }
+      }
+      const Integer mid = 2 * i.k + 1;
+      again = takeDyadic(mid, i.m + 1);
+      for (const Integer& k : {mid, Integer(mid - 1)}) {
+        const int changes = again ? 0 : p.signChanges(k, i.m + 1);
+        open.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
+      }
+    }
+    if (!again) roots.insert(roots.end(), isolated.begin(), isolated.end());
+  }
+  return roots;
+}
+
+Integer Root::guessInside(unsigned bits) const {
+  if (bits <= kEstimateBits)
+    return static_cast<std::int64_t>(
+        std::ldexp(estimateRoot(polynomial_, k_, m_), static_cast<int>(bits)));
+  // False position: in a short interval the polynomial is nearly a line.
+  const Integer lo = abs(polynomial_.valueAt(k_, m_)),
+                hi = abs(polynomial_.valueAt(k_ + 1, m_));
+  return (lo << bits) / (lo + hi);
+}
+
+int Root::probe(const Integer& k, unsigned m) {
+  const int sign = polynomial_.signAt(k, m);
+  if (sign == 0) {
+    k_ = k;
+    m_ = m;
+    is_dyadic_ = true;
+  }
+  return sign;
+}
+
+bool Root::narrow(unsigned bits) {
+  // The neighbours of the place where the root seems to be.
+  if (bits > 1) {
+    const Integer first = k_ << bits, end = (k_ + 1) << bits;
+    const Integer guess = first + guessInside(bits);
+    const Integer below = guess > first ? guess - 1 : first,
+                  above = guess + 2 < end ? guess + 2 : end;
+    const unsigned m = m_ + bits;
+    int sign = below == first ? sign_below_ : probe(below, m);
+    if (is_dyadic_) return true;
+    if (sign == sign_below_) {
+      for (Integer k = below; k < above; ++k) {
+        sign = k + 1 == end ? -sign_below_ : probe(k + 1, m);
+        if (is_dyadic_) return true;
+        if (sign == sign_below_) continue;
+        k_ = k;
+        m_ = m;
+        return true;
+      }
+    }
+  }
+  const Integer mid = 2 * k_ + 1;
+  const int sign = probe(mid, m_ + 1);
+  if (is_dyadic_) return true;
+  k_ = sign == sign_below_ ? mid : mid - 1;
+  ++m_;
+  return bits == 1;
+}
+
+/// Sign of a line at the root: on which side of the root its own, a fraction, lies.
+int Root::signOfLine(const Polynomial& g) const {
+  const int slope = g[1].sign();
+  const Integer numerator = slope > 0 ? -g[0] : g[0], denominator = abs(g[1]);
+  const Integer scaled = numerator << m_;
+  if (scaled <= k_ * denominator) return slope;
+  if (scaled >= (k_ + 1) * denominator) return -slope;
+  return slope * sign_below_ * polynomial_.signAtFraction(numerator, denominator);
+}
+
+int Root::signOf(const Polynomial& g) {
+  if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
+  if (is_dyadic_) return g.signAt(k_, m_);
+  if (g == polynomial_) return 0;
+  if (g.degree() == 1) return signOfLine(g);
+  if (polynomial_.degree() == 1) {
+    const int slope = polynomial_[1].sign();
+    return g.signAtFraction(-slope * polynomial_[0], slope * polynomial_[1]);
+  }
+  // Where g has no root in the interval, its sign is that of any inner point. The number
+  // of bits won by a step doubles while steps succeed.
+  unsigned bits = kEstimateBits;
+  bool common_known = false;
+  for (bool first = true; !is_dyadic_ && g.signChanges(k_, m_) > 0; first = false) {
+    if (!first && !common_known) {
+      // A common root in the interval is this root: the only one of its polynomial
+      // there, at which the divisor changes sign.
+      const Polynomial common = gcd(polynomial_, g);
+      if (common.degree() > 0 && common.signAt(k_, m_) != common.signAt(k_ + 1, m_))
+        return 0;
+      common_known = true;
+    }
+    bits = narrow(bits) ? 2 * bits : kEstimateBits;
+  }
+  return is_dyadic_ ? g.signAt(k_, m_) : g.signAt(2 * k_ + 1, m_ + 1);
+}
+
+double Root::lowerBound() const { return toDouble(k_, m_, -1); }
+
+double Root::upperBound() const {
+  return toDouble(is_dyadic_ ? k_ : Integer(k_ + 1), m_, 1);
+}
+
+std::pair<double, double> Root::bracket(double width, int clock_exponent) {
+  // No interval between doubles is shorter, and 1 / width stays finite.
+  width = std::max(width, std::numeric_limits<double>::min());
+  if (clock_exponent != 0) return bracketOnClock(width, clock_exponent);
+  // With more bits than a double has, an interval closer than doubles would not show. A
+  // root below 2^-1074 has none.
+  const auto hasBitsOfDouble = [this] {
+    return !k_.is_zero() && boost::multiprecision::msb(k_) > 54;
+  };
+  while (!is_dyadic_ && m_ < kMaxBits && !hasBitsOfDouble()) {
+    const double excess = std::ldexp(1., -static_cast<int>(m_)) / width;
+    if (!(excess > 1)) break;
+    narrow(static_cast<unsigned>(std::min<int>(kEstimateBits, std::ilogb(excess) + 1)));
+  }
+  return {lowerBound(), upperBound()};
+}
+
+std::pair<double, double> Root::bracketOnClock(double width, int clock_exponent) {
+  const auto shift = static_cast<unsigned>(std::abs(clock_exponent));
+  const auto timeOf = [&](const Integer& k, int direction) {
+    Integer before = (Integer(1) << m_) - k, after = k;
+    (clock_exponent > 0 ? before : after) <<= shift;
+    return ratioToDouble(after, before + after, direction);
+  };
+  for (;;) {
+    const double lo = timeOf(k_, -1), hi = timeOf(is_dyadic_ ? k_ : Integer(k_ + 1), 1);
+    constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
+    if (is_dyadic_ || hi - lo <= width || hi - lo <= kUlps * lo || m_ > kMaxBits + shift)
+      return {lo, hi};
+    narrow(kEstimateBits);
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

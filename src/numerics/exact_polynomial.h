@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Polynomials with integer coefficients and their real roots in [0, 1], exactly: what the
+// last stage of the elementary test needs and no more.
+#ifndef FCL_CCD_NUMERICS_EXACT_POLYNOMIAL_H
+#define FCL_CCD_NUMERICS_EXACT_POLYNOMIAL_H
+
+#include <boost/container/static_vector.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
+#include <cstddef>
+#include <initializer_list>
+#include <utility>
+#include <vector>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// An integer of any size; up to 512 bits, which conditions on coordinates of like
+/// magnitude need, it lies in the object itself.
+using Integer =
+    boost::multiprecision::number<boost::multiprecision::cpp_int_backend<512, 0>,
+                                  boost::multiprecision::et_off>;
+
+/// @brief Coefficients by ascending power, no zero in the last place; empty is zero.
+class Polynomial {
+ public:
+  /// The conditions of a contact have at most this degree.
+  static constexpr int kMaxDegree = 3;
+  using Coefficients = boost::container::static_vector<Integer, kMaxDegree + 1>;
+
+  Polynomial() = default;
+  Polynomial(std::initializer_list<Integer> coefficients)
+      : c_(coefficients.begin(), coefficients.end()) {
+    trim();
+  }
+
+  bool isZero() const { return c_.empty(); }
+  bool operator==(const Polynomial& other) const { return c_ == other.c_; }
+  int degree() const { return static_cast<int>(c_.size()) - 1; }
+  const Integer& operator[](int i) const { return c_[static_cast<std::size_t>(i)]; }
+
+  Polynomial& operator+=(const Polynomial& other);
+  Polynomial& operator-=(const Polynomial& other);
+  friend Polynomial operator+(Polynomial a, const Polynomial& b) { return a += b; }
+  friend Polynomial operator-(Polynomial a, const Polynomial& b) { return a -= b; }
+  friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
+
+  Polynomial derivative() const;
+  /// @brief Divided by the greatest common divisor of the coefficients.
+  Polynomial primitive() const;
+  /// @brief Quotient by a divisor that divides this without rest, up to a constant
+  /// factor.
+  Polynomial quotient(const Polynomial& divisor) const;
+
+  /// @brief The value at k / 2^m, times 2^(m degree).
+  Integer valueAt(const Integer& k, unsigned m) const;
+
+  /// @brief Sign at k / 2^m.
+  int signAt(const Integer& k, unsigned m) const;
+
+  /// @brief Sign at numerator / denominator, denominator > 0.
+  int signAtFraction(const Integer& numerator, const Integer& denominator) const;
+
+  /// @brief Bernstein coefficients over [k, k + 1] / 2^m, each with its binomial and
+  /// times 2^(m degree).
+  Coefficients bernstein(const Integer& k, unsigned m) const;
+
+  /// @brief Descartes' bound on the number of roots in the open interval (k, k + 1) /
+  /// 2^m: the sign changes of the Bernstein coefficients; exact when 0 or 1.
+  int signChanges(const Integer& k, unsigned m) const;
+
+ private:
+  friend Polynomial remainder(const Polynomial& a, const Polynomial& b);
+
+  void trim() {
+    while (!c_.empty() && c_.back().is_zero()) c_.pop_back();
+  }
+
+  Coefficients c_;
+};
+
+/// @brief Greatest common divisor, primitive; of degree 0 when the two have no common
+/// root.
+Polynomial gcd(Polynomial a, Polynomial b);
+
+/// @brief A root in [0, 1] of a polynomial: the number k / 2^m itself, or the only root
+/// in the open interval (k, k + 1) / 2^m, simple, and whose ends are not roots.
+class Root {
+ public:
+  /// @brief The number k / 2^m.
+  Root(Integer k, unsigned m) : k_(std::move(k)), m_(m) {}
+  /// @brief The root of a polynomial in (k, k + 1) / 2^m.
+  Root(Integer k, unsigned m, Polynomial polynomial)
+      : k_(std::move(k)),
+        m_(m),
+        is_dyadic_(false),
+        sign_below_(polynomial.signAt(k_, m_)),
+        polynomial_(std::move(polynomial)) {}
+
+  /// @brief Sign of g at the root, exact; may narrow the interval.
+  int signOf(const Polynomial& g);
+
+  /// @brief Doubles not above and not below the root.
+  double lowerBound() const;
+  double upperBound() const;
+
+  /// @brief Doubles [lo, hi] around t, the number in [0, 1] with 2^clock_exponent t / (1
+  /// - t) = s / (1 - s) for this root s: t = s for 0. hi - lo <= width or, where that is
+  /// less than a few units in the last place, as close as doubles get.
+  std::pair<double, double> bracket(double width, int clock_exponent);
+
+ private:
+  /// What a double can say of the root's place inside the interval.
+  static constexpr unsigned kEstimateBits = 48;
+
+  /// No double above 0 needs more.
+  static constexpr unsigned kMaxBits = 1100;
+
+  std::pair<double, double> bracketOnClock(double width, int clock_exponent);
+  int signOfLine(const Polynomial& g) const;
+  /// Narrows the interval by 2^-bits if the root is where it seems to be, else to a half.
+  /// @return whether it was
+  bool narrow(unsigned bits);
+  /// Sign at the inner point k / 2^m, where the root is found to be if it is 0.
+  int probe(const Integer& k, unsigned m);
+  /// Where in the interval, cut in 2^bits parts, the root seems to be.
+  Integer guessInside(unsigned bits) const;
+
+  Integer k_;
+  unsigned m_;
+  bool is_dyadic_{true};
+  int sign_below_{0};
+  Polynomial polynomial_;
+};
+
+/// @brief All roots of p (not zero) in [0, 1], in no order.
+std::vector<Root> rootsInUnitInterval(const Polynomial& p);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_NUMERICS_ILLINOIS_H
+#define FCL_CCD_NUMERICS_ILLINOIS_H
+
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief About a root of f between lo and hi, where it has the values f_lo and f_hi of
+/// different sign: the Illinois method, false position that halves the weight of an end
+/// that stays. Only a place to cut or to look: nothing is proved about it.
+/// @param tol  steps this short end the search
+template <typename F>
+double illinois(F&& f, double lo, double hi, double f_lo, double f_hi, double tol,
+                int max_steps) {
+  double t = lo;
+  for (int i = 0; i < max_steps; ++i) {
+    const double previous = t;
+    t = (f_hi * lo - f_lo * hi) / (f_hi - f_lo);
+    if (!(t > lo && t < hi)) t = lo + 0.5 * (hi - lo);
+    if (std::abs(t - previous) <= tol) break;
+    const double value = f(t);
+    if (value == 0) break;
+    if ((value < 0) == (f_lo < 0)) {
+      lo = t;
+      f_lo = value;
+      f_hi *= 0.5;
+    } else {
+      hi = t;
+      f_hi = value;
+      f_lo *= 0.5;
+    }
+  }
+  return t;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

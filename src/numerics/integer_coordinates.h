@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Coordinates as integers: doubles times a common power of two.
+#ifndef FCL_CCD_NUMERICS_INTEGER_COORDINATES_H
+#define FCL_CCD_NUMERICS_INTEGER_COORDINATES_H
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A finite double as digits * 2^exponent, with odd digits unless it is 0: 53 of
+/// them at most, 24 if it was a float.
+struct BinaryDigits {
+  std::int64_t digits;
+  int exponent;
+
+  explicit BinaryDigits(double value) : digits{0}, exponent{0} {
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
+    const auto field = static_cast<int>(bits >> 52 & 0x7ff);
+    const std::uint64_t all = (bits & (kHidden - 1)) | (field == 0 ? 0 : kHidden);
+    if (all == 0) return;
+    const int zeros = __builtin_ctzll(all);
+    digits = static_cast<std::int64_t>(all >> zeros);
+    if (bits >> 63 != 0) digits = -digits;
+    exponent = std::max(field, 1) - 1075 + zeros;
+  }
+
+  int numDigits() const {
+    return 64 -
+           __builtin_clzll(static_cast<std::uint64_t>(digits < 0 ? -digits : digits));
+  }
+};
+
+/// @brief The exponents of the lowest and of the highest digit of some numbers that are
+/// not 0.
+struct DigitRange {
+  int lowest{std::numeric_limits<int>::max()};
+  int highest{std::numeric_limits<int>::min()};
+
+  void add(double value) {
+    const BinaryDigits x(value);
+    if (x.digits == 0) return;
+    lowest = std::min(lowest, x.exponent);
+    highest = std::max(highest, x.exponent + x.numDigits() - 1);
+  }
+  bool isEmpty() const { return lowest > highest; }
+  /// @brief What the integers need; of a range that is not empty.
+  int numDigits() const { return highest - lowest + 1; }
+};
+
+/// @brief value * 2^-lowest, for a finite value of a DigitRange.
+template <typename Integer>
+Integer toInteger(double value, int lowest) {
+  const BinaryDigits x(value);
+  if (x.digits == 0) return 0;
+  return Integer(x.digits) << static_cast<unsigned>(x.exponent - lowest);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Vectors and their cross products over the step, in floating point with error bounds.
+#ifndef FCL_CCD_NUMERICS_MOVING_VECTOR_H
+#define FCL_CCD_NUMERICS_MOVING_VECTOR_H
+
+#include <algorithm>
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+struct Vec {
+  double x, y, z;
+};
+
+inline Vec operator+(const Vec& a, const Vec& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec operator-(const Vec& a, const Vec& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+inline double dot(const Vec& a, const Vec& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec cross(const Vec& a, const Vec& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double maxNorm(const Vec& a) {
+  return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
+}
+
+/// @brief Cross product of two moving vectors over an interval, c0 (1-s)^2 + c1 s (1-s) +
+/// c2 s^2. No component of c0, c1 / 2 and c2 is larger than size, nor further than error
+/// from the truth.
+struct Quadratic {
+  Vec c0, c1, c2;
+  double size;
+  double error;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

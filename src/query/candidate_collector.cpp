@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/candidate_collector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+void CandidateCollector::flush() {
+  batch_.cull(latest(), counts_);
+  block_.clear();
+  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
+    for (std::size_t i = 0; i < batch_.size(kind); ++i) {
+      block_.emplace_back();
+      batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], block_.back());
+    }
+  batch_.clear();
+  if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_QUERY_CONTACT_SINK_H
+#define FCL_CCD_QUERY_CONTACT_SINK_H
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <iterator>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "base/uninitialized_vector.h"
+#include "mesh/feature_pairs.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A contact between two features, by ids.
+struct FeatureContact : FeatureIds {
+  double toc_lo;
+  double toc_hi;
+};
+
+/// @brief Order of contacts: by toc_lo, then kind, side and vertex ids; total on the
+/// contacts of one scene.
+bool isEarlier(const FeatureContact& x, const FeatureContact& y);
+
+/// @brief Keeps the earliest contacts, at most capacity.
+class ContactSink {
+ public:
+  /// @param capacity  at least 1
+  /// @param may_repeat  whether add() can be given a pair more than once; the earliest
+  /// counts, whatever the order.
+  ContactSink(std::size_t capacity, bool may_repeat)
+      : capacity_(capacity), may_repeat_(may_repeat) {}
+
+  /// @return whether the contact was kept.
+  bool add(const FeatureContact& contact);
+
+  /// @brief The kept contacts, in the order of add() until isCut(), then in none.
+  const std::deque<FeatureContact>& contacts() const { return contacts_; }
+
+  /// @brief Whether contacts were dropped for want of capacity.
+  bool isCut() const { return cut_; }
+
+  /// @brief Upper end of the earliest bracket so far; 1 without contacts.
+  double firstHi() const { return first_hi_; }
+
+  /// @brief A contact that starts after this time would not be kept, nor would it be news
+  /// that some are dropped.
+  double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
+
+  /// @brief The contacts in no order; the sink is to be cleared before it is used again.
+  std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
+
+  /// @brief Forgets all contacts.
+  void clear();
+
+ private:
+  using PairKey = std::array<std::uint32_t, 5>;
+  static PairKey keyOf(const FeatureContact& contact);
+  struct Seen {
+    FeatureContact contact;
+    /// Where it is until cut_.
+    std::size_t place;
+  };
+  bool addAgain(const FeatureContact& contact, Seen& seen);
+
+  std::size_t capacity_;
+  bool may_repeat_;
+  bool cut_{false};
+  double first_hi_{1};
+  /// Once cut_, a heap with the latest contact in front.
+  std::deque<FeatureContact> contacts_;
+  /// The kept pairs.
+  std::map<PairKey, Seen> seen_;
+};
+
+/// @brief The contacts of some lists, earliest first. They stay in the lists, since there
+/// may be many.
+class SortedContacts {
+ public:
+  class Iterator {
+   public:
+    using iterator_category = std::forward_iterator_tag;
+    using value_type = FeatureContact;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const FeatureContact*;
+    using reference = const FeatureContact&;
+
+    Iterator() = default;
+    explicit Iterator(const FeatureContact* const* at) : at_(at) {}
+    reference operator*() const { return **at_; }
+    pointer operator->() const { return *at_; }
+    Iterator& operator++() {
+      ++at_;
+      return *this;
+    }
+    Iterator operator++(int) { return Iterator(at_++); }
+    bool operator==(const Iterator& other) const { return at_ == other.at_; }
+    bool operator!=(const Iterator& other) const { return at_ != other.at_; }
+
+   private:
+    const FeatureContact* const* at_{nullptr};
+  };
+
+  SortedContacts() = default;
+  explicit SortedContacts(std::vector<std::deque<FeatureContact>> lists);
+  SortedContacts(SortedContacts&&) = default;
+  SortedContacts& operator=(SortedContacts&&) = default;
+
+  std::size_t size() const { return sorted_.size(); }
+  bool empty() const { return sorted_.empty(); }
+  const FeatureContact& operator[](std::size_t i) const { return *sorted_[i]; }
+  const FeatureContact& front() const { return *sorted_.front(); }
+  const FeatureContact& back() const { return *sorted_.back(); }
+  Iterator begin() const { return Iterator(sorted_.data()); }
+  Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
+
+ private:
+  std::vector<std::deque<FeatureContact>> lists_;
+  UninitializedVector<const FeatureContact*> sorted_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_QUERY_DEFORMABLE_QUERY_H
+#define FCL_CCD_QUERY_DEFORMABLE_QUERY_H
+
+#include <vector>
+
+#include "query/candidate_collector.h"
+#include "query/contact_sink.h"
+#include "query/narrow_phase.h"
+#include "tree/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+struct QueryAnswer {
+  SortedContacts contacts;
+  bool cut{false};
+  bool has_crossing{false};
+  Crossing crossing{};
+  StageCounts counts;
+  StageTimes times;
+};
+
+/// @brief Traverses the tree of a with itself and tests what it finds.
+QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options);
+
+/// @brief Traverses the trees of a and b and tests what it finds.
+QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
+                      const QueryOptions& options);
+
+/// @brief Traverses the tree of a with itself and hands the candidates to the sink.
+/// @pre a is prepared
+/// @return whether the sink took them all
+bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink);
+
+/// @brief Traverses the trees of a and b and hands the candidates to the sink.
+/// @pre a and b are prepared
+/// @return whether the sink took them all
+bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
+                    const CandidateSink& sink);
+
+/// @brief What overlapWindow() needs between the trees of two instances.
+KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/feature_batch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "fcl/common/exception.h"
+#include "tree/box_place.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Of two triangles.
+constexpr std::size_t kEdges = 6;
+
+bool isFinite(const TreeVertex& x) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
+  return sum == 0;
+}
+
+}  // namespace
+
+NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
+    : std::domain_error("vertex " + std::to_string(vertex) + " is not finite"),
+      vertex_(vertex) {}
+
+TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
+  if (!mesh.isInPlace()) return;
+  in_place_ = {mesh.tree->triangles().data(), mesh.tree->vertices().data()};
+}
+
+void TriangleReader::readIntoStore(int i) {
+  const auto index = static_cast<std::size_t>(i);
+  if (!triangles_) {
+    // Not initialized: written before they are read.
+    triangles_.reset(new TreeTriangle[kStored]);
+    vertices_.reset(new TreeVertex[3 * kStored]);
+  }
+  const std::size_t next = (stored_ + 1) % kStored;
+  TreeTriangle& triangle = triangles_[next];
+  if (mesh_.tree) {
+    triangle = mesh_.tree->triangles()[index];
+  } else {
+    triangle.index = static_cast<std::uint32_t>(i);
+    triangle.owned = kOwnsAll;
+    if (mesh_.prepared) {
+      std::copy(mesh_.prepared[index].v, mesh_.prepared[index].v + 3, triangle.id);
+      triangle.owned = mesh_.prepared[index].owned;
+    } else {
+      for (int k = 0; k < 3; ++k) {
+        const std::size_t id = mesh_.triangles[index][k];
+        if (id >= mesh_.frames.size())
+          throw Exception("triangle " + std::to_string(i) +
+                          " refers to a vertex that is not there");
+        triangle.id[k] = static_cast<std::uint32_t>(id);
+      }
+      // As in assignFeatures(), an edge with two equal ids is none.
+      for (unsigned k = 0; k < 3; ++k)
+        if (triangle.id[k] == triangle.id[(k + 1) % 3])
+          triangle.owned &= ~(1U << (3 + k));
+    }
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    TreeVertex& x = vertices_[3 * next + k];
+    pose(triangle.id[k], x);
+    if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
+    if (!isFinite(x)) throw NonFiniteVertex(triangle.id[k]);
+  }
+  stored_ = next;
+  index_ = i;
+}
+
+void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
+  const VertexPath path = mesh_.frames[id];
+  out.setPath(path.t0, path.t1);
+  if (mesh_.tree) return;
+  // Boxes of a rigid tree are without the translation. Taking it off again rounds by
+  // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all,
+  // and roundUp() may lose a part of what it adds.
+  const auto fit = [&](const double* x, const double(&translation)[3], Kdop16& box) {
+    double p[3], size = 0;
+    for (int k = 0; k < 3; ++k) {
+      p[k] = x[k] - translation[k];
+      size = std::max(size, std::abs(x[k]) + std::abs(translation[k]) +
+                                std::abs(mesh_.rigid.origin()[k]));
+    }
+    fitPoint(p, mesh_.rigid.origin(), roundUp(size * 0x1p-49, 0.f), box);
+  };
+  fit(out.t0, mesh_.translation[0], out.box.t0);
+  fit(out.t1, mesh_.translation[1], out.box.t1);
+}
+
+FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
+                           const KdopShift* shift, const Kernels& kernels)
+    : reader_a_(a),
+      reader_b_(b),
+      self_(&a == &b),
+      shift_(shift),
+      kernels_(kernels),
+      pairs_(new TrianglePair[kMaxPairs]),
+      owned_(new std::uint16_t[kMaxPairs]),
+      edges_(new std::uint16_t[kMaxPairs]),
+      gaps_(new float[kMaxPairs]),
+      lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
+      crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
+  if (!shift) return;
+  for (int j = 0; j < 16; ++j) {
+    turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
+    turned_shift_.t1.half[j] = shift->t1.half[j ^ 8];
+  }
+}
+
+// listFeatures() writes behind the last pair.
+FeatureBatch::List::List(std::size_t pairs_each)
+    : codes(new std::uint32_t[kMaxPairs * pairs_each + 16]),
+      windows(new TimeWindow[kMaxPairs * pairs_each]) {}
+
+void FeatureBatch::clear() {
+  num_pairs_ = num_crossings_ = 0;
+  has_edges_ = false;
+  for (List& list : lists_) list.size = 0;
+}
+
+template <typename ReaderA, typename ReaderB>
+void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
+                           const LeafPair* last, double latest, bool with_crossings,
+                           StageCounts& counts) {
+  // Triangles lie anywhere in memory: the cache is told before they are read.
+  constexpr std::ptrdiff_t kAhead = 8;
+  for (; next != last; ++next) {
+    const LeafPair& ahead = next[std::min(kAhead, last - 1 - next)];
+    reader_a.prefetch(ahead.a);
+    reader_b.prefetch(ahead.b);
+    if (next->earliest > latest) continue;
+    TrianglePair& pair = pairs_[num_pairs_];
+    pair.a = reader_a.read(next->a, pair.x);
+    pair.b = reader_b.read(next->b, pair.x + 3);
+    const bool with_crossing = with_crossings && next->earliest <= 0.f;
+    unsigned owned = ownedPairs(pair.a->owned, pair.b->owned);
+    unsigned edges = ownedEdges(pair.a->owned, pair.b->owned) & (0U - with_crossing);
+    ++counts.triangle_pairs;
+    if (self_ && doShareVertex(idsOf(*pair.a), idsOf(*pair.b))) {
+      const unsigned shared = sharedVertices(pair.a->id, pair.b->id);
+      owned &= ~pairsAt(shared);
+      edges &= ~edgesAtBoth(shared);
+      ++counts.adjacent_pairs;
+    }
+    owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
+    edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
+    has_edges_ |= edges != 0;
+    // Three pairs of ten own nothing together: no branch, nobody could foretell it.
+    num_pairs_ += (owned | edges) != 0;
+  }
+}
+
+void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double latest,
+                       bool with_crossings, StageCounts& counts) {
+  TrianglesInPlace a = reader_a_.inPlace(), b = reader_b_.inPlace();
+  if (a.triangles && b.triangles)
+    addFrom(a, b, next, last, latest, with_crossings, counts);
+  else
+    addFrom(reader_a_, reader_b_, next, last, latest, with_crossings, counts);
+}
+
+void FeatureBatch::cull(double latest, StageCounts& counts) {
+  leaveOutApart(latest, counts);
+  cull(FeatureKind::kVertexFace, latest, lists_[0], counts);
+  cull(FeatureKind::kEdgeEdge, latest, lists_[1], counts);
+  if (!has_edges_) return;
+  const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
+                                                 (1U << kEdges) - 1, crossings_.get());
+  num_crossings_ = kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
+                                          crossings_.get(), size);
+}
+
+/// Leaves out triangle pairs that are apart until `latest` if that isEarly(), else only
+/// their edges that may cross at t = 0.
+void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
+  const bool is_early = isEarly(latest);
+  if (!is_early && !has_edges_) return;
+  // A sum and a product round by 2^-53 each.
+  const double share = is_early ? latest * (1 + 0x1p-50) : 0;
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < num_pairs_; first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
+    float gaps[8];
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, gaps);
+    if (!is_early) {
+      // No branch, nobody could foretell it.
+      for (std::size_t i = 0; i < count; ++i)
+        edges_[first + i] &= static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
+      continue;
+    }
+    counts.plane_culled += static_cast<unsigned>(__builtin_popcount(apart));
+    for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+      pairs_[kept] = pairs_[first + lane];
+      owned_[kept] = owned_[first + lane];
+      edges_[kept] = edges_[first + lane];
+      gaps_[kept++] = gaps[lane];
+    }
+  }
+  if (is_early) num_pairs_ = kept;
+}
+
+void FeatureBatch::cull(FeatureKind kind, double latest, List& list,
+                        StageCounts& counts) {
+  constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
+  const std::size_t size = kernels_.listFeatures(
+      owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
+      list.codes.get());
+  list.size =
+      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
+                            list.codes.get(), size, list.windows.get());
+  counts.feature_pairs += size;
+  counts.box_culled += size - list.size;
+}
+
+FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
+  const std::uint32_t code = crossings_[i], bit = code % 16;
+  return {&pairs_[code / 16], bit % 3, bit < 3};
+}
+
+/// Without a branch, where nobody could foretell it.
+template <typename T>
+void swapIf(bool condition, T& a, T& b) {
+  const T difference = (a ^ b) & static_cast<T>(-static_cast<T>(condition));
+  a ^= difference;
+  b ^= difference;
+}
+
+/// An edge by ascending ids.
+struct OrderedEdge {
+  /// Both, 32 bits each.
+  std::uint64_t ids;
+  /// Places in a TrianglePair, four bits each.
+  std::uint32_t places;
+
+  /// @param k  the corner of the triangle that it begins at
+  /// @param first  place of the triangle's first corner
+  OrderedEdge(const TreeTriangle& triangle, unsigned k, unsigned first) {
+    unsigned l = (k + 1) % 3;
+    std::uint32_t p = triangle.id[k], q = triangle.id[l];
+    const bool is_turned = q < p;
+    swapIf(is_turned, k, l);
+    swapIf(is_turned, p, q);
+    ids = std::uint64_t{p} << 32 | q;
+    places = (first + k) << 4 | (first + l);
+  }
+};
+
+/// Edges have their ids in ascending order (edges of two meshes stay on their sides) and
+/// the points are in the order of the ids: one name, one evaluation. In a self-collision
+/// the vertex of a VF pair is always mesh a's.
+void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
+                                FeatureCandidate& out) const {
+  const TrianglePair& triangles = pairs_[code / 16];
+  const FeaturePair pair = featurePair(static_cast<int>(code % 16));
+  out.kind = pair.kind;
+  out.first_on_a = pair.first_on_a;
+  out.window_lo = windowLo(window);
+  out.window_hi = windowHi(window);
+  out.triangles[0] = static_cast<std::int32_t>(triangles.a->index);
+  out.triangles[1] = static_cast<std::int32_t>(triangles.b->index);
+  const auto set = [&](int i, bool on_a, unsigned k) {
+    out.vertices[i] = (on_a ? triangles.a : triangles.b)->id[k];
+    out.x[i] = triangles.x[on_a ? k : 3 + k];
+  };
+  if (pair.kind == FeatureKind::kVertexFace) {
+    set(0, pair.first_on_a, pair.first);
+    for (unsigned k = 0; k < 3; ++k) set(static_cast<int>(k) + 1, !pair.first_on_a, k);
+    if (self_ && !pair.first_on_a) {
+      out.first_on_a = true;
+      std::swap(out.triangles[0], out.triangles[1]);
+    }
+    return;
+  }
+  OrderedEdge edges[2] = {OrderedEdge(*triangles.a, pair.first, 0),
+                          OrderedEdge(*triangles.b, pair.second, 3)};
+  const bool is_turned = self_ & (edges[1].ids < edges[0].ids);
+  swapIf(is_turned, edges[0].ids, edges[1].ids);
+  swapIf(is_turned, edges[0].places, edges[1].places);
+  swapIf(is_turned, out.triangles[0], out.triangles[1]);
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.vertices[2 * i] = static_cast<std::uint32_t>(edges[i].ids >> 32);
+    out.vertices[2 * i + 1] = static_cast<std::uint32_t>(edges[i].ids);
+    out.x[2 * i] = triangles.x[edges[i].places >> 4];
+    out.x[2 * i + 1] = triangles.x[edges[i].places & 15];
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/narrow_phase.h"
+
+#include <algorithm>
+
+#include "elementary/coplanarity_filter.h"
+#include "elementary/elementary.h"
+#include "elementary/exact.h"
+#include "elementary/predicates.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// The points of a candidate as the tests of single pairs read them.
+class CandidatePoints {
+ public:
+  explicit CandidatePoints(const FeatureCandidate& candidate) {
+    for (int i = 0; i < 4; ++i) {
+      std::copy(candidate.x[i]->t0, candidate.x[i]->t0 + 3, path_[i].t0);
+      std::copy(candidate.x[i]->t1, candidate.x[i]->t1 + 3, path_[i].t1);
+    }
+  }
+  FeaturePoints get() const { return {{&path_[0], &path_[1], &path_[2], &path_[3]}}; }
+
+ private:
+  VertexPath path_[4];
+};
+
+bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate, double latest) {
+  return mayBecomeCoplanarAccurately(candidate.kind, CandidatePoints(candidate).get(),
+                                     candidate.window_lo,
+                                     std::min(candidate.window_hi, latest));
+}
+
+}  // namespace
+
+NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
+                         const KdopShift* shift, const QueryOptions& options,
+                         QueryProgress* progress, std::size_t task)
+    : options_(options),
+      kernels_(kernels()),
+      batch_(a, b, shift, kernels_),
+      sink_(options.goal == QueryGoal::kAny ? 1 : options.max_contacts,
+            !a.hasOwners() || !b.hasOwners()),
+      progress_(progress),
+      task_(task) {}
+
+void NarrowPhase::begin(std::size_t task) {
+  sink_.clear();
+  task_ = task;
+  has_crossing_ = false;
+  crossing_ = {};
+  error_.reset();
+  counts_ = {};
+}
+
+void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
+  if (error_ && error_->earliest <= earliest) return;
+  error_ = QueryError{earliest, error.vertex()};
+  if (!progress_) return;
+  QueryProgress::lower(progress_->first_hi, double{earliest});
+  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+}
+
+void NarrowPhase::flush() {
+  batch_.cull(latest(), counts_);
+  testCrossings();
+  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    filter(kind);
+    solve();
+  }
+  batch_.clear();
+}
+
+/// Takes as candidates what may become coplanar, and not too late. They keep their whole
+/// windows, so that a contact's bracket is the same whatever was found before it.
+void NarrowPhase::filter(FeatureKind kind) {
+  const std::uint32_t* codes = batch_.codes(kind);
+  const TimeWindow* windows = batch_.windows(kind);
+  const std::size_t size = batch_.size(kind);
+  const double latest = this->latest();
+  candidates_.clear();
+  for (std::size_t first = 0; first < size; first += 8) {
+    const EightCoplanarities found =
+        kernels_.coplanarity(kind, batch_.pairs(), codes + first, windows + first,
+                             std::min<std::size_t>(8, size - first), latest);
+    unsigned left = found.possible | found.unclear;
+    for (; left != 0; left &= left - 1) {
+      const auto lane = static_cast<unsigned>(__builtin_ctz(left));
+      const std::size_t i = first + lane;
+      // Written where it lies: what is stored in parts is slow to copy as a whole.
+      candidates_.emplace_back();
+      batch_.setCandidate(codes[i], windows[i], candidates_.back());
+      if (found.unclear >> lane & 1U &&
+          !mayBecomeCoplanarAccurately(candidates_.back(), latest))
+        candidates_.pop_back();
+    }
+  }
+  counts_.filter_culled += size - candidates_.size();
+}
+
+/// Decides pieces eight at a time, but for those that are no plain case.
+template <typename OnNo, typename OnOpen>
+void NarrowPhase::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
+                        OnOpen&& on_open) {
+  for (std::size_t first = 0; first < pieces.size() && !isDone(); first += 8) {
+    const EightAnswers answers = kernels_.solve(eightOf(pieces, first), options_.toc_err);
+    const std::size_t last = std::min(pieces.size(), first + 8);
+    for (std::size_t i = first; i < last && !isDone(); ++i) {
+      const std::size_t lane = i - first;
+      if (answers.no >> lane & 1U)
+        on_no(pieces[i]);
+      else if (answers.yes >> lane & 1U)
+        add(candidates_[pieces[i].candidate], answers.toc_lo[lane], answers.toc_hi[lane]);
+      else
+        on_open(pieces[i]);
+    }
+  }
+}
+
+/// The pieces that begin at `first`; the last one fills up the last eight.
+EightPairs NarrowPhase::eightOf(const std::vector<Piece>& pieces,
+                                std::size_t first) const {
+  EightPairs eight;
+  eight.kind = candidates_.front().kind;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    const Piece& piece = pieces[std::min(first + lane, pieces.size() - 1)];
+    eight.set(lane, candidates_[piece.candidate].x, piece.lo, piece.hi);
+  }
+  return eight;
+}
+
+void NarrowPhase::solve() {
+  const auto isNo = [this](const Piece&) { ++counts_.solver_culled; };
+  const auto solveAlone = [this](const Piece& p) { solve(candidates_[p.candidate]); };
+  std::vector<Piece>&pieces = pieces_[0], &open = pieces_[1], &later = pieces_[2];
+  for (std::vector<Piece>& list : pieces_) list.clear();
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    pieces.push_back({i, candidates_[i].window_lo, candidates_[i].window_hi});
+  solve(pieces, isNo, [&open](const Piece& p) { open.push_back(p); });
+
+  // The first part of a window, and the second if the first one holds no contact.
+  pieces.clear();
+  for (std::size_t first = 0; first < open.size() && !isDone(); first += 8) {
+    const EightDivisions found = kernels_.divide(eightOf(open, first));
+    const std::size_t last = std::min(open.size(), first + 8);
+    for (std::size_t i = first; i < last && !isDone(); ++i) {
+      const std::size_t lane = i - first;
+      if (found.never_inside >> lane & 1U)
+        isNo(open[i]);
+      else if (found.divisible >> lane & 1U)
+        pieces.push_back({open[i].candidate, open[i].lo, found.at[lane]});
+      else
+        solveAlone(open[i]);
+    }
+  }
+  solve(
+      pieces,
+      [this, &later](const Piece& p) {
+        later.push_back({p.candidate, p.hi, candidates_[p.candidate].window_hi});
+      },
+      solveAlone);
+  solve(later, isNo, solveAlone);
+}
+
+void NarrowPhase::add(const FeatureIds& pair, double toc_lo, double toc_hi) {
+  ++counts_.contacts;
+  sink_.add({pair, toc_lo, toc_hi});
+  if (!progress_) return;
+  QueryProgress::lower(progress_->first_hi, toc_hi);
+  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+}
+
+void NarrowPhase::solve(const FeatureCandidate& candidate) {
+  const CandidatePoints paths(candidate);
+  const FeaturePoints points = paths.get();
+  ElementaryResult result =
+      solveCoplanarity(candidate.kind, points, candidate.window_lo, candidate.window_hi,
+                       options_.toc_err, latest());
+  if (result.answer == Answer::kUnsure) {
+    ++counts_.exact_tests;
+    result = decideExactly(candidate.kind, points, options_.toc_err);
+  }
+  if (result.answer == Answer::kNo) {
+    ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled
+                                              : counts_.solver_culled);
+    return;
+  }
+  add(candidate, result.toc_lo, result.toc_hi);
+}
+
+void NarrowPhase::testCrossings() {
+  const std::size_t size = batch_.numCrossings();
+  for (std::size_t first = 0; first < size && !has_crossing_; first += 8) {
+    const std::size_t count = std::min<std::size_t>(size - first, 8);
+    counts_.crossing_tests += count;
+    for (unsigned left =
+             kernels_.mayCross(batch_.pairs(), batch_.crossings() + first, count);
+         left != 0 && !has_crossing_; left &= left - 1)
+      testCrossing(first + static_cast<std::size_t>(__builtin_ctz(left)));
+  }
+}
+
+void NarrowPhase::testCrossing(std::size_t i) {
+  const TreeVertex* x[5];
+  crossingPoints(batch_.pairs(), batch_.crossings()[i], x);
+  const auto start = [&x](int k) -> const double(&)[3] {
+    return reinterpret_cast<const double(&)[3]>(x[k]->t0);
+  };
+  if (!isCrossing(start(0), start(1), start(2), start(3), start(4))) return;
+  has_crossing_ = true;
+  if (progress_ && hasAnswer()) {
+    QueryProgress::lower(progress_->answered_by, task_);
+    if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+  }
+  const FeatureBatch::EdgeAndFace c = batch_.crossing(i);
+  const bool self = batch_.isSelf();
+  const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
+                     &face = c.edge_on_a ? *c.pair->b : *c.pair->a;
+  crossing_.first_on_a = c.edge_on_a || self;
+  crossing_.edge[0] = edge.id[c.edge];
+  crossing_.edge[1] = edge.id[(c.edge + 1) % 3];
+  std::copy(face.id, face.id + 3, crossing_.face);
+  crossing_.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
+  crossing_.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_QUERY_NARROW_PHASE_H
+#define FCL_CCD_QUERY_NARROW_PHASE_H
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "fcl/narrowphase/stage_counts.h"
+#include "query/contact_sink.h"
+#include "query/feature_batch.h"
+#include "tree/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief What a query has to find.
+enum class QueryGoal { kAll, kFirst, kAny };
+
+struct QueryOptions {
+  QueryGoal goal{QueryGoal::kAll};
+  std::size_t max_contacts{static_cast<std::size_t>(-1)};
+  double toc_err{1e-4};
+  /// A crossing at t = 0 answers the query; contacts are of no interest then.
+  bool stop_at_crossing{false};
+  /// See parallelFor().
+  int num_threads{1};
+  /// Whether a self query leaves out embedded regions; only which contact kAny names may
+  /// depend on it.
+  bool leaves_out_regions{true};
+};
+
+/// @brief What the tasks of one query tell each other, so that none does what cannot
+/// change the answer; which task comes first is known whatever the threads do.
+struct QueryProgress {
+  /// Upper end of the earliest bracket so far; an error stands for a contact from when on
+  /// its triangles may touch.
+  std::atomic<double> first_hi{1};
+  /// The lowest task that has the answer on its own, or an error in place of it.
+  std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
+
+  template <typename T>
+  static void lower(std::atomic<T>& value, T to) {
+    T now = value.load(std::memory_order_relaxed);
+    while (to < now && !value.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
+    }
+  }
+};
+
+/// @brief A vertex that is not finite, of two triangles whose boxes overlap from
+/// `earliest` on.
+struct QueryError {
+  float earliest;
+  std::size_t vertex;
+};
+
+/// @brief An edge of one mesh that passes through a face of the other at t = 0.
+struct Crossing {
+  /// The edge belongs to mesh a and the face to mesh b, not the other way round.
+  bool first_on_a;
+  std::uint32_t edge[2];
+  std::uint32_t face[3];
+  /// Triangle of mesh a and of mesh b.
+  std::int32_t triangles[2];
+};
+
+/// @brief Everything that is done to the triangle pairs whose boxes meet: crossing at t =
+/// 0, feature pairs, elementary tests, contacts into the sink. Each stage works on the
+/// pairs of a block, eight at a time; what a stage leaves goes on to the next. Holds the
+/// state of one query of one thread.
+class NarrowPhase {
+ public:
+  /// @param a, b  kept by reference; the same object twice for a self-collision.
+  /// @param shift  between their trees; null for a self-collision
+  /// @param progress  of the query; null: this is all of it
+  /// @param task  number of this part of the query, until begin()
+  NarrowPhase(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+              const QueryOptions& options, QueryProgress* progress = nullptr,
+              std::size_t task = 0);
+
+  /// @brief Forgets what was found, for another task of the same query.
+  /// @param task  its number
+  void begin(std::size_t task);
+
+  /// @brief Takes pairs of triangles; between two calls of flush() at most
+  /// FeatureBatch::kMaxPairs.
+  /// @param next  the first of them; after an error the one that it is about, and in the
+  /// end `last`
+  /// @throws NonFiniteVertex
+  void visit(const LeafPair*& next, const LeafPair* last) {
+    batch_.add(next, last, latest(), !has_crossing_, counts_);
+  }
+
+  /// @brief Notes what visit() threw for a pair; the pair is left out. Whether the query
+  /// fails is known when all tasks have ended: another may have the answer before.
+  void refuse(const NonFiniteVertex& error, float earliest);
+
+  /// @brief The earliest of the errors that were noted, the first one of these.
+  const std::optional<QueryError>& error() const { return error_; }
+
+  /// @brief Tests what visit() has taken.
+  void flush();
+
+  /// @brief Whether nothing more can change the answer.
+  bool isDone() const {
+    return hasAnswer() ||
+           (progress_ && progress_->answered_by.load(std::memory_order_relaxed) < task_);
+  }
+
+  /// @brief A pair whose window starts after this time cannot change the answer.
+  double latest() const {
+    if (options_.goal == QueryGoal::kAny) return 1;
+    double latest = sink_.latestKept();
+    if (options_.goal == QueryGoal::kFirst) {
+      latest = std::min(latest, sink_.firstHi());
+      if (progress_)
+        latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
+    }
+    // A contact that is later than this has a bracket that begins later than `latest`.
+    return latest + (options_.toc_err + kTimeRounding);
+  }
+
+  bool hasCrossing() const { return has_crossing_; }
+  const Crossing& crossing() const { return crossing_; }
+  ContactSink& sink() { return sink_; }
+  const ContactSink& sink() const { return sink_; }
+  const StageCounts& counts() const { return counts_; }
+  StageCounts& counts() { return counts_; }
+
+  /// @brief Adds what a traversal counted.
+  void addTraversal(std::uint64_t compared, std::uint64_t fan_culled) {
+    counts_.node_pairs += compared;
+    counts_.triangle_pairs += fan_culled;
+    counts_.adjacent_pairs += fan_culled;
+    counts_.fan_culled += fan_culled;
+  }
+
+ private:
+  /// More than the rounding of a time of contact, and than that of a window.
+  static constexpr double kTimeRounding = 0x1p-20;
+
+  bool hasAnswer() const {
+    if (has_crossing_ && options_.stop_at_crossing) return true;
+    // No contact is earlier than the start.
+    if (error_ && (options_.goal != QueryGoal::kFirst || error_->earliest <= 0.f))
+      return true;
+    return options_.goal == QueryGoal::kAny &&
+           (!sink_.contacts().empty() || has_crossing_);
+  }
+  /// A candidate in a part of its window.
+  struct Piece {
+    std::size_t candidate;
+    double lo, hi;
+  };
+
+  void testCrossings();
+  void testCrossing(std::size_t i);
+  void filter(FeatureKind kind);
+  void solve();
+  template <typename OnNo, typename OnOpen>
+  void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
+  EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
+  void solve(const FeatureCandidate& candidate);
+  void add(const FeatureIds& pair, double toc_lo, double toc_hi);
+
+  QueryOptions options_;
+  const Kernels& kernels_;
+  FeatureBatch batch_;
+  /// Pairs of one kind that may become coplanar.
+  std::vector<FeatureCandidate> candidates_;
+  /// Scratch of solve().
+  std::vector<Piece> pieces_[3];
+  ContactSink sink_;
+  QueryProgress* progress_;
+  std::size_t task_;
+  bool has_crossing_{false};
+  Crossing crossing_{};
+  std::optional<QueryError> error_;
+  StageCounts counts_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "self_culling/border_proof.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "numerics/error_bounds.h"
+#include "tree/traversal.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Direction `bit` of a set.
+void directionOf(int bit, int (&d)[3]) {
+  const int axis = bit % static_cast<int>(kNumAxes);
+  for (int k = 0; k < 3; ++k) d[k] = bit == axis ? kAxes[axis][k] : -kAxes[axis][k];
+}
+
+/// Two vectors of 1, 0 and -1 that are perpendicular to d and whose cross product points
+/// along it: the unit vectors along which d has nothing, and one for each two entries
+/// that follow each other.
+struct PlaneAxes {
+  int axes[2][3]{};
+
+  explicit PlaneAxes(const int (&d)[3]) {
+    int count = 0, before = -1;
+    for (int k = 0; k < 3; ++k) {
+      if (d[k] == 0) {
+        axes[count++][k] = 1;
+        continue;
+      }
+      if (before >= 0) {
+        axes[count][before] = d[before];
+        axes[count++][k] = -d[k];
+      }
+      before = k;
+    }
+    const auto& [u, v] = axes;
+    const int along = d[0] * (u[1] * v[2] - u[2] * v[1]) +
+                      d[1] * (u[2] * v[0] - u[0] * v[2]) +
+                      d[2] * (u[0] * v[1] - u[1] * v[0]);
+    if (along < 0) std::swap(axes[0], axes[1]);
+  }
+};
+
+}  // namespace
+
+bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t directions) {
+  border_ = &border;
+  const double size = tree_.reach() * tree_.reach();
+  if (directions == 0 || !(size >= kTiny && size <= kHuge)) return false;
+  project(widest(directions));
+  return isSimple() && windsOnce();
+}
+
+/// The direction along which most of the region is seen: the area vector of a surface is
+/// that of its border.
+int BorderProof::widest(std::uint32_t directions) const {
+  const TreeVertex& origin = tree_.vertices()[border_->from(0)];
+  double area[3] = {0, 0, 0};
+  for (std::size_t i = 0; i < border_->size(); ++i)
+    for (int frame = 0; frame < 2; ++frame) {
+      const TreeVertex &a = tree_.vertices()[border_->from(i)],
+                       &b = tree_.vertices()[border_->to(i)];
+      double p[3], q[3];
+      for (int k = 0; k < 3; ++k) {
+        p[k] = frame == 0 ? a.t0[k] - origin.t0[k] : a.t1[k] - origin.t1[k];
+        q[k] = frame == 0 ? b.t0[k] - origin.t0[k] : b.t1[k] - origin.t1[k];
+      }
+      for (int k = 0; k < 3; ++k)
+        area[k] += p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3];
+    }
+  int best = __builtin_ctz(directions);
+  double most = 0;
+  for (; directions != 0; directions &= directions - 1) {
+    int d[3];
+    directionOf(__builtin_ctz(directions), d);
+    const double seen = (area[0] * d[0] + area[1] * d[1] + area[2] * d[2]) /
+                        std::sqrt(double(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+    if (seen > most) {
+      most = seen;
+      best = __builtin_ctz(directions);
+    }
+  }
+  return best;
+}
+
+void BorderProof::project(int direction) {
+  int d[3];
+  directionOf(direction, d);
+  const PlaneAxes plane(d);
+  points_.clear();
+  for (const std::uint32_t place : border_->points) {
+    const TreeVertex& vertex = tree_.vertices()[place];
+    MovingPoint point;
+    for (int frame = 0; frame < 2; ++frame) {
+      const double(&p)[4] = frame == 0 ? vertex.t0 : vertex.t1;
+      const double(&o)[3] = tree_.origin(frame);
+      const double q[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
+      const auto along = [&q](const int(&u)[3]) {
+        return u[0] * q[0] + u[1] * q[1] + u[2] * q[2];
+      };
+      point.at[frame] = {along(plane.axes[0]), along(plane.axes[1])};
+    }
+    points_.push_back(point);
+  }
+}
+
+/// Sets the boxes of the points, whose third coordinate is the same for all: the pad of
+/// Kernels::fitPoints is of the largest one, here twice the reach. That makes it reach *
+/// 2^-48. Coordinates are 2^-51 of the reach off, those of a box four times that, and
+/// less than 2^-50 more where two are added.
+void BorderProof::fitPoints() {
+  boxes_.points.resize(points_.size());
+  for (std::size_t first = 0; first < points_.size(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, points_.size() - first);
+    double offsets[2][3][8] = {};
+    for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t frame = 0; frame < 2; ++frame) {
+        const Point& p = points_[first + i].at[frame];
+        offsets[frame][0][i] = p.x;
+        offsets[frame][1][i] = p.y;
+        offsets[frame][2][i] = 2 * tree_.reach();
+      }
+      // Nobody asks how far an edge goes.
+      boxes_.points[first + i].t0[3] = std::numeric_limits<double>::infinity();
+    }
+    for (int frame = 0; frame < 2; ++frame)
+      kernels_.fitPoints(offsets[frame], frame, count, &boxes_.points[first]);
+  }
+}
+
+/// Makes the tree of the edges: eight that follow each other in each of its lowest nodes,
+/// eight of these in each of the next ones, the root first.
+void BorderProof::fitTree() {
+  fitPoints();
+  constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+  // How many nodes each level has, the lowest first.
+  std::vector<std::size_t> levels;
+  std::size_t num_nodes = 0;
+  for (std::size_t count = border_->size(); levels.empty() || count > 1;) {
+    count = (count + kWidth - 1) / kWidth;
+    levels.push_back(count);
+    num_nodes += count;
+  }
+  boxes_.nodes.resize(num_nodes);
+  std::size_t first = num_nodes, below = border_->size(), first_below = 0;
+  for (const std::size_t count : levels) {
+    first -= count;
+    const bool is_lowest = first + count == num_nodes;
+    for (std::size_t i = 0; i < count; ++i) {
+      MovingKdopNode& node = boxes_.nodes[first + i];
+      node.count = static_cast<std::int32_t>(std::min(kWidth, below - i * kWidth));
+      for (int lane = 0; lane < node.count; ++lane) {
+        const std::size_t child = i * kWidth + static_cast<std::size_t>(lane);
+        node.child[lane] = static_cast<std::int32_t>(first_below + child);
+        if (!is_lowest) continue;
+        node.child[lane] = ~node.child[lane];
+        node.places[0][lane] = border_->begins[child];
+        node.places[1][lane] = node.places[2][lane] = border_->begins[child] + 1;
+      }
+      node.markTriangles();
+      float extents[kWidth];
+      kernels_.fitNode(boxes_.points.data(), boxes_.nodes.data(), false, node, extents);
+    }
+    below = count;
+    first_below = first;
+  }
+}
+
+bool BorderProof::isSimple() {
+  fitTree();
+  Traversal<true, const BorderTree, const BorderTree> traversal(
+      boxes_, boxes_, nullptr, SelfCulling(), nullptr, kernels_, false);
+  bool simple = true;
+  WorkList open;
+  traversal.start(open);
+  while (open.size() > 0 && simple) {
+    open.cut(open.size() - 1);
+    traversal.step(*(open.data() + open.size()), open, [&](int i, int j, float) {
+      simple = simple && meetOnlyAtVertices(static_cast<std::size_t>(i),
+                                            static_cast<std::size_t>(j));
+    });
+  }
+  return simple;
+}
+
+/// Whether two edges provably meet at no time but in a vertex that they share.
+bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
+  const std::uint32_t from_i = border_->from(i), to_i = border_->to(i),
+                      from_j = border_->from(j), to_j = border_->to(j);
+  const PlanarEdge x = planarEdge(i), y = planarEdge(j);
+  const bool ff = from_i == from_j, ft = from_i == to_j, tf = to_i == from_j,
+             tt = to_i == to_j;
+  if (ff + ft + tf + tt == 0) return areApart(x, y);
+  if (ff + ft + tf + tt > 1) return false;
+  // Away from the common vertex; they must never point the same way.
+  Point p[2], q[2];
+  double length = 0;
+  for (int k = 0; k < 2; ++k) {
+    p[k] = ff || ft ? x.to.at[k] - x.from.at[k] : x.from.at[k] - x.to.at[k];
+    q[k] = ff || tf ? y.to.at[k] - y.from.at[k] : y.from.at[k] - y.to.at[k];
+    for (const Point& a : {p[k], q[k]})
+      length = std::max(length, std::max(std::abs(a.x), std::abs(a.y)));
+  }
+  const double size = tree_.reach() * length, bound = kBorderTurnBound * size;
+  if (!(size >= kTiny)) return false;
+  const double turn[3] = {cross(p[0], q[0]), cross(p[0], q[1]) + cross(p[1], q[0]),
+                          cross(p[1], q[1])};
+  const double same[3] = {dot(p[0], q[0]), dot(p[0], q[1]) + dot(p[1], q[0]),
+                          dot(p[1], q[1])};
+  const auto all_below = [bound](const double(&c)[3], int sign) {
+    return sign * c[0] < -bound && sign * c[1] < -bound && sign * c[2] < -bound;
+  };
+  return all_below(turn, 1) || all_below(turn, -1) || all_below(same, 1);
+}
+
+/// Whether a line separates two edges at all times. It turns as they do.
+bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
+  Point across_e[2], across_f[2], between[2];
+  for (int k = 0; k < 2; ++k) {
+    const Point along_e = e.to.at[k] - e.from.at[k], along_f = f.to.at[k] - f.from.at[k];
+    across_e[k] = {-along_e.y, along_e.x};
+    across_f[k] = {-along_f.y, along_f.x};
+    between[k] = (f.from.at[k] + f.to.at[k]) - (e.from.at[k] + e.to.at[k]);
+  }
+  return areApart(e, f, across_e) || areApart(e, f, across_f) || areApart(e, f, between);
+}
+
+/// Whether e stays on one side and f on the other along a direction that is w[0] at t = 0
+/// and w[1] at t = 1.
+bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
+                           const Point (&w)[2]) const {
+  double size = 0;
+  for (const Point& p : w) size = std::max(size, std::max(std::abs(p.x), std::abs(p.y)));
+  size *= tree_.reach();
+  if (!(size >= kTiny)) return false;
+  const double bound = kBorderSideBound * size;
+  // Bernstein coefficients in t, the middle one twice.
+  const auto place = [&w](const MovingPoint& p) -> std::array<double, 3> {
+    return {dot(w[0], p.at[0]), dot(w[0], p.at[1]) + dot(w[1], p.at[0]),
+            dot(w[1], p.at[1])};
+  };
+  const auto a = place(e.from), b = place(e.to), c = place(f.from), d = place(f.to);
+  bool above = true, below = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    above = above && std::min(a[k], b[k]) - std::max(c[k], d[k]) > bound;
+    below = below && std::min(c[k], d[k]) - std::max(a[k], b[k]) > bound;
+  }
+  return above || below;
+}
+
+/// A simple loop winds once round what is inside, and the triangles' areas are positive.
+/// Else the winding number is looked at on the left of each path, along which it does not
+/// change.
+bool BorderProof::windsOnce() const {
+  if (border_->is_one_loop) return true;
+  return std::all_of(border_->paths.begin(), border_->paths.end(),
+                     [this](std::size_t i) { return windsOnceLeftOf(i); });
+}
+
+/// Whether the border provably winds once round a point just left of the middle of edge i
+/// at t = 0: counts what crosses a ray from there.
+bool BorderProof::windsOnceLeftOf(std::size_t i) const {
+  const Point a = planarEdge(i).from.at[0], b = planarEdge(i).to.at[0], e = b - a;
+  // To the left, and in no direction that edges of a regular mesh have.
+  constexpr double kTilt = 0.2360679774997897;
+  const Point ray = {kTilt * e.x - e.y, kTilt * e.y + e.x};
+  const double reach = tree_.reach();
+  const double size = std::max(std::abs(ray.x), std::abs(ray.y)) * reach;
+  if (!(size >= kTiny)) return false;
+  const double ray_bound = kBorderRayBound * size,
+               half_bound = kBorderHalfBound * (reach * reach);
+  // On which side of the ray's line a point lies; 0: unknown.
+  const auto side = [&](const Point& p) {
+    const double s = cross(ray, (p - a) + (p - b));
+    return s > ray_bound ? 1 : s < -ray_bound ? -1 : 0;
+  };
+  if (side(a) != 1 || side(b) != -1) return false;
+  int winding = 0;
+  for (std::size_t j = 0; j < border_->size(); ++j) {
+    if (j == i) continue;
+    const Point &p = planarEdge(j).from.at[0], &q = planarEdge(j).to.at[0];
+    const int from = side(p), to = side(q);
+    if (from == 0 || to == 0) return false;
+    if (from == to) continue;
+    // The middle lies on the left of what crosses the ray itself from right to left.
+    const double left = cross(q - p, (a - p) + (b - p)) * to;
+    if (!(std::abs(left) > half_bound)) return false;
+    if (left > 0) winding += to;
+  }
+  return winding == 1;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

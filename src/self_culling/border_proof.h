@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The proof that what has a border covers the plane once at most.
+#ifndef FCL_CCD_SELF_CULLING_BORDER_PROOF_H
+#define FCL_CCD_SELF_CULLING_BORDER_PROOF_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/uninitialized_vector.h"
+#include "kernels/kernels.h"
+#include "tree/moving_kdop_tree.h"
+#include "tree/region_borders.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Moving boxes of the edges of a border, as Traversal takes them: triangles
+/// between two points.
+struct BorderTree {
+  UninitializedVector<TreeVertex> points;
+  UninitializedVector<MovingKdopNode> nodes;
+
+  const MovingKdopNode& node(int i) const { return nodes[static_cast<std::size_t>(i)]; }
+};
+
+/// @brief Looks at one border after another.
+class BorderProof {
+ public:
+  BorderProof(const MovingKdopTree& tree, const Kernels& kernels)
+      : tree_(tree), kernels_(kernels) {}
+
+  /// @brief Proves for one of the directions, which all triangles of the region face
+  /// during the whole step, that seen along it the border never meets itself but where
+  /// edges share a vertex, and that at t = 0 it winds once round what lies on the left of
+  /// its edges.
+  /// @param border  has edges
+  bool isEmbedded(const RegionBorder& border, std::uint32_t directions);
+
+ private:
+  struct Point {
+    double x, y;
+  };
+  /// At t = 0 and at t = 1.
+  struct MovingPoint {
+    Point at[2];
+  };
+  struct PlanarEdge {
+    const MovingPoint &from, &to;
+  };
+
+  friend Point operator-(const Point& a, const Point& b) {
+    return {a.x - b.x, a.y - b.y};
+  }
+  friend Point operator+(const Point& a, const Point& b) {
+    return {a.x + b.x, a.y + b.y};
+  }
+  static double cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
+  static double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
+
+  int widest(std::uint32_t directions) const;
+  void project(int direction);
+  PlanarEdge planarEdge(std::size_t i) const {
+    return {points_[border_->begins[i]], points_[border_->begins[i] + 1]};
+  }
+  void fitPoints();
+  void fitTree();
+  bool isSimple();
+  bool meetOnlyAtVertices(std::size_t i, std::size_t j) const;
+  bool areApart(const PlanarEdge& e, const PlanarEdge& f) const;
+  bool areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2]) const;
+  bool windsOnce() const;
+  bool windsOnceLeftOf(std::size_t i) const;
+
+  const MovingKdopTree& tree_;
+  const Kernels& kernels_;
+  /// What is looked at, and its points in the plane.
+  const RegionBorder* border_{nullptr};
+  std::vector<MovingPoint> points_;
+  BorderTree boxes_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "self_culling/embedded_regions.h"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "base/parallel.h"
+#include "self_culling/border_proof.h"
+#include "tree/border_finder.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// The directions that ranges of triangles face, from blocks of eight.
+class FacedDirections {
+ public:
+  FacedDirections(const MovingKdopTree& tree, const Kernels& kernels)
+      : tree_(tree),
+        kernels_(kernels),
+        blocks_((tree.triangles().size() + kLength - 1) / kLength, kUnknown) {}
+
+  /// Those of triangles [first, last). Not for ranges with common triangles at a time.
+  std::uint32_t of(std::size_t first, std::size_t last) {
+    const std::size_t from = (first + kLength - 1) / kLength, to = last / kLength;
+    if (from > to) return ofEight(first, last);
+    std::uint32_t faced = kUnknown;
+    // Where a surface is not smooth, some of the blocks say so.
+    for (const std::size_t step : {std::size_t{16}, std::size_t{4}, std::size_t{1}})
+      for (std::size_t i = from; i < to && faced != 0; i += step) {
+        if (blocks_[i] == kUnknown) blocks_[i] = ofEight(i * kLength, (i + 1) * kLength);
+        faced &= blocks_[i];
+      }
+    if (faced != 0 && first < from * kLength) faced &= ofEight(first, from * kLength);
+    if (faced != 0 && to * kLength < last) faced &= ofEight(to * kLength, last);
+    return faced;
+  }
+
+ private:
+  static constexpr std::size_t kLength = 8;
+  static constexpr std::uint32_t kUnknown = ~std::uint32_t{0};
+
+  std::uint32_t ofEight(std::size_t first, std::size_t last) const {
+    return kernels_.facedDirections(tree_.vertices().data(), &tree_.triangles()[first],
+                                    last - first);
+  }
+
+  const MovingKdopTree& tree_;
+  const Kernels& kernels_;
+  std::vector<std::uint32_t> blocks_;
+};
+
+/// A node that may be the root of a region, and where its triangles end.
+struct OpenNode {
+  std::int32_t node;
+  std::uint32_t last;
+};
+
+/// What is left to be searched, and the triangles of the regions that were found, and of
+/// those whose borders were looked at in vain: not even a part was a region.
+struct Searched {
+  std::vector<OpenNode> rest;
+  std::size_t embedded{0}, in_vain{0};
+};
+
+/// Finds borders and looks at them; one for each thread.
+struct BorderSearch {
+  BorderFinder finder;
+  BorderProof proof;
+
+  BorderSearch(const MovingKdopTree& tree, const Kernels& kernels)
+      : finder(tree), proof(tree, kernels) {}
+};
+
+class RegionSearch {
+ public:
+  /// @param found  of the tree's size, all 0
+  RegionSearch(const MovingKdopTree& tree, const Kernels& kernels,
+               std::uint32_t least_triangles, EmbeddedRegions& found)
+      : tree_(tree),
+        least_triangles_(least_triangles),
+        faced_(tree, kernels),
+        found_(found) {}
+
+  OpenNode root() const {
+    return {0, static_cast<std::uint32_t>(tree_.triangles().size())};
+  }
+
+  /// Finds the largest region among a node, its first part, the first part of that and so
+  /// on. A part of an embedded region is embedded, too: hence from the smallest one
+  /// upwards, as far as they are, so that no large border is looked at in vain where
+  /// layers lie on each other. Different nodes at the same time, none below another.
+  /// @return with the other parts of those that are not embedded
+  Searched search(const OpenNode& open, BorderSearch& borders) {
+    std::vector<OpenNode> chain{open};
+    for (std::vector<OpenNode> parts = partsOf(open); !parts.empty();
+         parts = partsOf(parts.front()))
+      chain.push_back(parts.front());
+    Searched out;
+    std::size_t largest = chain.size();
+    while (largest > 0 && isEmbedded(chain[largest - 1], borders, out.in_vain)) --largest;
+    if (largest < chain.size()) {
+      take(chain[largest], borders);
+      const Region region = regionOf(chain[largest]);
+      out.embedded = region.last - region.first;
+      out.in_vain = 0;
+    }
+    for (std::size_t i = 0; i < largest; ++i) {
+      const std::vector<OpenNode> parts = partsOf(chain[i]);
+      if (!parts.empty()) out.rest.insert(out.rest.end(), parts.begin() + 1, parts.end());
+    }
+    return out;
+  }
+
+ private:
+  /// The nodes below that have enough triangles.
+  std::vector<OpenNode> partsOf(const OpenNode& open) const {
+    std::vector<OpenNode> parts;
+    const MovingKdopNode& node = tree_.node(open.node);
+    std::uint32_t last = open.last;
+    for (int lane = node.count; lane-- > 0;) {
+      if (node.isTriangle(lane)) continue;
+      const std::uint32_t first = tree_.firstTriangle(node.child[lane]);
+      if (last - first >= least_triangles_) parts.push_back({node.child[lane], last});
+      last = first;
+    }
+    return parts;
+  }
+
+  Region regionOf(const OpenNode& open) const {
+    return deformable::regionOf(tree_, open.node, open.last);
+  }
+
+  const RegionBorder& borderOf(const OpenNode& open, BorderSearch& borders) const {
+    return tree_.regionBorders().of(open.node,
+                                    [&] { return borders.finder.find(regionOf(open)); });
+  }
+
+  bool isEmbedded(const OpenNode& open, BorderSearch& borders, std::size_t& in_vain) {
+    const Region region = regionOf(open);
+    const std::uint32_t directions = faced_.of(region.first, region.last);
+    if (directions == 0) return false;
+    const RegionBorder& border = borderOf(open, borders);
+    if (border.size() > 0 && borders.proof.isEmbedded(border, directions)) return true;
+    in_vain += region.last - region.first;
+    return false;
+  }
+
+  /// Takes a node as a region, and the vertices inside: those that the region is the
+  /// first to have, with a closed fan that no border passes.
+  void take(const OpenNode& open, BorderSearch& borders) {
+    found_.nodes[static_cast<std::size_t>(open.node)] = 1;
+    const Region region = regionOf(open);
+    for (std::uint32_t v = region.first_place; v < region.last_place; ++v)
+      found_.interior[v] = tree_.fans()[v].is_closed;
+    for (const std::uint32_t v : borderOf(open, borders).points)
+      if (v >= region.first_place) found_.interior[v] = 0;
+  }
+
+  const MovingKdopTree& tree_;
+  std::uint32_t least_triangles_;
+  FacedDirections faced_;
+  EmbeddedRegions& found_;
+};
+
+}  // namespace
+
+EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
+                                    int num_threads, std::uint32_t least_triangles) {
+  EmbeddedRegions found{std::vector<std::uint8_t>(tree.numNodes(), 0),
+                        std::vector<std::uint8_t>(tree.vertices().size(), 0)};
+  RegionSearch regions(tree, kernels, least_triangles, found);
+  // No two that are open have a triangle in common, nor are the same vertices written to.
+  constexpr std::size_t kTasks = 64;
+  // Parts from all over the mesh: where most of them are in vain, so will the rest be.
+  const std::size_t spare = 16 * std::size_t{least_triangles};
+  std::size_t embedded = 0, in_vain = 0;
+  std::vector<OpenNode> open{regions.root()};
+  while (!open.empty() && in_vain <= spare + 2 * embedded) {
+    std::vector<Searched> searched(open.size());
+    parallelForBlocks(open.size(), open.size() / kTasks + 1, num_threads,
+                      [&](std::size_t i, std::size_t last) {
+                        BorderSearch borders(tree, kernels);
+                        for (; i < last; ++i)
+                          searched[i] = regions.search(open[i], borders);
+                      });
+    open.clear();
+    for (const Searched& s : searched) {
+      open.insert(open.end(), s.rest.begin(), s.rest.end());
+      embedded += s.embedded;
+      in_vain += s.in_vain;
+    }
+  }
+  return found;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_TREE_BORDER_FINDER_H
+#define FCL_CCD_TREE_BORDER_FINDER_H
+
+#include <cstdint>
+#include <vector>
+
+#include "tree/moving_kdop_tree.h"
+#include "tree/region_borders.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Triangles [first, last) of a tree, and the vertices that they are the first to
+/// have, [first_place, last_place).
+struct Region {
+  std::uint32_t first, last, first_place, last_place;
+};
+
+/// @param node  of the tree
+/// @param last  where the triangles below it end
+inline Region regionOf(const MovingKdopTree& tree, std::int32_t node,
+                       std::uint32_t last) {
+  const std::uint32_t first = tree.firstTriangle(node);
+  return {first, last, tree.placesBefore(first), tree.placesBefore(last)};
+}
+
+/// @brief Finds the border of one region after another.
+class BorderFinder {
+ public:
+  explicit BorderFinder(const MovingKdopTree& tree) : tree_(tree) {}
+
+  RegionBorder find(const Region& region);
+
+ private:
+  struct Edge {
+    std::uint32_t from, to;
+  };
+
+  void listEdges(const Region& region);
+  bool cancelOpposites();
+  bool linkPaths();
+  RegionBorder border() const;
+
+  const MovingKdopTree& tree_;
+  /// How many of the region's triangles have each of its vertices; then only whether
+  /// edges of it may be left.
+  std::vector<std::uint32_t> counts_;
+  /// Edges by their vertices, the lower place first, and whether it comes last.
+  std::vector<std::uint64_t> keys_;
+  std::vector<Edge> unlinked_;
+  std::vector<std::uint8_t> taken_;
+  /// Path after path, and where each begins.
+  std::vector<Edge> edges_;
+  std::vector<std::uint32_t> paths_;
+  bool is_one_loop_{false};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

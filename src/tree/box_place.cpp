@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tree/box_place.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
+
+void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
+
+typedef float Float2 __attribute__((vector_size(8)));
+typedef double DoublePair __attribute__((vector_size(16)));
+
+/// roundUp() of four numbers.
+Float4 roundUp(DoublePair a, DoublePair b, float pad) {
+  const DoublePair least = {double{kLeastHalf}, double{kLeastHalf}};
+  const auto narrowed = [&least](DoublePair x) {
+    return __builtin_convertvector(least > x ? least : x, Float2);
+  };
+  const Float4 f = __builtin_shufflevector(narrowed(a), narrowed(b), 0, 1, 2, 3);
+  const Float4 up = f + (larger(f, -f) * kOutward + (pad + FLT_MIN));
+  return up == up ? up : Float4{} + std::numeric_limits<float>::infinity();
+}
+
+}  // namespace
+
+void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out) {
+  double d[8];
+  kdopCoordinates({point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]}, d);
+  for (int j = 0; j < 8; j += 4) {
+    const DoublePair a = {d[j], d[j + 1]}, b = {d[j + 2], d[j + 3]};
+    store(roundUp(-a, -b, pad), out.half + j);
+    store(roundUp(a, b, pad), out.half + j + 8);
+  }
+}
+
+KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b) {
+  KdopShift shift;
+  for (int frame = 0; frame < 2; ++frame) {
+    const double(&origin_a)[3] = a.origin[frame], (&origin_b)[3] = b.origin[frame];
+    const double(&move_a)[3] = a.translation[frame], (&move_b)[3] = b.translation[frame];
+    double offset[3], d[8];
+    double size = 0;  // of every number that enters a moved coordinate
+    for (int k = 0; k < 3; ++k) {
+      offset[k] = (origin_a[k] - origin_b[k]) + (move_a[k] - move_b[k]);
+      size = std::max(size, std::abs(origin_a[k]) + std::abs(origin_b[k]) +
+                                std::abs(move_a[k]) + std::abs(move_b[k]));
+    }
+    kdopCoordinates(offset, d);
+    // Three roundings of the offset, one of the diagonal, and one of each posed
+    // coordinate, each 2^-53 of a number below size: 2^-49 in all.
+    size = 2 * (size + a.reach + b.reach);
+    const float pad = roundUp(size * 0x1p-49, 0.f);
+    Kdop16& out = frame == 0 ? shift.t0 : shift.t1;
+    for (int j = 0; j < 8; ++j) {
+      out.half[j] = roundUp(-d[j], pad);
+      out.half[j + 8] = roundUp(d[j], pad);
+    }
+  }
+  return shift;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

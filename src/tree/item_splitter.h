@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Where ranges of items are cut.
+#ifndef FCL_CCD_TREE_ITEM_SPLITTER_H
+#define FCL_CCD_TREE_ITEM_SPLITTER_H
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "tree/tree_structure.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+inline Float4 vectorOf(const TreeItem& item) {
+  Float4 v;
+  __builtin_memcpy(&v, &item, sizeof(v));
+  return v;
+}
+
+/// At once: three parts of it take longer.
+inline void setItem(const Float4& v, TreeItem& item) {
+  __builtin_memcpy(&item, &v, sizeof(v));
+}
+
+/// Of places, whose last number does not count.
+struct Bounds {
+  static constexpr float kInf = std::numeric_limits<float>::infinity();
+
+  Float4 lo{kInf, kInf, kInf, kInf};
+  Float4 hi{-kInf, -kInf, -kInf, -kInf};
+
+  void add(const Float4& p) { add({p, p}); }
+  void add(const Bounds& b) {
+    lo = lo < b.lo ? lo : b.lo;
+    hi = hi > b.hi ? hi : b.hi;
+  }
+  float halfArea() const {
+    const Float4 d = hi - lo;
+    return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+  }
+};
+
+/// Cuts the longest extent of items, of which every stride-th is looked at, into slabs of
+/// one width.
+class Slabs {
+ public:
+  Slabs(const TreeItem* items, std::size_t count, std::size_t stride, int num_slabs)
+      : last_(num_slabs - 1) {
+    // Of every fourth item apart: one minimum would wait for the one before.
+    Bounds of[4];
+    std::size_t i = 0;
+    for (; i + 3 * stride < count; i += 4 * stride)
+      for (std::size_t k = 0; k < 4; ++k) of[k].add(vectorOf(items[i + k * stride]));
+    for (; i < count; i += stride) of[0].add(vectorOf(items[i]));
+    Bounds all;
+    for (const Bounds& bounds : of) all.add(bounds);
+    const Float4 width = all.hi - all.lo;
+    for (int k = 1; k < 3; ++k)
+      if (width[k] > width[axis_]) axis_ = k;
+    lo_ = all.lo[axis_];
+    // 64 / 2^-120 is still a float; what is less wide counts as one place.
+    if (width[axis_] >= 0x1p-120f) scale_ = static_cast<float>(num_slabs) / width[axis_];
+  }
+
+  int axis() const { return axis_; }
+
+  /// Whether all items that were looked at fall together.
+  bool isOne() const { return scale_ == 0; }
+
+  /// The slab of an item that was looked at.
+  int operator()(const TreeItem& item) const {
+    return std::min(static_cast<int>(coordinate(item)), last_);
+  }
+
+  /// Whether an item lies before a slab, which is neither the first nor beyond the last.
+  bool isBefore(const TreeItem& item, int slab) const {
+    return coordinate(item) < static_cast<float>(slab);
+  }
+
+ private:
+  float coordinate(const TreeItem& item) const {
+    return (item.place[axis_] - lo_) * scale_;
+  }
+
+  int axis_{0};
+  int last_;
+  float lo_;
+  float scale_{0};
+};
+
+/// Splits ranges of items, which are brought into order; different ranges at the same
+/// time.
+class Splitter {
+ public:
+  /// @param ends  where each of the groups ends in which the items lie, if they do: a
+  /// range of several is split between them
+  Splitter(UninitializedVector<TreeItem> items, std::vector<std::size_t> ends)
+      : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {}
+
+  struct Range {
+    std::size_t first, count;
+  };
+
+  std::uint32_t index(std::size_t i) const { return items_[i].index; }
+
+  /// Splits a range into at most `max_parts`, which are no more than eight. None is
+  /// empty.
+  std::size_t split(Range all, std::size_t max_parts, int depth,
+                    Range (&out)[MovingKdopNode::kWidth]) {
+    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+    max_parts = std::min(max_parts, kWidth);
+    std::size_t n = splitGroups(all, max_parts, out);
+    if (n > 1) return n;
+    if (all.count <= max_parts) {
+      for (; n < all.count; ++n) out[n] = {all.first + n, 1};
+      out[0].count = 1;
+      return n;
+    }
+    const bool by_area = all.count > kMaxHalved && depth < kMaxAreaDepth;
+    // The lowest level that holds all: each child is one unit.
+    std::size_t unit = 1;
+    while (unit * kWidth < all.count) unit *= kWidth;
+    while (n < max_parts) {
+      Range* largest = std::max_element(
+          out, out + n, [](const Range& a, const Range& b) { return a.count < b.count; });
+      const Range r = *largest;
+      if (r.count <= (by_area ? 1 : unit)) break;
+      const std::size_t first = by_area ? splitByArea(r) : splitInUnits(r, unit);
+      *largest = {r.first, first};
+      out[n++] = {r.first + first, r.count - first};
+    }
+    // In the order of the items: neighbours in the tree are neighbours in memory.
+    std::sort(out, out + n,
+              [](const Range& a, const Range& b) { return a.first < b.first; });
+    return n;
+  }
+
+ private:
+  /// As split(), between groups; a range within one of them stays.
+  std::size_t splitGroups(Range all, std::size_t max_parts,
+                          Range (&out)[MovingKdopNode::kWidth]) const {
+    out[0] = all;
+    const std::size_t end_of_all = all.first + all.count;
+    const auto first = std::upper_bound(ends_.begin(), ends_.end(), all.first);
+    if (first == ends_.end() || *first >= end_of_all) return 1;
+    const auto last = std::lower_bound(first, ends_.end(), end_of_all);
+    const auto groups = static_cast<std::size_t>(last - first) + 1;
+    // Groups in a part: where that can be, as many as make a tree of full nodes.
+    std::size_t unit = 1;
+    while (unit * max_parts < groups) unit *= MovingKdopNode::kWidth;
+    if (unit >= groups) unit = (groups + max_parts - 1) / max_parts;
+    std::size_t n = 0, begin = all.first;
+    for (std::size_t next = unit; begin < end_of_all; next += unit) {
+      const std::size_t end =
+          next < groups ? first[static_cast<std::ptrdiff_t>(next - 1)] : end_of_all;
+      out[n++] = {begin, end - begin};
+      begin = end;
+    }
+    return n;
+  }
+
+  /// Up to so many triangles are halved, which is faster than looking for the best place
+  /// and fills the nodes; above, area decides (objects of a scene come apart).
+  static constexpr std::size_t kMaxHalved = 512;
+
+  /// Area is estimated from about so many triangles.
+  static constexpr std::size_t kMaxSample = 512;
+
+  /// From this depth on everything is halved: no input makes a deep tree.
+  static constexpr int kMaxAreaDepth = 24;
+
+  /// Moves the items before a slab to the front, in the order that they have, and returns
+  /// how many there are.
+  std::size_t partition(Range r, const Slabs& slabs, int slab) {
+    TreeItem* items = items_.data() + r.first;
+    TreeItem* scratch = scratch_.data() + r.first;
+    std::size_t before = 0, after = 0;
+    for (std::size_t i = 0; i < r.count; ++i) {
+      // No branch: nobody could foretell it.
+      const bool is_before = slabs.isBefore(items[i], slab);
+      const Float4 item = vectorOf(items[i]);
+      setItem(item, items[before]);
+      setItem(item, scratch[after]);
+      before += is_before;
+      after += !is_before;
+    }
+    std::copy(scratch, scratch + after, items + before);
+    return before;
+  }
+
+  /// Moves the `first` items that lie lowest along the axis to the front.
+  void splitAt(Range r, std::size_t first) {
+    constexpr int kSlabs = 64;
+    const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
+    if (slabs.isOne()) return;
+    std::uint32_t count[kSlabs] = {};
+    for (std::size_t i = r.first; i < r.first + r.count; ++i) ++count[slabs(items_[i])];
+    // The slab where the cut is.
+    std::size_t before = 0;
+    int slab = 0;
+    for (; before + count[slab] <= first; ++slab) before += count[slab];
+    if (slab > 0) partition(r, slabs, slab);
+    if (before == first) return;
+    Range rest{r.first + before, r.count - before};
+    if (slab + 1 < kSlabs) rest.count = partition(rest, slabs, slab + 1);
+    TreeItem* items = items_.data() + rest.first;
+    std::nth_element(items, items + (first - before), items + rest.count,
+                     [axis = slabs.axis()](const TreeItem& a, const TreeItem& b) {
+                       return a.place[axis] != b.place[axis]
+                                  ? a.place[axis] < b.place[axis]
+                                  : a.index < b.index;
+                     });
+  }
+
+  /// Splits a range where area times count of the parts' centroid boxes, along the
+  /// longest axis, is least; in the middle where all centroids fall together. Returns the
+  /// size of the first part; none is empty.
+  std::size_t splitByArea(Range r) {
+    constexpr int kSlabs = 8;
+    const std::size_t stride = 1 + r.count / kMaxSample;
+    const Slabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
+    if (slabs.isOne()) return r.count / 2;
+    Bounds bounds[kSlabs];
+    std::size_t count[kSlabs] = {};
+    for (std::size_t i = r.first; i < r.first + r.count; i += stride) {
+      const int s = slabs(items_[i]);
+      bounds[s].add(vectorOf(items_[i]));
+      ++count[s];
+    }
+    // The first and the last slab are not empty.
+    float cost_after[kSlabs];
+    Bounds side;
+    std::size_t n = 0;
+    for (int s = kSlabs - 1; s > 0; --s) {
+      side.add(bounds[s]);
+      n += count[s];
+      cost_after[s] = side.halfArea() * static_cast<float>(n);
+    }
+    side = Bounds();
+    n = 0;
+    int best = 1;
+    float best_cost = Bounds::kInf;
+    for (int s = 1; s < kSlabs; ++s) {
+      side.add(bounds[s - 1]);
+      n += count[s - 1];
+      const float cost = side.halfArea() * static_cast<float>(n) + cost_after[s];
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = s;
+      }
+    }
+    return partition(r, slabs, best);
+  }
+
+  /// Splits a range near the middle, the first part a multiple of `unit`, so that units
+  /// of the lower levels come out full.
+  std::size_t splitInUnits(Range r, std::size_t unit) {
+    const std::size_t units = (r.count + unit - 1) / unit;
+    const std::size_t first = units / 2 * unit;
+    splitAt(r, first);
+    return first;
+  }
+
+  UninitializedVector<TreeItem> items_;
+  UninitializedVector<TreeItem> scratch_;
+  std::vector<std::size_t> ends_;
+};
+
+/// @brief A range of items, the node that it becomes, and the first leaf of that.
+struct OpenRange {
+  Splitter::Range range;
+  std::size_t node, first_leaf;
+  int depth;
+};
+
+/// @brief Splits a range, down to ranges of which none is larger than max_left.
+/// @param max_parts  of the range itself
+/// @param nodes  the range's own is there; those below are added
+/// @return the ranges that are left, in the order of a walk
+std::vector<OpenRange> splitRange(Splitter& splitter, const OpenRange& root,
+                                  std::size_t max_left, std::size_t max_parts,
+                                  std::vector<TreeChildren>& nodes,
+                                  std::vector<std::uint32_t>& leaves);
+
+/// @brief Splits items into a tree, whose leaves are their indices: by surface area at
+/// the top, and into halves at the bottom, so that the lowest nodes are full.
+/// @param ends  as groupItems() returns it: a part of the tree has several groups, or
+/// lies within one
+/// @param max_parts  the root has at most so many children
+/// @param depth  of the root in the tree that it is for: deep down all is halved
+TreeStructure splitItems(UninitializedVector<TreeItem> items,
+                         std::vector<std::size_t> ends, std::size_t max_parts, int depth);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_TREE_MOVING_KDOP_TREE_H
+#define FCL_CCD_TREE_MOVING_KDOP_TREE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/uninitialized_vector.h"
+#include "mesh/moving_kdop.h"
+#include "mesh/tree_nodes.h"
+#include "mesh/vertex_fans.h"
+#include "mesh/vertex_frames.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+class RegionBorders;
+class TopologyDifference;
+struct TreeChildren;
+struct TreeStructure;
+
+/// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
+/// The structure is made by build() or from the links of another tree; refit() sets the
+/// boxes for a pair of frames; restructure() renews what has aged; changeTopology()
+/// follows a mesh that breaks. Triangles and vertices lie in the order in which the tree
+/// meets them, so that neighbours on the surface are neighbours in memory.
+///
+/// Nodes lie in one array in the order of a walk, children after their parents: what is
+/// below a node lies together and is refit in one backward pass.
+class MovingKdopTree {
+ public:
+  /// @brief Makes the structure: large components apart from each other, surface-area
+  /// splits of the triangles' centroids in frame 0, and halving at the bottom so that the
+  /// lowest nodes are full.
+  /// @param triangles  at least one, indices below frames.size() (not checked here)
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  void build(const Triangle* triangles, std::size_t num_triangles,
+             const VertexFrames& frames, int num_threads = 1);
+
+  /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
+  /// node i (the right one follows it), links[i] < 0 is leaf ~links[i].
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  void build(const Triangle* triangles, std::size_t num_triangles,
+             std::size_t num_vertices, const std::vector<std::int32_t>& links,
+             int num_threads = 1);
+
+  /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
+  /// t, for every t in [0, 1], up to nothing: all rounding is outward.
+  /// @param num_threads  as in parallelFor(); the boxes do not depend on it
+  void refit(const VertexFrames& frames, int num_threads = 1);
+
+  /// @brief Makes those parts of the structure anew that have aged, that is, whose boxes
+  /// motion has made larger beside their triangles' than they were when the part was
+  /// made; if all boxes together have become much larger. To be called before a refit,
+  /// since it looks at the boxes of the last one and leaves none behind.
+  /// @return whether the structure has changed; not if there is no memory for it
+  bool restructure();
+
+  /// @brief Follows a mesh that tears, breaks, grows or loses parts: nodes stay as they
+  /// are unless triangles come to them or leave them. Leaves no boxes behind; an
+  /// exception leaves the tree as it was.
+  /// @param triangles  at least one, indices below frames.size() (not checked here)
+  /// @param origins  for each of them the number of the one before that it was or was cut
+  /// from, -1 for one that comes to where it lies in frame 0; empty: each was the one of
+  /// its number, as far as there was one; a hint: no answer depends on it
+  /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  /// @pre refit() has set the boxes
+  void changeTopology(const Triangle* triangles, std::size_t num_triangles,
+                      const std::vector<int>& origins, const VertexFrames& frames,
+                      int num_threads = 1);
+
+  const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  std::size_t numNodes() const { return nodes_.size(); }
+
+  /// @brief The first of the triangles below node i, which lie together.
+  std::uint32_t firstTriangle(int i) const {
+    return first_triangles_[static_cast<std::size_t>(i)];
+  }
+
+  /// @brief How many vertices the triangles before triangle i have.
+  std::uint32_t placesBefore(std::size_t i) const;
+
+  /// @brief Triangles and vertices in the tree's order.
+  const std::vector<TreeTriangle>& triangles() const { return triangles_; }
+  const UninitializedVector<TreeVertex>& vertices() const { return vertices_; }
+
+  /// @brief The fans of the vertices in the tree's order.
+  const VertexFans& fans() const { return fans_; }
+
+  /// @brief The borders of nodes that queries have asked for; for any number of threads.
+  RegionBorders& regionBorders() const { return *region_borders_; }
+
+  /// @brief World point that the boxes of a frame (0 or 1) are relative to; the same of
+  /// both, unless most of the mesh is far away from it.
+  const double (&origin(int frame) const)[3] { return origin_[frame]; }
+
+  /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
+  double reach() const { return reach_; }
+
+  std::size_t memUsage() const;
+
+ private:
+  /// A part of the tree: nodes [first_node, last_node) below its root, and the vertices
+  /// that are met there first.
+  struct Subtree {
+    std::uint32_t root, first_node, last_node, first_triangle, first_vertex, last_vertex;
+  };
+  /// Extents of a node's box, and of all triangles' boxes below together: along all eight
+  /// directions, in both frames; and how many of the triangles are blurred.
+  struct NodeSize {
+    float box, triangles;
+    std::uint32_t blurred;
+  };
+  /// Least and greatest coordinates.
+  struct Range;
+  class Restructuring;
+  class TopologyUpdate;
+
+  /// The box as it would be had it only grown as its triangles have.
+  static float expectedBox(const NodeSize& first, const NodeSize& now) {
+    return first.box * (now.triangles / first.triangles);
+  }
+
+  static TreeStructure walk(std::int32_t root, const std::vector<TreeChildren>& nodes,
+                            const std::vector<NodeSize>& sizes, std::size_t num_leaves,
+                            std::vector<NodeSize>& first_sizes);
+  void adopt(const Restructuring& restructuring);
+  void arrange(const TreeStructure& structure, const Triangle* triangles,
+               std::size_t num_vertices, int num_threads);
+  void place(const TreeStructure& structure, const Triangle* triangles,
+             std::size_t num_vertices, int num_threads);
+  void takeMemory(const MovingKdopTree& other, const TreeStructure& structure);
+  void become(MovingKdopTree&& next, const TreeStructure& structure) noexcept;
+  void inherit(const MovingKdopTree& before, const TopologyDifference& difference,
+               int num_threads);
+  void findSubtrees(const TreeStructure& structure);
+  void placeVertices(std::size_t num_vertices);
+  void setNodes(const TreeStructure& structure, int num_threads);
+  void setNode(const TreeChildren& from, MovingKdopNode& node) const;
+  Range rangeOf(const VertexFrames& frames, int num_threads) const;
+  double medianOf(const VertexFrames& frames, int frame, int axis) const;
+  void setReach(const Range& range);
+  void fit(const VertexFrames& frames, int num_threads);
+  void fitVertices(const Subtree& subtree, const VertexFrames& frames);
+  void refit(MovingKdopNode& node, bool is_still);
+  void refit(const Subtree& subtree, bool is_still);
+  void refitGroups(const VertexFrames& frames, int num_threads);
+
+  UninitializedVector<MovingKdopNode> nodes_;
+  std::vector<std::uint32_t> first_triangles_;
+  /// placesBefore() of every eighth triangle.
+  std::vector<std::uint32_t> places_before_;
+  std::vector<TreeTriangle> triangles_;
+  UninitializedVector<TreeVertex> vertices_;
+  /// The user's id of each vertex.
+  std::vector<std::uint32_t> vertex_ids_;
+  VertexFans fans_;
+  /// Of the structure as it is, also of copies that have the same.
+  std::shared_ptr<RegionBorders> region_borders_;
+  /// What is refit independently, and the nodes above, parents first.
+  std::vector<Subtree> subtrees_;
+  std::vector<std::uint32_t> top_;
+  /// Of each node as it is, and as it was when it was made; 0 as long as unknown.
+  std::vector<NodeSize> sizes_;
+  std::vector<NodeSize> first_sizes_;
+  double origin_[2][3]{};
+  double reach_{0};
+  /// Triangles whose boxes have smaller extents are blurred.
+  float blur_{0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_TREE_OPEN_BINARY_H
+#define FCL_CCD_TREE_OPEN_BINARY_H
+
+#include <cstdint>
+
+#include "mesh/tree_nodes.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Opens node i of a binary tree until there are eight nodes or only leaves.
+/// @param link  link(i) >= 0: left child of i (the right one follows it); < 0: ~triangle
+/// @param nodes  the nodes
+/// @param children  the same, or ~triangle for leaves
+/// @return number of entries
+template <typename Link>
+int openBinary(std::int32_t i, std::int32_t (&nodes)[MovingKdopNode::kWidth],
+               std::int32_t (&children)[MovingKdopNode::kWidth], Link&& link) {
+  int n = 1;
+  nodes[0] = i;
+  for (bool grew = true; grew;) {
+    grew = false;
+    const int before = n;
+    for (int k = 0; k < before && n < MovingKdopNode::kWidth; ++k) {
+      const std::int32_t left = link(nodes[k]);
+      if (left < 0) continue;
+      nodes[k] = left;
+      nodes[n++] = left + 1;
+      grew = true;
+    }
+  }
+  for (int k = 0; k < n; ++k) {
+    const std::int32_t left = link(nodes[k]);
+    children[k] = left < 0 ? left : nodes[k];
+  }
+  return n;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tree/rigid_tree.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "tree/open_binary.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// FCL fits its volumes in S with rounding to nearest, so that a point can stand out of
+/// its volume by a few units in the last place of its coordinates, and merges add a few
+/// more on each level; 2^12 units cover any depth that a tree in memory can have (two
+/// units a level would take 2000 levels). Too large a margin costs only a box test.
+template <typename S>
+constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
+
+/// The OBB that a bounding volume consists of, or has beside other volumes.
+template <typename S>
+const OBB<S>& obbOf(const OBB<S>& bv) {
+  return bv;
+}
+template <typename S>
+const OBB<S>& obbOf(const OBBRSS<S>& bv) {
+  return bv.obb;
+}
+template <typename S>
+const OBB<S>& obbOf(const kIOS<S>& bv) {
+  return bv.obb;
+}
+
+/// Whether a volume has bounds along our directions ready.
+template <typename BV>
+constexpr bool kHasSlabs = false;
+template <typename S>
+constexpr bool kHasSlabs<AABB<S>> = true;
+template <typename S, std::size_t N>
+constexpr bool kHasSlabs<KDOP<S, N>> = true;
+
+/// Bounds along our directions.
+struct Slabs {
+  double lo[8];
+  double hi[8];
+};
+
+template <typename S>
+Slabs slabsOf(const AABB<S>& bv) {
+  const double lo[3] = {double{bv.min_[0]}, double{bv.min_[1]}, double{bv.min_[2]}};
+  const double hi[3] = {double{bv.max_[0]}, double{bv.max_[1]}, double{bv.max_[2]}};
+  Slabs slabs;
+  kdopCoordinates(lo, slabs.lo);
+  kdopCoordinates(hi, slabs.hi);
+  for (int k = 1; k < 3; ++k) {  // x - y and x - z
+    slabs.lo[5 + k] = lo[0] - hi[k];
+    slabs.hi[5 + k] = hi[0] - lo[k];
+  }
+  return slabs;
+}
+
+/// The first 8 directions of every KDOP of FCL's are ours. Its bounds are private, and
+/// reading one a call; they are all that it consists of.
+template <typename S, std::size_t N>
+Slabs slabsOf(const KDOP<S, N>& bv) {
+  static_assert(std::is_standard_layout_v<KDOP<S, N>> && sizeof(bv) == N * sizeof(S));
+  const S* bounds = reinterpret_cast<const S*>(&bv);
+  Slabs slabs;
+  for (std::size_t j = 0; j < 8; ++j) {
+    slabs.lo[j] = double{bounds[j]};
+    slabs.hi[j] = double{bounds[j + N / 2]};
+  }
+  return slabs;
+}
+
+/// Whether the leaf is surely no oriented box that FCL fitted to a triangle by itself,
+/// along its longest edge (fit3() in fcl/math/bv/utility-inl.h), but one that has the
+/// directions in which the corners scatter (BVFitter). They are the same for a triangle
+/// with two equal sides, and nearly so for a thin one.
+template <typename S>
+bool isFittedToScatter(const OBB<S>& box, const Vector3<S> (&corners)[3]) {
+  constexpr double kSameDirection = 1 - 1e-5;
+  const Vector3<double> axis = box.axis.col(0).template cast<double>();
+  for (int k = 0; k < 3; ++k) {
+    const Vector3<double> edge =
+        corners[(k + 1) % 3].template cast<double>() - corners[k].template cast<double>();
+    if (!(std::abs(axis.dot(edge)) < kSameDirection * axis.norm() * edge.norm()))
+      return false;
+  }
+  return true;
+}
+
+/// Contains all that is in range.
+constexpr OrientedBox kUnbounded = {
+    {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
+
+/// Whether axes are unit vectors at right angles but for an error that is a part of what
+/// points may stand out, which it multiplies as their coordinates do. FCL's are mere
+/// numbers where sums of squares of coordinates left the range of S.
+bool isBox(const OrientedBox& box, double slack) {
+  bool is_box = true;
+  for (int i = 0; i < 3; ++i) {
+    is_box &= std::abs(box.center[i]) < DBL_MAX && box.extent[i] < DBL_MAX;
+    for (int j = 0; j <= i; ++j) {
+      double product = i == j ? -1 : 0;
+      for (int k = 0; k < 3; ++k) product += box.axis[i][k] * box.axis[j][k];
+      is_box &= std::abs(product) < slack / 8;
+    }
+  }
+  return is_box;
+}
+
+constexpr float kFloatUnit = 0x1p-24f;
+
+Float4 load(const float* from) {
+  Float4 v;
+  __builtin_memcpy(&v, from, sizeof(v));
+  return v;
+}
+void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
+Float4 abs(const Float4& v) {
+  constexpr int kAllButSign = 0x7fffffff;
+  return Float4(Mask4(v) & kAllButSign);
+}
+Float4 larger(const Float4& x, const Float4& y) { return x > y ? x : y; }
+
+/// As roundUp() leaves a half-axis: infinite in place of a NaN, never below kLeastHalf.
+Float4 bounded(const Float4& half) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const Float4 number = half == half ? half : Float4{kInf, kInf, kInf, kInf};
+  return larger(number, Float4{kLeastHalf, kLeastHalf, kLeastHalf, kLeastHalf});
+}
+
+/// Eight boxes in lanes, rounded to float; centers relative to the tree's origin.
+struct EightBoxes {
+  float center[3][MovingKdopNode::kWidth];
+  float half_axis[3][3][MovingKdopNode::kWidth];
+};
+
+/// How far a box reaches from its center along the axes.
+double spreadOf(const OrientedBox& box) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k) {
+    double spread = 0;
+    for (int i = 0; i < 3; ++i) spread += std::abs(box.axis[i][k] * box.extent[i]);
+    most = std::max(most, spread);
+  }
+  return most;
+}
+
+/// Half-axes of 16-DOPs around the boxes, but for rounding: a direction d meets a box as
+/// far from its center as the sum of |d . half axis|.
+void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
+  for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
+    const auto alongDirections = [q](const float(&v)[3][MovingKdopNode::kWidth],
+                                     Float4(&d)[8]) {
+      const Float4 p[3] = {load(v[0] + q), load(v[1] + q), load(v[2] + q)};
+      kdopCoordinates(p, d);
+    };
+    Float4 center[8], axis[3][8];
+    alongDirections(boxes.center, center);
+    for (int k = 0; k < 3; ++k) alongDirections(boxes.half_axis[k], axis[k]);
+    for (int j = 0; j < 8; ++j) {
+      const Float4 spread = abs(axis[0][j]) + abs(axis[1][j]) + abs(axis[2][j]);
+      store(spread - center[j], out.t0[2 * j] + q);
+      store(spread + center[j], out.t0[2 * j + 1] + q);
+    }
+  }
+}
+
+}  // namespace
+
+inline const BVNodeBase* RigidTree::at(int node) const {
+  return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
+                                             static_cast<std::size_t>(node) *
+                                                 volumes_.stride);
+}
+
+inline int RigidTree::link(int node) const { return at(node)->first_child; }
+
+template <typename BV>
+bool RigidTree::isSound(const BVHModel<BV>& model) {
+  if constexpr (!kHasSlabs<BV>) {
+    // FCL refits all nodes or none: one leaf is enough, and as a rule the first one is.
+    constexpr int kMostNodes = 4096, kStride = 7919;
+    const int count = model.getNumBVs();
+    for (int i = 0, at = 0; i < std::min(count, kMostNodes);
+         ++i, at = (at + kStride) % count) {
+      const BVNode<BV>& node = model.getBV(at);
+      if (!node.isLeaf()) continue;
+      const Triangle& triangle = model.tri_indices[node.primitiveId()];
+      Vector3<typename BV::S> corners[3];
+      bool is_there = true;
+      for (int k = 0; k < 3; ++k) {
+        is_there &= triangle[k] < static_cast<std::size_t>(model.num_vertices);
+        if (is_there) corners[k] = model.vertices[triangle[k]];
+      }
+      if (is_there && isFittedToScatter(obbOf(node.bv), corners)) return true;
+    }
+  }
+  return kHasSlabs<BV>;
+}
+
+template <typename BV>
+RigidTree::Volumes RigidTree::volumesOf() {
+  return {sizeof(BVNode<BV>), kFitSlack<typename BV::S>, kHasSlabs<BV>,
+          &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
+}
+
+/// The origin lies in the middle of the mesh; or of one of its halves, if that is a speck
+/// beside the whole: a vertex may be far away from all others, and floats relative to the
+/// middle would be mere rounding (as in MovingKdopTree::refit()).
+template <typename BV>
+RigidTree::RigidTree(const BVHModel<BV>& model, const Pose& pose)
+    : RigidTree(&model.getBV(0), volumesOf<BV>(), pose) {}
+
+RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose)
+    : nodes_(nodes), volumes_(volumes), is_rotated_(!pose.isTranslation()) {
+  constexpr double kSpeck = 0x1p-10;
+  std::copy(pose.rotation, pose.rotation + 9, rotation_);
+  OrientedBox whole, part;
+  orientedBox(0, whole);
+  double least = kSpeck * spreadOf(whole);
+  std::copy(whole.center, whole.center + 3, origin_);
+  for (int child = link(0); child >= 0 && child < link(0) + 2; ++child) {
+    orientedBox(child, part);
+    if (!(spreadOf(part) < least)) continue;
+    least = spreadOf(part);
+    std::copy(part.center, part.center + 3, origin_);
+  }
+  // Twice, so that with a center relative to it it bounds the center itself too.
+  origin_size_ = roundUp(
+      2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
+  for (int k = 0; k < 3; ++k)
+    reach_ = std::max(reach_, spreadOf(whole) + std::abs(whole.center[k] - origin_[k]));
+  reach_ *= 1 + slack();
+}
+
+void RigidTree::rotate(OrientedBox& box) const {
+  const auto turn = [this](double(&v)[3]) {
+    const double x = v[0], y = v[1], z = v[2];
+    for (int k = 0; k < 3; ++k)
+      v[k] = rotation_[3 * k] * x + rotation_[3 * k + 1] * y + rotation_[3 * k + 2] * z;
+  };
+  turn(box.center);
+  for (auto& axis : box.axis) turn(axis);
+}
+
+// Of an AABB or a KDOP the box of the first three slabs.
+template <typename BV>
+void RigidTree::setBox(int node, OrientedBox& box) const {
+  const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
+  if constexpr (kHasSlabs<BV>) {
+    const Slabs slabs = slabsOf(bv);
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = 0.5 * (slabs.lo[k] + slabs.hi[k]);
+      for (int i = 0; i < 3; ++i) box.axis[i][k] = i == k;
+      box.extent[k] = 0.5 * (slabs.hi[k] - slabs.lo[k]);
+    }
+  } else {
+    const auto& obb = obbOf(bv);
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = double{obb.To[k]};
+      for (int i = 0; i < 3; ++i) box.axis[i][k] = double{obb.axis(k, i)};
+      box.extent[k] = double{obb.extent[k]};
+    }
+    if (!isBox(box, volumes_.slack)) box = kUnbounded;
+  }
+  if (is_rotated_) rotate(box);
+}
+
+template <typename BV>
+void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const {
+  if constexpr (kHasSlabs<BV>)
+    if (!is_rotated_) {
+      double origin[8];
+      kdopCoordinates(origin_, origin);
+      for (int lane = 0; lane < kWidth; ++lane) {
+        const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
+        for (int j = 0; j < 8; ++j) {
+          out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
+          out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
+        }
+      }
+      // The bounds along x, y, z are those of coordinates, without error; a sum of two
+      // was rounded to within the slack of its terms.
+      return roundOutward(0.f, out);
+    }
+  EightBoxes boxes;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    OrientedBox box;
+    setBox<BV>(nodes[lane], box);
+    for (int k = 0; k < 3; ++k) {
+      boxes.center[k][lane] = static_cast<float>(box.center[k] - origin_[k]);
+      for (int i = 0; i < 3; ++i)
+        boxes.half_axis[i][k][lane] = static_cast<float>(box.axis[i][k] * box.extent[i]);
+    }
+  }
+  fitBoxes(boxes, out);
+  // A half-axis is a sum of components of the center and of the half axes: rounding these
+  // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1, and 3
+  // more than cover the rounding of the padding itself. The fit's slack is far above the
+  // few 2^-53 of the rotation and of the center.
+  roundOutward(8 * kFloatUnit, out);
+}
+
+/// Completes rows whose half-axes at t = 0 are right but for `rounding`, relative to the
+/// sum of the components, and for the fit of the volumes.
+void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
+  const auto slack = static_cast<float>(volumes_.slack);
+  for (int q = 0; q < kWidth; q += 4) {
+    // Along x, y and z: the center's distance from the origin and half the width.
+    Float4 size{};
+    for (int r = 0; r < 6; r += 2)
+      size += larger(abs(load(out.t0[r] + q)), abs(load(out.t0[r + 1] + q)));
+    const Float4 pad = size * rounding + (size + origin_size_) * slack + FLT_MIN;
+    for (int r = 0; r < 16; ++r) {
+      const Float4 half = load(out.t0[r] + q);
+      const Float4 up = bounded(half + (abs(half) * kOutward + pad));
+      store(up, out.t0[r] + q);
+      store(up, out.t1[r] + q);
+    }
+  }
+}
+
+void RigidTree::open(int i, MovingKdopNode& out) const {
+  // The boxes are needed of FCL's nodes, the links of what is below them.
+  std::int32_t nodes[kWidth];
+  std::fill(nodes, nodes + kWidth, i);
+  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
+  out.markTriangles();
+  (this->*volumes_.set_rows)(nodes, out);
+  std::fill(out.displacement, out.displacement + kWidth, 0.f);
+  out.clearRest();
+}
+
+MovingKdop RigidTree::box(int node) const {
+  std::int32_t nodes[kWidth];
+  std::fill(nodes, nodes + kWidth, node);
+  MovingKdopNode out;
+  (this->*volumes_.set_rows)(nodes, out);
+  return out.box(0);
+}
+
+#define FCL_CCD_INSTANTIATE(BV)                              \
+  template bool RigidTree::isSound<BV>(const BVHModel<BV>&); \
+  template RigidTree::RigidTree(const BVHModel<BV>&, const Pose&);
+#define FCL_CCD_COMMA ,
+FCL_CCD_INSTANTIATE(AABB<double>)
+FCL_CCD_INSTANTIATE(AABB<float>)
+FCL_CCD_INSTANTIATE(OBB<double>)
+FCL_CCD_INSTANTIATE(OBB<float>)
+FCL_CCD_INSTANTIATE(OBBRSS<double>)
+FCL_CCD_INSTANTIATE(OBBRSS<float>)
+FCL_CCD_INSTANTIATE(kIOS<double>)
+FCL_CCD_INSTANTIATE(kIOS<float>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 16>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 16>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 18>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 18>)
+FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 24>)
+FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 24>)
+#undef FCL_CCD_COMMA
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tree/separating_axes.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double dot(const double (&x)[3], const double (&y)[3]) {
+  return x[0] * y[0] + x[1] * y[1] + x[2] * y[2];
+}
+
+double size(const double (&x)[3]) {
+  return std::abs(x[0]) + std::abs(x[1]) + std::abs(x[2]);
+}
+
+/// How far the box reaches from its center along a direction.
+double reach(const OrientedBox& box, const double (&direction)[3]) {
+  return std::abs(dot(box.axis[0], direction)) * box.extent[0] +
+         std::abs(dot(box.axis[1], direction)) * box.extent[1] +
+         std::abs(dot(box.axis[2], direction)) * box.extent[2];
+}
+
+/// Boxes are tested whose extents are so many times as large as the motion: of boxes that
+/// move further few are proved apart. Two spheres of 100,352 triangles that touch: 17%
+/// slower with the test than without for a limit of 0, 6% for 1, 1% for 4 and 8. With
+/// boxes that only interlock all of these are as fast; a limit of 16 is too large there.
+constexpr float kExtentsOfMotion = 4;
+
+}  // namespace
+
+SeparatingAxes::SeparatingAxes(const MeshInstance& a, const MeshInstance& b)
+    : a_(a.rigid), b_(b.rigid) {
+  for (int frame = 0; frame < 2; ++frame) {
+    for (int k = 0; k < 3; ++k)
+      translation_[frame][k] = b.translation[frame][k] - a.translation[frame][k];
+    size_ += size(a.translation[frame]) + size(b.translation[frame]);
+  }
+  double motion = 0;
+  for (int k = 0; k < 3; ++k) motion += std::abs(translation_[1][k] - translation_[0][k]);
+  least_extents_ = a_.isOriented() || b_.isOriented()
+                       ? kExtentsOfMotion * static_cast<float>(motion)
+                       : std::numeric_limits<float>::infinity();
+}
+
+bool SeparatingAxes::areApart(int i, int j) const {
+  OrientedBox a, b;
+  a_.orientedBox(i, a);
+  b_.orientedBox(j, b);
+  double from[3], to[3];
+  for (int k = 0; k < 3; ++k) {
+    const double between = b.center[k] - a.center[k];
+    from[k] = between + translation_[0][k];
+    to[k] = between + translation_[1][k];
+  }
+  // Points stand out of their boxes by the slack times their coordinates; these are not
+  // larger than the sum below, the axes being unit vectors. The slack is 2^12 units of
+  // rounding at least, of which all that is computed here and in the points' own
+  // translation takes less than 32.
+  const double pad = (size_ + size(a.center) + size(b.center) + 2 * size(a.extent) +
+                      2 * size(b.extent)) *
+                         std::max(a_.slack(), b_.slack()) +
+                     DBL_MIN;
+  const auto isSeparating = [&](const double(&axis)[3]) {
+    const double depth = reach(a, axis) + reach(b, axis) + pad * size(axis);
+    const double along_from = dot(from, axis), along_to = dot(to, axis);
+    return (along_from > depth && along_to > depth) ||
+           (along_from < -depth && along_to < -depth);
+  };
+  return std::any_of(a.axis, a.axis + 3, isSeparating) ||
+         std::any_of(b.axis, b.axis + 3, isSeparating);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_TREE_TOPOLOGY_DIFFERENCE_H
+#define FCL_CCD_TREE_TOPOLOGY_DIFFERENCE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "tree/moving_kdop_tree.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief What a change of topology leaves as it was. A triangle is the same if it is
+/// the first to come from one before, if its corners are the same vertices, and if the
+/// numbers of those that are the same ascend as before. A vertex is the same if all
+/// triangles around it are, and no other was there: then its fan is the same, and so is
+/// the owner of each feature that has it.
+class TopologyDifference {
+ public:
+  /// Not a triangle, not a vertex.
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
+  /// @param before  triangles in the order of a tree with so many vertices
+  /// @param origins  for each new triangle the number of the one that it was or was cut
+  /// from, or -1; empty: the one of its number
+  TopologyDifference(const std::vector<TreeTriangle>& before,
+                     std::size_t num_places_before, const Triangle* triangles,
+                     std::size_t num_triangles, std::size_t num_vertices,
+                     const std::vector<int>& origins);
+
+  /// @brief Of each new triangle the place in the tree of the one that it comes from, or
+  /// kNone.
+  const std::vector<std::uint32_t>& origins() const { return origins_; }
+
+  /// @brief Of each new vertex, by its id, the place in the tree of the one that it is;
+  /// kNone if that is not the same.
+  const std::vector<std::uint32_t>& vertices() const { return vertices_; }
+
+  /// @brief Of each vertex of the tree, by its place, the new id, or kNone. Known of all
+  /// neighbours of vertices that are the same.
+  const std::vector<std::uint32_t>& newIds() const { return new_ids_; }
+
+ private:
+  void findOrigins(const std::vector<TreeTriangle>& before, std::size_t num_triangles,
+                   const std::vector<int>& origins);
+  void findVertices(const std::vector<TreeTriangle>& before, const Triangle* triangles);
+  void dropTriangles(const std::vector<TreeTriangle>& before, const Triangle* triangles);
+
+  std::vector<std::uint32_t> origins_;
+  /// Whether a new triangle, and one of the tree, may be the same as one of the other.
+  std::vector<std::uint8_t> is_same_;
+  std::vector<std::uint8_t> stays_;
+  std::vector<std::uint32_t> vertices_;
+  std::vector<std::uint32_t> new_ids_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One traversal for a pair of trees and for a tree with itself.
+#ifndef FCL_CCD_TREE_TRAVERSAL_H
+#define FCL_CCD_TREE_TRAVERSAL_H
+
+#include <algorithm>
+#include <cfloat>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "kernels/kernels.h"
+#include "mesh/moving_kdop.h"
+#include "tree/separating_axes.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Work still to be done: child `lane` of node `parent` of one tree against all
+/// children of node `node` of the other; or, with lane < 0, a node with itself.
+struct NodePair {
+  std::int32_t parent;
+  std::int32_t node;
+  std::int16_t lane;
+  /// The child is tree b's and the node tree a's.
+  bool swapped;
+  /// Before this time they do not overlap.
+  float earliest;
+};
+
+/// @brief Work in the order in which it was added. Entries are written where they lie: a
+/// processor waits for what was stored in parts and is loaded as a whole.
+class WorkList {
+ public:
+  std::size_t size() const { return size_; }
+  const NodePair& operator[](std::size_t i) const { return items_[i]; }
+  NodePair* data() { return items_.data(); }
+
+  void add(std::int32_t parent, int lane, std::int32_t node, bool swapped,
+           float earliest) {
+    if (size_ == items_.size()) items_.resize(2 * size_ + 64);
+    NodePair& work = items_[size_++];
+    work.parent = parent;
+    work.node = node;
+    work.lane = static_cast<std::int16_t>(lane);
+    work.swapped = swapped;
+    work.earliest = earliest;
+  }
+  /// @brief Forgets all but the first so many.
+  void cut(std::size_t size) { size_ = size; }
+
+ private:
+  std::vector<NodePair> items_;
+  std::size_t size_{0};
+};
+
+/// @brief Size of a child, by which the larger of two is opened: the extents along the
+/// axes at t = 0.
+inline float extentOf(const MovingKdopNode& node, int lane) {
+  float sum = node.t0[0][lane];
+  for (int r = 1; r < 6; ++r) sum += node.t0[r][lane];
+  return sum;
+}
+
+/// @brief What a traversal of a tree with itself leaves out; null: nothing.
+struct SelfCulling {
+  /// For each vertex of the tree, whether its fan is embedded (findEmbeddedFans()): pairs
+  /// of triangles in one.
+  const std::uint8_t* fans{nullptr};
+  /// For each node, the vertex in whose embedded fan it lies (findNodesInFans()): pairs
+  /// below two nodes in the same one.
+  const std::uint32_t* nodes_in_fans{nullptr};
+  /// For each node, whether it is a region (EmbeddedRegions::nodes): pairs below it.
+  const std::uint8_t* regions{nullptr};
+};
+
+/// @brief Visits every pair of triangles whose boxes overlap at some time.
+///
+/// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
+/// @tparam kSelf  tree_b is tree_a: each unordered pair of different triangles once
+template <bool kSelf, typename TreeA, typename TreeB>
+class Traversal {
+ public:
+  /// @param shift  between the two trees' origins and translations; null for kSelf
+  /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
+  /// @param timed  as in OverlapRequest
+  Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
+            const SelfCulling& culling, const SeparatingAxes* axes,
+            const Kernels& kernels, bool timed)
+      : tree_a_(tree_a),
+        tree_b_(tree_b),
+        culling_(culling),
+        axes_(axes),
+        kernels_(kernels),
+        request_{timed} {
+    if (!shift) return;
+    // What is added to a box of tree b is the same with the half-axes exchanged.
+    for (int r = 0; r < 16; ++r) {
+      const int j = MovingKdopNode::halfAxis(r);
+      shift_[0][0][r] = shift_[1][0][r ^ 1] = shift->t0.half[j];
+      shift_[0][1][r] = shift_[1][1][r ^ 1] = shift->t1.half[j];
+    }
+  }
+
+  /// @brief The whole of both trees, as the first work.
+  void start(WorkList& open) {
+    if (kSelf)
+      addSelf(0, open);
+    else
+      for (int lane = tree_a_.node(0).count; lane-- > 0;)
+        open.add(0, lane, 0, false, 0.f);
+  }
+
+  /// @brief Does one piece of work: visit(triangle_a, triangle_b, earliest) for each pair
+  /// of triangles, and what remains to be done is put on `open`.
+  /// @param work  may lie in `open`, behind its end
+  template <typename Visit>
+  void step(const NodePair& work, WorkList& open, Visit&& visit) {
+    const std::int32_t parent = work.parent, node = work.node;
+    const int lane = work.lane;
+    if (kSelf && lane < 0)
+      openSelf(node, open, visit);
+    else if (!kSelf && work.swapped)
+      compare<true>(tree_b_.node(parent), parent, lane, tree_a_.node(node), node,
+                    kAllLanes, open, visit);
+    else
+      compare<false>(tree_a_.node(parent), parent, lane, tree_b_.node(node), node,
+                     kAllLanes, open, visit);
+  }
+
+  /// @brief From here on boxes that do not meet until `latest` may be left out.
+  /// @param pose_displacement  MeshInstance::poseDisplacement() of both
+  void leaveOutAfter(double latest, double pose_displacement) {
+    request_.leaveOutAfter(latest, pose_displacement);
+  }
+
+  /// @brief A step visits at most so many pairs. Those of two nodes have as many as these
+  /// have lanes; more are found where a node is opened with itself: each two of its
+  /// triangles, and each of them with those of every child that has only triangles, 134
+  /// if four of its children are triangles.
+  static constexpr std::size_t maxPairs() {
+    constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+    std::size_t most = kWidth * kWidth;
+    for (std::size_t i = 1; kSelf && i <= kWidth; ++i)
+      most = std::max(most, i * (i - 1) / 2 + i * (kWidth - i) * kWidth);
+    return most;
+  }
+
+  /// @brief Number of boxes that were compared.
+  std::uint64_t compared() const { return pairs_.compared; }
+
+  /// @brief Pairs of triangles that overlap and lie in an embedded fan.
+  std::uint64_t fanCulled() const { return pairs_.fan_culled; }
+
+  void clearCounts() { pairs_.compared = pairs_.fan_culled = 0; }
+
+ private:
+  static constexpr unsigned kAllLanes = (1U << MovingKdopNode::kWidth) - 1;
+
+  /// A node with itself.
+  void addSelf(std::int32_t i, WorkList& open) const {
+    if (culling_.regions && culling_.regions[i]) return;
+    if (!areInFan(i, i)) open.add(0, -1, i, false, 0.f);
+  }
+
+  /// Two nodes in the same fan.
+  bool areInFan(std::int32_t i, std::int32_t j) const {
+    const std::uint32_t* centers = culling_.nodes_in_fans;
+    return kSelf && centers && centers[i] != MovingKdopNode::kNoPlace &&
+           centers[i] == centers[j];
+  }
+
+  template <typename Visit>
+  void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
+    // A node of a reader is valid until another is asked for, which compare() does: there
+    // it is asked for anew, and as both trees' node.
+    const unsigned lanes = tree_a_.node(i).lanes(), triangles = tree_a_.node(i).triangles;
+    if (triangles)
+      visitTriangles<false>(tree_a_.node(i), triangles, tree_a_.node(i), visit);
+    for (int lane = 0; lanes >> lane != 0; ++lane) {
+      const MovingKdopNode& node = tree_a_.node(i);
+      unsigned later = lanes & ~((2U << lane) - 1);
+      if (node.isTriangle(lane))
+        later &= ~triangles;
+      else
+        addSelf(node.child[lane], open);
+      if (later) compare<false>(node, i, lane, tree_b_.node(i), i, later, open, visit);
+    }
+  }
+
+  /// Child `lane` of `parent`, node number i, against the children `lanes` of `node`,
+  /// number j.
+  template <bool kSwapped, typename Visit>
+  void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
+               const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
+               Visit& visit) {
+    const bool is_triangle = parent.isTriangle(lane);
+    const unsigned triangles = node.triangles;
+    if (is_triangle) {
+      if (triangles & lanes) visitTriangles<kSwapped>(parent, 1U << lane, node, visit);
+      lanes &= ~triangles & node.lanes();
+      if (lanes == 0) return;
+    }
+    BoxView box{&parent.t0[0][lane], &parent.t1[0][lane], BoxView::kInNode,
+                parent.displacement[lane]};
+    float moved[2][16];
+    if (!kSelf) {
+      for (std::size_t r = 0; r < 16; ++r) {
+        moved[0][r] = shifted(box.t0[r * box.stride], shift_[kSwapped][0][r]);
+        moved[1][r] = shifted(box.t1[r * box.stride], shift_[kSwapped][1][r]);
+      }
+      box = {moved[0], moved[1], 1, box.displacement};
+    }
+    pairs_.compared += static_cast<std::uint64_t>(node.count);
+    float earliest[MovingKdopNode::kWidth];
+    unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;
+    if (left == 0) return;
+    // The parent is not looked at again: its child may take its place.
+    const std::int32_t mine = parent.child[lane];
+    const float size = is_triangle ? 0.f : extentOf(parent, lane);
+    if (!is_triangle && (left & triangles)) {
+      const MovingKdopNode& child = kSwapped ? tree_b_.node(mine) : tree_a_.node(mine);
+      if (child.triangles == child.lanes()) {
+        visitTriangles<!kSwapped>(node, left & triangles, child, visit);
+        left &= ~triangles;
+      }
+    }
+    for (; left != 0; left &= left - 1) {
+      const int k = __builtin_ctz(left);
+      const bool both_nodes = !is_triangle && !node.isTriangle(k);
+      if (both_nodes && areInFan(mine, node.child[k])) continue;
+      const float other = both_nodes ? extentOf(node, k) : 0.f;
+      if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
+          axes_->areApart(kSwapped ? node.child[k] : mine,
+                          kSwapped ? mine : node.child[k]))
+        continue;
+      if (is_triangle || (both_nodes && size < other))
+        open.add(i, lane, node.child[k], kSwapped, earliest[k]);
+      else
+        open.add(j, k, mine, !kSwapped, earliest[k]);
+    }
+  }
+
+  /// Triangles `lanes` of a node of tree a (kSwapped: b) against those of a node of the
+  /// other tree, or of the same node.
+  template <bool kSwapped, typename Visit>
+  void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
+                      const MovingKdopNode& theirs, Visit& visit) {
+    kernels_.overlapTriangles({mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped],
+                               culling_.fans, request_},
+                              pairs_);
+    for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
+      const int pair = __builtin_ctzll(left);
+      const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
+      const int x = mine.triangle(i), y = theirs.triangle(j);
+      const float earliest = pairs_.earliest[i][j];
+      kSwapped ? visit(y, x, earliest) : visit(x, y, earliest);
+    }
+  }
+
+  TreeA& tree_a_;
+  TreeB& tree_b_;
+  const SelfCulling culling_;
+  const SeparatingAxes* axes_;
+  const Kernels& kernels_;
+  OverlapRequest request_;
+  float shift_[2][2][16];
+  LanePairs pairs_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

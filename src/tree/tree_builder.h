@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_TREE_TREE_BUILDER_H
+#define FCL_CCD_TREE_TREE_BUILDER_H
+
+#include <cstddef>
+
+#include "fcl/math/triangle.h"
+#include "mesh/vertex_frames.h"
+#include "tree/tree_structure.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Splits the triangles into a tree by their centroids in frame 0, as splitItems()
+/// does, their components into groups.
+/// @param num_threads  as in parallelFor(); the tree does not depend on it
+TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
+                             const VertexFrames& frames, int num_threads);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

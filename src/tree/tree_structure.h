@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A tree before it has boxes, and what it is made from.
+#ifndef FCL_CCD_TREE_TREE_STRUCTURE_H
+#define FCL_CCD_TREE_TREE_STRUCTURE_H
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "base/uninitialized_vector.h"
+#include "mesh/tree_nodes.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The children of a node: >= 0 a node, < 0 ~leaf.
+struct TreeChildren {
+  std::int32_t child[MovingKdopNode::kWidth];
+  std::int32_t count;
+};
+
+/// @brief A tree without boxes. Nodes and leaves lie in the order of a walk from the
+/// root, node 0: the nodes of a node's children follow each other, its leaves come before
+/// those of its children.
+struct TreeStructure {
+  UninitializedVector<TreeChildren> nodes;
+  /// The user's number of each leaf's triangle.
+  std::vector<std::uint32_t> leaves;
+};
+
+/// @brief Numbers the nodes and leaves of a tree in the order of a walk from node 0.
+/// @param children  children(node, place): the children, by their old numbers, of a node
+/// that gets this place
+template <typename Children>
+TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
+  struct Open {
+    std::int32_t node;
+    std::size_t place;
+  };
+  TreeStructure tree;
+  tree.leaves.reserve(num_leaves);
+  tree.nodes.emplace_back();
+  std::vector<Open> open{{0, 0}};
+  while (!open.empty()) {
+    const Open o = open.back();
+    open.pop_back();
+    TreeChildren node = children(o.node, o.place);
+    // The first child is the first to go on with.
+    const std::size_t num_open = open.size();
+    for (int i = 0; i < node.count; ++i) {
+      std::int32_t& child = node.child[i];
+      if (child < 0) {
+        tree.leaves.push_back(static_cast<std::uint32_t>(~child));
+        child = ~static_cast<std::int32_t>(tree.leaves.size() - 1);
+      } else {
+        open.push_back({child, tree.nodes.size()});
+        child = static_cast<std::int32_t>(tree.nodes.size());
+        tree.nodes.emplace_back();
+      }
+    }
+    std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
+    tree.nodes[o.place] = node;
+  }
+  return tree;
+}
+
+/// @brief What is put into a tree: a name and a place. Of the place as a vector of four
+/// numbers the last one means nothing.
+struct alignas(16) TreeItem {
+  float place[3];
+  std::uint32_t index;
+};
+
+/// @brief A coordinate from which widths, sums and products of a few can be taken without
+/// overflow; what is no number lies in the middle.
+inline float placeOf(double coordinate) {
+  constexpr double kFarthest = 1e37;
+  return coordinate == coordinate
+             ? static_cast<float>(std::max(-kFarthest, std::min(kFarthest, coordinate)))
+             : 0.f;
+}
+
+/// @brief Four times the center of a child's box, over both frames.
+inline void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
+  for (int k = 0; k < 3; ++k) {
+    const int lo = 2 * k, hi = lo + 1;
+    place[k] = placeOf(double{(node.t0[hi][lane] - node.t0[lo][lane]) +
+                              (node.t1[hi][lane] - node.t1[lo][lane])});
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif
