@@ -6,7 +6,7 @@
 fcl_ccd_install_dependencies() {
   # To build everything and run the tests. pkg-config: a test builds with fcl.pc.
   local packages=(
-    g++ make cmake pkg-config
+    g++ cmake ninja-build make pkg-config
     libfcl-dev libeigen3-dev libboost-dev libhwy-dev libtbb-dev
     libcli11-dev nlohmann-json3-dev libcgal-dev
     libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
