@@ -179,7 +179,8 @@ TEST_F(CcdSequence, ColumnsTellTrianglesPositionAndNormal) {
 // Wherever a run was ended: what is left of its files is the beginning of them.
 TEST_F(CcdSequence, ResumeEqualsARunThatWasNotStopped) {
   writeFrames(12);
-  const auto [contacts, steps] = outputsOf("run f");
+  const auto whole = outputsOf("run f");
+  const std::string &contacts = whole.first, &steps = whole.second;
   const auto expectResumed = [&](std::size_t contacts_left, std::size_t steps_left) {
     writeText(path("c.csv"), contacts.substr(0, contacts_left));
     writeText(path("s.jsonl"), steps.substr(0, steps_left));

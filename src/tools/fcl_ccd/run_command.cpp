@@ -37,8 +37,8 @@ Parallelism parallelismOf(const RunOptions& options, std::size_t num_steps) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   Parallelism parallelism;
   parallelism.threads = options.threads.value_or(1);
-  // Steps side by side take more out of the cores than threads of one step (measured in
-  // doc/program.md), but their times are not those of a step that has the machine.
+  // Steps side by side wait for nothing of each other, as threads of one step do; but
+  // their times are not those of a step that has the machine to itself.
   const bool times_count = options.settings.repeat > 1 || options.threads;
   parallelism.jobs = options.jobs ? static_cast<std::size_t>(*options.jobs)
                                   : std::size_t{times_count ? 1u : 0u};
