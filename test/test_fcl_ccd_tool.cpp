@@ -3,152 +3,36 @@
 // Drives the program fcl-ccd as a user does, on meshes small enough to know the answer,
 // and its mesh reader on files of every format, whole and broken.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "ccd_tool.h"
 #include "csv_rows.h"
 #include "mesh_io.h"
 
 namespace {
 
-namespace fs = std::filesystem;
-using fcl_ccd::Mesh;
+using namespace fcl::test;
 using Json = nlohmann::json;
 
-std::string readText(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-void writeText(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-std::vector<std::string> linesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) lines.push_back(line);
-  return lines;
-}
+class CcdTool : public fcl::test::CcdToolTest {
+ protected:
+  Json json(const std::string& name) const { return Json::parse(readText(path(name))); }
+};
 
 std::set<std::string> keysOf(const Json& object) {
   std::set<std::string> keys;
   for (const auto& item : object.items()) keys.insert(item.key());
   return keys;
-}
-
-/// @brief 17 digits, which identify a double.
-std::string exactText(double value) {
-  std::ostringstream out;
-  out.precision(17);
-  out << value;
-  return out.str();
-}
-
-std::string toObj(const Mesh& mesh) {
-  std::string text = "# made by a test\n";
-  for (const auto& p : mesh.vertices)
-    text += "v " + exactText(p[0]) + ' ' + exactText(p[1]) + ' ' + exactText(p[2]) + '\n';
-  for (const auto& t : mesh.triangles)
-    text += "f " + std::to_string(t[0] + 1) + ' ' + std::to_string(t[1] + 1) + ' ' +
-            std::to_string(t[2] + 1) + '\n';
-  return text;
-}
-
-/// @brief Vertices and faces as OFF and ascii PLY have them.
-std::string asciiBody(const Mesh& mesh) {
-  std::string text;
-  for (const auto& p : mesh.vertices)
-    text += exactText(p[0]) + ' ' + exactText(p[1]) + ' ' + exactText(p[2]) + '\n';
-  for (const auto& t : mesh.triangles)
-    text += "3 " + std::to_string(t[0]) + ' ' + std::to_string(t[1]) + ' ' +
-            std::to_string(t[2]) + '\n';
-  return text;
-}
-
-std::string toOff(const Mesh& mesh) {
-  return "OFF\n" + std::to_string(mesh.vertices.size()) + ' ' +
-         std::to_string(mesh.triangles.size()) + " 0\n" + asciiBody(mesh);
-}
-
-std::string plyHeader(const Mesh& mesh, const std::string& format,
-                      const std::string& scalar) {
-  std::string text = "ply\nformat " + format + " 1.0\ncomment made by a test\n";
-  text += "element vertex " + std::to_string(mesh.vertices.size()) + '\n';
-  for (const char* name : {"x", "y", "z"})
-    text += "property " + scalar + ' ' + name + '\n';
-  text += "element face " + std::to_string(mesh.triangles.size()) + '\n';
-  return text + "property list uchar int vertex_indices\nend_header\n";
-}
-
-std::string toAsciiPly(const Mesh& mesh) {
-  return plyHeader(mesh, "ascii", "double") + asciiBody(mesh);
-}
-
-template <typename T>
-void appendBytes(T value, bool big_endian, std::string& out) {
-  std::string bytes(sizeof value, '\0');
-  std::memcpy(bytes.data(), &value, sizeof value);
-  const std::uint16_t probe = 1;
-  unsigned char first_byte = 0;
-  std::memcpy(&first_byte, &probe, 1);
-  const bool host_is_big_endian = first_byte == 0;
-  if (big_endian != host_is_big_endian) bytes.assign(bytes.rbegin(), bytes.rend());
-  out += bytes;
-}
-
-template <typename Scalar>
-std::string toBinaryPly(const Mesh& mesh, bool big_endian) {
-  std::string out =
-      plyHeader(mesh, big_endian ? "binary_big_endian" : "binary_little_endian",
-                sizeof(Scalar) == sizeof(float) ? "float" : "double");
-  for (const auto& p : mesh.vertices)
-    for (const double x : p) appendBytes(static_cast<Scalar>(x), big_endian, out);
-  for (const auto& t : mesh.triangles) {
-    out += '\3';
-    for (const int id : t) appendBytes(static_cast<std::int32_t>(id), big_endian, out);
-  }
-  return out;
-}
-
-/// @brief A floor (vertices 0 1 2) in the plane z = 0, and over it a triangle (3 4 5)
-/// that points down and is lowered by `drop`. With drop 2 its tip, vertex 3, meets the
-/// floor at t = 1/2, and nothing else touches.
-Mesh floorAndTip(double drop) {
-  return {{{-4, -4, 0},
-           {4, -4, 0},
-           {0, 4, 0},
-           {0, 0, 1 - drop},
-           {-1, 0, 3 - drop},
-           {1, 0, 3 - drop}},
-          {{0, 1, 2}, {3, 4, 5}}};
-}
-
-/// @brief A triangle whose edge 0 1 lies on the x axis.
-Mesh edgeAlongX() { return {{{-1, 0, 0}, {1, 0, 0}, {0, -1, -5}}, {{0, 1, 2}}}; }
-
-/// @brief A triangle whose edge 0 1, parallel to the y axis and at height 1, is lowered
-/// by `drop`. With drop 2 it meets the edge of edgeAlongX() at t = 1/2, and nothing else
-/// touches.
-Mesh edgeAlongY(double drop) {
-  return {{{0, -1, 1 - drop}, {0, 1, 1 - drop}, {0, 0, 3 - drop}}, {{0, 1, 2}}};
 }
 
 /// @brief Coordinates that need all 17 digits.
@@ -158,80 +42,6 @@ Mesh unevenMesh() {
            {1e22, 4.9406564584124654e-324, -0.0}},
           {{0, 1, 2}, {2, 1, 0}}};
 }
-
-class CcdTool : public ::testing::Test {
- protected:
-  struct Outcome {
-    int exit_code;
-    std::string out;
-    std::string err;
-  };
-
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("fcl_ccd_tool_" + std::to_string(getpid()) + "_" +
-               ::testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path path(const std::string& name) const { return folder_ / name; }
-
-  /// @brief Runs the program in the test's folder; `arguments` in the shell's syntax,
-  /// `out_name` where its stdout goes.
-  Outcome run(const std::string& arguments,
-              const std::string& out_name = "out.txt") const {
-    const fs::path out = path(out_name), err = path("err.txt");
-    const std::string command = "cd '" + folder_.string() + "' && '" FCL_CCD_TOOL "' " +
-                                arguments + " >" + out_name + " 2>err.txt";
-    const int status = std::system(command.c_str());
-    Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", readText(err)};
-    fs::remove(err);
-    if (!fs::is_regular_file(out)) return outcome;
-    outcome.out = readText(out);
-    fs::remove(out);
-    return outcome;
-  }
-
-  Json json(const std::string& name) const { return Json::parse(readText(path(name))); }
-
-  /// @brief Frames tip0.obj and tip1.obj: the tip falls through the floor.
-  void writeTip() const {
-    writeText(path("tip0.obj"), toObj(floorAndTip(0)));
-    writeText(path("tip1.obj"), toObj(floorAndTip(2)));
-  }
-
-  /// @brief Frames x0.off, x1.off (at rest) and y0.ply, y1.ply (falling onto it).
-  void writeEdges() const {
-    writeText(path("x0.off"), toOff(edgeAlongX()));
-    writeText(path("x1.off"), toOff(edgeAlongX()));
-    writeText(path("y0.ply"), toAsciiPly(edgeAlongY(0)));
-    writeText(path("y1.ply"), toBinaryPly<float>(edgeAlongY(2), true));
-  }
-
-  std::set<std::string> files() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_))
-      names.insert(entry.path().filename().string());
-    return names;
-  }
-
-  /// @brief The program fails with exit code 2, names `cause`, and leaves the folder's
-  /// files as they were.
-  void expectFailure(const std::string& arguments, const std::string& cause) const {
-    SCOPED_TRACE(arguments);
-    const std::set<std::string> before = files();
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 2);
-    EXPECT_NE(outcome.err.find(cause), std::string::npos) << outcome.err;
-    EXPECT_EQ(files(), before);
-  }
-
- private:
-  fs::path folder_;
-};
 
 void expectSame(const Mesh& a, const Mesh& b) {
   EXPECT_EQ(a.triangles, b.triangles);
@@ -316,7 +126,8 @@ std::vector<BrokenFile> brokenFiles() {
       {"noise.obj", "\x01\xff noise\n", "not an OBJ statement"},
       {"noise.off", "\x01\xff noise\n", "begins with OFF"},
       {"noise.ply", "\x01\xff noise\n", "begins with 'ply'"},
-      {"mesh.stl", obj, "unknown mesh format"},
+      {"mesh.stl", obj, "line 1: '#' is not a word of STL"},
+      {"mesh.gltf", obj, "unknown mesh format"},
       {"mesh", obj, "unknown mesh format"},
       {"faceless.obj", obj.substr(0, obj.find("f ")), "no faces"},
       {"cut.obj", obj.substr(0, obj.size() - 4), "at least three vertices"},
@@ -431,11 +242,11 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
   const Outcome outcome = run("run tip0.obj tip1.obj tip1.obj --json r.json --repeat 3");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const Json report = json("r.json");
-  EXPECT_EQ(keysOf(report), (std::set<std::string>{"steps"}));
+  EXPECT_EQ(keysOf(report), (std::set<std::string>{"steps", "summary"}));
   ASSERT_EQ(report.at("steps").size(), 2u);
   for (const Json& step : report.at("steps")) {
     EXPECT_EQ(keysOf(step),
-              (std::set<std::string>{"vertices", "triangles", "contacts",
+              (std::set<std::string>{"step", "files", "vertices", "triangles", "contacts",
                                      "initially_crossing", "first", "ms", "stages"}));
     EXPECT_EQ(step.at("vertices"), 6);
     EXPECT_EQ(step.at("triangles"), 2);
@@ -459,7 +270,15 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
       left -= stages.at(culled).get<int>();
     EXPECT_EQ(left, stages.at("contacts").get<int>());
   }
+  EXPECT_EQ(report.at("summary"), Json({{"steps", 2},
+                                        {"contacts", {{"vf", 1}, {"ee", 0}}},
+                                        {"initially_crossing", 1},
+                                        {"first", report["summary"]["first"]},
+                                        {"complete", true}}));
+  EXPECT_EQ(report.at("summary").at("first").at("step"), 0);
   const Json& moving = report.at("steps").at(0);
+  EXPECT_EQ(moving.at("step"), 0);
+  EXPECT_EQ(moving.at("files"), Json({"tip0.obj", "tip1.obj"}));
   EXPECT_EQ(moving.at("contacts"), Json({{"vf", 1}, {"ee", 0}}));
   EXPECT_EQ(moving.at("initially_crossing"), false);
   EXPECT_EQ(keysOf(moving.at("first")),
@@ -645,11 +464,11 @@ TEST_F(CcdTool, BadInputsExitWithTwoAndWriteNothing) {
   expectFailure("run tip0.obj smaller.obj" + outputs, "smaller.obj: has 5 vertices");
   expectFailure("run tip0.obj cut.off" + outputs, "cut.off: ");
   expectFailure("run tip0.obj nan.obj" + outputs, "nan.obj: line ");
-  // Found only after a step has succeeded.
+  // Found before the first step, which would succeed.
   expectFailure("run tip0.obj tip1.obj turned.obj" + outputs, "turned.obj: ");
 }
 
-TEST_F(CcdTool, BadOutputsExitWithTwoAndWriteNothing) {
+TEST_F(CcdTool, BadOutputsAreRefusedAndNothingIsWritten) {
   writeTip();
   const std::string good = "run tip0.obj tip1.obj --contacts c.csv";
   expectFailure(good + " --json no/r.json", "no/r.json: cannot write");
@@ -665,7 +484,7 @@ TEST_F(CcdTool, BadOutputsExitWithTwoAndWriteNothing) {
   EXPECT_NE(closed.err.find("standard output"), std::string::npos) << closed.err;
   EXPECT_FALSE(fs::exists(path("c.csv")));
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  expectFailure(good + " --json /dev/full", "/dev/full: writing failed");
+  expectFailure("run tip0.obj tip1.obj --json /dev/full", "/dev/full: writing failed", 4);
   const Outcome outcome = run(good, "/dev/full");
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_NE(outcome.err.find("standard output"), std::string::npos) << outcome.err;
@@ -723,7 +542,13 @@ TEST_F(CcdTool, UsageErrorsExitWithTwo) {
         "walk",
         "run",
         "run tip0.obj",
-        "run tip0.obj tip1.obj --against tip0.obj",
+        "run tip0.obj tip1.obj --jobs -1",
+        "run tip0.obj tip1.obj --weld -1",
+        "run tip0.obj tip1.obj --weld nan",
+        "run tip0.obj tip1.obj --resume",
+        "run tip0.obj tip1.obj --contacts c.csv --columns colour",
+        "run tip0.obj tip1.obj --columns normal",
+        "run tip0.obj tip1.obj --start 0",
         "run tip0.obj tip1.obj tip0.obj --against tip0.obj tip1.obj",
         "run tip0.obj tip1.obj --no-self",
         "run tip0.obj tip1.obj --query some",

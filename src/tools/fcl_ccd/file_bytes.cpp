@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_bytes.h"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -9,13 +11,25 @@
 #include <system_error>
 
 namespace fcl_ccd {
+namespace {
+
+/// @brief What the file's size says that it has; nothing of a pipe.
+std::string readAtOnce(std::FILE* file) {
+  struct stat status {};
+  if (fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) return {};
+  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file));
+  return bytes;
+}
+
+}  // namespace
 
 std::string readBytes(const std::string& path) {
   const auto reason = [] { return std::generic_category().message(errno); };
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(
       std::fopen(path.c_str(), "rb"), std::fclose);
   if (file == nullptr) throw std::runtime_error("cannot open: " + reason());
-  std::string bytes;
+  std::string bytes = readAtOnce(file.get());
   char block[1 << 16];
   while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
     bytes.append(block, n);

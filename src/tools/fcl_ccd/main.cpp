@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The command line: options, help, exit codes. 0: done (with or without contacts).
-// 2: anything else; nothing was written then.
+// The command line: options and help.
 #include <fcl/config.h>
 #include <fcntl.h>
 #include <unistd.h>
@@ -17,31 +16,38 @@
 #include "output_file.h"
 #include "queries_command.h"
 #include "run_command.h"
+#include "run_inputs.h"
+#include "stop_signal.h"
 
 namespace {
 
 using fcl::ContinuousQuery;
 using fcl::detail::deformable::FeatureKind;
 
-constexpr int kFailure = 2;
-
 constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply
-  fcl-ccd run hand_*.obj --against cup_*.obj --contacts contacts.csv --json times.json
+  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
   fcl-ccd queries edge-edge.csv --kind ee --json errors.json
 
 'fcl-ccd COMMAND --help' tells more. Exit code: 0 when done, with or without contacts;
-2 on any error, in which case no output file is written or changed.)";
+2 when refused, in which case no output file is written or changed; 3 and above when
+stopped on the way ('fcl-ccd run --help').)";
 
 constexpr const char* kRunDetails = R"(Frames:
-  All frames of a mesh have the same vertices and faces in the same order. Read are OBJ,
-  PLY (ascii and binary, float and double) and OFF (text). Polygons with more than three
-  vertices become the fan of triangles around their first vertex. Step i goes from frame i
-  to frame i + 1, counted from 0; vertices move on straight lines.
+  A file, a folder (its meshes, f9 before f10), a pattern in quotes ('frames/*.ply') or a
+  name with a number (frame_%04d.ply). --start, --end and --stride select from the last
+  three: numbers of %04d, places from 0 otherwise. All frames of a mesh have the same
+  vertices and faces in the same order. Read are OBJ, PLY (ascii and binary, float and
+  double), OFF (text) and STL (both kinds). Polygons are divided into triangles as they
+  are in the first frame: convex ones into the fan around their first vertex. All files
+  are checked before the first step; of binary PLY, all but the positions.
+  Step i goes from frame i to frame i + 1, counted from 0; vertices move on straight lines.
 
 What is tested:
   Without --against: A against itself. With --against: A against itself and A against B,
-  never B against itself; --no-self leaves A against B.
+  never B against itself; --no-self leaves A against B. One frame of B: it stands still.
+  A mesh in which no triangle shares a vertex has contacts between all neighbours: --weld
+  joins vertices that coincide in all frames; ids stay those of the file.
 
 Output:
   A contact counts as vf (vertex-face) or ee (edge-edge); each is proved, so that the
@@ -50,15 +56,34 @@ Output:
   at most one, not always the earliest.
   --contacts: step,kind,i0,i1,i2,i3,toc_lo,toc_hi with kind vf (vertex, face) or ee (edge
   a, edge b); ids count from 0, those of B are prefixed b; the first time of contact lies
-  in [toc_lo, toc_hi], in fractions of the step.
-  --json: times in milliseconds; build: the hierarchy, in step 0; total = update +
-  traverse + test.
+  in [toc_lo, toc_hi], in fractions of the step. --columns adds t0,t1 (the triangles of
+  both features), x,y,z (where they touch) and nx,ny,nz (normal, from A to B).
+  --steps: JSON lines: the options, one object a step, a summary when all is done.
+  --json: all steps with times in milliseconds; build: the hierarchy, in the first step of
+  each job; total = update + traverse + test.
   --paint: vertices of vf contacts red, of ee contacts orange, of the edge and face that
   cross at t = 0 violet; B's vertices follow A's.
+  --contacts and --steps grow with each step. --json and --paint appear at the end.
+
+Stopping:
+  Ctrl-C, SIGTERM and SIGHUP let the steps that are in work finish; a second one does not.
+  --resume goes on behind the last whole step of the files of --contacts and --steps,
+  which then are as if the run had never stopped.
+  Exit code: 0 done; 2 refused, no file written or changed; 3 a frame on the way cannot be
+  read or used; 4 an output cannot be written (disk full); 128 + N stopped by signal N.
+  After 3, 4 and 128 + N the files have all steps that were done.
+
+Cores:
+  By default as many steps side by side as there are cores; with --repeat or --threads one
+  after the other, so that times are those of a step that has the machine to itself. The
+  output is the same.
 
 Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply cloth_2.ply --json times.json --repeat 5
   fcl-ccd run cloth_0.ply cloth_1.ply --query first
+  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
+  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl --resume
+  fcl-ccd run frame_%04d.ply --start 100 --end 199 --contacts contacts.csv
   fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
   fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
 
@@ -85,6 +110,18 @@ CLI::Validator positive(const char* what) {
   return {[what](std::string& text) {
             Number value = 0;
             const bool valid = CLI::detail::lexical_cast(text, value) && value > 0 &&
+                               value <= std::numeric_limits<Number>::max();
+            return valid ? std::string() : "'" + text + "' is not " + what;
+          },
+          ""};
+}
+
+/// @brief A validator that takes finite numbers of a type from 0.
+template <typename Number>
+CLI::Validator notNegative(const char* what) {
+  return {[what](std::string& text) {
+            Number value = -1;
+            const bool valid = CLI::detail::lexical_cast(text, value) && value >= 0 &&
                                value <= std::numeric_limits<Number>::max();
             return valid ? std::string() : "'" + text + "' is not " + what;
           },
@@ -126,17 +163,40 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
       ->check(named());
 }
 
+/// @brief Columns from their names, with commas between them.
+fcl_ccd::ContactColumns parseColumns(const std::string& list) {
+  fcl_ccd::ContactColumns columns;
+  const std::map<std::string, bool*> names{{"triangles", &columns.triangles},
+                                           {"position", &columns.position},
+                                           {"normal", &columns.normal}};
+  for (const std::string& name : CLI::detail::split(list, ',')) {
+    const auto found = names.find(name);
+    if (found == names.end())
+      throw CLI::ValidationError("--columns",
+                                 "'" + name + "' is not triangles, position or normal");
+    *found->second = true;
+  }
+  return columns;
+}
+
 CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   constexpr int kUnlimited = -1;
   CLI::App* run = app.add_subcommand("run", "Continuous collision of meshes in motion");
   run->footer(kRunDetails);
   run->add_option("A", options.frames, "Frames of mesh A, at least two")
-      ->type_name("FILE")
+      ->type_name("FRAMES")
       ->required()
-      ->expected(2, kUnlimited);
-  run->add_option("--against", options.against, "Frames of mesh B, as many as of A")
-      ->type_name("FILE")
-      ->expected(2, kUnlimited);
+      ->expected(1, kUnlimited);
+  run->add_option("--against", options.against,
+                  "Frames of mesh B, as many as of A or one")
+      ->type_name("FRAMES")
+      ->expected(1, kUnlimited);
+  run->add_option("--start", options.range.start, "First frame")->type_name("N");
+  run->add_option("--end", options.range.end, "Last frame")->type_name("N");
+  run->add_option("--stride", options.range.stride, "Every so many frames")
+      ->type_name("N")
+      ->check(positive<int>("a positive whole number"))
+      ->capture_default_str();
   run->add_flag_callback(
          "--no-self", [&options] { options.settings.self = false; },
          "Do not test A against itself")
@@ -148,20 +208,36 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   run->add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(oneOf(kQueries, "all, first or any"));
-  run->add_option("--threads", options.settings.num_threads,
-                  "Threads of a build, an update or a query; 0: as many as there are")
+  run->add_option("--jobs", options.jobs,
+                  "Steps side by side, one thread each; 0: as many as there are cores")
       ->type_name("N")
-      ->check(CLI::Validator(
-          [](const std::string& text) {
-            int value = -1;
-            const bool valid = CLI::detail::lexical_cast(text, value) && value >= 0;
-            return valid ? std::string() : "'" + text + "' is not a number of threads";
-          },
-          ""))
-      ->capture_default_str();
+      ->check(notNegative<int>("a number of jobs"));
+  run->add_option(
+         "--threads", options.threads,
+         "Threads of a build, an update or a query; 0: as many as there are cores")
+      ->type_name("N")
+      ->check(notNegative<int>("a number of threads"));
+  run->add_option("--weld", options.weld,
+                  "Join vertices that coincide in all frames, up to EPS (default: 0)")
+      ->type_name("[EPS]")
+      ->expected(0, 1)
+      ->default_str("0")
+      ->check(notNegative<double>("a distance"));
   run->add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
       ->type_name("FILE")
       ->check(named());
+  run->add_option_function<std::string>(
+         "--columns",
+         [&options](const std::string& list) { options.columns = parseColumns(list); },
+         "More columns: triangles,position,normal")
+      ->type_name("LIST")
+      ->needs("--contacts");
+  run->add_option("--steps", options.steps_path,
+                  "Write a JSON object a step, as it comes")
+      ->type_name("FILE")
+      ->check(named());
+  run->add_flag("--resume", options.resume,
+                "Go on where --contacts and --steps were left");
   run->add_option("--paint", options.paint_path,
                   "Write the last frame as PLY, contacts in colour")
       ->type_name("FILE")
@@ -200,7 +276,7 @@ void occupyStandardStreams() {
 
 int reportFailure(const char* what) {
   std::fprintf(stderr, "fcl-ccd: %s\n", what);
-  return kFailure;
+  return fcl_ccd::kRefused;
 }
 
 }  // namespace
@@ -218,19 +294,23 @@ int main(int argc, char** argv) try {
   addQueries(app, queries_options);
   try {
     app.parse(argc, argv);
-    if (run->parsed() && !run_options.against.empty() &&
-        run_options.against.size() != run_options.frames.size())
-      throw CLI::ValidationError("--against", "A and B need the same number of frames");
+    if (run_options.resume && run_options.contacts_path.empty() &&
+        run_options.steps_path.empty())
+      throw CLI::ValidationError("--resume", "needs --contacts or --steps to go on with");
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kFailure;
+    return app.exit(error) == 0 ? 0 : fcl_ccd::kRefused;
   }
 
+  if (run->parsed()) {
+    fcl_ccd::catchStopSignals();
+    return fcl_ccd::runCommand(run_options);
+  }
   fcl_ccd::removeTemporariesOnSignal();
-  if (run->parsed())
-    fcl_ccd::runCommand(run_options);
-  else
-    fcl_ccd::queriesCommand(queries_options);
+  fcl_ccd::queriesCommand(queries_options);
   return 0;
+} catch (const fcl_ccd::StoppedBySignal& stopped) {
+  reportFailure(stopped.what());
+  return fcl_ccd::kSignalled + fcl_ccd::stopSignal();
 } catch (const std::bad_alloc&) {
   return reportFailure("out of memory");
 } catch (const std::exception& error) {

@@ -5,17 +5,20 @@
 #include <CGAL/Simple_cartesian.h>
 
 #include <cctype>
-#include <cmath>
 #include <cstring>
 #include <istream>
 #include <limits>
 #include <new>
 #include <stdexcept>
 #include <streambuf>
+#include <utility>
 
+#include "binary_ply.h"
 #include "file_bytes.h"
 #include "output_file.h"
 #include "plain_mesh.h"
+#include "stl.h"
+#include "triangulate.h"
 
 namespace fcl_ccd {
 namespace {
@@ -35,22 +38,9 @@ class ByteStreamBuffer : public std::streambuf {
   }
 };
 
-std::string extensionOf(const std::string& path) {
-  const std::size_t dot = path.find_last_of("./");
-  std::string extension;
-  if (dot != std::string::npos && path[dot] == '.') extension = path.substr(dot + 1);
-  for (char& c : extension)
-    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
-}
-
-/// @brief Hands the plain form of the file to CGAL's polygon soup reader of its format.
-PolygonSoup readSoup(const std::string& path) {
-  const std::string extension = extensionOf(path);
-  if (extension != "obj" && extension != "off" && extension != "ply")
-    throw std::runtime_error("unknown mesh format; expected .obj, .ply or .off");
-
-  std::string bytes = readBytes(path);
+/// @brief Hands the plain form of a text file to CGAL's polygon soup reader of its
+/// format.
+PolygonSoup readSoup(const std::string& extension, std::string bytes) {
   if (extension == "obj")
     bytes = plainObj(bytes);
   else if (extension == "off")
@@ -76,43 +66,46 @@ PolygonSoup readSoup(const std::string& path) {
   return soup;
 }
 
-std::string faceName(std::size_t i) {
-  return "face " + std::to_string(i) + " (counted from 0)";
-}
-
-std::vector<std::array<double, 3>> takeVertices(const std::vector<Point>& points) {
-  if (points.size() > std::size_t{std::numeric_limits<int>::max()})
-    throw std::runtime_error("too many vertices");
-  std::vector<std::array<double, 3>> vertices;
+Vertices takeVertices(const std::vector<Point>& points) {
+  Vertices vertices;
   vertices.reserve(points.size());
-  for (const Point& p : points) {
-    if (!std::isfinite(p.x()) || !std::isfinite(p.y()) || !std::isfinite(p.z()))
-      throw std::runtime_error("vertex " + std::to_string(vertices.size()) +
-                               " (counted from 0) has a coordinate that is not finite");
-    vertices.push_back({p.x(), p.y(), p.z()});
-  }
+  for (const Point& p : points) vertices.push_back({p.x(), p.y(), p.z()});
   return vertices;
 }
 
-std::vector<std::array<int, 3>> fanTriangles(const PolygonSoup& soup) {
-  std::vector<std::array<int, 3>> triangles;
-  triangles.reserve(soup.polygons.size());
+Faces takeFaces(const PolygonSoup& soup) {
+  Faces faces;
   for (std::size_t i = 0; i < soup.polygons.size(); ++i) {
-    const std::vector<std::size_t>& corners = soup.polygons[i];
-    if (corners.size() < 3)
-      throw std::runtime_error(faceName(i) + " has fewer than three vertices");
-    for (const std::size_t id : corners)
+    const auto faceName = [i] {
+      return "face " + std::to_string(i) + " (counted from 0)";
+    };
+    for (const std::size_t id : soup.polygons[i]) {
       if (id >= soup.points.size())
-        throw std::runtime_error(faceName(i) +
-                                 " names a vertex out of range; there are " +
+        throw std::runtime_error(faceName() + " names a vertex out of range; there are " +
                                  std::to_string(soup.points.size()));
-    for (std::size_t k = 2; k < corners.size(); ++k)
-      triangles.push_back({static_cast<int>(corners[0]), static_cast<int>(corners[k - 1]),
-                           static_cast<int>(corners[k])});
+      faces.corners.push_back(static_cast<int>(id));
+    }
+    if (!faces.endFace())
+      throw std::runtime_error(faceName() + " has fewer than three vertices");
   }
-  if (triangles.size() > std::size_t{std::numeric_limits<int>::max()})
-    throw std::runtime_error("too many triangles");
-  return triangles;
+  return faces;
+}
+
+void requireFewEnough(std::size_t count, const char* what) {
+  if (count > std::size_t{std::numeric_limits<int>::max()})
+    throw std::runtime_error(std::string("too many ") + what);
+}
+
+PolygonMesh parse(const std::string& extension, std::string bytes) {
+  PolygonMesh mesh;
+  if (extension == "stl") return parseStl(bytes);
+  // What is unusual in a binary PLY, or wrong, is left to the careful reader.
+  if (extension == "ply" && parseBinaryPly(bytes, mesh)) return mesh;
+  const PolygonSoup soup = readSoup(extension, std::move(bytes));
+  requireFewEnough(soup.points.size(), "vertices");
+  mesh.faces = takeFaces(soup);
+  mesh.vertices = takeVertices(soup.points);
+  return mesh;
 }
 
 /// Appends the bytes of a value, lowest first.
@@ -131,15 +124,50 @@ void appendLittleEndian(double value, std::string& out) {
 
 }  // namespace
 
-Mesh readMesh(const std::string& path) {
+bool Faces::endFace() {
+  const std::size_t size = corners.size() - last_end_;
+  if (size != 3 && ends.empty())
+    for (std::size_t end = 3; end <= last_end_; end += 3) ends.push_back(end);
+  last_end_ = corners.size();
+  if (size != 3 || !ends.empty()) ends.push_back(last_end_);
+  return size >= 3;
+}
+
+std::string extensionOf(const std::string& path) {
+  const std::size_t dot = path.find_last_of("./");
+  std::string extension;
+  if (dot != std::string::npos && path[dot] == '.') extension = path.substr(dot + 1);
+  for (char& c : extension)
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+bool isMeshFormat(const std::string& extension) {
+  return extension == "obj" || extension == "off" || extension == "ply" ||
+         extension == "stl";
+}
+
+PolygonMesh readPolygonMesh(const std::string& path) {
   try {
-    const PolygonSoup soup = readSoup(path);
-    return {takeVertices(soup.points), fanTriangles(soup)};
+    const std::string extension = extensionOf(path);
+    if (!isMeshFormat(extension))
+      throw std::runtime_error("unknown mesh format; expected .obj, .ply, .off or .stl");
+    PolygonMesh mesh = parse(extension, readBytes(path));
+    requireFinite(mesh.vertices);
+    // A polygon has fewer triangles than corners.
+    requireFewEnough(mesh.faces.corners.size(), "faces");
+    return mesh;
   } catch (const std::bad_alloc&) {
     throw std::runtime_error(path + ": out of memory");
   } catch (const std::exception& error) {
     throw std::runtime_error(path + ": " + error.what());
   }
+}
+
+Mesh readMesh(const std::string& path) {
+  PolygonMesh mesh = readPolygonMesh(path);
+  Triangles triangles = triangulate(mesh.vertices, mesh.faces);
+  return {std::move(mesh.vertices), std::move(triangles)};
 }
 
 std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours) {

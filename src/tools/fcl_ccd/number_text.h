@@ -2,7 +2,7 @@
 #ifndef FCL_CCD_NUMBER_TEXT_H
 #define FCL_CCD_NUMBER_TEXT_H
 
-#include <cstdio>
+#include <charconv>
 #include <string>
 
 namespace fcl_ccd {
@@ -10,8 +10,10 @@ namespace fcl_ccd {
 /// @brief A double in so many significant digits; 17 of them identify it.
 inline std::string numberText(double value, int digits = 17) {
   char text[64];  // sign, 17 digits, point, exponent: at most 24 characters
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  // As printf's %.*g, and several times as fast.
+  const auto end =
+      std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits);
+  return {text, end.ptr};
 }
 
 }  // namespace fcl_ccd

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output_file.h"
 
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -10,8 +11,9 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
+
+#include "write_error.h"
 
 namespace fcl_ccd {
 namespace {
@@ -44,8 +46,6 @@ struct TemporaryList {
 
 TemporaryList temporaries;
 
-/// @brief The standard stream (its descriptor) that writes to this file, or -1. It has a
-/// position of its own there, which a second opening of the file would not follow.
 int standardStream(const struct stat& file) {
   for (const int descriptor : {STDOUT_FILENO, STDERR_FILENO}) {
     struct stat stream {};
@@ -54,6 +54,13 @@ int standardStream(const struct stat& file) {
       return descriptor;
   }
   return -1;
+}
+
+/// @brief Where a link leads that leads to no file yet; any other path itself.
+std::string targetOf(const std::string& path) {
+  std::error_code error;
+  const fs::path link = fs::read_symlink(path, error);
+  return error ? path : (fs::path(path).parent_path() / link).string();
 }
 
 extern "C" void removeTemporariesAndRaise(int signal_number) {
@@ -69,10 +76,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (path.empty()) fail("cannot write", ENOENT);
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) {
-    // A link to a file that does not exist yet.
-    std::error_code error;
-    const fs::path link = fs::read_symlink(path, error);
-    if (!error) target_ = (fs::path(path).parent_path() / link).string();
+    target_ = targetOf(path);
     openTemporary();
     return;
   }
@@ -91,7 +95,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
     const fs::path resolved = fs::canonical(path, error);
     if (!error) target_ = resolved.string();
     openTemporary();
-    fs::permissions(temporary_, static_cast<fs::perms>(status.st_mode & 07777), error);
+    if (fchmod(fileno(file_), status.st_mode & 07777) != 0) fail("cannot write", errno);
   }
 }
 
@@ -103,6 +107,38 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::openTemporary() {
+  if (openNameless()) return;
+  makeTemporary([this](const char* name) {
+    file_ = std::fopen(name, "wbx");
+    return file_ != nullptr;
+  });
+}
+
+bool OutputFile::openNameless() {
+#ifdef O_TMPFILE
+  const fs::path folder = fs::path(target_).parent_path();
+  constexpr mode_t kReadWriteForAll = 0666;  // less the umask
+  const int file = open(folder.empty() ? "." : folder.c_str(),
+                        O_TMPFILE | O_RDWR | O_CLOEXEC, kReadWriteForAll);
+  if (file < 0) return false;
+  // Without /proc it could not be named.
+  is_nameless_ = access(("/proc/self/fd/" + std::to_string(file)).c_str(), F_OK) == 0;
+  if (is_nameless_) file_ = fdopen(file, "wb");
+  if (file_ == nullptr) close(file);
+#endif
+  return is_nameless_ && file_ != nullptr;
+}
+
+void OutputFile::nameTemporary() {
+  const std::string handle = "/proc/self/fd/" + std::to_string(fileno(file_));
+  makeTemporary([&](const char* name) {
+    return linkat(AT_FDCWD, handle.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+  });
+  is_nameless_ = false;
+}
+
+template <typename Make>
+void OutputFile::makeTemporary(Make make) {
   const fs::path target(target_);
   constexpr int kAttempts = 100;  // left-overs of processes that had the same id
   for (int i = 0; i < kAttempts; ++i) {
@@ -110,8 +146,7 @@ void OutputFile::openTemporary() {
     const std::string name = "." + target.filename().string().substr(0, 200) + "." +
                              std::to_string(getpid()) + "." + std::to_string(i) + ".tmp";
     const std::string candidate = (target.parent_path() / name).string();
-    file_ = std::fopen(candidate.c_str(), "wbx");
-    if (file_ != nullptr) {
+    if (make(candidate.c_str())) {
       temporary_ = candidate;
       temporaries.add(temporary_);
       return;
@@ -129,6 +164,7 @@ void OutputFile::write(std::string_view bytes) {
 void OutputFile::finish() {
   const bool flushed = std::fflush(file_) == 0;
   const int flush_error = errno;
+  if (flushed && is_nameless_) nameTemporary();
   const bool closed = std::fclose(file_) == 0;
   file_ = nullptr;
   if (!flushed) fail("writing failed", flush_error);
@@ -143,8 +179,26 @@ void OutputFile::publish() {
 }
 
 void OutputFile::fail(const std::string& what, int error) const {
-  throw std::runtime_error(path_ + ": " + what + ": " +
-                           std::generic_category().message(error));
+  throw WriteError(path_, what, error);
+}
+
+void requireWritable(const std::string& path) {
+  struct stat status {};
+  const auto require = [&](bool holds, int error) {
+    if (!holds) throw WriteError(path, "cannot write", error);
+  };
+  if (stat(path.c_str(), &status) == 0) {
+    require(!S_ISDIR(status.st_mode), EISDIR);
+    require(standardStream(status) >= 0 || access(path.c_str(), W_OK) == 0, errno);
+  } else {
+    const fs::path folder = fs::path(targetOf(path)).parent_path();
+    require(access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0, errno);
+  }
+}
+
+int standardStreamOf(const std::string& path) {
+  struct stat status {};
+  return stat(path.c_str(), &status) == 0 ? standardStream(status) : -1;
 }
 
 void removeTemporariesOnSignal() {

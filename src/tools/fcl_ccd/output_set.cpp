@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "write_error.h"
+
 namespace fcl_ccd {
 namespace {
 
@@ -28,19 +30,24 @@ bool isSameFile(const std::string& a, const std::string& b) {
 void print(std::string_view text) {
   if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
       std::fflush(stdout) != 0)
-    throw std::runtime_error("standard output: writing failed: " +
-                             std::generic_category().message(errno));
+    throw WriteError("standard output", "writing failed", errno);
 }
 
-OutputFile* OutputSet::open(const std::string& path) {
-  if (path.empty()) return nullptr;
+void OutputSet::reserve(const std::string& path) {
+  if (path.empty()) return;
   const auto taken =
       std::find_if(taken_.begin(), taken_.end(),
                    [&](const std::string& other) { return isSameFile(path, other); });
   if (taken != taken_.end())
     throw std::runtime_error(path + ": cannot write: it is also given as " + *taken);
-  files_.push_back(std::make_unique<OutputFile>(path));
+  requireWritable(path);
   taken_.push_back(path);
+}
+
+OutputFile* OutputSet::open(const std::string& path) {
+  if (path.empty()) return nullptr;
+  reserve(path);
+  files_.push_back(std::make_unique<OutputFile>(path));
   return files_.back().get();
 }
 

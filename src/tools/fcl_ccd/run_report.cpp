@@ -69,10 +69,10 @@ Json toJson(const StepTimes& times) {
           {"total", milliseconds(times.total())}};
 }
 
-void append(const Mesh& part, Mesh& whole) {
+void append(const Vertices& vertices, const Triangles& triangles, Mesh& whole) {
   const int offset = static_cast<int>(whole.vertices.size());
-  whole.vertices.insert(whole.vertices.end(), part.vertices.begin(), part.vertices.end());
-  for (const auto& t : part.triangles)
+  whole.vertices.insert(whole.vertices.end(), vertices.begin(), vertices.end());
+  for (const auto& t : triangles)
     whole.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
 }
 
@@ -96,19 +96,116 @@ std::string tableRow(const StepReport& report) {
   return row;
 }
 
-std::string contactsHead() { return "step,kind,i0,i1,i2,i3,toc_lo,toc_hi\n"; }
+std::string summaryLines(const RunSummary& summary) {
+  std::string lines = std::to_string(summary.steps) + " steps, " +
+                      std::to_string(summary.vf) + " vf and " +
+                      std::to_string(summary.ee) + " ee contacts; " +
+                      std::to_string(summary.crossing_steps) + " steps began crossing\n";
+  if (summary.first)
+    lines += "first contact: step " + std::to_string(summary.first->step) + " at " +
+             numberText(summary.first->toc_lo, 9) + '\n';
+  if (summary.slowest_ms >= 0)
+    lines += "slowest: step " + std::to_string(summary.slowest_step) + " with " +
+             numberText(summary.slowest_ms, 4) + " ms\n";
+  return lines;
+}
 
-std::string contactLines(const StepReport& report) {
+std::string contactsHead(const ContactColumns& columns) {
+  std::string head = "step,kind,i0,i1,i2,i3,toc_lo,toc_hi";
+  if (columns.triangles) head += ",t0,t1";
+  if (columns.position) head += ",x,y,z";
+  if (columns.normal) head += ",nx,ny,nz";
+  return head + '\n';
+}
+
+std::string contactLines(const StepReport& report, const ContactColumns& columns) {
   std::string lines;
   const std::string step = std::to_string(report.index);
+  const auto addNumbers = [&](const std::array<double, 3>& numbers) {
+    for (const double x : numbers) lines.append(1, ',').append(numberText(x));
+  };
   for (const SceneContact& contact : report.result.contacts) {
     lines.append(step).append(1, ',').append(nameOf(contact.kind));
     for (std::size_t i = 0; i < 4; ++i)
       lines.append(1, ',').append(nameOf(contact.vertices[i]));
     lines.append(1, ',').append(numberText(contact.toc_lo));
-    lines.append(1, ',').append(numberText(contact.toc_hi)).append(1, '\n');
+    lines.append(1, ',').append(numberText(contact.toc_hi));
+    if (columns.triangles)
+      // A feature is of the mesh that its first and its last vertex are of.
+      for (const std::size_t i : {0u, 1u})
+        lines.append(contact.vertices[3 * i].of_b ? ",b" : ",")
+            .append(std::to_string(contact.triangles[i]));
+    if (columns.position) addNumbers(contact.position);
+    if (columns.normal) addNumbers(contact.normal);
+    lines += '\n';
   }
   return lines;
+}
+
+std::string stepLine(const StepReport& report) {
+  const StepResult& result = report.result;
+  Json first = nullptr;
+  // Which of several crossings is found is not told: it depends on the steps before.
+  if (result.crossing)
+    first = {{"kind", "crossing"}, {"toc_lo", 0.0}, {"toc_hi", 0.0}};
+  else if (result.first() != nullptr)
+    first = toJson(*result.first());
+  const Json line = {{"step", report.index},
+                     {"files", report.files},
+                     {"contacts",
+                      {{"vf", countOf(Kind::kVertexFace, result)},
+                       {"ee", countOf(Kind::kEdgeEdge, result)}}},
+                     {"initially_crossing", result.initially_crossing},
+                     {"first", first}};
+  return line.dump() + '\n';
+}
+
+RunSummary summaryOf(const StepReport& report) {
+  const StepResult& result = report.result;
+  RunSummary summary;
+  summary.steps = 1;
+  summary.vf = countOf(Kind::kVertexFace, result);
+  summary.ee = countOf(Kind::kEdgeEdge, result);
+  summary.crossing_steps = result.initially_crossing ? 1 : 0;
+  if (const SceneContact* first = result.first())
+    summary.first = RunSummary::First{report.index, first->toc_lo};
+  summary.slowest_step = report.index;
+  summary.slowest_ms = milliseconds(result.times.total());
+  return summary;
+}
+
+RunSummary summaryOf(const Json& step_line) {
+  RunSummary summary;
+  summary.steps = 1;
+  summary.vf = step_line.at("contacts").at("vf");
+  summary.ee = step_line.at("contacts").at("ee");
+  summary.crossing_steps = step_line.at("initially_crossing").get<bool>() ? 1 : 0;
+  const Json& first = step_line.at("first");
+  if (!first.is_null())
+    summary.first = RunSummary::First{step_line.at("step"), first.at("toc_lo")};
+  return summary;
+}
+
+void RunSummary::add(const RunSummary& step) {
+  steps += step.steps;
+  vf += step.vf;
+  ee += step.ee;
+  crossing_steps += step.crossing_steps;
+  if (!first) first = step.first;
+  if (step.slowest_ms > slowest_ms) {
+    slowest_ms = step.slowest_ms;
+    slowest_step = step.slowest_step;
+  }
+}
+
+Json toJson(const RunSummary& summary) {
+  Json first = nullptr;
+  if (summary.first)
+    first = {{"step", summary.first->step}, {"toc_lo", summary.first->toc_lo}};
+  return {{"steps", summary.steps},
+          {"contacts", {{"vf", summary.vf}, {"ee", summary.ee}}},
+          {"initially_crossing", summary.crossing_steps},
+          {"first", first}};
 }
 
 Json toJson(const StepReport& report) {
@@ -116,7 +213,9 @@ Json toJson(const StepReport& report) {
   const SceneContact* first = result.first();
   Json stages = Json::object();
   for (const StageField& stage : kStages) stages[stage.name] = result.counts.*stage.count;
-  return {{"vertices", report.vertices},
+  return {{"step", report.index},
+          {"files", report.files},
+          {"vertices", report.vertices},
           {"triangles", report.triangles},
           {"contacts",
            {{"vf", countOf(Kind::kVertexFace, result)},
@@ -127,16 +226,17 @@ Json toJson(const StepReport& report) {
           {"stages", std::move(stages)}};
 }
 
-PaintedMesh paint(const SceneFrame& frame, const StepResult& result) {
+PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
+                  const StepResult& result) {
   PaintedMesh painted;
-  append(*frame.a, painted.mesh);
-  if (frame.b != nullptr) append(*frame.b, painted.mesh);
+  append(*frame.a, *triangles.a, painted.mesh);
+  if (frame.b != nullptr) append(*frame.b, *triangles.b, painted.mesh);
   painted.colours.assign(painted.mesh.vertices.size(), kGrey);
 
   const auto colour = [&](const SceneContact& contact, const Colour& value) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i) {
       const SceneVertex& vertex = contact.vertices[i];
-      const std::size_t offset = vertex.of_b ? frame.a->vertices.size() : 0;
+      const std::size_t offset = vertex.of_b ? frame.a->size() : 0;
       painted.colours[offset + static_cast<std::size_t>(vertex.id)] = value;
     }
   };

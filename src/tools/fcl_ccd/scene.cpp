@@ -49,14 +49,14 @@ std::unique_ptr<Model> buildModel(const std::vector<fcl::Vector3d>& points,
 
 /// @brief Builds a model from FCL's own types, so that their conversion is not timed.
 template <typename Model>
-std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, int num_threads,
-                                 double& seconds) {
+std::unique_ptr<Model> timeBuild(const Vertices& vertices, const Triangles& faces,
+                                 const char* name, int num_threads, double& seconds) {
   std::vector<fcl::Vector3d> points;
-  points.reserve(mesh.vertices.size());
-  for (const auto& p : mesh.vertices) points.emplace_back(p[0], p[1], p[2]);
+  points.reserve(vertices.size());
+  for (const auto& p : vertices) points.emplace_back(p[0], p[1], p[2]);
   std::vector<fcl::Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles)
+  triangles.reserve(faces.size());
+  for (const auto& t : faces)
     triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
                            static_cast<std::size_t>(t[2]));
   const Stopwatch watch;
@@ -66,10 +66,11 @@ std::unique_ptr<Model> timeBuild(const Mesh& mesh, const char* name, int num_thr
 }
 
 template <typename Model>
-void updateModel(Model& model, const Mesh& from, const Mesh& to, const char* name) {
-  const int code =
-      model.updateFrames(from.vertices.data()->data(), to.vertices.data()->data(),
-                         to.vertices.size(), fcl::FclTree::kSkip);
+void updateModel(Model& model, const Vertices& from, const Vertices& to,
+                 const char* name) {
+  if (&from == &to && !model.isDeforming()) return;
+  const int code = model.updateFrames(from.data()->data(), to.data()->data(), to.size(),
+                                      fcl::FclTree::kSkip);
   requireSuccess(code, model.lastError(), name);
 }
 
@@ -82,6 +83,13 @@ SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) 
   out.num_vertices = contact.numVertices();
   out.toc_lo = contact.toc_lo;
   out.toc_hi = contact.toc_hi;
+  const bool in_order = contact.kind == Kind::kEdgeEdge || contact.first_on_o1;
+  out.triangles = {
+      {in_order ? contact.b1 : contact.b2, in_order ? contact.b2 : contact.b1}};
+  for (int k = 0; k < 3; ++k) {
+    out.position[static_cast<std::size_t>(k)] = contact.pos[k];
+    out.normal[static_cast<std::size_t>(k)] = contact.normal[k];
+  }
   for (std::size_t i = 0; i < static_cast<std::size_t>(out.num_vertices); ++i) {
     const bool of_first_feature = i < firstFeatureSize(contact.kind);
     const bool of_o1 = of_first_feature == contact.first_on_o1;
@@ -112,17 +120,18 @@ const SceneContact* StepResult::first() const {
   return contacts.empty() ? nullptr : &contacts.front();
 }
 
-Scene::Scene(const SceneFrame& frame, const QuerySettings& settings)
+Scene::Scene(const SceneTriangles& triangles, const SceneFrame& frame,
+             const QuerySettings& settings)
     : settings_(settings) {
   build_time_ = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < settings_.repeat; ++i) build(frame);
+  for (int i = 0; i < settings_.repeat; ++i) build(triangles, frame);
 }
 
-void Scene::build(const SceneFrame& frame) {
+void Scene::build(const SceneTriangles& triangles, const SceneFrame& frame) {
   double seconds = 0;
-  a_ = timeBuild<Model>(*frame.a, "A", settings_.num_threads, seconds);
+  a_ = timeBuild<Model>(*frame.a, *triangles.a, "A", settings_.num_threads, seconds);
   if (frame.b != nullptr)
-    b_ = timeBuild<Model>(*frame.b, "B", settings_.num_threads, seconds);
+    b_ = timeBuild<Model>(*frame.b, *triangles.b, "B", settings_.num_threads, seconds);
   build_time_ = std::min(build_time_, seconds);
 }
 
@@ -130,7 +139,7 @@ void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
   fcl::ContinuousContactRequestd request;
   request.query = settings_.query;
   request.toc_err = settings_.toc_err;
-  request.enable_contact = false;
+  request.enable_contact = settings_.points;
   request.num_threads = settings_.num_threads;
   fcl::ContinuousContactResultd result;
   const fcl::Transform3d identity = fcl::Transform3d::Identity();

@@ -3,6 +3,7 @@
 #define FCL_CCD_SCENE_H
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -17,7 +18,8 @@ namespace fcl_ccd {
 struct QuerySettings {
   fcl::ContinuousQuery query{fcl::ContinuousQuery::kAll};
   double toc_err{1e-4};
-  bool self{true};  ///< whether A is tested against itself
+  bool self{true};     ///< whether A is tested against itself
+  bool points{false};  ///< whether position and normal of contacts are told
   int repeat{1};
   int num_threads{1};
 };
@@ -35,6 +37,11 @@ struct SceneContact {
   int num_vertices{4};
   double toc_lo{0};
   double toc_hi{0};
+  /// The triangles that hold the first feature (vertex, or edge a) and the second one.
+  std::array<std::intptr_t, 2> triangles{{-1, -1}};
+  /// At toc_lo; only with QuerySettings::points.
+  std::array<double, 3> position{};
+  std::array<double, 3> normal{};  ///< from A to B; within A from the first feature
 };
 
 /// @brief Seconds of each part of a step.
@@ -57,10 +64,16 @@ struct StepResult {
   const SceneContact* first() const;
 };
 
+/// @brief The triangles of mesh A, and of B if there is one.
+struct SceneTriangles {
+  const Triangles* a{nullptr};
+  const Triangles* b{nullptr};
+};
+
 /// @brief The vertex positions of one frame: mesh A, and B if there is one.
 struct SceneFrame {
-  const Mesh* a{nullptr};
-  const Mesh* b{nullptr};
+  const Vertices* a{nullptr};
+  const Vertices* b{nullptr};
 };
 
 /// @brief One or two meshes that deform from frame to frame.
@@ -68,20 +81,22 @@ class Scene {
  public:
   /// @brief Builds the models, settings.repeat times.
   /// @throws std::runtime_error naming the mesh ("A", "B") that the library refuses.
-  Scene(const SceneFrame& frame, const QuerySettings& settings);
+  Scene(const SceneTriangles& triangles, const SceneFrame& frame,
+        const QuerySettings& settings);
 
   /// @brief Least time that building the models took, in seconds.
   double buildTime() const { return build_time_; }
 
   /// @brief Moves the models from one frame to the next and runs the queries,
-  /// settings.repeat times; the times are those of the run with the least total.
+  /// settings.repeat times; the times are those of the run with the least total. A mesh
+  /// whose two frames are the same object stands still.
   StepResult step(const SceneFrame& from, const SceneFrame& to);
 
  private:
   using Model = fcl::DeformableBVHModel<fcl::AABBd>;
 
   StepResult runOnce(const SceneFrame& from, const SceneFrame& to);
-  void build(const SceneFrame& frame);
+  void build(const SceneTriangles& triangles, const SceneFrame& frame);
   void query(const Model& o1, const Model& o2, StepResult& step) const;
 
   QuerySettings settings_;

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame_list.h"
+
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+
+#include "mesh_io.h"
+#include "text_scan.h"
+
+namespace fcl_ccd {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isDigit(char c) { return c >= '0' && c <= '9'; }
+
+/// @brief The names of the files of a folder.
+std::vector<std::string> filesIn(const fs::path& folder) {
+  std::error_code error;
+  fs::directory_iterator entries(folder.empty() ? fs::path(".") : folder, error);
+  if (error)
+    throw std::runtime_error(folder.string() + ": cannot open: " + error.message());
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : entries)
+    if (!entry.is_directory(error)) names.push_back(entry.path().filename().string());
+  return names;
+}
+
+std::vector<std::string> sortedPaths(const fs::path& folder,
+                                     std::vector<std::string> names) {
+  std::sort(names.begin(), names.end(), isBeforeNaturally);
+  for (std::string& name : names) name = (folder / name).string();
+  return names;
+}
+
+std::vector<std::string> meshesIn(const std::string& word) {
+  std::vector<std::string> meshes;
+  std::set<std::string> formats;
+  for (const std::string& name : filesIn(word)) {
+    const std::string format = extensionOf(name);
+    if (name[0] == '.' || !isMeshFormat(format)) continue;
+    meshes.push_back(name);
+    formats.insert(format);
+  }
+  if (meshes.empty())
+    throw std::runtime_error(word + ": the folder has no .obj, .ply, .off or .stl");
+  if (formats.size() > 1)
+    throw std::runtime_error(word + ": the folder has ." + *formats.begin() + " and ." +
+                             *formats.rbegin() + " files; say which, as in '" +
+                             (fs::path(word) / ("*." + *formats.begin())).string() + "'");
+  return sortedPaths(word, std::move(meshes));
+}
+
+std::vector<std::string> matchesOf(const std::string& word) {
+  const fs::path path(word), folder = path.parent_path();
+  const std::string pattern = path.filename().string();
+  std::vector<std::string> matches;
+  for (const std::string& name : filesIn(folder))
+    if (fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0) matches.push_back(name);
+  if (matches.empty()) throw std::runtime_error(word + ": no file matches");
+  return sortedPaths(folder, std::move(matches));
+}
+
+/// @brief frame_%04d.ply: what is before and after the number, and its least digits.
+struct NumberedName {
+  std::string before, after;
+  std::size_t width{0};
+
+  std::string operator()(long long number) const {
+    std::string digits = std::to_string(number);
+    if (digits.size() < width) digits.insert(0, width - digits.size(), '0');
+    return before + digits + after;
+  }
+
+  /// The number of a file, if it has this name.
+  std::optional<long long> numberOf(const std::string& name) const {
+    if (name.size() <= before.size() + after.size()) return std::nullopt;
+    const std::string digits =
+        name.substr(before.size(), name.size() - before.size() - after.size());
+    long long number = 0;
+    const bool decimal = std::all_of(digits.begin(), digits.end(), isDigit);
+    if (!decimal || !parseInteger(digits, number) || (*this)(number) != name)
+      return std::nullopt;
+    return number;
+  }
+};
+
+std::optional<NumberedName> parseNumbered(const std::string& name) {
+  const std::size_t percent = name.find('%');
+  if (percent == std::string::npos) return std::nullopt;
+  std::size_t end = percent + 1;
+  while (end < name.size() && isDigit(name[end])) ++end;
+  if (end == name.size() || name[end] != 'd') return std::nullopt;
+  NumberedName numbered{name.substr(0, percent), name.substr(end + 1), 0};
+  const std::string width = name.substr(percent + 1, end - percent - 1);
+  if (width.size() > 3 || (!width.empty() && width[0] != '0'))
+    throw std::runtime_error(name + ": write the number as %d or, with zeros, as %04d");
+  if (!width.empty()) numbered.width = std::stoul(width);
+  return numbered;
+}
+
+std::vector<std::string> numbersOf(const std::string& word, const FrameRange& range) {
+  const fs::path path(word), folder = path.parent_path();
+  const NumberedName name = *parseNumbered(path.filename().string());
+  std::optional<long long> lowest, highest;
+  for (const std::string& file : filesIn(folder)) {
+    const std::optional<long long> number = name.numberOf(file);
+    if (!number) continue;
+    lowest = std::min(lowest.value_or(*number), *number);
+    highest = std::max(highest.value_or(*number), *number);
+  }
+  if (!lowest) throw std::runtime_error(word + ": no file matches");
+  std::vector<std::string> paths;
+  const long long end = range.end.value_or(*highest);
+  for (long long number = range.start.value_or(*lowest); number <= end;
+       number += range.stride) {
+    const fs::path frame = folder / name(number);
+    if (!fs::exists(frame))
+      throw std::runtime_error(frame.string() + ": is missing (the files are numbered " +
+                               std::to_string(*lowest) + " to " +
+                               std::to_string(*highest) + ")");
+    paths.push_back(frame.string());
+  }
+  if (paths.empty()) throw std::runtime_error(word + ": no number is in the range");
+  return paths;
+}
+
+std::vector<std::string> select(const std::string& word,
+                                const std::vector<std::string>& paths,
+                                const FrameRange& range) {
+  const long long last = static_cast<long long>(paths.size()) - 1;
+  if (range.end.value_or(last) > last)
+    throw std::runtime_error(word + ": has files 0 to " + std::to_string(last) +
+                             ", so that --end " + std::to_string(*range.end) +
+                             " is too high");
+  std::vector<std::string> taken;
+  for (long long i = range.start.value_or(0); i <= range.end.value_or(last);
+       i += range.stride)
+    taken.push_back(paths[static_cast<std::size_t>(i)]);
+  if (taken.empty()) throw std::runtime_error(word + ": no file is in the range");
+  return taken;
+}
+
+}  // namespace
+
+bool isBeforeNaturally(const std::string& a, const std::string& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (!isDigit(a[i]) || !isDigit(b[j])) {
+      if (a[i] != b[j]) return a[i] < b[j];
+      ++i, ++j;
+      continue;
+    }
+    const auto takeNumber = [](const std::string& text, std::size_t& at) {
+      while (at < text.size() && text[at] == '0') ++at;
+      const std::size_t begin = at;
+      while (at < text.size() && isDigit(text[at])) ++at;
+      return text.substr(begin, at - begin);
+    };
+    const std::string m = takeNumber(a, i), n = takeNumber(b, j);
+    if (m.size() != n.size()) return m.size() < n.size();
+    if (m != n) return m < n;
+  }
+  if ((i < a.size()) != (j < b.size())) return j < b.size();
+  return a < b;  // f1 and f01
+}
+
+std::vector<std::string> listFrames(const std::vector<std::string>& words,
+                                    const FrameRange& range) {
+  std::vector<std::string> frames;
+  bool range_is_used = range.isWhole();
+  for (const std::string& word : words) {
+    const std::string name = fs::path(word).filename().string();
+    std::error_code error;
+    std::vector<std::string> found;
+    if (fs::is_directory(word, error)) {
+      found = select(word, meshesIn(word), range);
+    } else if (fs::exists(word, error)) {
+      frames.push_back(word);
+      continue;
+    } else if (parseNumbered(name)) {
+      found = numbersOf(word, range);
+    } else if (name.find_first_of("*?[") != std::string::npos) {
+      found = select(word, matchesOf(word), range);
+    } else {
+      frames.push_back(word);  // whoever opens it says why it cannot
+      continue;
+    }
+    range_is_used = true;
+    frames.insert(frames.end(), found.begin(), found.end());
+  }
+  if (!range_is_used)
+    throw std::runtime_error(
+        "--start, --end and --stride select from a folder, a pattern or a name with %d; "
+        "these files were named one by one");
+  return frames;
+}
+
+}  // namespace fcl_ccd

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_FRAME_STORE_H
+#define FCL_CCD_FRAME_STORE_H
+
+#include <cstddef>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+
+#include "mesh_sequence.h"
+
+namespace fcl_ccd {
+
+/// @brief The frames of a mesh that the steps [begin, end) take, step i from frame i to
+/// frame i + 1. Each is read once, by the thread that asks for it first, and forgotten
+/// when its two steps have it. A mesh of one frame stands still.
+class FrameStore {
+ public:
+  using Frame = std::shared_ptr<const Vertices>;
+
+  FrameStore(const MeshSequence& meshes, std::size_t begin, std::size_t end)
+      : meshes_(meshes), begin_(begin), end_(end) {}
+
+  struct Pair {
+    Frame from, to;
+  };
+
+  /// @brief Both frames of a step, to be called once for each step, by any thread.
+  /// @throws std::runtime_error as MeshSequence::read().
+  Pair take(std::size_t step);
+
+ private:
+  struct Entry {
+    std::shared_future<Frame> frame;
+    int uses_left{0};
+  };
+
+  Frame get(std::size_t frame);
+
+  const MeshSequence& meshes_;
+  std::size_t begin_;
+  std::size_t end_;
+  std::mutex mutex_;
+  std::map<std::size_t, Entry> entries_;
+};
+
+}  // namespace fcl_ccd
+
+#endif

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "mesh_sequence.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "binary_ply.h"
+#include "file_bytes.h"
+#include "text_scan.h"
+#include "triangulate.h"
+#include "weld.h"
+
+namespace fcl_ccd {
+namespace {
+
+/// @brief A file that is open for reading, or not.
+class InputFile {
+ public:
+  explicit InputFile(const std::string& path)
+      : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+  ~InputFile() {
+    if (file_ >= 0) close(file_);
+  }
+
+  int descriptor() const { return file_; }
+
+  bool isRegularOfSize(std::size_t size) const {
+    struct stat status {};
+    return file_ >= 0 && fstat(file_, &status) == 0 && S_ISREG(status.st_mode) &&
+           static_cast<std::size_t>(status.st_size) == size;
+  }
+
+  /// Whether the file has these bytes at the offset.
+  bool has(std::string_view bytes, std::size_t offset) const {
+    char block[1 << 16];
+    while (!bytes.empty()) {
+      const ssize_t size = pread(file_, block, std::min(bytes.size(), sizeof block),
+                                 static_cast<off_t>(offset));
+      if (size <= 0) return false;
+      const auto read = static_cast<std::size_t>(size);
+      if (std::string_view(block, read) != bytes.substr(0, read)) return false;
+      bytes.remove_prefix(read);
+      offset += read;
+    }
+    return true;
+  }
+
+ private:
+  int file_;
+};
+
+bool isPly(const std::string& path) { return extensionOf(path) == "ply"; }
+
+}  // namespace
+
+MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(paths)) {
+  PolygonMesh first = readPolygonMesh(paths_[0]);
+  triangles_ = triangulate(first.vertices, first.faces);
+  faces_ = std::move(first.faces);
+  vertices_ = std::move(first.vertices);
+  if (!isPly(paths_[0])) return;
+  const std::string bytes = readBytes(paths_[0]);
+  const auto block = findVertexBlock(bytes);
+  if (!block) return;
+  head_ = bytes.substr(0, block->begin);
+  tail_begin_ = block->end();
+  tail_ = bytes.substr(tail_begin_);
+}
+
+Vertices MeshSequence::read(std::size_t frame) const {
+  const std::string& path = paths_[frame];
+  if (!head_.empty() && isPly(path)) {
+    const auto vertices = namingPlace(
+        [&] { return path; },
+        [&]() -> std::optional<Vertices> {
+          const std::string bytes = readBytes(path);
+          const std::string_view file = bytes;
+          if (file.size() != tail_begin_ + tail_.size() ||
+              file.substr(0, head_.size()) != head_ || file.substr(tail_begin_) != tail_)
+            return std::nullopt;
+          Vertices decoded = decodeVertices(file, *findVertexBlock(file));
+          requireFinite(decoded);
+          return decoded;
+        });
+    if (vertices) return *vertices;
+  }
+  PolygonMesh mesh = readPolygonMesh(path);
+  if (mesh.vertices.size() != vertices_.size())
+    throw std::runtime_error(path + ": has " + std::to_string(mesh.vertices.size()) +
+                             " vertices, but " + paths_[0] + " has " +
+                             std::to_string(vertices_.size()));
+  if (mesh.faces != faces_)
+    throw std::runtime_error(path + ": its faces differ from those of " + paths_[0]);
+  return std::move(mesh.vertices);
+}
+
+void MeshSequence::check(std::size_t frame) const {
+  const std::string& path = paths_[frame];
+  if (!head_.empty() && isPly(path)) {
+    const InputFile file(path);
+    if (file.isRegularOfSize(tail_begin_ + tail_.size()) && file.has(head_, 0) &&
+        file.has(tail_, tail_begin_))
+      return;
+  }
+  read(frame);
+}
+
+void MeshSequence::announce(std::size_t frame) const {
+  const InputFile file(paths_[frame]);
+  if (file.descriptor() >= 0) posix_fadvise(file.descriptor(), 0, 0, POSIX_FADV_WILLNEED);
+}
+
+void MeshSequence::join(const std::vector<int>& map) { joinVertices(map, triangles_); }
+
+}  // namespace fcl_ccd

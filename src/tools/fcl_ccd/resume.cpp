@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "resume.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+
+#include "text_scan.h"
+
+namespace fcl_ccd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// @brief Whole lines of a file, with where they end.
+class LineFile {
+ public:
+  explicit LineFile(const std::string& path) : in_(path, std::ios::binary) {}
+
+  /// @return false at the end of the file, or at a line without an end.
+  bool next() {
+    if (!std::getline(in_, line_) || in_.eof()) return false;
+    end_ += line_.size() + 1;
+    return true;
+  }
+
+  const std::string& line() const { return line_; }
+  std::uint64_t end() const { return end_; }
+
+ private:
+  std::ifstream in_;
+  std::string line_;
+  std::uint64_t end_{0};
+};
+
+/// @brief Opens a file behind its head; false if nothing is behind it.
+bool takeHead(LineFile& file, const std::string& path, const std::string& head,
+              const char* other) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return false;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw std::runtime_error(path + ": is no file that --resume could go on with");
+  if (!file.next()) return false;
+  if (file.line() + '\n' != head)
+    throw std::runtime_error(
+        path + ": cannot go on: it was written with other " + other +
+        "; name another file, or leave out --resume to overwrite it");
+  return true;
+}
+
+struct ContactRows {
+  std::uint64_t begin{0};  ///< where the step's rows begin
+  std::size_t count{0};
+};
+
+/// @brief The rows of each step that has some, and where the last whole row ends.
+struct ContactList {
+  std::map<std::size_t, ContactRows> steps;
+  std::uint64_t end{0};
+
+  std::size_t rowsOf(std::size_t step) const {
+    const auto found = steps.find(step);
+    return found == steps.end() ? 0 : found->second.count;
+  }
+
+  /// Where the rows of a step and all after it begin.
+  std::uint64_t beginOf(std::size_t step) const {
+    const auto found = steps.lower_bound(step);
+    return found == steps.end() ? end : found->second.begin;
+  }
+};
+
+ContactList scanContacts(const GrowingOutputs& outputs) {
+  const std::string& path = outputs.contacts_path;
+  ContactList list;
+  LineFile file(path);
+  if (!takeHead(file, path, outputs.contacts_head, "columns")) return list;
+  list.end = file.end();
+  for (std::uint64_t begin = file.end(); file.next(); begin = file.end()) {
+    long long step = -1;
+    const std::string& line = file.line();
+    const bool valid = parseInteger(line.substr(0, line.find(',')), step) && step >= 0;
+    const auto index = static_cast<std::size_t>(step);
+    if (!valid || (!list.steps.empty() && index < list.steps.rbegin()->first))
+      throw std::runtime_error(path + ": " + fcl_ccd::quoted(line) +
+                               " is no row of a contact list");
+    ContactRows& rows = list.steps[index];
+    if (rows.count++ == 0) rows.begin = begin;
+    list.end = file.end();
+  }
+  return list;
+}
+
+struct StepLine {
+  std::uint64_t end{0};
+  RunSummary summary;
+};
+
+/// @brief The lines of a list of steps.
+std::vector<StepLine> scanSteps(const GrowingOutputs& outputs) {
+  const std::string& path = outputs.steps_path;
+  std::vector<StepLine> steps;
+  LineFile file(path);
+  if (!takeHead(file, path, outputs.steps_head, "options or by another version"))
+    return steps;
+
+  while (file.next()) {
+    const Json line = Json::parse(file.line(), nullptr, false);
+    if (line.is_object() && line.contains("summary")) break;
+    const std::size_t step = steps.size();
+    if (!line.is_object() || line.value("step", Json()) != step)
+      throw std::runtime_error(path + ": " + fcl_ccd::quoted(file.line()) +
+                               " is not step " + std::to_string(step));
+    if (step >= outputs.num_steps || line.value("files", Json()) != outputs.filesOf(step))
+      throw std::runtime_error(path + ": step " + std::to_string(step) +
+                               " was of other frames than it is now; --resume needs " +
+                               "those of the run that it goes on with");
+    steps.push_back({file.end(), summaryOf(line)});
+  }
+  return steps;
+}
+
+}  // namespace
+
+ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
+  ResumePoint point;
+  std::vector<StepLine> steps;
+  ContactList contacts;
+  if (!outputs.steps_path.empty()) steps = scanSteps(outputs);
+  if (!outputs.contacts_path.empty()) contacts = scanContacts(outputs);
+  if (!contacts.steps.empty() && contacts.steps.rbegin()->first >= outputs.num_steps)
+    throw std::runtime_error(outputs.contacts_path + ": has step " +
+                             std::to_string(contacts.steps.rbegin()->first) + ", but " +
+                             "there are only " + std::to_string(outputs.num_steps));
+  if (outputs.steps_path.empty()) {
+    if (!contacts.steps.empty()) point.step = contacts.steps.rbegin()->first;
+  } else if (outputs.contacts_path.empty()) {
+    point.step = steps.size();
+  } else if (contacts.end > 0) {
+    while (point.step < steps.size() &&
+           contacts.rowsOf(point.step) ==
+               steps[point.step].summary.vf + steps[point.step].summary.ee)
+      ++point.step;
+  }
+  point.step = std::min(point.step, latest);
+  if (point.step == 0) return point;
+  point.contacts_size = contacts.beginOf(point.step);
+  if (steps.empty()) return point;
+  point.steps_size = steps[point.step - 1].end;
+  for (std::size_t i = 0; i < point.step; ++i) point.summary.add(steps[i].summary);
+  return point;
+}
+
+}  // namespace fcl_ccd

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_STOP_SIGNAL_H
+#define FCL_CCD_STOP_SIGNAL_H
+
+namespace fcl_ccd {
+
+/// @brief From here on the first SIGINT, SIGTERM or SIGHUP asks the program to stop; a
+/// second one ends it. A signal that was ignored stays ignored. SIGPIPE and SIGXFSZ
+/// become errors of writing.
+void catchStopSignals();
+
+/// @brief The signal that asked the program to stop, or 0.
+int stopSignal();
+
+}  // namespace fcl_ccd
+
+#endif

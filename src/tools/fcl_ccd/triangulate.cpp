@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "triangulate.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+namespace fcl_ccd {
+namespace {
+
+struct Point2 {
+  double x, y;
+};
+
+/// Twice the area of the triangle, positive if it turns to the left.
+double turn(const Point2& a, const Point2& b, const Point2& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+/// @brief Twice the sum of the areas that the polygon covers in the planes yz, zx and xy.
+std::array<double, 3> newellNormal(const Vertices& vertices,
+                                   const std::vector<int>& corners) {
+  std::array<double, 3> normal{};
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const auto& p = vertices[static_cast<std::size_t>(corners[i])];
+    const auto& q = vertices[static_cast<std::size_t>(corners[(i + 1) % corners.size()])];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t u = (k + 1) % 3, v = (k + 2) % 3;
+      normal[k] += (p[u] - q[u]) * (p[v] + q[v]);
+    }
+  }
+  return normal;
+}
+
+/// @brief The polygon in the coordinate plane in which it is largest, turning to the
+/// left.
+std::vector<Point2> project(const Vertices& vertices, const std::vector<int>& corners) {
+  const std::array<double, 3> normal = newellNormal(vertices, corners);
+  std::size_t axis = 0;
+  for (std::size_t k = 1; k < 3; ++k)
+    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
+  std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+  if (normal[axis] < 0) std::swap(u, v);
+  std::vector<Point2> points;
+  for (const int id : corners) {
+    const auto& p = vertices[static_cast<std::size_t>(id)];
+    points.push_back({p[u], p[v]});
+  }
+  return points;
+}
+
+bool isConvex(const std::vector<Point2>& points) {
+  const std::size_t n = points.size();
+  for (std::size_t i = 0; i < n; ++i)
+    if (turn(points[i], points[(i + 1) % n], points[(i + 2) % n]) < 0) return false;
+  return true;
+}
+
+/// @brief A ring of corners that loses one at a time.
+class Ring {
+ public:
+  Ring(std::vector<int> corners, std::vector<Point2> points)
+      : corners_(std::move(corners)), points_(std::move(points)) {}
+
+  std::size_t size() const { return corners_.size(); }
+
+  /// Whether the triangle at corner i turns to the left and has no other corner in it.
+  bool isEar(std::size_t i) const {
+    const std::size_t before = (i + size() - 1) % size(), after = (i + 1) % size();
+    const Point2 &a = points_[before], &b = points_[i], &c = points_[after];
+    if (!(turn(a, b, c) > 0)) return false;
+    for (std::size_t k = 0; k < size(); ++k) {
+      const int id = corners_[k];
+      if (id == corners_[before] || id == corners_[i] || id == corners_[after]) continue;
+      const Point2& p = points_[k];
+      if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+    }
+    return true;
+  }
+
+  void cut(std::size_t i, Triangles& out) {
+    out.push_back(
+        {corners_[(i + size() - 1) % size()], corners_[i], corners_[(i + 1) % size()]});
+    corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(i));
+    points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+
+  const std::vector<int>& corners() const { return corners_; }
+
+ private:
+  std::vector<int> corners_;
+  std::vector<Point2> points_;
+};
+
+void addFan(const std::vector<int>& corners, Triangles& out) {
+  for (std::size_t k = 2; k < corners.size(); ++k)
+    out.push_back({corners[0], corners[k - 1], corners[k]});
+}
+
+void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
+                Triangles& out) {
+  std::vector<Point2> points = project(vertices, corners);
+  if (isConvex(points)) return addFan(corners, out);
+  Ring ring(corners, std::move(points));
+  for (std::size_t i = 0; ring.size() > 3;) {
+    std::size_t tried = 0;
+    while (tried < ring.size() && !ring.isEar(i)) {
+      i = (i + 1) % ring.size();
+      ++tried;
+    }
+    if (tried == ring.size()) break;
+    ring.cut(i, out);
+    i %= ring.size();
+  }
+  addFan(ring.corners(), out);
+}
+
+}  // namespace
+
+Triangles triangulate(const Vertices& vertices, const Faces& faces) {
+  Triangles triangles;
+  triangles.reserve(faces.corners.size() / 3);
+  if (faces.ends.empty()) {
+    for (std::size_t i = 0; i < faces.corners.size(); i += 3)
+      triangles.push_back({faces.corners[i], faces.corners[i + 1], faces.corners[i + 2]});
+    return triangles;
+  }
+  std::vector<int> corners;
+  std::size_t begin = 0;
+  for (const std::size_t end : faces.ends) {
+    corners.assign(faces.corners.begin() + static_cast<std::ptrdiff_t>(begin),
+                   faces.corners.begin() + static_cast<std::ptrdiff_t>(end));
+    if (corners.size() == 3)
+      addFan(corners, triangles);
+    else
+      addPolygon(vertices, corners, triangles);
+    begin = end;
+  }
+  return triangles;
+}
+
+}  // namespace fcl_ccd

@@ -1,0 +1,587 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Drives the program fcl-ccd on sequences of frames: how they are named, stopped and gone
+// on with, and what is done to their faces and vertices on the way.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "ccd_tool.h"
+#include "csv_rows.h"
+#include "frame_list.h"
+#include "mesh_io.h"
+#include "triangulate.h"
+#include "weld.h"
+
+namespace {
+
+using namespace fcl::test;
+using fcl_ccd::Triangles;
+using fcl_ccd::Vertices;
+
+/// @brief How far the tip is down in a frame: it goes through the floor and back, so that
+/// some steps have a contact, some begin crossing, and some neither.
+double dropOf(std::size_t frame) {
+  constexpr std::array<double, 5> kDrops{0, 0.5, 2, 1.5, 0.25};
+  return kDrops[frame % kDrops.size()];
+}
+
+/// @brief All that grows with each step.
+const std::string kOutputs =
+    " --contacts c.csv --steps s.jsonl --columns triangles,position,normal";
+
+class CcdSequence : public CcdToolTest {
+ protected:
+  std::string frameName(std::size_t frame) const {
+    return "f/tip" + std::to_string(frame) + ".ply";
+  }
+
+  void writeFrame(std::size_t frame) const {
+    writeText(path(frameName(frame)),
+              toBinaryPly<double>(floorAndTip(dropOf(frame)), false));
+  }
+
+  /// @brief Frames f/tip0.ply ...: names without leading zeros.
+  void writeFrames(std::size_t count) const {
+    fs::create_directory(path("f"));
+    for (std::size_t frame = 0; frame < count; ++frame) writeFrame(frame);
+  }
+
+  /// @brief Runs and hands out what is in c.csv and s.jsonl, which are removed.
+  std::pair<std::string, std::string> outputsOf(const std::string& arguments) const {
+    const Outcome outcome = run(arguments + kOutputs);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    return takeOutputs();
+  }
+
+  std::pair<std::string, std::string> takeOutputs() const {
+    std::pair<std::string, std::string> outputs{readText(path("c.csv")),
+                                                readText(path("s.jsonl"))};
+    fs::remove(path("c.csv"));
+    fs::remove(path("s.jsonl"));
+    return outputs;
+  }
+};
+
+TEST_F(CcdSequence, ListsFramesInNaturalOrder) {
+  for (const char* name : {"f9.ply", "f10.ply", "f1.ply", "f010.ply", ".f2.ply", "n.txt"})
+    writeText(path(name), "");
+  const auto names = [&](const std::string& word, const fcl_ccd::FrameRange& range) {
+    std::vector<std::string> listed;
+    for (const std::string& frame : fcl_ccd::listFrames(
+             {word.empty() ? path("").string() : path(word).string()}, range))
+      listed.push_back(fs::path(frame).filename().string());
+    return listed;
+  };
+  using Names = std::vector<std::string>;
+  EXPECT_EQ(names("", {}), (Names{"f1.ply", "f9.ply", "f010.ply", "f10.ply"}));
+  EXPECT_EQ(names("*", {}), (Names{"f1.ply", "f9.ply", "f010.ply", "f10.ply", "n.txt"}));
+  EXPECT_EQ(names("f?.p*", {}), (Names{"f1.ply", "f9.ply"}));
+  EXPECT_EQ(names("", {1, 3, 2}), (Names{"f9.ply", "f10.ply"}));
+  EXPECT_EQ(names("f%d.ply", {1, 10, 9}), (Names{"f1.ply", "f10.ply"}));
+  EXPECT_EQ(names("f%03d.ply", {}), (Names{"f010.ply"}));
+  EXPECT_EQ(names("f1.ply", {}), (Names{"f1.ply"}));
+  EXPECT_TRUE(fcl_ccd::isBeforeNaturally("a2b10", "a10b2"));
+  EXPECT_FALSE(fcl_ccd::isBeforeNaturally("a10", "a9"));
+}
+
+TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
+  writeFrames(3);
+  fs::remove(path("f/tip1.ply"));
+  fs::create_directory(path("empty"));
+  fs::create_directory(path("mixed"));
+  writeText(path("mixed/a.obj"), "");
+  writeText(path("mixed/a.off"), "");
+  expectFailure("run f/tip%d.ply", "f/tip1.ply: is missing");
+  expectFailure("run f/tip%d.ply --start 1 --end 2", "f/tip1.ply: is missing");
+  expectFailure("run f --end 2", "f: has files 0 to 1, so that --end 2 is too high");
+  expectFailure("run f --end 0", "A needs two frames or more");
+  expectFailure("run 'f/no*.ply'", "f/no*.ply: no file matches");
+  expectFailure("run empty", "empty: the folder has no");
+  expectFailure("run mixed", "mixed: the folder has .obj and .off files");
+  expectFailure("run f/tip0.ply f/tip2.ply --start 0", "named one by one");
+  expectFailure("run f/tip0.ply f/tip2.ply --against f f/tip0.ply",
+                "A has 2 frames and B 3");
+}
+
+// All of it is checked before the first step.
+TEST_F(CcdSequence, NamesTheFileThatDiffers) {
+  writeFrames(8);
+  const auto expectNamed = [&](const std::string& bytes, const std::string& cause) {
+    writeText(path(frameName(6)), bytes);
+    expectFailure("run f" + kOutputs, "f/tip6.ply: " + cause);
+    expectFailure("run f --jobs 1" + kOutputs, "f/tip6.ply: " + cause);
+  };
+  Mesh turned = floorAndTip(0);
+  turned.triangles[1] = {4, 3, 5};
+  const std::string whole = toBinaryPly<double>(floorAndTip(0), false);
+  expectNamed(toBinaryPly<double>(turned, false),
+              "its faces differ from those of f/tip0");
+  expectNamed(whole.substr(0, whole.size() - 1), "face 1 of 2");
+  expectNamed(toBinaryPly<double>(edgeAlongX(), false), "has 3 vertices, but");
+  expectNamed("ply\n", "the file ends before 'end_header'");
+  // The same mesh in another form is none that differs.
+  writeText(path(frameName(6)), toAsciiPly(floorAndTip(dropOf(6))));
+  EXPECT_EQ(run("run f").exit_code, 0);
+}
+
+TEST_F(CcdSequence, ABodyThatStandsStillIsGivenOnce) {
+  writeFrames(6);
+  Mesh body = floorAndTip(0);
+  body.vertices.resize(3);
+  body.triangles.resize(1);
+  for (auto& p : body.vertices) p[2] -= 0.25;
+  writeText(path("body.obj"), toObj(body));
+  std::string repeated = "run f --against";
+  for (int i = 0; i < 6; ++i) repeated += " body.obj";
+  const auto once = outputsOf("run f --against body.obj"), often = outputsOf(repeated);
+  EXPECT_EQ(once.first, often.first);
+  EXPECT_NE(once.first.find(",b0,"), std::string::npos);
+}
+
+TEST_F(CcdSequence, JobsAndThreadsGiveTheSameBytes) {
+  writeFrames(23);
+  const auto one = outputsOf("run f --jobs 1");
+  EXPECT_GT(linesOf(one.first).size(), 5u);
+  EXPECT_EQ(linesOf(one.second).size(), 1u + 22u + 1u);
+  for (const char* cores : {"", " --jobs 2", " --jobs 7", " --jobs 0", " --threads 2"})
+    EXPECT_EQ(outputsOf("run f" + std::string(cores)), one) << cores;
+  const auto any = outputsOf("run f --jobs 1 --query any");
+  EXPECT_EQ(outputsOf("run f --jobs 3 --query any"), any);
+}
+
+// The tip meets the floor in the origin.
+TEST_F(CcdSequence, ColumnsTellTrianglesPositionAndNormal) {
+  writeTip();
+  ASSERT_EQ(run("run tip0.obj tip1.obj --toc-err 1e-9" + kOutputs).exit_code, 0);
+  const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,t0,t1,x,y,z,nx,ny,nz");
+  const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
+  ASSERT_EQ(fields.size(), 16u);
+  EXPECT_EQ(fields[8], "1");
+  EXPECT_EQ(fields[9], "0");
+  for (const std::size_t i : {10u, 11u, 12u, 13u, 14u})
+    EXPECT_NEAR(std::stod(fields[i]), 0, 1e-8) << i;
+  EXPECT_NEAR(std::abs(std::stod(fields[15])), 1, 1e-8);
+}
+
+// Wherever a run was ended: what is left of its files is the beginning of them.
+TEST_F(CcdSequence, ResumeEqualsARunThatWasNotStopped) {
+  writeFrames(12);
+  const auto whole = outputsOf("run f");
+  const std::string &contacts = whole.first, &steps = whole.second;
+  const auto expectResumed = [&](std::size_t contacts_left, std::size_t steps_left) {
+    writeText(path("c.csv"), contacts.substr(0, contacts_left));
+    writeText(path("s.jsonl"), steps.substr(0, steps_left));
+    const auto resumed = outputsOf("run f --resume");
+    EXPECT_EQ(resumed.first, contacts) << contacts_left << ' ' << steps_left;
+    EXPECT_EQ(resumed.second, steps) << contacts_left << ' ' << steps_left;
+  };
+  for (std::size_t i = 0; i <= 16; ++i)
+    expectResumed(contacts.size() * i / 16, steps.size() * i / 16);
+  expectResumed(0, steps.size());  // a disk that has lost what was written first
+  expectResumed(contacts.size() / 2, steps.size());
+  expectResumed(contacts.size(), 0);
+}
+
+TEST_F(CcdSequence, ResumesEitherFileAlone) {
+  writeFrames(12);
+  const auto [contacts, steps] = outputsOf("run f");
+  for (std::size_t i = 0; i <= 8; ++i) {
+    writeText(path("c.csv"), contacts.substr(0, contacts.size() * i / 8));
+    const std::string columns = " --columns triangles,position,normal";
+    ASSERT_EQ(run("run f --resume --contacts c.csv" + columns).exit_code, 0);
+    EXPECT_EQ(readText(path("c.csv")), contacts);
+    writeText(path("s.jsonl"), steps.substr(0, steps.size() * i / 8));
+    ASSERT_EQ(run("run f --resume --steps s.jsonl").exit_code, 0);
+    EXPECT_EQ(readText(path("s.jsonl")), steps);
+  }
+  takeOutputs();
+  // Without a file from the start; with more frames than then, on with these.
+  ASSERT_EQ(run("run f --end 6 --resume" + kOutputs).exit_code, 0);
+  ASSERT_EQ(run("run f --resume" + kOutputs).exit_code, 0);
+  EXPECT_EQ(takeOutputs(), std::make_pair(contacts, steps));
+}
+
+TEST_F(CcdSequence, ResumeRefusesWhatAnotherRunWrote) {
+  writeFrames(6);
+  ASSERT_EQ(run("run f" + kOutputs).exit_code, 0);
+  const std::string contacts = readText(path("c.csv")), steps = readText(path("s.jsonl"));
+  expectFailure("run f --resume --contacts c.csv", "c.csv: cannot go on");
+  expectFailure("run f --resume --query first" + kOutputs, "s.jsonl: cannot go on");
+  expectFailure("run f --resume --stride 2" + kOutputs,
+                "s.jsonl: step 0 was of other frames");
+  expectFailure("run f --resume --end 3" + kOutputs, "s.jsonl: step 3 was of other");
+  expectFailure("run f --resume --contacts f/../c.csv --steps c.csv", "also given as");
+  writeText(path("n.jsonl"), linesOf(steps)[0] + "\n{\"step\":1}\n");
+  expectFailure("run f --resume --steps n.jsonl", "is not step 0");
+  EXPECT_EQ(readText(path("c.csv")), contacts);
+  EXPECT_EQ(readText(path("s.jsonl")), steps);
+}
+
+TEST_F(CcdSequence, ABadFrameLeavesTheStepsBefore) {
+  writeFrames(12);
+  const auto whole = outputsOf("run f");
+  Mesh bad = floorAndTip(dropOf(7));
+  bad.vertices[4][1] = HUGE_VAL;  // no check of the layout sees it
+  writeText(path(frameName(7)), toBinaryPly<double>(bad, false));
+  for (const char* jobs : {" --jobs 1", " --jobs 3"}) {
+    const Outcome outcome = run("run f --json r.json --paint p.ply" + kOutputs + jobs);
+    EXPECT_EQ(outcome.exit_code, 3);
+    EXPECT_NE(outcome.err.find("f/tip7.ply: vertex 4"), std::string::npos) << outcome.err;
+    EXPECT_EQ(linesOf(outcome.err).back(),
+              "fcl-ccd: stopped after 6 of 11 steps; they are in c.csv and s.jsonl, "
+              "--resume goes on from there");
+    EXPECT_EQ(linesOf(readText(path("s.jsonl"))).size(), 7u);
+    EXPECT_EQ(whole.first.rfind(readText(path("c.csv")), 0), 0u);
+    EXPECT_NE(readText(path("r.json")).find("\"complete\":false"), std::string::npos);
+    EXPECT_EQ(files(), (std::set<std::string>{"c.csv", "f", "r.json", "s.jsonl"}));
+    fs::remove(path("r.json"));
+  }
+  writeFrame(7);
+  EXPECT_EQ(outputsOf("run f --resume"), whole);
+}
+
+// A file that may not grow further is a disk that is full.
+TEST_F(CcdSequence, AFullDiskLeavesWholeSteps) {
+  writeFrames(40);
+  const auto whole = outputsOf("run f");
+  ASSERT_GT(whole.second.size(), 4096u);
+  const std::string command = "cd '" + path("").string() + "' && ulimit -f 8 && '" +
+                              FCL_CCD_TOOL "' run f" + kOutputs + " >out.txt 2>err.txt";
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 4);
+  const std::string error = readText(path("err.txt"));
+  EXPECT_NE(error.find("s.jsonl: writing failed"), std::string::npos) << error;
+  const std::string steps = readText(path("s.jsonl")), contacts = readText(path("c.csv"));
+  EXPECT_EQ(steps.back(), '\n');
+  EXPECT_EQ(contacts.back(), '\n');
+  EXPECT_EQ(whole.second.rfind(steps, 0), 0u);
+  EXPECT_EQ(whole.first.rfind(contacts, 0), 0u);
+  EXPECT_EQ(outputsOf("run f --resume"), whole);
+}
+
+/// @brief Starts the program with the arguments; the test's folder is its working folder.
+pid_t start(const fs::path& folder, std::vector<std::string> arguments) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  if (chdir(folder.c_str()) != 0 || std::freopen("out.txt", "w", stdout) == nullptr ||
+      std::freopen("err.txt", "w", stderr) == nullptr)
+    _exit(99);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  signal(SIGINT, SIG_DFL);
+  execv(FCL_CCD_TOOL, argv.data());
+  _exit(99);
+}
+
+TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
+  writeFrames(60);
+  const auto whole = outputsOf("run f");
+  for (const int signal_number : {SIGINT, SIGTERM, SIGKILL}) {
+    SCOPED_TRACE(signal_number);
+    // All of it would take seconds.
+    const pid_t child =
+        start(path(""), {"fcl-ccd", "run", "f", "--repeat", "5000", "--contacts", "c.csv",
+                         "--steps", "s.jsonl", "--columns", "triangles,position,normal",
+                         "--json", "r.json"});
+    while (linesOf(readText(path("s.jsonl"))).size() < 3 &&
+           waitpid(child, nullptr, WNOHANG) == 0)
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    kill(child, signal_number);
+    int status = 0;
+    ASSERT_EQ(waitpid(child, &status, 0), child) << readText(path("err.txt"));
+    std::set<std::string> left{"c.csv", "err.txt", "f", "out.txt", "s.jsonl"};
+    if (signal_number == SIGKILL) {
+      EXPECT_TRUE(WIFSIGNALED(status));
+    } else {
+      ASSERT_TRUE(WIFEXITED(status));
+      EXPECT_EQ(WEXITSTATUS(status), 128 + signal_number);
+      EXPECT_NE(readText(path("err.txt")).find("of 59 steps; they are in c.csv"),
+                std::string::npos);
+      left.insert("r.json");
+    }
+    EXPECT_EQ(files(), left);  // no temporary file
+    for (const char* name : {"r.json", "out.txt", "err.txt"}) fs::remove(path(name));
+    EXPECT_EQ(outputsOf("run f --resume"), whole);
+  }
+}
+
+/// @brief Every triangle with three vertices of its own.
+Mesh toSoup(const Mesh& mesh) {
+  Mesh soup;
+  for (const auto& triangle : mesh.triangles) {
+    const int begin = static_cast<int>(soup.vertices.size());
+    for (const int id : triangle)
+      soup.vertices.push_back(mesh.vertices[static_cast<std::size_t>(id)]);
+    soup.triangles.push_back({begin, begin + 1, begin + 2});
+  }
+  return soup;
+}
+
+std::string toAsciiStl(const Mesh& mesh) {
+  std::string text = "solid made by a test\n";
+  for (const auto& triangle : mesh.triangles) {
+    text += "facet normal 0 0 0\n outer loop\n";
+    for (const int id : triangle) {
+      const auto& p = mesh.vertices[static_cast<std::size_t>(id)];
+      text += "  vertex " + exactText(p[0]) + ' ' + exactText(p[1]) + ' ' +
+              exactText(p[2]) + '\n';
+    }
+    text += " endloop\nendfacet\n";
+  }
+  return text + "endsolid\n";
+}
+
+std::string toBinaryStl(const Mesh& mesh) {
+  std::string bytes = "solid, says this title, but it is binary";
+  bytes.resize(80, ' ');
+  appendBytes(static_cast<std::uint32_t>(mesh.triangles.size()), false, bytes);
+  for (const auto& triangle : mesh.triangles) {
+    bytes.append(12, '\0');
+    for (const int id : triangle)
+      for (const double x : mesh.vertices[static_cast<std::size_t>(id)])
+        appendBytes(static_cast<float>(x), false, bytes);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+/// @brief A strip of squares along x, and over its middle a spike that is lowered by
+/// `drop`.
+Mesh stripAndSpike(double drop) {
+  Mesh mesh;
+  for (int i = 0; i <= 4; ++i)
+    for (const double y : {-1.0, 1.0}) mesh.vertices.push_back({i - 2.25, y, 0});
+  for (int i = 0; i < 4; ++i) {
+    mesh.triangles.push_back({2 * i, 2 * i + 2, 2 * i + 1});
+    mesh.triangles.push_back({2 * i + 1, 2 * i + 2, 2 * i + 3});
+  }
+  for (const auto& p : floorAndTip(drop).vertices) mesh.vertices.push_back(p);
+  mesh.vertices.erase(mesh.vertices.begin() + 10, mesh.vertices.begin() + 13);
+  mesh.triangles.push_back({10, 11, 12});
+  return mesh;
+}
+
+TEST_F(CcdSequence, ReadsStlOfBothKinds) {
+  const Mesh soup = toSoup(stripAndSpike(0.25));
+  writeText(path("a.stl"), toAsciiStl(soup));
+  writeText(path("b.STL"), toBinaryStl(soup));
+  for (const char* name : {"a.stl", "b.STL"}) {
+    const Mesh read = fcl_ccd::readMesh(path(name).string());
+    EXPECT_EQ(read.vertices, soup.vertices) << name;
+    EXPECT_EQ(read.triangles, soup.triangles) << name;
+  }
+  const std::string ascii = toAsciiStl(soup), binary = toBinaryStl(soup);
+  const std::vector<std::pair<std::string, const char*>> broken{
+      {ascii.substr(0, ascii.rfind(" endloop")), "cut short"},
+      {ascii.substr(0, ascii.rfind("  vertex")) + " endloop\n", "three vertices"},
+      {binary.substr(0, binary.size() - 1), "is not a word of STL"},
+      {"solid\nendsolid\n", "no faces"},
+      {"solid\nfacet\nouter loop\nvertex 0 0 nan\n", "line 4: 'nan' is not finite"}};
+  for (const auto& [bytes, cause] : broken) {
+    writeText(path("c.stl"), bytes);
+    try {
+      fcl_ccd::readMesh(path("c.stl").string());
+      FAIL() << cause;
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what()).find(cause), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST_F(CcdSequence, SoupIsNoticedAndWelded) {
+  const Mesh from = stripAndSpike(0), to = stripAndSpike(1.25);
+  writeText(path("0.obj"), toObj(from));
+  writeText(path("1.obj"), toObj(to));
+  writeText(path("0.stl"), toBinaryStl(toSoup(from)));
+  writeText(path("1.stl"), toAsciiStl(toSoup(to)));
+  const auto rowsOf = [&](const std::string& arguments, const std::string& note) {
+    const Outcome outcome = run("run " + arguments + kOutputs);
+    EXPECT_EQ(outcome.exit_code, 0);
+    EXPECT_EQ(outcome.err, note);
+    return linesOf(takeOutputs().first).size() - 1;
+  };
+  EXPECT_EQ(rowsOf("0.obj 1.obj", ""), 1u);
+  EXPECT_GT(
+      rowsOf("0.stl 1.stl",
+             "fcl-ccd: 0.stl: 27 vertices, none shared: neighbours will be reported "
+             "as contacts; pass --weld\n"),
+      10u);
+  for (const char* weld : {"--weld", "--weld 0", "--weld 1e-3"})
+    EXPECT_EQ(rowsOf("0.stl 1.stl " + std::string(weld),
+                     "fcl-ccd: 0.stl: 14 of 27 vertices joined\n"),
+              1u);
+}
+
+TEST(CcdWeld, JoinsWhatCoincidesInAllFrames) {
+  const Vertices first{{1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, -0.0, 0}, {1, 0, 0}};
+  fcl_ccd::Weld weld(first, 0);
+  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 0, 1, 0}));
+  EXPECT_EQ(weld.numJoined(), 3u);
+  weld.refine({{1, 0, 0}, {5, 0, 0}, {2, 0, 0}, {5, 0, 0}, {2, 0, 0}});
+  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 2, 1, 2}));
+  weld.refine(first);
+  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 2, 1, 2}));
+  Triangles triangles{{4, 3, 2}};
+  fcl_ccd::joinVertices(weld.map(), triangles);
+  EXPECT_EQ(triangles, (Triangles{{2, 1, 2}}));
+}
+
+TEST(CcdWeld, JoinsToOneThatIsNear) {
+  // In a chain of steps of 0.75 the third is not near the first.
+  const Vertices chain{
+      {0, 0, 0}, {0.75, 0, 0}, {1.5, 0, 0}, {1.5, 1, -1}, {1.5, 1.25, 0}};
+  EXPECT_EQ(fcl_ccd::Weld(chain, 1).map(), (std::vector<int>{0, 0, 2, 2, 4}));
+  // Grids must not matter: neighbouring cells, far from the origin and near to it.
+  for (const double at : {-1e9, -1.0, 0.0, 1.0, 1e9}) {
+    const Vertices pair{{at, at, at}, {at + 0.5, at - 0.5, at}};
+    EXPECT_EQ(fcl_ccd::Weld(pair, 0.5).map(), (std::vector<int>{0, 0})) << at;
+    EXPECT_EQ(fcl_ccd::Weld(pair, 0.25).map(), (std::vector<int>{0, 1})) << at;
+  }
+}
+
+double areaXY(const Vertices& vertices, const std::array<int, 3>& t) {
+  const auto& a = vertices[static_cast<std::size_t>(t[0])];
+  const auto& b = vertices[static_cast<std::size_t>(t[1])];
+  const auto& c = vertices[static_cast<std::size_t>(t[2])];
+  return 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
+}
+
+/// @brief The faces of one polygon through all vertices.
+fcl_ccd::Faces polygon(std::size_t size) {
+  fcl_ccd::Faces faces;
+  for (std::size_t i = 0; i < size; ++i) faces.corners.push_back(static_cast<int>(i));
+  EXPECT_TRUE(faces.endFace());
+  return faces;
+}
+
+// Positive areas that add up to the polygon's: the triangles cover it once.
+TEST(CcdTriangulate, ConcavePolygonsAreCoveredOnce) {
+  Vertices comb;  // teeth upwards, one after the other
+  for (int i = 0; i < 6; ++i) {
+    comb.push_back({double(i), 0, 0.1 * i});
+    comb.push_back({i + 0.5, 5.0, 0.1 * i});
+  }
+  comb.push_back({6, 0, 0});
+  comb.push_back({6, -1, 0});
+  comb.push_back({0, -1, 0});
+  std::reverse(comb.begin(), comb.end());
+  const std::vector<Vertices> shapes{
+      {{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}},  // a dart
+      {{0.5, 0.5, 0}, {0, 2, 0}, {0, 0, 0}, {2, 0, 0}},  // from its notch
+      {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 1, 0}, {1, 2, 0}, {0, 2, 0}},  // an L
+      comb};
+  for (const Vertices& shape : shapes) {
+    double area = 0, covered = 0;
+    for (std::size_t i = 0; i < shape.size(); ++i) {
+      const auto &p = shape[i], &q = shape[(i + 1) % shape.size()];
+      area += 0.5 * (p[0] * q[1] - p[1] * q[0]);
+    }
+    const Triangles triangles = fcl_ccd::triangulate(shape, polygon(shape.size()));
+    EXPECT_EQ(triangles.size(), shape.size() - 2);
+    for (const auto& triangle : triangles) {
+      EXPECT_GT(areaXY(shape, triangle), 0);
+      covered += areaXY(shape, triangle);
+    }
+    EXPECT_NEAR(covered, area, 1e-12);
+  }
+}
+
+TEST(CcdTriangulate, ConvexPolygonsBecomeFans) {
+  const Vertices square{{0, 0, 1}, {1, 0, 2}, {1, 1, 3}, {0, 1, 2}};
+  EXPECT_EQ(fcl_ccd::triangulate(square, polygon(4)), (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  // What has no ear ends as a fan, too.
+  const Vertices point(5, {1, 1, 1});
+  EXPECT_EQ(fcl_ccd::triangulate(point, polygon(5)).size(), 3u);
+}
+
+// The second frame alone would be divided along the other diagonal.
+TEST_F(CcdSequence, FacesAreDividedAsInTheFirstFrame) {
+  const auto frame = [](double x) {
+    return "v 0 0 0\nv 2 0 0\nv " + exactText(x) + ' ' + exactText(x) +
+           " 0\nv 0 2 0\nf 2 3 4 1\n";
+  };
+  writeText(path("a.obj"), frame(0.5));
+  writeText(path("b.obj"), frame(1.5));
+  ASSERT_EQ(run("run a.obj b.obj --paint p.ply").exit_code, 0);
+  const Mesh painted = fcl_ccd::readMesh(path("p.ply").string());
+  const Mesh a = fcl_ccd::readMesh(path("a.obj").string());
+  const Mesh b = fcl_ccd::readMesh(path("b.obj").string());
+  EXPECT_NE(a.triangles, b.triangles);
+  EXPECT_EQ(painted.triangles, a.triangles);
+}
+
+TEST_F(CcdSequence, BinaryPlyIsReadWithWhatElseItHas) {
+  // Vertices with more properties, a list beside the corners, polygons, another element.
+  std::string ply =
+      "ply\nformat binary_big_endian 1.0\nelement note 1\nproperty list uchar uchar "
+      "text\n"
+      "element vertex 5\nproperty uchar red\nproperty float x\nproperty double y\n"
+      "property float z\nproperty short s\nelement face 2\nproperty uchar flag\n"
+      "property list ushort uint vertex_index\nproperty list uchar float "
+      "uv\nend_header\n";
+  ply += std::string("\3abc");
+  const Vertices vertices{{0, 0, 0}, {1, 0, 0}, {1, 1.1, 0}, {0, 1, 0}, {0, 2, 0.5}};
+  for (const auto& p : vertices) {
+    ply += 'r';
+    appendBytes(static_cast<float>(p[0]), true, ply);
+    appendBytes(p[1], true, ply);
+    appendBytes(static_cast<float>(p[2]), true, ply);
+    appendBytes(std::int16_t{7}, true, ply);
+  }
+  for (const std::vector<std::uint32_t>& face :
+       {std::vector<std::uint32_t>{0, 1, 2, 3}, {3, 2, 4}}) {
+    ply += 'f';
+    appendBytes(static_cast<std::uint16_t>(face.size()), true, ply);
+    for (const std::uint32_t id : face) appendBytes(id, true, ply);
+    ply += '\1';
+    appendBytes(0.5f, true, ply);
+  }
+  writeText(path("m.ply"), ply);
+  const Mesh mesh = fcl_ccd::readMesh(path("m.ply").string());
+  EXPECT_EQ(mesh.vertices, vertices);
+  EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {3, 2, 4}}));
+}
+
+// The page's commands, in its order, in a folder that has what it speaks of.
+TEST_F(CcdSequence, TheManualsCommandsWork) {
+  writeFrames(12);
+  fs::create_directory(path("frames"));
+  for (int frame = 0; frame < 12; ++frame) {
+    std::string number = std::to_string(frame);
+    number.insert(0, 4 - number.size(), '0');
+    fs::copy(path(frameName(static_cast<std::size_t>(frame))),
+             path("frames/frame_" + number + ".ply"));
+  }
+  writeText(path("body.obj"), toObj(edgeAlongX()));
+  writeText(path("scan_0.stl"), toBinaryStl(toSoup(stripAndSpike(0))));
+  writeText(path("scan_1.stl"), toBinaryStl(toSoup(stripAndSpike(2))));
+  int num_commands = 0;
+  bool in_commands = false;
+  for (const std::string& line :
+       linesOf(readText(FCL_CCD_SOURCE_DIR "/doc/program.md"))) {
+    if (line.rfind("```", 0) == 0) in_commands = line == "```sh";
+    const std::string program = "fcl-ccd ";
+    if (!in_commands || line.rfind(program, 0) != 0) continue;
+    const Outcome outcome = run(line.substr(program.size()));
+    EXPECT_EQ(outcome.exit_code, 0) << line << '\n' << outcome.err;
+    ++num_commands;
+  }
+  EXPECT_GE(num_commands, 8);
+}
+
+}  // namespace
