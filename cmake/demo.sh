@@ -9,6 +9,6 @@ source cmake/dependencies.sh
 fcl_ccd_install_dependencies build
 echo "== Building library and demo (about five minutes on two cores the first time)"
 cmake --preset release
-cmake --build --preset release -j "$(nproc)" --target fcl_ccd_demo
+cmake --build --preset release --target fcl_ccd_demo
 echo "== Demo (half a minute)"
 build/release/test/fcl_ccd_demo build/demo "$@"

@@ -49,7 +49,7 @@ fcl_ccd_simulate() {
     true-alphabets) scale=0.3 ;;
     true-*) scale=0.1 ;;
   esac
-  build/release/test/fcl_ccd_scenes "$frames" --meshes --scenes "$scene" \
+  build/release/test/reproduction/fcl_ccd_scenes "$frames" --meshes --scenes "$scene" \
     --scale "$scale" --threads "$(nproc)"
 }
 
@@ -58,7 +58,7 @@ echo "== Simulating the scenes that $frames lacks (everything: an hour and a hal
 for scene in "${scenes[@]}"; do fcl_ccd_simulate "$scene"; done
 echo "== Measuring (everything: an hour; --short: minutes)"
 rm -rf "$out"
-build/release/test/fcl_ccd_paper "$out" --frames "$frames" --scenes "${scenes[@]}" \
+build/release/test/reproduction/fcl_ccd_paper "$out" --frames "$frames" --scenes "${scenes[@]}" \
   "${options[@]}"
 gnuplot -e "folder='$out'; scripts='$sources'" "$sources/plot.gp"
 simulations=("${scenes[@]/#/$frames/}")

@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # What the reports have in common. Sourced by speed.sh, speed_error.sh and paper.sh; a
 # report NAME is what the program fcl_ccd_NAME writes, tables and pictures are made by
-# test/benchmark/NAME.
+# test/benchmark/NAME, or test/reproduction/NAME.
 
 # fcl_ccd_build_report NAME [TARGET ...]
 #
@@ -15,12 +15,12 @@ fcl_ccd_build_report() {
   source cmake/dependencies.sh
   fcl_ccd_install_dependencies build gnuplot-nox
   echo "== Building (about ten minutes on two cores the first time)"
-  cmake --preset release
-  cmake --build --preset release -j "$(nproc)" --target "fcl_ccd_$name" "$@"
+  cmake --preset release -DFCL_CCD_BUILD_REPRODUCTION=ON
+  cmake --build --preset release --target "fcl_ccd_$name" "$@"
 
   out=build/$name
   # shellcheck disable=SC2034
-  sources=test/benchmark/$name
+  sources=$(dirname test/*/"$name"/plot.gp)
 }
 
 # fcl_ccd_begin_report NAME [DATA_FOLDER] [OPTION ...]

@@ -36,7 +36,7 @@ build() {
   shift
   echo "== $preset: configure and build ($((SECONDS / 60)) min so far)"
   cmake --preset "$preset" "$@"
-  cmake --build --preset "$preset" -j "$jobs"
+  cmake --build --preset "$preset"
 }
 
 if $doors; then
@@ -61,12 +61,12 @@ if $all; then
   plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
   echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
   cmake --preset plain
-  cmake --build --preset plain -j "$jobs" --target "${plain_tests[@]}"
+  cmake --build --preset plain --target "${plain_tests[@]}"
   for test in "${plain_tests[@]}"; do "build/plain/test/$test" --gtest_brief=1; done
   build asan-ubsan
   echo "== asan-ubsan: unit tests"
   ctest --preset asan-ubsan -j "$jobs"
-  build release -DFCL_CCD_WERROR=ON
+  build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON
 else
   build release
 fi

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# gnuplot -e "folder='build/paper'; scripts='test/benchmark/paper'" plot.gp
+# gnuplot -e "folder='build/paper'; scripts='test/reproduction/paper'" plot.gp
 # Pictures from the tables of the paper's experiments, beside them: time and culling of
 # each scene, time and ratio over the frames. A picture without rows is left out.
 set datafile separator ','
