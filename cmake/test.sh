@@ -57,6 +57,7 @@ if $all; then
     xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
   echo "== reference"
   doxygen doc/Doxyfile
+  bash cmake/check_reference.sh
   # What compares with scalar code and brute force.
   plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
   echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
