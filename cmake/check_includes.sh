@@ -56,7 +56,8 @@ done < <(includes include)
 
 circle=$(includes "${order[@]/#/src/}" include |
   sed -E 's/^(src|include)\///; s/\.(h|cpp)( |$)/\2/g' | awk '$1 != $2' |
-  tsort 2>&1 >/dev/null) || complain "files that include each other:
-${circle//tsort: -: input contains a loop:/}"
+  tsort 2>&1 >/dev/null | sed 's/^tsort: //; s/^-: input.*/a circle:/') ||
+  complain "Files include each other:
+$circle"
 
 exit $failed
