@@ -10,6 +10,7 @@
 #include <string>
 
 #include "cloth_simulator.h"
+#include "fcl/common/exception.h"
 #include "image.h"
 #include "mesh_generators.h"
 #include "proximity.h"
