@@ -31,6 +31,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "test_models.h"
+#include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace test {
