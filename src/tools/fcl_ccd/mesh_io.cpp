@@ -151,7 +151,9 @@ PolygonMesh readPolygonMesh(const std::string& path) {
   try {
     const std::string extension = extensionOf(path);
     if (!isMeshFormat(extension))
-      throw std::runtime_error("unknown mesh format; expected .obj, .ply, .off or .stl");
+      throw std::runtime_error(
+          "unknown mesh format; expected .obj, .ply, .off or .stl. Another program can "
+          "convert it, for example: meshio convert IN OUT.ply (package meshio-tools)");
     PolygonMesh mesh = parse(extension, readBytes(path));
     requireFinite(mesh.vertices);
     // A polygon has fewer triangles than corners.
