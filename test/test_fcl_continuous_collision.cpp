@@ -128,8 +128,14 @@ class ContinuousCollide : public ::testing::Test {
   }
 };
 
+// Each of FCL's types once, in one scalar or the other; with sanitizers, where each takes
+// the compiler minutes, one of each scalar.
+#ifdef NDEBUG
 using BVs = ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
                              KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
+#else
+using BVs = ::testing::Types<OBBRSS<double>, KDOP<float, 16>>;
+#endif
 TYPED_TEST_SUITE(ContinuousCollide, BVs, );
 
 TYPED_TEST(ContinuousCollide, SheetsMeetOnTime) {

@@ -179,7 +179,7 @@ door_spaces() { # a prefix with spaces in its path
 
 door_standards() { # FCL's part from C++11 on, all of it from C++17 on
   local standard
-  for standard in 11 14 20; do
+  for standard in 11 20; do
     "$CXX" -std=c++$standard -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
       -isystem /usr/include/eigen3 "$source_dir"/{main,fcl_header}.cpp \
       -o "$work/app_$standard" -L"$prefix/$lib" -lfcl -lccd
