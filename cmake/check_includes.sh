@@ -11,7 +11,7 @@
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
-order=(base numerics mesh elementary kernels tree self_culling query api)
+order=(base numerics mesh elementary kernels tree self_culling query motion api)
 
 # Lines "file included", of quoted includes.
 includes() {

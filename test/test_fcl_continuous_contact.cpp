@@ -491,7 +491,7 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
     expectRefused(
         [&] { continuousCollide(o, here, broken, o, here, here, request, result); },
         "o1: the transform");
-    // Also where a rotation would be FCL's.
+    // Also where a rotation may be one that turns.
     const auto rigid = makeModel<Plain>(kSheet);
     Pose twisted = here;
     twisted.linear()(1, 2) = value;

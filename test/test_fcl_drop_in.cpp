@@ -170,9 +170,10 @@ TEST(DropIn, ScrewWithoutRotationEndsWhereItWasMadeTo) {
   expectTranslation<ScrewMotion<double>>({1.5, 0.1, 0.2}, {0.5, 0.2, 0.1});
 }
 
-// A rotation from two transforms is FCL's, whose interpolation reads that point too.
-TEST(DropIn, RotationDoesNotDependOnMemory) {
-  const auto cube = makeCube(1);
+// Of shapes a rotation from two transforms is FCL's, whose interpolation reads that point
+// too; of meshes it is ours.
+template <typename Cube>
+void expectRotationDoesNotDependOnMemory(const Cube& cube) {
   const Transform3<double> still = Transform3<double>::Identity();
   ContinuousCollisionRequest<double> request;
   request.ccd_motion_type = CCDM_LINEAR;
@@ -196,6 +197,18 @@ TEST(DropIn, RotationDoesNotDependOnMemory) {
   }
 }
 
+TEST(DropIn, RotationDoesNotDependOnMemory) {
+  expectRotationDoesNotDependOnMemory(makeCube(1));
+  expectRotationDoesNotDependOnMemory(std::make_shared<Box<double>>(1, 1, 1));
+}
+
+/// A motion of the program's own, whose meshes are FCL's.
+template <typename S>
+class OwnMotion : public TranslationMotion<S> {
+ public:
+  using TranslationMotion<S>::TranslationMotion;
+};
+
 // FCL's polynomial solver moves the models that it is given and leaves them updated.
 TEST(DropIn, PolynomialSolverLeavesModelsAsTheyWere) {
   const auto model = makeCube(1), other = makeCube(1);
@@ -203,14 +216,13 @@ TEST(DropIn, PolynomialSolverLeavesModelsAsTheyWere) {
   const Vector3<double> corner = model->vertices[0];
   ContinuousCollisionRequest<double> request;
   request.ccd_solver_type = CCDC_POLYNOMIAL_SOLVER;
-  // Turned, which is FCL's.
   ContinuousCollisionResult<double> result;
-  continuousCollide(model.get(), turned({-5, 0, 0}, 0), turned({5, 0, 0}, 1), other.get(),
-                    still, still, request, result);
+  const OwnMotion<double> own(at({-5, 0, 0}), at({5, 0, 0})), rest(still, still);
+  continuousCollide(model.get(), &own, other.get(), &rest, request, result);
   EXPECT_EQ(model->build_state, BVH_BUILD_STATE_PROCESSED);
   EXPECT_EQ(model->prev_vertices, nullptr);
   EXPECT_EQ(model->vertices[0], corner);
-  // And back again without a turn, which is ours.
+  // And back again, which is ours.
   continuousCollide(model.get(), at({5, 0, 0}), at({-5, 0, 0}), other.get(), still, still,
                     request, result);
   EXPECT_TRUE(result.is_collide);
@@ -324,7 +336,9 @@ TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
     ContinuousCollisionRequest<S> request;
     request.ccd_solver_type = solver;
     ContinuousCollisionResult<S> result;
-    return continuousCollide(&o1, beg, end, &o2, still, still, request, result);
+    // Of motions of its own a program gives each call its own.
+    const OwnMotion<S> moving(beg, end), rest(still, still);
+    return continuousCollide(&o1, &moving, &o2, &rest, request, result);
   };
   for (const auto& model : {std::static_pointer_cast<CollisionGeometry<S>>(deformable),
                             std::static_pointer_cast<CollisionGeometry<S>>(plain)}) {

@@ -15,15 +15,12 @@ Vector3<S> toVector(const double (&v)[3]) {
   return {static_cast<S>(v[0]), static_cast<S>(v[1]), static_cast<S>(v[2])};
 }
 
-}  // namespace
-
+/// The contact without geometry.
 template <typename S>
-ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
-                                         const MeshInstance& a, const MeshInstance& b,
-                                         bool with_geometry) {
-  const bool vf = contact.kind == FeatureKind::kVertexFace;
+ContinuousContact<S> toNumbers(const FeatureContact& contact) {
   ContinuousContact<S> out;
-  out.kind = vf ? ContinuousContactKind::kVertexFace : ContinuousContactKind::kEdgeEdge;
+  out.kind = contact.kind == FeatureKind::kVertexFace ? ContinuousContactKind::kVertexFace
+                                                      : ContinuousContactKind::kEdgeEdge;
   out.b1 = contact.triangles[0];
   out.b2 = contact.triangles[1];
   for (std::size_t i = 0; i < 4; ++i)
@@ -31,19 +28,49 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
   out.first_on_o1 = contact.first_on_a;
   out.toc_lo = contact.toc_lo;
   out.toc_hi = contact.toc_hi;
-  if (!with_geometry) return out;
+  return out;
+}
 
-  const MeshInstance &first = contact.first_on_a ? a : b,
-                     &second = contact.first_on_a ? b : a;
+/// @param path_of  path_of(on_a, id): of a vertex of mesh a, or of b
+/// @param t  the time of contact on these paths
+template <typename S, typename PathOf>
+void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,
+                 ContinuousContact<S>& out) {
+  const std::size_t num_first = contact.kind == FeatureKind::kVertexFace ? 1 : 2;
   VertexPath x[4];
   for (std::size_t i = 0; i < 4; ++i)
-    x[i] = (i < (vf ? 1 : 2) ? first : second).frames[contact.vertices[i]];
+    x[i] = path_of((i < num_first) == contact.first_on_a, contact.vertices[i]);
   double position[3], normal[3];
-  contactGeometry(contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}},
-                  contact.toc_lo, position, normal);
+  contactGeometry(contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, t, position,
+                  normal);
   out.pos = toVector<S>(position);
   out.normal = toVector<S>(normal);
   if (!contact.first_on_a) out.normal = -out.normal;
+}
+
+}  // namespace
+
+template <typename S>
+ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
+                                         const MeshInstance& a, const MeshInstance& b,
+                                         bool with_geometry) {
+  ContinuousContact<S> out = toNumbers<S>(contact);
+  const auto path_of = [&](bool on_a, std::uint32_t id) {
+    return (on_a ? a : b).frames[id];
+  };
+  if (with_geometry) addGeometry(contact, path_of, contact.toc_lo, out);
+  return out;
+}
+
+template <typename S>
+ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
+                                         const PreparedMotion& a, const PreparedMotion& b,
+                                         bool with_geometry) {
+  ContinuousContact<S> out = toNumbers<S>(contact);
+  const auto path_of = [&](bool on_a, std::uint32_t id) {
+    return (on_a ? a : b).tangentAt(id, contact.toc_lo);
+  };
+  if (with_geometry) addGeometry(contact, path_of, 0, out);
   return out;
 }
 
@@ -110,13 +137,15 @@ S roundTimeUp(double t) {
   return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                \
-  template ContinuousContact<S> toContinuousContact(                          \
-      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool); \
-  template ContinuousContact<S> toContinuousContact(                          \
-      const Crossing&, const MeshInstance&, const MeshInstance&, bool);       \
-  template Contact<S> toContact(const ContinuousContact<S>&);                 \
-  template S roundTimeDown<S>(double);                                        \
+#define FCL_CCD_INSTANTIATE(S)                                                    \
+  template ContinuousContact<S> toContinuousContact(                              \
+      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool);     \
+  template ContinuousContact<S> toContinuousContact(                              \
+      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool); \
+  template ContinuousContact<S> toContinuousContact(                              \
+      const Crossing&, const MeshInstance&, const MeshInstance&, bool);           \
+  template Contact<S> toContact(const ContinuousContact<S>&);                     \
+  template S roundTimeDown<S>(double);                                            \
   template S roundTimeUp<S>(double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_API_CONTACT_CONVERSION_H
 #define FCL_CCD_API_CONTACT_CONVERSION_H
 
+#include "api/prepared_motion.h"
 #include "fcl/narrowphase/contact.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "query/contact_sink.h"
@@ -17,6 +18,13 @@ namespace deformable {
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const MeshInstance& a, const MeshInstance& b,
+                                         bool with_geometry);
+
+/// @overload
+/// Position and normal as the vertices are and go at toc_lo.
+template <typename S>
+ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
+                                         const PreparedMotion& a, const PreparedMotion& b,
                                          bool with_geometry);
 
 /// @brief A crossing at t = 0 as the public type, without o1 and o2. Its position is

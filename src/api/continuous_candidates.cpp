@@ -75,7 +75,9 @@ bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& si
   const MovingGeometry<S> still{o,
                                 {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
                                  {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}},
-                                true};
+                                PathKind::kStraight,
+                                {},
+                                {}};
   const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesSelf(mesh.instance(), inner);
@@ -93,8 +95,10 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     return PlacedGeometry<S>(o);
   };
   const PlacedGeometry<S> placed1 = place(o1), placed2 = place(o2);
-  if (!isAnsweredHere(placed1, placed2))
-    throw Exception(std::string("candidates") + kNotAnsweredHere);
+  if (answererOf(placed1, placed2) != Answerer::kStraightPaths)
+    throw Exception(
+        "candidates of continuous collision need two triangle meshes that deform or "
+        "translate");
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);

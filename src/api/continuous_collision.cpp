@@ -6,12 +6,14 @@
 
 #include "api/contact_conversion.h"
 #include "api/prepared_mesh.h"
+#include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
+#include "motion/motion_contacts.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -21,6 +23,7 @@ namespace {
 using deformable::DefaultFloatingPoint;
 using deformable::inArena;
 using deformable::PreparedMesh;
+using deformable::PreparedMotion;
 using deformable::QueryAnswer;
 using deformable::QueryGoal;
 using deformable::QueryOptions;
@@ -51,26 +54,12 @@ QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
           deformable::roundTimeUp<S>(first.toc_hi)};
 }
 
-/// What a query looked at, for the conversion of its contacts.
-template <typename S>
-struct Scene {
-  const CollisionGeometry<S>& o1;
-  const CollisionGeometry<S>& o2;
-  const PreparedMesh& mesh1;
-  const PreparedMesh& mesh2;
-};
-
-template <typename S>
-void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
-                  const QuerySettings& settings, ContinuousContacts<S>& result) {
+/// @param convert  a FeatureContact or a Crossing into the public type
+/// @param update  seconds that boxes, owners and trees took
+template <typename S, typename Convert>
+void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
+                  const Convert& convert, double update, ContinuousContacts<S>& result) {
   const auto start = std::chrono::steady_clock::now();
-  const auto convert = [&](const auto& contact) {
-    auto out = deformable::toContinuousContact<S>(
-        contact, scene.mesh1.instance(), scene.mesh2.instance(), settings.enable_contact);
-    out.o1 = &scene.o1;
-    out.o2 = &scene.o2;
-    return out;
-  };
   const std::size_t count = answer.contacts.size();
   const auto contactAt = [&](std::size_t i) {
     // Contacts that follow each other in time lie anywhere in memory.
@@ -99,10 +88,84 @@ void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
       answer.has_crossing ? convert(answer.crossing) : ContinuousContact<S>();
   result.counts = answer.counts;
   result.times = answer.times;
-  result.times.update += scene.mesh1.updateTime();
-  if (&scene.mesh1 != &scene.mesh2) result.times.update += scene.mesh2.updateTime();
+  result.times.update += update;
   result.times.test +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What a query of straight paths looked at, for the conversion of its contacts.
+template <typename S>
+struct Scene {
+  const CollisionGeometry<S>& o1;
+  const CollisionGeometry<S>& o2;
+  const PreparedMesh& mesh1;
+  const PreparedMesh& mesh2;
+};
+
+template <typename S>
+void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
+                  const QuerySettings& settings, ContinuousContacts<S>& result) {
+  const auto convert = [&](const auto& contact) {
+    auto out = deformable::toContinuousContact<S>(
+        contact, scene.mesh1.instance(), scene.mesh2.instance(), settings.enable_contact);
+    out.o1 = &scene.o1;
+    out.o2 = &scene.o2;
+    return out;
+  };
+  double update = scene.mesh1.updateTime();
+  if (&scene.mesh1 != &scene.mesh2) update += scene.mesh2.updateTime();
+  fillContacts(answer, settings, convert, update, result);
+}
+
+/// Contacts and crossings of meshes of which one turns, as the public type.
+template <typename S>
+class MotionConverter {
+ public:
+  MotionConverter(const PreparedMotion& motion1, const PreparedMotion& motion2,
+                  bool with_geometry)
+      : motion1_(motion1),
+        motion2_(motion2),
+        beginning1_(motion1.beginning()),
+        beginning2_(motion2.beginning()),
+        with_geometry_(with_geometry) {}
+
+  ContinuousContact<S> operator()(const deformable::FeatureContact& contact) const {
+    return deformable::toContinuousContact<S>(contact, motion1_, motion2_,
+                                              with_geometry_);
+  }
+  ContinuousContact<S> operator()(const deformable::Crossing& crossing) const {
+    return deformable::toContinuousContact<S>(crossing, beginning1_, beginning2_,
+                                              with_geometry_);
+  }
+
+ private:
+  const PreparedMotion& motion1_;
+  const PreparedMotion& motion2_;
+  deformable::MeshInstance beginning1_, beginning2_;
+  bool with_geometry_;
+};
+
+/// The answer about two meshes of which one turns. Threads are used only to make trees.
+template <typename S>
+void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                   const QueryOptions& options, const QuerySettings& settings,
+                   QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+  const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
+      motion2(o2, "o2", options.toc_err, options.num_threads);
+  const QueryAnswer answer = answerOf(
+      [&] { return queryMotionContacts(motion1.body(), motion2.body(), options); });
+  if (contacts) {
+    const MotionConverter<S> converter(motion1, motion2, settings.enable_contact);
+    const auto convert = [&](const auto& contact) {
+      auto out = converter(contact);
+      out.o1 = &o1.geometry();
+      out.o2 = &o2.geometry();
+      return out;
+    };
+    fillContacts(answer, settings, convert, motion1.updateTime() + motion2.updateTime(),
+                 *contacts);
+  }
+  outcome = outcomeOf<S>(answer);
 }
 
 }  // namespace
@@ -113,9 +176,12 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                 ContinuousContacts<S>* contacts) {
   const DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed1(o1), placed2(o2);
-  if (!isAnsweredHere(placed1, placed2)) return false;
+  const Answerer answerer = answererOf(placed1, placed2);
+  if (answerer == Answerer::kFcl) return false;
   const QueryOptions options = makeOptions(settings);
   const auto answer_pair = [&] {
+    if (answerer == Answerer::kCurvedPaths)
+      return answerMotions(placed1, placed2, options, settings, outcome, contacts);
     const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
                              options.num_threads);
     const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",

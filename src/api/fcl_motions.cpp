@@ -92,29 +92,59 @@ bool isLaidOutAsHere() {
 
 }  // namespace
 
-bool readFclMotion(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2],
-                   bool& is_straight) {
-  static const bool is_laid_out_as_here = isLaidOutAsHere();
-  if (!is_laid_out_as_here) {
-    // A libfcl compiled for another machine: only its own functions know its motions.
-    is_straight = as<TranslationMotion<double>>(motion) ||
-                  as<InterpMotion<double>>(motion) || as<ScrewMotion<double>>(motion);
-    if (!is_straight && !as<SplineMotion<double>>(motion)) return false;
-    integrate(motion, pose);
-    return true;
+namespace {
+
+/// The control points of a spline, which it keeps to itself.
+class SplineControl : public SplineMotion<double> {
+ public:
+  static void read(const SplineMotion<double>& motion, double (&control)[2][4][3]) {
+    const Vector3<double>(&translation)[4] = motion.*(&SplineControl::Td);
+    const Vector3<double>(&rotation)[4] = motion.*(&SplineControl::Rd);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        control[0][i][k] = translation[i][k];
+        control[1][i][k] = rotation[i][k];
+      }
   }
-  is_straight = true;
+};
+
+/// Of a libfcl compiled for another machine only its own functions know its motions: the
+/// ends of all, but neither a reference point nor control points.
+bool readForeignMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
+  const bool is_turn = as<InterpMotion<double>>(motion),
+             is_screw = as<ScrewMotion<double>>(motion),
+             is_spline = as<SplineMotion<double>>(motion);
+  if (!is_turn && !is_screw && !is_spline && !as<TranslationMotion<double>>(motion))
+    return false;
+  integrate(motion, moving.pose);
+  moving.path = is_screw ? PathKind::kScrew : PathKind::kStraight;
+  if (is_spline || (is_turn && !isConstantRotation(moving.pose[0], moving.pose[1])))
+    moving.path = PathKind::kUnknown;
+  return true;
+}
+
+}  // namespace
+
+bool readFclMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
+  static const bool is_laid_out_as_here = isLaidOutAsHere();
+  if (!is_laid_out_as_here) return readForeignMotion(motion, moving);
   if (const auto* translation = as<TranslationMotion<double>>(motion)) {
-    integrateCopy(*translation, pose);
+    moving.path = PathKind::kStraight;
+    integrateCopy(*translation, moving.pose);
   } else if (const auto* interpolation = as<InterpMotion<double>>(motion)) {
-    MotionEnds<InterpMotion<double>>::read(*interpolation, pose);
+    moving.path = PathKind::kTurn;
+    MotionEnds<InterpMotion<double>>::read(*interpolation, moving.pose);
+    const Vector3<double>& reference = interpolation->getReferencePoint();
+    for (int k = 0; k < 3; ++k) moving.reference[k] = reference[k];
   } else if (const auto* screw = as<ScrewMotion<double>>(motion)) {
-    MotionEnds<ScrewMotion<double>>::read(*screw, pose);
+    moving.path = PathKind::kScrew;
+    MotionEnds<ScrewMotion<double>>::read(*screw, moving.pose);
   } else if (const auto* spline = as<SplineMotion<double>>(motion)) {
-    is_straight = false;
-    integrateCopy(*spline, pose);
+    moving.path = PathKind::kSpline;
+    integrateCopy(*spline, moving.pose);
+    SplineControl::read(*spline, moving.control);
   } else {
-    return is_straight = false;
+    return false;
   }
   return true;
 }

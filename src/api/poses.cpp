@@ -1,14 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "api/prepared_motion.h"
+#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {
 namespace detail {
+namespace {
+
+template <typename S>
+PoseNumbers<S> toNumbers(const deformable::Pose& pose) {
+  PoseNumbers<S> out;
+  const auto round = [](double x) { return static_cast<S>(x); };
+  std::transform(pose.rotation, pose.rotation + 9, out.rotation, round);
+  std::transform(pose.translation, pose.translation + 3, out.translation, round);
+  return out;
+}
+
+}  // namespace
 
 template <typename S>
 PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
   const deformable::DefaultFloatingPoint mode;
+  const PlacedGeometry<S> placed(o);
+  if (!placed.goesStraight())
+    return toNumbers<S>(deformable::motionPathOf(placed).pose(static_cast<double>(t)));
   Transform3<S> tf = toTransform(o.pose[0]);
   const Transform3<S> end = toTransform(o.pose[1]);
   tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();

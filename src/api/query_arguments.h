@@ -49,7 +49,7 @@ template <typename S>
 class PlacedGeometry {
  public:
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
-      : geometry_(*moving.geometry), kind_(deformable::meshKindOf(geometry_)) {
+      : moving_(moving), kind_(deformable::meshKindOf(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
@@ -57,38 +57,57 @@ class PlacedGeometry {
     // The few roundings of a rotation that is constant are no rotation.
     if (kind_ == MeshKind::kRigid && is_constant)
       std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
-    goes_straight_ = kind_ == MeshKind::kDeforming ||
-                     (kind_ == MeshKind::kRigid && moving.is_straight && is_constant);
+    const bool bends = moving.path == PathKind::kSpline || (isTurn() && !is_constant);
+    if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
+    if (kind_ == MeshKind::kRigid)
+      goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
   }
 
-  const CollisionGeometry<S>& geometry() const { return geometry_; }
+  const CollisionGeometry<S>& geometry() const { return *moving_.geometry; }
+  const MovingGeometry<S>& moving() const { return moving_; }
   const deformable::Pose& beginning() const { return beginning_; }
   const deformable::Pose& end() const { return end_; }
 
   bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
+  bool isRigid() const { return kind_ == deformable::MeshKind::kRigid; }
 
-  /// Whether all vertices go on straight lines: what is answered by this library.
+  /// Whether all vertices go on straight lines.
   bool goesStraight() const { return goes_straight_; }
 
+  /// Whether the path is one that this library has.
+  bool isKnown() const {
+    return isMesh() && (goes_straight_ || moving_.path != PathKind::kUnknown);
+  }
+
  private:
-  const CollisionGeometry<S>& geometry_;
+  bool isTurn() const {
+    return moving_.path == PathKind::kTurn || moving_.path == PathKind::kScrew;
+  }
+
+  const MovingGeometry<S>& moving_;
   deformable::MeshKind kind_;
   deformable::Pose beginning_, end_;
-  bool goes_straight_;
+  bool goes_straight_{false};
 };
 
-/// Whether the pair is answered by this library and not left to FCL.
-/// @throws fcl::Exception  meshes that are left to FCL, in a pose that is not finite (a
-/// rotation that is not finite is not constant; the poses of others are PreparedMesh's to
-/// look at, and what is no mesh is FCL's)
+enum class Answerer {
+  kStraightPaths,  ///< all vertices of both go on straight lines
+  kCurvedPaths,    ///< meshes of which one turns or bends
+  kFcl
+};
+
+/// Which method answers a pair.
+/// @throws fcl::Exception  meshes that do not go straight, in a pose that is not finite
+/// (a rotation that is not finite is not constant; the poses of others are PreparedMesh's
+/// to look at, and what is no mesh is FCL's)
 template <typename S>
-bool isAnsweredHere(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
-  if (o1.goesStraight() && o2.goesStraight()) return true;
+Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  if (o1.goesStraight() && o2.goesStraight()) return Answerer::kStraightPaths;
   if (o1.isMesh() && o2.isMesh()) {
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
   }
-  return false;
+  return o1.isKnown() && o2.isKnown() ? Answerer::kCurvedPaths : Answerer::kFcl;
 }
 
 /// Runs a query; what it finds wrong with a vertex becomes FCL's exception.

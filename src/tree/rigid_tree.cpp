@@ -181,7 +181,7 @@ inline const BVNodeBase* RigidTree::at(int node) const {
                                                  volumes_.stride);
 }
 
-inline int RigidTree::link(int node) const { return at(node)->first_child; }
+int RigidTree::link(int node) const { return at(node)->first_child; }
 
 template <typename BV>
 bool RigidTree::isSound(const BVHModel<BV>& model) {

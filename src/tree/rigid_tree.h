@@ -63,6 +63,10 @@ class RigidTree {
   }
   double slack() const { return volumes_.slack; }
 
+  /// @brief The left child of one of FCL's nodes, whose sibling follows it; ~triangle of a
+  /// leaf.
+  int link(int node) const;
+
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
   bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
 
@@ -100,7 +104,6 @@ class RigidTree {
   void rotate(OrientedBox& box) const;
 
   const BVNodeBase* at(int node) const;
-  int link(int node) const;
 
   const BVNodeBase* nodes_{nullptr};
   Volumes volumes_{};

@@ -7,6 +7,7 @@
 #include <exception>
 #include <string>
 
+#include "motion_benchmark.h"
 #include "planar_benchmark.h"
 #include "rigid_benchmark.h"
 #include "scene_benchmark.h"
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
     for (const auto& files : {cloth, balls}) fcl::test::benchmarkScene(files, repeats);
     fcl::test::benchmarkPlanar(repeats);
     fcl::test::benchmarkRigid(repeats);
+    fcl::test::benchmarkMotions(repeats);
     fcl::test::benchmarkAgainstStock(balls, repeats);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());

@@ -74,6 +74,7 @@ class Checks {
     node();
     discrete();
     shapes();
+    turns();
     exceptions();
   }
 
@@ -340,6 +341,58 @@ class Checks {
       check(std::abs(z - (6 - 8 * time)) < S(1e-5), "pose of shapes");
       check(result.contact_tf1.isApprox(Transform::Identity(), 0), "pose of shapes");
     }
+  }
+
+  /// A square turns by a right angle about the x axis and meets an edge that lies below
+  /// 45 degrees of it, half way.
+  void turns() {
+    const auto flap = makeSquare<fcl::BVHModel<fcl::OBBRSS<S>>>(),
+               wall = makeSquare<fcl::BVHModel<fcl::OBBRSS<S>>>();
+    const Transform still = at<S>(0, 0, 0);
+    Transform end = still, upright = at<S>(0, S(.5), S(1.5));
+    end.linear() = turn(S(1.5707963267948966));
+    upright.linear() = turn(S(1.5707963267948966));
+    fcl::ContinuousContactRequest<S> request;
+    fcl::ContinuousContactResult<S> result;
+    S time = fcl::continuousCollide(flap.get(), still, end, wall.get(), upright, upright,
+                                    request, result);
+    checkTurn(time, result, "turn between transforms");
+    check(!result.contacts.empty(), "contacts of a turn");
+    const Vector zero = Vector::Zero(), x = S(1.5707963267948966) * Vector::UnitX();
+    const auto spline = std::make_shared<fcl::SplineMotion<S>>(zero, zero, zero, zero, -x,
+                                                               zero, x, 2 * x);
+    const auto rest = std::make_shared<fcl::TranslationMotion<S>>(upright, upright);
+    time = fcl::continuousCollide(flap.get(), spline.get(), wall.get(), rest.get(),
+                                  request, result);
+    checkTurn(time, result, "spline");
+    checkInterpolation(*flap, end, *wall, *rest, S());
+  }
+
+  static fcl::Matrix3<S> turn(S angle) {
+    return Eigen::AngleAxis<S>(angle, Vector::UnitX()).toRotationMatrix();
+  }
+
+  template <typename Result>
+  void checkTurn(S time, const Result& result, const char* what) {
+    check(result.is_collide && std::abs(time - S(.5)) < S(1e-5), what);
+    const S tip = result.contact_tf1.linear()(2, 1);
+    check(std::abs(tip - S(.70711)) < S(1e-3), what);
+  }
+
+  template <typename Mesh, typename Motion>
+  void checkInterpolation(const Mesh&, const Transform&, const Mesh&, const Motion&,
+                          float) {}
+
+  template <typename Mesh, typename Motion>
+  void checkInterpolation(const Mesh& flap, const Transform& end, const Mesh& wall,
+                          const Motion& rest, double) {
+    const auto motion = std::make_shared<fcl::InterpMotion<S>>(
+        Transform::Identity().linear(), Vector::Zero(), end.linear(), Vector::Zero(),
+        Vector::Zero());
+    fcl::ContinuousCollisionResult<S> result;
+    const S time = fcl::continuousCollide(&flap, motion.get(), &wall, &rest,
+                                          fcl::ContinuousCollisionRequest<S>(), result);
+    checkTurn(time, result, "interpolation");
   }
 
   /// What the library throws, the program catches.

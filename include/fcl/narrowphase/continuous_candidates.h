@@ -71,7 +71,7 @@ using ContinuousCandidateSink =
 /// @param sink  see ContinuousCandidateSink
 /// @return true when all candidates were handed out, false when the sink ended the query.
 /// @throws fcl::Exception as the queries for contacts do: an argument that is null (the
-/// sink too), a geometry that is no triangle mesh, a rigid mesh that rotates, a mesh that
+/// sink too), a geometry that is no triangle mesh, a rigid mesh that turns, a mesh that
 /// is not built or is in the middle of an update, a coordinate that is not finite, a
 /// triangle index out of range. A vertex that is not finite may be noticed after
 /// candidates were handed out.

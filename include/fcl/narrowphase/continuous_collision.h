@@ -17,46 +17,62 @@ namespace fcl {
 
 /// @defgroup continuous_queries Continuous collision queries
 ///
-/// Two triangle meshes are answered here, exactly in the sense below, when each of them
-/// deforms (a DeformableBVHModel, or a BVHModel of any BV type in FCL's updated state) or
-/// moves in translation; everything else (shapes, octrees, rigid meshes that rotate, user
-/// defined motions of rigid meshes) reaches FCL's own function. A DeformableBVHModel
-/// whose frames are equal is a rigid mesh.
+/// Two triangle meshes are answered here, of any BV type, rigid or deforming (a
+/// DeformableBVHModel, or a BVHModel in FCL's updated state), whatever they do. A rigid
+/// mesh that follows a class of motion of the program's own, and what it is tested
+/// against, reach FCL's own function, as do shapes, octrees and point clouds. A
+/// DeformableBVHModel whose frames are equal is a rigid mesh. FCL takes a mesh as it is in
+/// the current frame and knows nothing of the previous one: a mesh that deforms stands
+/// still where FCL answers.
 ///
-/// FCL takes a mesh as it is in the current frame and knows nothing of the previous one:
-/// a mesh that deforms stands still where the other object is a shape or a rigid mesh
-/// that rotates. For such a mesh there is a way: a DeformableBVHModel that is given its
-/// vertices in both poses, updateFrames(), with the identity for a pose. Their paths are
-/// the chords of the arcs then, of which an angle of a radians leaves out less than r a^2
-/// / 8 at a distance of r from the axis.
+/// Paths are the real-number evaluation of what was given, in double. A contact is a VF or
+/// EE pair of closed features that touch at some t in [0, 1] (an edge of a vertex with
+/// itself is none: its triangle has that vertex).
+/// - Straight: of meshes whose rotation is constant (up to a few roundings), and of a mesh
+///   that deforms between two transforms. A vertex goes from tf_beg * (previous frame) to
+///   tf_end * (current frame). When both meshes go straight the answer is exact.
+/// - Turning: a rigid mesh whose end transforms have different rotations. It turns at
+///   constant speed about the origin of its frame, which goes straight (CCDM_LINEAR, and
+///   CCDM_TRANS, with which FCL drops the rotation in silence), or about the axis of a
+///   screw (CCDM_SCREW). A mesh that deforms does so in the frame that turns, only if
+///   CCDM_LINEAR or CCDM_SCREW, or a motion object, asks for a turn: motion(t) * ((1 - t)
+///   previous + t current). CCDM_SPLINE means nothing between two transforms and throws
+///   where a rigid mesh turns.
+/// - Motion objects of FCL's: TranslationMotion; InterpMotion between the transforms that
+///   it was made from, about its reference point; ScrewMotion between its transforms;
+///   SplineMotion by its control points.
 ///
-/// Paths: a vertex moves on the straight line from tf_beg * (previous frame) to tf_end *
-/// (current frame), each evaluated in double; a contact is a VF or EE pair of closed
-/// features that touch at some t in [0, 1] (an edge of a vertex with itself is none: its
-/// triangle has that vertex). The choice depends on the geometry and its motion, never on
-/// request.ccd_solver_type or ccd_motion_type. Of a motion of FCL's the transforms that
-/// it was made from count.
+/// When a mesh turns or bends, contact means to come within a tolerance tau, some hundred
+/// units in the last place of the coordinates, relative to the middle between both meshes
+/// (doc/numerics.md): no contact is missed, no time is late, and what is reported comes
+/// within tau of touching. Surfaces within tau at t = 0 give the time 0. A pair that slides
+/// for more than 10,000 steps without a proof is reported from then on.
+///
+/// Neither request.ccd_solver_type nor num_max_iterations plays a part.
 ///
 /// Result: time_of_contact is the lower end of the first contact's time bracket, never
 /// later than the contact; contact_tf1 and contact_tf2 are the poses at the bracket's
 /// upper end, never earlier than it, where the objects have met as a rule, so that
 /// collide() there finds contacts. Where the bracket is as narrow as rounding (a
 /// request.toc_err of that size, or a time found exactly), or the objects touch without
-/// passing into each other, these poses may only touch.
+/// passing into each other, these poses may only touch. Of a mesh that turns they are
+/// those of the motion.
 ///
 /// request.toc_err is the width of the bracket; 0 means as narrow as doubles allow.
 ///
 /// Models are not changed; two calls give the same answer. Concurrent calls on the same
 /// models are safe, those that FCL answers included (FCL is given a copy of a model that
-/// it would write to). Motion objects that FCL answers about, and those of a class of the
-/// program's own, must not be shared by concurrent calls: asking where they are moves
-/// them.
+/// it would write to), and so are those on the same motions where this library answers.
+/// Motion objects that FCL answers about, and those of a class of the program's own, must
+/// not be shared by concurrent calls: asking where they are moves them.
 ///
 /// @throws fcl::Exception that names the object, when it or its motion is null, when a
 /// mesh is not built or is in the middle of an update, has more than 2^29 triangles or
 /// vertices, holds a coordinate that is not finite or a triangle index out of range, when
 /// a transform is not finite, a geometry that has to be a mesh is none, or the request is
-/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative). FCL
+/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative); when
+/// the reference point of an InterpMotion is not finite, or adds more rounding than
+/// toc_err; when a path that turns has coordinates beyond 2^200. FCL
 /// checks nothing of what it answers. A
 /// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
 /// that cannot change the answer (too late for the first contact, or, with kAny, behind
@@ -81,8 +97,8 @@ float continuousCollide(const CollisionGeometry<float>* o1,
                         ContinuousCollisionResult<float>& result);
 
 /// @brief The first contact of two geometries that go from one transform to another.
-/// Where FCL answers, request.ccd_motion_type says how; FCL has no interpolated and no
-/// screw motion in float: those throw.
+/// request.ccd_motion_type says how what turns does so. Where FCL answers it has no
+/// interpolated and no screw motion in float: those throw.
 double continuousCollide(const CollisionGeometry<double>* o1,
                          const Transform3<double>& tf1_beg,
                          const Transform3<double>& tf1_end,

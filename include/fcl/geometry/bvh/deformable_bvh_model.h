@@ -91,8 +91,8 @@ class DeformableMesh {
 }  // namespace detail
 
 /// @brief What a build or an update does with FCL's own tree, which discrete queries
-/// (collide, distance) need, and continuous ones that FCL answers (shapes, rotating rigid
-/// meshes), but none that is answered here. Of the broadphase managers the
+/// (collide, distance) need, and continuous ones that FCL answers (shapes, motion classes
+/// of the program's own), but none that is answered here. Of the broadphase managers the
 /// DynamicAABBTree ones ask the object that they are queried with, collide(&object, ...)
 /// or distance(&object, ...), for its node type: they throw as discrete queries do,
 /// whatever the callback does. Other queries of theirs, and other managers, do not.

@@ -62,6 +62,13 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
   result.contact_tf2 = toTransform(poseAt(o2, outcome.toc_hi));
 }
 
+/// What a request makes of two transforms.
+inline PathKind pathOf(CCDMotionType type) {
+  if (type == CCDM_TRANS) return PathKind::kStraight;
+  if (type == CCDM_LINEAR) return PathKind::kTurn;
+  return type == CCDM_SCREW ? PathKind::kScrew : PathKind::kUndefined;
+}
+
 /// FCL's own classes of motion in float are compiled with the program, as here.
 template <typename Motion, typename S>
 bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
@@ -78,17 +85,34 @@ bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
   return true;
 }
 
+/// The control points of a spline, which it keeps to itself.
+template <typename S>
+class SplineControl : public SplineMotion<S> {
+ public:
+  static void read(const SplineMotion<S>& motion, double (&control)[2][4][3]) {
+    const Vector3<S>(&translation)[4] = motion.*(&SplineControl::Td);
+    const Vector3<S>(&rotation)[4] = motion.*(&SplineControl::Rd);
+    for (int i = 0; i < 4; ++i)
+      for (int k = 0; k < 3; ++k) {
+        control[0][i][k] = static_cast<double>(translation[i][k]);
+        control[1][i][k] = static_cast<double>(rotation[i][k]);
+      }
+  }
+};
+
 /// Of float, in which FCL's other two motions are abstract.
 template <typename S>
-bool readMotion(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2],
-                bool& is_straight) {
-  is_straight = readMotionAs<TranslationMotion<S>>(motion, pose);
-  return is_straight || readMotionAs<SplineMotion<S>>(motion, pose);
+bool readMotion(const MotionBase<S>& motion, MovingGeometry<S>& moving) {
+  moving.path = PathKind::kStraight;
+  if (readMotionAs<TranslationMotion<S>>(motion, moving.pose)) return true;
+  if (!readMotionAs<SplineMotion<S>>(motion, moving.pose)) return false;
+  moving.path = PathKind::kSpline;
+  SplineControl<S>::read(static_cast<const SplineMotion<S>&>(motion), moving.control);
+  return true;
 }
 
-inline bool readMotion(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2],
-                       bool& is_straight) {
-  return readFclMotion(motion, pose, is_straight);
+inline bool readMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
+  return readFclMotion(motion, moving);
 }
 
 /// A geometry that follows a motion. A motion of the program's own, which nobody can
@@ -98,10 +122,11 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
                                  const CollisionGeometry<S>* other) {
-  MovingGeometry<S> moving{o, {}, false};
-  if (readMotion(*motion, moving.pose, moving.is_straight)) return moving;
+  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}};
+  if (readMotion(*motion, moving)) return moving;
   Transform3<S> tf = Transform3<S>::Identity();
   moving.pose[0] = moving.pose[1] = toNumbers(tf);
+  moving.path = PathKind::kUnknown;
   if (other->getObjectType() == OT_BVH && isDeformingMesh(*o))
     for (int end = 1; end >= 0; --end) {
       motion->integrate(S(end));
@@ -149,8 +174,9 @@ S collideTransforms(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg
                     const Request& request, Result& result) {
   requireNotNull(o1, "o1");
   requireNotNull(o2, "o2");
-  const MovingGeometry<S> moving1 = movingGeometry(o1, tf1_beg, tf1_end),
-                          moving2 = movingGeometry(o2, tf2_beg, tf2_end);
+  const PathKind path = pathOf(request.ccd_motion_type);
+  const MovingGeometry<S> moving1 = movingGeometry(o1, tf1_beg, tf1_end, path),
+                          moving2 = movingGeometry(o2, tf2_beg, tf2_end, path);
   if (collideHere(moving1, moving2, request, result)) return result.time_of_contact;
   return askFcl(moving1, moving2, request, result);
 }

@@ -38,9 +38,9 @@ Transform3<S> toTransform(const PoseNumbers<S>& pose) {
 /// @brief A geometry that goes from one transform to another.
 template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
-                                 const Transform3<S>& tf_beg,
-                                 const Transform3<S>& tf_end) {
-  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, true};
+                                 const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
+                                 PathKind path = PathKind::kStraight) {
+  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}};
 }
 
 }  // namespace detail

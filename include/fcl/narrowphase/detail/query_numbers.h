@@ -45,20 +45,35 @@ bool isConstantRotation(const PoseNumbers<S>& beg, const PoseNumbers<S>& end) {
   return is_constant;
 }
 
+/// @brief How a geometry gets from its first pose to its last.
+enum class PathKind {
+  /// On a straight line. A rigid mesh whose rotation changes turns about its origin; the
+  /// vertices of a mesh that deforms all go straight.
+  kStraight,
+  kTurn,       ///< turns about a reference point, which goes straight
+  kScrew,      ///< turns about an axis and slides along it
+  kSpline,     ///< as FCL's SplineMotion
+  kUndefined,  ///< a spline between two transforms, which has no control points
+  kUnknown     ///< a class of motion of the program's own
+};
+
 /// @brief A geometry and how it moves during the step.
 template <typename S>
 struct MovingGeometry {
   const CollisionGeometry<S>* geometry;
-  /// Poses at t = 0 and t = 1; those of a rigid mesh that is not straight do not count.
+  /// Poses at t = 0 and t = 1; of a rigid mesh whose path is unknown they do not count.
   PoseNumbers<S> pose[2];
-  /// Whether the geometry goes straight, if its rotation does not change. Always so
-  /// between two transforms; a motion object may bend.
-  bool is_straight;
+  PathKind path;
+  /// kTurn: the reference point, in the frame of the geometry.
+  double reference[3];
+  /// kSpline: the control points of the translation and of the rotation vector.
+  double control[2][4][3];
 };
 
 /// @brief What errors say of a pair that is FCL's.
 constexpr const char* kNotAnsweredHere =
-    " of continuous collision need two triangle meshes that deform or translate";
+    " of continuous collision need two triangle meshes, and motions that are FCL's: "
+    "TranslationMotion, InterpMotion, ScrewMotion or SplineMotion";
 
 /// @brief What is asked for.
 struct QuerySettings {
@@ -98,8 +113,9 @@ FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& s
 using CandidateSink =
     std::function<bool(const ContinuousCandidate* candidates, std::size_t count)>;
 
-/// @brief Where a geometry is at t: translation on a straight line, rotation at constant
-/// speed (a deforming mesh only: its vertices do not follow it).
+/// @brief Where a geometry that is answered here is at t, on its path. Of a mesh that
+/// deforms and goes straight: translation on a straight line, rotation at constant speed
+/// (its vertices do not follow that).
 template <typename S>
 FCL_EXPORT PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t);
 
@@ -121,14 +137,14 @@ FCL_EXPORT bool isDeformingMesh(const CollisionGeometry<S>& o);
 template <typename S>
 FCL_EXPORT bool isDeformableModel(const CollisionGeometry<S>& o);
 
-/// @brief The poses at both ends of a motion that is exactly one of FCL's own classes,
-/// which stays as it is; false for any other. Where FCL keeps the transforms that a
-/// motion was made from, these are the ends: FCL's integrate() reads a reference point
-/// that its constructor of two transforms never sets (InterpMotion), and goes too far
-/// without a rotation (ScrewMotion). These classes are compiled in libfcl, and are laid
-/// out as there.
+/// @brief Reads the path of a motion that is exactly one of FCL's own classes, which
+/// stays as it is; false for any other. Where FCL keeps the transforms that a motion was
+/// made from, these are the ends: FCL's integrate() reads a reference point that its
+/// constructor of two transforms never sets (InterpMotion), and goes too far without a
+/// rotation (ScrewMotion). These classes are compiled in libfcl, and are laid out as
+/// there.
 FCL_EXPORT bool readFclMotion(const MotionBase<double>& motion,
-                              PoseNumbers<double> (&pose)[2], bool& is_straight);
+                              MovingGeometry<double>& moving);
 
 /// @brief A copy of a BVHModel that shares nothing with it; the model itself when its
 /// bounding volumes are none of FCL's.

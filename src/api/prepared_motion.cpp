@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/prepared_motion.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fcl/common/exception.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Paths that go further are refused, so that no product overflows.
+constexpr double kMostSize = 0x1p200;
+
+double norm(const double (&v)[3]) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+bool haveSameRotation(const Pose& x, const Pose& y) {
+  return std::equal(x.rotation, x.rotation + 9, y.rotation);
+}
+
+/// Whether the vertices, posed at both ends, go straight, and not the mesh as a whole.
+template <typename S>
+bool isPosed(const PlacedGeometry<S>& placed) {
+  return placed.goesStraight() && !placed.isRigid() &&
+         !haveSameRotation(placed.beginning(), placed.end());
+}
+
+Vec applied(const double (&m)[9], const double (&x)[3]) {
+  return {m[0] * x[0] + m[1] * x[1] + m[2] * x[2],
+          m[3] * x[0] + m[4] * x[1] + m[5] * x[2],
+          m[6] * x[0] + m[7] * x[1] + m[8] * x[2]};
+}
+
+}  // namespace
+
+template <typename S>
+MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
+  const MovingGeometry<S>& moving = placed.moving();
+  const double origin[3] = {0, 0, 0};
+  if (isPosed(placed)) return MotionPath::still(Pose());
+  if (placed.goesStraight())
+    return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
+  switch (moving.path) {
+    case PathKind::kSpline:
+      return MotionPath::spline(moving.control[0], moving.control[1]);
+    case PathKind::kScrew:
+      return MotionPath::screw(placed.beginning(), placed.end());
+    case PathKind::kTurn:
+      return MotionPath::interpolation(placed.beginning(), placed.end(),
+                                       moving.reference);
+    default:
+      return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
+  }
+}
+
+template <typename S>
+PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
+                               double toc_err, int num_threads) {
+  const bool posed = isPosed(placed);
+  mesh_.emplace(placed.geometry(), posed ? placed.beginning() : Pose(),
+                posed ? placed.end() : Pose(), name, num_threads);
+  const MotionPath path = motionPathOf(placed);
+  const MeshInstance& mesh = mesh_->instance();
+  if (mesh.tree)
+    body_.emplace(*mesh.tree, path);
+  else
+    body_.emplace(mesh.rigid, mesh.frames, mesh.triangles, path);
+  requireDefined(placed, name, toc_err);
+  requireInRange(mesh.frames, name);
+}
+
+// A reference point that was never set is whatever memory held: NaN, or a number so large
+// that what it adds to the rounding of the path is more than the time may be off by, for
+// a mesh that moves by its own size. 1e-9 stands for a toc_err of 0.
+template <typename S>
+void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
+                                    const std::string& name, double toc_err) const {
+  const MovingGeometry<S>& moving = placed.moving();
+  if (placed.goesStraight()) return;
+  if (moving.path == PathKind::kUndefined)
+    throw Exception(
+        name +
+        ": request.ccd_motion_type says nothing of how a mesh turns between "
+        "two transforms: use CCDM_LINEAR or CCDM_SCREW; a spline needs control "
+        "points, which a SplineMotion has");
+  if (moving.path != PathKind::kTurn) return;
+  double way[3];
+  for (int k = 0; k < 3; ++k)
+    way[k] = placed.end().translation[k] - placed.beginning().translation[k];
+  constexpr double kRounding = 64 * 0x1p-53, kLeastTocErr = 1e-9;
+  const double size = body_->radius() + norm(way);
+  if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kLeastTocErr) * size))
+    throw Exception(
+        name +
+        ": the reference point of the InterpMotion is not finite or far too large; its "
+        "constructors of two poses leave it unset: use the one of five arguments, R1, "
+        "T1, R2, T2, O, with O = 0");
+}
+
+void PreparedMotion::requireInRange(const VertexFrames& frames,
+                                    const std::string& name) const {
+  if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).constant <
+      kMostSize)
+    return;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const VertexPath path = frames[i];
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
+        throw Exception(name + ": vertex " + std::to_string(i) + " is not finite");
+  }
+  throw Exception(name + ": the path of a mesh that turns has coordinates beyond 2^200");
+}
+
+VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
+  const VertexPath from = mesh_->instance().frames[vertex];
+  const Pose pose = body_->path().pose(t);
+  const PoseRate rate = body_->path().rate(t);
+  double x[3], moving[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = (1 - t) * from.t0[k] + t * from.t1[k];
+    moving[k] = from.t1[k] - from.t0[k];
+  }
+  const Vec p = applied(pose.rotation, x);
+  const Vec v = applied(rate.rotation, x) + applied(pose.rotation, moving);
+  const double position[3] = {p.x, p.y, p.z}, velocity[3] = {v.x, v.y, v.z};
+  VertexPath out;
+  for (int k = 0; k < 3; ++k) {
+    out.t0[k] = position[k] + pose.translation[k];
+    out.t1[k] = out.t0[k] + (velocity[k] + rate.translation[k]);
+  }
+  return out;
+}
+
+MeshInstance PreparedMotion::beginning() const {
+  MeshInstance mesh = mesh_->instance();
+  // Of a mesh whose vertices are posed that is the identity.
+  if (mesh.frames.isPosed()) return mesh;
+  const Pose pose = body_->path().pose(0);
+  mesh.frames.setPoses(pose, pose);
+  return mesh;
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                          \
+  template MotionPath motionPathOf(const PlacedGeometry<S>&);                           \
+  template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
+                                          double, int);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/motion_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "fcl/common/exception.h"
+#include "query/feature_batch.h"
+#include "tree/open_binary.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Sizes are not larger, so that no product of them overflows; nothing bounded is.
+constexpr double kMostExtent = 0x1p300;
+constexpr double kUpward = 1 + 0x1p-40;
+constexpr double kUnitRounding = 0x1p-53;
+
+/// A box without bounds.
+MotionBox unboundedBox() {
+  MotionBox box{};
+  for (int i = 0; i < 3; ++i) {
+    box.axis[i][i] = 1;
+    box.extent[i] = kMostExtent;
+  }
+  box.radius = 2 * kMostExtent;
+  return box;
+}
+
+double norm(const double (&v)[3]) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/// A box along the axes that has a 16-DOP's first six half-axes.
+/// @param half  half(j): minus the lower bound along axis j, half(j + 8): the upper one
+template <typename HalfAxis>
+MotionBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
+  MotionBox box{};
+  bool is_bounded = true;
+  for (int j = 0; j < 3; ++j) {
+    const double lower = double{half(j)}, upper = double{half(j + 8)};
+    box.center[j] = origin[j] + 0.5 * (upper - lower);
+    // The center rounds by a unit of itself.
+    box.extent[j] =
+        0.5 * (upper + lower) * kUpward + 4 * kUnitRounding * std::abs(box.center[j]);
+    is_bounded &= box.extent[j] < kMostExtent;
+    box.axis[j][j] = 1;
+  }
+  if (!is_bounded) return unboundedBox();
+  box.radius = norm(box.extent) * kUpward;
+  return box;
+}
+
+}  // namespace
+
+MotionBody::MotionBody(const RigidTree& tree, const VertexFrames& frames,
+                       const Triangle* triangles, const MotionPath& path)
+    : rigid_(&tree), frames_(frames), triangles_(triangles), path_(path) {
+  const MotionBox whole = rigidBox(0);
+  radius_ = (norm(whole.center) + whole.radius) * kUpward;
+}
+
+MotionBody::MotionBody(const MovingKdopTree& tree, const MotionPath& path)
+    : tree_(&tree), path_(path) {
+  for (int frame = 0; frame < 2; ++frame) {
+    const MotionBox whole = movingRoot(frame);
+    radius_ = std::max(radius_, (norm(whole.center) + whole.radius) * kUpward);
+    displacement_ = whole.displacement;
+  }
+}
+
+BodyPart MotionBody::root() const {
+  if (tree_) return {0, BodyPart::kRoot};
+  const int link = rigid_->link(0);
+  return {link < 0 ? link : 0, 0};
+}
+
+// FCL's volume with points that stand out of it by the slack times their coordinates.
+MotionBox MotionBody::rigidBox(int node) const {
+  OrientedBox from;
+  rigid_->orientedBox(node, from);
+  MotionBox box;
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    box.center[i] = from.center[i];
+    box.extent[i] = std::abs(from.extent[i]);
+    for (int k = 0; k < 3; ++k) box.axis[i][k] = from.axis[i][k];
+    square += box.extent[i] * box.extent[i];
+  }
+  if (!(square < kMostExtent)) return unboundedBox();
+  const double half = std::sqrt(square);
+  box.pad = 2 * rigid_->slack() * (norm(box.center) + half) * kUpward;
+  box.radius = half * (1 + rigid_->slack()) + box.pad;
+  box.displacement = 0;
+  return box;
+}
+
+MotionBox MotionBody::movingBox(std::int32_t box, int frame) const {
+  const MovingKdopNode& node = tree_->node(box / MovingKdopNode::kWidth);
+  const int lane = box % MovingKdopNode::kWidth;
+  const auto half = [&](int j) {
+    const int row = MovingKdopNode::rowOf(j);
+    return frame == 0 ? node.t0[row][lane] : node.t1[row][lane];
+  };
+  MotionBox out = boxOfSlabs(half, tree_->origin(frame));
+  out.displacement = std::sqrt(3.) * double{node.displacement[lane]} * kUpward;
+  return out;
+}
+
+MotionBox MotionBody::movingRoot(int frame) const {
+  const MovingKdopNode& node = tree_->node(0);
+  const auto half = [&](int j) {
+    const int row = MovingKdopNode::rowOf(j);
+    const auto& rows = frame == 0 ? node.t0[row] : node.t1[row];
+    return *std::max_element(rows, rows + node.count);
+  };
+  MotionBox out = boxOfSlabs(half, tree_->origin(frame));
+  out.displacement =
+      std::sqrt(3.) *
+      double{*std::max_element(node.displacement, node.displacement + node.count)} *
+      kUpward;
+  return out;
+}
+
+MotionBox MotionBody::box(const BodyPart& part, int frame) const {
+  if (!tree_) return rigidBox(part.box);
+  return part.box == BodyPart::kRoot ? movingRoot(frame) : movingBox(part.box, frame);
+}
+
+void MotionBody::open(const BodyPart& part, MotionNode& out) const {
+  constexpr int kWidth = MotionBoxes::kWidth;
+  if (tree_) {
+    const MovingKdopNode& node = tree_->node(part.child);
+    out.count = node.count;
+    for (int lane = 0; lane < kWidth; ++lane) {
+      const int from = std::min(lane, node.count - 1);
+      const std::int32_t box = part.child * kWidth + from;
+      out.part[lane] = {node.child[from], box};
+      for (int frame = 0; frame < 2; ++frame)
+        out.box[frame].set(lane, movingBox(box, frame));
+    }
+    return;
+  }
+  std::int32_t nodes[kWidth], children[kWidth];
+  out.count = openBinary(part.child, nodes, children,
+                         [this](std::int32_t i) { return rigid_->link(i); });
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const int from = std::min(lane, out.count - 1);
+    out.part[lane] = {children[from], nodes[from]};
+    out.box[0].set(lane, rigidBox(nodes[from]));
+  }
+}
+
+BodyTriangle MotionBody::triangle(std::int32_t place) const {
+  BodyTriangle out;
+  if (tree_) {
+    const TreeTriangle& from = tree_->triangles()[static_cast<std::size_t>(place)];
+    out.index = static_cast<std::int32_t>(from.index);
+    out.owned = from.owned;
+    for (int k = 0; k < 3; ++k) {
+      const TreeVertex& vertex = tree_->vertices()[from.place[k]];
+      out.vertex[k] = static_cast<std::int32_t>(from.id[k]);
+      out.corner[0][k] = {vertex.t0[0], vertex.t0[1], vertex.t0[2]};
+      out.corner[1][k] = {vertex.t1[0], vertex.t1[1], vertex.t1[2]};
+    }
+    return out;
+  }
+  out.index = place;
+  out.owned = kOwnsAll;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t id = triangles_[place][static_cast<std::size_t>(k)];
+    if (id >= frames_.size())
+      throw Exception("triangle " + std::to_string(place) +
+                      " refers to a vertex that is not there");
+    double p[3];
+    frames_.at(0, id, p);
+    for (const double x : p)
+      if (!std::isfinite(x)) throw NonFiniteVertex(id);
+    out.vertex[k] = static_cast<std::int32_t>(id);
+    out.corner[0][k] = out.corner[1][k] = {p[0], p[1], p[2]};
+  }
+  // As in assignFeatures(), an edge with two equal ids is none.
+  for (unsigned k = 0; k < 3; ++k)
+    if (out.vertex[k] == out.vertex[(k + 1) % 3]) out.owned &= ~(1U << (3 + k));
+  return out;
+}
+
+// A vertex of a mesh that deforms is interpolated, by 3 u of its coordinates; its
+// velocity has R x' on top, for a difference that rounds once.
+double MotionBody::positionError() const {
+  const double deforming = displacement_ > 0 ? 6 * kUnitRounding * radius_ : 0;
+  return path_.positionError(radius_) + path_.stretch() * deforming;
+}
+double MotionBody::rateError() const {
+  return path_.rateError(radius_) + path_.positionError(displacement_);
+}
+double MotionBody::speed() const {
+  return path_.speed(radius_) + path_.stretch() * displacement_;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MOTION_MOTION_BODY_H
+#define FCL_CCD_MOTION_MOTION_BODY_H
+
+#include <cstdint>
+
+#include "fcl/math/triangle.h"
+#include "mesh/vertex_frames.h"
+#include "motion/motion_boxes.h"
+#include "motion/motion_path.h"
+#include "numerics/moving_vector.h"
+#include "tree/moving_kdop_tree.h"
+#include "tree/rigid_tree.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A node or a triangle of a body's tree, and where its box is found.
+struct BodyPart {
+  /// >= 0: a node; < 0: ~triangle.
+  std::int32_t child;
+  /// Of a RigidTree: FCL's node. Of a MovingKdopTree: eight times the node above, and
+  /// the lane; kRoot for the whole of it.
+  std::int32_t box;
+
+  static constexpr std::int32_t kRoot = -1;
+  bool isTriangle() const { return child < 0; }
+};
+
+/// @brief The children of a node: their boxes at t = 0 and t = 1, the same of a rigid
+/// mesh.
+struct MotionNode {
+  MotionBoxes box[2];
+  BodyPart part[MotionBoxes::kWidth];
+  int count;
+};
+
+/// @brief A triangle in the frame of its body: its corners at t = 0 and t = 1.
+struct BodyTriangle {
+  Vec corner[2][3];
+  std::int32_t index;
+  std::int32_t vertex[3];
+  /// MeshTriangle::owned; a rigid mesh has no owners: all features.
+  std::uint32_t owned;
+};
+
+/// @brief A mesh that moves along a path, as a query reads it. Owns nothing.
+class MotionBody {
+ public:
+  /// @brief A rigid mesh.
+  /// @param tree  in the body frame: made with the identity for a pose
+  /// @param frames  in the body frame
+  MotionBody(const RigidTree& tree, const VertexFrames& frames, const Triangle* triangles,
+             const MotionPath& path);
+
+  /// @brief A mesh that deforms in the frame that moves.
+  /// @param tree  refit in the body frame
+  MotionBody(const MovingKdopTree& tree, const MotionPath& path);
+
+  const MotionPath& path() const { return path_; }
+  MotionPath& path() { return path_; }
+  bool isRigid() const { return !tree_; }
+
+  BodyPart root() const;
+  void open(const BodyPart& part, MotionNode& out) const;
+  /// @brief The box of a part at t = 0 or t = 1.
+  MotionBox box(const BodyPart& part, int frame) const;
+  /// @throws NonFiniteVertex
+  /// @throws fcl::Exception  an index out of range
+  BodyTriangle triangle(std::int32_t place) const;
+
+  /// @brief Bound on the distance of the mesh from the origin of the body frame, in both
+  /// frames.
+  double radius() const { return radius_; }
+  /// @brief Bound on how far a vertex goes in the body frame.
+  double displacement() const { return displacement_; }
+
+  /// @brief Bounds on the rounding of a vertex that is posed, and of its velocity.
+  double positionError() const;
+  double rateError() const;
+  /// @brief Bound on the velocity of a vertex.
+  double speed() const;
+  /// @brief Size of what a posed vertex is made of.
+  double size() const { return path_.translationReach() + path_.stretch() * radius_; }
+
+ private:
+  MotionBox rigidBox(int node) const;
+  MotionBox movingBox(std::int32_t box, int frame) const;
+  MotionBox movingRoot(int frame) const;
+
+  const RigidTree* rigid_{nullptr};
+  const MovingKdopTree* tree_{nullptr};
+  VertexFrames frames_;
+  const Triangle* triangles_{nullptr};
+  MotionPath path_;
+  double radius_{0};
+  double displacement_{0};
+};
+
+/// @brief A body as one traversal reads it: nodes that were opened stay in a small table.
+/// For one thread.
+class MotionBodyReader {
+ public:
+  static constexpr int kSlots = 64;
+
+  explicit MotionBodyReader(const MotionBody& body) : body_(body) {
+    for (auto& key : key_) key = -1;
+  }
+
+  /// @brief The children; valid until another node is asked for.
+  const MotionNode& open(const BodyPart& part) {
+    const int slot = part.child % kSlots;
+    if (key_[slot] != part.child) {
+      body_.open(part, node_[slot]);
+      key_[slot] = part.child;
+    }
+    return node_[slot];
+  }
+  const MotionBody& body() const { return body_; }
+
+ private:
+  const MotionBody& body_;
+  std::int32_t key_[kSlots];
+  MotionNode node_[kSlots];
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MOTION_MOTION_BOXES_H
+#define FCL_CCD_MOTION_MOTION_BOXES_H
+
+#include <cstdint>
+
+#include "mesh/vertex_frames.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A box in the frame of its body; its points are center + sum of c_i axis_i +
+/// r, with |c_i| <= extent_i, |r| <= pad, unit axes at right angles (both but for what
+/// the pad makes up for).
+struct MotionBox {
+  double center[3];
+  double axis[3][3];
+  double extent[3];
+  double pad;
+  /// Of a ball around the center that contains the box.
+  double radius;
+  /// Bound on how far a point goes in the body frame during the step.
+  double displacement;
+};
+
+/// @brief Up to eight boxes, number by number.
+struct alignas(64) MotionBoxes {
+  static constexpr int kWidth = 8;
+  double center[3][kWidth];
+  double axis[3][3][kWidth];
+  double extent[3][kWidth];
+  double pad[kWidth];
+  double radius[kWidth];
+  double displacement[kWidth];
+
+  void set(int lane, const MotionBox& box) {
+    for (int k = 0; k < 3; ++k) {
+      center[k][lane] = box.center[k];
+      extent[k][lane] = box.extent[k];
+      for (int i = 0; i < 3; ++i) axis[i][k][lane] = box.axis[i][k];
+    }
+    pad[lane] = box.pad;
+    radius[lane] = box.radius;
+    displacement[lane] = box.displacement;
+  }
+  MotionBox get(int lane) const {
+    MotionBox box;
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = center[k][lane];
+      box.extent[k] = extent[k][lane];
+      for (int i = 0; i < 3; ++i) box.axis[i][k] = axis[i][k][lane];
+    }
+    box.pad = pad[lane];
+    box.radius = radius[lane];
+    box.displacement = displacement[lane];
+    return box;
+  }
+};
+
+/// @brief The poses of a body at the beginning, in the middle and at the end of a span.
+struct SpanPoses {
+  Pose beginning, middle, end;
+};
+
+/// @brief When eight boxes may meet another one, as parts of a span.
+struct MeetingWindows {
+  /// Boxes that may meet it at all, a bit each.
+  unsigned mask;
+  double lo[MotionBoxes::kWidth];
+  double hi[MotionBoxes::kWidth];
+};
+
+struct MotionKernels {
+  /// The instruction set, as Highway calls it; "plain" without Highway.
+  const char* name;
+
+  /// The windows of eight boxes of body b against one of body a. Along a fixed direction
+  /// d a point is never further than `margin` from the straight line between where it is
+  /// at both ends of the span, so that boxes are apart while the gap between them,
+  /// interpolated between both ends, is larger. Tried are the axes of both boxes in the
+  /// middle of the span and the line between the centers.
+  /// @param a, b  boxes at both ends
+  /// @param margin  of each pair: deviation from straight lines, pads, distance asked for
+  /// and rounding, for unit directions; of the rest 0
+  /// @param count  how many of the eight are in use
+  void (*meetingWindows)(const MotionBox (&a)[2], const SpanPoses& pose_a,
+                         const MotionBoxes* const (&b)[2], const SpanPoses& pose_b,
+                         const double (&margin)[8], int count, MeetingWindows& out);
+};
+
+/// @brief The kernels for this machine.
+const MotionKernels& motionKernels();
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/motion_contacts.h"
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+#include <vector>
+
+#include "elementary/predicates.h"
+#include "mesh/feature_pairs.h"
+#include "query/contact_sink.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// A feature of a triangle as a triangle without area: a vertex or an edge, the last one
+/// repeated.
+BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second) {
+  BodyTriangle out = triangle;
+  const unsigned corner[3] = {first, second, second};
+  for (int k = 0; k < 3; ++k) {
+    out.vertex[k] = triangle.vertex[corner[k]];
+    for (auto frame : {0, 1}) out.corner[frame][k] = triangle.corner[frame][corner[k]];
+  }
+  return out;
+}
+
+class FeatureContacts {
+ public:
+  FeatureContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options)
+      : body_{&a, &b},
+        options_(options),
+        tolerance_(a, b, 0),
+        // Rigid meshes have no owners. What is not wanted of a first contact is known
+        // last.
+        sink_(options.goal == QueryGoal::kAll ? options.max_contacts : kNoLimit,
+              a.isRigid() || b.isRigid()) {}
+
+  /// The contacts of the features that two triangles own, from when on these touch.
+  void add(const MotionContact& contact, double last) {
+    const BodyTriangle a = body_[0]->triangle(contact.place[0]),
+                       b = body_[1]->triangle(contact.place[1]);
+    for (unsigned pairs = ownedPairs(a.owned, b.owned); pairs != 0; pairs &= pairs - 1)
+      addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, last);
+  }
+
+  /// A contact of the features that are nearest when two triangles touch.
+  void addNearest(const MotionContact& contact) {
+    const BodyTriangle a = body_[0]->triangle(contact.place[0]),
+                       b = body_[1]->triangle(contact.place[1]);
+    const NearestFeatures& near = contact.nearest;
+    const int bit = near.kind == NearestFeatures::Kind::kVertexOfA ? near.a
+                    : near.kind == NearestFeatures::Kind::kVertexOfB
+                        ? 3 + near.b
+                        : 6 + 3 * near.a + near.b;
+    put(a, b, bit, contact.toc_lo, contact.toc_hi);
+  }
+
+  /// Whether an edge of one triangle passes through the other at t = 0; the first one
+  /// that does.
+  bool findCrossing(const MotionContact& contact, Crossing& out) const {
+    const BodyTriangle x[2] = {body_[0]->triangle(contact.place[0]),
+                               body_[1]->triangle(contact.place[1])};
+    double p[2][3][3];
+    for (int body = 0; body < 2; ++body) {
+      const Pose pose = body_[body]->path().pose(0);
+      for (int k = 0; k < 3; ++k) posed(pose, x[body].corner[0][k], p[body][k]);
+    }
+    for (int body = 0; body < 2; ++body)
+      for (int k = 0; k < 3; ++k) {
+        const int end = (k + 1) % 3, other = 1 - body;
+        if (!isCrossing(p[body][k], p[body][end], p[other][0], p[other][1], p[other][2]))
+          continue;
+        out.first_on_a = body == 0;
+        out.edge[0] = static_cast<std::uint32_t>(x[body].vertex[k]);
+        out.edge[1] = static_cast<std::uint32_t>(x[body].vertex[end]);
+        for (int i = 0; i < 3; ++i)
+          out.face[i] = static_cast<std::uint32_t>(x[other].vertex[i]);
+        out.triangles[0] = x[0].index;
+        out.triangles[1] = x[1].index;
+        return true;
+      }
+    return false;
+  }
+
+  ContactSink& sink() { return sink_; }
+  const MotionCounts& counts() const { return counts_; }
+
+ private:
+  /// As VertexFrames poses.
+  static void posed(const Pose& pose, const Vec& x, double (&out)[3]) {
+    const double(&r)[9] = pose.rotation;
+    for (int k = 0; k < 3; ++k)
+      out[k] = ((r[3 * k] * x.x + r[3 * k + 1] * x.y) + r[3 * k + 2] * x.z) +
+               pose.translation[k];
+  }
+
+  void addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
+               double last) {
+    const FeaturePair pair = featurePair(bit);
+    BodyTriangle x = a, y = b;
+    if (pair.kind == FeatureKind::kEdgeEdge) {
+      x = featureOf(a, pair.first, (pair.first + 1) % 3);
+      y = featureOf(b, pair.second, (pair.second + 1) % 3);
+    } else {
+      BodyTriangle& vertex = pair.first_on_a ? x : y;
+      vertex = featureOf(vertex, pair.first, pair.first);
+    }
+    const auto& path_a = body_[0]->path();
+    const auto& path_b = body_[1]->path();
+    TrianglePairMotion motion(path_a, x, path_b, y, t, last, tolerance_);
+    int steps = kMostSteps;
+    if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
+      return;
+    if (t > last) return;
+    const TrianglePairMotion whole(path_a, a, path_b, b, t, last, tolerance_);
+    put(a, b, bit, t, whole.proveContact(t, options_.toc_err));
+  }
+
+  void put(const BodyTriangle& a, const BodyTriangle& b, int bit, double lo, double hi) {
+    const FeaturePair pair = featurePair(bit);
+    FeatureContact contact;
+    contact.kind = pair.kind;
+    contact.first_on_a = pair.first_on_a;
+    for (int i = 0; i < 4; ++i) {
+      const unsigned place = kFeaturePoints[bit][i];
+      contact.vertices[i] =
+          static_cast<std::uint32_t>(place < 3 ? a.vertex[place] : b.vertex[place - 3]);
+    }
+    contact.triangles[0] = a.index;
+    contact.triangles[1] = b.index;
+    contact.toc_lo = lo;
+    // What is there at the beginning is there at that time.
+    contact.toc_hi = lo == 0 ? 0 : hi;
+    sink_.add(contact);
+  }
+
+  static constexpr int kMostSteps = 10000;
+  static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
+  const MotionBody* body_[2];
+  const QueryOptions& options_;
+  MotionTolerance tolerance_;
+  ContactSink sink_;
+  MotionCounts counts_;
+};
+
+/// Of a first contact those that may be it; of any one.
+/// @return whether some were dropped for want of room
+bool keepWanted(const QueryOptions& options, double first_hi,
+                std::deque<FeatureContact>& contacts) {
+  if (options.goal == QueryGoal::kAll || contacts.empty()) return false;
+  const auto is_late = [first_hi](const FeatureContact& contact) {
+    return contact.toc_lo > first_hi;
+  };
+  contacts.erase(std::remove_if(contacts.begin(), contacts.end(), is_late),
+                 contacts.end());
+  const bool any = options.goal == QueryGoal::kAny;
+  const std::size_t room = any ? 1 : options.max_contacts;
+  if (contacts.size() <= room) return false;
+  std::sort(contacts.begin(), contacts.end(), isEarlier);
+  contacts.resize(room);
+  return !any;
+}
+
+void count(const MotionCounts& from, StageCounts& to) {
+  to.node_pairs += from.box_tests;
+  to.triangle_pairs += from.triangle_pairs;
+}
+
+}  // namespace
+
+QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
+                                const QueryOptions& options) {
+  MotionQueryOptions wanted;
+  wanted.toc_err = options.toc_err;
+  wanted.all = options.goal == QueryGoal::kAll;
+  MotionAnswer touching = queryMotions(a, b, wanted);
+  QueryAnswer answer;
+  count(touching.counts, answer.counts);
+  if (touching.contacts.empty()) return answer;
+  const BodiesNearOrigin near(a, b);
+  FeatureContacts features(near.a, near.b, options);
+  if (options.stop_at_crossing) {
+    features.addNearest(touching.contacts.front());
+  } else {
+    if (!wanted.all) {
+      wanted.all = true;
+      wanted.last = touching.contacts.front().toc_hi;
+      touching = queryMotions(a, b, wanted);
+    }
+    FeatureContacts unmoved(a, b, options);
+    for (const MotionContact& contact : touching.contacts) {
+      if (contact.toc_lo == 0 && !answer.has_crossing)
+        answer.has_crossing = unmoved.findCrossing(contact, answer.crossing);
+      features.add(contact, wanted.last);
+    }
+    // Features that pass at the distance of the tolerance round otherwise than their
+    // triangles.
+    if (features.sink().contacts().empty() && !answer.has_crossing)
+      features.addNearest(touching.contacts.front());
+  }
+  const double first_hi = features.sink().firstHi();
+  answer.cut = features.sink().isCut();
+  std::vector<std::deque<FeatureContact>> lists(1, features.sink().takeContacts());
+  answer.cut |= keepWanted(options, first_hi, lists.front());
+  answer.contacts = SortedContacts(std::move(lists));
+  answer.counts.contacts = answer.contacts.size();
+  return answer;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

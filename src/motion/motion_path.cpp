@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rounding (u = 2^-53). A turn: the angle w t < 3.2 is rounded once, hence its sine and
+// cosine are within 4 + 3.2 u, 1 - cos(w t) within 8.2 u (from half of the angle, where
+// w t < 1: within 11 u of itself). An entry of C and D is at most 1 in size (times what
+// R1 stretches): 7.2 + 8.2 u, and 3 products and sums of sizes up to 4, 13 u: below 32 u
+// an entry, 96 u for the matrix (Frobenius norm). A product of three and a sum of four
+// add 4 u of their size an entry, 13 u in all. A coordinate of the translation: below 16
+// u of the size of its terms, 28 u for the vector, and 7 u in that sum.
+//
+// A spline: the weights are within 4 u, the rotation vector within 20 u of the largest
+// control point W, its length within 3 u of itself. Sine and cosine of half of it are
+// within 4 u; these make A w and B w^2 within 24 u. An entry of the rotation: 24 + 24 W
+// u.
+#include "motion/motion_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fcl/common/exception.h"
+#include "motion/sine.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUnitRounding = 0x1p-53;
+/// More than the rounding of a bound itself.
+constexpr double kUpward = 1 + 0x1p-40;
+/// Rotations by less are the rounding of the poses they were made from.
+constexpr double kLeastAngle = 0x1p-50;
+
+Vec vecOf(const double* v) { return {v[0], v[1], v[2]}; }
+double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+
+void set(double (&to)[3], const Vec& v) {
+  to[0] = v.x;
+  to[1] = v.y;
+  to[2] = v.z;
+}
+
+Vec times(const double (&m)[9], const Vec& x) {
+  return {m[0] * x.x + m[1] * x.y + m[2] * x.z, m[3] * x.x + m[4] * x.y + m[5] * x.z,
+          m[6] * x.x + m[7] * x.y + m[8] * x.z};
+}
+
+double frobenius(const double (&m)[9]) {
+  double sum = 0;
+  for (const double x : m) sum += x * x;
+  return std::sqrt(sum);
+}
+
+/// Bound on the spectral norm: the square is that of M^T M, at most its largest row.
+double spectralBound(const double (&m)[9]) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    double row = 0;
+    for (int j = 0; j < 3; ++j)
+      row += std::abs(m[i] * m[j] + m[3 + i] * m[3 + j] + m[6 + i] * m[6 + j]);
+    most = std::max(most, row);
+  }
+  return std::sqrt(most) * kUpward;
+}
+
+/// Columns of [a] m.
+void crossColumns(const Vec& a, const double (&m)[9], double (&out)[9]) {
+  for (int j = 0; j < 3; ++j) {
+    const Vec c = cross(a, {m[j], m[3 + j], m[6 + j]});
+    out[j] = c.x;
+    out[3 + j] = c.y;
+    out[6 + j] = c.z;
+  }
+}
+
+/// The rotation that takes one pose's to the other's: a unit axis and an angle in [0,
+/// pi]; 0 where it is mere rounding.
+double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
+  double m[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      m[i][j] = to.rotation[3 * i] * from.rotation[3 * j] +
+                to.rotation[3 * i + 1] * from.rotation[3 * j + 1] +
+                to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
+  // Four times a component of the quaternion times all of it, for the largest one
+  // (Shepperd 1978).
+  double q[4];
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (trace > 0) {
+    q[3] = 1 + trace;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      q[i] = m[k][j] - m[j][k];
+    }
+  } else {
+    int i = m[1][1] > m[0][0] ? 1 : 0;
+    if (m[2][2] > m[i][i]) i = 2;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    q[i] = 1 + m[i][i] - m[j][j] - m[k][k];
+    q[j] = m[j][i] + m[i][j];
+    q[k] = m[k][i] + m[i][k];
+    q[3] = m[k][j] - m[j][k];
+  }
+  Vec v = {q[0], q[1], q[2]};
+  if (q[3] < 0) {
+    v = -1. * v;
+    q[3] = -q[3];
+  }
+  const double length = norm(v), whole = std::sqrt(dot(v, v) + q[3] * q[3]);
+  if (!(length > 0.5 * kLeastAngle * whole)) return 0;
+  axis = (1 / length) * v;
+  axis = (1 / norm(axis)) * axis;
+  return 2 * angleOf(q[3] / whole, length / whole);
+}
+
+SineCosine sineAndOneMinusCosine(double x) {
+  const SineCosine at = sineCosine(x);
+  if (x >= 1) return {at.sine, 1 - at.cosine};
+  const double half = sineCosine(0.5 * x).sine;
+  return {at.sine, 2 * half * half};
+}
+
+/// Weights of the control points of a uniform cubic B-spline.
+void splineWeights(double t, double (&w)[4]) {
+  const double s = 1 - t;
+  w[0] = s * s * s / 6;
+  w[1] = (4 - 3 * t * t * (2 - t)) / 6;
+  w[2] = (4 - 3 * s * s * (2 - s)) / 6;
+  w[3] = t * t * t / 6;
+}
+
+Vec splineAt(const double (&points)[4][3], const double (&w)[4]) {
+  double v[3];
+  for (int k = 0; k < 3; ++k)
+    v[k] = (w[0] * points[0][k] + w[3] * points[3][k]) +
+           (w[1] * points[1][k] + w[2] * points[2][k]);
+  return vecOf(v);
+}
+
+/// The first derivative, a weighted mean of the differences of the control points.
+Vec splineRateAt(const double (&points)[4][3], double t) {
+  const double s = 1 - t, w[3] = {0.5 * s * s, 0.5 + t * s, 0.5 * t * t};
+  double v[3];
+  for (int k = 0; k < 3; ++k)
+    v[k] = w[0] * (points[1][k] - points[0][k]) + w[1] * (points[2][k] - points[1][k]) +
+           w[2] * (points[3][k] - points[2][k]);
+  return vecOf(v);
+}
+
+/// The second derivative, between the second differences.
+Vec splineAccelerationAt(const double (&points)[4][3], double t) {
+  double v[3];
+  for (int k = 0; k < 3; ++k)
+    v[k] = (1 - t) * ((points[2][k] - points[1][k]) - (points[1][k] - points[0][k])) +
+           t * ((points[3][k] - points[2][k]) - (points[2][k] - points[1][k]));
+  return vecOf(v);
+}
+
+/// NaN if there is one.
+double largestPoint(const double (&points)[4][3]) {
+  double most = 0;
+  for (const auto& point : points) {
+    const double length = norm(vecOf(point));
+    if (length > most || std::isnan(length)) most = length;
+  }
+  return most * kUpward;
+}
+
+double largestDifference(const double (&points)[4][3]) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i)
+    most = std::max(most, norm(vecOf(points[i + 1]) - vecOf(points[i])));
+  return most * kUpward;
+}
+
+/// sin(x) / x and cos(x).
+SineCosine cardinalSineCosine(double x) {
+  const SineCosine at = sineCosine(x);
+  return {x > 0x1p-500 ? at.sine / x : 1, at.cosine};
+}
+
+}  // namespace
+
+double AccelerationBound::of(const Vec& center, double radius) const {
+  return (norm(times(turn, center) + vecOf(offset)) + per_radius * radius +
+          per_distance * norm(center) + constant) *
+         kUpward;
+}
+
+bool AccelerationBound::isZero() const {
+  return per_radius == 0 && per_distance == 0 && constant == 0;
+}
+
+MotionPath MotionPath::still(const Pose& pose) {
+  MotionPath path = turnFrom(pose, pose);
+  path.setTurnBounds();
+  return path;
+}
+
+MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end) {
+  MotionPath path;
+  path.beginning_ = beginning;
+  path.angle_ = turnBetween(beginning, end, path.axis_);
+  path.stretch_ =
+      std::max(spectralBound(beginning.rotation), spectralBound(end.rotation));
+  if (path.angle_ > 0) {
+    crossColumns(path.axis_, beginning.rotation, path.sine_rotation_);
+    crossColumns(path.axis_, path.sine_rotation_, path.cosine_rotation_);
+  }
+  return path;
+}
+
+/// What goes straight takes the path to the end pose. From the way, not the end itself:
+/// far from the origin that rounds much more.
+void MotionPath::reachEnd(const Pose& end) {
+  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_);
+  for (int i = 0; i < 9; ++i)
+    linear_rotation_[i] = (end.rotation[i] - beginning_.rotation[i]) -
+                          (at.sine * sine_rotation_[i] + at.cosine * cosine_rotation_[i]);
+  for (int k = 0; k < 3; ++k)
+    linear_translation_[k] =
+        (end.translation[k] - beginning_.translation[k]) -
+        (at.sine * sine_translation_[k] + at.cosine * cosine_translation_[k]);
+}
+
+MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
+                                     const double (&reference)[3]) {
+  MotionPath path = turnFrom(beginning, end);
+  const Vec point = vecOf(reference);
+  set(path.sine_translation_, -1. * times(path.sine_rotation_, point));
+  set(path.cosine_translation_, -1. * times(path.cosine_rotation_, point));
+  path.reachEnd(end);
+  path.reference_size_ = norm(point);
+  path.setTurnBounds();
+  return path;
+}
+
+// The translation of a screw turns about the axis: T1 - p = -(o + cot(w / 2) a x o) / 2
+// for the part o of the way T2 - T1 that is perpendicular to the axis a, so that P = a x
+// (T1 - p) and Q = a x P. For a small angle these are large, |o| / w, but P sin(w t) and
+// Q (1 - cos(w t)) are not, and lose nothing.
+MotionPath MotionPath::screw(const Pose& beginning, const Pose& end) {
+  MotionPath path = turnFrom(beginning, end);
+  if (path.angle_ > 0) {
+    const Vec way = vecOf(end.translation) - vecOf(beginning.translation);
+    const Vec across = way - dot(way, path.axis_) * path.axis_;
+    const SineCosine half = sineCosine(0.5 * path.angle_);
+    const Vec turning =
+        0.5 * ((half.cosine / half.sine) * across - cross(path.axis_, across));
+    set(path.sine_translation_, turning);
+    set(path.cosine_translation_, cross(path.axis_, turning));
+  }
+  path.reachEnd(end);
+  path.setTurnBounds();
+  return path;
+}
+
+void MotionPath::setTurnBounds() {
+  const double sine = norm(vecOf(sine_translation_)),
+               cosine = norm(vecOf(cosine_translation_)),
+               linear = norm(vecOf(linear_translation_)), w = angle_;
+  translation_size_ =
+      (norm(vecOf(beginning_.translation)) + linear + std::min(1., w) * sine +
+       std::min(2., w * w) * cosine + reference_size_) *
+      kUpward;
+  translation_reach_ = translation_size_;
+  turn_speed_ = (w * stretch_ + frobenius(linear_rotation_)) * kUpward;
+  translation_speed_ = (linear + w * (sine + cosine)) * kUpward;
+  rotation_error_ = 32;
+}
+
+MotionPath MotionPath::spline(const double (&translation)[4][3],
+                              const double (&rotation)[4][3]) {
+  MotionPath path;
+  path.kind_ = Kind::kSpline;
+  std::copy(&translation[0][0], &translation[0][0] + 12, &path.translation_points_[0][0]);
+  std::copy(&rotation[0][0], &rotation[0][0] + 12, &path.rotation_points_[0][0]);
+  const double most = largestPoint(rotation);
+  if (!(most <= kMostAngle))
+    throw Exception("a rotation vector of a spline is longer than 2^20 or not finite");
+  path.stretch_ = kUpward;
+  path.turn_speed_ = largestDifference(rotation);
+  path.translation_speed_ = largestDifference(translation);
+  path.translation_size_ = path.translation_reach_ = largestPoint(translation);
+  path.rotation_error_ = 24 + 24 * most;
+  return path;
+}
+
+void MotionPath::shift(const double (&origin)[3]) {
+  for (int k = 0; k < 3; ++k) beginning_.translation[k] -= origin[k];
+  if (kind_ == Kind::kTurn) return setTurnBounds();
+  for (auto& point : translation_points_)
+    for (int k = 0; k < 3; ++k) point[k] -= origin[k];
+  translation_size_ = translation_reach_ = largestPoint(translation_points_);
+}
+
+Pose MotionPath::pose(double t) const {
+  if (kind_ == Kind::kSpline) return splinePose(t);
+  const SineCosine at =
+      angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_ * t);
+  Pose out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] = beginning_.rotation[i] +
+                      (at.sine * sine_rotation_[i] + at.cosine * cosine_rotation_[i] +
+                       t * linear_rotation_[i]);
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] = beginning_.translation[k] + (at.sine * sine_translation_[k] +
+                                                      at.cosine * cosine_translation_[k] +
+                                                      t * linear_translation_[k]);
+  return out;
+}
+
+PoseRate MotionPath::rate(double t) const {
+  if (kind_ == Kind::kSpline) return splineRate(t);
+  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
+  const double sine = angle_ * at.sine, cosine = angle_ * at.cosine;
+  PoseRate out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] =
+        cosine * sine_rotation_[i] + sine * cosine_rotation_[i] + linear_rotation_[i];
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] = cosine * sine_translation_[k] + sine * cosine_translation_[k] +
+                         linear_translation_[k];
+  return out;
+}
+
+PoseRate MotionPath::turnAccelerationAt(double t) const {
+  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
+  const double square = angle_ * angle_, sine = -square * at.sine,
+               cosine = square * at.cosine;
+  PoseRate out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] = sine * sine_rotation_[i] + cosine * cosine_rotation_[i];
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] = sine * sine_translation_[k] + cosine * cosine_translation_[k];
+  return out;
+}
+
+// R = I + A [w] + B [w]^2 with A = sin(|w|) / |w|, B = (1 - cos(|w|)) / |w|^2, from half
+// of the angle.
+Pose MotionPath::splinePose(double t) const {
+  double weights[4];
+  splineWeights(t, weights);
+  const Vec w = splineAt(rotation_points_, weights);
+  const SineCosine half = cardinalSineCosine(0.5 * norm(w));
+  const double a = half.sine * half.cosine, b = 0.5 * half.sine * half.sine;
+  Pose out;
+  set(out.translation, splineAt(translation_points_, weights));
+  double(&r)[9] = out.rotation;
+  r[0] = 1 - b * (w.y * w.y + w.z * w.z);
+  r[4] = 1 - b * (w.x * w.x + w.z * w.z);
+  r[8] = 1 - b * (w.x * w.x + w.y * w.y);
+  r[1] = b * w.x * w.y - a * w.z;
+  r[3] = b * w.x * w.y + a * w.z;
+  r[2] = b * w.x * w.z + a * w.y;
+  r[6] = b * w.x * w.z - a * w.y;
+  r[5] = b * w.y * w.z - a * w.x;
+  r[7] = b * w.y * w.z + a * w.x;
+  return out;
+}
+
+// R' = [v] R with v = w' + B w x w' + G w x (w x w'), G = (|w| - sin(|w|)) / |w|^3.
+PoseRate MotionPath::splineRate(double t) const {
+  double weights[4];
+  splineWeights(t, weights);
+  const Vec w = splineAt(rotation_points_, weights),
+            w_rate = splineRateAt(rotation_points_, t);
+  const double square = dot(w, w), angle = std::sqrt(square);
+  const SineCosine half = cardinalSineCosine(0.5 * angle);
+  const double b = 0.5 * half.sine * half.sine;
+  // Below 1 the series of 1 / 3! - |w|^2 / 5! + ..., up to |w|^16 / 19!.
+  double g = 0;
+  if (square < 1) {
+    constexpr double kTerms[9] = {6., 20., 42., 72., 110., 156., 210., 272., 342.};
+    for (int i = 8; i >= 0; --i) g = (1 - square * g) / kTerms[i];
+  } else {
+    g = (1 - half.sine * half.cosine) / square;
+  }
+  const Vec turned = cross(w, w_rate);
+  const Vec v = w_rate + b * turned + g * cross(w, turned);
+  PoseRate out;
+  crossColumns(v, splinePose(t).rotation, out.rotation);
+  set(out.translation, splineRateAt(translation_points_, t));
+  return out;
+}
+
+// p'' = w^2 (cos (D x + Q) - sin (C x + P)): the two vectors are perpendicular and of one
+// length but for rounding, 16 u (|x| + |P| + |Q|) at most, that adds no more than twice
+// as much to the length of their mean.
+AccelerationBound MotionPath::turnAcceleration() const {
+  AccelerationBound bound{};
+  if (angle_ == 0) {
+    bound.per_displacement = 2 * frobenius(linear_rotation_) * kUpward;
+    return bound;
+  }
+  const double square = angle_ * angle_, rounding = 64 * kUnitRounding * square;
+  for (int i = 0; i < 9; ++i) bound.turn[i] = square * sine_rotation_[i];
+  for (int k = 0; k < 3; ++k) bound.offset[k] = square * sine_translation_[k];
+  bound.per_radius = (square * stretch_ + rounding) * kUpward;
+  bound.per_distance = rounding * stretch_;
+  bound.constant =
+      rounding * (norm(vecOf(sine_translation_)) + norm(vecOf(cosine_translation_)));
+  bound.per_displacement = 2 * turn_speed_ * kUpward;
+  bound.jerk = angle_ * kUpward;
+  return bound;
+}
+
+// |R''| <= |v'| + |v|^2, |v| <= |w'|, |v'| <= |w''| + |w'|^2 / 2: the left Jacobian of
+// the rotation vector is the mean of exp(s [w]) for s in [0, 1]. w'' is between its ends,
+// w' between three control points. What is computed of them is within 2^-46 of the
+// control points of the spline.
+AccelerationBound MotionPath::splineAcceleration(double t0, double t1) const {
+  const auto largest = [](const Vec& x, const Vec& y) {
+    return std::max(norm(x), norm(y));
+  };
+  constexpr double kRounding = 0x1p-46;
+  const Vec w0 = splineAccelerationAt(rotation_points_, t0),
+            w1 = splineAccelerationAt(rotation_points_, t1),
+            rate0 = splineRateAt(rotation_points_, t0),
+            rate1 = splineRateAt(rotation_points_, t1);
+  const double slack = kRounding * largestPoint(rotation_points_);
+  const double bending = largest(w0, w1) + slack;
+  const double turning =
+      std::max(largest(rate0, rate1), norm(rate0 + (0.5 * (t1 - t0)) * w0)) + slack;
+  AccelerationBound bound{};
+  bound.per_radius = bound.per_distance = (bending + 1.5 * turning * turning) * kUpward;
+  bound.constant = (largest(splineAccelerationAt(translation_points_, t0),
+                            splineAccelerationAt(translation_points_, t1)) +
+                    kRounding * largestPoint(translation_points_)) *
+                   kUpward;
+  bound.per_displacement = 2 * turning * kUpward;
+  bound.jerk = HUGE_VAL;
+  return bound;
+}
+
+AccelerationBound MotionPath::acceleration(double t0, double t1) const {
+  return kind_ == Kind::kTurn ? turnAcceleration() : splineAcceleration(t0, t1);
+}
+
+double MotionPath::positionError(double radius) const {
+  return ((3 * rotation_error_ + 13) * stretch_ * radius + 35 * translation_size_) *
+         kUnitRounding;
+}
+
+double MotionPath::rateError(double radius) const {
+  return (80 + 4 * (rotation_error_ - 24)) * kUnitRounding * speed(radius);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MOTION_MOTION_PATH_H
+#define FCL_CCD_MOTION_MOTION_PATH_H
+
+#include "mesh/vertex_frames.h"
+#include "numerics/moving_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The first or second derivative of a pose by t.
+struct PoseRate {
+  double rotation[9];
+  double translation[3];
+};
+
+/// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
+/// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
+/// per_distance |center| + constant; of points that move in the body frame from x0 to x1
+/// on top (straight, during the whole step) per_displacement |x1 - x0|. The first two are
+/// convex in the center: of a center that moves straight the ends of its way are enough.
+struct AccelerationBound {
+  double turn[9];
+  double offset[3];
+  double per_radius;
+  double per_distance;
+  double constant;
+  double per_displacement;
+  /// |p'''(t)| is at most so many times as large, of a point that rests in the body; or
+  /// infinite: unknown.
+  double jerk;
+
+  double of(const Vec& center, double radius) const;
+  /// @brief Whether all points go straight, unless they move in the body frame.
+  bool isZero() const;
+};
+
+/// @brief How a rigid body, or the frame in which a mesh deforms, moves during t in [0,
+/// 1]: the real-number evaluation of parameters that are doubles. Either a turn at
+/// constant speed,
+///
+///   p(t) = (R1 x + T1) + t (E x + L) + sin(w t) (C x + P) + (1 - cos(w t)) (D x + Q),
+///
+/// with C = [a] R1, D = [a]^2 R1 for an axis a; R1, T1 the pose at the beginning; E and L
+/// such that t = 1 is the pose at the end (E makes up for rounding, and for rotations
+/// that were not quite; L is how a point goes straight). Interpolation turns about a
+/// reference point that goes straight, a screw about a fixed axis; P and Q are zero for
+/// the origin of the body as reference. Without a turn w, C, D, P and Q are zero. Or a
+/// uniform cubic B-spline of translations and of rotation vectors, as FCL's SplineMotion
+/// has it.
+class MotionPath {
+ public:
+  /// @brief At rest.
+  static MotionPath still(const Pose& pose);
+
+  /// @brief Turns about a reference point (body frame) that goes straight.
+  static MotionPath interpolation(const Pose& beginning, const Pose& end,
+                                  const double (&reference)[3]);
+
+  /// @brief Turns about an axis and slides along it, both at constant speed.
+  static MotionPath screw(const Pose& beginning, const Pose& end);
+
+  /// @brief The control points of the translation and of the rotation vector.
+  /// @throws fcl::Exception  a rotation of more than kMostAngle
+  static MotionPath spline(const double (&translation)[4][3],
+                           const double (&rotation)[4][3]);
+
+  /// @brief Moves the path by -origin. Rounds by 2^-53 of the new coordinates.
+  void shift(const double (&origin)[3]);
+
+  /// @brief The pose at a time in [0, 1].
+  Pose pose(double t) const;
+  PoseRate rate(double t) const;
+  /// @brief The second derivative, within 2^-46 of the bound on it; of a turn only.
+  PoseRate turnAccelerationAt(double t) const;
+
+  /// @brief Bound on the acceleration during [t0, t1].
+  AccelerationBound acceleration(double t0, double t1) const;
+
+  /// @brief Whether the rotation is the same at all times.
+  bool isTranslation() const { return kind_ == Kind::kTurn && angle_ == 0; }
+
+  /// @brief Bound on |T(t)|.
+  double translationReach() const { return translation_reach_; }
+
+  /// @brief By how much at most a rotation makes a vector longer.
+  double stretch() const { return stretch_; }
+
+  /// @brief Bound on the rounding, along any unit direction, of pose(t) applied to a
+  /// point with |x| <= radius: in the sum of three products and the translation too.
+  double positionError(double radius) const;
+
+  /// @brief Bound on the velocity of a point with |x| <= radius that rests in the body.
+  double speed(double radius) const { return turn_speed_ * radius + translation_speed_; }
+
+  /// @brief As positionError(), of rate(t).
+  double rateError(double radius) const;
+
+ private:
+  enum class Kind { kTurn, kSpline };
+
+  static MotionPath turnFrom(const Pose& beginning, const Pose& end);
+  void reachEnd(const Pose& end);
+  void setTurnBounds();
+  AccelerationBound turnAcceleration() const;
+  AccelerationBound splineAcceleration(double t0, double t1) const;
+  Pose splinePose(double t) const;
+  PoseRate splineRate(double t) const;
+
+  Kind kind_{Kind::kTurn};
+  // Of a turn.
+  double angle_{0};
+  Vec axis_{1, 0, 0};
+  Pose beginning_;
+  double sine_rotation_[9]{};
+  double cosine_rotation_[9]{};
+  double linear_rotation_[9]{};
+  double sine_translation_[3]{};
+  double cosine_translation_[3]{};
+  double linear_translation_[3]{};
+  /// Distance of the reference point from the origin of the body.
+  double reference_size_{0};
+  // Of a spline.
+  double translation_points_[4][3]{};
+  double rotation_points_[4][3]{};
+
+  double stretch_{1};
+  double translation_reach_{0};
+  /// Size of what is added up to a translation.
+  double translation_size_{0};
+  double turn_speed_{0};
+  double translation_speed_{0};
+  /// Rounding of an entry of the rotation, in u.
+  double rotation_error_{0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

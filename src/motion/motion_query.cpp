@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/motion_query.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUnitRounding = 0x1p-53;
+
+/// The poses of a body at times that come again.
+class PoseTable {
+ public:
+  explicit PoseTable(const MotionPath& path) : path_(path) {
+    std::fill(time_, time_ + kSlots, -1.);
+  }
+  const Pose& at(double t) {
+    std::uint64_t bits;
+    std::memcpy(&bits, &t, sizeof(bits));
+    const std::size_t slot = (bits * 0x9e3779b97f4a7c15u) >> (64 - kBits);
+    if (time_[slot] != t) {
+      pose_[slot] = path_.pose(t);
+      time_[slot] = t;
+    }
+    return pose_[slot];
+  }
+
+ private:
+  static constexpr int kBits = 7;
+  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
+  const MotionPath& path_;
+  double time_[kSlots];
+  Pose pose_[kSlots];
+};
+
+/// What a traversal has of a body.
+struct Side {
+  explicit Side(const MotionBody& b) : body(b), reader(b), poses(b.path()) {}
+
+  SpanPoses spanPoses(double t0, double t1) {
+    return {poses.at(t0), poses.at(0.5 * (t0 + t1)), poses.at(t1)};
+  }
+
+  const MotionBody& body;
+  MotionBodyReader reader;
+  PoseTable poses;
+};
+
+/// Two parts in a span of time.
+struct Work {
+  /// Provably apart before, from t0 on.
+  double start;
+  double t0, t1;
+  BodyPart a, b;
+  std::int32_t steps;
+};
+
+/// Of works that start together, as those that overlap at t = 0 do, what is further down
+/// in the trees comes first: it lies behind what is above it. The rest makes the order
+/// that of the works alone.
+bool isLater(const Work& x, const Work& y) {
+  if (x.start != y.start) return x.start > y.start;
+  const std::int64_t x_depth = std::int64_t{x.a.box} + x.b.box,
+                     y_depth = std::int64_t{y.a.box} + y.b.box;
+  if (x_depth != y_depth) return x_depth < y_depth;
+  if (x.a.box != y.a.box) return x.a.box < y.a.box;
+  return x.t0 > y.t0;
+}
+
+bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
+  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
+  if (x.triangle[0] != y.triangle[0]) return x.triangle[0] < y.triangle[0];
+  return x.triangle[1] < y.triangle[1];
+}
+
+/// The largest power of two that is not above a quarter of x.
+double quarterUnit(double x) {
+  int exponent;
+  std::frexp(x, &exponent);
+  return std::ldexp(1., std::max(exponent - 3, -60));
+}
+
+class MotionTraversal {
+ public:
+  MotionTraversal(const MotionBody& a, const MotionBody& b,
+                  const MotionQueryOptions& options)
+      : side_{Side(a), Side(b)},
+        options_(options),
+        tolerance_(a, b, options.distance),
+        latest_(options.last) {
+    // A kernel adds up no more than a hundred roundings of the sizes, and a time is
+    // rounded by a few u.
+    box_margin_ = options.distance + 0x1p-44 * (a.size() + b.size()) +
+                  16 * kUnitRounding * (a.speed() + b.speed());
+    direction_bound_ = (1 + 0x1p-10) * std::max(a.path().stretch(), b.path().stretch());
+  }
+
+  MotionAnswer run() {
+    Work first{0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0};
+    testAlone(first);
+    while (!works_.empty()) {
+      std::pop_heap(works_.begin(), works_.end(), isLater);
+      Work work = works_.back();
+      works_.pop_back();
+      if (work.start > latest_) break;
+      if (work.a.isTriangle() && work.b.isTriangle())
+        advance(work);
+      else
+        divide(work);
+    }
+    return finish();
+  }
+
+ private:
+  void push(const Work& work) {
+    if (work.start > latest_) return;
+    works_.push_back(work);
+    std::push_heap(works_.begin(), works_.end(), isLater);
+  }
+
+  /// The box of a part at a time.
+  MotionBox boxAt(const MotionBody& body, const BodyPart& part, double t) const {
+    MotionBox box = body.box(part, 0);
+    if (!body.isRigid()) interpolate(body.box(part, 1), t, box);
+    return box;
+  }
+
+  static void interpolate(const MotionBox& end, double t, MotionBox& box) {
+    for (int k = 0; k < 3; ++k) {
+      box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
+      box.extent[k] = (1 - t) * box.extent[k] + t * end.extent[k];
+    }
+    box.radius = (1 - t) * box.radius + t * end.radius;
+  }
+
+  static double accelerationOf(const AccelerationBound& bound, const MotionBox& begin,
+                               const MotionBox& end) {
+    const auto at = [&bound](const MotionBox& box) {
+      return bound.of({box.center[0], box.center[1], box.center[2]}, box.radius);
+    };
+    if (bound.isZero() && bound.per_displacement == 0) return 0;
+    return std::max(at(begin), at(end)) + bound.per_displacement * begin.displacement;
+  }
+
+  /// How far points of a part may be from straight lines during a span.
+  double deviation(int k, const BodyPart& part, double t0, double t1) const {
+    const MotionBody& body = side_[k].body;
+    const double dt = t1 - t0;
+    const MotionBox begin = boxAt(body, part, t0), end = boxAt(body, part, t1);
+    return 0.125 * dt * dt * accelerationOf(body.path().acceleration(t0, t1), begin, end);
+  }
+
+  /// Tests the pair in its span, and adds what may meet.
+  void testAlone(const Work& work) {
+    MotionNode node;
+    node.count = 1;
+    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
+      node.part[lane] = work.b;
+      node.box[0].set(lane, side_[1].body.box(work.b, 0));
+      if (!side_[1].body.isRigid()) node.box[1].set(lane, side_[1].body.box(work.b, 1));
+    }
+    test(work, 1, node);
+  }
+
+  /// The node's boxes at a time.
+  const MotionBoxes* boxesAt(const MotionBody& body, const MotionNode& node, double t,
+                             MotionBoxes& scratch) const {
+    if (body.isRigid()) return &node.box[0];
+    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
+      MotionBox box = node.box[0].get(lane);
+      interpolate(node.box[1].get(lane), t, box);
+      scratch.set(lane, box);
+    }
+    return &scratch;
+  }
+
+  /// Tests the children of one side's part against the other side's part.
+  /// @param opened  the side whose children they are
+  void test(const Work& work, int opened, const MotionNode& node) {
+    Side& one = side_[1 - opened];
+    Side& many = side_[opened];
+    const BodyPart part = opened == 1 ? work.a : work.b;
+    const double dt = work.t1 - work.t0;
+    const MotionBox box[2] = {boxAt(one.body, part, work.t0),
+                              boxAt(one.body, part, work.t1)};
+    MotionBoxes scratch[2];
+    const MotionBoxes* boxes[2] = {boxesAt(many.body, node, work.t0, scratch[0]),
+                                   boxesAt(many.body, node, work.t1, scratch[1])};
+    const double share = 0.125 * dt * dt;
+    const double own =
+        share * accelerationOf(one.body.path().acceleration(work.t0, work.t1), box[0],
+                               box[1]) +
+        box[0].pad + box_margin_;
+    const AccelerationBound bound = many.body.path().acceleration(work.t0, work.t1);
+    double margin[MotionBoxes::kWidth] = {};
+    for (int lane = 0; lane < node.count; ++lane) {
+      const MotionBox begin = boxes[0]->get(lane), end = boxes[1]->get(lane);
+      margin[lane] = direction_bound_ *
+                     (own + share * accelerationOf(bound, begin, end) + begin.pad);
+    }
+    MeetingWindows windows;
+    motionKernels().meetingWindows(box, one.spanPoses(work.t0, work.t1), boxes,
+                                   many.spanPoses(work.t0, work.t1), margin, node.count,
+                                   windows);
+    counts_.box_tests += static_cast<std::uint64_t>(node.count);
+    for (unsigned left = windows.mask; left != 0; left &= left - 1) {
+      const int lane = __builtin_ctz(left);
+      Work child = work;
+      (opened == 1 ? child.b : child.a) = node.part[lane];
+      child.start = std::max(work.start, work.t0 + windows.lo[lane] * dt);
+      const double end = std::min(work.t1, work.t0 + windows.hi[lane] * dt);
+      if (child.start > end) continue;
+      setSpan(end, child);
+      push(child);
+    }
+  }
+
+  /// The span of a work, that of the work that it comes from, cut to [start, end], and to
+  /// points in time that come again.
+  static void setSpan(double end, Work& work) {
+    if (work.a.isTriangle() && work.b.isTriangle()) {
+      work.t0 = work.start;
+      work.t1 = end;
+      return;
+    }
+    const double unit = quarterUnit(end - work.start);
+    work.t0 = std::max(work.t0, std::floor(work.start / unit) * unit);
+    work.t1 = std::min(work.t1, std::ceil(end / unit) * unit);
+  }
+
+  void divide(Work& work) {
+    constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25;
+    work.t1 = std::min(work.t1, std::max(latest_, work.t0));
+    const double radius[2] = {boxAt(side_[0].body, work.a, work.t0).radius,
+                              boxAt(side_[1].body, work.b, work.t0).radius};
+    const double dt = work.t1 - work.t0;
+    if (dt > kShortest &&
+        deviation(0, work.a, work.t0, work.t1) + deviation(1, work.b, work.t0, work.t1) >
+            kMostDeviation * std::min(radius[0], radius[1]))
+      return halve(work);
+    const int opened =
+        work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
+    test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a));
+  }
+
+  void halve(const Work& work) {
+    const double middle = 0.5 * (work.t0 + work.t1);
+    Work half = work;
+    half.t1 = middle;
+    if (half.start < middle) testAlone(half);
+    half = work;
+    half.t0 = middle;
+    half.start = std::max(half.start, middle);
+    testAlone(half);
+  }
+
+  void advance(Work work) {
+    const BodyTriangle a = side_[0].body.triangle(~work.a.child),
+                       b = side_[1].body.triangle(~work.b.child);
+    const double end = std::min(work.t1, latest_);
+    TrianglePairMotion pair(side_[0].body.path(), a, side_[1].body.path(), b, work.start,
+                            end, tolerance_);
+    if (work.steps == 0) ++counts_.triangle_pairs;
+    const double last = options_.all || works_.empty() ? end : works_.front().start;
+    int left = options_.max_steps - work.steps;
+    const auto answer = pair.advance(work.start, last, left, counts_);
+    if (answer == TrianglePairMotion::Answer::kApart) return;
+    if (answer == TrianglePairMotion::Answer::kOpen && left > 0) {
+      work.steps = options_.max_steps - left;
+      return push(work);
+    }
+    MotionContact contact{};
+    contact.triangle[0] = a.index;
+    contact.triangle[1] = b.index;
+    contact.place[0] = ~work.a.child;
+    contact.place[1] = ~work.b.child;
+    contact.toc_lo = contact.toc_hi = work.start;
+    contact.certainty = MotionCertainty::kGivenUp;
+    contact.nearest = pair.nearest();
+    if (answer == TrianglePairMotion::Answer::kContact) {
+      contact.toc_hi = pair.proveContact(work.start, options_.toc_err);
+      contact.certainty = contact.toc_hi > contact.toc_lo
+                              ? MotionCertainty::kCrossing
+                              : MotionCertainty::kWithinTolerance;
+    }
+    contacts_.push_back(contact);
+    if (!options_.all) latest_ = std::min(latest_, contact.toc_lo);
+  }
+
+  /// Sorted; of each pair of triangles, which may have been met in several spans, the
+  /// first; of a first contact the first of all.
+  MotionAnswer finish() {
+    MotionAnswer answer;
+    answer.counts = counts_;
+    answer.touching = tolerance_.touching;
+    const auto isLess = [](const MotionContact& x, const MotionContact& y) {
+      if (x.triangle[0] != y.triangle[0]) return x.triangle[0] < y.triangle[0];
+      if (x.triangle[1] != y.triangle[1]) return x.triangle[1] < y.triangle[1];
+      return x.toc_lo < y.toc_lo;
+    };
+    const auto isSame = [](const MotionContact& x, const MotionContact& y) {
+      return x.triangle[0] == y.triangle[0] && x.triangle[1] == y.triangle[1];
+    };
+    std::sort(contacts_.begin(), contacts_.end(), isLess);
+    contacts_.erase(std::unique(contacts_.begin(), contacts_.end(), isSame),
+                    contacts_.end());
+    std::sort(contacts_.begin(), contacts_.end(), isEarlierContact);
+    if (!options_.all && contacts_.size() > 1) contacts_.resize(1);
+    answer.contacts = std::move(contacts_);
+    return answer;
+  }
+
+  Side side_[2];
+  const MotionQueryOptions& options_;
+  MotionTolerance tolerance_;
+  double box_margin_;
+  double direction_bound_;
+  /// Nothing later matters.
+  double latest_;
+  std::vector<Work> works_;
+  std::vector<MotionContact> contacts_;
+  MotionCounts counts_;
+};
+
+}  // namespace
+
+BodiesNearOrigin::BodiesNearOrigin(const MotionBody& from_a, const MotionBody& from_b)
+    : a(from_a), b(from_b) {
+  const Pose pose_a = a.path().pose(0), pose_b = b.path().pose(0);
+  double origin[3];
+  for (int k = 0; k < 3; ++k)
+    origin[k] = 0.5 * pose_a.translation[k] + 0.5 * pose_b.translation[k];
+  a.path().shift(origin);
+  b.path().shift(origin);
+}
+
+MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
+                          const MotionQueryOptions& options) {
+  const BodiesNearOrigin near(a, b);
+  return MotionTraversal(near.a, near.b, options).run();
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

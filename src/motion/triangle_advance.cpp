@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/triangle_advance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elementary/predicates.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUnitRounding = 0x1p-53;
+constexpr double kUpward = 1 + 0x1p-40;
+
+double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+
+double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
+
+Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
+
+/// Point of an edge pq and of an edge rs that are nearest to each other, as parts of the
+/// edges.
+void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, double& s,
+                    double& t) {
+  const Vec w = p - r;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w),
+               vw = dot(v, w);
+  const double area = uu * vv - uv * uv;
+  s = area > 0 ? clampedUnit((uv * vw - uw * vv) / area) : 0;
+  t = vv > 0 ? (uv * s + vw) / vv : 0;
+  if (t < 0 || t > 1) {
+    t = clampedUnit(t);
+    s = uu > 0 ? clampedUnit((uv * t - uw) / uu) : 0;
+  }
+}
+
+/// A vertex against the inside of a face.
+/// @param sign  1: the vertex is a's
+bool nearestOnFace(const Vec& p, const Vec (&f)[3], Vec& foot) {
+  const Vec n = cross(f[1] - f[0], f[2] - f[0]);
+  for (int k = 0; k < 3; ++k)
+    if (!(dot(cross(f[(k + 1) % 3] - f[k], p - f[k]), n) > 0)) return false;
+  const double square = dot(n, n);
+  if (!(square > 0)) return false;
+  foot = p - (dot(n, p - f[0]) / square) * n;
+  return true;
+}
+
+/// Gap along a direction: b's least minus a's greatest coordinate.
+double gapAlong(const Vec& n, const Vec (&a)[3], const Vec (&b)[3]) {
+  return std::min(std::min(dot(n, b[0]), dot(n, b[1])), dot(n, b[2])) -
+         std::max(std::max(dot(n, a[0]), dot(n, a[1])), dot(n, a[2]));
+}
+
+/// Keeps the direction, or its opposite, if it shows a larger gap than the best so far.
+void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
+                  double& gap) {
+  const double length = norm(d);
+  if (!(length > 0x1p-500)) return;
+  const Vec n = (1 / length) * d, opposite = -1. * n;
+  const double along = gapAlong(n, a, b), against = gapAlong(opposite, a, b);
+  if (along > gap) {
+    gap = along;
+    best = n;
+  }
+  if (against > gap) {
+    gap = against;
+    best = opposite;
+  }
+}
+
+Vec edge(const Vec (&x)[3], int k) { return x[(k + 1) % 3] - x[k]; }
+Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
+
+/// The part of a vector across another one.
+Vec across(const Vec& edge, const Vec& v) { return cross(edge, cross(v, edge)); }
+
+/// The direction in which nearest features are apart; less rounded than the line between
+/// their nearest points.
+Vec directionOf(const NearestFeatures& near, const Vec (&a)[3], const Vec (&b)[3]) {
+  switch (near.kind) {
+    case NearestFeatures::Kind::kVertexOfA:
+      return normal(b);
+    case NearestFeatures::Kind::kVertexOfB:
+      return normal(a);
+    default:
+      if (near.inside_a && near.inside_b) return cross(edge(a, near.a), edge(b, near.b));
+      if (near.inside_a) return across(edge(a, near.a), near.between);
+      if (near.inside_b) return across(edge(b, near.b), near.between);
+      return near.between;
+  }
+}
+
+}  // namespace
+
+NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
+  NearestFeatures best{};
+  best.square = HUGE_VAL;
+  const auto keep = [&best](const Vec& on_a, const Vec& on_b) {
+    const Vec between = on_b - on_a;
+    const double square = dot(between, between);
+    if (!(square < best.square)) return false;
+    best.square = square;
+    best.between = between;
+    best.point = on_a;
+    best.inside_a = best.inside_b = true;
+    return true;
+  };
+  Vec foot;
+  for (int k = 0; k < 3; ++k) {
+    if (nearestOnFace(a[k], b, foot) && keep(a[k], foot)) {
+      best.kind = NearestFeatures::Kind::kVertexOfA;
+      best.a = k;
+    }
+    if (nearestOnFace(b[k], a, foot) && keep(foot, b[k])) {
+      best.kind = NearestFeatures::Kind::kVertexOfB;
+      best.b = k;
+    }
+  }
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      double s, t;
+      nearestOnEdges(a[i], edge(a, i), b[j], edge(b, j), s, t);
+      if (!keep(lerp(a[i], a[(i + 1) % 3], s), lerp(b[j], b[(j + 1) % 3], t))) continue;
+      best.kind = NearestFeatures::Kind::kEdges;
+      best.a = i;
+      best.b = j;
+      best.inside_a = s > 0 && s < 1;
+      best.inside_b = t > 0 && t < 1;
+    }
+  return best;
+}
+
+// Distances are differences of two posed points, projected on a direction that is rounded
+// too, 16 u of their size more than the error of the points. A time is rounded by u. What
+// touches is found while the distance, with its error, is at most `touching`, and a step
+// may leave as much gap as the error: four times the error are in its reach.
+MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
+                                 double wanted_distance)
+    : distance(wanted_distance) {
+  const double speed = a.speed() + b.speed();
+  position =
+      (a.positionError() + b.positionError() +
+       kUnitRounding * (16 * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
+      kUpward;
+  rate = (a.rateError() + b.rateError() + 16 * kUnitRounding * speed) * kUpward;
+  touching = 4 * position;
+}
+
+TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTriangle& a,
+                                       const MotionPath& path_b, const BodyTriangle& b,
+                                       double t0, double t1,
+                                       const MotionTolerance& tolerance)
+    : path_{&path_a, &path_b},
+      triangle_{&a, &b},
+      t1_(t1),
+      tolerance_(tolerance),
+      acceleration_(0),
+      jerk_(0) {
+  for (int body = 0; body < 2; ++body) {
+    const AccelerationBound bound = path_[body]->acceleration(t0, t1);
+    double most = 0;
+    for (int k = 0; k < 3; ++k) {
+      const Vec from = triangle_[body]->corner[0][k], to = triangle_[body]->corner[1][k];
+      most = std::max(most, std::max(bound.of(from, 0), bound.of(to, 0)) +
+                                bound.per_displacement * norm(to - from));
+      if (norm(to - from) > 0 || !(bound.jerk < HUGE_VAL)) jerk_ = HUGE_VAL;
+    }
+    acceleration_ += most * kUpward;
+    if (jerk_ < HUGE_VAL) jerk_ += most * bound.jerk * kUpward;
+  }
+}
+
+TrianglePairMotion::State TrianglePairMotion::at(double t) const {
+  State state;
+  for (int body = 0; body < 2; ++body) {
+    const Pose pose = path_[body]->pose(t);
+    const PoseRate rate = path_[body]->rate(t);
+    for (int i = 0; i < 3; ++i) {
+      const Vec from = triangle_[body]->corner[0][i], to = triangle_[body]->corner[1][i];
+      const Vec x = lerp(from, to, t), moving = to - from;
+      const auto applied = [](const double(&m)[9], const Vec& y) -> Vec {
+        return {m[0] * y.x + m[1] * y.y + m[2] * y.z,
+                m[3] * y.x + m[4] * y.y + m[5] * y.z,
+                m[6] * y.x + m[7] * y.y + m[8] * y.z};
+      };
+      const double(&p)[3] = pose.translation;
+      const double(&v)[3] = rate.translation;
+      state.p[body][i] = applied(pose.rotation, x) + Vec{p[0], p[1], p[2]};
+      state.v[body][i] = applied(rate.rotation, x) + applied(pose.rotation, moving) +
+                         Vec{v[0], v[1], v[2]};
+    }
+  }
+  return state;
+}
+
+/// Positions and velocities of the corners along a direction, relative to a's first.
+struct TrianglePairMotion::Projection {
+  Projection(const State& state, const Vec& direction) {
+    for (int body = 0; body < 2; ++body)
+      for (int i = 0; i < 3; ++i) {
+        place[body][i] = dot(direction, state.p[body][i] - state.p[0][0]);
+        speed[body][i] = dot(direction, state.v[body][i]);
+      }
+  }
+
+  /// How far all nine pairs of vertices are provably further apart than the margin, at
+  /// most the longest step, if they are now; negative if they are not. The gap of a pair
+  /// is at least g + v h - M h^2 / 2, concave in h: positive at the end it is so before.
+  double advance(double margin, double rate_margin, double most_approach,
+                 double longest) const {
+    double h = longest;
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j) {
+        const double gap = place[1][j] - place[0][i] - margin,
+                     rate = speed[1][j] - speed[0][i] - rate_margin;
+        if (!(gap > 0)) return -1;
+        if (gap + h * (rate - 0.5 * most_approach * h) >= 0) continue;
+        // The positive root, in the form that does not cancel.
+        const double root = std::sqrt(rate * rate + 2 * most_approach * gap);
+        h = rate < 0 ? 2 * gap / (root - rate) : (root + rate) / most_approach;
+      }
+    return h;
+  }
+
+  double place[2][3];
+  double speed[2][3];
+};
+
+/// By how much at most the corners are accelerated towards each other at t along the
+/// direction; negative if away. Of turns.
+double TrianglePairMotion::greatestApproach(double t, const Vec& direction) const {
+  double most[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (int body = 0; body < 2; ++body) {
+    const double side = body == 0 ? 1 : -1;
+    const PoseRate bend = path_[body]->turnAccelerationAt(t);
+    const double(&r)[9] = bend.rotation;
+    // Turned into the frame of the body: three products a corner.
+    const Vec n = side * direction;
+    const Vec along = {r[0] * n.x + r[3] * n.y + r[6] * n.z,
+                       r[1] * n.x + r[4] * n.y + r[7] * n.z,
+                       r[2] * n.x + r[5] * n.y + r[8] * n.z};
+    const double all =
+        n.x * bend.translation[0] + n.y * bend.translation[1] + n.z * bend.translation[2];
+    for (int i = 0; i < 3; ++i)
+      most[body] = std::max(most[body], dot(along, triangle_[body]->corner[0][i]) + all);
+  }
+  return most[0] + most[1];
+}
+
+/// How far the direction keeps the triangles apart, at most to the end of the span;
+/// negative if it does not at all. The bound on the acceleration is that of all
+/// directions or, for a step of at most H, what it is now along this one and H times the
+/// third derivative: steps are made longer as long as that holds.
+double TrianglePairMotion::step(double t, const State& state,
+                                const Vec& direction) const {
+  const Projection along(state, direction);
+  const double margin = tolerance_.position + tolerance_.distance, longest = t1_ - t;
+  double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
+  if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
+  // What rounds in it is far less than this part of the bound.
+  const double approach = greatestApproach(t, direction) + 0x1p-40 * acceleration_;
+  const auto within = [&](double horizon) {
+    const double most = std::min(std::max(approach + jerk_ * horizon, 0.), acceleration_);
+    return along.advance(margin, tolerance_.rate, most, horizon);
+  };
+  best = std::max(best, within(longest));
+  // Doubled each time, until it is all of the span or the bound gives way.
+  while (best > 0 && 2 * best < longest) {
+    const double horizon = 2 * best, h = within(horizon);
+    best = std::max(best, h);
+    if (h < horizon) break;
+  }
+  return best;
+}
+
+TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, int& steps,
+                                                       MotionCounts& counts) {
+  while (true) {
+    const State state = at(t);
+    ++counts.steps;
+    nearest_ = nearestFeatures(state.p[0], state.p[1]);
+    const double distance = std::sqrt(nearest_.square);
+    if (distance + tolerance_.position <= tolerance_.distance + tolerance_.touching)
+      return Answer::kContact;
+    if (steps-- <= 0) return Answer::kOpen;
+    Vec direction = nearest_.between;
+    double gap = -HUGE_VAL;
+    tryDirection(directionOf(nearest_, state.p[0], state.p[1]), state.p[0], state.p[1],
+                 direction, gap);
+    if (!(gap > 0.5 * distance)) {
+      ++counts.all_directions;
+      tryDirection(nearest_.between, state.p[0], state.p[1], direction, gap);
+      // Of edges that are parallel.
+      for (int body = 0; body < 2; ++body)
+        tryDirection(across(edge(state.p[body], body == 0 ? nearest_.a : nearest_.b),
+                            nearest_.between),
+                     state.p[0], state.p[1], direction, gap);
+      tryDirection(normal(state.p[0]), state.p[0], state.p[1], direction, gap);
+      tryDirection(normal(state.p[1]), state.p[0], state.p[1], direction, gap);
+      for (int i = 0; i < 9; ++i)
+        tryDirection(cross(edge(state.p[0], i / 3), edge(state.p[1], i % 3)), state.p[0],
+                     state.p[1], direction, gap);
+    }
+    const double h = step(t, state, direction);
+    if (h >= t1_ - t) return Answer::kApart;
+    // Rounded down by more than the rounding of the step; that of the time is in the
+    // tolerance.
+    const double next = t + h * (1 - 0x1p-48);
+    if (!(next > t))
+      return t == 0 && isCrossingAt(state) ? Answer::kContact : Answer::kGivenUp;
+    t = next;
+    if (t > last) return Answer::kOpen;
+  }
+}
+
+/// Whether an edge of one passes through the other, of the points as they are.
+bool TrianglePairMotion::isCrossingAt(const State& state) {
+  double x[2][3][3];
+  for (int body = 0; body < 2; ++body)
+    for (int i = 0; i < 3; ++i) {
+      x[body][i][0] = state.p[body][i].x;
+      x[body][i][1] = state.p[body][i].y;
+      x[body][i][2] = state.p[body][i].z;
+    }
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 3; ++k)
+      if (isCrossing(x[body][k], x[body][(k + 1) % 3], x[1 - body][0], x[1 - body][1],
+                     x[1 - body][2]))
+        return true;
+  return false;
+}
+
+bool TrianglePairMotion::provesCrossing(const State& state) const {
+  double x[2][3][3];
+  double size = 0;
+  for (int body = 0; body < 2; ++body)
+    for (int i = 0; i < 3; ++i) {
+      const Vec from = state.p[body][i] - state.p[0][0];
+      x[body][i][0] = from.x;
+      x[body][i][1] = from.y;
+      x[body][i][2] = from.z;
+      size = std::max(size, norm(from));
+    }
+  // A volume u . (v x w) of vectors below 2 size: each of them is off by 2 errors at
+  // most, 3 * 2 e (2 size)^2, and what rounds is below that, since e is above 16 u size.
+  const double bound = 48 * tolerance_.position * size * size;
+  const auto volume = [](const double(&p)[3], const double(&a)[3], const double(&b)[3],
+                         const double(&c)[3]) {
+    const Vec o = {a[0], a[1], a[2]};
+    return dot(Vec{p[0], p[1], p[2]} - o,
+               cross(Vec{b[0], b[1], b[2]} - o, Vec{c[0], c[1], c[2]} - o));
+  };
+  const auto sign = [bound](double v) { return v > bound ? 1 : v < -bound ? -1 : 0; };
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 3; ++k) {
+      const auto& p = x[body][k];
+      const auto& q = x[body][(k + 1) % 3];
+      const auto& f = x[1 - body];
+      const int side = sign(volume(p, f[0], f[1], f[2]));
+      if (side == 0 || sign(volume(q, f[0], f[1], f[2])) != -side) continue;
+      const int turn = sign(volume(q, p, f[0], f[1]));
+      if (turn != 0 && sign(volume(q, p, f[1], f[2])) == turn &&
+          sign(volume(q, p, f[2], f[0])) == turn)
+        return true;
+    }
+  return false;
+}
+
+double TrianglePairMotion::proveContact(double t, double width) const {
+  const State state = at(t);
+  double speed = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
+  const double longest = std::min(width, 1 - t);
+  // Twice as long each time; fewer than 1100 doublings of a double.
+  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
+       h *= 2) {
+    const double time = std::min(t + std::min(h, longest), 1.);
+    if (!(time > t)) return t;
+    const State later = at(time);
+    if (tolerance_.distance > 0) {
+      const NearestFeatures near = nearestFeatures(later.p[0], later.p[1]);
+      if (std::sqrt(near.square) + tolerance_.position <= tolerance_.distance)
+        return time;
+    } else if (provesCrossing(later)) {
+      return time;
+    }
+    if (h >= longest) return t;
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion_benchmark.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/bv/utility.h"
+#include "fcl/math/motion/interp_motion.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "mesh_generators.h"
+#include "motion/motion_query.h"
+#include "reference_motion.h"
+#include "timing.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using namespace detail::deformable;
+
+struct Body {
+  explicit Body(const TestMesh& mesh) {
+    model.beginModel();
+    model.addSubModel(mesh.vertices, mesh.triangles);
+    model.endModel();
+  }
+  BVHModel<OBBRSS<double>> model;
+};
+
+/// One motion: a turns by 90 degrees in place, b rests at an offset.
+struct Scene {
+  ReferenceMotion turn;
+  Transform3<double> place{Transform3<double>::Identity()};
+  Vector3<double> direction;
+
+  void setOffset(double offset) { place.translation() = offset * direction; }
+};
+
+MotionAnswer firstContact(const Body& a, const Body& b, const Scene& scene) {
+  const auto framesOf = [](const Body& body) {
+    const double* points = body.model.vertices->data();
+    return VertexFrames(points, points,
+                        static_cast<std::size_t>(body.model.num_vertices));
+  };
+  const RigidTree tree_a(a.model, Pose()), tree_b(b.model, Pose());
+  return queryMotions(
+      MotionBody(tree_a, framesOf(a), a.model.tri_indices, scene.turn.path()),
+      MotionBody(tree_b, framesOf(b), b.model.tri_indices,
+                 MotionPath::still(toPose(scene.place))),
+      {});
+}
+
+/// FCL's samples; 2 without a contact.
+double sample(const Body& a, const Body& b, const Scene& scene, std::size_t samples) {
+  const InterpMotion<double> motion(
+      scene.turn.beginning.linear(), scene.turn.beginning.translation(),
+      scene.turn.end.linear(), scene.turn.end.translation(), Vector3<double>::Zero());
+  const InterpMotion<double> rest(scene.place.linear(), scene.place.translation(),
+                                  scene.place.linear(), scene.place.translation(),
+                                  Vector3<double>::Zero());
+  ContinuousCollisionRequest<double> request(samples);
+  request.ccd_solver_type = CCDC_NAIVE;
+  ContinuousCollisionResult<double> result;
+  continuousCollide<double>(&a.model, &motion, &b.model, &rest, request, result);
+  return result.is_collide ? result.time_of_contact : 2;
+}
+
+Scene makeScene(std::uint64_t seed, const Body& a, const Body& b, double gap) {
+  Random random(seed);
+  Scene scene;
+  scene.turn.beginning.linear() = randomRotation(random);
+  scene.turn.turn(randomDirection(random), M_PI / 2);
+  scene.place.linear() = randomRotation(random);
+  scene.direction = randomDirection(random);
+  double lo = 0, hi = 3;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (lo + hi);
+    scene.setOffset(middle);
+    (firstContact(a, b, scene).contacts.empty() ? hi : lo) = middle;
+  }
+  scene.setOffset((gap < 0 ? lo : hi) + gap);
+  return scene;
+}
+
+double medianOf(std::vector<double> x) {
+  std::sort(x.begin(), x.end());
+  return 0.5 * (x[(x.size() - 1) / 2] + x[x.size() / 2]);
+}
+
+}  // namespace
+
+void benchmarkMotions(int repeats) {
+  TestMesh bumpy = makeUvSphere(224, 225, 1), other = makeGeodesicSphere(64, 1);
+  for (Vector3<double>& p : bumpy.vertices) {
+    p *= 1 + 0.02 * std::sin(9 * p[0]) * std::sin(7 * p[1]);
+    p = Vector3<double>(p[0], 0.7 * p[1], 0.5 * p[2]);
+  }
+  for (Vector3<double>& p : other.vertices) {
+    p *= 1 + 0.02 * std::sin(8 * p[0]) * std::sin(6 * p[2]);
+    p = Vector3<double>(0.6 * p[0], p[1], 0.8 * p[2]);
+  }
+  const Body a(bumpy), b(other);
+  std::printf(
+      "gap (negative: depth),motions,contacts,given up,ms,FCL naive 1000 ms,"
+      "FCL missed,FCL late by\n");
+  for (const double gap : {0.3, 0.1, 1e-2, 1e-4, -1e-3, -3e-2}) {
+    constexpr int kMotions = 12;
+    std::vector<double> ours, fcl;
+    int contacts = 0, given_up = 0, missed = 0;
+    double late = 0;
+    for (int i = 0; i < kMotions; ++i) {
+      const Scene scene = makeScene(100 + static_cast<std::uint64_t>(i), a, b, gap);
+      MotionAnswer answer;
+      ours.push_back(
+          leastMilliseconds(repeats, [&] { answer = firstContact(a, b, scene); }));
+      double sampled = 2;
+      fcl.push_back(leastMilliseconds(1, [&] { sampled = sample(a, b, scene, 1000); }));
+      if (answer.contacts.empty()) continue;
+      ++contacts;
+      given_up += answer.contacts[0].certainty == MotionCertainty::kGivenUp;
+      missed += sampled > 1;
+      if (sampled <= 1) late = std::max(late, sampled - answer.contacts[0].toc_lo);
+    }
+    std::printf("%g,%d,%d,%d,%.4f,%.4f,%d,%.2g\n", gap, kMotions, contacts, given_up,
+                medianOf(ours), medianOf(fcl), missed, late);
+  }
+}
+
+}  // namespace test
+}  // namespace fcl

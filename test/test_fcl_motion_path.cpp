@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Paths of motions against their formulas, and the bounds that queries rely on.
+#include "motion/motion_path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fcl/common/exception.h"
+#include "motion/sine.h"
+#include "reference_motion.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using namespace detail::deformable;
+
+constexpr double kUnitRounding = 0x1p-53;
+
+Vector3<double> applied(const Pose& pose, const Vector3<double>& x) {
+  Vector3<double> out;
+  for (int k = 0; k < 3; ++k)
+    out[k] = pose.rotation[3 * k] * x[0] + pose.rotation[3 * k + 1] * x[1] +
+             pose.rotation[3 * k + 2] * x[2] + pose.translation[k];
+  return out;
+}
+
+Vector3<double> applied(const PoseRate& rate, const Vector3<double>& x) {
+  Pose pose;
+  std::copy(rate.rotation, rate.rotation + 9, pose.rotation);
+  std::copy(rate.translation, rate.translation + 3, pose.translation);
+  return applied(pose, x);
+}
+
+Vec toVec(const Vector3<double>& x) { return {x[0], x[1], x[2]}; }
+
+TEST(FCL_MOTION_PATH, sineAndCosine) {
+  Random random(1);
+  Real worst = 0, worst_relative = 0;
+  for (int i = 0; i < 200000; ++i) {
+    const double range = i % 2 ? 0x1p20 : std::ldexp(1., static_cast<int>(i % 50) - 40);
+    const double x = random.uniform(-range, range);
+    const SineCosine at = sineCosine(x);
+    const Real s = std::sin(Real{x}), c = std::cos(Real{x});
+    worst = std::max({worst, std::abs(at.sine - s), std::abs(at.cosine - c)});
+    if (std::abs(x) < 0.785)
+      worst_relative = std::max(worst_relative, std::abs((at.sine - s) / s));
+    // Of an angle in the first quarter.
+    const double angle = std::abs(std::remainder(x, 1.5));
+    const SineCosine of = sineCosine(angle);
+    ASSERT_NEAR(angleOf(of.cosine, of.sine), angle, 8 * kUnitRounding);
+  }
+  EXPECT_LE(worst, 4 * kUnitRounding);
+  EXPECT_LE(worst_relative, 4 * kUnitRounding);
+}
+
+// Positions and velocities within the bounds of what is the formula's.
+TEST(FCL_MOTION_PATH, staysNearItsFormula) {
+  Random random(2);
+  double worst = 0, worst_rate = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const ReferenceMotion motion = randomMotion(random, 1);
+    const MotionPath path = motion.path();
+    const Vector3<double> x = random.point(1);
+    const double t = random.uniform(0, 1);
+    const RealVector expected = motion.at(t) * x;
+    const double error =
+        static_cast<double>((applied(path.pose(t), x).cast<Real>() - expected).norm());
+    worst = std::max(worst, error / path.positionError(x.norm()));
+    // Long double leaves 1e-9 of a difference quotient of third order.
+    const Real h = 1e-5L;
+    const RealVector rate = (8 * (motion.at(t + h) * x - motion.at(t - h) * x) -
+                             (motion.at(t + 2 * h) * x - motion.at(t - 2 * h) * x)) /
+                            (12 * h);
+    worst_rate = std::max(
+        worst_rate,
+        static_cast<double>((applied(path.rate(t), x).cast<Real>() - rate).norm()));
+    ASSERT_LE(applied(path.rate(t), x).norm(), path.speed(x.norm()));
+  }
+  EXPECT_LE(worst, 1);
+  EXPECT_GE(worst, 0.01) << "a bound far too wide";
+  EXPECT_LE(worst_rate, 1e-11);
+}
+
+TEST(FCL_MOTION_PATH, reachesItsEnds) {
+  Random random(3);
+  for (int i = 0; i < 20000; ++i) {
+    ReferenceMotion motion = randomMotion(random, 1);
+    if (motion.kind == ReferenceMotion::Kind::kSpline) continue;
+    if (i % 5 == 0) motion.turn(randomDirection(random), i % 2 ? M_PI : 3.1415926);
+    const MotionPath path = motion.path();
+    const Vector3<double> x = random.point(1);
+    const double error = path.positionError(x.norm());
+    EXPECT_LE((applied(path.pose(0), x) - motion.beginning * x).norm(), error);
+    EXPECT_LE((applied(path.pose(1), x) - motion.end * x).norm(), error);
+    EXPECT_LT(error, 1e-13);
+  }
+}
+
+/// Samples spans of a path: how far a point is from the straight line between its ends,
+/// as part of M s (1 - s) dt^2 / 2.
+/// @param x0, x1  where it is in the body
+double worstDeviation(Random& random, const MotionPath& path, const Vector3<double>& x0,
+                      const Vector3<double>& x1, double acceleration, double t0,
+                      double t1) {
+  const auto at = [&](double t) {
+    return applied(path.pose(t), Vector3<double>((1 - t) * x0 + t * x1));
+  };
+  const double s = random.uniform(0.05, 0.95), dt = t1 - t0;
+  const Vector3<double> from = (1 - s) * at(t0) + s * at(t1) - at(t0 + s * dt);
+  const double rounding = 8 * path.positionError(2);
+  return (from.norm() - rounding) / (0.5 * acceleration * s * (1 - s) * dt * dt + 1e-300);
+}
+
+TEST(FCL_MOTION_PATH, boundsTheAcceleration) {
+  Random random(4);
+  double worst[2] = {0, 0};
+  for (int i = 0; i < 100000; ++i) {
+    const ReferenceMotion motion = randomMotion(random, 1);
+    const MotionPath path = motion.path();
+    const double t0 = random.uniform(0, 0.9),
+                 t1 = t0 + (1 - t0) * std::exp2(-random.uniform(0, 8));
+    const AccelerationBound bound = path.acceleration(t0, t1);
+    const Vector3<double> center = random.point(1);
+    const double radius = random.uniform(0, 0.5);
+    const Vector3<double> x = center + radius * randomDirection(random),
+                          to = x + random.point(0.5);
+    worst[0] = std::max(
+        worst[0],
+        worstDeviation(random, path, x, x, bound.of(toVec(center), radius), t0, t1));
+    const double moving = std::max(bound.of(toVec(x), 0), bound.of(toVec(to), 0)) +
+                          bound.per_displacement * (to - x).norm();
+    worst[1] = std::max(worst[1], worstDeviation(random, path, x, to, moving, t0, t1));
+  }
+  for (const double ratio : worst) {
+    EXPECT_LE(ratio, 1);
+    EXPECT_GE(ratio, 0.9) << "a bound that is never nearly reached";
+  }
+}
+
+TEST(FCL_MOTION_PATH, farFromTheOrigin) {
+  Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    ReferenceMotion motion = randomMotion(random, 1);
+    const Vector3<double> origin(1e6, -3e5, 7e5);
+    motion.move(origin);
+    motion.origin = origin;
+    MotionPath path = motion.path();
+    path.shift({origin[0], origin[1], origin[2]});
+    const Vector3<double> x = random.point(1);
+    const double t = random.uniform(0, 1);
+    EXPECT_LE((applied(path.pose(t), x).cast<Real>() - motion.at(t) * x).norm(),
+              path.positionError(x.norm()));
+    EXPECT_LT(path.positionError(x.norm()), 1e-13);
+  }
+}
+
+TEST(FCL_MOTION_PATH, refusesWildSplines) {
+  double points[4][3] = {}, wild[4][3] = {};
+  wild[2][1] = 2e6;
+  EXPECT_THROW(MotionPath::spline(points, wild), Exception);
+  wild[2][1] = std::nan("");
+  EXPECT_THROW(MotionPath::spline(points, wild), Exception);
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
