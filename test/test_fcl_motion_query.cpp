@@ -368,7 +368,7 @@ std::vector<std::uint32_t> nearestName(const Body& a, const Body& b,
                  &y = b.mesh.triangles[contact.triangle[1]];
   const NearestFeatures& near = contact.nearest;
   const auto id = [](const Triangle& t, int k) {
-    return static_cast<std::uint32_t>(t[static_cast<std::size_t>(k % 3)]);
+    return static_cast<std::uint32_t>(t[k % 3]);
   };
   if (near.kind == NearestFeatures::Kind::kVertexOfA)
     return nameOf(true, true, {id(x, near.a), id(y, 0), id(y, 1), id(y, 2)});
