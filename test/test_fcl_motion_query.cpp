@@ -6,12 +6,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
+#include <vector>
 
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/collision.h"
+#include "motion/motion_contacts.h"
 #include "reference_motion.h"
 #include "test_models.h"
 
@@ -30,16 +34,23 @@ struct Body {
   std::shared_ptr<Model> model;
 };
 
+/// A body on its path.
+struct MovingBody {
+  MovingBody(const Body& from, const MotionPath& path)
+      : tree(*from.model, Pose()),
+        body(tree,
+             VertexFrames(from.model->vertices->data(), from.model->vertices->data(),
+                          from.mesh.vertices.size()),
+             from.model->tri_indices, path) {}
+  MovingBody(const MovingBody&) = delete;
+  MovingBody& operator=(const MovingBody&) = delete;
+  RigidTree tree;
+  MotionBody body;
+};
+
 MotionAnswer ask(const Body& a, const MotionPath& path_a, const Body& b,
                  const MotionPath& path_b, const MotionQueryOptions& options = {}) {
-  const auto framesOf = [](const Body& body) {
-    const double* points = body.model->vertices->data();
-    return VertexFrames(points, points, body.mesh.vertices.size());
-  };
-  const RigidTree tree_a(*a.model, Pose()), tree_b(*b.model, Pose());
-  return queryMotions(MotionBody(tree_a, framesOf(a), a.model->tri_indices, path_a),
-                      MotionBody(tree_b, framesOf(b), b.model->tri_indices, path_b),
-                      options);
+  return queryMotions(MovingBody(a, path_a).body, MovingBody(b, path_b).body, options);
 }
 
 double timeOf(const MotionAnswer& answer) {
@@ -339,6 +350,94 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
     EXPECT_EQ(found, expected);
   }
   EXPECT_GE(contacts, 100u);
+}
+
+/// Two features as sets of ids, each sorted, with a's first.
+std::vector<std::uint32_t> nameOf(bool is_vertex_face, bool first_on_a,
+                                  const std::uint32_t (&ids)[4]) {
+  std::vector<std::uint32_t> name(ids, ids + 4);
+  std::sort(name.begin() + (is_vertex_face ? 1 : 2), name.end());
+  if (!is_vertex_face) std::sort(name.begin(), name.begin() + 2);
+  name.push_back(is_vertex_face + 2 * first_on_a);
+  return name;
+}
+
+std::vector<std::uint32_t> nearestName(const Body& a, const Body& b,
+                                       const MotionContact& contact) {
+  const Triangle &x = a.mesh.triangles[contact.triangle[0]],
+                 &y = b.mesh.triangles[contact.triangle[1]];
+  const NearestFeatures& near = contact.nearest;
+  const auto id = [](const Triangle& t, int k) {
+    return static_cast<std::uint32_t>(t[k % 3]);
+  };
+  if (near.kind == NearestFeatures::Kind::kVertexOfA)
+    return nameOf(true, true, {id(x, near.a), id(y, 0), id(y, 1), id(y, 2)});
+  if (near.kind == NearestFeatures::Kind::kVertexOfB)
+    return nameOf(true, false, {id(y, near.b), id(x, 0), id(x, 1), id(x, 2)});
+  return nameOf(false, true,
+                {id(x, near.a), id(x, near.a + 1), id(y, near.b), id(y, near.b + 1)});
+}
+
+/// Distance of the features of a contact when it begins, by the formulas of the motions.
+double distanceOf(const FeatureContact& contact, const Body& a,
+                  const ReferenceMotion& motion_a, const Body& b,
+                  const ReferenceMotion& motion_b) {
+  const bool vf = contact.kind == FeatureKind::kVertexFace;
+  const int num_first = vf ? 1 : 2;
+  RealVector x[4];
+  for (int i = 0; i < 4; ++i) {
+    const bool on_a = (i < num_first) == contact.first_on_a;
+    const Vector3<double>& p = (on_a ? a : b).mesh.vertices[contact.vertices[i]];
+    x[i] = (on_a ? motion_a : motion_b).at(contact.toc_lo) * p;
+  }
+  const auto corner = [&](int i) -> Vec {
+    const Vector3<double> from = (x[i] - x[0]).cast<double>();
+    return {from[0], from[1], from[2]};
+  };
+  const int second = num_first - 1;
+  const Vec first[3] = {corner(0), corner(second), corner(second)},
+            other[3] = {corner(num_first), corner(num_first + 1), corner(3)};
+  return std::sqrt(nearestFeatures(first, other).square);
+}
+
+// Each pair of features once; those that are nearest when their triangles come together
+// are among them, and all are as near as promised.
+TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
+  const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
+  MotionQueryOptions all;
+  all.all = true;
+  std::size_t contacts = 0, nearest = 0;
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    Random random(9000 + i);
+    const ReferenceMotion motion_a = randomMotion(random, 0.5),
+                          motion_b = randomMotion(random, 0.5);
+    const MotionAnswer triangles = ask(a, motion_a.path(), b, motion_b.path(), all);
+    const MovingBody moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
+    const QueryAnswer answer = queryMotionContacts(moving_a.body, moving_b.body, {});
+    std::map<std::vector<std::uint32_t>, double> times;
+    for (const FeatureContact& contact : answer.contacts) {
+      const auto name = nameOf(contact.kind == FeatureKind::kVertexFace,
+                               contact.first_on_a, contact.vertices);
+      EXPECT_TRUE(times.emplace(name, contact.toc_lo).second);
+      if (contact.toc_lo > 0) {
+        EXPECT_LE(distanceOf(contact, a, motion_a, b, motion_b), triangles.touching);
+      }
+    }
+    contacts += times.size();
+    for (const MotionContact& contact : triangles.contacts) {
+      if (contact.toc_lo == 0) continue;
+      const auto found = times.find(nearestName(a, b, contact));
+      ASSERT_NE(found, times.end());
+      EXPECT_NEAR(found->second, contact.toc_lo, 1e-9);
+      ++nearest;
+    }
+    if (!answer.contacts.empty() && !answer.has_crossing) {
+      EXPECT_NEAR(answer.contacts.front().toc_lo, timeOf(triangles), 1e-9);
+    }
+  }
+  EXPECT_GE(contacts, 1000u);
+  EXPECT_GE(nearest, 1000u);
 }
 
 /// A mesh that deforms in a frame that moves.

@@ -171,7 +171,7 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
   out.index = place;
   out.owned = kOwnsAll;
   for (int k = 0; k < 3; ++k) {
-    const std::size_t id = triangles_[place][static_cast<std::size_t>(k)];
+    const std::size_t id = triangles_[place][k];
     if (id >= frames_.size())
       throw Exception("triangle " + std::to_string(place) +
                       " refers to a vertex that is not there");

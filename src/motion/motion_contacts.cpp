@@ -129,6 +129,11 @@ class FeatureContacts {
       contact.vertices[i] =
           static_cast<std::uint32_t>(place < 3 ? a.vertex[place] : b.vertex[place - 3]);
     }
+    // An edge is one, whichever of its triangles it is met in.
+    if (pair.kind == FeatureKind::kEdgeEdge)
+      for (int i = 0; i < 4; i += 2)
+        if (contact.vertices[i] > contact.vertices[i + 1])
+          std::swap(contact.vertices[i], contact.vertices[i + 1]);
     contact.triangles[0] = a.index;
     contact.triangles[1] = b.index;
     contact.toc_lo = lo;

@@ -21,15 +21,20 @@ double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
 
 /// Point of an edge pq and of an edge rs that are nearest to each other, as parts of the
-/// edges.
+/// edges, which may be points.
 void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, double& s,
                     double& t) {
   const Vec w = p - r;
   const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w),
                vw = dot(v, w);
+  if (!(vv > 0)) {
+    t = 0;
+    s = uu > 0 ? clampedUnit(-uw / uu) : 0;
+    return;
+  }
   const double area = uu * vv - uv * uv;
   s = area > 0 ? clampedUnit((uv * vw - uw * vv) / area) : 0;
-  t = vv > 0 ? (uv * s + vw) / vv : 0;
+  t = (uv * s + vw) / vv;
   if (t < 0 || t > 1) {
     t = clampedUnit(t);
     s = uu > 0 ? clampedUnit((uv * t - uw) / uu) : 0;
@@ -37,7 +42,6 @@ void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, doub
 }
 
 /// A vertex against the inside of a face.
-/// @param sign  1: the vertex is a's
 bool nearestOnFace(const Vec& p, const Vec (&f)[3], Vec& foot) {
   const Vec n = cross(f[1] - f[0], f[2] - f[0]);
   for (int k = 0; k < 3; ++k)

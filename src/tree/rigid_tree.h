@@ -63,8 +63,8 @@ class RigidTree {
   }
   double slack() const { return volumes_.slack; }
 
-  /// @brief The left child of one of FCL's nodes, whose sibling follows it; ~triangle of a
-  /// leaf.
+  /// @brief The left child of one of FCL's nodes, whose sibling follows it; ~triangle of
+  /// a leaf.
   int link(int node) const;
 
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.

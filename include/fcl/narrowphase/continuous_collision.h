@@ -21,14 +21,15 @@ namespace fcl {
 /// DeformableBVHModel, or a BVHModel in FCL's updated state), whatever they do. A rigid
 /// mesh that follows a class of motion of the program's own, and what it is tested
 /// against, reach FCL's own function, as do shapes, octrees and point clouds. A
-/// DeformableBVHModel whose frames are equal is a rigid mesh. FCL takes a mesh as it is in
-/// the current frame and knows nothing of the previous one: a mesh that deforms stands
+/// DeformableBVHModel whose frames are equal is a rigid mesh. FCL takes a mesh as it is
+/// in the current frame and knows nothing of the previous one: a mesh that deforms stands
 /// still where FCL answers.
 ///
-/// Paths are the real-number evaluation of what was given, in double. A contact is a VF or
-/// EE pair of closed features that touch at some t in [0, 1] (an edge of a vertex with
+/// Paths are the real-number evaluation of what was given, in double. A contact is a VF
+/// or EE pair of closed features that touch at some t in [0, 1] (an edge of a vertex with
 /// itself is none: its triangle has that vertex).
-/// - Straight: of meshes whose rotation is constant (up to a few roundings), and of a mesh
+/// - Straight: of meshes whose rotation is constant (up to a few roundings), and of a
+/// mesh
 ///   that deforms between two transforms. A vertex goes from tf_beg * (previous frame) to
 ///   tf_end * (current frame). When both meshes go straight the answer is exact.
 /// - Turning: a rigid mesh whose end transforms have different rotations. It turns at
@@ -45,8 +46,8 @@ namespace fcl {
 /// When a mesh turns or bends, contact means to come within a tolerance tau, some hundred
 /// units in the last place of the coordinates, relative to the middle between both meshes
 /// (doc/numerics.md): no contact is missed, no time is late, and what is reported comes
-/// within tau of touching. Surfaces within tau at t = 0 give the time 0. A pair that slides
-/// for more than 10,000 steps without a proof is reported from then on.
+/// within tau of touching. Surfaces within tau at t = 0 give the time 0. A pair that
+/// slides for more than 10,000 steps without a proof is reported from then on.
 ///
 /// Neither request.ccd_solver_type nor num_max_iterations plays a part.
 ///

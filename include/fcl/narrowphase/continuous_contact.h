@@ -49,8 +49,8 @@ struct ContinuousContact {
   /// wider than the request's toc_err (or a few units in the last place), and [0, 0] for
   /// a contact that is there at t = 0. Where a mesh turns: the features come within the
   /// tolerance of the query (continuous_collision.h) at toc_lo, and do not touch before;
-  /// at toc_hi the two triangles provably cross, or toc_hi is toc_lo where no such time is
-  /// found within toc_err, as when they only graze.
+  /// at toc_hi the two triangles provably cross, or toc_hi is toc_lo where no such time
+  /// is found within toc_err, as when they only graze.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -98,10 +98,9 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief Threads that the query may use: 1, the caller's own and no task (the default,
   /// as in FCL, whose callers run their own queries side by side); n, at most n; 0, as
-  /// many as the oneTBB task arena around has; not negative. Meshes of which one turns are
-  /// tested by one thread. The answer does not depend
-  /// on it; how much was pruned before a first contact was found, which StageCounts tell,
-  /// does.
+  /// many as the oneTBB task arena around has; not negative. Meshes of which one turns
+  /// are tested by one thread. The answer does not depend on it; how much was pruned
+  /// before a first contact was found, which StageCounts tell, does.
   int num_threads{1};
 };
 
