@@ -179,17 +179,16 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
     const std::string name = fs::path(word).filename().string();
     std::error_code error;
     std::vector<std::string> found;
+    const bool is_there = fs::exists(word, error);
     if (fs::is_directory(word, error)) {
       found = select(word, meshesIn(word), range);
-    } else if (fs::exists(word, error)) {
-      frames.push_back(word);
-      continue;
-    } else if (parseNumbered(name)) {
+    } else if (!is_there && parseNumbered(name)) {
       found = numbersOf(word, range);
-    } else if (name.find_first_of("*?[") != std::string::npos) {
+    } else if (!is_there && name.find_first_of("*?[") != std::string::npos) {
       found = select(word, matchesOf(word), range);
     } else {
-      frames.push_back(word);  // whoever opens it says why it cannot
+      // A file, or nothing: whoever opens it says why it cannot.
+      frames.push_back(word);
       continue;
     }
     range_is_used = true;
