@@ -63,7 +63,6 @@ HWY_INLINE Lanes<T, N> min(const Lanes<T, N>& a, const Lanes<T, N>& b) {
 }
 
 using Floats = Lanes<float, kEight>;
-using FloatMask = LaneMask<float, kEight>;
 using HalfAxes = Lanes<float, 16>;
 using Doubles = Lanes<double, kEight>;
 using DoubleMask = LaneMask<double, kEight>;

@@ -33,10 +33,6 @@ struct FeatureIds {
   std::int32_t triangles[2];
 };
 
-inline bool hasVertex(const MeshTriangle& t, std::uint32_t v) {
-  return t.v[0] == v || t.v[1] == v || t.v[2] == v;
-}
-
 /// @brief The pairs of features of two triangles a and b, a bit each: bit k, vertex k of
 /// a and the face of b; 3 + k, vertex k of b and the face of a; 6 + 3 i + j, edge i of a
 /// and edge j of b.
