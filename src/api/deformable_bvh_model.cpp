@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "api/coordinate_arrays.h"
+#include "api/model_instances.h"
 #include "api/per_thread_fitting.h"
 #include "fcl/common/exception.h"
 #include "mesh/mesh_topology.h"
@@ -300,17 +301,6 @@ void DeformableBVHModel<BV>::fitPerThread() {
   this->bv_fitter = std::make_shared<detail::PerThreadFitter<BV>>();
 }
 
-#define FCL_CCD_INSTANTIATE(S)                    \
-  template class DeformableBVHModel<AABB<S>>;     \
-  template class DeformableBVHModel<OBB<S>>;      \
-  template class DeformableBVHModel<RSS<S>>;      \
-  template class DeformableBVHModel<kIOS<S>>;     \
-  template class DeformableBVHModel<OBBRSS<S>>;   \
-  template class DeformableBVHModel<KDOP<S, 16>>; \
-  template class DeformableBVHModel<KDOP<S, 18>>; \
-  template class DeformableBVHModel<KDOP<S, 24>>;
-FCL_CCD_INSTANTIATE(double)
-FCL_CCD_INSTANTIATE(float)
-#undef FCL_CCD_INSTANTIATE
+FCL_CCD_INSTANTIATE_MODELS
 
 }  // namespace fcl

@@ -2,6 +2,7 @@
 //
 // How a model is built and brought to its next frames or triangles; its states and the
 // checks of what it is given are in deformable_bvh_model.cpp.
+#include "api/model_instances.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
 #include <algorithm>
@@ -376,17 +377,6 @@ int DeformableBVHModel<BV>::updateFclTree() {
   return accept();
 }
 
-#define FCL_CCD_INSTANTIATE(S)                    \
-  template class DeformableBVHModel<AABB<S>>;     \
-  template class DeformableBVHModel<OBB<S>>;      \
-  template class DeformableBVHModel<RSS<S>>;      \
-  template class DeformableBVHModel<kIOS<S>>;     \
-  template class DeformableBVHModel<OBBRSS<S>>;   \
-  template class DeformableBVHModel<KDOP<S, 16>>; \
-  template class DeformableBVHModel<KDOP<S, 18>>; \
-  template class DeformableBVHModel<KDOP<S, 24>>;
-FCL_CCD_INSTANTIATE(double)
-FCL_CCD_INSTANTIATE(float)
-#undef FCL_CCD_INSTANTIATE
+FCL_CCD_INSTANTIATE_MODELS
 
 }  // namespace fcl
