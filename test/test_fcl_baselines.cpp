@@ -19,16 +19,17 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePoints;
+using fcl::ContinuousContactKind;
 
-bool touchExactly(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
-                  const CoplanarityCubic<double>&) {
+bool touchExactly(ContinuousContactKind kind, const FeaturePoints& x,
+                  const RelativePair<double>&, const CoplanarityCubic<double>&) {
   return doTouch(kind, x);
 }
 
 /// Of a resolution at which it finds exactly what touches in general position.
-bool touchFinely(FeatureKind, const FeaturePoints&, const RelativePair<double>& pair,
+bool touchFinely(ContinuousContactKind, const FeaturePoints&,
+                 const RelativePair<double>& pair,
                  const CoplanarityCubic<double>& cubic) {
   return firstTimeByIntervalNewton(pair, cubic, 1e-9, 1e-9) >= 0;
 }

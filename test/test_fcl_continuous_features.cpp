@@ -168,9 +168,8 @@ TYPED_TEST(ContinuousFeatureTest, TheCallersModeDoesNotMatter) {
         const double* c = end ? x.t1 : x.t0;
         p.emplace_back(static_cast<S>(c[0]), static_cast<S>(c[1]), static_cast<S>(c[2]));
       }
-    const auto test = pair.kind == detail::deformable::FeatureKind::kVertexFace
-                          ? vertexFace<S>
-                          : edgeEdge<S>;
+    const auto test = pair.kind == fcl::ContinuousContactKind::kVertexFace ? vertexFace<S>
+                                                                           : edgeEdge<S>;
     ContinuousFeatureTestResult<S> result;
     int mode_after = 0;
     {

@@ -43,7 +43,7 @@ using test::TestMesh;
 
 using Ids = std::vector<std::uint32_t>;
 /// Kind, whether the vertex of a VF pair is mesh b's, ids of both features.
-using PairName = std::tuple<FeatureKind, bool, Ids, Ids>;
+using PairName = std::tuple<ContinuousContactKind, bool, Ids, Ids>;
 using Contacts = std::map<PairName, ElementaryResult>;
 
 struct Truth {
@@ -100,21 +100,23 @@ class BruteForce {
  public:
   BruteForce(const Body& a, const Body& b)
       : a_(a), b_(b), self_(&a == &b), features_a_(a), features_b_(b) {
-    test(FeatureKind::kEdgeEdge, features_a_.edges, features_b_.edges, false);
-    test(FeatureKind::kVertexFace, features_a_.vertices, features_b_.faces, false);
+    test(ContinuousContactKind::kEdgeEdge, features_a_.edges, features_b_.edges, false);
+    test(ContinuousContactKind::kVertexFace, features_a_.vertices, features_b_.faces,
+         false);
     crossings(a_, features_a_.edges, b_, features_b_.faces);
     if (self_) return;
-    test(FeatureKind::kVertexFace, features_b_.vertices, features_a_.faces, true);
+    test(ContinuousContactKind::kVertexFace, features_b_.vertices, features_a_.faces,
+         true);
     crossings(b_, features_b_.edges, a_, features_a_.faces);
   }
   const Truth& truth() const { return truth_; }
 
  private:
-  void test(FeatureKind kind, const std::set<Ids>& xs, const std::set<Ids>& ys,
+  void test(ContinuousContactKind kind, const std::set<Ids>& xs, const std::set<Ids>& ys,
             bool first_on_b) {
     for (const Ids& x : xs)
       for (const Ids& y : ys) {
-        if (kind == FeatureKind::kEdgeEdge && self_ && y < x) continue;
+        if (kind == ContinuousContactKind::kEdgeEdge && self_ && y < x) continue;
         if (self_ && doShare(x, y)) continue;
         std::vector<VertexPath> p = paths(first_on_b ? b_ : a_, x);
         for (const VertexPath& q : paths(first_on_b ? a_ : b_, y)) p.push_back(q);
@@ -169,7 +171,7 @@ class BruteForce {
 
 PairName nameOf(const FeatureContact& c, bool self) {
   const std::uint32_t* v = c.vertices;
-  if (c.kind == FeatureKind::kVertexFace)
+  if (c.kind == ContinuousContactKind::kVertexFace)
     return {c.kind, !c.first_on_a, {v[0]}, sorted({v[1], v[2], v[3]})};
   Ids x = sorted({v[0], v[1]}), y = sorted({v[2], v[3]});
   if (self && y < x) std::swap(x, y);
@@ -200,7 +202,8 @@ void expectTrueContacts(const QueryAnswer& answer, const Truth& truth, const Bod
     const Ids s = a.ids(static_cast<std::size_t>(c.triangles[0]));
     const Ids t = b.ids(static_cast<std::size_t>(c.triangles[1]));
     EXPECT_TRUE((hasAll(s, first_on_b ? y : x) && hasAll(t, first_on_b ? x : y)) ||
-                (self && kind == FeatureKind::kEdgeEdge && hasAll(s, y) && hasAll(t, x)));
+                (self && kind == ContinuousContactKind::kEdgeEdge && hasAll(s, y) &&
+                 hasAll(t, x)));
   }
   EXPECT_TRUE(std::is_sorted(answer.contacts.begin(), answer.contacts.end(), isEarlier));
 }
@@ -230,7 +233,7 @@ void expectAll(const Body& a, const Body& b, const Truth& truth) {
 void expectEarliest(const Body& a, const Body& b, const Truth& truth,
                     std::size_t max_contacts) {
   QueryOptions options;
-  options.goal = QueryGoal::kFirst;
+  options.query = ContinuousQuery::kFirst;
   options.max_contacts = max_contacts;
   options.toc_err = 1e-6;
   const QueryAnswer first = query(a, b, options);
@@ -272,7 +275,7 @@ std::size_t expectRightAnswers(const Body& a, const Body& b) {
     if (k > 0) expectKEarliest(a, b, truth, k);
 
   QueryOptions any;
-  any.goal = QueryGoal::kAny;
+  any.query = ContinuousQuery::kAny;
   const QueryAnswer answer = query(a, b, any);
   EXPECT_EQ(answer.has_crossing || !answer.contacts.empty(),
             truth.has_crossing || total > 0);
@@ -537,7 +540,7 @@ void expectFirstOfAll(const Body& a, const Body& b, std::size_t count,
   const QueryAnswer all = query(a, b, QueryOptions());
   ASSERT_GE(all.contacts.size(), count);
   QueryOptions options;
-  options.goal = QueryGoal::kFirst;
+  options.query = ContinuousQuery::kFirst;
   const QueryAnswer first = query(a, b, options);
   ASSERT_FALSE(first.contacts.empty());
   EXPECT_EQ(first.contacts.front().toc_lo, all.contacts.front().toc_lo);
@@ -995,7 +998,8 @@ TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
     for (auto& list : lists) {
       list.resize(random.index(3) * random.index(40));
       for (FeatureContact& c : list) {
-        c.kind = random.index(2) ? FeatureKind::kVertexFace : FeatureKind::kEdgeEdge;
+        c.kind = random.index(2) ? ContinuousContactKind::kVertexFace
+                                 : ContinuousContactKind::kEdgeEdge;
         c.first_on_a = random.index(2) != 0;
         for (auto& v : c.vertices) v = static_cast<std::uint32_t>(random.index(4));
         const double crowd = random.uniform(0.5, 0.5 + 1e-6);
@@ -1034,7 +1038,7 @@ TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
                         random.uniform(0.03, 0.1), 0.3);
     const PreparedMovingMesh prepared(mesh);
     QueryOptions options;
-    options.goal = QueryGoal::kFirst;
+    options.query = ContinuousQuery::kFirst;
     const auto crossing = [&](int num_threads, double toc_err) {
       options.num_threads = num_threads;
       options.toc_err = toc_err;
@@ -1113,7 +1117,7 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
     addTriangle({inside - z, inside + z, inside + 3 * x + z}, rest, mesh);
     const PreparedMovingMesh prepared(mesh);
     QueryOptions options;
-    options.goal = QueryGoal::kFirst;
+    options.query = ContinuousQuery::kFirst;
     const QueryAnswer answer = querySelf(prepared.instance(), options);
     EXPECT_TRUE(answer.has_crossing);
     EXPECT_TRUE(isEarly(answer.contacts[0].toc_hi));

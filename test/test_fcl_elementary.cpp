@@ -33,7 +33,8 @@ using test::onTriangle;
 using test::path;
 using test::Random;
 
-constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
+                                kEe = ContinuousContactKind::kEdgeEdge;
 
 ElementaryResult test(const MovingPair& pair, double toc_err = 1e-6) {
   return elementaryTest(pair.kind, pair.points(), 0, 1, toc_err);
@@ -651,7 +652,7 @@ void expectAsExact(const MovingPair& pair, Answer answer) {
 TEST(FCL_ELEMENTARY_TEST, tinyPathsAtLargeFaces) {
   for (int exponent = 20; exponent <= 480; exponent += 10) {
     const double size = std::ldexp(1, exponent);
-    MovingPair pair{FeatureKind::kVertexFace, {}};
+    MovingPair pair{ContinuousContactKind::kVertexFace, {}};
     auto& x = pair.x;
     const auto still = [&x](std::size_t i, double px, double py) {
       x[i].t0[0] = x[i].t1[0] = px;
@@ -688,7 +689,7 @@ struct Geometry {
 /// above and touches it at t = 1.
 MovingPair fallingEdge(double length, const double (&p)[2], const double (&q)[2],
                        double height) {
-  MovingPair pair{FeatureKind::kEdgeEdge, {}};
+  MovingPair pair{ContinuousContactKind::kEdgeEdge, {}};
   pair.x[1].t0[0] = pair.x[1].t1[0] = length;
   for (int k = 0; k < 2; ++k) {
     pair.x[2].t0[k] = pair.x[2].t1[k] = p[k];
@@ -809,7 +810,7 @@ TEST(FCL_ELEMENTARY_TEST, unreadableCoordinatesAreNotCulled) {
     for (std::size_t i = 0; i < 4; ++i)
       for (int k = 0; k < 6; ++k) {
         MovingPair pair = edges(at(-1, 0, 0), at(1, 0, 5), at(0, -1, 9), at(0, 1, 8));
-        for (const FeatureKind kind : {kVf, kEe}) {
+        for (const ContinuousContactKind kind : {kVf, kEe}) {
           pair.kind = kind;
           ASSERT_FALSE(mayBecomeCoplanar(kind, pair.points(), 0, 1));
           MovingPair broken = pair;

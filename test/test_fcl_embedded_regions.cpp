@@ -578,10 +578,10 @@ std::vector<std::uint64_t> bitsOf(const QueryAnswer& answer) {
   return out;
 }
 
-QueryAnswer answerOf(const MeshInstance& mesh, QueryGoal goal, bool with_regions,
+QueryAnswer answerOf(const MeshInstance& mesh, ContinuousQuery query, bool with_regions,
                      int num_threads = 1) {
   QueryOptions options;
-  options.goal = goal;
+  options.query = query;
   options.leaves_out_regions = with_regions;
   options.num_threads = num_threads;
   return querySelf(mesh, options);
@@ -608,8 +608,8 @@ TEST(FCL_EMBEDDED_REGIONS, queriesAnswerTheSame) {
     const MovingMesh moving{scene.previous, scene.current, scene.triangles};
     const PreparedMovingMesh prepared(moving);
     const MeshInstance& mesh = prepared.instance();
-    const QueryAnswer with = answerOf(mesh, QueryGoal::kAll, true),
-                      without = answerOf(mesh, QueryGoal::kAll, false);
+    const QueryAnswer with = answerOf(mesh, ContinuousQuery::kAll, true),
+                      without = answerOf(mesh, ContinuousQuery::kAll, false);
     EXPECT_EQ(bitsOf(with), bitsOf(without));
     EXPECT_EQ(with.has_crossing, without.has_crossing);
     EXPECT_LE(with.counts.node_pairs, without.counts.node_pairs);
@@ -617,15 +617,15 @@ TEST(FCL_EMBEDDED_REGIONS, queriesAnswerTheSame) {
     contacts += with.counts.contacts;
     EXPECT_EQ(with.counts.contacts, without.counts.contacts);
 
-    const QueryAnswer first = answerOf(mesh, QueryGoal::kFirst, true),
-                      first_without = answerOf(mesh, QueryGoal::kFirst, false);
+    const QueryAnswer first = answerOf(mesh, ContinuousQuery::kFirst, true),
+                      first_without = answerOf(mesh, ContinuousQuery::kFirst, false);
     ASSERT_EQ(first.contacts.empty(), first_without.contacts.empty());
     if (!first.contacts.empty()) {
       EXPECT_EQ(first.contacts.begin()->toc_lo, first_without.contacts.begin()->toc_lo);
       EXPECT_EQ(first.contacts.begin()->toc_hi, first_without.contacts.begin()->toc_hi);
     }
-    EXPECT_EQ(answerOf(mesh, QueryGoal::kAny, true).contacts.empty(),
-              answerOf(mesh, QueryGoal::kAny, false).contacts.empty());
+    EXPECT_EQ(answerOf(mesh, ContinuousQuery::kAny, true).contacts.empty(),
+              answerOf(mesh, ContinuousQuery::kAny, false).contacts.empty());
   }
   EXPECT_GT(contacts, 1000U);
   EXPECT_GE(less, 4U);
@@ -650,8 +650,8 @@ TEST(FCL_EMBEDDED_REGIONS, doNotDependOnThreadsOrKernels) {
       EXPECT_EQ(others.interior, one.interior) << k->name;
     }
   }
-  const QueryAnswer one = answerOf(prepared.instance(), QueryGoal::kAll, true);
-  const QueryAnswer four = answerOf(prepared.instance(), QueryGoal::kAll, true, 4);
+  const QueryAnswer one = answerOf(prepared.instance(), ContinuousQuery::kAll, true);
+  const QueryAnswer four = answerOf(prepared.instance(), ContinuousQuery::kAll, true, 4);
   EXPECT_EQ(bitsOf(one), bitsOf(four));
 }
 

@@ -108,7 +108,7 @@ TEST(FCL_EXACT_TEST, bracketsContainKnownTimes) {
     const double top = random.uniform(1e-6, 1), bottom = -random.uniform(1e-6, 1);
     const double x = random.uniform(-0.2, 0.2), y = random.uniform(-0.2, 0.2);
     MovingPair pair{
-        FeatureKind::kVertexFace,
+        ContinuousContactKind::kVertexFace,
         {VertexPath{{x, y, top}, {x, y, bottom}}, VertexPath{{-1, -1, 0}, {-1, -1, 0}},
          VertexPath{{1, -1, 0}, {1, -1, 0}}, VertexPath{{0, 1, 0}, {0, 1, 0}}}};
     const Rational time = Rational(top) / (Rational(top) - Rational(bottom));
@@ -240,8 +240,8 @@ TEST(FCL_INSTANT_TEST, touchingIsExact) {
     const auto& p = t.p;
     const std::array<ExactPoint<Rational>, 4> e{t.exactPoint(0), t.exactPoint(1),
                                                 t.exactPoint(2), t.exactPoint(3)};
-    const bool on_triangle = test::doTouch(FeatureKind::kVertexFace, e),
-               segments = test::doTouch(FeatureKind::kEdgeEdge, e);
+    const bool on_triangle = test::doTouch(ContinuousContactKind::kVertexFace, e),
+               segments = test::doTouch(ContinuousContactKind::kEdgeEdge, e);
     ASSERT_EQ(isOnTriangle(p[0], p[1], p[2], p[3]), on_triangle)
         << "seed " << kSeed << ", " << i;
     ASSERT_EQ(doSegmentsTouch(p[0], p[1], p[2], p[3]), segments)

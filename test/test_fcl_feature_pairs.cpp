@@ -83,7 +83,7 @@ Tally expectedPairs(const Features& a, const Features& b, bool self) {
 
 PairName nameOf(const FeaturePair& pair, const MeshTriangle& a, const MeshTriangle& b,
                 bool self) {
-  if (pair.kind == FeatureKind::kEdgeEdge) {
+  if (pair.kind == ContinuousContactKind::kEdgeEdge) {
     Ids x = sorted({a.v[pair.first], a.v[(pair.first + 1) % 3]});
     Ids y = sorted({b.v[pair.second], b.v[(pair.second + 1) % 3]});
     if (self && y < x) std::swap(x, y);
@@ -197,7 +197,7 @@ TEST(FCL_FEATURE_PAIRS, ownedPairsByDefinition) {
         const FeaturePair pair = featurePair(bit);
         const MeshTriangle &first = pair.first_on_a ? ta : tb,
                            &second = pair.first_on_a ? tb : ta;
-        const bool owned = pair.kind == FeatureKind::kEdgeEdge
+        const bool owned = pair.kind == ContinuousContactKind::kEdgeEdge
                                ? ta.ownsEdge(pair.first) && tb.ownsEdge(pair.second)
                                : first.ownsVertex(pair.first) && second.ownsFace();
         expected |= unsigned{owned} << bit;
@@ -244,7 +244,7 @@ TEST(FCL_FEATURE_PAIRS, pointsOfPairs) {
     const unsigned mine = pair.first_on_a ? 0 : 3, other = 3 - mine;
     const unsigned i = pair.first, j = pair.second;
     const std::array<unsigned, 4> expected =
-        pair.kind == FeatureKind::kVertexFace
+        pair.kind == ContinuousContactKind::kVertexFace
             ? std::array<unsigned, 4>{mine + i, other, other + 1, other + 2}
             : std::array<unsigned, 4>{i, (i + 1) % 3, 3 + j, 3 + (j + 1) % 3};
     for (std::size_t k = 0; k < 4; ++k)

@@ -24,10 +24,12 @@ TEST(FCL_HARD_QUERIES, allAreAnsweredRight) {
   if (!root) GTEST_SKIP() << test::kNoSharedData;
   std::size_t count = 0, contacts = 0, box = 0, filter = 0;
   for (const auto& folder : std::filesystem::directory_iterator(*root)) {
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
       const std::string path =
-          folder.path().string() +
-          (kind == FeatureKind::kVertexFace ? "/vertex-face.csv" : "/edge-edge.csv");
+          folder.path().string() + (kind == ContinuousContactKind::kVertexFace
+                                        ? "/vertex-face.csv"
+                                        : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;
       const fcl_ccd::QueryList list = fcl_ccd::readQueries({path});
       ASSERT_TRUE(list.has_truth) << path;

@@ -29,7 +29,7 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
+using fcl::ContinuousContactKind;
 
 /// The orders of three axes or vertices.
 constexpr std::array<std::array<std::size_t, 3>, 6> kOrders{
@@ -117,7 +117,8 @@ TEST(FeatureTestInvariances, OrderOfFeaturesAndVertices) {
     ee_orders.push_back({first + a, first + 1 - a, 2 - first + b, 3 - first - b});
   }
   forEachPair(51, [&](const MovingPair& pair, const Result& expected, Random& random) {
-    const auto& orders = pair.kind == FeatureKind::kVertexFace ? vf_orders : ee_orders;
+    const auto& orders =
+        pair.kind == ContinuousContactKind::kVertexFace ? vf_orders : ee_orders;
     for (int i = 0; i < 3; ++i)
       expectSame(test(reordered(pair, orders[random.index(orders.size())])), expected);
   });

@@ -28,7 +28,7 @@
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_fans.h"
 #include "mesh_generators.h"
-#include "tree/box_place.h"
+#include "tree/box_position.h"
 
 namespace fcl {
 namespace detail {
@@ -557,7 +557,7 @@ struct ScalarBoxes {
 std::pair<MovingKdop, MovingKdop> boxesOf(int bit, const ScalarBoxes& a,
                                           const ScalarBoxes& b) {
   const FeaturePair pair = featurePair(bit);
-  if (pair.kind == FeatureKind::kEdgeEdge)
+  if (pair.kind == ContinuousContactKind::kEdgeEdge)
     return {a.edge[pair.first], b.edge[pair.second]};
   return pair.first_on_a ? std::make_pair(a.vertex[pair.first], b.face)
                          : std::make_pair(a.face, b.vertex[pair.first]);
@@ -667,12 +667,14 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
       gaps.push_back(
           randomGap(random, depthAtStart(b.a[random.index(3)].box, b.b[0].box)));
     const bool has_gaps = random.index(3) > 0;
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
       std::vector<TimeWindow> left_windows;
       for (std::uint32_t k = 0; k < kPairs; ++k)
-        for (int bit = kind == FeatureKind::kEdgeEdge ? 6 : 0;
-             bit < (kind == FeatureKind::kEdgeEdge ? kNumFeaturePairs : 6); ++bit) {
+        for (int bit = kind == ContinuousContactKind::kEdgeEdge ? 6 : 0;
+             bit < (kind == ContinuousContactKind::kEdgeEdge ? kNumFeaturePairs : 6);
+             ++bit) {
           if (random.index(3) == 0) continue;
           codes.push_back(featureCode(k, bit));
           // The shift is added to the vertex, or to edge a.
@@ -1180,7 +1182,7 @@ void randomWindow(Random& random, double& lo, double& hi) {
 }
 
 /// Points here and there; many of the pairs stay on one side of each other.
-MovingPair randomPair(Random& random, FeatureKind kind) {
+MovingPair randomPair(Random& random, ContinuousContactKind kind) {
   MovingPair pair{kind, {}};
   const double step = random.index(2) ? 0.2 : 1;
   const bool on_grid = random.index(4) == 0;
@@ -1204,8 +1206,9 @@ void scale(MovingPair& pair, double factor) {
     }
 }
 
-FeatureKind oneOfTwo(Random& random) {
-  return random.index(2) ? FeatureKind::kVertexFace : FeatureKind::kEdgeEdge;
+ContinuousContactKind oneOfTwo(Random& random) {
+  return random.index(2) ? ContinuousContactKind::kVertexFace
+                         : ContinuousContactKind::kEdgeEdge;
 }
 
 /// How many of eight pairs the filter finds what about.
@@ -1227,7 +1230,7 @@ struct FilterBlock {
       std::fill(x, x + 4, std::numeric_limits<double>::quiet_NaN());
     for (std::uint32_t lane = 0; lane < 8; ++lane) {
       const FilterQuery& q = queries[lane];
-      const bool vf = q.pair.kind == FeatureKind::kVertexFace;
+      const bool vf = q.pair.kind == ContinuousContactKind::kVertexFace;
       const int bit = vf ? static_cast<int>(lane) % 6 : 6 + static_cast<int>(lane);
       const std::uint32_t place = (3 * lane + 5) % 8;
       std::fill(pairs[place].x, pairs[place].x + 6, &vertices[32]);
@@ -1247,7 +1250,7 @@ struct FilterBlock {
 /// the same decision where both go on in twice the digits.
 FilterCounts expectRightFilter(const FilterQuery (&queries)[8], double latest = 1) {
   const FilterBlock block(queries);
-  const FeatureKind kind = queries[0].pair.kind;
+  const ContinuousContactKind kind = queries[0].pair.kind;
   unsigned possible = 0, unclear = 0, may = 0, may_accurately = 0;
   for (unsigned lane = 0; lane < 8; ++lane) {
     const FeaturePoints x = queries[lane].pair.points();
@@ -1284,7 +1287,7 @@ FilterCounts expectRightFilter(std::uint64_t seed, int num_blocks, MakePair&& ma
   FilterCounts sum;
   for (int i = 0; i < num_blocks && !testing::Test::HasFailure(); ++i) {
     SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(i));
-    const FeatureKind kind = oneOfTwo(random);
+    const ContinuousContactKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
       q.pair = make_pair(random, kind);
@@ -1313,7 +1316,8 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
   Random random(kSeed);
   int may = 0, never = 0;
   for (int exponent = -1074; exponent <= 1023; ++exponent)
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
       FilterQuery queries[8];
       for (FilterQuery& q : queries) {
         q.pair = randomPair(random, kind);
@@ -1337,7 +1341,7 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
 // bound every instruction set is on the same side of it.
 TEST(FCL_KERNELS, filterOfNarrowSigns) {
   constexpr int kBlocks = 5000;
-  const auto makePair = [](Random& random, FeatureKind kind) {
+  const auto makePair = [](Random& random, ContinuousContactKind kind) {
     // A slope z = a x + b y, and the first feature a little above it.
     const double a = random.uniform(-2, 2), b = random.uniform(-2, 2);
     const double gap =
@@ -1345,7 +1349,7 @@ TEST(FCL_KERNELS, filterOfNarrowSigns) {
     MovingPair pair = randomPair(random, kind);
     for (int n = 0; n < 4; ++n) {
       VertexPath& p = pair.x[n];
-      const bool above = n < (kind == FeatureKind::kVertexFace ? 1 : 2);
+      const bool above = n < (kind == ContinuousContactKind::kVertexFace ? 1 : 2);
       p.t0[2] = a * p.t0[0] + b * p.t0[1] + (above ? gap : 0);
       p.t1[2] = a * p.t1[0] + b * p.t1[1] + (above ? gap : 0);
     }
@@ -1360,7 +1364,7 @@ TEST(FCL_KERNELS, filterOfNarrowSigns) {
 // Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
 // "may" be so.
 TEST(FCL_KERNELS, filterOfDegeneratePairs) {
-  expectRightFilter(76, 5000, [](Random& random, FeatureKind kind) {
+  expectRightFilter(76, 5000, [](Random& random, ContinuousContactKind kind) {
     MovingPair pair = randomPair(random, kind);
     auto& x = pair.x;
     switch (random.index(6)) {
@@ -1401,7 +1405,7 @@ TEST(FCL_KERNELS, filterKeepsWhatIsNotFinite) {
                          -std::numeric_limits<double>::infinity()};
   int never = 0;
   for (int i = 0; i < 20000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
+    const ContinuousContactKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     unsigned bad = 0;
     for (unsigned lane = 0; lane < 8; ++lane) {
@@ -1478,7 +1482,7 @@ struct RandomFan {
           const MeshTriangle &a = f.first_on_a ? mesh[i] : mesh[j],
                              &b = f.first_on_a ? mesh[j] : mesh[i];
           if (touch) return;
-          const bool vf = f.kind == FeatureKind::kVertexFace;
+          const bool vf = f.kind == ContinuousContactKind::kVertexFace;
           const VertexPath x[4] = {path(a.v[f.first]),
                                    path(vf ? b.v[0] : a.v[(f.first + 1) % 3]),
                                    path(vf ? b.v[1] : b.v[f.second]),
@@ -1814,7 +1818,7 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   Random random(kSeed);
   SolveTally tally;
   for (int i = 0; i < 12000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
+    const ContinuousContactKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
       q.pair = randomPair(random, kind);
@@ -1839,7 +1843,7 @@ long double volumeAt(const MovingPair& pair, double t) {
     for (int k = 0; k < 3; ++k)
       p[i][k] = (1 - static_cast<long double>(t)) * pair.x[i].t0[k] +
                 static_cast<long double>(t) * pair.x[i].t1[k];
-  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   const int from[3] = {vf ? 0 : 2, vf ? 2 : 1, 3},
             to[3] = {vf ? 1 : 0, vf ? 1 : 0, vf ? 1 : 2};
   long double e[3][3];
@@ -1855,7 +1859,7 @@ long double volumeAt(const MovingPair& pair, double t) {
 
 /// Pairs of one kind, in most or all of the step.
 void randomLongWindows(Random& random, FilterQuery (&queries)[8]) {
-  const FeatureKind kind = oneOfTwo(random);
+  const ContinuousContactKind kind = oneOfTwo(random);
   for (FilterQuery& q : queries) {
     q.pair = randomPair(random, kind);
     q.lo = random.index(2) ? 0 : random.uniform(0, 0.4);
@@ -1944,7 +1948,7 @@ TEST(FCL_KERNELS, solvedDegeneratePairsAreSo) {
   Random random(kSeed);
   SolveTally tally;
   for (int i = 0; i < 3000; ++i) {
-    const FeatureKind kind = oneOfTwo(random);
+    const ContinuousContactKind kind = oneOfTwo(random);
     FilterQuery queries[8];
     for (FilterQuery& q : queries) {
       q.pair.kind = kind;

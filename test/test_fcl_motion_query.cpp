@@ -382,7 +382,7 @@ std::vector<std::uint32_t> nearestName(const Body& a, const Body& b,
 double distanceOf(const FeatureContact& contact, const Body& a,
                   const ReferenceMotion& motion_a, const Body& b,
                   const ReferenceMotion& motion_b) {
-  const bool vf = contact.kind == FeatureKind::kVertexFace;
+  const bool vf = contact.kind == ContinuousContactKind::kVertexFace;
   const int num_first = vf ? 1 : 2;
   RealVector x[4];
   for (int i = 0; i < 4; ++i) {
@@ -417,7 +417,7 @@ TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
     const QueryAnswer answer = queryMotionContacts(moving_a.body, moving_b.body, {});
     std::map<std::vector<std::uint32_t>, double> times;
     for (const FeatureContact& contact : answer.contacts) {
-      const auto name = nameOf(contact.kind == FeatureKind::kVertexFace,
+      const auto name = nameOf(contact.kind == ContinuousContactKind::kVertexFace,
                                contact.first_on_a, contact.vertices);
       EXPECT_TRUE(times.emplace(name, contact.toc_lo).second);
       if (contact.toc_lo > 0) {

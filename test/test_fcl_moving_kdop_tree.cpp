@@ -36,7 +36,7 @@
 #include "query/deformable_query.h"
 #include "test_models.h"
 #include "traverse.h"
-#include "tree/box_place.h"
+#include "tree/box_position.h"
 #include "tree_checks.h"
 
 namespace fcl {

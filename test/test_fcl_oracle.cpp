@@ -20,10 +20,11 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::VertexPath;
+using fcl::ContinuousContactKind;
 
-constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
+                                kEe = ContinuousContactKind::kEdgeEdge;
 constexpr double kLargest = std::numeric_limits<double>::max();
 constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 
@@ -235,7 +236,7 @@ TEST(FCL_ORACLE, hardQueries) {
   if (!root) GTEST_SKIP() << kNoSharedData;
   CheckTally tally;
   for (const auto& folder : std::filesystem::directory_iterator(*root))
-    for (const FeatureKind kind : {kVf, kEe}) {
+    for (const ContinuousContactKind kind : {kVf, kEe}) {
       const std::string path =
           folder.path().string() + (kind == kVf ? "/vertex-face.csv" : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;

@@ -190,7 +190,7 @@ TEST(FCL_VERTEX_FANS, neighbours) {
 }
 
 using Ids = std::vector<std::uint32_t>;
-using Name = std::tuple<FeatureKind, Ids, Ids>;
+using Name = std::tuple<ContinuousContactKind, Ids, Ids>;
 
 Ids sorted(Ids ids) {
   std::sort(ids.begin(), ids.end());
@@ -221,7 +221,7 @@ Truth bruteForce(const MovingMesh& mesh, const MeshInstance& instance) {
     features[3].insert(sorted(v));
   }
   Truth truth;
-  const auto test = [&](FeatureKind kind, const Ids& x, const Ids& y) {
+  const auto test = [&](ContinuousContactKind kind, const Ids& x, const Ids& y) {
     std::vector<VertexPath> p;
     for (const Ids* ids : {&x, &y})
       for (const std::uint32_t id : *ids) p.push_back(instance.frames[id]);
@@ -230,10 +230,10 @@ Truth bruteForce(const MovingMesh& mesh, const MeshInstance& instance) {
   };
   for (const Ids& x : features[1])
     for (const Ids& y : features[3])
-      if (!doShare(x, y)) test(FeatureKind::kVertexFace, x, y);
+      if (!doShare(x, y)) test(ContinuousContactKind::kVertexFace, x, y);
   for (const Ids& x : features[2])
     for (const Ids& y : features[2])
-      if (x < y && !doShare(x, y)) test(FeatureKind::kEdgeEdge, x, y);
+      if (x < y && !doShare(x, y)) test(ContinuousContactKind::kEdgeEdge, x, y);
   for (const Ids& x : features[2])
     for (const Ids& y : features[3]) {
       if (doShare(x, y)) continue;
@@ -247,7 +247,7 @@ Truth bruteForce(const MovingMesh& mesh, const MeshInstance& instance) {
 
 Name nameOf(const FeatureContact& c) {
   const std::uint32_t* v = c.vertices;
-  if (c.kind == FeatureKind::kVertexFace)
+  if (c.kind == ContinuousContactKind::kVertexFace)
     return {c.kind, {v[0]}, sorted({v[1], v[2], v[3]})};
   Ids x = sorted({v[0], v[1]}), y = sorted({v[2], v[3]});
   if (y < x) std::swap(x, y);

@@ -19,8 +19,7 @@ Vector3<S> toVector(const double (&v)[3]) {
 template <typename S>
 ContinuousContact<S> toNumbers(const FeatureContact& contact) {
   ContinuousContact<S> out;
-  out.kind = contact.kind == FeatureKind::kVertexFace ? ContinuousContactKind::kVertexFace
-                                                      : ContinuousContactKind::kEdgeEdge;
+  out.kind = contact.kind;
   out.b1 = contact.triangles[0];
   out.b2 = contact.triangles[1];
   for (std::size_t i = 0; i < 4; ++i)
@@ -36,7 +35,8 @@ ContinuousContact<S> toNumbers(const FeatureContact& contact) {
 template <typename S, typename PathOf>
 void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,
                  ContinuousContact<S>& out) {
-  const std::size_t num_first = contact.kind == FeatureKind::kVertexFace ? 1 : 2;
+  const std::size_t num_first =
+      contact.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
   VertexPath x[4];
   for (std::size_t i = 0; i < 4; ++i)
     x[i] = path_of((i < num_first) == contact.first_on_a, contact.vertices[i]);

@@ -17,15 +17,12 @@ namespace detail {
 namespace {
 
 using deformable::FeatureCandidate;
-using deformable::FeatureKind;
 using deformable::FeatureOwners;
 using deformable::PreparedMesh;
 
 ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
   ContinuousCandidate out;
-  out.kind = candidate.kind == FeatureKind::kVertexFace
-                 ? ContinuousContactKind::kVertexFace
-                 : ContinuousContactKind::kEdgeEdge;
+  out.kind = candidate.kind;
   out.first_on_o1 = candidate.first_on_a;
   for (std::size_t i = 0; i < 4; ++i)
     out.vertices[i] = static_cast<int>(candidate.vertices[i]);
@@ -90,11 +87,11 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   require(o1.geometry, "o1");
   require(o2.geometry, "o2");
   require(sink);
-  const auto place = [](const MovingGeometry<S>& o) {
+  const auto placed = [](const MovingGeometry<S>& o) {
     const deformable::DefaultFloatingPoint mode;
     return PlacedGeometry<S>(o);
   };
-  const PlacedGeometry<S> placed1 = place(o1), placed2 = place(o2);
+  const PlacedGeometry<S> placed1 = placed(o1), placed2 = placed(o2);
   if (answererOf(placed1, placed2) != Answerer::kStraightPaths)
     throw Exception(
         "candidates of continuous collision need two triangle meshes that deform or "

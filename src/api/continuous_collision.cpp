@@ -25,20 +25,17 @@ using deformable::inArena;
 using deformable::PreparedMesh;
 using deformable::PreparedMotion;
 using deformable::QueryAnswer;
-using deformable::QueryGoal;
 using deformable::QueryOptions;
 
 QueryOptions makeOptions(const QuerySettings& settings) {
   QueryOptions options;
-  options.goal = QueryGoal::kFirst;
+  options.query = ContinuousQuery::kFirst;
   options.max_contacts = 1;
   options.toc_err = requireTocErr(settings.toc_err, "request.toc_err");
   options.stop_at_crossing = !settings.with_contacts;
   if (!settings.with_contacts) return options;
   if (settings.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
-  options.goal = settings.query == ContinuousQuery::kAll     ? QueryGoal::kAll
-                 : settings.query == ContinuousQuery::kFirst ? QueryGoal::kFirst
-                                                             : QueryGoal::kAny;
+  options.query = settings.query;
   options.max_contacts = settings.num_max_contacts;
   if (settings.num_threads < 0) throw Exception("request.num_threads is negative");
   options.num_threads = settings.num_threads;
@@ -93,9 +90,9 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// What a query of straight paths looked at, for the conversion of its contacts.
+/// The meshes of a query of straight paths, for the conversion of its contacts.
 template <typename S>
-struct Scene {
+struct QueriedMeshes {
   const CollisionGeometry<S>& o1;
   const CollisionGeometry<S>& o2;
   const PreparedMesh& mesh1;
@@ -103,17 +100,18 @@ struct Scene {
 };
 
 template <typename S>
-void fillContacts(const QueryAnswer& answer, const Scene<S>& scene,
+void fillContacts(const QueryAnswer& answer, const QueriedMeshes<S>& meshes,
                   const QuerySettings& settings, ContinuousContacts<S>& result) {
   const auto convert = [&](const auto& contact) {
-    auto out = deformable::toContinuousContact<S>(
-        contact, scene.mesh1.instance(), scene.mesh2.instance(), settings.enable_contact);
-    out.o1 = &scene.o1;
-    out.o2 = &scene.o2;
+    auto out = deformable::toContinuousContact<S>(contact, meshes.mesh1.instance(),
+                                                  meshes.mesh2.instance(),
+                                                  settings.enable_contact);
+    out.o1 = &meshes.o1;
+    out.o2 = &meshes.o2;
     return out;
   };
-  double update = scene.mesh1.updateTime();
-  if (&scene.mesh1 != &scene.mesh2) update += scene.mesh2.updateTime();
+  double update = meshes.mesh1.updateTime();
+  if (&meshes.mesh1 != &meshes.mesh2) update += meshes.mesh2.updateTime();
   fillContacts(answer, settings, convert, update, result);
 }
 
@@ -189,8 +187,8 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     const QueryAnswer answer =
         answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
     if (contacts)
-      fillContacts(answer, Scene<S>{*o1.geometry, *o2.geometry, mesh1, mesh2}, settings,
-                   *contacts);
+      fillContacts(answer, QueriedMeshes<S>{*o1.geometry, *o2.geometry, mesh1, mesh2},
+                   settings, *contacts);
     outcome = outcomeOf<S>(answer);
   };
   if (options.num_threads == 1) {
@@ -216,7 +214,8 @@ void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
     const PreparedMesh mesh(*o, still, still, "o", options.num_threads);
     const QueryAnswer answer =
         answerOf([&] { return querySelf(mesh.instance(), options); });
-    if (contacts) fillContacts(answer, Scene<S>{*o, *o, mesh, mesh}, settings, *contacts);
+    if (contacts)
+      fillContacts(answer, QueriedMeshes<S>{*o, *o, mesh, mesh}, settings, *contacts);
     outcome = outcomeOf<S>(answer);
   });
 }

@@ -17,7 +17,6 @@ namespace {
 
 using detail::deformable::Answer;
 using detail::deformable::ElementaryResult;
-using detail::deformable::FeatureKind;
 using detail::deformable::VertexPath;
 
 template <typename S>
@@ -36,7 +35,7 @@ void read(const Points<S>& from, const std::array<const char*, 4>& names,
 }
 
 template <typename S>
-ContinuousFeatureTestResult<S> test(FeatureKind kind,
+ContinuousFeatureTestResult<S> test(ContinuousContactKind kind,
                                     const std::array<const char*, 4>& names,
                                     const Points<S>& t0, const Points<S>& t1,
                                     double toc_err) {
@@ -62,7 +61,7 @@ ContinuousFeatureTestResult<S> vertexFace(const Vector3<S>& v_t0, const Vector3<
                                           const Vector3<S>& f0_t1,
                                           const Vector3<S>& f1_t1,
                                           const Vector3<S>& f2_t1, double toc_err) {
-  return test<S>(FeatureKind::kVertexFace, {"v", "f0", "f1", "f2"},
+  return test<S>(ContinuousContactKind::kVertexFace, {"v", "f0", "f1", "f2"},
                  {&v_t0, &f0_t0, &f1_t0, &f2_t0}, {&v_t1, &f0_t1, &f1_t1, &f2_t1},
                  toc_err);
 }
@@ -72,7 +71,7 @@ ContinuousFeatureTestResult<S> edgeEdge(
     const Vector3<S>& ea0_t0, const Vector3<S>& ea1_t0, const Vector3<S>& eb0_t0,
     const Vector3<S>& eb1_t0, const Vector3<S>& ea0_t1, const Vector3<S>& ea1_t1,
     const Vector3<S>& eb0_t1, const Vector3<S>& eb1_t1, double toc_err) {
-  return test<S>(FeatureKind::kEdgeEdge, {"ea0", "ea1", "eb0", "eb1"},
+  return test<S>(ContinuousContactKind::kEdgeEdge, {"ea0", "ea1", "eb0", "eb1"},
                  {&ea0_t0, &ea1_t0, &eb0_t0, &eb1_t0},
                  {&ea0_t1, &ea1_t1, &eb0_t1, &eb1_t1}, toc_err);
 }

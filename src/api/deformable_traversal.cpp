@@ -30,13 +30,13 @@ class BinaryView {
   bool isEmpty(int b) const { return firstLane(b) >= node(b).count; }
 
   bool isLeaf(int b) const {
-    return placeOf(b) >= 8 && (isEmpty(b) || node(b).isTriangle(firstLane(b)));
+    return heapIndex(b) >= 8 && (isEmpty(b) || node(b).isTriangle(firstLane(b)));
   }
   int triangle(int b) const { return node(b).triangle(firstLane(b)); }
 
   int leftChild(int b) const {
     constexpr int kMostNodes = std::numeric_limits<int>::max() / 16;
-    const int k = placeOf(b);
+    const int k = heapIndex(b);
     if (k < 8) return 16 * (b / 16) + 2 * k;
     const int child = node(b).child[firstLane(b)];
     if (child >= kMostNodes) throw Exception("the tree has too many nodes for FCL's int");
@@ -58,11 +58,11 @@ class BinaryView {
   }
 
  private:
-  static int placeOf(int b) { return std::max(b % 16, 1); }
+  static int heapIndex(int b) { return std::max(b % 16, 1); }
   static int width(int b) {
-    return placeOf(b) >= 8 ? 1 : placeOf(b) >= 4 ? 2 : placeOf(b) >= 2 ? 4 : 8;
+    return heapIndex(b) >= 8 ? 1 : heapIndex(b) >= 4 ? 2 : heapIndex(b) >= 2 ? 4 : 8;
   }
-  static int firstLane(int b) { return placeOf(b) * width(b) - 8; }
+  static int firstLane(int b) { return heapIndex(b) * width(b) - 8; }
   static int endLane(int b) { return firstLane(b) + width(b); }
 
   const MovingKdopNode& node(int b) const {

@@ -188,7 +188,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
           owners_ = assignFeatures(model.tri_indices,
                                    static_cast<std::size_t>(model.num_tris), count);
         });
-        instance_.prepared = owners_.data();
+        instance_.owners = owners_.data();
       }
       return;
     }

@@ -28,12 +28,12 @@ struct DefaultInitAllocator : std::allocator<T> {
   };
 
   template <typename U>
-  void construct(U* place) {
-    ::new (static_cast<void*>(place)) U;
+  void construct(U* at) {
+    ::new (static_cast<void*>(at)) U;
   }
   template <typename U, typename... Args>
-  void construct(U* place, Args&&... args) {
-    ::new (static_cast<void*>(place)) U(std::forward<Args>(args)...);
+  void construct(U* at, Args&&... args) {
+    ::new (static_cast<void*>(at)) U(std::forward<Args>(args)...);
   }
 };
 

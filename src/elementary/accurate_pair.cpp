@@ -18,7 +18,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnderflow = 0x1p-1060;
 
 /// What underflows is far below error bounds relative to such a size.
-bool isInRange(double size) { return size > 0x1p-600 && size < 0x1p600; }
+bool isInAccurateRange(double size) { return size > 0x1p-600 && size < 0x1p600; }
 
 using Vector = AccurateVector;
 
@@ -29,7 +29,7 @@ double mean(double t, double p, double q) { return (1 - t) * p + t * q; }
 Vec mean(double t, const Vec& p, const Vec& q) { return (1 - t) * p + t * q; }
 
 /// Two steps, 6 units, after one for the rounding of the coefficients.
-Quadratic restrict(const Quadratic& f, double lo, double hi) {
+MovingCross restrict(const MovingCross& f, double lo, double hi) {
   const Vec mid = 0.5 * f.c1;
   const Vec lo_0 = mean(lo, f.c0, mid), lo_1 = mean(lo, mid, f.c2);
   return {mean(lo, lo_0, lo_1), 2 * mean(hi, lo_0, lo_1),
@@ -39,26 +39,26 @@ Quadratic restrict(const Quadratic& f, double lo, double hi) {
 
 }  // namespace
 
-AccuratePair::Difference::Difference(const VertexPath& p, const VertexPath& q) {
+AccurateDifference::AccurateDifference(const VertexPath& p, const VertexPath& q) {
   for (int k = 0; k < 3; ++k) {
-    t0[k] = Double2::difference(p.t0[k], q.t0[k]);
-    t1[k] = Double2::difference(p.t1[k], q.t1[k]);
+    t0[k] = DoubleDouble::difference(p.t0[k], q.t0[k]);
+    t1[k] = DoubleDouble::difference(p.t1[k], q.t1[k]);
     norm = std::max(norm, std::max(std::abs(t0[k].hi), std::abs(t1[k].hi)));
     is_double &= t0[k].lo == 0 && t1[k].lo == 0;
   }
 }
 
-void AccuratePair::Difference::at(const Double2& t, Vector& out) const {
-  const Double2 rest = Double2{1, 0} - t;
+void AccurateDifference::at(const DoubleDouble& t, Vector& out) const {
+  const DoubleDouble rest = DoubleDouble{1, 0} - t;
   for (int k = 0; k < 3; ++k) out[k] = rest * t0[k] + t * t1[k];
 }
 
 /// A cross product before and after it is rounded to doubles; the error is that before.
 struct AccuratePair::Cross {
   Vector c0, c1, c2;
-  Quadratic rounded;
+  MovingCross rounded;
 
-  Cross(const Difference& a, const Difference& b) {
+  Cross(const AccurateDifference& a, const AccurateDifference& b) {
     Vector other;
     cross(a.t0, b.t0, c0);
     cross(a.t0, b.t1, c1);
@@ -68,7 +68,7 @@ struct AccuratePair::Cross {
     for (const Vector* c : {&c0, &c1, &other, &c2})
       largest = std::max(largest, maxNorm(deformable::rounded(*c)));
     for (int k = 0; k < 3; ++k) c1[k] = c1[k] + other[k];
-    Quadratic& r = rounded;
+    MovingCross& r = rounded;
     r.c0 = deformable::rounded(c0);
     r.c1 = deformable::rounded(c1);
     r.c2 = deformable::rounded(c2);
@@ -80,28 +80,30 @@ struct AccuratePair::Cross {
     const double norm = a.norm * b.norm;
     const double product_error =
         a.is_double && b.is_double ? 0 : 2 * kProductBound * norm;
-    r.error = isInRange(norm) ? product_error + 3 * kSumBound * largest + kUnderflow
-                              : kInfinity;
+    r.error = isInAccurateRange(norm)
+                  ? product_error + 3 * kSumBound * largest + kUnderflow
+                  : kInfinity;
   }
 };
 
 // N is the size of n, E its error. A coefficient of the volume is u0.n0 or u1.n0 + u0.n1,
 // where n1 counts twice: the errors of n, 9 UE; products, 9 UN; sums of 2, 3, 4, 6 and 9
 // UN: (9 * 2 + 24) 2^-104 UN < 2^-98 UN.
-AccuratePair::AccuratePair(FeatureKind kind, const FeaturePoints& x)
+AccuratePair::AccuratePair(ContinuousContactKind kind, const FeaturePoints& x)
     : kind_(kind), x_(x) {
-  const bool vf = kind == FeatureKind::kVertexFace;
-  u_ = vf ? Difference(x[0], x[1]) : Difference(x[2], x[0]);
-  v_ = vf ? Difference(x[2], x[1]) : Difference(x[1], x[0]);
-  w_ = vf ? Difference(x[3], x[1]) : Difference(x[3], x[2]);
+  const bool vf = kind == ContinuousContactKind::kVertexFace;
+  u_ = vf ? AccurateDifference(x[0], x[1]) : AccurateDifference(x[2], x[0]);
+  v_ = vf ? AccurateDifference(x[2], x[1]) : AccurateDifference(x[1], x[0]);
+  w_ = vf ? AccurateDifference(x[3], x[1]) : AccurateDifference(x[3], x[2]);
   const Cross n(v_, w_);
   normal_ = n.rounded;
   volume_[0] = dot(u_.t0, n.c0);
   volume_[1] = dot(u_.t1, n.c0) + dot(u_.t0, n.c1);
   volume_[2] = dot(u_.t1, n.c1) + dot(u_.t0, n.c2);
   volume_[3] = dot(u_.t1, n.c2);
-  for (const Double2& c : volume_) volume_size_ = std::max(volume_size_, std::abs(c.hi));
-  volume_error_ = isInRange(u_.norm * (v_.norm * w_.norm))
+  for (const DoubleDouble& c : volume_)
+    volume_size_ = std::max(volume_size_, std::abs(c.hi));
+  volume_error_ = isInAccurateRange(u_.norm * (v_.norm * w_.norm))
                       ? 9.5 * u_.norm * normal_.error +
                             0x1p-97 * (u_.norm * normal_.size) + kUnderflow
                       : kInfinity;
@@ -109,7 +111,7 @@ AccuratePair::AccuratePair(FeatureKind kind, const FeaturePoints& x)
 
 AccuratePair::Factors AccuratePair::factors(int i) const {
   if (i == 0) return {u_, w_};
-  if (kind_ == FeatureKind::kVertexFace) {
+  if (kind_ == ContinuousContactKind::kVertexFace) {
     if (i == 1) return {v_, u_};
     return {{x_[2], x_[0]}, {x_[3], x_[0]}};
   }
@@ -132,7 +134,7 @@ bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) c
   b[1] = blossom(lo, lo, hi);
   b[2] = blossom(lo, hi, hi);
   b[3] = blossom(hi, hi, hi);
-  return std::isfinite(error) && (volume_size_ == 0 || volume_size_ > 0x1p-900);
+  return std::isfinite(error) && (volume_size_ == 0 || volume_size_ > kTiny);
 }
 
 bool AccuratePair::hasNoRoot(double lo, double hi) const {
@@ -143,12 +145,12 @@ bool AccuratePair::hasNoRoot(double lo, double hi) const {
          (b[0] < -error && b[1] < -error && b[2] < -error && b[3] < -error);
 }
 
-Quadratic AccuratePair::normal(double lo, double hi) const {
+MovingCross AccuratePair::normal(double lo, double hi) const {
   return restrict(normal_, lo, hi);
 }
 
-Quadratic AccuratePair::side(int i, double lo, double hi) {
-  std::optional<Quadratic>& side = side_[i];
+MovingCross AccuratePair::side(int i, double lo, double hi) {
+  std::optional<MovingCross>& side = side_[i];
   if (!side) {
     const auto [x, y] = factors(i);
     side = Cross(x, y).rounded;
@@ -156,8 +158,8 @@ Quadratic AccuratePair::side(int i, double lo, double hi) {
   return restrict(*side, lo, hi);
 }
 
-Double2 AccuratePair::volumeAt(const Double2& t) const {
-  const Double2 r = Double2{1, 0} - t, t2 = t * t;
+DoubleDouble AccuratePair::volumeAt(const DoubleDouble& t) const {
+  const DoubleDouble r = DoubleDouble{1, 0} - t, t2 = t * t;
   return ((volume_[0] * r + volume_[1] * t) * r + volume_[2] * t2) * r +
          volume_[3] * (t2 * t);
 }
@@ -176,7 +178,7 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
                                 sign * (b[3] - b[2])) -
                        2.5 * error;
   const double slope = 2.5 * (least / width);
-  if (!(least > 0 && slope < 0x1p900)) return unsure;
+  if (!(least > 0 && slope < kHuge)) return unsure;
 
   const double s = illinois(
       [&b](double x) {
@@ -189,9 +191,9 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
       3 / width *
       (r * r * (b[1] - b[0]) + 2 * r * s * (b[2] - b[1]) + s * s * (b[3] - b[2]));
   // Each step of Newton's method doubles the 30 bits.
-  Double2 t = {lo + s * width, 0}, value = volumeAt(t);
+  DoubleDouble t = {lo + s * width, 0}, value = volumeAt(t);
   for (int step = 0; step < 2; ++step) {
-    t = t - Double2{value.hi / tangent, 0};
+    t = t - DoubleDouble{value.hi / tangent, 0};
     value = volumeAt(t);
   }
   if (!(t.hi > lo && t.hi < hi)) return unsure;
@@ -205,7 +207,7 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
   return {touchAt(t, t_error), std::max(lo, t.hi - margin), std::min(hi, t.hi + margin)};
 }
 
-Answer AccuratePair::touchAt(const Double2& t, double t_error) const {
+Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
   // A difference at t: weight, product and sum, less than 4 products' errors together;
   // and it moves by less than 2 norms in the step. A component of a cross product: four
   // factors with such errors, their squares, 3 products' errors of its own. What

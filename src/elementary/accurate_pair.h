@@ -9,19 +9,30 @@
 #include <optional>
 
 #include "elementary/feature_points.h"
-#include "numerics/double2.h"
+#include "numerics/double_double.h"
 #include "numerics/moving_vector.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// @brief The difference of two vertices over the step, exact at both ends.
+struct AccurateDifference {
+  DoubleDouble t0[3], t1[3];
+  double norm{0};
+  bool is_double{true};  // all lo are 0
+
+  AccurateDifference() = default;
+  AccurateDifference(const VertexPath& p, const VertexPath& q);
+  void at(const DoubleDouble& t, DoubleDouble (&out)[3]) const;
+};
+
 /// @brief Volume and cross products of a pair, named as in solveCoplanarity(): computed
 /// for the whole step in twice the digits of a double, rounded, and restricted to parts
 /// of the step in doubles.
 class AccuratePair {
  public:
-  AccuratePair(FeatureKind kind, const FeaturePoints& x);
+  AccuratePair(ContinuousContactKind kind, const FeaturePoints& x);
 
   /// @brief Bernstein coefficients of the volume u . (v x w) over [lo, hi], and a bound
   /// on their error; false where the coordinates leave the range in which there is one.
@@ -32,10 +43,10 @@ class AccuratePair {
   bool hasNoRoot(double lo, double hi) const;
 
   /// @brief v x w over [lo, hi]; its error is infinite where there is no bound.
-  Quadratic normal(double lo, double hi) const;
+  MovingCross normal(double lo, double hi) const;
 
   /// @brief The cross product of inside condition i, likewise; made at the first call.
-  Quadratic side(int i, double lo, double hi);
+  MovingCross side(int i, double lo, double hi);
 
   /// Whether the features touch at a root of the volume, and a bracket of that root.
   struct RootContact {
@@ -50,36 +61,27 @@ class AccuratePair {
   RootContact contactAtRoot(double lo, double hi) const;
 
  private:
-  struct Difference {
-    Double2 t0[3], t1[3];
-    double norm{0};
-    bool is_double{true};  // all lo are 0
-
-    Difference() = default;
-    Difference(const VertexPath& p, const VertexPath& q);
-    void at(const Double2& t, Double2 (&out)[3]) const;
-  };
   struct Cross;
 
   /// The differences whose cross product inside condition i has, see insideness().
   struct Factors {
-    Difference x, y;
+    AccurateDifference x, y;
   };
-  int numSides() const { return kind_ == FeatureKind::kVertexFace ? 3 : 4; }
+  int numSides() const { return kind_ == ContinuousContactKind::kVertexFace ? 3 : 4; }
   Factors factors(int i) const;
 
-  Double2 volumeAt(const Double2& t) const;
+  DoubleDouble volumeAt(const DoubleDouble& t) const;
   /// @brief Whether the features touch at the root, which is within t_error of t.
-  Answer touchAt(const Double2& t, double t_error) const;
+  Answer touchAt(const DoubleDouble& t, double t_error) const;
 
-  FeatureKind kind_;
+  ContinuousContactKind kind_;
   FeaturePoints x_;
-  Difference u_, v_, w_;
-  Double2 volume_[4];  // Bernstein coefficients, the inner ones times 3
+  AccurateDifference u_, v_, w_;
+  DoubleDouble volume_[4];  // Bernstein coefficients, the inner ones times 3
   double volume_size_{0};
   double volume_error_;  // infinite where there is no bound
-  Quadratic normal_;
-  std::optional<Quadratic> side_[4];
+  MovingCross normal_;
+  std::optional<MovingCross> side_[4];
 };
 
 }  // namespace deformable

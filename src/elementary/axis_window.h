@@ -69,11 +69,12 @@ inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
 }
 
 /// @brief narrowWindow() for a pair given by its points.
-inline bool narrowWindow(FeatureKind kind, const FeaturePoints& x, double& lo,
+inline bool narrowWindow(ContinuousContactKind kind, const FeaturePoints& x, double& lo,
                          double& hi) {
   const AxisRanges p0{x[0]}, p1{x[1]}, p2{x[2]}, p3{x[3]}, p23{p2, p3};
-  return kind == FeatureKind::kVertexFace ? narrowWindow(p0, AxisRanges(p1, p23), lo, hi)
-                                          : narrowWindow(AxisRanges(p0, p1), p23, lo, hi);
+  return kind == ContinuousContactKind::kVertexFace
+             ? narrowWindow(p0, AxisRanges(p1, p23), lo, hi)
+             : narrowWindow(AxisRanges(p0, p1), p23, lo, hi);
 }
 
 }  // namespace deformable

@@ -64,9 +64,9 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
 /// side: the coefficients of the volume u . (v x w) go over into each other when time is
 /// reversed. coplanarityOfFeatures() in kernels/ has the same operations, over eight
 /// pairs.
-Coplanarity inDoubles(FeatureKind kind, const FeaturePoints& x, double window_lo,
-                      double window_hi) {
-  const bool vf = kind == FeatureKind::kVertexFace;
+Coplanarity inDoubles(ContinuousContactKind kind, const FeaturePoints& x,
+                      double window_lo, double window_hi) {
+  const bool vf = kind == ContinuousContactKind::kVertexFace;
   FramePair most_coordinate = {0, 0};
   DifferencePair u = differenceOf(x[vf ? 0 : 2], x[vf ? 1 : 0], most_coordinate),
                  v = differenceOf(x[vf ? 2 : 1], x[vf ? 1 : 0], most_coordinate),
@@ -92,21 +92,21 @@ Coplanarity inDoubles(FeatureKind kind, const FeaturePoints& x, double window_lo
 
 }  // namespace
 
-Coplanarity coplanarityInDoubles(FeatureKind kind, const FeaturePoints& x,
+Coplanarity coplanarityInDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                                  double window_lo, double window_hi) {
   return inDoubles(kind, x, window_lo, window_hi);
 }
 
 // Not inlined, to stay out of the way of the filter in doubles.
-__attribute__((noinline)) bool mayBecomeCoplanarAccurately(FeatureKind kind,
+__attribute__((noinline)) bool mayBecomeCoplanarAccurately(ContinuousContactKind kind,
                                                            const FeaturePoints& x,
                                                            double window_lo,
                                                            double window_hi) {
   return !AccuratePair(kind, x).hasNoRoot(window_lo, window_hi);
 }
 
-bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
-                       double window_hi) {
+bool mayBecomeCoplanar(ContinuousContactKind kind, const FeaturePoints& x,
+                       double window_lo, double window_hi) {
   const Coplanarity coplanarity = inDoubles(kind, x, window_lo, window_hi);
   if (coplanarity == Coplanarity::kUnclear)
     return mayBecomeCoplanarAccurately(kind, x, window_lo, window_hi);

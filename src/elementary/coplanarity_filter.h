@@ -22,17 +22,17 @@ enum class Coplanarity {
 /// that the four points are never coplanar in the window, so that the features never
 /// touch in it. (1) Never kNever for a pair that touches. (2) NaN, infinity and products
 /// that could underflow or overflow give kPossible.
-Coplanarity coplanarityInDoubles(FeatureKind kind, const FeaturePoints& x,
+Coplanarity coplanarityInDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                                  double window_lo, double window_hi);
 
 /// @brief The same question in twice the digits, for pairs that are kUnclear: false is a
 /// proof as kNever is.
-bool mayBecomeCoplanarAccurately(FeatureKind kind, const FeaturePoints& x,
+bool mayBecomeCoplanarAccurately(ContinuousContactKind kind, const FeaturePoints& x,
                                  double window_lo, double window_hi);
 
 /// @brief The whole filter: in doubles, and again where they leave it unclear.
-bool mayBecomeCoplanar(FeatureKind kind, const FeaturePoints& x, double window_lo,
-                       double window_hi);
+bool mayBecomeCoplanar(ContinuousContactKind kind, const FeaturePoints& x,
+                       double window_lo, double window_hi);
 
 }  // namespace deformable
 }  // namespace detail

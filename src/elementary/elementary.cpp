@@ -21,8 +21,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
-
 /// The difference of two vertices over the step.
 struct Difference {
   Vec t0, t1;
@@ -51,7 +49,7 @@ Segment restrict(const Difference& d, double lo, double hi) {
   return {d.at(lo), d.at(hi), d.norm};
 }
 
-Quadratic cross(const Segment& a, const Segment& b) {
+MovingCross cross(const Segment& a, const Segment& b) {
   const double norm = a.norm * b.norm;
   return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h), 2 * norm,
           kCrossBound * norm};
@@ -85,7 +83,7 @@ struct Cubic {
   }
 };
 
-Cubic spannedVolume(const Segment& u, const Quadratic& n) {
+Cubic spannedVolume(const Segment& u, const MovingCross& n) {
   const double size = u.norm * (0.5 * n.size);
   const double bound = isInRange(size) && isInRange(n.size)
                            ? size
@@ -109,7 +107,7 @@ Cubic restrict(const AccuratePair& pair, double lo, double hi) {
 enum class Side { kNegative, kPositive, kMixed, kLost };
 
 /// Sign of the quartic q . n over the whole segment; kLost if it is nothing but rounding.
-Side sideOf(const Quadratic& q, const Quadratic& n) {
+Side sideOf(const MovingCross& q, const MovingCross& n) {
   const double size = q.size * n.size;
   if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
   const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
@@ -132,13 +130,13 @@ Side sideOf(const Quadratic& q, const Quadratic& n) {
 /// The pair as differences. The volume is u . (v x w); v x w is normal to the triangle
 /// (VF) or to both edges (EE).
 struct Pair {
-  FeatureKind kind;
+  ContinuousContactKind kind;
   // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
   // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
   Difference u, v, w, r, q, z;
 
-  Pair(FeatureKind k, const FeaturePoints& x) : kind(k) {
-    if (kind == FeatureKind::kVertexFace) {
+  Pair(ContinuousContactKind k, const FeaturePoints& x) : kind(k) {
+    if (kind == ContinuousContactKind::kVertexFace) {
       u = {x[0], x[1]};
       v = {x[2], x[1]};
       w = {x[3], x[1]};
@@ -166,10 +164,10 @@ struct Pair {
 ///
 /// @param accurate  null, or what n comes from; it then has what is lost to doubles
 Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
-                const Segment& v, const Segment& w, const Quadratic& n,
+                const Segment& v, const Segment& w, const MovingCross& n,
                 AccuratePair* accurate) {
   const Segment r = restrict(pair.r, lo, hi), q = restrict(pair.q, lo, hi);
-  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   Side side = Side::kPositive;
   int i = 0;
   const auto require = [&](const Segment& x, const Segment& y) {
@@ -216,7 +214,7 @@ Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
 /// pairs without a normal (parallel edges, triangles without area).
 bool areSeparated(const Pair& pair, double lo, double hi) {
   const double mid = lo + 0.5 * (hi - lo);
-  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   // The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
   const Difference* corner[4] = {&pair.u, &pair.r, &pair.q, &pair.z};
   const double sign[4] = {1, -1, vf ? -1. : 1., 1};
@@ -246,9 +244,9 @@ bool isFinite(const FeaturePoints& x) {
 }
 
 /// Whether the features touch at t = 0, whatever comes later.
-bool touchAtStart(FeatureKind kind, const FeaturePoints& x) {
+bool touchAtStart(ContinuousContactKind kind, const FeaturePoints& x) {
   if (!isFinite(x)) return false;
-  return kind == FeatureKind::kVertexFace
+  return kind == ContinuousContactKind::kVertexFace
              ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
              : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
 }
@@ -282,8 +280,8 @@ class IntervalStack {
   int size_{0};
 };
 
-/// What is left undecided and proved so far.
-struct Findings {
+/// The times that are neither proved free of contact nor to have one.
+struct Undecided {
   bool unsure{false};
   double unsure_lo{1};
   double unsure_hi{0};
@@ -308,7 +306,7 @@ struct Findings {
 
 }  // namespace
 
-ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
+ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoints& x,
                                   double window_lo, double window_hi, double toc_err,
                                   double t_stop) {
   // An interval this short is not cut further.
@@ -334,7 +332,7 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
   const Pair pair(kind, x);
   IntervalStack open;
   open.push(window_lo, window_hi);
-  Findings found;
+  Undecided found;
   for (int look = 0; !open.isEmpty(); ++look) {
     const auto [lo, hi] = open.pop();
     // What is unsure so far may end in a contact that begins after t_stop.
@@ -346,7 +344,7 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
     const double width = hi - lo;
     const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
                   w = restrict(pair.w, lo, hi);
-    const Quadratic n = accurate ? accurate->normal(lo, hi) : cross(v, w);
+    const MovingCross n = accurate ? accurate->normal(lo, hi) : cross(v, w);
     const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
     if (f.hasNoRoot()) continue;
     const bool crosses = f.changesSign();
@@ -395,7 +393,7 @@ ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
   return found.withoutProof();
 }
 
-ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
+ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints& x,
                                 double window_lo, double window_hi, double toc_err,
                                 double t_stop) {
   if (!narrowWindow(kind, x, window_lo, window_hi))
@@ -437,11 +435,11 @@ std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const V
 
 }  // namespace
 
-void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
+void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                      double (&position)[3], double (&normal)[3]) {
   // Rounding is what two edges span whose cross product is smaller.
   constexpr double kParallel = 0x1p-48;
-  const bool vf = kind == FeatureKind::kVertexFace;
+  const bool vf = kind == ContinuousContactKind::kVertexFace;
   const Pair pair(kind, x);
   const Vec u = pair.u.at(t), v_there = pair.v.at(t), w_there = pair.w.at(t);
   const double v_scale = scaleOf(v_there), w_scale = scaleOf(w_there);

@@ -22,17 +22,18 @@ namespace deformable {
 ///     [toc_lo, toc_hi], toc_hi - toc_lo <= toc_err;
 /// (3) otherwise kUnsure: toc_lo is not later than the first time of contact, if any;
 /// (4) the same inputs give the same bits on every machine.
-ElementaryResult solveCoplanarity(FeatureKind kind, const FeaturePoints& x,
+ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoints& x,
                                   double window_lo, double window_hi, double toc_err,
                                   double t_stop = 1);
 
 /// @brief All stages. 0 <= window_lo <= window_hi <= 1; toc_err > 0.
-ElementaryResult elementaryTest(FeatureKind kind, const FeaturePoints& x,
+ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints& x,
                                 double window_lo, double window_hi, double toc_err,
                                 double t_stop = 1);
 
-inline ElementaryResult elementaryTest(FeatureKind kind, const VertexPath (&x)[4],
-                                       double window_lo, double window_hi, double toc_err,
+inline ElementaryResult elementaryTest(ContinuousContactKind kind,
+                                       const VertexPath (&x)[4], double window_lo,
+                                       double window_hi, double toc_err,
                                        double t_stop = 1) {
   return elementaryTest(kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, window_lo,
                         window_hi, toc_err, t_stop);
@@ -40,7 +41,7 @@ inline ElementaryResult elementaryTest(FeatureKind kind, const VertexPath (&x)[4
 
 /// @brief Point and unit normal of a contact at time t (see ContinuousContact::normal for
 /// the sign, with feature 1 the vertex or edge a).
-void contactGeometry(FeatureKind kind, const FeaturePoints& x, double t,
+void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                      double (&position)[3], double (&normal)[3]);
 
 }  // namespace deformable

@@ -75,7 +75,7 @@ struct IntegerPaths {
 
 /// The conditions of a contact.
 ///
-/// With u, v, w, n = v x w as in elementary_test.cpp, the features' points are coplanar
+/// With u, v, w, n = v x w as in elementary.cpp, the features' points are coplanar
 /// where u . n = 0. Seen along an axis k in which n does not vanish, their plane is seen
 /// one to one, and the weights of the contact are quotients of components k: VF u = beta
 /// v + gamma w with beta = (u x w)_k / n_k, gamma = (v x u)_k / n_k, 1 - beta - gamma =
@@ -86,7 +86,7 @@ struct IntegerPaths {
 /// touch in an end of one of them.
 class ExactPair {
  public:
-  ExactPair(FeatureKind kind, const FeaturePoints& x, const IntegerPaths& paths)
+  ExactPair(ContinuousContactKind kind, const FeaturePoints& x, const IntegerPaths& paths)
       : kind_(kind), p_(paths.points) {
     const auto& [a, b, c, d] = p_;
     u_ = isVertexFace() ? a - b : c - a;
@@ -164,7 +164,7 @@ class ExactPair {
     const MovingPoint &p, &q, &r;
   };
 
-  bool isVertexFace() const { return kind_ == FeatureKind::kVertexFace; }
+  bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
   std::size_t numWeights() const { return isVertexFace() ? 3 : 4; }
 
   /// Component k of the cross product that gives weight i.
@@ -195,7 +195,7 @@ class ExactPair {
                        [&t](const Polynomial& o) { return t.signOf(o) == 0; });
   }
 
-  FeatureKind kind_;
+  ContinuousContactKind kind_;
   std::array<MovingPoint, 4> p_;
   MovingPoint u_, v_, w_, n_;
   Polynomial volume_;
@@ -203,8 +203,9 @@ class ExactPair {
 
 }  // namespace
 
-ElementaryResult decideExactly(FeatureKind kind, const FeaturePoints& x, double toc_err) {
-  const bool touch_at_start = kind == FeatureKind::kVertexFace
+ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& x,
+                               double toc_err) {
+  const bool touch_at_start = kind == ContinuousContactKind::kVertexFace
                                   ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
                                   : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
   if (touch_at_start) return {Answer::kYes, 0, 0, DecidedBy::kExact};

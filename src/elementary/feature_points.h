@@ -4,7 +4,7 @@
 #ifndef FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 #define FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 
-#include "mesh/feature_kind.h"
+#include "fcl/narrowphase/stage_counts.h"
 #include "mesh/vertex_frames.h"
 
 namespace fcl {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "numerics/error_bounds.h"
 #include "numerics/illinois.h"
 
 namespace fcl {
@@ -13,10 +14,10 @@ namespace deformable {
 namespace {
 
 /// The difference of two points, seen along the axis, at t = 0 and t = 1.
-struct Difference {
+struct PlanarDifference {
   double x[2], y[2];
 
-  Difference(const VertexPath& p, const VertexPath& q, int axis) {
+  PlanarDifference(const VertexPath& p, const VertexPath& q, int axis) {
     const int i = (axis + 1) % 3, j = (axis + 2) % 3;
     x[0] = p.t0[i] - q.t0[i];
     x[1] = p.t1[i] - q.t1[i];
@@ -34,10 +35,10 @@ struct Bounded {
 /// A quadratic in t: a product of two differences. Bernstein coefficients with error
 /// bounds relative to the products they are made of, so that factors of zero leave a zero
 /// that is known to be one.
-class Quadratic {
+class PlanarQuadratic {
  public:
-  static Quadratic cross(const Difference& a, const Difference& b) {
-    Quadratic q;
+  static PlanarQuadratic cross(const PlanarDifference& a, const PlanarDifference& b) {
+    PlanarQuadratic q;
     for (const auto& [k, i, j] : kTerms) {
       q.add(k, a.x[i] * b.y[j], a.x[i] != 0 && b.y[j] != 0);
       q.add(k, -a.y[i] * b.x[j], a.y[i] != 0 && b.x[j] != 0);
@@ -45,8 +46,8 @@ class Quadratic {
     q.finish();
     return q;
   }
-  static Quadratic dot(const Difference& a, const Difference& b) {
-    Quadratic q;
+  static PlanarQuadratic dot(const PlanarDifference& a, const PlanarDifference& b) {
+    PlanarQuadratic q;
     for (const auto& [k, i, j] : kTerms) {
       q.add(k, a.x[i] * b.x[j], a.x[i] != 0 && b.x[j] != 0);
       q.add(k, a.y[i] * b.y[j], a.y[i] != 0 && b.y[j] != 0);
@@ -105,8 +106,8 @@ class Quadratic {
   void add(int k, double product, bool is_not_zero) {
     c_[k] += product;
     size_[k] += std::abs(product);
-    is_reliable_ &= std::abs(product) < 0x1p900;
-    is_reliable_ &= !is_not_zero || std::abs(product) > 0x1p-900;
+    is_reliable_ &= std::abs(product) < kHuge;
+    is_reliable_ &= !is_not_zero || std::abs(product) > kTiny;
   }
   void finish() {
     c_[1] *= 0.5;
@@ -122,11 +123,11 @@ class Quadratic {
   bool is_reliable_{true};
 };
 
-constexpr Quadratic::Term Quadratic::kTerms[4];
+constexpr PlanarQuadratic::Term PlanarQuadratic::kTerms[4];
 
 /// What is known of the first contact: it is not later than hi, if there is a proof of
 /// one, and not earlier than lo.
-struct Findings {
+struct FirstContact {
   double lo{2};
   double hi{2};
 
@@ -141,13 +142,15 @@ struct Findings {
 /// Looks for times in [lo, hi] at which point p meets segment qr: where it changes sides
 /// between the segment's ends, or comes along the line from beyond one of them.
 void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPath& r,
-                        int axis, double lo, double hi, double toc_err, Findings& found) {
-  const Difference qp(p, q, axis), qr(r, q, axis);
-  const Quadratic area = Quadratic::cross(qp, qr);
+                        int axis, double lo, double hi, double toc_err,
+                        FirstContact& found) {
+  const PlanarDifference qp(p, q, axis), qr(r, q, axis);
+  const PlanarQuadratic area = PlanarQuadratic::cross(qp, qr);
   if (area.isPositive(lo, hi) || area.isNegative(lo, hi)) return;
-  const Difference rp(p, r, axis), rq(q, r, axis);
-  const Quadratic from_q = Quadratic::dot(qp, qr), from_r = Quadratic::dot(rp, rq),
-                  length = Quadratic::dot(qr, qr);
+  const PlanarDifference rp(p, r, axis), rq(q, r, axis);
+  const PlanarQuadratic from_q = PlanarQuadratic::dot(qp, qr),
+                        from_r = PlanarQuadratic::dot(rp, rq),
+                        length = PlanarQuadratic::dot(qr, qr);
   const bool on_line = area.isZero();
   const auto isProved = [&](double a, double b) {
     if (on_line) a = b;  // being there at b is enough
@@ -182,7 +185,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
     // A wide interval is cut close around a change of sign, or in two.
     double cut[2] = {lo + 0.5 * width, hi};
     if (width > toc_err)
-      for (const Quadratic* f : {&area, &from_q, &from_r})
+      for (const PlanarQuadratic* f : {&area, &from_q, &from_r})
         if (f->changesSign(lo, hi)) {
           const double t = illinois([f](double s) { return f->at(s); }, lo, hi, f->at(lo),
                                     f->at(hi), 0.0625 * toc_err, 24);
@@ -206,7 +209,7 @@ bool areApartAt(double t, bool vf, const FeaturePoints& x, int axis) {
   bool all_negative[4] = {true, true, true, true};
   for (int i = 0; i < (vf ? 1 : 2); ++i)
     for (int j = vf ? 1 : 2; j < 4; ++j) {
-      const Difference d(x[i], x[j], axis);
+      const PlanarDifference d(x[i], x[j], axis);
       const double s = 1 - t, a = s * d.x[0] + t * d.x[1], b = s * d.y[0] + t * d.y[1];
       // Four roundings of each term, one more of the sums; what underflows is below the
       // smallest normal number.
@@ -237,18 +240,19 @@ int axisOfCommonPlane(const FeaturePoints& x) {
   return -1;
 }
 
-ElementaryResult solveInPlane(FeatureKind kind, const FeaturePoints& x, int axis,
-                              double window_lo, double window_hi, double toc_err) {
+ElementaryResult solveInPlane(ContinuousContactKind kind, const FeaturePoints& x,
+                              int axis, double window_lo, double window_hi,
+                              double toc_err) {
   struct PointAndSegment {
     int p, q, r;
   };
   static constexpr PointAndSegment kVertexFace[3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}},
                                    kEdgeEdge[4] = {
                                        {0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}};
-  const bool vf = kind == FeatureKind::kVertexFace;
+  const bool vf = kind == ContinuousContactKind::kVertexFace;
   if (window_lo > 0 && !areApartAt(window_lo, vf, x, axis))
     return {Answer::kUnsure, window_lo, window_hi, DecidedBy::kSolver};
-  Findings found;
+  FirstContact found;
   for (int i = 0; i < (vf ? 3 : 4); ++i) {
     const auto [p, q, r] = vf ? kVertexFace[i] : kEdgeEdge[i];
     findPointOnSegment(x[p], x[q], x[r], axis, window_lo, std::min(window_hi, found.hi),

@@ -18,8 +18,9 @@ int axisOfCommonPlane(const FeaturePoints& x);
 
 /// @brief solveCoplanarity() for a pair in a plane across axis that does not touch at t =
 /// 0, with its properties.
-ElementaryResult solveInPlane(FeatureKind kind, const FeaturePoints& x, int axis,
-                              double window_lo, double window_hi, double toc_err);
+ElementaryResult solveInPlane(ContinuousContactKind kind, const FeaturePoints& x,
+                              int axis, double window_lo, double window_hi,
+                              double toc_err);
 
 }  // namespace deformable
 }  // namespace detail

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "numerics/double2.h"
+#include "numerics/double_double.h"
 #include "numerics/error_bounds.h"
 #include "numerics/integer_coordinates.h"
 
@@ -59,14 +59,14 @@ int accurateOrientation(const double (&p)[3], const double (&a)[3], const double
   AccurateVector u, v, w, n;
   bool is_double = true;
   for (int k = 0; k < 3; ++k) {
-    u[k] = Double2::difference(p[k], a[k]);
-    v[k] = Double2::difference(b[k], a[k]);
-    w[k] = Double2::difference(c[k], a[k]);
+    u[k] = DoubleDouble::difference(p[k], a[k]);
+    v[k] = DoubleDouble::difference(b[k], a[k]);
+    w[k] = DoubleDouble::difference(c[k], a[k]);
     is_double &= v[k].lo == 0 && w[k].lo == 0;
   }
   cross(v, w, n);
   double size = 0;
-  for (const Double2& component : n) size = std::max(size, std::abs(component.hi));
+  for (const DoubleDouble& component : n) size = std::max(size, std::abs(component.hi));
   // A component of n has two products, exact for plain doubles, and their difference; the
   // volume has three products of size UN and sums of 2 and 3 UN: 11 * 2^-104 UN. More
   // than all that underflows: 2^-1060 each.
@@ -159,8 +159,7 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
   // Layers in a plane of constant x, y or z.
   for (int k = 0; k < 3; ++k)
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
-  if (v_max * w_max > 0x1p-900 && v_max * w_max < 0x1p900 && size > 0x1p-900 &&
-      size < 0x1p900) {
+  if (isInRange(v_max * w_max) && isInRange(size)) {
     if (std::abs(volume) > kVolumeBound * size) return volume > 0 ? 1 : -1;
     if (const int sign = accurateOrientation(p, a, b, c, {u_max, v_max, w_max}))
       return sign;
@@ -176,7 +175,7 @@ int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
   // Differences and products rounded once, and their difference: within 4 units of 2^-53
   // of |st| + |uv|. Nothing that matters underflows in this range.
   const double size = std::abs(s * t) + std::abs(u * v), value = s * t - u * v;
-  const bool in_range = size > 0x1p-900 && size < 0x1p900;
+  const bool in_range = isInRange(size);
   if (in_range && std::abs(value) > 5 * 0x1p-53 * size) return value > 0 ? 1 : -1;
   // Both products are near size / 2 then, if they cancel.
   if (in_range && isExactDifference(b[i], a[i], s) && isExactDifference(d[j], c[j], t) &&

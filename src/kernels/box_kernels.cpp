@@ -312,13 +312,13 @@ HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
 
 /// The overlap depths of a pair of features in one frame. Which feature comes first does
 /// not matter but for the shift.
-template <FeatureKind kind, bool kShifted, int kFrame>
+template <ContinuousContactKind kind, bool kShifted, int kFrame>
 HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
                            const KdopShift* shift, const KdopShift* turned_shift) {
   const auto box = [&pair](std::size_t i) { return boxOf<kFrame>(*pair.x[i]); };
   HalfAxes first, second;
   const KdopShift* add = shift;
-  if (kind == FeatureKind::kVertexFace) {
+  if (kind == ContinuousContactKind::kVertexFace) {
     // The vertex, and where the other triangle begins.
     const bool on_a = bit < 3;
     const std::size_t face = on_a ? 3 : 0;
@@ -350,7 +350,7 @@ HWY_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
   return kept;
 }
 
-template <FeatureKind kind, bool kShifted>
+template <ContinuousContactKind kind, bool kShifted>
 HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
                                     const KdopShift* turned_shift, float latest,
                                     const float* gaps, std::uint32_t* codes,
@@ -391,11 +391,12 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
   return kept;
 }
 
-std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
+std::size_t cullFeaturesOf(ContinuousContactKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
                            float latest, const float* gaps, std::uint32_t* codes,
                            std::size_t count, TimeWindow* windows) {
-  constexpr FeatureKind kVf = FeatureKind::kVertexFace, kEe = FeatureKind::kEdgeEdge;
+  constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
+                                  kEe = ContinuousContactKind::kEdgeEdge;
   const auto cull = kind == kVf
                         ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
                         : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);

@@ -34,17 +34,17 @@ class EightFeatures {
   HWY_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
     for (std::size_t lane = 0; lane < kEight; ++lane) {
       vertices_[lane] = pairs[codes[lane] / 16].x;
-      places_[lane] = kFeaturePoints[codes[lane] % 16];
+      corners_[lane] = kFeaturePoints[codes[lane] % 16];
     }
   }
   HWY_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {
-    return *vertices_[lane][places_[lane][i]];
+    return *vertices_[lane][corners_[lane][i]];
   }
 
  private:
   /// Of both triangles, and which of them the points are.
   const TreeVertex* const* vertices_[kEight];
-  const unsigned char* places_[kEight];
+  const unsigned char* corners_[kEight];
 };
 
 /// The points of eight pairs at both times.
@@ -98,12 +98,12 @@ HWY_INLINE Segments restrict(const Differences& d, const Doubles& lo, const Doub
 }
 
 /// Volume and normal over a part of the step, as in solveCoplanarity().
-struct Quadratics {
+struct MovingCrosses {
   Vectors c0, c1, c2;
   Doubles norm;
 };
 
-HWY_INLINE Quadratics cross(const Segments& a, const Segments& b) {
+HWY_INLINE MovingCrosses cross(const Segments& a, const Segments& b) {
   return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
           a.norm * b.norm};
 }
@@ -126,7 +126,7 @@ struct Cubics {
   }
 };
 
-HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
+HWY_INLINE Cubics spannedVolume(const Segments& u, const MovingCrosses& n) {
   const Doubles size = u.norm * n.norm;
   return {dot(u.l, n.c0),
           dot(u.h, n.c0) + dot(u.l, n.c1),
@@ -137,7 +137,8 @@ HWY_INLINE Cubics spannedVolume(const Segments& u, const Quadratics& n) {
           isInRange(size) & isInRange(n.norm)};
 }
 
-EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* pairs,
+EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
+                                         const TrianglePair* pairs,
                                          const std::uint32_t* codes,
                                          const TimeWindow* windows, std::size_t count,
                                          double latest) {
@@ -152,7 +153,7 @@ EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* p
     codes = eight_codes;
     windows = eight_windows;
   }
-  const bool vf = kind == FeatureKind::kVertexFace;
+  const bool vf = kind == ContinuousContactKind::kVertexFace;
   const Points x(EightFeatures(pairs, codes));
   Doubles starts, ends;
   static_assert(sizeof(TimeWindow) == 2 * sizeof(float), "two floats each");
@@ -182,13 +183,13 @@ EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* p
   return {used & ~signs_agree, used & signs_agree & ~clear};
 }
 
-/// The differences that the inside conditions use, see Pair in elementary_test.cpp.
+/// The differences that the inside conditions use, see Pair in elementary.cpp.
 struct Pairs {
   bool vf;
   Differences u, v, w, r, q;
 
   HWY_INLINE explicit Pairs(const EightPairs& pairs)
-      : Pairs(Points(pairs), pairs.kind == FeatureKind::kVertexFace) {}
+      : Pairs(Points(pairs), pairs.kind == ContinuousContactKind::kVertexFace) {}
 
  private:
   HWY_INLINE Pairs(const Points& x, bool is_vf)
@@ -204,7 +205,7 @@ struct Pairs {
 struct Sides {
   DoubleMask positive, negative;
 
-  HWY_INLINE void require(const Quadratics& q, const Quadratics& n) {
+  HWY_INLINE void require(const MovingCrosses& q, const MovingCrosses& n) {
     const Doubles size = q.norm * n.norm;
     const DoubleMask valid = isInRange(size) & isInRange(q.norm) & isInRange(n.norm);
     const Doubles bound = broadcast<kEight>(kInsideBound) * size,
@@ -224,7 +225,7 @@ struct Sides {
 
 HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
                             const Segments& u, const Segments& v, const Segments& w,
-                            const Quadratics& n) {
+                            const MovingCrosses& n) {
   const Segments r = restrict(pairs.r, lo, hi), q = restrict(pairs.q, lo, hi);
   const Doubles zero = broadcast<kEight>(0.);
   Sides sides = {zero <= zero, zero < zero};
@@ -294,7 +295,7 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const Doubles a = max(lo, t - half), b = min(hi, t + half);
   const Segments ua = restrict(pairs.u, a, b), va = restrict(pairs.v, a, b),
                  wa = restrict(pairs.w, a, b);
-  const Quadratics na = cross(va, wa);
+  const MovingCrosses na = cross(va, wa);
   const Sides sides = insideness(pairs, a, b, ua, va, wa, na);
   const unsigned crosses = bits(spannedVolume(ua, na).changesSign());
   const auto isFree = [&](const Doubles& from, const Doubles& to) HWY_ATTR {
@@ -440,7 +441,7 @@ EightDivisions divideEight(const EightPairs& x) {
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
   const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
                  w = restrict(pairs.w, lo, hi);
-  const Quadratics n = cross(v, w);
+  const MovingCrosses n = cross(v, w);
   EightDivisions out;
   out.never_inside = bits(insideness(pairs, lo, hi, u, v, w, n).negative);
   const Cubics f = spannedVolume(u, n);

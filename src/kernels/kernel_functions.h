@@ -30,7 +30,7 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
 void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out);
 std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
                          std::uint32_t* codes);
-std::size_t cullFeaturesOf(FeatureKind kind, const TrianglePair* pairs,
+std::size_t cullFeaturesOf(ContinuousContactKind kind, const TrianglePair* pairs,
                            const KdopShift* shift, const KdopShift* turned_shift,
                            float latest, const float* gaps, std::uint32_t* codes,
                            std::size_t count, TimeWindow* windows);
@@ -44,7 +44,8 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
-EightCoplanarities coplanarityOfFeatures(FeatureKind kind, const TrianglePair* pairs,
+EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
+                                         const TrianglePair* pairs,
                                          const std::uint32_t* codes,
                                          const TimeWindow* windows, std::size_t count,
                                          double latest);

@@ -124,7 +124,7 @@ struct EightPairs {
   const TreeVertex* x[4][8];
   double lo[8];
   double hi[8];
-  FeatureKind kind;
+  ContinuousContactKind kind;
 
   void set(std::size_t lane, const TreeVertex* const (&points)[4], double window_lo,
            double window_hi) {
@@ -212,7 +212,7 @@ struct Kernels {
   /// @param gaps  for each triangle pair: its features are left out if they are further
   /// apart at t = 0, along one of the directions; null: none are
   /// @param codes  with room for 15 more, which may be written
-  std::size_t (*cullFeatures)(FeatureKind kind, const TrianglePair* pairs,
+  std::size_t (*cullFeatures)(ContinuousContactKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
                               float latest, const float* gaps, std::uint32_t* codes,
                               std::size_t count, TimeWindow* windows);
@@ -259,7 +259,7 @@ struct Kernels {
   /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() left, in
   /// [windowLo(), min(windowHi(), latest)].
   /// @param count  1 to 8
-  EightCoplanarities (*coplanarity)(FeatureKind kind, const TrianglePair* pairs,
+  EightCoplanarities (*coplanarity)(ContinuousContactKind kind, const TrianglePair* pairs,
                                     const std::uint32_t* codes, const TimeWindow* windows,
                                     std::size_t count, double latest);
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "mesh/feature_kind.h"
+#include "fcl/narrowphase/stage_counts.h"
 #include "mesh/mesh_triangle.h"
 #include "mesh/moving_kdop.h"
 
@@ -12,10 +12,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief One feature of each of two triangles, by places in the triangles: VF, vertex
+/// @brief One feature of each of two triangles, by corners of the triangles: VF, vertex
 /// `first` of one and the whole other; EE, edge `first` of a and edge `second` of b.
 struct FeaturePair {
-  FeatureKind kind;
+  ContinuousContactKind kind;
   /// VF: the vertex is a's.
   bool first_on_a;
   unsigned first;
@@ -24,7 +24,7 @@ struct FeaturePair {
 
 /// @brief Two features of two meshes a and b, by ids.
 struct FeatureIds {
-  FeatureKind kind;
+  ContinuousContactKind kind;
   /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
   bool first_on_a;
   /// VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
@@ -41,9 +41,9 @@ constexpr int kNumFeaturePairs = 15;
 
 inline FeaturePair featurePair(int bit) {
   const auto k = static_cast<unsigned>(bit);
-  if (k < 3) return {FeatureKind::kVertexFace, true, k, 0};
-  if (k < 6) return {FeatureKind::kVertexFace, false, k - 3, 0};
-  return {FeatureKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
+  if (k < 3) return {ContinuousContactKind::kVertexFace, true, k, 0};
+  if (k < 6) return {ContinuousContactKind::kVertexFace, false, k - 3, 0};
+  return {ContinuousContactKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
 }
 
 /// @brief The four points of each pair of features, the vertices of a counted 0-2 and b's

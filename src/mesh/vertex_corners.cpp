@@ -111,7 +111,7 @@ CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
 }
 
 /// What each corner's triangle owns of the features at a vertex: the vertex, and the
-/// edges and faces that have no lower one. By the corner's slot.
+/// edges and faces that have no lower one. By the place of the corner.
 class Owned {
  public:
   Owned(std::uint32_t vertex, const CornersAtVertex& at, std::uint8_t* owned)
@@ -128,29 +128,29 @@ class Owned {
       if (c.number < lowest->number) lowest = &c;
       const std::uint32_t after = i + 1 < count_ ? nextEdge(corners_[i + 1]) : end;
       const bool below_next = vertex_ < c.next, below_last = vertex_ < c.last;
-      owned_[c.slot] = bit(below_next & (nextEdge(c) < before), 3 + nextEdge(c) % 4) |
-                       bit(below_last & (lastEdge(c) < after), 3 + lastEdge(c) % 4) |
-                       bit(below_next & below_last, 6);
+      owned_[c.place] = bit(below_next & (nextEdge(c) < before), 3 + nextEdge(c) % 4) |
+                        bit(below_last & (lastEdge(c) < after), 3 + lastEdge(c) % 4) |
+                        bit(below_next & below_last, 6);
       before = lastEdge(c);
     }
-    owned_[lowest->slot] |= bit(true, lowest->number % 4);
+    owned_[lowest->place] |= bit(true, lowest->number % 4);
   }
 
   /// Of what is claimed several times the lowest number is first.
   void ofAny(std::vector<std::array<std::uint32_t, 5>>& claims) const {
     claims.clear();
     for (const Corner* c = corners_; c != corners_ + count_; ++c) {
-      owned_[c->slot] = 0;
-      claims.push_back({kNone, kNone, c->number, c->slot, c->number % 4});
+      owned_[c->place] = 0;
+      claims.push_back({kNone, kNone, c->number, c->place, c->number % 4});
       for (const bool next : {true, false}) {
         const std::uint32_t other = next ? c->next : c->last,
                             edge = next ? nextEdge(*c) : lastEdge(*c);
         if (vertex_ < other)
-          claims.push_back({other, kNone, edge, c->slot, 3 + edge % 4});
+          claims.push_back({other, kNone, edge, c->place, 3 + edge % 4});
       }
       if (vertex_ <= c->next && vertex_ <= c->last)
         claims.push_back({std::min(c->next, c->last), std::max(c->next, c->last),
-                          c->number, c->slot, 6});
+                          c->number, c->place, 6});
     }
     std::sort(claims.begin(), claims.end());
     for (std::size_t i = 0; i < claims.size(); ++i) {
@@ -161,8 +161,8 @@ class Owned {
   }
 
  private:
-  static std::uint8_t bit(bool is_owned, std::uint32_t place) {
-    return static_cast<std::uint8_t>(std::uint32_t{is_owned} << place);
+  static std::uint8_t bit(bool is_owned, std::uint32_t index) {
+    return static_cast<std::uint8_t>(std::uint32_t{is_owned} << index);
   }
   /// 4 * triangle + k of the edge to the next vertex, and of that from the last.
   static std::uint32_t nextEdge(const Corner& c) { return c.number; }

@@ -22,8 +22,8 @@ struct alignas(16) Corner {
   std::uint32_t next, last;
   /// 4 * (the user's number of the triangle) + k; it is vertex k of the triangle.
   std::uint32_t number;
-  /// The same by the place of the triangle.
-  std::uint32_t slot;
+  /// 4 * (the place of the triangle) + k.
+  std::uint32_t place;
 };
 
 /// @brief The corners at one vertex. Those of a fan are in order: each but the first, of

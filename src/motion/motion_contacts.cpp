@@ -35,7 +35,7 @@ class FeatureContacts {
         tolerance_(a, b, 0),
         // Rigid meshes have no owners. What is not wanted of a first contact is known
         // last.
-        sink_(options.goal == QueryGoal::kAll ? options.max_contacts : kNoLimit,
+        sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
               a.isRigid() || b.isRigid()) {}
 
   /// The contacts of the features that two triangles own, from when on these touch.
@@ -101,7 +101,7 @@ class FeatureContacts {
                double last) {
     const FeaturePair pair = featurePair(bit);
     BodyTriangle x = a, y = b;
-    if (pair.kind == FeatureKind::kEdgeEdge) {
+    if (pair.kind == ContinuousContactKind::kEdgeEdge) {
       x = featureOf(a, pair.first, (pair.first + 1) % 3);
       y = featureOf(b, pair.second, (pair.second + 1) % 3);
     } else {
@@ -125,12 +125,12 @@ class FeatureContacts {
     contact.kind = pair.kind;
     contact.first_on_a = pair.first_on_a;
     for (int i = 0; i < 4; ++i) {
-      const unsigned place = kFeaturePoints[bit][i];
-      contact.vertices[i] =
-          static_cast<std::uint32_t>(place < 3 ? a.vertex[place] : b.vertex[place - 3]);
+      const unsigned corner = kFeaturePoints[bit][i];
+      contact.vertices[i] = static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner]
+                                                                  : b.vertex[corner - 3]);
     }
     // An edge is one, whichever of its triangles it is met in.
-    if (pair.kind == FeatureKind::kEdgeEdge)
+    if (pair.kind == ContinuousContactKind::kEdgeEdge)
       for (int i = 0; i < 4; i += 2)
         if (contact.vertices[i] > contact.vertices[i + 1])
           std::swap(contact.vertices[i], contact.vertices[i + 1]);
@@ -155,13 +155,13 @@ class FeatureContacts {
 /// @return whether some were dropped for want of room
 bool keepWanted(const QueryOptions& options, double first_hi,
                 std::deque<FeatureContact>& contacts) {
-  if (options.goal == QueryGoal::kAll || contacts.empty()) return false;
+  if (options.query == ContinuousQuery::kAll || contacts.empty()) return false;
   const auto is_late = [first_hi](const FeatureContact& contact) {
     return contact.toc_lo > first_hi;
   };
   contacts.erase(std::remove_if(contacts.begin(), contacts.end(), is_late),
                  contacts.end());
-  const bool any = options.goal == QueryGoal::kAny;
+  const bool any = options.query == ContinuousQuery::kAny;
   const std::size_t room = any ? 1 : options.max_contacts;
   if (contacts.size() <= room) return false;
   std::sort(contacts.begin(), contacts.end(), isEarlier);
@@ -180,7 +180,7 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
                                 const QueryOptions& options) {
   MotionQueryOptions wanted;
   wanted.toc_err = options.toc_err;
-  wanted.all = options.goal == QueryGoal::kAll;
+  wanted.all = options.query == ContinuousQuery::kAll;
   MotionAnswer touching = queryMotions(a, b, wanted);
   QueryAnswer answer;
   count(touching.counts, answer.counts);

@@ -205,7 +205,7 @@ struct TrianglePairMotion::Projection {
   Projection(const State& state, const Vec& direction) {
     for (int body = 0; body < 2; ++body)
       for (int i = 0; i < 3; ++i) {
-        place[body][i] = dot(direction, state.p[body][i] - state.p[0][0]);
+        along[body][i] = dot(direction, state.p[body][i] - state.p[0][0]);
         speed[body][i] = dot(direction, state.v[body][i]);
       }
   }
@@ -218,7 +218,7 @@ struct TrianglePairMotion::Projection {
     double h = longest;
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
-        const double gap = place[1][j] - place[0][i] - margin,
+        const double gap = along[1][j] - along[0][i] - margin,
                      rate = speed[1][j] - speed[0][i] - rate_margin;
         if (!(gap > 0)) return -1;
         if (gap + h * (rate - 0.5 * most_approach * h) >= 0) continue;
@@ -229,7 +229,7 @@ struct TrianglePairMotion::Projection {
     return h;
   }
 
-  double place[2][3];
+  double along[2][3];
   double speed[2][3];
 };
 

@@ -51,8 +51,8 @@ constexpr double kMostFilterNorm = 0x1p290;
 // outer 3 (80 + 4) + 20 = 272 u; next 2 * (3 (168 + 8) + 40) + 48 = 1184 u; middle 2 *
 // 272 + 3 (352 + 16) + 80 + 96 = 1824 u, all of XYVW.
 constexpr double kInsideBound = 2048 * kUnit;
-// A cross product as a Quadratic: half of its inner component is below 2 VW and within 22
-// u VW.
+// A cross product as a MovingCross: half of its inner component is below 2 VW and within
+// 22 u VW.
 constexpr double kCrossBound = 22.5 * kUnit;
 // The same conditions for cross products of sizes Q, N with errors e, d, whatever digits
 // they have. Of the five coefficients the middle one, q0.n2 + q2.n0 + q1.n1 with c1 of
@@ -94,6 +94,7 @@ constexpr double kBorderHalfBound = 640 * kUnit;
 // adds at most 2^-1074 to a product, below 2^-170 of numbers in this range.
 constexpr double kTiny = 0x1p-900;
 constexpr double kHuge = 0x1p900;
+inline bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
 // A norm counts for no less than this: what underflows in the products with 1 - t and t,
 // 2^-1074 each, is then below the 4 u that the bounds allow for.
 constexpr double kLeastNorm = 0x1p-1010;

@@ -35,7 +35,7 @@ inline double maxNorm(const Vec& a) {
 /// @brief Cross product of two moving vectors over an interval, c0 (1-s)^2 + c1 s (1-s) +
 /// c2 s^2. No component of c0, c1 / 2 and c2 is larger than size, nor further than error
 /// from the truth.
-struct Quadratic {
+struct MovingCross {
   Vec c0, c1, c2;
   double size;
   double error;

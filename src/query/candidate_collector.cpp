@@ -8,7 +8,8 @@ namespace deformable {
 void CandidateCollector::flush() {
   batch_.cull(latest(), counts_);
   block_.clear();
-  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
+  for (const ContinuousContactKind kind :
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
     for (std::size_t i = 0; i < batch_.size(kind); ++i) {
       block_.emplace_back();
       batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], block_.back());

@@ -22,7 +22,7 @@ using CandidateSink =
 class CandidateCollector {
  public:
   /// @param a, b, sink  kept by reference; the same mesh twice for a self-collision.
-  /// @pre both meshes are prepared: otherwise pairs would come repeatedly
+  /// @pre both meshes have owners: otherwise pairs would come repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                      const CandidateSink& sink)
       : batch_(a, b, shift, kernels()), sink_(sink) {}

@@ -19,17 +19,17 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
 
 ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   const std::uint32_t tag =
-      (c.kind == FeatureKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
+      (c.kind == ContinuousContactKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
   PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
   // Faces with the same vertices are one face, whatever their order.
-  if (c.kind == FeatureKind::kVertexFace) std::sort(key.begin() + 2, key.end());
+  if (c.kind == ContinuousContactKind::kVertexFace) std::sort(key.begin() + 2, key.end());
   return key;
 }
 
 /// A pair that is kept already.
 bool ContactSink::addAgain(const FeatureContact& contact, Seen& seen) {
   if (!isEarlier(contact, seen.contact)) return false;
-  auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(seen.place);
+  auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(seen.index);
   if (cut_) {
     const PairKey key = keyOf(contact);
     kept = std::find_if(contacts_.begin(), contacts_.end(),

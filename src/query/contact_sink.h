@@ -65,7 +65,7 @@ class ContactSink {
   struct Seen {
     FeatureContact contact;
     /// Where it is until cut_.
-    std::size_t place;
+    std::size_t index;
   };
   bool addAgain(const FeatureContact& contact, Seen& seen);
 

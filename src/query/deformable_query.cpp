@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "self_culling/embedded_fans.h"
 #include "self_culling/embedded_regions.h"
-#include "tree/box_place.h"
+#include "tree/box_position.h"
 #include "tree/traversal.h"
 
 namespace fcl {
@@ -197,7 +197,7 @@ void visitTree(const MeshInstance& mesh, Visit&& visit) {
 }
 
 /// Two meshes, or one with itself, as a query traverses them.
-struct Scene {
+struct MeshPair {
   const MeshInstance& a;
   const MeshInstance& b;
   const KdopShift* shift;
@@ -293,7 +293,7 @@ struct TaskAnswer {
 /// earliest error, unless the first contact is earlier than its triangles meet.
 void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                 const QueryProgress& progress) {
-  const double latest = options.goal == QueryGoal::kFirst
+  const double latest = options.query == ContinuousQuery::kFirst
                             ? progress.first_hi.load()
                             : std::numeric_limits<double>::infinity();
   const std::size_t last = progress.answered_by.load();
@@ -314,8 +314,8 @@ void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& option
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                   double first_hi, bool may_repeat) {
   QueryAnswer answer;
-  const bool first = options.goal == QueryGoal::kFirst;
-  const bool any = options.goal == QueryGoal::kAny;
+  const bool first = options.query == ContinuousQuery::kFirst;
+  const bool any = options.query == ContinuousQuery::kAny;
   std::size_t count = 0;
   for (const TaskAnswer& task : tasks)
     if (task.contacts) count += task.contacts->size();
@@ -351,9 +351,10 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
 /// others, so that an early contact prunes the whole traversal, wherever it is. A work
 /// has about as many steps as triangles; where it has few, one contact is as good as
 /// another.
-std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b, QueryGoal goal) {
+std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
+                     ContinuousQuery query) {
   constexpr std::size_t kTrianglesPerStep = 32, kLeast = 32;
-  if (&a != &b || !a.tree || goal != QueryGoal::kFirst) return 0;
+  if (&a != &b || !a.tree || query != ContinuousQuery::kFirst) return 0;
   const std::size_t steps =
       a.tree->triangles().size() / kFirstSchedule.tasks / kTrianglesPerStep;
   return steps < kLeast ? 0 : steps;
@@ -362,26 +363,26 @@ std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b, QueryGoal goa
 QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                   const QueryOptions& options) {
   const auto start = Clock::now();
-  const bool all = options.goal == QueryGoal::kAll;
+  const bool all = options.query == ContinuousQuery::kAll;
   const Schedule& schedule = all ? kAllSchedule : kFirstSchedule;
   QueryOptions task_options = options;
   // One more, so that it is known whether there were more.
-  if (options.goal == QueryGoal::kFirst && options.max_contacts + 1 != 0)
+  if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
     ++task_options.max_contacts;
 
   StageTimes times;
   SelfProofs proofs;
   if (&a == &b)
     proofs = proveSelf(a, options.leaves_out_regions, options.num_threads, times);
-  const Scene scene{a, b, shift, std::move(proofs)};
+  const MeshPair pair{a, b, shift, std::move(proofs)};
   QueryProgress progress;
   std::vector<NodePair> works;
   std::vector<TaskAnswer> answers(1);
   const bool parallel = numThreads(options.num_threads) > 1;
   StageTimes opening_times;
-  const std::size_t sample = sampleOf(a, b, options.goal);
+  const std::size_t sample = sampleOf(a, b, options.query);
   NarrowPhase leaves(a, b, shift, task_options, &progress, 0);
-  scene.visitPart(schedule, leaves, opening_times, [&](auto& part) {
+  pair.visitPart(schedule, leaves, opening_times, [&](auto& part) {
     part.divide(works);
     answers.resize(1 + works.size());
     answers[0].take(leaves);
@@ -405,8 +406,8 @@ QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift*
   if (parallel)
     parallelFor(works.size(), options.num_threads, [&](std::size_t i) {
       NarrowPhase task(a, b, shift, task_options, &progress, i + 1);
-      scene.visitPart(schedule, task, answers[i + 1].times,
-                      [&](auto& part) { part.run(works[i]); });
+      pair.visitPart(schedule, task, answers[i + 1].times,
+                     [&](auto& part) { part.run(works[i]); });
       answers[i + 1].take(task);
     });
 
@@ -429,8 +430,8 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* s
   StageTimes times;
   SelfProofs proofs;
   if (&a == &b) proofs = proveSelf(a, true, 1, times);
-  const Scene scene{a, b, shift, std::move(proofs)};
-  scene.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
+  const MeshPair pair{a, b, shift, std::move(proofs)};
+  pair.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
     part.divide(works);
     for (const NodePair& work : works) part.run(work);
@@ -438,16 +439,16 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* s
   return !leaves.isDone();
 }
 
-BoxPlace placeOfBoxes(const MeshInstance& mesh) {
-  BoxPlace place;
+BoxPosition positionOfBoxes(const MeshInstance& mesh) {
+  BoxPosition position;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k) {
-      place.origin[frame][k] =
+      position.origin[frame][k] =
           mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k];
-      place.translation[frame][k] = mesh.translation[frame][k];
+      position.translation[frame][k] = mesh.translation[frame][k];
     }
-  place.reach = mesh.tree ? 0 : mesh.rigid.reach();
-  return place;
+  position.reach = mesh.tree ? 0 : mesh.rigid.reach();
+  return position;
 }
 
 }  // namespace
@@ -477,7 +478,7 @@ bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {
-  return relativeShift(placeOfBoxes(a), placeOfBoxes(b));
+  return relativeShift(positionOfBoxes(a), positionOfBoxes(b));
 }
 
 }  // namespace deformable

@@ -30,12 +30,12 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options);
 
 /// @brief Traverses the tree of a with itself and hands the candidates to the sink.
-/// @pre a is prepared
+/// @pre a has owners
 /// @return whether the sink took them all
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink);
 
 /// @brief Traverses the trees of a and b and hands the candidates to the sink.
-/// @pre a and b are prepared
+/// @pre a and b have owners
 /// @return whether the sink took them all
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const CandidateSink& sink);

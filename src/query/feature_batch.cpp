@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
-#include "tree/box_place.h"
+#include "tree/box_position.h"
 
 namespace fcl {
 namespace detail {
@@ -48,9 +48,9 @@ void TriangleReader::readIntoStore(int i) {
   } else {
     triangle.index = static_cast<std::uint32_t>(i);
     triangle.owned = kOwnsAll;
-    if (mesh_.prepared) {
-      std::copy(mesh_.prepared[index].v, mesh_.prepared[index].v + 3, triangle.id);
-      triangle.owned = mesh_.prepared[index].owned;
+    if (mesh_.owners) {
+      std::copy(mesh_.owners[index].v, mesh_.owners[index].v + 3, triangle.id);
+      triangle.owned = mesh_.owners[index].owned;
     } else {
       for (int k = 0; k < 3; ++k) {
         const std::size_t id = mesh_.triangles[index][k];
@@ -169,8 +169,8 @@ void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double lates
 
 void FeatureBatch::cull(double latest, StageCounts& counts) {
   leaveOutApart(latest, counts);
-  cull(FeatureKind::kVertexFace, latest, lists_[0], counts);
-  cull(FeatureKind::kEdgeEdge, latest, lists_[1], counts);
+  cull(ContinuousContactKind::kVertexFace, latest, lists_[0], counts);
+  cull(ContinuousContactKind::kEdgeEdge, latest, lists_[1], counts);
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
@@ -208,11 +208,12 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   if (is_early) num_pairs_ = kept;
 }
 
-void FeatureBatch::cull(FeatureKind kind, double latest, List& list,
+void FeatureBatch::cull(ContinuousContactKind kind, double latest, List& list,
                         StageCounts& counts) {
   constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
   const std::size_t size = kernels_.listFeatures(
-      owned_.get(), num_pairs_, kind == FeatureKind::kVertexFace ? kVfPairs : ~kVfPairs,
+      owned_.get(), num_pairs_,
+      kind == ContinuousContactKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
   list.size =
       kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
@@ -239,11 +240,11 @@ void swapIf(bool condition, T& a, T& b) {
 struct OrderedEdge {
   /// Both, 32 bits each.
   std::uint64_t ids;
-  /// Places in a TrianglePair, four bits each.
-  std::uint32_t places;
+  /// Vertices of a TrianglePair, four bits each.
+  std::uint32_t corners;
 
   /// @param k  the corner of the triangle that it begins at
-  /// @param first  place of the triangle's first corner
+  /// @param first  number of the triangle's first vertex there
   OrderedEdge(const TreeTriangle& triangle, unsigned k, unsigned first) {
     unsigned l = (k + 1) % 3;
     std::uint32_t p = triangle.id[k], q = triangle.id[l];
@@ -251,7 +252,7 @@ struct OrderedEdge {
     swapIf(is_turned, k, l);
     swapIf(is_turned, p, q);
     ids = std::uint64_t{p} << 32 | q;
-    places = (first + k) << 4 | (first + l);
+    corners = (first + k) << 4 | (first + l);
   }
 };
 
@@ -272,7 +273,7 @@ void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
     out.vertices[i] = (on_a ? triangles.a : triangles.b)->id[k];
     out.x[i] = triangles.x[on_a ? k : 3 + k];
   };
-  if (pair.kind == FeatureKind::kVertexFace) {
+  if (pair.kind == ContinuousContactKind::kVertexFace) {
     set(0, pair.first_on_a, pair.first);
     for (unsigned k = 0; k < 3; ++k) set(static_cast<int>(k) + 1, !pair.first_on_a, k);
     if (self_ && !pair.first_on_a) {
@@ -285,13 +286,13 @@ void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
                           OrderedEdge(*triangles.b, pair.second, 3)};
   const bool is_turned = self_ & (edges[1].ids < edges[0].ids);
   swapIf(is_turned, edges[0].ids, edges[1].ids);
-  swapIf(is_turned, edges[0].places, edges[1].places);
+  swapIf(is_turned, edges[0].corners, edges[1].corners);
   swapIf(is_turned, out.triangles[0], out.triangles[1]);
   for (std::size_t i = 0; i < 2; ++i) {
     out.vertices[2 * i] = static_cast<std::uint32_t>(edges[i].ids >> 32);
     out.vertices[2 * i + 1] = static_cast<std::uint32_t>(edges[i].ids);
-    out.x[2 * i] = triangles.x[edges[i].places >> 4];
-    out.x[2 * i + 1] = triangles.x[edges[i].places & 15];
+    out.x[2 * i] = triangles.x[edges[i].corners >> 4];
+    out.x[2 * i + 1] = triangles.x[edges[i].corners & 15];
   }
 }
 

@@ -138,10 +138,14 @@ class FeatureBatch {
   void cull(double latest, StageCounts& counts);
 
   /// @brief How many pairs of one kind are left.
-  std::size_t size(FeatureKind kind) const { return list(kind).size; }
+  std::size_t size(ContinuousContactKind kind) const { return list(kind).size; }
   /// @brief Those pairs, features of pairs(), and their windows.
-  const std::uint32_t* codes(FeatureKind kind) const { return list(kind).codes.get(); }
-  const TimeWindow* windows(FeatureKind kind) const { return list(kind).windows.get(); }
+  const std::uint32_t* codes(ContinuousContactKind kind) const {
+    return list(kind).codes.get();
+  }
+  const TimeWindow* windows(ContinuousContactKind kind) const {
+    return list(kind).windows.get();
+  }
   const TrianglePair* pairs() const { return pairs_.get(); }
 
   /// @brief The pair's one name, whatever triangles it is met in.
@@ -170,15 +174,15 @@ class FeatureBatch {
     explicit List(std::size_t pairs_each);
   };
 
-  const List& list(FeatureKind kind) const {
-    return lists_[kind == FeatureKind::kEdgeEdge];
+  const List& list(ContinuousContactKind kind) const {
+    return lists_[kind == ContinuousContactKind::kEdgeEdge];
   }
   template <typename ReaderA, typename ReaderB>
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
   void leaveOutApart(double latest, StageCounts& counts);
-  void cull(FeatureKind kind, double latest, List& list, StageCounts& counts);
+  void cull(ContinuousContactKind kind, double latest, List& list, StageCounts& counts);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;

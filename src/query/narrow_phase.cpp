@@ -42,7 +42,7 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
     : options_(options),
       kernels_(kernels()),
       batch_(a, b, shift, kernels_),
-      sink_(options.goal == QueryGoal::kAny ? 1 : options.max_contacts,
+      sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             !a.hasOwners() || !b.hasOwners()),
       progress_(progress),
       task_(task) {}
@@ -67,7 +67,8 @@ void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
 void NarrowPhase::flush() {
   batch_.cull(latest(), counts_);
   testCrossings();
-  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+  for (const ContinuousContactKind kind :
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     filter(kind);
     solve();
   }
@@ -76,7 +77,7 @@ void NarrowPhase::flush() {
 
 /// Takes as candidates what may become coplanar, and not too late. They keep their whole
 /// windows, so that a contact's bracket is the same whatever was found before it.
-void NarrowPhase::filter(FeatureKind kind) {
+void NarrowPhase::filter(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);

@@ -18,11 +18,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief What a query has to find.
-enum class QueryGoal { kAll, kFirst, kAny };
-
 struct QueryOptions {
-  QueryGoal goal{QueryGoal::kAll};
+  ContinuousQuery query{ContinuousQuery::kAll};
   std::size_t max_contacts{static_cast<std::size_t>(-1)};
   double toc_err{1e-4};
   /// A crossing at t = 0 answers the query; contacts are of no interest then.
@@ -113,9 +110,9 @@ class NarrowPhase {
 
   /// @brief A pair whose window starts after this time cannot change the answer.
   double latest() const {
-    if (options_.goal == QueryGoal::kAny) return 1;
+    if (options_.query == ContinuousQuery::kAny) return 1;
     double latest = sink_.latestKept();
-    if (options_.goal == QueryGoal::kFirst) {
+    if (options_.query == ContinuousQuery::kFirst) {
       latest = std::min(latest, sink_.firstHi());
       if (progress_)
         latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
@@ -146,9 +143,9 @@ class NarrowPhase {
   bool hasAnswer() const {
     if (has_crossing_ && options_.stop_at_crossing) return true;
     // No contact is earlier than the start.
-    if (error_ && (options_.goal != QueryGoal::kFirst || error_->earliest <= 0.f))
+    if (error_ && (options_.query != ContinuousQuery::kFirst || error_->earliest <= 0.f))
       return true;
-    return options_.goal == QueryGoal::kAny &&
+    return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || has_crossing_);
   }
   /// A candidate in a part of its window.
@@ -159,7 +156,7 @@ class NarrowPhase {
 
   void testCrossings();
   void testCrossing(std::size_t i);
-  void filter(FeatureKind kind);
+  void filter(ContinuousContactKind kind);
   void solve();
   template <typename OnNo, typename OnOpen>
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);

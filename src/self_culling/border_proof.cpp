@@ -51,7 +51,7 @@ struct PlaneAxes {
 bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t directions) {
   border_ = &border;
   const double size = tree_.reach() * tree_.reach();
-  if (directions == 0 || !(size >= kTiny && size <= kHuge)) return false;
+  if (directions == 0 || !isInRange(size)) return false;
   project(widest(directions));
   return isSimple() && windsOnce();
 }
@@ -240,11 +240,11 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
   if (!(size >= kTiny)) return false;
   const double bound = kBorderSideBound * size;
   // Bernstein coefficients in t, the middle one twice.
-  const auto place = [&w](const MovingPoint& p) -> std::array<double, 3> {
+  const auto along = [&w](const MovingPoint& p) -> std::array<double, 3> {
     return {dot(w[0], p.at[0]), dot(w[0], p.at[1]) + dot(w[1], p.at[0]),
             dot(w[1], p.at[1])};
   };
-  const auto a = place(e.from), b = place(e.to), c = place(f.from), d = place(f.to);
+  const auto a = along(e.from), b = along(e.to), c = along(f.from), d = along(f.to);
   bool above = true, below = true;
   for (std::size_t k = 0; k < 3; ++k) {
     above = above && std::min(a[k], b[k]) - std::max(c[k], d[k]) > bound;

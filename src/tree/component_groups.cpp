@@ -24,7 +24,7 @@ void forEachRun(const std::vector<std::uint32_t>& group_of, Visit&& visit) {
 }
 
 /// The groups that are not empty, in the order in which a tree would have them.
-std::vector<std::uint32_t> inOrderOfPlaces(const std::vector<Group>& groups) {
+std::vector<std::uint32_t> inTreeOrder(const std::vector<Group>& groups) {
   UninitializedVector<TreeItem> centers;
   for (std::size_t i = 0; i < groups.size(); ++i) {
     if (groups[i].count == 0) continue;
@@ -57,7 +57,7 @@ std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
     for (; first < last; ++first) bounds.add(vectorOf(items[first]));
     groups[group].bounds = bounds;
   });
-  const std::vector<std::uint32_t> order = inOrderOfPlaces(groups);
+  const std::vector<std::uint32_t> order = inTreeOrder(groups);
   if (order.size() == 1) return {};
   std::vector<std::size_t> ends, next(groups.size());
   std::size_t end = 0;

@@ -5,20 +5,20 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-std::vector<OpenRange> splitRange(Splitter& splitter, const OpenRange& root,
+std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
                                   std::size_t max_left, std::size_t max_parts,
                                   std::vector<TreeChildren>& nodes,
                                   std::vector<std::uint32_t>& leaves) {
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-  std::vector<OpenRange> open{root}, left;
+  std::vector<OpenItems> open{root}, left;
   while (!open.empty()) {
-    const OpenRange o = open.back();
+    const OpenItems o = open.back();
     open.pop_back();
     if (o.range.count <= max_left) {
       left.push_back(o);
       continue;
     }
-    Splitter::Range parts[kWidth];
+    Splitter::ItemRange parts[kWidth];
     const std::size_t n =
         splitter.split(o.range, o.node == root.node ? max_parts : kWidth, o.depth, parts);
     TreeChildren node{};

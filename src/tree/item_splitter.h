@@ -28,7 +28,7 @@ inline void setItem(const Float4& v, TreeItem& item) {
   __builtin_memcpy(&item, &v, sizeof(v));
 }
 
-/// Of places, whose last number does not count.
+/// Of points, whose last number does not count.
 struct Bounds {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -64,7 +64,7 @@ class Slabs {
     for (int k = 1; k < 3; ++k)
       if (width[k] > width[axis_]) axis_ = k;
     lo_ = all.lo[axis_];
-    // 64 / 2^-120 is still a float; what is less wide counts as one place.
+    // 64 / 2^-120 is still a float; what is less wide counts as one point.
     if (width[axis_] >= 0x1p-120f) scale_ = static_cast<float>(num_slabs) / width[axis_];
   }
 
@@ -85,7 +85,7 @@ class Slabs {
 
  private:
   float coordinate(const TreeItem& item) const {
-    return (item.place[axis_] - lo_) * scale_;
+    return (item.point[axis_] - lo_) * scale_;
   }
 
   int axis_{0};
@@ -103,7 +103,7 @@ class Splitter {
   Splitter(UninitializedVector<TreeItem> items, std::vector<std::size_t> ends)
       : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {}
 
-  struct Range {
+  struct ItemRange {
     std::size_t first, count;
   };
 
@@ -111,8 +111,8 @@ class Splitter {
 
   /// Splits a range into at most `max_parts`, which are no more than eight. None is
   /// empty.
-  std::size_t split(Range all, std::size_t max_parts, int depth,
-                    Range (&out)[MovingKdopNode::kWidth]) {
+  std::size_t split(ItemRange all, std::size_t max_parts, int depth,
+                    ItemRange (&out)[MovingKdopNode::kWidth]) {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
     max_parts = std::min(max_parts, kWidth);
     std::size_t n = splitGroups(all, max_parts, out);
@@ -127,9 +127,10 @@ class Splitter {
     std::size_t unit = 1;
     while (unit * kWidth < all.count) unit *= kWidth;
     while (n < max_parts) {
-      Range* largest = std::max_element(
-          out, out + n, [](const Range& a, const Range& b) { return a.count < b.count; });
-      const Range r = *largest;
+      ItemRange* largest = std::max_element(
+          out, out + n,
+          [](const ItemRange& a, const ItemRange& b) { return a.count < b.count; });
+      const ItemRange r = *largest;
       if (r.count <= (by_area ? 1 : unit)) break;
       const std::size_t first = by_area ? splitByArea(r) : splitInUnits(r, unit);
       *largest = {r.first, first};
@@ -137,14 +138,14 @@ class Splitter {
     }
     // In the order of the items: neighbours in the tree are neighbours in memory.
     std::sort(out, out + n,
-              [](const Range& a, const Range& b) { return a.first < b.first; });
+              [](const ItemRange& a, const ItemRange& b) { return a.first < b.first; });
     return n;
   }
 
  private:
   /// As split(), between groups; a range within one of them stays.
-  std::size_t splitGroups(Range all, std::size_t max_parts,
-                          Range (&out)[MovingKdopNode::kWidth]) const {
+  std::size_t splitGroups(ItemRange all, std::size_t max_parts,
+                          ItemRange (&out)[MovingKdopNode::kWidth]) const {
     out[0] = all;
     const std::size_t end_of_all = all.first + all.count;
     const auto first = std::upper_bound(ends_.begin(), ends_.end(), all.first);
@@ -177,7 +178,7 @@ class Splitter {
 
   /// Moves the items before a slab to the front, in the order that they have, and returns
   /// how many there are.
-  std::size_t partition(Range r, const Slabs& slabs, int slab) {
+  std::size_t partition(ItemRange r, const Slabs& slabs, int slab) {
     TreeItem* items = items_.data() + r.first;
     TreeItem* scratch = scratch_.data() + r.first;
     std::size_t before = 0, after = 0;
@@ -195,7 +196,7 @@ class Splitter {
   }
 
   /// Moves the `first` items that lie lowest along the axis to the front.
-  void splitAt(Range r, std::size_t first) {
+  void splitAt(ItemRange r, std::size_t first) {
     constexpr int kSlabs = 64;
     const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
     if (slabs.isOne()) return;
@@ -207,13 +208,13 @@ class Splitter {
     for (; before + count[slab] <= first; ++slab) before += count[slab];
     if (slab > 0) partition(r, slabs, slab);
     if (before == first) return;
-    Range rest{r.first + before, r.count - before};
+    ItemRange rest{r.first + before, r.count - before};
     if (slab + 1 < kSlabs) rest.count = partition(rest, slabs, slab + 1);
     TreeItem* items = items_.data() + rest.first;
     std::nth_element(items, items + (first - before), items + rest.count,
                      [axis = slabs.axis()](const TreeItem& a, const TreeItem& b) {
-                       return a.place[axis] != b.place[axis]
-                                  ? a.place[axis] < b.place[axis]
+                       return a.point[axis] != b.point[axis]
+                                  ? a.point[axis] < b.point[axis]
                                   : a.index < b.index;
                      });
   }
@@ -221,7 +222,7 @@ class Splitter {
   /// Splits a range where area times count of the parts' centroid boxes, along the
   /// longest axis, is least; in the middle where all centroids fall together. Returns the
   /// size of the first part; none is empty.
-  std::size_t splitByArea(Range r) {
+  std::size_t splitByArea(ItemRange r) {
     constexpr int kSlabs = 8;
     const std::size_t stride = 1 + r.count / kMaxSample;
     const Slabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
@@ -260,7 +261,7 @@ class Splitter {
 
   /// Splits a range near the middle, the first part a multiple of `unit`, so that units
   /// of the lower levels come out full.
-  std::size_t splitInUnits(Range r, std::size_t unit) {
+  std::size_t splitInUnits(ItemRange r, std::size_t unit) {
     const std::size_t units = (r.count + unit - 1) / unit;
     const std::size_t first = units / 2 * unit;
     splitAt(r, first);
@@ -273,17 +274,17 @@ class Splitter {
 };
 
 /// @brief A range of items, the node that it becomes, and the first leaf of that.
-struct OpenRange {
-  Splitter::Range range;
+struct OpenItems {
+  Splitter::ItemRange range;
   std::size_t node, first_leaf;
   int depth;
 };
 
-/// @brief Splits a range, down to ranges of which none is larger than max_left.
+/// @brief Splits a range, down to parts of which none is larger than max_left.
 /// @param max_parts  of the range itself
 /// @param nodes  the range's own is there; those below are added
 /// @return the ranges that are left, in the order of a walk
-std::vector<OpenRange> splitRange(Splitter& splitter, const OpenRange& root,
+std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
                                   std::size_t max_left, std::size_t max_parts,
                                   std::vector<TreeChildren>& nodes,
                                   std::vector<std::uint32_t>& leaves);

@@ -27,10 +27,9 @@ struct MeshInstance {
   RigidTree rigid;
   double translation[2][3]{{0, 0, 0}, {0, 0, 0}};
 
-  /// Without a moving tree: triangles with owned features; null for a mesh that has not
-  /// been prepared, whose triangles then own all their features (a pair of features can
-  /// be met repeatedly).
-  const MeshTriangle* prepared{nullptr};
+  /// Without a moving tree: the triangles with the features that they own. Null: each
+  /// owns all its features, so that a pair of features can be met repeatedly.
+  const MeshTriangle* owners{nullptr};
   const Triangle* triangles{nullptr};
 
   /// @brief Whether the paths of the tree's vertices are those in the world.
@@ -40,7 +39,8 @@ struct MeshInstance {
     return tree;
   }
 
-  bool hasOwners() const { return tree || prepared; }
+  /// @brief Whether every feature is owned by one triangle, and a pair met once at most.
+  bool hasOwners() const { return tree || owners; }
 
   /// @brief By how much more than in the tree a coordinate of a vertex changes in the
   /// step: as the pose moves it, and rounds it at both ends, by less than 2^-49 of what

@@ -238,7 +238,7 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
 }
 
 /// By frame and axis.
-struct MovingKdopTree::Range {
+struct MovingKdopTree::CoordinateBounds {
   double lo[2][3]{{kInf, kInf, kInf}, {kInf, kInf, kInf}};
   double hi[2][3]{{-kInf, -kInf, -kInf}, {-kInf, -kInf, -kInf}};
 
@@ -250,25 +250,25 @@ struct MovingKdopTree::Range {
   }
 };
 
-MovingKdopTree::Range MovingKdopTree::rangeOf(const VertexFrames& frames,
-                                              int num_threads) const {
-  std::vector<Range> ranges(vertex_ids_.size() / kVertexBlock + 1);
+MovingKdopTree::CoordinateBounds MovingKdopTree::boundsOf(const VertexFrames& frames,
+                                                          int num_threads) const {
+  std::vector<CoordinateBounds> bounds_of_blocks(vertex_ids_.size() / kVertexBlock + 1);
   parallelForBlocks(vertex_ids_.size(), kVertexBlock, num_threads,
                     [&](std::size_t first, std::size_t last) {
-                      Range range;
+                      CoordinateBounds bounds;
                       for (std::size_t i = first; i < last; ++i) {
                         if (i + kAhead < last) frames.prefetch(vertex_ids_[i + kAhead]);
                         const VertexPath path = frames[vertex_ids_[i]];
-                        range.add(0, path.t0);
-                        range.add(1, path.t1);
+                        bounds.add(0, path.t0);
+                        bounds.add(1, path.t1);
                       }
-                      ranges[first / kVertexBlock] = range;
+                      bounds_of_blocks[first / kVertexBlock] = bounds;
                     });
-  Range all;
-  for (const Range& range : ranges)
+  CoordinateBounds all;
+  for (const CoordinateBounds& bounds : bounds_of_blocks)
     for (int frame = 0; frame < 2; ++frame) {
-      all.add(frame, range.lo[frame]);
-      all.add(frame, range.hi[frame]);
+      all.add(frame, bounds.lo[frame]);
+      all.add(frame, bounds.hi[frame]);
     }
   return all;
 }
@@ -288,12 +288,12 @@ double MovingKdopTree::medianOf(const VertexFrames& frames, int frame, int axis)
   return *middle;
 }
 
-void MovingKdopTree::setReach(const Range& range) {
+void MovingKdopTree::setReach(const CoordinateBounds& bounds) {
   reach_ = 0;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k)
-      reach_ = std::max(reach_, std::max(range.hi[frame][k] - origin_[frame][k],
-                                         origin_[frame][k] - range.lo[frame][k]));
+      reach_ = std::max(reach_, std::max(bounds.hi[frame][k] - origin_[frame][k],
+                                         origin_[frame][k] - bounds.lo[frame][k]));
 }
 
 /// Sets the boxes of a node whose children have theirs.
@@ -357,11 +357,11 @@ void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
 /// some vertex flies off or all of it jumps, they are mere rounding. Then the origin goes
 /// to where most is.
 void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
-  const Range range = rangeOf(frames, num_threads);
+  const CoordinateBounds bounds = boundsOf(frames, num_threads);
   for (int k = 0; k < 3; ++k)
-    origin_[0][k] = origin_[1][k] = 0.5 * std::min(range.lo[0][k], range.lo[1][k]) +
-                                    0.5 * std::max(range.hi[0][k], range.hi[1][k]);
-  setReach(range);
+    origin_[0][k] = origin_[1][k] = 0.5 * std::min(bounds.lo[0][k], bounds.lo[1][k]) +
+                                    0.5 * std::max(bounds.hi[0][k], bounds.hi[1][k]);
+  setReach(bounds);
   // Extents along eight directions in two frames have up to 2^-17 of the reach from
   // rounding: 32 half-axes of at most 2 reach each, outward by 2^-22 of themselves.
   blur_ = roundUp(reach_ * 0x1p-13, 0.f);
@@ -369,7 +369,7 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   if (sizes_[0].blurred <= triangles_.size() / 2) return;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k) origin_[frame][k] = medianOf(frames, frame, k);
-  setReach(range);
+  setReach(bounds);
   fit(frames, num_threads);
 }
 

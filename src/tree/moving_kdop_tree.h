@@ -115,7 +115,7 @@ class MovingKdopTree {
     std::uint32_t blurred;
   };
   /// Least and greatest coordinates.
-  struct Range;
+  struct CoordinateBounds;
   class Restructuring;
   class TopologyUpdate;
 
@@ -140,9 +140,9 @@ class MovingKdopTree {
   void placeVertices(std::size_t num_vertices);
   void setNodes(const TreeStructure& structure, int num_threads);
   void setNode(const TreeChildren& from, MovingKdopNode& node) const;
-  Range rangeOf(const VertexFrames& frames, int num_threads) const;
+  CoordinateBounds boundsOf(const VertexFrames& frames, int num_threads) const;
   double medianOf(const VertexFrames& frames, int frame, int axis) const;
-  void setReach(const Range& range);
+  void setReach(const CoordinateBounds& bounds);
   void fit(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames);
   void refit(MovingKdopNode& node, bool is_still);

@@ -33,8 +33,8 @@ TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
 void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
                                      std::size_t num_triangles,
                                      const std::vector<int>& origins) {
-  std::vector<std::uint32_t> slots(before.size());
-  for (std::uint32_t i = 0; i < before.size(); ++i) slots[before[i].index] = i;
+  std::vector<std::uint32_t> places(before.size());
+  for (std::uint32_t i = 0; i < before.size(); ++i) places[before[i].index] = i;
   origins_.resize(num_triangles);
   is_same_.assign(num_triangles, 0);
   stays_.assign(before.size(), 0);
@@ -42,7 +42,7 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
   for (std::size_t i = 0; i < num_triangles; ++i) {
     const int number = static_cast<int>(i);
     const int origin = !origins.empty() ? origins[i] : i < before.size() ? number : -1;
-    origins_[i] = origin < 0 ? kNone : slots[static_cast<std::size_t>(origin)];
+    origins_[i] = origin < 0 ? kNone : places[static_cast<std::size_t>(origin)];
     if (origin <= last) continue;
     last = origin;
     is_same_[i] = stays_[origins_[i]] = 1;

@@ -20,20 +20,20 @@ namespace {
 constexpr std::uint32_t kNone = TopologyDifference::kNone;
 constexpr std::size_t kWidth = MovingKdopNode::kWidth;
 
-/// What a node may have as a child, and four times its place.
+/// What a node may have as a child, and four times its center.
 struct Entry {
-  float place[3];
+  float point[3];
   std::int32_t child;
 };
 
-/// Extents of the places of entries that come one by one.
+/// Extents of the points of entries that come one by one.
 class Extents {
  public:
   float add(const Entry& entry) {
     float sum = 0;
     for (int k = 0; k < 3; ++k) {
-      lo_[k] = std::min(lo_[k], entry.place[k]);
-      hi_[k] = std::max(hi_[k], entry.place[k]);
+      lo_[k] = std::min(lo_[k], entry.point[k]);
+      hi_[k] = std::max(hi_[k], entry.point[k]);
       sum += width(k);
     }
     return sum;
@@ -55,7 +55,7 @@ Entry* splitEntries(Entry* first, Entry* last) {
   for (int k = 1; k < 3; ++k)
     if (all.width(k) > all.width(axis)) axis = k;
   std::sort(first, last, [axis](const Entry& a, const Entry& b) {
-    return a.place[axis] != b.place[axis] ? a.place[axis] < b.place[axis]
+    return a.point[axis] != b.point[axis] ? a.point[axis] < b.point[axis]
                                           : a.child < b.child;
   });
   const auto count = static_cast<std::size_t>(last - first);
@@ -89,7 +89,7 @@ class MovingKdopTree::TopologyUpdate {
     nodes_.reserve(tree.numNodes() + tree.numNodes() / 8);
     next_part_.reserve(nodes_.capacity());
     first_sizes_.reserve(nodes_.capacity());
-    places_.reserve(nodes_.capacity());
+    entry_of_.reserve(nodes_.capacity());
     // Children come after their parents.
     for (auto i = static_cast<std::int32_t>(tree.numNodes()); i-- > 0;)
       if (count(i) > 1 || i == 0) copy(i);
@@ -120,9 +120,9 @@ class MovingKdopTree::TopologyUpdate {
     return counts_[static_cast<std::size_t>(node)];
   }
 
-  /// Four times the place of a triangle relative to the tree's origins, between them,
+  /// Four times the centroid of a triangle relative to the tree's origins, between them,
   /// where it is when the step begins.
-  void placeOf(std::uint32_t triangle, float (&place)[3]) const {
+  void pointOf(std::uint32_t triangle, float (&point)[3]) const {
     std::uint32_t ids[3];
     vertexIds(triangles_[triangle], ids);
     double sum[3] = {0, 0, 0};
@@ -132,13 +132,13 @@ class MovingKdopTree::TopologyUpdate {
       for (int k = 0; k < 3; ++k)
         sum[k] += p[k] - (0.5 * tree_.origin_[0][k] + 0.5 * tree_.origin_[1][k]);
     }
-    for (int k = 0; k < 3; ++k) place[k] = deformable::placeOf(sum[k] * (4. / 3));
+    for (int k = 0; k < 3; ++k) point[k] = clampedCoordinate(sum[k] * (4. / 3));
   }
 
   /// The lowest node that a triangle lies next to: down the nearest boxes.
   std::int32_t findNode(std::uint32_t triangle) const {
-    float place[3];
-    placeOf(triangle, place);
+    float point[3];
+    pointOf(triangle, point);
     for (std::int32_t i = 0;;) {
       const MovingKdopNode& node = tree_.node(i);
       float least = 0;
@@ -146,7 +146,7 @@ class MovingKdopTree::TopologyUpdate {
       for (int lane = 0; lane < node.count; ++lane) {
         float distance = 0;
         for (int k = 0; k < 3; ++k) {
-          const float x = 0.25f * place[k];
+          const float x = 0.25f * point[k];
           distance += std::max(
               0.f, std::max(-x - node.t1[2 * k][lane], x - node.t1[2 * k + 1][lane]));
         }
@@ -224,11 +224,11 @@ class MovingKdopTree::TopologyUpdate {
     if (entries_.size() > kWidth)
       for (Entry& entry : entries_)
         if (entry.child < 0)
-          placeOf(static_cast<std::uint32_t>(~entry.child), entry.place);
+          pointOf(static_cast<std::uint32_t>(~entry.child), entry.point);
     part = group(entries_.data(), entries_.data() + entries_.size(), kNoPart, first_size);
   }
 
-  /// Their places are found where they matter.
+  /// Their points are found where they matter.
   void addTriangles(std::int32_t i) {
     const Hung hung = hungOn(i);
     for (const std::uint32_t* t = hung.first; t != hung.last; ++t)
@@ -260,8 +260,8 @@ class MovingKdopTree::TopologyUpdate {
     const bool is_one = next_part_[static_cast<std::size_t>(first)] == kNoPart;
     for (std::int32_t part = first; part != kNoPart;) {
       const auto k = static_cast<std::size_t>(part);
-      entries_.push_back(places_[k]);
-      if (is_one) deformable::placeOf(node, lane, entries_.back().place);
+      entries_.push_back(entry_of_[k]);
+      if (is_one) deformable::pointOf(node, lane, entries_.back().point);
       part = next_part_[k];
     }
   }
@@ -283,11 +283,11 @@ class MovingKdopTree::TopologyUpdate {
     for (std::size_t i = 0; i < count; ++i) {
       node.child[i] = first[i].child;
       for (int k = 0; k < 3; ++k)
-        as_entry.place[k] += first[i].place[k] / static_cast<float>(count);
+        as_entry.point[k] += first[i].point[k] / static_cast<float>(count);
     }
     nodes_.push_back(node);
     first_sizes_.push_back(first_size);
-    places_.push_back(as_entry);
+    entry_of_.push_back(as_entry);
     next_part_.push_back(next);
     return number;
   }
@@ -297,7 +297,7 @@ class MovingKdopTree::TopologyUpdate {
     while (next_part_[static_cast<std::size_t>(part)] != kNoPart) {
       entries_.clear();
       for (; part != kNoPart; part = next_part_[static_cast<std::size_t>(part)])
-        entries_.push_back(places_[static_cast<std::size_t>(part)]);
+        entries_.push_back(entry_of_[static_cast<std::size_t>(part)]);
       part = group(entries_.data(), entries_.data() + entries_.size(), kNoPart, {});
     }
     return part;
@@ -316,8 +316,8 @@ class MovingKdopTree::TopologyUpdate {
   /// Of each new node.
   std::vector<TreeChildren> nodes_;
   std::vector<NodeSize> first_sizes_;
-  /// Itself, with a place if it is one of several parts.
-  std::vector<Entry> places_;
+  /// Itself, with a point if it is one of several parts.
+  std::vector<Entry> entry_of_;
   std::vector<std::int32_t> next_part_;
   std::int32_t root_;
   /// What the next node, or nodes, will have.
@@ -354,7 +354,7 @@ void MovingKdopTree::inherit(const MovingKdopTree& before,
     if (place != kNone) place = place_of[place];
 
   std::vector<TreeTriangle> changed;
-  std::vector<std::uint32_t> slots;
+  std::vector<std::uint32_t> places;
   for (std::uint32_t i = 0; i < triangles_.size(); ++i) {
     TreeTriangle& t = triangles_[i];
     const bool is_same = std::all_of(t.place, t.place + 3, [&](std::uint32_t place) {
@@ -364,13 +364,13 @@ void MovingKdopTree::inherit(const MovingKdopTree& before,
     t.owned = origin == kNone ? 0 : before.triangles_[origin].owned;
     if (is_same) continue;
     changed.push_back(t);
-    slots.push_back(i);
+    places.push_back(i);
   }
   const VertexCorners corners(changed, num_places, num_threads);
   fans_ = VertexFans(before.fans_, old_places, new_places, corners);
   assignOwners(corners, num_threads, changed);
-  for (std::size_t i = 0; i < slots.size(); ++i) {
-    TreeTriangle& t = triangles_[slots[i]];
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    TreeTriangle& t = triangles_[places[i]];
     unsigned found = 0;  // vertices that are not the same, a bit each
     for (unsigned k = 0; k < 3; ++k)
       found |= unsigned{old_places[t.place[k]] == kNone} << k;

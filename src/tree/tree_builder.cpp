@@ -39,15 +39,16 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
   constexpr std::size_t kBlock = 8192;
   double middle[3];
   findMiddle(triangles, num_triangles, frames, middle);
-  UninitializedVector<Float4> places(frames.size());
+  UninitializedVector<Float4> points(frames.size());
   parallelForBlocks(frames.size(), kBlock, num_threads,
                     [&](std::size_t i, std::size_t last) {
                       for (; i < last; ++i) {
                         double p[3];
                         frames.at(0, i, p);
-                        Float4 place{};
-                        for (int k = 0; k < 3; ++k) place[k] = placeOf(p[k] - middle[k]);
-                        places[i] = place;
+                        Float4 point{};
+                        for (int k = 0; k < 3; ++k)
+                          point[k] = clampedCoordinate(p[k] - middle[k]);
+                        points[i] = point;
                       }
                     });
   UninitializedVector<TreeItem> items(num_triangles);
@@ -56,7 +57,7 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
         for (; i < last; ++i) {
           std::uint32_t v[3];
           vertexIds(triangles[i], v);
-          const Float4 sum = places[v[0]] + places[v[1]] + places[v[2]];
+          const Float4 sum = points[v[0]] + points[v[1]] + points[v[2]];
           items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
         }
       });
@@ -95,13 +96,13 @@ TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangle
                  kLeastComponent, items);
   Splitter splitter(std::move(items), std::move(ends));
   std::vector<TreeChildren> top(1);
-  const std::vector<OpenRange> roots = splitRange(splitter, {{0, num_triangles}, 0, 0, 0},
+  const std::vector<OpenItems> roots = splitRange(splitter, {{0, num_triangles}, 0, 0, 0},
                                                   kMaxTask, kWidth, top, tree.leaves);
   std::vector<std::vector<TreeChildren>> subtrees(roots.size());
   parallelFor(roots.size(), num_threads, [&](std::size_t i) {
     subtrees[i].reserve(roots[i].range.count / 4);
     subtrees[i].emplace_back();
-    OpenRange root = roots[i];
+    OpenItems root = roots[i];
     root.node = 0;
     splitRange(splitter, root, 0, kWidth, subtrees[i], tree.leaves);
   });

@@ -42,7 +42,7 @@ class MovingKdopTree::Restructuring {
     first_sizes_.reserve(nodes_.capacity());
     take(0, 0);
     while (!open_.empty()) {
-      const Open o = open_.back();
+      const CopiedNode o = open_.back();
       open_.pop_back();
       copy(o);
     }
@@ -55,7 +55,7 @@ class MovingKdopTree::Restructuring {
   }
 
  private:
-  struct Open {
+  struct CopiedNode {
     std::int32_t from;
     std::size_t to;
     int depth;
@@ -96,7 +96,7 @@ class MovingKdopTree::Restructuring {
     node.child[node.count++] = child;
   }
 
-  void copy(const Open& o) {
+  void copy(const CopiedNode& o) {
     const MovingKdopNode& from = tree_.node(o.from);
     items_.clear();
     names_.clear();
@@ -132,7 +132,7 @@ class MovingKdopTree::Restructuring {
           continue;
         }
         TreeItem item{{}, static_cast<std::uint32_t>(names_.size())};
-        placeOf(node, lane, item.place);
+        pointOf(node, lane, item.point);
         items_.push_back(item);
         names_.push_back(child);
       }
@@ -157,7 +157,7 @@ class MovingKdopTree::Restructuring {
                    kLeastComponent / MovingKdopNode::kWidth, items_);
     const TreeStructure tree = splitItems(items_, std::move(ends), max_parts, depth);
     const auto& parts = tree.nodes;
-    std::vector<std::size_t> place(parts.size(), to);
+    std::vector<std::size_t> number_of_part(parts.size(), to);
     // Children come after their parents.
     for (std::size_t i = 0; i < parts.size(); ++i)
       for (int k = 0; k < parts[i].count; ++k) {
@@ -165,11 +165,11 @@ class MovingKdopTree::Restructuring {
         if (child < 0) {
           child = take(names_[tree.leaves[static_cast<std::size_t>(~child)]], depth + 1);
         } else {
-          std::size_t& place_of_child = place[static_cast<std::size_t>(child)];
-          place_of_child = add({});
-          child = static_cast<std::int32_t>(place_of_child);
+          std::size_t& number = number_of_part[static_cast<std::size_t>(child)];
+          number = add({});
+          child = static_cast<std::int32_t>(number);
         }
-        append(place[i], child);
+        append(number_of_part[i], child);
       }
   }
 
@@ -179,7 +179,7 @@ class MovingKdopTree::Restructuring {
   std::vector<TreeChildren> nodes_;
   std::vector<NodeSize> first_sizes_;
   /// What is still to be copied.
-  std::vector<Open> open_;
+  std::vector<CopiedNode> open_;
   /// What aged children are dissolved into, and what this is in the tree.
   UninitializedVector<TreeItem> items_;
   std::vector<std::int32_t> names_;
@@ -194,10 +194,10 @@ TreeStructure MovingKdopTree::walk(std::int32_t root,
                                    std::size_t num_leaves,
                                    std::vector<NodeSize>& first_sizes) {
   first_sizes.resize(nodes.size());
-  const auto children = [&](std::int32_t i, std::size_t place) {
+  const auto children = [&](std::int32_t i, std::size_t number) {
     // A walk begins with 0.
-    const auto from = static_cast<std::size_t>(place == 0 ? root : i);
-    first_sizes[place] = sizes[from];
+    const auto from = static_cast<std::size_t>(number == 0 ? root : i);
+    first_sizes[number] = sizes[from];
     return nodes[from];
   };
   TreeStructure tree = inWalkOrder(num_leaves, children);

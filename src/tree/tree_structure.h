@@ -32,22 +32,22 @@ struct TreeStructure {
 };
 
 /// @brief Numbers the nodes and leaves of a tree in the order of a walk from node 0.
-/// @param children  children(node, place): the children, by their old numbers, of a node
-/// that gets this place
+/// @param children  children(node, number): the children, by their old numbers, of a node
+/// that gets this number
 template <typename Children>
 TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
-  struct Open {
+  struct Numbered {
     std::int32_t node;
-    std::size_t place;
+    std::size_t number;
   };
   TreeStructure tree;
   tree.leaves.reserve(num_leaves);
   tree.nodes.emplace_back();
-  std::vector<Open> open{{0, 0}};
+  std::vector<Numbered> open{{0, 0}};
   while (!open.empty()) {
-    const Open o = open.back();
+    const Numbered o = open.back();
     open.pop_back();
-    TreeChildren node = children(o.node, o.place);
+    TreeChildren node = children(o.node, o.number);
     // The first child is the first to go on with.
     const std::size_t num_open = open.size();
     for (int i = 0; i < node.count; ++i) {
@@ -62,21 +62,21 @@ TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
       }
     }
     std::reverse(open.begin() + static_cast<std::ptrdiff_t>(num_open), open.end());
-    tree.nodes[o.place] = node;
+    tree.nodes[o.number] = node;
   }
   return tree;
 }
 
-/// @brief What is put into a tree: a name and a place. Of the place as a vector of four
+/// @brief What is put into a tree: a name and a point. Of the point as a vector of four
 /// numbers the last one means nothing.
 struct alignas(16) TreeItem {
-  float place[3];
+  float point[3];
   std::uint32_t index;
 };
 
 /// @brief A coordinate from which widths, sums and products of a few can be taken without
 /// overflow; what is no number lies in the middle.
-inline float placeOf(double coordinate) {
+inline float clampedCoordinate(double coordinate) {
   constexpr double kFarthest = 1e37;
   return coordinate == coordinate
              ? static_cast<float>(std::max(-kFarthest, std::min(kFarthest, coordinate)))
@@ -84,11 +84,11 @@ inline float placeOf(double coordinate) {
 }
 
 /// @brief Four times the center of a child's box, over both frames.
-inline void placeOf(const MovingKdopNode& node, int lane, float (&place)[3]) {
+inline void pointOf(const MovingKdopNode& node, int lane, float (&point)[3]) {
   for (int k = 0; k < 3; ++k) {
     const int lo = 2 * k, hi = lo + 1;
-    place[k] = placeOf(double{(node.t0[hi][lane] - node.t0[lo][lane]) +
-                              (node.t1[hi][lane] - node.t1[lo][lane])});
+    point[k] = clampedCoordinate(double{(node.t0[hi][lane] - node.t0[lo][lane]) +
+                                        (node.t1[hi][lane] - node.t1[lo][lane])});
   }
 }
 

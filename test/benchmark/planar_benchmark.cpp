@@ -99,8 +99,8 @@ std::set<Name> truthOf(const Scene& scene, HandOut&& handOut) {
           x[i].t1[k] = to[k];
         }
       }
-      const auto kind =
-          vf ? deformable::FeatureKind::kVertexFace : deformable::FeatureKind::kEdgeEdge;
+      const auto kind = vf ? fcl::ContinuousContactKind::kVertexFace
+                           : fcl::ContinuousContactKind::kEdgeEdge;
       if (deformable::decideExactly(kind, {{&x[0], &x[1], &x[2], &x[3]}}, 1).answer ==
           deformable::Answer::kYes)
         truth.emplace(c->kind, c->first_on_o1, c->vertices);

@@ -17,7 +17,7 @@ namespace deformable = detail::deformable;
 
 PairName nameOf(const deformable::FeatureContact& contact) {
   const auto id = [&contact](int k) { return static_cast<int>(contact.vertices[k]); };
-  return pairName(contact.kind == deformable::FeatureKind::kVertexFace
+  return pairName(contact.kind == fcl::ContinuousContactKind::kVertexFace
                       ? ContinuousContactKind::kVertexFace
                       : ContinuousContactKind::kEdgeEdge,
                   {id(0), id(1), id(2), id(3)});

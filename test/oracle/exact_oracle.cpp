@@ -20,8 +20,8 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePoints;
+using fcl::ContinuousContactKind;
 
 using Integer = CGAL::Gmpz;
 using Fraction = CGAL::Gmpq;
@@ -143,8 +143,9 @@ struct PointAndSegment {
 /// for borders the order of coordinates.
 class Conditions {
  public:
-  Conditions(FeatureKind kind, const FeaturePoints& x) : kind_(kind), points_(x) {
-    if (kind == FeatureKind::kVertexFace) {
+  Conditions(ContinuousContactKind kind, const FeaturePoints& x)
+      : kind_(kind), points_(x) {
+    if (kind == ContinuousContactKind::kVertexFace) {
       turns_ = {{1, 2, 0}, {2, 3, 0}, {3, 1, 0}};
       borders_ = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}};
     } else {
@@ -165,7 +166,7 @@ class Conditions {
         side[i] = signAt(points_.turn(turns_[i].i, turns_[i].j, turns_[i].l, k), t);
         if (side[i] != 0) on_line[i] = false;
       }
-      if (kind_ == FeatureKind::kVertexFace) {
+      if (kind_ == ContinuousContactKind::kVertexFace) {
         // Strictly on one side of all borders: inside a projection that has an area, so
         // that a coplanar vertex is inside. On different sides of two borders: outside
         // of the projection, even of one without area, whose three turns have sum 0.
@@ -211,7 +212,7 @@ class Conditions {
     return true;
   }
 
-  FeatureKind kind_;
+  ContinuousContactKind kind_;
   MovingPoints points_;
   std::vector<Triple> turns_;
   /// In the order of turns_ : the border's turn is that of its point.
@@ -219,8 +220,8 @@ class Conditions {
 };
 
 /// Whether some axis separates the features strictly in both frames, hence always.
-bool areSeparatedAlongAxis(FeatureKind kind, const FeaturePoints& x) {
-  const int split = kind == FeatureKind::kVertexFace ? 1 : 2;
+bool areSeparatedAlongAxis(ContinuousContactKind kind, const FeaturePoints& x) {
+  const int split = kind == ContinuousContactKind::kVertexFace ? 1 : 2;
   for (int k = 0; k < 3; ++k) {
     bool below = true, above = true;
     for (int i = 0; i < split; ++i)
@@ -309,7 +310,7 @@ void OracleAnswer::refine(const Rational& width) {
   while (!isExact() && upper() - lower() > width) time_->t.bisect();
 }
 
-OracleAnswer askOracle(FeatureKind kind, const FeaturePoints& x) {
+OracleAnswer askOracle(ContinuousContactKind kind, const FeaturePoints& x) {
   if (areSeparatedAlongAxis(kind, x)) return {};
   const Conditions conditions(kind, x);
   const Polynomial volume = conditions.volume();

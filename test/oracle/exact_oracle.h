@@ -45,7 +45,7 @@ class OracleAnswer {
 /// @brief The answer for closed features, closed [0, 1] and straight paths between the
 /// given doubles, which must be finite. Features without area or length are the point
 /// sets that their corners span.
-OracleAnswer askOracle(detail::deformable::FeatureKind kind,
+OracleAnswer askOracle(fcl::ContinuousContactKind kind,
                        const detail::deformable::FeaturePoints& x);
 
 }  // namespace test

@@ -15,7 +15,7 @@
 
 namespace {
 
-using fcl::detail::deformable::FeatureKind;
+using fcl::ContinuousContactKind;
 using fcl::test::CheckTally;
 
 /// Prints every disagreement up to a few, then counts on.
@@ -59,8 +59,9 @@ std::size_t checkFiles(const std::string& data) {
   CheckTally tally;
   Complaints complaints;
   for (const auto& folder : std::filesystem::directory_iterator(data + "/queries"))
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
-      const bool vf = kind == FeatureKind::kVertexFace;
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+      const bool vf = kind == ContinuousContactKind::kVertexFace;
       const std::string path =
           folder.path().string() + (vf ? "/vertex-face.csv" : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;

@@ -25,9 +25,9 @@ namespace {
 
 namespace deformable = detail::deformable;
 using deformable::Answer;
-using deformable::FeatureKind;
 using deformable::FeaturePair;
 using deformable::MeshTriangle;
+using fcl::ContinuousContactKind;
 
 using Model = DeformableBVHModel<KDOP<double, 16>>;
 using Indices = std::pair<int, int>;
@@ -40,10 +40,10 @@ constexpr double kTocErr = 1e-4;
 Indices inOrder(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
 
 /// A pair of features whatever the order of its ids.
-using PairKey = std::pair<FeatureKind, std::array<std::uint32_t, 4>>;
+using PairKey = std::pair<ContinuousContactKind, std::array<std::uint32_t, 4>>;
 
-PairKey keyOf(FeatureKind kind, std::array<std::uint32_t, 4> v) {
-  if (kind == FeatureKind::kVertexFace) {
+PairKey keyOf(ContinuousContactKind kind, std::array<std::uint32_t, 4> v) {
+  if (kind == ContinuousContactKind::kVertexFace) {
     std::sort(v.begin() + 1, v.end());
     return {kind, v};
   }
@@ -77,7 +77,8 @@ class CullCheck {
     const deformable::LeafPair* next = &leaves;
     batch_.add(next, next + 1, 1, false, counts);
     batch_.cull(1, counts);
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge})
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
       for (std::size_t i = 0; i < batch_.size(kind); ++i) {
         deformable::FeatureCandidate c;
         batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], c);
@@ -147,7 +148,7 @@ class CullCheck {
       const MeshTriangle &first = f.first_on_a ? ta : tb, &other = f.first_on_a ? tb : ta;
       const std::uint32_t vertex = first.v[f.first];
       const std::array<std::uint32_t, 4> ids =
-          f.kind == FeatureKind::kVertexFace
+          f.kind == ContinuousContactKind::kVertexFace
               ? std::array<std::uint32_t, 4>{vertex, other.v[0], other.v[1], other.v[2]}
               : std::array<std::uint32_t, 4>{vertex, ta.v[(f.first + 1) % 3],
                                              tb.v[f.second], tb.v[(f.second + 1) % 3]};

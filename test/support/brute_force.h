@@ -11,8 +11,7 @@ namespace fcl {
 namespace test {
 
 /// @brief The library's exact decision of one pair.
-bool doTouch(detail::deformable::FeatureKind kind,
-             const detail::deformable::FeaturePoints& x);
+bool doTouch(fcl::ContinuousContactKind kind, const detail::deformable::FeaturePoints& x);
 
 /// @brief Every VF and EE pair of a mesh without a common vertex that touches during the
 /// step, tested one by one; sorted. A vertex without a triangle is no feature.

@@ -17,7 +17,7 @@ namespace test {
 
 /// @brief A VF or EE pair with its own points.
 struct MovingPair {
-  detail::deformable::FeatureKind kind;
+  fcl::ContinuousContactKind kind;
   std::array<detail::deformable::VertexPath, 4> x;
 
   detail::deformable::FeaturePoints points() const {
@@ -38,13 +38,13 @@ inline detail::deformable::VertexPath path(const double (&a)[3], const double (&
 }
 /// @brief A vertex and the still triangle (0, 0, 0), (4, 0, 0), (0, 4, 0).
 inline MovingPair onTriangle(const detail::deformable::VertexPath& v) {
-  return {detail::deformable::FeatureKind::kVertexFace,
+  return {fcl::ContinuousContactKind::kVertexFace,
           {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
 }
 
 /// @brief Every bit of the coordinates, to repeat a failure.
 inline std::ostream& operator<<(std::ostream& out, const MovingPair& pair) {
-  out << (pair.kind == detail::deformable::FeatureKind::kVertexFace ? "VF" : "EE")
+  out << (pair.kind == fcl::ContinuousContactKind::kVertexFace ? "VF" : "EE")
       << std::hexfloat;
   for (const auto& p : pair.x)
     out << "\n  {{" << p.t0[0] << ", " << p.t0[1] << ", " << p.t0[2] << "}, {" << p.t1[0]
@@ -52,9 +52,9 @@ inline std::ostream& operator<<(std::ostream& out, const MovingPair& pair) {
   return out << std::defaultfloat;
 }
 
-inline detail::deformable::FeatureKind randomKind(Random& random) {
-  return random.index(2) ? detail::deformable::FeatureKind::kVertexFace
-                         : detail::deformable::FeatureKind::kEdgeEdge;
+inline fcl::ContinuousContactKind randomKind(Random& random) {
+  return random.index(2) ? fcl::ContinuousContactKind::kVertexFace
+                         : fcl::ContinuousContactKind::kEdgeEdge;
 }
 
 /// @brief Integer coordinates in [-half, half]; in every second pair one coordinate does
@@ -81,7 +81,7 @@ inline MovingPair gridPair(Random& random, int half) {
 /// @brief Two features that touch, up to rounding and `gap`, at a time that the function
 /// chooses; often at a border of a feature.
 inline MovingPair nearContactPair(Random& random, double gap) {
-  using detail::deformable::FeatureKind;
+  using fcl::ContinuousContactKind;
   MovingPair pair{randomKind(random), {}};
   Vector3<double> p[4];
   for (auto& point : p) point = random.point(1);
@@ -92,7 +92,7 @@ inline MovingPair nearContactPair(Random& random, double gap) {
   };
   const double r = weight(), s = weight();
   Vector3<double> normal;
-  if (pair.kind == FeatureKind::kVertexFace) {
+  if (pair.kind == ContinuousContactKind::kVertexFace) {
     p[0] = (1 - r) * p[1] + r * ((1 - s) * p[2] + s * p[3]);
     normal = (p[2] - p[1]).cross(p[3] - p[1]);
   } else {

@@ -19,9 +19,8 @@ ContinuousFeatureTestResult<S> featureTest(const MovingPair& pair, double toc_er
       t0[i][k] = static_cast<S>(pair.x[i].t0[k]);
       t1[i][k] = static_cast<S>(pair.x[i].t1[k]);
     }
-  const auto test = pair.kind == detail::deformable::FeatureKind::kVertexFace
-                        ? vertexFace<S>
-                        : edgeEdge<S>;
+  const auto test =
+      pair.kind == fcl::ContinuousContactKind::kVertexFace ? vertexFace<S> : edgeEdge<S>;
   return test(t0[0], t0[1], t0[2], t0[3], t1[0], t1[1], t1[2], t1[3], toc_err);
 }
 

@@ -11,7 +11,7 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
+using fcl::ContinuousContactKind;
 using Vec = Vector3<double>;
 
 /// An integer in [-half, half].
@@ -91,7 +91,7 @@ void flatten(Random& random, Shape shape, Vec& a, Vec& b, Vec& a_velocity,
 /// is double if r.n0 = 0 and triple if r.n1 = 0 as well.
 MovingPair touchingPair(Random& random, const TouchOptions& options) {
   MovingPair pair{randomKind(random), {}};
-  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   // Directions from f0 (VF) or along the edges (EE), and how they change.
   Vec a = gridPoint(random, 4), b = gridPoint(random, 4);
   Vec a_velocity = gridPoint(random, 2), b_velocity = gridPoint(random, 2);
@@ -282,7 +282,7 @@ MovingPair resting(Random& random) {
 
 /// The two ranges of points that make up the features: [0, split) and [split, 4).
 std::size_t splitOf(const MovingPair& pair) {
-  return pair.kind == FeatureKind::kVertexFace ? 1 : 2;
+  return pair.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
 }
 
 /// One feature, or both, do not move, or only keep their shape.
@@ -318,7 +318,7 @@ MovingPair pointFeatures(Random& random) {
 /// each in one frame or in both.
 MovingPair flatGrid(Random& random) {
   MovingPair pair = gridPair(random, 2);
-  const bool vf = pair.kind == FeatureKind::kVertexFace;
+  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   const std::size_t frames = 1 + random.index(3);
   constexpr double kFactors[] = {-1, 0, 0.5, 1, 2};
   const double factor = oneOf(random, kFactors);

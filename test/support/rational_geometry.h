@@ -98,9 +98,8 @@ bool doSegmentsMeet(const ExactPoint<N>& a, const ExactPoint<N>& b,
 
 /// @brief Whether the features of four points touch: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
 template <typename N>
-bool doTouch(detail::deformable::FeatureKind kind,
-             const std::array<ExactPoint<N>, 4>& p) {
-  return kind == detail::deformable::FeatureKind::kVertexFace
+bool doTouch(fcl::ContinuousContactKind kind, const std::array<ExactPoint<N>, 4>& p) {
+  return kind == fcl::ContinuousContactKind::kVertexFace
              ? isOnTriangle(p[0], p[1], p[2], p[3])
              : doSegmentsMeet(p[0], p[1], p[2], p[3]);
 }

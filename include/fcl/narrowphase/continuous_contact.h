@@ -16,13 +16,6 @@
 
 namespace fcl {
 
-/// @brief Which features meet in a continuous contact.
-enum class ContinuousContactKind {
-  kVertexFace,  ///< a vertex meets a triangle
-  kEdgeEdge,    ///< two edges meet
-  kCrossing     ///< an edge already passes through a triangle at t = 0
-};
-
 /// @brief One contact between two features during t in [0, 1]; features are closed (a
 /// triangle contains its border).
 template <typename S>
@@ -73,13 +66,6 @@ struct ContinuousContact {
 
 using ContinuousContactf = ContinuousContact<float>;
 using ContinuousContactd = ContinuousContact<double>;
-
-/// @brief What a continuous query has to find.
-enum class ContinuousQuery {
-  kAll,    ///< every contact (the num_max_contacts earliest)
-  kFirst,  ///< the first time of contact; contacts that start later are skipped
-  kAny     ///< whether there is a contact at all; stops at the first proof
-};
 
 /// @brief A continuous request that asks for contacts. Of the fields of FCL's request
 /// toc_err acts, the width of a contact's time bracket.

@@ -1,10 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// What a continuous query is asked for and what its stages tell: plain data, which the
+// stages themselves work with. Everything else that is public is in the headers that
+// include this one.
 #ifndef FCL_NARROWPHASE_STAGE_COUNTS_H
 #define FCL_NARROWPHASE_STAGE_COUNTS_H
 
 #include <cstdint>
 
 namespace fcl {
+
+/// @brief Which features meet in a continuous contact.
+enum class ContinuousContactKind {
+  kVertexFace,  ///< a vertex meets a triangle
+  kEdgeEdge,    ///< two edges meet
+  kCrossing     ///< an edge already passes through a triangle at t = 0
+};
+
+/// @brief What a continuous query has to find.
+enum class ContinuousQuery {
+  kAll,    ///< every contact (the num_max_contacts earliest)
+  kFirst,  ///< the first time of contact; contacts that start later are skipped
+  kAny     ///< whether there is a contact at all; stops at the first proof
+};
 
 /// @brief How many candidates each stage of a continuous query saw and removed, in
 /// pipeline order. Every candidate that enters a stage leaves it culled or goes on:

@@ -21,8 +21,8 @@
 
 namespace {
 
+using fcl::ContinuousContactKind;
 using fcl::ContinuousQuery;
-using fcl::detail::deformable::FeatureKind;
 
 constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply
@@ -254,8 +254,9 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
   queries->add_option("FILES", options.files, "CSV files of queries")
       ->type_name("FILE")
       ->required();
-  static const std::map<std::string, FeatureKind> kKinds{{"vf", FeatureKind::kVertexFace},
-                                                         {"ee", FeatureKind::kEdgeEdge}};
+  static const std::map<std::string, ContinuousContactKind> kKinds{
+      {"vf", ContinuousContactKind::kVertexFace},
+      {"ee", ContinuousContactKind::kEdgeEdge}};
   queries->add_option("--kind", options.kind, "vf (vertex-face) or ee (edge-edge)")
       ->type_name("KIND")
       ->required()

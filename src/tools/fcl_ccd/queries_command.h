@@ -11,8 +11,7 @@ namespace fcl_ccd {
 
 struct QueriesOptions {
   std::vector<std::string> files;
-  fcl::detail::deformable::FeatureKind kind{
-      fcl::detail::deformable::FeatureKind::kVertexFace};
+  fcl::ContinuousContactKind kind{fcl::ContinuousContactKind::kVertexFace};
   double toc_err{1e-4};
   int repeat{1};
   bool print_answers{false};

@@ -19,7 +19,7 @@ std::unique_ptr<Baseline> make(const FramePairMesh& mesh, const BaselineMethod& 
 
 }  // namespace
 
-bool touchesByIntervalNewton(detail::deformable::FeatureKind,
+bool touchesByIntervalNewton(fcl::ContinuousContactKind,
                              const detail::deformable::FeaturePoints&,
                              const RelativePair<double>& pair,
                              const CoplanarityCubic<double>& cubic) {

@@ -37,12 +37,12 @@ struct BaselineStep {
 };
 
 /// @brief Whether the features of a pair touch, its cubic known.
-using TouchTest = bool (*)(detail::deformable::FeatureKind,
+using TouchTest = bool (*)(fcl::ContinuousContactKind,
                            const detail::deformable::FeaturePoints&,
                            const RelativePair<double>&, const CoplanarityCubic<double>&);
 
 /// @brief The solver of all these papers.
-bool touchesByIntervalNewton(detail::deformable::FeatureKind,
+bool touchesByIntervalNewton(fcl::ContinuousContactKind,
                              const detail::deformable::FeaturePoints&,
                              const RelativePair<double>& pair,
                              const CoplanarityCubic<double>& cubic);

@@ -8,9 +8,9 @@
 namespace fcl {
 namespace test {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePair;
 using detail::deformable::featurePair;
+using fcl::ContinuousContactKind;
 
 MeshConnectivity::MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> triangles,
                                    std::size_t num_vertices)
@@ -90,7 +90,7 @@ MeshConnectivity::MeshConnectivity(std::vector<std::array<std::uint32_t, 3>> tri
 bool MeshConnectivity::findRepresentative(int i, int j, int bit, int& first,
                                           int& second) const {
   const FeaturePair pair = featurePair(bit);
-  if (pair.kind == FeatureKind::kVertexFace) {
+  if (pair.kind == ContinuousContactKind::kVertexFace) {
     const int with_vertex = pair.first_on_a ? i : j, face = pair.first_on_a ? j : i;
     for (const int t : aroundVertex(triangle(with_vertex).v[pair.first]))
       if (!areAdjacent(t, face)) {
@@ -130,7 +130,7 @@ unsigned MeshConnectivity::representedPairs(int i, int j) const {
     const int bit = __builtin_ctz(others);
     const FeaturePair pair = featurePair(bit);
     int owner = i, other_owner = j;
-    if (pair.kind == FeatureKind::kEdgeEdge) {
+    if (pair.kind == ContinuousContactKind::kEdgeEdge) {
       owner = *aroundEdge(edgeOf(i, pair.first)).first;
       other_owner = *aroundEdge(edgeOf(j, pair.second)).first;
     } else if (pair.first_on_a) {

@@ -254,7 +254,7 @@ class FeatureTree {
 
   TimeWindow overlapOf(int i, int j, int bit) const {
     const detail::deformable::FeaturePair pair = detail::deformable::featurePair(bit);
-    if (pair.kind == detail::deformable::FeatureKind::kEdgeEdge)
+    if (pair.kind == fcl::ContinuousContactKind::kEdgeEdge)
       return overlap(edge_boxes_[connectivity_.edgeOf(i, pair.first)],
                      edge_boxes_[connectivity_.edgeOf(j, pair.second)]);
     const int with_vertex = pair.first_on_a ? i : j, face = pair.first_on_a ? j : i;

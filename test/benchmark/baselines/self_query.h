@@ -69,7 +69,7 @@ class SelfQuery final : public Baseline {
   }
 
  private:
-  using Kind = detail::deformable::FeatureKind;
+  using Kind = fcl::ContinuousContactKind;
 
   /// Pairs are tested in blocks: the clock is read once a block, and nodes and vertices
   /// do not push each other out of the cache at every pair.

@@ -12,12 +12,12 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::kernels;
 using detail::deformable::MovingKdopNode;
 using detail::deformable::MovingKdopTree;
 using detail::deformable::TreeTriangle;
 using detail::deformable::TreeVertex;
+using fcl::ContinuousContactKind;
 
 MovingKdopTree build(const FramePairMesh& mesh) {
   const BinaryStructure structure = makeBinaryStructure(mesh);
@@ -106,10 +106,12 @@ void WideTree<kBoxes>::findOverlaps(const std::vector<TrianglePairMask>& pairs,
   // listFeatures() writes up to 16 more than it lists.
   codes_.resize(9 * pairs.size() + 16);
   windows_.resize(codes_.size());
-  for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+  for (const ContinuousContactKind kind :
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     const std::size_t listed = kernels().listFeatures(
         masks_.data(), pairs.size(),
-        kind == FeatureKind::kVertexFace ? kVertexFace : kEdgeEdge, codes_.data());
+        kind == ContinuousContactKind::kVertexFace ? kVertexFace : kEdgeEdge,
+        codes_.data());
     const std::size_t kept =
         kernels().cullFeatures(kind, triangle_pairs_.data(), nullptr, nullptr, 1, nullptr,
                                codes_.data(), listed, windows_.data());

@@ -44,9 +44,9 @@ struct RelativePair {
   Vec<N> u0, u1, v0, v1, w0, w1;
   bool is_vertex_face;
 
-  RelativePair(detail::deformable::FeatureKind kind,
+  RelativePair(fcl::ContinuousContactKind kind,
                const detail::deformable::FeaturePoints& x)
-      : is_vertex_face(kind == detail::deformable::FeatureKind::kVertexFace) {
+      : is_vertex_face(kind == fcl::ContinuousContactKind::kVertexFace) {
     const bool vf = is_vertex_face;
     set(vf ? x[0] : x[2], vf ? x[1] : x[0], u0, u1);
     set(vf ? x[2] : x[1], vf ? x[1] : x[0], v0, v1);

@@ -28,8 +28,7 @@ class QueryFile {
     out.precision(17);
     for (std::size_t i = 0; i < set.queries.size(); ++i) {
       const MovingPair& query = set.queries[i];
-      out << i
-          << (query.kind == detail::deformable::FeatureKind::kVertexFace ? ",vf" : ",ee");
+      out << i << (query.kind == fcl::ContinuousContactKind::kVertexFace ? ",vf" : ",ee");
       for (const auto& p : query.x) write(out, p.t0);
       for (const auto& p : query.x) write(out, p.t1);
       out << '\n';

@@ -14,8 +14,8 @@ namespace fcl {
 namespace test {
 namespace {
 
-using detail::deformable::FeatureKind;
 using detail::deformable::FeaturePoints;
+using fcl::ContinuousContactKind;
 
 double size(const Vec<double>& a) {
   return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z));
@@ -61,11 +61,12 @@ Vector3<double> at1(const detail::deformable::VertexPath& p) {
 
 }  // namespace
 
-bool passesPlainFilter(FeatureKind kind, const FeaturePoints& x) {
+bool passesPlainFilter(ContinuousContactKind kind, const FeaturePoints& x) {
   return !CoplanarityCubic<double>(RelativePair<double>(kind, x)).hasOneSign();
 }
 
-SolverAnswer solveCubic(FeatureKind kind, const FeaturePoints& x, double inside_tol) {
+SolverAnswer solveCubic(ContinuousContactKind kind, const FeaturePoints& x,
+                        double inside_tol) {
   const RelativePair<double> pair(kind, x);
   const CoplanarityCubic<double> cubic(pair);
   const PowerCubic<double> f(cubic);
@@ -95,7 +96,7 @@ SolverAnswer solveCubic(FeatureKind kind, const FeaturePoints& x, double inside_
   return {false, 0};
 }
 
-SolverAnswer solveByIntervalNewton(FeatureKind kind, const FeaturePoints& x,
+SolverAnswer solveByIntervalNewton(ContinuousContactKind kind, const FeaturePoints& x,
                                    double resolution, bool filter) {
   const RelativePair<double> pair(kind, x);
   const CoplanarityCubic<double> cubic(pair);
@@ -104,12 +105,12 @@ SolverAnswer solveByIntervalNewton(FeatureKind kind, const FeaturePoints& x,
   return {toc >= 0, toc};
 }
 
-SolverAnswer solveByFcl(FeatureKind kind, const FeaturePoints& x) {
+SolverAnswer solveByFcl(ContinuousContactKind kind, const FeaturePoints& x) {
   using Fcl = detail::Intersect<double>;
   SolverAnswer answer{};
   Vector3<double> position;
   answer.contact =
-      kind == FeatureKind::kVertexFace
+      kind == ContinuousContactKind::kVertexFace
           ? Fcl::intersect_VF(at0(x[1]), at0(x[2]), at0(x[3]), at0(x[0]), at1(x[1]),
                               at1(x[2]), at1(x[3]), at1(x[0]), &answer.toc, &position)
           : Fcl::intersect_EE(at0(x[0]), at0(x[1]), at0(x[2]), at0(x[3]), at1(x[0]),

@@ -22,7 +22,7 @@ namespace {
 
 namespace deformable = detail::deformable;
 namespace fs = std::filesystem;
-using deformable::FeatureKind;
+using fcl::ContinuousContactKind;
 
 /// Far below every error that a method makes other than by rounding.
 constexpr double kTruthErr = 1e-15;
@@ -44,7 +44,7 @@ Truth withTime(const MovingPair& query, bool contact) {
 
 /// A feature pair of a mesh: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
 struct NamedPair {
-  FeatureKind kind;
+  ContinuousContactKind kind;
   std::array<int, 4> v;
 };
 
@@ -90,9 +90,11 @@ QuerySet readHardQueries(const std::string& folder) {
   std::set<fs::path> folders;  // in an order that does not depend on the file system
   for (const auto& entry : fs::directory_iterator(folder)) folders.insert(entry.path());
   for (const fs::path& path : folders)
-    for (const FeatureKind kind : {FeatureKind::kVertexFace, FeatureKind::kEdgeEdge}) {
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
       const fs::path file =
-          path / (kind == FeatureKind::kVertexFace ? "vertex-face.csv" : "edge-edge.csv");
+          path / (kind == ContinuousContactKind::kVertexFace ? "vertex-face.csv"
+                                                             : "edge-edge.csv");
       if (!fs::exists(file)) continue;
       const fcl_ccd::QueryList list = fcl_ccd::readQueries({file.string()});
       if (!list.has_truth) throw std::runtime_error(file.string() + ": has no truth");
@@ -117,7 +119,7 @@ QuerySet collectScene(const SceneFolder& scene, std::size_t sample) {
   QuerySet set{scene.name, {}, {}};
   for (const NamedPair& pair : drawn) {
     set.queries.push_back(pairOf(mesh, pair));
-    const ContinuousContactKind kind = pair.kind == FeatureKind::kVertexFace
+    const ContinuousContactKind kind = pair.kind == ContinuousContactKind::kVertexFace
                                            ? ContinuousContactKind::kVertexFace
                                            : ContinuousContactKind::kEdgeEdge;
     const bool contact = contacts.count(pairName(kind, pair.v)) > 0;

@@ -62,8 +62,7 @@ Census takeCensus(const SceneInfo& info, const FrameFolder& folder, std::size_t 
     const bool keeps_edges = info.kind == SceneKind::kCloth && i == pictureFrame(folder);
     census.contacts.push_back(swept.visit(frame, [&](const MetPair& pair) {
       census.sample.add(pair);
-      if (!keeps_edges || pair.kind != fcl::detail::deformable::FeatureKind::kEdgeEdge)
-        return;
+      if (!keeps_edges || pair.kind != fcl::ContinuousContactKind::kEdgeEdge) return;
       census.edges.boxes.add(pair.points);
       if (!pair.is_culled) census.edges.plain.add(pair.points);
     }));

@@ -14,8 +14,8 @@ namespace test {
 namespace {
 
 namespace deformable = detail::deformable;
-using deformable::FeatureKind;
 using deformable::FeaturePoints;
+using fcl::ContinuousContactKind;
 
 /// Times are not asked for.
 constexpr double kTocErr = 1;
@@ -23,8 +23,8 @@ constexpr double kTocErr = 1;
 /// Who is told of the pairs: a TouchTest is a plain function.
 const PairVisitor* visitor_of_pairs = nullptr;
 
-bool touchAndTell(FeatureKind kind, const FeaturePoints& x, const RelativePair<double>&,
-                  const CoplanarityCubic<double>& cubic) {
+bool touchAndTell(ContinuousContactKind kind, const FeaturePoints& x,
+                  const RelativePair<double>&, const CoplanarityCubic<double>& cubic) {
   const bool is_contact = deformable::elementaryTest(kind, x, 0, 1, kTocErr).answer ==
                           deformable::Answer::kYes;
   (*visitor_of_pairs)({kind, x, is_contact, cubic.hasOneSign()});
@@ -33,13 +33,13 @@ bool touchAndTell(FeatureKind kind, const FeaturePoints& x, const RelativePair<d
 
 /// The paths of a candidate's vertices.
 struct CandidatePaths {
-  FeatureKind kind;
+  ContinuousContactKind kind;
   std::array<deformable::VertexPath, 4> x;
 
   CandidatePaths(const FramePairMesh& frame, const ContinuousCandidate& candidate)
       : kind(candidate.kind == ContinuousContactKind::kVertexFace
-                 ? FeatureKind::kVertexFace
-                 : FeatureKind::kEdgeEdge) {
+                 ? ContinuousContactKind::kVertexFace
+                 : ContinuousContactKind::kEdgeEdge) {
     for (std::size_t i = 0; i < 4; ++i) {
       const auto v = static_cast<std::size_t>(candidate.vertices[i]);
       for (int k = 0; k < 3; ++k) {
@@ -98,7 +98,7 @@ CandidateCounts MovingPairs::count(const FramePairMesh& frame,
     counts.left_by_plain += is_left;
     counts.contacts += is_contact;
     counts.contacts_left_by_plain += is_left && is_contact;
-    if (edges && paths.kind == FeatureKind::kEdgeEdge &&
+    if (edges && paths.kind == ContinuousContactKind::kEdgeEdge &&
         deformable::mayBecomeCoplanar(paths.kind, paths.points(), candidate.window_lo,
                                       candidate.window_hi))
       edges->add(paths.points());

@@ -35,7 +35,7 @@ struct TestedEdges {
 
 /// @brief A pair of features, and what is known of it.
 struct MetPair {
-  detail::deformable::FeatureKind kind;
+  fcl::ContinuousContactKind kind;
   detail::deformable::FeaturePoints points;
   bool is_contact;
   bool is_culled;  // by the plain filter

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree/box_place.h"
+#include "tree/box_position.h"
 
 #include <algorithm>
 #include <cfloat>
@@ -41,7 +41,7 @@ void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16&
   }
 }
 
-KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b) {
+KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b) {
   KdopShift shift;
   for (int frame = 0; frame < 2; ++frame) {
     const double(&origin_a)[3] = a.origin[frame], (&origin_b)[3] = b.origin[frame];

@@ -6,8 +6,8 @@
 // error bounds for basic building blocks of double-word arithmetic", algorithms 6 and 10.
 // They hold while nothing underflows or overflows; an underflow adds less than 2^-1070,
 // which a later factor multiplies.
-#ifndef FCL_CCD_NUMERICS_DOUBLE2_H
-#define FCL_CCD_NUMERICS_DOUBLE2_H
+#ifndef FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
+#define FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
 
 #include <cmath>
 
@@ -16,17 +16,17 @@ namespace detail {
 namespace deformable {
 
 /// @brief hi + lo, hi the double nearest to the sum.
-struct Double2 {
+struct DoubleDouble {
   double hi, lo;
 
   /// @brief p - q, exact (Knuth's TwoSum).
-  static Double2 difference(double p, double q) {
+  static DoubleDouble difference(double p, double q) {
     const double d = p - q;
     const double q_virtual = p - d, p_virtual = d + q_virtual;
     return {d, (p - p_virtual) + (q_virtual - q)};
   }
   /// @brief s + rest for |s| >= |rest|, exact.
-  static Double2 normalized(double s, double rest) {
+  static DoubleDouble normalized(double s, double rest) {
     const double hi = s + rest;
     return {hi, rest - (hi - s)};
   }
@@ -37,23 +37,24 @@ struct Double2 {
 constexpr double kProductBound = 0x1p-103;
 constexpr double kSumBound = 0x1p-104;
 
-inline Double2 operator*(const Double2& a, const Double2& b) {
+inline DoubleDouble operator*(const DoubleDouble& a, const DoubleDouble& b) {
   const double p = a.hi * b.hi;
-  return Double2::normalized(p, std::fma(a.hi, b.hi, -p) + (a.hi * b.lo + a.lo * b.hi));
+  return DoubleDouble::normalized(p,
+                                  std::fma(a.hi, b.hi, -p) + (a.hi * b.lo + a.lo * b.hi));
 }
 
-inline Double2 operator-(const Double2& a, const Double2& b) {
-  const Double2 upper = Double2::difference(a.hi, b.hi),
-                lower = Double2::difference(a.lo, b.lo);
-  const Double2 s = Double2::normalized(upper.hi, upper.lo + lower.hi);
-  return Double2::normalized(s.hi, s.lo + lower.lo);
+inline DoubleDouble operator-(const DoubleDouble& a, const DoubleDouble& b) {
+  const DoubleDouble upper = DoubleDouble::difference(a.hi, b.hi),
+                     lower = DoubleDouble::difference(a.lo, b.lo);
+  const DoubleDouble s = DoubleDouble::normalized(upper.hi, upper.lo + lower.hi);
+  return DoubleDouble::normalized(s.hi, s.lo + lower.lo);
 }
 
-inline Double2 operator+(const Double2& a, const Double2& b) {
-  return a - Double2{-b.hi, -b.lo};
+inline DoubleDouble operator+(const DoubleDouble& a, const DoubleDouble& b) {
+  return a - DoubleDouble{-b.hi, -b.lo};
 }
 
-using AccurateVector = Double2[3];
+using AccurateVector = DoubleDouble[3];
 
 inline void cross(const AccurateVector& a, const AccurateVector& b, AccurateVector& n) {
   for (int k = 0; k < 3; ++k) {
@@ -62,7 +63,7 @@ inline void cross(const AccurateVector& a, const AccurateVector& b, AccurateVect
   }
 }
 
-inline Double2 dot(const AccurateVector& a, const AccurateVector& b) {
+inline DoubleDouble dot(const AccurateVector& a, const AccurateVector& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Boxes of points and of meshes in other places.
-#ifndef FCL_CCD_TREE_BOX_PLACE_H
-#define FCL_CCD_TREE_BOX_PLACE_H
+// Boxes of points and of meshes in other positions.
+#ifndef FCL_CCD_TREE_BOX_POSITION_H
+#define FCL_CCD_TREE_BOX_POSITION_H
 
 #include "mesh/moving_kdop.h"
 
@@ -14,7 +14,7 @@ namespace deformable {
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out);
 
 /// @brief Where the boxes of a tree are in space: [frame][axis].
-struct BoxPlace {
+struct BoxPosition {
   /// What they are relative to.
   double origin[2][3];
   /// By which the mesh is moved on top.
@@ -26,7 +26,7 @@ struct BoxPlace {
 
 /// @brief What to add to the sum of a box of one tree and one of another: outward by the
 /// rounding of the numbers that make it, and of the moved coordinates themselves.
-KdopShift relativeShift(const BoxPlace& a, const BoxPlace& b);
+KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b);
 
 }  // namespace deformable
 }  // namespace detail
