@@ -377,7 +377,7 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   };
   refused(none, o, here, "o1 is null");
   refused(o, none, here, "o2 is null");
-  refused(o, sphere.get(), here, "two triangle meshes");
+  refused(o, sphere.get(), here, "o2 is not a triangle mesh");
   expectRefused([&] { continuousSelfCandidates(none, sink); }, "o is null");
   expectRefused([&] { continuousSelfCandidates(sphere.get(), sink); },
                 "not a triangle mesh");
@@ -394,7 +394,7 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   const TestMesh t0{body.mesh.t0, body.mesh.triangles},
       t1{body.mesh.t1, body.mesh.triangles};
   const auto rigid = makeModel<Plain<double>>(t0);
-  refused(o, rigid.get(), turned, "two triangle meshes");
+  refused(o, rigid.get(), turned, "o2 is a rigid mesh that turns");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Transform3<double> broken = here;
   broken.translation()[1] = nan;

@@ -460,7 +460,7 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   refused("o2", o, &motion, none, &motion, request);
   refused("motion1", o, nullptr, o, &motion, request);
   refused("motion2", o, &motion, o, nullptr, request);
-  refused("contacts", o, &motion, sphere.get(), &motion, request);
+  refused("o2 is not a triangle mesh", o, &motion, sphere.get(), &motion, request);
   expectRefused([&] { continuousSelfCollide(none, request, result); }, "o is null");
   expectRefused([&] { continuousSelfCollide(sphere.get(), request, result); },
                 "not a triangle mesh");

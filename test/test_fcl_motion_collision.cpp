@@ -476,7 +476,7 @@ TEST_F(MotionCollision, WhatIsRefused) {
         continuousCandidates(bar_.get(), kStill, end, square_.get(), kStill, kStill,
                              [](const auto*, std::size_t) { return true; });
       },
-      "candidates");
+      "o1 is a rigid mesh that turns");
 }
 
 TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {

@@ -536,7 +536,7 @@ TEST(FCL_THREADS, modelRefusesANegativeNumber) {
   for (const int threads : {-1, std::numeric_limits<int>::min()}) {
     EXPECT_EQ(model->setNumThreads(threads), BVH_ERR_INCORRECT_DATA);
     EXPECT_EQ(model->lastError(),
-              std::to_string(threads) + " is not a number of threads");
+              std::to_string(threads) + " is not a number of threads. Give 0 or more");
     EXPECT_EQ(model->numThreads(), 2);
   }
   EXPECT_EQ(model->setNumThreads(0), BVH_OK);

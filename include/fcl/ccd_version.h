@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The version of fcl_ccd, which extends FCL; FCL's own is in <fcl/config.h>. A program
-// tells whether it is compiled with this package by FCL_CCD_VERSION, which is defined
-// after <fcl/fcl.h>, <fcl/narrowphase/continuous_collision.h>,
-// <fcl/narrowphase/distance.h> and each header that this package adds.
+// The version of fcl_ccd, the extension of FCL. FCL's own version is in <fcl/config.h>. A
+// program knows by FCL_CCD_VERSION that it is compiled with this package. The macro is
+// defined after <fcl/fcl.h>, <fcl/narrowphase/continuous_collision.h>,
+// <fcl/narrowphase/distance.h>, and after each header that this package adds.
 #ifndef FCL_CCD_VERSION_H
 #define FCL_CCD_VERSION_H
 

@@ -17,7 +17,10 @@ std::shared_ptr<MotionBase<float>> motionOf(const MovingGeometry<float>& o,
   const Transform3<float> beg = toTransform(o.pose[0]), end = toTransform(o.pose[1]);
   if (type == CCDM_TRANS) return std::make_shared<TranslationMotion<float>>(beg, end);
   if (type == CCDM_SPLINE) return std::make_shared<SplineMotion<float>>(beg, end);
-  throw Exception("FCL has no interpolated and no screw motion in float");
+  throw Exception(
+      "FCL answers this pair, and it has no InterpMotion (CCDM_LINEAR) and no "
+      "ScrewMotion "
+      "(CCDM_SCREW) in float. Use double, or CCDM_TRANS or a SplineMotion");
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The first half of a continuous query: the pairs of features that may touch, for callers
-// who bring their own solver.
+// with their own solver.
 #ifndef FCL_NARROWPHASE_CONTINUOUS_CANDIDATES_H
 #define FCL_NARROWPHASE_CONTINUOUS_CANDIDATES_H
 
@@ -17,64 +17,64 @@
 
 namespace fcl {
 
-/// @brief A VF or EE pair without a common vertex that may touch during t in [0, 1]; no
-/// contact is decided yet. Kind, triangles and vertex ids are those that a
-/// ContinuousContact of the pair has.
+/// @brief A VF or EE pair without a common vertex that may touch during t in [0, 1]. It
+/// is not tested yet. Kind, triangles and vertex ids are as in a ContinuousContact.
 struct ContinuousCandidate {
   /// @brief kVertexFace or kEdgeEdge.
   ContinuousContactKind kind{ContinuousContactKind::kVertexFace};
 
-  /// @brief Whether the vertex (VF) belongs to o1 and the face to o2, or the other way
-  /// round. EE: edge a always belongs to o1.
+  /// @brief True: the vertex (VF) belongs to o1, the face to o2. False: the reverse. EE:
+  /// edge a always belongs to o1.
   bool first_on_o1{true};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
   std::array<int, 4> vertices{{-1, -1, -1, -1}};
 
-  /// @brief The triangle of o1 and of o2 that hold the features.
+  /// @brief Numbers of the triangles of o1 and of o2 that have the features.
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
-  /// @brief The features do not touch before window_lo nor after window_hi; 0 <=
-  /// window_lo <= window_hi <= 1.
+  /// @brief The features do not touch before window_lo or after window_hi, in fractions
+  /// of the step; 0 <= window_lo <= window_hi <= 1.
   double window_lo{0};
   double window_hi{1};
 };
 
-/// @brief Takes `count` >= 1 candidates, which are valid during the call only; returns
-/// false to end the query. Runs in the thread and the floating-point mode of the query's
-/// caller, and may run queries of its own. What it throws reaches the caller.
+/// @brief A function of the caller that takes `count` >= 1 candidates. They are valid
+/// during the call only. It returns true to continue and false to end the query. It runs
+/// in the thread and the floating-point mode of the query's caller, and may run queries.
+/// An exception from it reaches the caller.
 using ContinuousCandidateSink =
     std::function<bool(const ContinuousCandidate* candidates, std::size_t count)>;
 
 /// @defgroup continuous_candidates Candidates of continuous collision queries
 ///
-/// Hand out, in blocks, every feature pair that continuousSelfCollide() or
-/// continuousCollide() with ContinuousQuery::kAll would give to its coplanarity filter:
-/// the pairs that the moving boxes of nodes, triangles and features leave.
+/// They hand out, in blocks, every feature pair that culling leaves: the pairs whose
+/// moving boxes overlap. continuousSelfCollide() and continuousCollide() with
+/// ContinuousQuery::kAll give the same pairs to their coplanarity filter.
 ///
-/// (1) Every pair that touches is among them (a pair that crosses at t = 0 and never
-/// touches need not be). (2) No pair comes twice; faces with the same three vertices are
-/// one face. (3) The order depends on the trees, and is the same in every call. (4)
-/// vertexFace() and edgeEdge() on all of them give the contacts of the query, if they are
-/// given its vertex paths: the transform of the vertex, each coordinate ((r0 x + r1 y) +
-/// r2 z) + t in doubles.
+/// (1) Every pair that touches is among them. (A pair that crosses at t = 0 and never
+/// touches may be missing.) (2) No pair comes twice. Faces with the same three vertices
+/// are one face. (3) The order depends on the trees and is the same in every call. (4)
+/// vertexFace() and edgeEdge() on all pairs give the contacts of the query if they get
+/// the same vertex paths. A posed coordinate is ((r0 x + r1 y) + r2 z) + t, computed in
+/// doubles.
 ///
-/// Nothing is stored but one block. A rigid BVHModel that is no DeformableBVHModel keeps
-/// no table of which triangle owns which feature, which (2) needs: it is made for each
-/// call, in time and memory linear in the triangles.
+/// Memory: one block. A rigid BVHModel that is not a DeformableBVHModel has no table of
+/// feature owners, which (2) needs. The table is made in each call, in time and memory
+/// linear in the triangles.
 ///
-/// Paths, models, and thread-safety are those of the @ref continuous_queries.
+/// Paths, models and thread-safety are those of the @ref continuous_queries. All paths
+/// must be straight: a rigid mesh must not turn. The query runs in the caller's thread.
 /// After Tang, Manocha, Tong 2010, section 4 and, for (2), Curtis, Tamstorf, Manocha
 /// 2008.
 ///
-/// @param sink  see ContinuousCandidateSink
-/// @return true when all candidates were handed out, false when the sink ended the query.
-/// @throws fcl::Exception as the queries for contacts do: an argument that is null (the
-/// sink too), a geometry that is no triangle mesh, a rigid mesh that turns, a mesh that
-/// is not built or is in the middle of an update, a coordinate that is not finite, a
-/// triangle index out of range. A vertex that is not finite may be noticed after
-/// candidates were handed out.
+/// @param sink  takes the candidates, see ContinuousCandidateSink
+/// @return true when all candidates were handed out, false when the sink ended the query
+/// @throws fcl::Exception when an argument or the sink is null, a geometry is not a
+/// triangle mesh, a rigid mesh turns, a mesh is not built or is in the middle of an
+/// update, a coordinate is not finite, or a triangle index is out of range. The exception
+/// of a vertex that is not finite may come after candidates were handed out.
 /// @{
 
 /// @brief The candidates of a mesh with itself.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stands before FCL's header of the same name on the include path, includes it, and adds
-// non-template overloads of its functions. Overload resolution prefers them, so that
-// programs, and FCL's own templates, that call continuousCollide(...) reach them; FCL's
-// body stays callable as continuousCollide<double>(...).
+// This header stands before FCL's header of the same name on the include path. It
+// includes FCL's header and adds non-template overloads of its functions. Overload
+// resolution prefers them, so that programs, and FCL's own templates, that call
+// continuousCollide(...) reach them. continuousCollide<double>(...) still calls FCL's
+// implementation.
 #ifndef FCL_NARROWPHASE_CONTINUOUS_COLLISION_OVERLAY_H
 #define FCL_NARROWPHASE_CONTINUOUS_COLLISION_OVERLAY_H
 
@@ -17,69 +18,72 @@ namespace fcl {
 
 /// @defgroup continuous_queries Continuous collision queries
 ///
-/// Two triangle meshes are answered here, of any BV type, rigid or deforming (a
-/// DeformableBVHModel, or a BVHModel in FCL's updated state), whatever they do. A rigid
-/// mesh that follows a class of motion of the program's own, and what it is tested
-/// against, reach FCL's own function, as do shapes, octrees and point clouds. A
-/// DeformableBVHModel whose frames are equal is a rigid mesh. FCL takes a mesh as it is
-/// in the current frame and knows nothing of the previous one: a mesh that deforms stands
-/// still where FCL answers.
+/// Which pairs are answered here: two triangle meshes of any BV type, rigid or deforming
+/// (a DeformableBVHModel, or a BVHModel in FCL's updated state), whatever
+/// request.ccd_solver_type says. A DeformableBVHModel whose frames are equal is a rigid
+/// mesh.
 ///
-/// Paths are the real-number evaluation of what was given, in double. A contact is a VF
-/// or EE pair of closed features that touch at some t in [0, 1] (an edge of a vertex with
-/// itself is none: its triangle has that vertex).
-/// - Straight: of meshes whose rotation is constant (up to a few roundings), and of a
-/// mesh
-///   that deforms between two transforms. A vertex goes from tf_beg * (previous frame) to
-///   tf_end * (current frame). When both meshes go straight the answer is exact.
-/// - Turning: a rigid mesh whose end transforms have different rotations. It turns at
-///   constant speed about the origin of its frame, which goes straight (CCDM_LINEAR, and
-///   CCDM_TRANS, with which FCL drops the rotation in silence), or about the axis of a
-///   screw (CCDM_SCREW). A mesh that deforms does so in the frame that turns, only if
-///   CCDM_LINEAR or CCDM_SCREW, or a motion object, asks for a turn: motion(t) * ((1 - t)
-///   previous + t current). CCDM_SPLINE means nothing between two transforms and throws
-///   where a rigid mesh turns.
-/// - Motion objects of FCL's: TranslationMotion; InterpMotion between the transforms that
-///   it was made from, about its reference point; ScrewMotion between its transforms;
+/// Which pairs FCL answers: shapes, octrees, point clouds, and a rigid mesh that follows
+/// a motion class of the program. FCL takes a mesh as it is in its current frame and
+/// ignores the deformation. It samples the motion and may miss a contact. There are no
+/// contacts. The way out: give a mesh of a shape's surface; give the poses of another
+/// motion class as transforms, step by step. doc/choosing.md has the limits.
+///
+/// Paths are the real-number evaluation of the given numbers, in double. t runs from 0 to
+/// 1. A contact is a VF or EE pair of closed features without a common vertex that touch
+/// at some t in [0, 1].
+/// - Straight paths: meshes whose rotation is constant (up to a few roundings). Also
+///   meshes that deform between two transforms with CCDM_TRANS or CCDM_SPLINE, or by a
+///   motion class of the program beside another mesh (its poses at t = 0 and t = 1
+///   count). A vertex goes from tf_beg * (previous frame) to tf_end * (current frame). If
+///   both meshes go straight the answer is exact.
+/// - Turning: a rigid mesh whose end transforms have different rotations. With
+///   CCDM_LINEAR and CCDM_TRANS it turns at constant speed about the origin of its frame,
+///   which goes straight. (With CCDM_TRANS FCL drops the rotation without a message.)
+///   With CCDM_SCREW it turns about the axis of a screw. CCDM_SPLINE is not defined
+///   between two transforms, and throws if a rigid mesh turns.
+/// - A mesh that deforms in a frame that turns: with CCDM_LINEAR, CCDM_SCREW, or a motion
+///   object that turns. The path is motion(t) * ((1 - t) previous + t current).
+/// - FCL's motion objects: TranslationMotion; InterpMotion between the transforms that it
+///   was made from, about its reference point; ScrewMotion between its transforms;
 ///   SplineMotion by its control points.
 ///
-/// When a mesh turns or bends, contact means to come within a tolerance tau, some hundred
-/// units in the last place of the coordinates, relative to the middle between both meshes
-/// (doc/numerics.md): no contact is missed, no time is late, and what is reported comes
-/// within tau of touching. Surfaces within tau at t = 0 give the time 0. A pair that
-/// slides for more than 10,000 steps without a proof is reported from then on.
+/// If a mesh turns or follows a spline, contact means to come within a tolerance tau of
+/// touching. tau is some hundred units in the last place of the coordinates, relative to
+/// the middle between both meshes (doc/numerics.md). No contact is missed and no time is
+/// late. Surfaces within tau at t = 0 give the time 0. A pair that slides for more than
+/// 10,000 steps without a proof is reported from then on: early, never late.
 ///
-/// Neither request.ccd_solver_type nor num_max_iterations plays a part.
+/// request.ccd_solver_type and num_max_iterations have no effect.
 ///
-/// Result: time_of_contact is the lower end of the first contact's time bracket, never
-/// later than the contact; contact_tf1 and contact_tf2 are the poses at the bracket's
-/// upper end, never earlier than it, where the objects have met as a rule, so that
-/// collide() there finds contacts. Where the bracket is as narrow as rounding (a
-/// request.toc_err of that size, or a time found exactly), or the objects touch without
-/// passing into each other, these poses may only touch. Of a mesh that turns they are
-/// those of the motion.
+/// request.toc_err is the largest width of the time bracket of a contact, in fractions of
+/// the step. 0: as narrow as doubles allow.
 ///
-/// request.toc_err is the width of the bracket; 0 means as narrow as doubles allow.
+/// Result: time_of_contact is the lower end of the first contact's bracket. contact_tf1
+/// and contact_tf2 are the poses at its upper end. As a rule the objects overlap there,
+/// so that collide() finds contacts. They may only touch if the bracket is as narrow as
+/// rounding, or if the objects touch without passing into each other.
 ///
-/// Models are not changed; two calls give the same answer. Concurrent calls on the same
-/// models are safe, those that FCL answers included (FCL is given a copy of a model that
-/// it would write to), and so are those on the same motions where this library answers.
-/// Motion objects that FCL answers about, and those of a class of the program's own, must
-/// not be shared by concurrent calls: asking where they are moves them.
+/// Models are not changed. The same call gives the same answer.
 ///
-/// @throws fcl::Exception that names the object, when it or its motion is null, when a
-/// mesh is not built or is in the middle of an update, has more than 2^29 triangles or
-/// vertices, holds a coordinate that is not finite or a triangle index out of range, when
-/// a transform is not finite, a geometry that has to be a mesh is none, or the request is
-/// not usable (toc_err negative or NaN, num_max_contacts 0, num_threads negative); when
-/// the reference point of an InterpMotion is not finite, or adds more rounding than
-/// toc_err; when a path that turns has coordinates beyond 2^200. FCL
-/// checks nothing of what it answers. A
-/// coordinate of a rigid mesh is looked at where boxes meet: what is wrong with triangles
-/// that cannot change the answer (too late for the first contact, or, with kAny, behind
-/// what has the answer) may go unnoticed, for any number of threads alike.
+/// Thread-safety: concurrent calls on the same models are safe, also where FCL answers
+/// (FCL gets a copy of a model that it would write to). Concurrent calls on the same
+/// motion objects are safe where this library answers. Do not share a motion object
+/// between concurrent calls if FCL answers, or if it is of a class of the program:
+/// reading its pose changes it.
+///
+/// @throws fcl::Exception  The text names the object. For all pairs: an object or its
+/// motion is null; of two meshes, a transform is not finite. For pairs that are answered
+/// here: a mesh is not built, is in the middle of an update, has more than 2^29 triangles
+/// or vertices, has a coordinate that is not finite or a triangle index out of range; the
+/// request is not usable (toc_err negative or NaN, num_max_contacts 0, num_threads
+/// negative); the reference point of an InterpMotion is not finite, or so large that its
+/// rounding exceeds toc_err; a path that turns has coordinates beyond 2^200. FCL checks
+/// nothing in what it answers. A coordinate of a rigid mesh is checked where boxes
+/// overlap. So a bad coordinate that cannot change the answer may stay unnoticed, for any
+/// number of threads alike.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
-/// at t = 0; 1 without collision.
+/// at t = 0; 1 without collision
 /// @{
 
 /// @brief The first contact of two geometries that follow motions.
@@ -98,8 +102,8 @@ float continuousCollide(const CollisionGeometry<float>* o1,
                         ContinuousCollisionResult<float>& result);
 
 /// @brief The first contact of two geometries that go from one transform to another.
-/// request.ccd_motion_type says how what turns does so. Where FCL answers it has no
-/// interpolated and no screw motion in float: those throw.
+/// request.ccd_motion_type chooses the path of a mesh that turns. In float FCL has no
+/// interpolated and no screw motion: they throw for a pair that FCL answers.
 double continuousCollide(const CollisionGeometry<double>* o1,
                          const Transform3<double>& tf1_beg,
                          const Transform3<double>& tf1_end,
@@ -154,8 +158,8 @@ float continuousSelfCollide(const CollisionGeometry<float>* o,
                             ContinuousCollisionResult<float>& result);
 
 /// @name With contacts
-/// Only meshes that are answered here have contacts to give; for other objects these
-/// throw fcl::Exception.
+/// Only pairs of meshes that are answered here have contacts. For a pair that FCL answers
+/// these throw fcl::Exception, whose text names the way out.
 /// @{
 
 /// @brief The contacts of two geometries that follow motions.
@@ -232,7 +236,7 @@ float continuousSelfCollide(const CollisionGeometry<float>* o,
 
 namespace detail {
 
-/// A request and a result of which one is for contacts and the other is not.
+/// Matches a request and a result if one of the two is for contacts and the other is not.
 template <typename S, typename Request, typename Result>
 using IfMixed = typename std::enable_if<
     std::is_base_of<ContinuousCollisionRequest<S>, Request>::value &&
@@ -240,14 +244,16 @@ using IfMixed = typename std::enable_if<
     std::is_base_of<ContinuousContactRequest<S>, Request>::value !=
         std::is_base_of<ContinuousContactResult<S>, Result>::value>::type;
 
-/// `Transform3<S>` where S is told by another argument, so that what converts to it does.
+/// `Transform3<S>` where another argument determines S, so that arguments of other types
+/// convert to it.
 template <typename S>
 using ConvertedTransform3 = typename std::common_type<Transform3<S>>::type;
 
 }  // namespace detail
 
-// FCL's request and result are not polymorphic: one with contacts and one without would
-// silently lose what is asked for, so they do not compile.
+// FCL's request and result are not polymorphic. A request for contacts with a plain
+// result, or the reverse, would lose the contacts without a message. So it does not
+// compile.
 template <typename S, typename Request, typename Result,
           typename = detail::IfMixed<S, Request, Result>>
 S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,

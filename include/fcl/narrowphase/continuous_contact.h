@@ -16,112 +16,123 @@
 
 namespace fcl {
 
-/// @brief One contact between two features during t in [0, 1]; features are closed (a
-/// triangle contains its border).
+/// @brief One contact between two features during t in [0, 1]. Features are closed: a
+/// triangle contains its border, an edge its ends.
 template <typename S>
 struct ContinuousContact {
   ContinuousContactKind kind{ContinuousContactKind::kVertexFace};
 
-  /// @brief The geometries; the same one twice in a self-collision.
+  /// @brief The two geometries. In a self-collision both are the same.
   const CollisionGeometry<S>* o1{nullptr};
   const CollisionGeometry<S>* o2{nullptr};
 
-  /// @brief The triangle of o1 and of o2 that hold the features, as in fcl::Contact.
+  /// @brief Numbers of the triangles of o1 and of o2 that have the features, as in
+  /// fcl::Contact.
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
-  /// f1, f2. Ids that a kind does not use are -1.
+  /// f1, f2. Unused entries are -1.
   std::array<int, 5> vertices{{-1, -1, -1, -1, -1}};
 
-  /// @brief Whether the vertex (VF) or the edge (crossing) belongs to o1 and the face to
-  /// o2, or the other way round. EE: edge a always belongs to o1.
+  /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2.
+  /// False: the reverse. EE: edge a always belongs to o1.
   bool first_on_o1{true};
 
-  /// @brief The first time at which the features touch lies in [toc_lo, toc_hi]; no
-  /// wider than the request's toc_err (or a few units in the last place), and [0, 0] for
-  /// a contact that is there at t = 0. Where a mesh turns: the features come within the
-  /// tolerance of the query (continuous_collision.h) at toc_lo, and do not touch before;
-  /// at toc_hi the two triangles provably cross, or toc_hi is toc_lo where no such time
-  /// is found within toc_err, as when they only graze.
+  /// @brief Bracket of the time of contact, in fractions of the step. The first time at
+  /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
+  /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
+  /// 0] if the features touch at t = 0. If a mesh turns: the features do not touch before
+  /// toc_lo, and are within the query's tolerance of each other then
+  /// (continuous_collision.h). At toc_hi the two triangles provably cross. If no such
+  /// time is found within toc_err, for example because they only graze, toc_hi equals
+  /// toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
-  /// @brief Where they touch at toc_lo, in the world frame (only with enable_contact).
+  /// @brief The point where they touch at toc_lo, in the world frame. Set only with
+  /// enable_contact.
   Vector3<S> pos{Vector3<S>::Zero()};
 
-  /// @brief Unit normal of the face (VF, crossing) or common normal of the edges (EE) at
-  /// toc_lo, in the world frame (only with enable_contact). Sign: it points from o1 to
-  /// o2, that is, o2's point moves against it relative to o1's; where the relative
-  /// velocity along it is zero, it points to the side on which o2's feature is at t = 0,
-  /// and where that is zero too, along the winding (VF) or edge a x edge b (EE). In a
-  /// self-collision "o1" is the vertex (VF) or edge a (EE). A crossing's is along the
-  /// winding. Zero vector where the face has no area or the edges are parallel at that
-  /// time.
+  /// @brief Unit normal at toc_lo in the world frame: of the face (VF, crossing), or
+  /// common to both edges (EE). Set only with enable_contact. Sign:
+  /// - VF and EE: it points from o1 to o2, so that the touching point of o2 moves against
+  ///   the normal relative to that of o1. In a self-collision "o1" is the vertex (VF) or
+  ///   edge a (EE).
+  /// - If the relative velocity along the normal is zero: to the side of o2's feature at
+  ///   t = 0.
+  /// - If that is zero too: along the winding of the face (VF), or edge a x edge b (EE).
+  /// - Crossing: along the winding of the face.
+  /// It is the zero vector if the face has no area or the edges are parallel at toc_lo.
   Vector3<S> normal{Vector3<S>::Zero()};
 
-  /// @brief Number of entries of `vertices` in use.
+  /// @brief The number of entries of `vertices` that are used.
   int numVertices() const { return kind == ContinuousContactKind::kCrossing ? 5 : 4; }
 };
 
 using ContinuousContactf = ContinuousContact<float>;
 using ContinuousContactd = ContinuousContact<double>;
 
-/// @brief A continuous request that asks for contacts. Of the fields of FCL's request
-/// toc_err acts, the width of a contact's time bracket.
+/// @brief A continuous request that asks for contacts. Two fields of FCL's request act:
+/// toc_err, the largest width of a contact's time bracket, and ccd_motion_type, the path
+/// between two transforms.
 template <typename S>
 struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   using ContinuousCollisionRequest<S>::ContinuousCollisionRequest;
 
   ContinuousQuery query{ContinuousQuery::kAll};
 
-  /// @brief The earliest so many contacts are kept; ContinuousContactResult::contacts_cut
-  /// tells whether there were more. Must be at least 1.
+  /// @brief The result keeps at most this number of contacts, the earliest ones.
+  /// ContinuousContactResult::contacts_cut says whether there were more. At least 1.
   std::size_t num_max_contacts{std::numeric_limits<std::size_t>::max()};
 
   /// @brief Whether position and normal of each contact are computed.
   bool enable_contact{true};
 
-  /// @brief Threads that the query may use: 1, the caller's own and no task (the default,
-  /// as in FCL, whose callers run their own queries side by side); n, at most n; 0, as
-  /// many as the oneTBB task arena around has; not negative. Meshes of which one turns
-  /// are tested by one thread. The answer does not depend on it; how much was pruned
-  /// before a first contact was found, which StageCounts tell, does.
+  /// @brief The number of threads of the query. 1 (the default): the caller's thread,
+  /// without tasks, so that callers can run queries side by side as with FCL. n: at most
+  /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
+  /// a mesh turns, the query uses one thread. The answer does not depend on this number.
+  /// The StageCounts of a first-contact query may depend on it.
   int num_threads{1};
 };
 
 using ContinuousContactRequestf = ContinuousContactRequest<float>;
 using ContinuousContactRequestd = ContinuousContactRequest<double>;
 
-/// @brief What a query for contacts adds to FCL's result.
+/// @brief The fields that a query for contacts adds to FCL's result.
 template <typename S>
 struct ContinuousContacts {
   /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
-  /// ContinuousQuery::kFirst those that may be the first: whose bracket begins no later
-  /// than the earliest one ends (of a rigid mesh's, which may be met several times with
-  /// different brackets, than the shortest of those); with kAny at most one.
+  /// ContinuousQuery::kFirst: the contacts that may be the first, whose bracket begins no
+  /// later than the earliest bracket ends. (A contact of a rigid mesh may be found
+  /// several times with different brackets; the shortest one decides.) With kAny: at most
+  /// one.
   std::vector<ContinuousContact<S>> contacts;
 
-  /// @brief Whether contacts were dropped because of num_max_contacts.
+  /// @brief Whether num_max_contacts dropped contacts.
   bool contacts_cut{false};
 
-  /// @brief Whether an edge already passes through a triangle at t = 0, decided exactly.
-  /// Such surfaces may have no VF or EE contact at all. With ContinuousQuery::kAny not
-  /// decided once a contact is found.
+  /// @brief Whether an edge passes through a triangle at t = 0. The decision is exact.
+  /// Such surfaces may have no VF or EE contact at all. With ContinuousQuery::kAny it is
+  /// not decided if a contact is found first.
   bool initially_crossing{false};
 
-  /// @brief The edge and face that cross at t = 0, if initially_crossing.
+  /// @brief An edge and a face that cross at t = 0, if initially_crossing.
   ContinuousContact<S> crossing;
 
+  /// @brief What each stage of the query saw and removed.
   StageCounts counts;
+
+  /// @brief The wall time of the parts of the query, in seconds.
   StageTimes times;
 };
 
 /// @brief FCL's continuous result (is_collide, time_of_contact, contact_tf1, contact_tf2)
-/// with every contact. time_of_contact is never later than the true first time: toc_lo of
-/// the earliest contact (rounded down when S is float), 0 when the surfaces cross at
-/// t = 0, and 1 without collision. contact_tf1 and contact_tf2 are the poses at toc_hi of
-/// that contact; see @ref continuous_queries.
+/// together with the contacts. time_of_contact is never later than the true first time:
+/// it is toc_lo of the earliest contact (rounded down if S is float), 0 if the surfaces
+/// cross at t = 0, and 1 without collision. contact_tf1 and contact_tf2 are the poses at
+/// toc_hi of that contact; see @ref continuous_queries.
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContacts<S> {};
 

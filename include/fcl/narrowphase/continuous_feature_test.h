@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The former name of continuous_features.h.
+// Another name of continuous_features.h. New programs include that one.
 #ifndef FCL_NARROWPHASE_CONTINUOUS_FEATURE_TEST_H
 #define FCL_NARROWPHASE_CONTINUOUS_FEATURE_TEST_H
 

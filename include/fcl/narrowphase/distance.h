@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Stands before FCL's header of the same name, includes it, and adds overloads that
-// refuse what FCL would answer with a printed warning and the largest number there is.
+// This header stands before FCL's header of the same name and includes it. It adds
+// overloads that throw where FCL would print a warning and return the largest number.
 #ifndef FCL_NARROWPHASE_DISTANCE_OVERLAY_H
 #define FCL_NARROWPHASE_DISTANCE_OVERLAY_H
 
@@ -14,11 +14,14 @@ namespace fcl {
 
 /// @defgroup deformable_distance Distance
 ///
-/// FCL's distance. When one of the objects is a DeformableBVHModel (its current frame
-/// counts) and FCL has no distance function for the pair's types, for example two KDOP
-/// models, it throws fcl::Exception instead of answering; other objects reach FCL
-/// unchanged. Two AABB, RSS, kIOS or OBBRSS models of the same type have one; RSS, kIOS
-/// or OBBRSS with a shape (but a TriangleP); any model with an octree.
+/// FCL's distance of two objects at rest. A DeformableBVHModel is taken in its current
+/// frame. FCL has distance functions for these pairs: two models of AABBs, RSSs, kIOSs or
+/// OBBRSSs of the same type; a model of RSSs, kIOSs or OBBRSSs and a shape (not a
+/// TriangleP); any model and an octree.
+///
+/// @throws fcl::Exception when one of the objects is a DeformableBVHModel and FCL has no
+/// distance function for the pair, for example for two KDOP models. Other objects reach
+/// FCL unchanged.
 /// @{
 
 /// @brief The distance of two objects.
@@ -79,13 +82,13 @@ void requireDistanceFunction(const CollisionGeometry<S>& o1,
                   other = (is_first_the_mesh ? o2 : o1).getNodeType();
   if (!hasDistanceFunction(mesh, other))
     throw Exception(
-        "distance: FCL has no distance function for the node types of the two objects; "
-        "models on AABB, RSS, kIOS or OBBRSS of the same type have one");
+        "distance: FCL has no distance function for the types of these two objects. Use "
+        "two models of the same BV: AABB, RSS, kIOS or OBBRSS");
 }
 
 }  // namespace detail
 
-/// The bodies of the overloads; compiled only where they are called, see
+/// The bodies of the overloads. They are compiled only where they are called, see
 /// ContinuousQueryBodies.
 template <typename S>
 class DistanceBodies {
@@ -102,7 +105,7 @@ class DistanceBodies {
   }
 };
 
-// Tells the compiler of the friends.
+// Instantiates the classes, which declares the friends.
 static_assert(sizeof(DistanceBodies<double>) == 1, "");
 static_assert(sizeof(DistanceBodies<float>) == 1, "");
 

@@ -10,6 +10,7 @@
 
 namespace fcl {
 
+<<<<<<< HEAD
 /// @brief Which features meet in a continuous contact.
 enum class ContinuousContactKind {
   kVertexFace,  ///< a vertex meets a triangle
@@ -28,32 +29,41 @@ enum class ContinuousQuery {
 /// pipeline order. Every candidate that enters a stage leaves it culled or goes on:
 /// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts,
 /// but for those that a query for any contact no longer looks at.
+=======
+/// @brief How many candidates each stage of a continuous query saw and removed, in the
+/// order of the pipeline. A stage culls a candidate or passes it on:
+/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts.
+/// In a query for any contact the sum is smaller, since the query stops at the first
+/// proof.
+>>>>>>> 97224b3 (Public headers: plain sentences, and messages that name a way out)
 struct StageCounts {
-  /// node pairs whose moving boxes were compared
+  /// pairs of moving boxes of nodes and triangles that were compared
   std::uint64_t node_pairs{0};
-  /// triangle pairs whose boxes meet at some time
+  /// triangle pairs whose moving boxes overlap at some time
   std::uint64_t triangle_pairs{0};
   /// of those, the pairs that share a vertex
   std::uint64_t adjacent_pairs{0};
-  /// of those, the pairs that provably meet nowhere else: the triangles around the shared
-  /// vertex stay a fan; nothing is counted where whole nodes of the tree are in a fan
+  /// of those, the pairs that provably touch only in what they share, since the triangles
+  /// around the shared vertex stay a fan; pairs below a node that lies in one fan are not
+  /// counted
   std::uint64_t fan_culled{0};
-  /// triangle pairs that a plane keeps apart until the latest time that still matters,
-  /// once contacts that were found leave only the beginning of the step
+  /// triangle pairs that a plane separates until the latest time that still matters; only
+  /// once the contacts found so far leave no more than the beginning of the step
   std::uint64_t plane_culled{0};
-  /// VF and EE pairs that the other triangle pairs own and that share no vertex
+  /// VF and EE pairs without a common vertex that the remaining triangle pairs own
   std::uint64_t feature_pairs{0};
-  /// feature pairs whose moving boxes do not meet, or too late to matter
+  /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};
-  /// feature pairs that provably never become coplanar while their boxes meet
+  /// feature pairs that provably never become coplanar while their boxes overlap
   std::uint64_t filter_culled{0};
-  /// feature pairs for which the root solve proved that there is no contact
+  /// feature pairs for which the certified solve proved that there is no contact
   std::uint64_t solver_culled{0};
-  /// feature pairs that rounding left open for the solver and integers proved apart
+  /// feature pairs that the solve left undecided and that integers proved to be no
+  /// contact
   std::uint64_t exact_culled{0};
-  /// feature pairs that integers had to decide, either way
+  /// feature pairs that integers decided, contact or not
   std::uint64_t exact_tests{0};
-  /// contacts, each proved
+  /// feature pairs that are contacts
   std::uint64_t contacts{0};
   /// edge-face pairs tested for crossing at t = 0
   std::uint64_t crossing_tests{0};
@@ -76,14 +86,14 @@ struct StageCounts {
   }
 };
 
-/// @brief Wall time of the parts of a query, in seconds; on several threads divided in
-/// proportion to the time that all of them spent.
+/// @brief Wall time of the parts of a query, in seconds. With several threads the wall
+/// time is divided in proportion to the time that all threads spent on each part.
 struct StageTimes {
-  /// bringing the moving boxes up to date, when the query itself had to do it
+  /// making trees, owners and moving boxes, if the query itself had to do it
   double update{0};
-  /// moving boxes against moving boxes
+  /// comparing moving boxes
   double traverse{0};
-  /// everything done to a triangle pair, and handing over the contacts
+  /// testing triangle pairs, and handing over the contacts
   double test{0};
 };
 

@@ -27,7 +27,7 @@ class VertexFrames;
 }  // namespace deformable
 
 /// @brief The part of a DeformableBVHModel that does not depend on its BV: feature
-/// owners, moving tree, and what a query must know of the model's state.
+/// owners, moving tree, and the state of the model as far as queries need it.
 class DeformableMesh {
  public:
   virtual ~DeformableMesh();
@@ -37,20 +37,20 @@ class DeformableMesh {
   /// @brief Whether a vertex differs between the two frames.
   bool isDeforming() const { return is_deforming_; }
 
-  /// @brief As given to setNumThreads().
+  /// @brief The number given to setNumThreads(); 1 by default.
   int numThreads() const { return num_threads_; }
 
-  /// @brief How many updates since the build have made parts of the tree anew.
+  /// @brief How many updates since the build have restructured parts of the moving tree.
   std::size_t numRestructurings() const { return num_restructurings_; }
 
   /// @brief Whether an update or replacement has begun and not ended.
   bool isUpdateOpen() const { return open_ != Open::kNone; }
 
-  /// @brief Whether the moving tree describes the base model's arrays as they are now;
-  /// false when they were changed through a reference to the base class.
+  /// @brief Whether the moving tree belongs to the arrays that the base model has now.
+  /// False after a change through a reference to the base class.
   virtual bool isInStep() const = 0;
 
-  /// @brief The two frames, model coordinates; only while in step.
+  /// @brief The two frames in model coordinates. Call it only while isInStep().
   virtual deformable::VertexFrames frames() const = 0;
 
  protected:
@@ -58,23 +58,24 @@ class DeformableMesh {
 
   DeformableMesh();
   DeformableMesh(const DeformableMesh& other);
-  /// @brief Leaves a mesh behind that can only be destroyed.
+  /// @brief Moves. After it `other` can only be destroyed.
   DeformableMesh& operator=(DeformableMesh&& other) noexcept;
 
-  /// @brief Owners and tree structure anew, for triangles that have been checked.
+  /// @brief Computes owners and tree structure for triangles that have been checked.
   void buildTree(const Triangle* triangles, std::size_t num_triangles,
                  const deformable::VertexFrames& frames);
 
-  /// @brief Boxes for a pair of frames, in a tree whose aged parts are made anew.
+  /// @brief Restructures the aged parts of the tree, then computes boxes for a pair of
+  /// frames.
   void refitTree(const deformable::VertexFrames& frames);
 
-  /// @brief Tree and owners for triangles that have been checked, as
-  /// MovingKdopTree::changeTopology(); without boxes.
+  /// @brief Changes tree and owners to triangles that have been checked, as
+  /// MovingKdopTree::changeTopology(). Computes no boxes.
   void changeTopology(const Triangle* triangles, std::size_t num_triangles,
                       const std::vector<int>& origins,
                       const deformable::VertexFrames& frames);
 
-  /// @brief Boxes for a pair of frames after a change of topology.
+  /// @brief Computes boxes for a pair of frames after a change of topology.
   void refitChangedTree(const deformable::VertexFrames& frames);
 
   std::size_t treeMemUsage() const;
@@ -90,65 +91,71 @@ class DeformableMesh {
 
 }  // namespace detail
 
-/// @brief What a build or an update does with FCL's own tree, which discrete queries
-/// (collide, distance) need, and continuous ones that FCL answers (shapes, motion classes
-/// of the program's own), but none that is answered here. Of the broadphase managers the
-/// DynamicAABBTree ones ask the object that they are queried with, collide(&object, ...)
-/// or distance(&object, ...), for its node type: they throw as discrete queries do,
-/// whatever the callback does. Other queries of theirs, and other managers, do not.
+/// @brief Whether a build or an update brings FCL's own tree up to date.
+///
+/// FCL's discrete queries (collide, distance) need this tree. So do continuous queries
+/// that FCL answers (shapes, motion classes of the program). Continuous queries that this
+/// library answers do not need it. Broadphase managers do not need it, with one
+/// exception: collide(&object, ...) and distance(&object, ...) of the DynamicAABBTree
+/// managers read the node type of `object`, and throw as discrete queries do.
 enum class FclTree {
-  kUpdate,  ///< bring it up to date
-  kSkip     ///< leave it; queries that need it throw until updateFclTree()
+  kUpdate,  ///< bring the tree up to date
+  kSkip     ///< leave the tree; queries that need it throw until updateFclTree()
 };
 
-/// @brief A triangle mesh that deforms between two frames: BVHModel<BV> with a moving
-/// 16-DOP tree of its own beside FCL's. Usable wherever FCL takes a BVHModel<BV>.
+/// @brief A triangle mesh that deforms between two frames. It is a BVHModel<BV> with a
+/// moving 16-DOP tree beside FCL's tree, and can be used wherever FCL takes a
+/// BVHModel<BV>.
 ///
-/// Life: beginModel / addVertex / addTriangle / addSubModel / endModel build it once,
-/// both frames equal. Each step then gives the next frame, through beginUpdateModel /
-/// updateVertex / updateSubModel / endUpdateModel (the current frame becomes the previous
-/// one), or both frames at once through updateFrames. A step refits the boxes; the tree
-/// stays until motion has made its boxes poor: then a step makes the aged parts anew
-/// (numRestructurings() counts these steps), which changes the time of queries and
-/// nothing else. What decides is the boxes of the step before. A step in which the mesh
-/// tears, breaks, grows or loses parts goes through updateTopology, which changes the
-/// tree where the mesh has changed.
+/// Use: beginModel / addVertex / addTriangle / addSubModel / endModel build the model
+/// once. Both frames are equal then. Each step gives the next frame in one of these ways:
+/// - beginUpdateModel / updateVertex / updateSubModel / endUpdateModel: the current frame
+///   becomes the previous one;
+/// - updateFrames: both frames at once;
+/// - updateTopology: a step in which the mesh tears, breaks, grows or loses parts. The
+///   tree changes where the mesh changes.
 ///
-/// Errors: functions return FCL's BVHReturnCode; on any error the model is what it was
-/// before the call (before the begin... call, for a begin/end sequence), nothing is
-/// printed, and lastError() says what is wrong. An exception (std::bad_alloc) in
-/// endModel() leaves the model open, as an error does. An update that an exception ends
-/// may be half done: until updateFrames(), updateTopology() or a replacement has given
-/// both frames, every query and copy of the model throws fcl::Exception and
-/// beginUpdateModel() is refused. A begin... while an update is open drops what was given
-/// since the one before. beginModel() is FCL's own: called for a model that is built it
-/// prints, clears it and returns an error; a second one begins.
+/// A step refits the boxes of the tree. When motion has made the boxes of a part poor,
+/// the next step restructures this part. That changes the time of queries and nothing
+/// else. numRestructurings() counts these steps.
 ///
-/// Inherited behaviour that differs from BVHModel:
-/// - build_state is BVH_BUILD_STATE_PROCESSED after an update too, so that FCL's discrete
-///   queries keep a model's transform (in the UPDATED state they drop it); after
-///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN: FCL's tree is still to be
-///   built;
+/// Errors: functions return FCL's BVHReturnCode and print nothing; lastError() has the
+/// text. After an error the model is what it was before the call (before the begin...
+/// call, for a begin/end sequence). An exception (std::bad_alloc) in endModel() leaves
+/// the model open, as an error does. An exception in an update may leave the model half
+/// updated: every query and copy of it then throws fcl::Exception, and beginUpdateModel()
+/// is refused, until updateFrames(), updateTopology() or a replacement gives both frames.
+/// A begin... call while an update is open drops the vertices given so far. beginModel()
+/// is FCL's own: for a model that is built it prints, clears the model and returns an
+/// error; the second call begins.
+///
+/// Differences from BVHModel:
+/// - build_state is BVH_BUILD_STATE_PROCESSED after an update, so that FCL's discrete
+///   queries use the model's transform (in the UPDATED state they ignore it). After
+///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN, since FCL's tree is not built;
 /// - prev_vertices is never null in a built model;
-/// - getNodeType() throws fcl::Exception while FCL's tree is out of date, which it is
-///   after FclTree::kSkip, or an update has failed, or there is none, since the model is
-///   not built: every query of FCL's starts with it;
+/// - getNodeType() throws fcl::Exception while FCL's tree is missing or out of date:
+/// after
+///   FclTree::kSkip, after an update that failed, and before the model is built. Every
+///   query of FCL calls it first;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
-/// No update function of BVHModel is virtual. One called through a pointer or reference
-/// to BVHModel<BV> is noticed: continuous queries then read the base's frames and build
-/// a tree per call, as for a plain BVHModel, until the next update through this class.
-/// Nothing may be added through the base to a model that ended with FclTree::kSkip: FCL
-/// would write its next update beyond the end of the previous frame.
+/// No update function of BVHModel is virtual. The model notices an update through a
+/// pointer or reference to BVHModel<BV>. Continuous queries then read the frames of the
+/// base class and build a tree in each call, as for a plain BVHModel, until the next
+/// update through this class. Do not add vertices through the base class to a model that
+/// ended with FclTree::kSkip: FCL would write its next update beyond the end of the
+/// previous frame.
 ///
-/// Thread-safety: concurrent const access is safe, and so are FCL's discrete queries of
-/// one model in several threads: its bv_splitter and bv_fitter, which FCL's queries use
-/// and copies share, are FCL's for each thread. (FCL's own keep a state: concurrent
-/// discrete queries of one AABB, KDOP or RSS model that is no DeformableBVHModel crash,
-/// as in stock FCL. Give each thread its own copy of the model, with its own bv_splitter
-/// and bv_fitter.) Copies are deep and independent, with these too, whatever the original
-/// has. A build or an update runs on the caller's thread alone unless setNumThreads()
-/// allows more.
+/// Thread-safety: concurrent const access is safe. FCL's discrete queries of one model
+/// may run in several threads, since bv_splitter and bv_fitter keep their state for each
+/// thread. (This does not hold for a plain BVHModel of AABBs, KDOPs or RSSs: concurrent
+/// discrete queries of one such model crash, as in stock FCL. Give each thread a copy of
+/// the model with its own bv_splitter and bv_fitter.) Copies are deep and independent. A
+/// build or an update runs in the caller's thread unless setNumThreads() allows more.
+///
+/// @tparam BV  a bounding volume of FCL: AABB, OBB, RSS, kIOS, OBBRSS or KDOP of 16, 18
+/// or 24, in double or float. It is used by FCL's own tree only.
 template <typename BV = KDOP<double, 16>>
 class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
  public:
@@ -160,16 +167,17 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   DeformableBVHModel& operator=(const DeformableBVHModel& other);
   ~DeformableBVHModel();
 
-  /// @brief Allows builds and updates, from the next one on, so many threads: 1, the
-  /// caller's own and no task (the default); n, at most n; 0, as many as the oneTBB task
-  /// arena around has. The model that results does not depend on it. FCL's own tree is
-  /// always made on one thread. Queries have a number of their own,
-  /// ContinuousContactRequest::num_threads. Refuses a negative number
-  /// (BVH_ERR_INCORRECT_DATA).
+  /// @brief Sets the number of threads of builds and updates, from the next one on. 1
+  /// (the default): the caller's thread, without tasks. n: at most n threads. 0: as many
+  /// as the oneTBB task arena around the call has. The model does not depend on this
+  /// number. FCL's own tree is always built in one thread. Queries have their own number,
+  /// ContinuousContactRequest::num_threads.
+  ///
+  /// Errors: a negative number (BVH_ERR_INCORRECT_DATA).
   int setNumThreads(int num_threads);
 
-  /// @name Add to a model that is open, or that ended with FclTree::kSkip, which opens it
-  /// again; refused for any other (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
+  /// @name Add to a model that is open. A model that ended with FclTree::kSkip is opened
+  /// again. Refused for any other model (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
   /// @{
   int addVertex(const Vector3<S>& p);
   int addTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
@@ -177,15 +185,17 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int addSubModel(const std::vector<Vector3<S>>& ps, const std::vector<Triangle>& ts);
   /// @}
 
-  /// @brief Ends the construction; see FclTree for the choice. Refuses a model without
-  /// triangles (BVH_ERR_BUILD_EMPTY_MODEL), more than 2^29 triangles or vertices,
-  /// coordinates that are not finite and vertex indices out of range
-  /// (BVH_ERR_INCORRECT_DATA); the model stays open: `vertices` and `tri_indices` may be
-  /// corrected in their places, more be added, and endModel() called again. Refuses a
-  /// model that has ended and not grown since (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
+  /// @brief Ends the construction and builds the moving tree. FclTree says whether FCL's
+  /// tree is built too.
+  ///
+  /// Errors: no triangles (BVH_ERR_BUILD_EMPTY_MODEL); more than 2^29 triangles or
+  /// vertices, a coordinate that is not finite, a vertex index out of range
+  /// (BVH_ERR_INCORRECT_DATA); a model that has ended and not grown since
+  /// (BVH_ERR_BUILD_OUT_OF_SEQUENCE). After the first two the model stays open: you may
+  /// correct `vertices` and `tri_indices` in place, add more, and call endModel() again.
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
 
-  /// @name Replace the current frame; both frames become equal (no motion).
+  /// @name Replace the current frame. Both frames become equal (no motion).
   /// @{
   int beginReplaceModel();
   int replaceVertex(const Vector3<S>& p);
@@ -194,10 +204,10 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int endReplaceModel(bool refit = true, bool bottomup = true);
   /// @}
 
-  /// @name Give the next frame, vertex by vertex or in parts; the current frame becomes
-  /// the previous one. FCL's tree is brought up to date unless it was never built.
-  /// `refit` and `bottomup` concern FCL's tree only; trees of RSS, OBBRSS and kIOS are
-  /// always refit from the top down, since FCL's merge of two RSSs can leave points out.
+  /// @name Give the next frame, vertex by vertex or in parts. The current frame becomes
+  /// the previous one. FCL's tree is brought up to date if it was built. `refit` and
+  /// `bottomup` concern FCL's tree only. Trees of OBB, RSS, OBBRSS and kIOS are always
+  /// refit from the top down, since FCL's bottom-up refit can leave points out.
   /// @{
   int beginUpdateModel();
   int updateVertex(const Vector3<S>& p);
@@ -207,48 +217,52 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// @}
 
   /// @brief Gives both frames at once.
-  /// @param previous, current  num_vertices x 3 coordinates each (x y z x y z ...), model
-  /// frame, copied; may be the model's own arrays.
-  /// @param num_vertices  must equal the model's.
-  /// @param fcl_tree  whether FCL's own tree follows; see there what throws if not.
+  /// @param previous, current  num_vertices x 3 coordinates each (x y z x y z ...), in
+  /// model coordinates. They are copied, and may be the model's own arrays.
+  /// @param num_vertices  the number of vertices of the model
+  /// @param fcl_tree  whether FCL's own tree is brought up to date; see FclTree
+  ///
+  /// Errors: a model that is not built (BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME); an update is
+  /// open (BVH_ERR_BUILD_OUT_OF_SEQUENCE); a null frame, another number of vertices, a
+  /// coordinate that is not finite (BVH_ERR_INCORRECT_DATA).
   int updateFrames(const S* previous, const S* current, std::size_t num_vertices,
                    FclTree fcl_tree = FclTree::kSkip);
 
   /// @brief Gives the next step of a mesh that has torn, broken, grown or lost parts: its
-  /// triangles and both frames. The moving tree keeps what the mesh keeps, and all
+  /// triangles and both frames. The moving tree changes where the mesh changes. All
   /// answers are those of a model that is built anew. numRestructurings() does not count
-  /// this.
-  /// @param triangles  all of them, vertex ids in terms of the new frames; copied
-  /// @param origins  for each triangle the number of the one that it was, or was cut
-  /// from, before the call, -1 for a new one; empty: triangle i was triangle i, and those
-  /// beyond the model's are new. A hint, which saves time. Ids of vertices may change
-  /// with no need to say so.
+  /// these calls.
+  /// @param triangles  all triangles of the new mesh, with vertex ids of the new frames;
+  /// copied
+  /// @param origins  a hint that saves time and never changes an answer. For each
+  /// triangle it has the number of the triangle of the old mesh that it was, or was cut
+  /// from; -1 for a new triangle. Empty: triangle i was triangle i, and triangles beyond
+  /// the old number are new. Vertex ids may change freely.
   /// @param previous, current  num_vertices x 3 coordinates each, as in updateFrames()
-  /// @param fcl_tree  whether FCL's own tree is built, which takes longer than all else;
-  /// else discrete queries throw until updateFclTree().
+  /// @param fcl_tree  whether FCL's own tree is built, which takes longer than the rest
+  /// of the call. Without it discrete queries throw until updateFclTree().
   ///
-  /// Errors: as endModel() and updateFrames(), and origins of another number or out of
-  /// range (BVH_ERR_INCORRECT_DATA).
+  /// Errors: those of endModel() and updateFrames(); also a wrong number of origins, or
+  /// one out of range (BVH_ERR_INCORRECT_DATA).
   int updateTopology(const std::vector<Triangle>& triangles,
                      const std::vector<int>& origins, const S* previous, const S* current,
                      std::size_t num_vertices, FclTree fcl_tree = FclTree::kSkip);
 
-  /// @brief Brings FCL's own tree up to date (builds it if it was never built).
+  /// @brief Brings FCL's own tree up to date. Builds it if there is none.
   ///
-  /// Errors: the model is not built (BVH_ERR_BUILD_EMPTY_MODEL), an update is open
+  /// Errors: the model is not built (BVH_ERR_BUILD_EMPTY_MODEL); an update is open
   /// (BVH_ERR_BUILD_OUT_OF_SEQUENCE) or has failed (BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
-  /// FCL's own.
+  /// FCL's own codes.
   int updateFclTree();
 
-  /// @brief Whether FCL's own tree is built and up to date, that is, discrete queries are
-  /// allowed.
+  /// @brief Whether FCL's own tree is built and up to date. Discrete queries need that.
   bool isFclTreeUpToDate() const;
 
-  /// @brief What the last refused call found, for example "vertex 17 of the current frame
-  /// is not finite"; empty if the last call succeeded.
+  /// @brief The text of the last call's error, for example "vertex 17 of the current
+  /// frame is not finite". Empty if the last call succeeded.
   const std::string& lastError() const;
 
-  /// @brief Bytes that this class holds over BVHModel<BV> with two frames.
+  /// @brief Bytes that this class needs beside those of a BVHModel<BV> with two frames.
   std::size_t deformableMemUsage() const;
 
   bool isInStep() const override;
@@ -259,7 +273,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   EIGEN_MAKE_ALIGNED_OPERATOR_NEW
 
  private:
-  /// The base's arrays and sizes that the moving tree was made for.
+  /// The arrays and sizes of the base class for which the moving tree was made.
   struct Seal {
     const Vector3<S>* vertices{nullptr};
     const Vector3<S>* prev_vertices{nullptr};
@@ -297,14 +311,14 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   void makeRoom();
   void swapBase(Base& other);
 
-  /// Coordinates given since begin..., so that a refused frame changes nothing.
+  /// Coordinates given since begin.... A refused frame changes nothing.
   std::vector<Vector3<S>> staged_;
   Seal seal_;
-  /// When the open update began.
+  /// The arrays and sizes when the open update began.
   Seal opened_;
   bool fcl_tree_built_{false};
   bool fcl_tree_up_to_date_{false};
-  /// From the first change of an update to the seal.
+  /// True from the first change of an update to seal().
   bool is_changing_{false};
   std::string last_error_;
 };

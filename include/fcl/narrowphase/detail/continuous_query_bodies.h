@@ -2,8 +2,8 @@
 #ifndef FCL_NARROWPHASE_DETAIL_CONTINUOUS_QUERY_BODIES_H
 #define FCL_NARROWPHASE_DETAIL_CONTINUOUS_QUERY_BODIES_H
 
-// The queries take FCL's types apart, ask the library, and put its answer back; or hand
-// the query to FCL.
+// The bodies of the queries. They convert FCL's types into numbers, ask the library, and
+// convert its answer back. Where the library does not answer, they call FCL.
 
 #include <string>
 #include <typeinfo>
@@ -47,7 +47,7 @@ ContinuousContacts<S>* contactsOf(ContinuousContactResult<S>& result) {
   return &result;
 }
 
-/// The part of the result that FCL's own type has.
+/// Fills the fields of FCL's own result.
 template <typename S>
 void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
                 const MovingGeometry<S>& o2, ContinuousCollisionResult<S>& result) {
@@ -62,17 +62,17 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
   result.contact_tf2 = toTransform(poseAt(o2, outcome.toc_hi));
 }
 
-/// What a request makes of two transforms.
+/// The path between two transforms that a request asks for.
 inline PathKind pathOf(CCDMotionType type) {
   if (type == CCDM_TRANS) return PathKind::kStraight;
   if (type == CCDM_LINEAR) return PathKind::kTurn;
   return type == CCDM_SCREW ? PathKind::kScrew : PathKind::kUndefined;
 }
 
-/// FCL's own classes of motion in float are compiled with the program, as here.
+/// FCL's own motion classes in float are compiled with the program, as this is.
 template <typename Motion, typename S>
 bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
-  // Of this class and of none derived from it, which may move otherwise.
+  // A derived class may move differently: only this class itself is read.
   if (typeid(motion) != typeid(Motion)) return false;
   // integrate() changes the motion.
   const Motion copy(static_cast<const Motion&>(motion));
@@ -85,7 +85,7 @@ bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
   return true;
 }
 
-/// The control points of a spline, which it keeps to itself.
+/// Reads the control points of a spline, which are protected.
 template <typename S>
 class SplineControl : public SplineMotion<S> {
  public:
@@ -100,7 +100,7 @@ class SplineControl : public SplineMotion<S> {
   }
 };
 
-/// Of float, in which FCL's other two motions are abstract.
+/// In float, where FCL's other two motion classes are abstract.
 template <typename S>
 bool readMotion(const MotionBase<S>& motion, MovingGeometry<S>& moving) {
   moving.path = PathKind::kStraight;
@@ -115,9 +115,9 @@ inline bool readMotion(const MotionBase<double>& motion, MovingGeometry<double>&
   return readFclMotion(motion, moving);
 }
 
-/// A geometry that follows a motion. A motion of the program's own, which nobody can
-/// copy, is asked only for a mesh that deforms, beside another mesh, and is at its
-/// beginning afterwards: other geometries that follow it are FCL's.
+/// A geometry that follows a motion. A motion class of the program cannot be copied. Its
+/// poses are read only for a mesh that deforms, if the other object is a mesh; the motion
+/// is at its beginning afterwards. FCL answers all other geometries that follow it.
 template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
@@ -136,14 +136,14 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
   return moving;
 }
 
-/// Where an object is; its transform is read through numbers, since it is laid out as in
-/// libfcl.
+/// The pose of an object. It is read as numbers, since libfcl decides the layout of the
+/// object's transform.
 template <typename S>
 Transform3<S> transformOf(const CollisionObject<S>& o) {
   return toTransform(toNumbers<S>(o.getRotation(), o.getTranslation()));
 }
 
-/// @return false when the pair is FCL's; nothing has changed then.
+/// @return false when FCL has to answer the pair; nothing has changed then.
 template <typename S, typename Request, typename Result>
 bool collideHere(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                  const Request& request, Result& result) {
@@ -216,8 +216,8 @@ S collideSelf(const CollisionGeometry<S>* o, const Request& request, Result& res
 }  // namespace detail
 
 /// The bodies of the queries. A friend that is defined in a class template is compiled
-/// only where it is called: a program that asks nothing in float compiles nothing of
-/// FCL's in float.
+/// only where it is called. So a program without queries in float compiles nothing of FCL
+/// in float.
 template <typename S>
 class ContinuousQueryBodies {
   friend S continuousCollide(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
@@ -284,7 +284,7 @@ class ContinuousQueryBodies {
   }
 };
 
-// Tells the compiler of the friends.
+// Instantiates the classes, which declares the friends.
 static_assert(sizeof(ContinuousQueryBodies<double>) == 1, "");
 static_assert(sizeof(ContinuousQueryBodies<float>) == 1, "");
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's own continuous queries, for what is not answered here. What stock FCL compiles
-// with the program is compiled with it.
+// Calls of FCL's own continuous queries, for pairs that this library does not answer. As
+// with stock FCL, they are compiled with the program.
 #ifndef FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
 #define FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
 
@@ -21,8 +21,8 @@
 namespace fcl {
 namespace detail {
 
-/// @brief The motion that FCL makes of two transforms. Its own getMotionBase() leaves the
-/// reference point of an interpolation as memory happens to be; it is the origin here.
+/// @brief The motion that FCL makes of two transforms. FCL's own getMotionBase() does not
+/// set the reference point of an interpolation. Here it is the origin.
 template <typename S>
 std::shared_ptr<MotionBase<S>> makeFclMotion(const Transform3<S>& beg,
                                              const Transform3<S>& end,
@@ -39,14 +39,16 @@ std::shared_ptr<MotionBase<S>> makeFclMotion(const Transform3<S>& beg,
     case CCDM_SPLINE:
       return make_aligned_shared<SplineMotion<S>>(beg, end);
   }
-  throw Exception("request.ccd_motion_type is no motion of FCL's");
+  throw Exception(
+      "request.ccd_motion_type is not a value of CCDMotionType. Use CCDM_TRANS, "
+      "CCDM_LINEAR, CCDM_SCREW or CCDM_SPLINE");
 }
 
-/// @brief Whether FCL, asked this, would write to what a model shares with its copies: it
-/// copies a model whose volumes it does not turn and builds the copy's tree anew in each
-/// pose, with the fitter and the splitter that all copies share. These are AABBs and
-/// KDOPs, RSSs of two meshes, and in conservative advancement all. The polynomial solver
-/// moves the models themselves.
+/// @brief Whether FCL would write to data that a model shares with its copies. FCL cannot
+/// turn some volumes: AABBs, KDOPs, RSSs of two meshes, and in conservative advancement
+/// all. It copies such a model and builds the tree of the copy in each pose, with the
+/// fitter and the splitter that all copies share. The polynomial solver moves the models
+/// themselves.
 template <typename S>
 bool isWrittenTo(NODE_TYPE type, OBJECT_TYPE other,
                  const ContinuousCollisionRequest<S>& request) {
@@ -56,8 +58,8 @@ bool isWrittenTo(NODE_TYPE type, OBJECT_TYPE other,
          (type == BV_RSS && other == OT_BVH);
 }
 
-/// @brief What FCL is given of a geometry: itself, or a copy that FCL may write to. The
-/// copy takes a small part of the time that FCL then needs for its own.
+/// @brief The geometry, or a copy if FCL would write to it. The copy takes a small part
+/// of the time of FCL's query.
 template <typename S>
 std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
     const CollisionGeometry<S>* o, const CollisionGeometry<S>* other,
@@ -92,7 +94,7 @@ S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                 result);
 }
 
-/// @brief In float stock FCL does not compile there; the library does.
+/// @brief The same in float, where stock FCL does not compile. The library does it.
 inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2,
                     const ContinuousCollisionRequest<float>& request,
                     ContinuousCollisionResult<float>& result) {
@@ -107,17 +109,34 @@ inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>
   return answer;
 }
 
+/// @brief Why there are no contacts of a pair that FCL answers, and the way out.
+template <typename S>
+std::string explainNoContacts(const CollisionGeometry<S>& o1,
+                              const CollisionGeometry<S>& o2) {
+  const bool is_mesh1 = o1.getObjectType() == OT_BVH,
+             is_mesh2 = o2.getObjectType() == OT_BVH;
+  const std::string who = is_mesh1 ? "o2" : "o1";
+  if (!is_mesh1 || !is_mesh2)
+    return who +
+           " is not a triangle mesh, and only two triangle meshes have contacts. Give a "
+           "mesh of its surface, or ask with a ContinuousCollisionRequest: FCL then "
+           "answers, and takes meshes as they are in their current frame";
+  return "contacts need two triangle meshes that follow transforms or FCL's own motion "
+         "classes. Give the poses of another motion class as transforms, in steps with a "
+         "small rotation; a model without triangles has no contacts";
+}
+
 /// @brief FCL reports no contacts.
 template <typename S>
-S askFcl(const CollisionGeometry<S>*, const MotionBase<S>*, const CollisionGeometry<S>*,
-         const MotionBase<S>*, const ContinuousContactRequest<S>&,
-         ContinuousContactResult<S>&) {
-  throw Exception(std::string("contacts") + kNotAnsweredHere);
+S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>*,
+         const CollisionGeometry<S>* o2, const MotionBase<S>*,
+         const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
+  throw Exception(explainNoContacts(*o1, *o2));
 }
 template <typename S>
-S askFcl(const MovingGeometry<S>&, const MovingGeometry<S>&,
+S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
          const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
-  throw Exception(std::string("contacts") + kNotAnsweredHere);
+  throw Exception(explainNoContacts(*o1.geometry, *o2.geometry));
 }
 
 }  // namespace detail

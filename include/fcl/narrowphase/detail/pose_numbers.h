@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's transforms into numbers and back; compiled with the program.
+// Converts FCL's transforms into numbers and back. It is compiled with the program.
 #ifndef FCL_NARROWPHASE_DETAIL_POSE_NUMBERS_H
 #define FCL_NARROWPHASE_DETAIL_POSE_NUMBERS_H
 

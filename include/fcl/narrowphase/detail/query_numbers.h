@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The border between a program and the library. Eigen aligns its types as the compiler's
-// flags allow, so that with -march=native a Transform3, and what contains one, has
-// another layout than in the library. Functions that are compiled with the program take
-// FCL's types apart into the plain numbers below and put the answer back; only these
-// numbers, and types without alignment of their own (geometries, requests, contacts,
-// vectors of three), cross. FCL's motions in double cross too: they are compiled, and
-// laid out, in libfcl.
+// The border between a program and the library. The compiler's flags decide how Eigen
+// aligns its types: with -march=native a Transform3, and each type that contains one, has
+// another layout than in the library. So functions that are compiled with the program
+// convert FCL's types into the plain numbers below, and convert the answer back. Only
+// these numbers cross the border, and types without alignment of their own: geometries,
+// requests, contacts, vectors of three. FCL's motions in double cross too, since libfcl
+// compiles them and decides their layout.
 #ifndef FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 #define FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 
@@ -33,9 +33,9 @@ struct PoseNumbers {
   S translation[3];
 };
 
-/// @brief Whether two poses have one rotation. Rotations are made of quaternions and
-/// products: one that stays the same may differ at the end, by a few roundings (one as a
-/// rule).
+/// @brief Whether two poses have the same rotation. Rotations are computed from
+/// quaternions and products, so that a constant rotation may differ by a few roundings at
+/// the end (by one as a rule).
 template <typename S>
 bool isConstantRotation(const PoseNumbers<S>& beg, const PoseNumbers<S>& end) {
   const S rounding = 8 * std::numeric_limits<S>::epsilon();
@@ -47,21 +47,21 @@ bool isConstantRotation(const PoseNumbers<S>& beg, const PoseNumbers<S>& end) {
 
 /// @brief How a geometry gets from its first pose to its last.
 enum class PathKind {
-  /// On a straight line. A rigid mesh whose rotation changes turns about its origin; the
-  /// vertices of a mesh that deforms all go straight.
+  /// On a straight line. If the rotation changes, a rigid mesh turns about its origin,
+  /// and each vertex of a mesh that deforms goes straight.
   kStraight,
   kTurn,       ///< turns about a reference point, which goes straight
   kScrew,      ///< turns about an axis and slides along it
   kSpline,     ///< as FCL's SplineMotion
   kUndefined,  ///< a spline between two transforms, which has no control points
-  kUnknown     ///< a class of motion of the program's own
+  kUnknown     ///< a motion class of the program
 };
 
 /// @brief A geometry and how it moves during the step.
 template <typename S>
 struct MovingGeometry {
   const CollisionGeometry<S>* geometry;
-  /// Poses at t = 0 and t = 1; of a rigid mesh whose path is unknown they do not count.
+  /// Poses at t = 0 and t = 1. Not used for a rigid mesh whose path is unknown.
   PoseNumbers<S> pose[2];
   PathKind path;
   /// kTurn: the reference point, in the frame of the geometry.
@@ -70,15 +70,10 @@ struct MovingGeometry {
   double control[2][4][3];
 };
 
-/// @brief What errors say of a pair that is FCL's.
-constexpr const char* kNotAnsweredHere =
-    " of continuous collision need two triangle meshes, and motions that are FCL's: "
-    "TranslationMotion, InterpMotion, ScrewMotion or SplineMotion";
-
-/// @brief What is asked for.
+/// @brief The request, as numbers.
 struct QuerySettings {
   double toc_err;
-  /// Whether a request for contacts was made: the rest counts only then.
+  /// Whether this is a request for contacts. If not, the fields below are not used.
   bool with_contacts;
   ContinuousQuery query;
   std::size_t num_max_contacts;
@@ -86,8 +81,8 @@ struct QuerySettings {
   int num_threads;
 };
 
-/// @brief What is answered: the part of the result that FCL's own type has, with the time
-/// bracket of the first contact in place of poses.
+/// @brief The answer: the fields of FCL's own result, with the time bracket of the first
+/// contact in place of the poses.
 template <typename S>
 struct QueryOutcome {
   bool is_collide;
@@ -96,8 +91,8 @@ struct QueryOutcome {
 };
 
 /// @brief The continuous query of a pair.
-/// @param contacts  where contacts go; null without settings.with_contacts
-/// @return false when the pair is FCL's; nothing has changed then.
+/// @param contacts  takes the contacts; null without settings.with_contacts
+/// @return false when FCL has to answer the pair; nothing has changed then.
 /// @throws fcl::Exception as continuousCollide()
 template <typename S>
 FCL_EXPORT bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
@@ -109,13 +104,13 @@ template <typename S>
 FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
                            QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts);
 
-/// @brief ContinuousCandidateSink.
+/// @brief The same type as ContinuousCandidateSink.
 using CandidateSink =
     std::function<bool(const ContinuousCandidate* candidates, std::size_t count)>;
 
-/// @brief Where a geometry that is answered here is at t, on its path. Of a mesh that
-/// deforms and goes straight: translation on a straight line, rotation at constant speed
-/// (its vertices do not follow that).
+/// @brief The pose at t of a geometry that this library answers. If a mesh deforms and
+/// its vertices go straight, its translation is linear in t and it rotates at constant
+/// speed; the vertices do not follow this rotation.
 template <typename S>
 FCL_EXPORT PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t);
 
@@ -137,32 +132,32 @@ FCL_EXPORT bool isDeformingMesh(const CollisionGeometry<S>& o);
 template <typename S>
 FCL_EXPORT bool isDeformableModel(const CollisionGeometry<S>& o);
 
-/// @brief Reads the path of a motion that is exactly one of FCL's own classes, which
-/// stays as it is; false for any other. Where FCL keeps the transforms that a motion was
-/// made from, these are the ends: FCL's integrate() reads a reference point that its
-/// constructor of two transforms never sets (InterpMotion), and goes too far without a
-/// rotation (ScrewMotion). These classes are compiled in libfcl, and are laid out as
-/// there.
+/// @brief Reads the path of a motion whose class is exactly one of FCL's. Returns false
+/// for any other class. The motion is not changed. The ends of the path are the
+/// transforms that the motion was made from, where FCL keeps them. FCL's integrate() may
+/// end elsewhere: for an InterpMotion it reads a reference point that the constructor of
+/// two transforms does not set, and a ScrewMotion without rotation goes too far.
 FCL_EXPORT bool readFclMotion(const MotionBase<double>& motion,
                               MovingGeometry<double>& moving);
 
-/// @brief A copy of a BVHModel that shares nothing with it; the model itself when its
-/// bounding volumes are none of FCL's.
+/// @brief A copy of a BVHModel that shares nothing with it. Returns the model itself when
+/// its bounding volumes are not FCL's.
 template <typename S>
 FCL_EXPORT std::shared_ptr<const CollisionGeometry<S>> copyModel(
     const CollisionGeometry<S>& o);
 
-/// @brief The part of FCL's result that its function may set; poses only with a
-/// collision.
+/// @brief The fields of FCL's result that FCL's function may set. It sets the poses only
+/// when there is a collision.
 struct FclOutcome {
   bool is_collide;
   float time_of_contact;
   PoseNumbers<float> contact_pose[2];
 };
 
-/// @brief FCL's own answer in float, which libfcl does not have.
-/// @return what FCL returns
-/// @throws fcl::Exception  an interpolated or a screw motion, which FCL has not in float
+/// @brief FCL's own answer in float. libfcl does not have it.
+/// @return the value that FCL returns
+/// @throws fcl::Exception  for CCDM_LINEAR and CCDM_SCREW: FCL has no such motions in
+/// float
 FCL_EXPORT float askFclInFloat(const MovingGeometry<float>& o1,
                                const MovingGeometry<float>& o2,
                                const ContinuousCollisionRequest<float>& request,

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's own <fcl/narrowphase/distance.h>, which ours stands in front of. A system header:
-// #include_next is an extension that a pedantic compiler would report in a user's build.
+// Includes FCL's own <fcl/narrowphase/distance.h>. The header of this package
+// with the same name stands in front of it. This is a system header, since
+// #include_next is an extension, which a pedantic compiler would report in a user's
+// build.
 #ifndef FCL_NARROWPHASE_DETAIL_STOCK_DISTANCE_H
 #define FCL_NARROWPHASE_DETAIL_STOCK_DISTANCE_H
 #pragma GCC system_header

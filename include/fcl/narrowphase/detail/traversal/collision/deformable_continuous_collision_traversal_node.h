@@ -16,16 +16,16 @@
 namespace fcl {
 namespace detail {
 
-/// @brief What DeformableContinuousCollisionTraversalNode does, in the library. The node
-/// itself has FCL's transforms and is compiled with the program.
+/// @brief The implementation of DeformableContinuousCollisionTraversalNode, in the
+/// library. The node itself has FCL's transforms and is compiled with the program.
 template <typename S>
 class FCL_EXPORT DeformableTraversal {
  public:
   DeformableTraversal();
   ~DeformableTraversal();
 
-  /// @return false, with nothing changed, if a geometry is not a triangle mesh, or is a
-  /// rigid one that rotates. What throws leaves a traversal that was ready as it was.
+  /// @return false, with nothing changed, if a geometry is not a triangle mesh or is a
+  /// rigid mesh that turns. An exception also leaves the traversal unchanged.
   bool start(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2, S toc_err,
              const CollisionRequest<S>& request, CollisionResult<S>& result);
   bool startSelf(const CollisionGeometry<S>& model, S toc_err,
@@ -34,7 +34,7 @@ class FCL_EXPORT DeformableTraversal {
   bool isFirstLeaf(int b) const;
   bool isSecondLeaf(int b) const;
   bool firstOverSecond(int b1, int b2) const;
-  /// The right child is the next node.
+  /// The right child has the next number.
   int firstLeftChild(int b) const;
   int secondLeftChild(int b) const;
 
@@ -59,14 +59,14 @@ extern template class DeformableTraversal<double>;
 extern template class DeformableTraversal<float>;
 
 /// @brief Traversal node for continuous collision between two meshes that deform or
-/// translate, or of one with itself; made by initialize(), driven by FCL's collide(&node)
-/// or selfCollide(&node). The trees are the models' moving 16-DOP trees (a rigid model's
-/// own FCL tree, where that bounds it), whatever BV the models have.
+/// translate, or of one mesh with itself. initialize() prepares it; FCL's collide(&node)
+/// or selfCollide(&node) drives it. It walks the moving 16-DOP trees of the models,
+/// whatever their BV, and the FCL tree of a rigid model if that bounds its triangles.
 ///
-/// The result receives one Contact for each VF or EE contact (b1, b2 triangles, pos and
-/// normal if request.enable_contact, see ContinuousContact::normal; penetration depth 0),
-/// the request.num_max_contacts earliest ones, in no order. Surfaces that cross at t = 0
-/// without a VF or EE contact are one Contact too.
+/// The result gets one Contact for each VF or EE contact: the request.num_max_contacts
+/// earliest ones, in no order. b1 and b2 are triangles; pos and normal are set if
+/// request.enable_contact (see ContinuousContact::normal); the penetration depth is 0.
+/// Surfaces that cross at t = 0 without a VF or EE contact give one Contact too.
 template <typename S>
 class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNodeBase<S> {
  public:
@@ -93,8 +93,8 @@ class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNode
   }
   bool canStop() const override { return traversal_.isDone(); }
 
-  /// @brief First time of contact found so far, never later than the true one once the
-  /// traversal is over; 0 when the surfaces cross at t = 0; 1 without contact.
+  /// @brief The first time of contact found so far. After the traversal it is never later
+  /// than the true one. 0 when the surfaces cross at t = 0; 1 without contact.
   mutable S time_of_contact{1};
 
   /// @brief Whether an edge passes through a face at t = 0.
@@ -102,10 +102,11 @@ class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNode
 
   const StageCounts& counts() const { return traversal_.counts(); }
 
-  /// @brief Width of the contacts' time brackets; set before initialize().
+  /// @brief Largest width of the contacts' time brackets, in fractions of the step. Set
+  /// it before initialize().
   S toc_err{S(1e-4)};
 
-  /// @brief What initialize() does.
+  /// @brief The implementation of initialize().
   bool start(const CollisionGeometry<S>& model1, const Transform3<S>& tf1_beg,
              const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
              const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
@@ -118,7 +119,7 @@ class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNode
     return true;
   }
 
-  /// @brief What initialize() does for a model with itself.
+  /// @brief The implementation of initialize() for a model with itself.
   bool startSelf(const CollisionGeometry<S>& model, const CollisionRequest<S>& request,
                  CollisionResult<S>& result) {
     if (!traversal_.startSelf(model, toc_err, request, result)) return false;
@@ -145,8 +146,8 @@ using DeformableContinuousCollisionTraversalNodef =
     DeformableContinuousCollisionTraversalNode<float>;
 
 /// @brief Makes the node ready for FCL's collide(&node).
-/// @return false, with nothing changed, if a geometry is not a triangle mesh, or is a
-/// rigid one that rotates between its transforms.
+/// @return false, with nothing changed, if a geometry is not a triangle mesh or is a
+/// rigid mesh that turns between its transforms
 /// @throws fcl::Exception as continuousCollide()
 template <typename S>
 bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
