@@ -52,7 +52,7 @@ bool handOut(const ContinuousCandidateSink& sink, Query&& query) {
 }
 
 void require(const ContinuousCandidateSink& sink) {
-  if (!sink) throw Exception("sink is null");
+  if (!sink) throw Exception("sink is null. Give a function that takes the candidates");
 }
 
 template <typename S>
@@ -92,10 +92,16 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     return PlacedGeometry<S>(o);
   };
   const PlacedGeometry<S> placed1 = placed(o1), placed2 = placed(o2);
-  if (answererOf(placed1, placed2) != Answerer::kStraightPaths)
+  if (answererOf(placed1, placed2) != Answerer::kStraightPaths) {
+    const PlacedGeometry<S>& unfit = placed1.goesStraight() ? placed2 : placed1;
     throw Exception(
-        "candidates of continuous collision need two triangle meshes that deform or "
-        "translate");
+        std::string("continuousCandidates: ") + (&unfit == &placed1 ? "o1" : "o2") +
+        (unfit.isMesh() ? " is a rigid mesh that turns, and candidates need straight "
+                          "paths. continuousCollide() with a ContinuousContactRequest "
+                          "answers meshes that turn"
+                        : " is not a triangle mesh, and candidates need two triangle "
+                          "meshes. Give a mesh of its surface"));
+  }
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);

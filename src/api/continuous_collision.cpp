@@ -34,10 +34,16 @@ QueryOptions makeOptions(const QuerySettings& settings) {
   options.toc_err = requireTocErr(settings.toc_err, "request.toc_err");
   options.stop_at_crossing = !settings.with_contacts;
   if (!settings.with_contacts) return options;
-  if (settings.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
+  if (settings.num_max_contacts == 0)
+    throw Exception(
+        "request.num_max_contacts is 0. Give 1 or more, or ask with "
+        "ContinuousQuery::kAny");
   options.query = settings.query;
   options.max_contacts = settings.num_max_contacts;
-  if (settings.num_threads < 0) throw Exception("request.num_threads is negative");
+  if (settings.num_threads < 0)
+    throw Exception(
+        "request.num_threads is negative. Give a number of threads, or 0 for all "
+        "threads of the task arena");
   options.num_threads = settings.num_threads;
   return options;
 }
@@ -59,18 +65,18 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
   const auto start = std::chrono::steady_clock::now();
   const std::size_t count = answer.contacts.size();
   const auto contactAt = [&](std::size_t i) {
-    // Contacts that follow each other in time lie anywhere in memory.
+    // Contacts that are neighbours in time are scattered in memory.
     constexpr std::size_t kAhead = 16;
     __builtin_prefetch(&answer.contacts[std::min(i + kAhead, count - 1)]);
     return convert(answer.contacts[i]);
   };
-  // Memory before anything changes.
+  // Allocate first: an exception must leave the result unchanged.
   result.contacts.reserve(count);
   if (deformable::numThreads(settings.num_threads) == 1) {
     result.contacts.clear();
     for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
   } else {
-    // Written twice.
+    // resize() writes each contact once, contactAt() a second time.
     constexpr std::size_t kBlock = 1024;
     result.contacts.resize(count);
     deformable::parallelForBlocks(count, kBlock, settings.num_threads,
@@ -115,7 +121,7 @@ void fillContacts(const QueryAnswer& answer, const QueriedMeshes<S>& meshes,
   fillContacts(answer, settings, convert, update, result);
 }
 
-/// Contacts and crossings of meshes of which one turns, as the public type.
+/// Converts contacts and crossings to the public type, where one of the meshes turns.
 template <typename S>
 class MotionConverter {
  public:
@@ -143,7 +149,7 @@ class MotionConverter {
   bool with_geometry_;
 };
 
-/// The answer about two meshes of which one turns. Threads are used only to make trees.
+/// Answers two meshes, one of which turns. Threads are used only to make trees.
 template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                    const QueryOptions& options, const QuerySettings& settings,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Copies, the state that a model is in, the checks of what it is given and what it says
-// of itself. How it is built and updated is in deformable_bvh_model_update.cpp.
+// Copies of a model, its states, and the checks of its input. Builds and updates are in
+// deformable_bvh_model_update.cpp.
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
 #include <algorithm>
@@ -36,17 +36,21 @@ DeformableBVHModel<BV>::DeformableBVHModel(const DeformableBVHModel& other)
       fcl_tree_up_to_date_(other.fcl_tree_up_to_date_),
       is_changing_(other.is_changing_),
       last_error_(other.last_error_) {
-  // FCL copies the nodes that a tree has; one that is half made has less than it needs.
+  // FCL copies the nodes of the tree. A tree that is half made has fewer nodes than FCL
+  // expects.
   if (isHalfUpdated())
-    throw Exception("DeformableBVHModel: copied after an update that failed");
+    throw Exception(
+        "DeformableBVHModel: a copy of a model whose last update failed. Give both "
+        "frames "
+        "to the model first, by updateFrames()");
   fitPerThread();
   if (this->build_state == BVH_BUILD_STATE_BEGUN && this->num_vertices == 0) makeRoom();
   if (other.isInStep()) seal_ = currentSeal();
   if (other.opened_ == other.currentSeal()) opened_ = currentSeal();
 }
 
-/// FCL's copy of a model that has begun has room for as many vertices as there are, and
-/// doubles that when more come, even where there are none.
+/// FCL's copy of a model that has begun has room for exactly the vertices that are there.
+/// It doubles this room when more come, and twice nothing is nothing.
 template <typename BV>
 void DeformableBVHModel<BV>::makeRoom() {
   delete[] std::exchange(this->vertices, nullptr);
@@ -60,7 +64,7 @@ template <typename BV>
 DeformableBVHModel<BV>& DeformableBVHModel<BV>::operator=(
     const DeformableBVHModel& other) {
   if (this == &other) return *this;
-  // From the swap on nothing throws.
+  // Nothing throws after the swap.
   DeformableBVHModel copy(other);
   swapBase(copy);
   detail::DeformableMesh::operator=(std::move(static_cast<DeformableMesh&>(copy)));
@@ -74,8 +78,8 @@ DeformableBVHModel<BV>& DeformableBVHModel<BV>::operator=(
   return *this;
 }
 
-// FCL's own assignment copies pointers, private ones included: what makes it wrong for
-// users is what a swap needs. No array is shared once the three steps are done.
+// FCL's own assignment copies pointers, also the private ones. That is wrong for users,
+// and right for a swap: after its three steps no array is shared.
 template <typename BV>
 void DeformableBVHModel<BV>::swapBase(Base& other) {
 #pragma GCC diagnostic push
@@ -114,14 +118,15 @@ typename DeformableBVHModel<BV>::Seal DeformableBVHModel<BV>::currentSeal() cons
           this->num_vertices, this->num_tris,      this->build_state};
 }
 
-// Every change through the base class breaks the seal: an update leaves the UPDATED
-// state, a replacement deletes prev_vertices, a rebuild does both or changes the sizes.
+// Every change through the base class breaks the seal. An update ends in the UPDATED
+// state, a replacement deletes prev_vertices, and a rebuild does both or changes the
+// sizes.
 template <typename BV>
 bool DeformableBVHModel<BV>::isInStep() const {
   return seal_.vertices && seal_.prev_vertices && seal_ == currentSeal();
 }
 
-/// Brings the base into the state of a model that is built, with all that belongs to it.
+/// Brings the base class into the state of a model that is built.
 template <typename BV>
 void DeformableBVHModel<BV>::seal() {
   this->build_state = fcl_tree_built_ ? BVH_BUILD_STATE_PROCESSED : BVH_BUILD_STATE_BEGUN;
@@ -129,25 +134,27 @@ void DeformableBVHModel<BV>::seal() {
   is_changing_ = false;
 }
 
-// A change through the base class that follows leaves another state.
+// A later change through the base class leaves another state.
 template <typename BV>
 bool DeformableBVHModel<BV>::isHalfUpdated() const {
   return is_changing_ && this->build_state == BVH_BUILD_STATE_UPDATE_BEGUN;
 }
 
-/// Whether vertices were added, through the base class, to a model that ended without
-/// FCL's tree: its array of the previous frame has no room for them.
+/// Whether vertices were added through the base class to a model that ended without FCL's
+/// tree. The array of its previous frame has no room for them.
 template <typename BV>
 bool DeformableBVHModel<BV>::isPreviousShort() const {
   return this->prev_vertices && seal_.prev_vertices == this->prev_vertices &&
          seal_.num_vertices < this->num_vertices;
 }
 
-// FCL copies as many vertices of both frames.
+// FCL copies the same number of vertices of both frames.
 template <typename BV>
 const BVHModel<BV>& DeformableBVHModel<BV>::copyable(const DeformableBVHModel& model) {
   if (model.isPreviousShort())
-    throw Exception("DeformableBVHModel: copied after vertices were added to its base");
+    throw Exception(
+        "DeformableBVHModel: a copy of a model to which vertices were added through its "
+        "base class. Call endModel() of the model first");
   return model;
 }
 
@@ -188,10 +195,12 @@ int DeformableBVHModel<BV>::checkSteppable(const char* caller) {
   const std::string name(caller);
   if (!isBuilt())
     return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-                  name + "() on a model that is not built");
+                  name + "() on a model that is not built. Call endModel() first");
   if (isUpdateOpen())
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  name + "() between begin...Model() and end...Model()");
+                  name +
+                      "() between begin...Model() and end...Model(). Call end...Model() "
+                      "first");
   return BVH_OK;
 }
 
@@ -200,7 +209,9 @@ int DeformableBVHModel<BV>::checkTriangles(const Triangle* triangles,
                                            std::size_t num_triangles,
                                            std::size_t num_vertices) {
   if (num_triangles == 0 || num_vertices == 0)
-    return refuse(BVH_ERR_BUILD_EMPTY_MODEL, "the model has no triangles");
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_MODEL,
+        "the model has no triangles. Add some by addTriangle() or addSubModel()");
   std::string too_many = detail::deformable::findTooMany(num_triangles, num_vertices);
   if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
   const std::size_t bad =
@@ -209,7 +220,8 @@ int DeformableBVHModel<BV>::checkTriangles(const Triangle* triangles,
   return refuse(BVH_ERR_INCORRECT_DATA,
                 "triangle " + std::to_string(bad / 3) + " refers to vertex " +
                     std::to_string(triangles[bad / 3][static_cast<int>(bad % 3)]) +
-                    " of " + std::to_string(num_vertices));
+                    " of " + std::to_string(num_vertices) +
+                    " vertices, which are numbered from 0");
 }
 
 template <typename BV>
@@ -217,23 +229,25 @@ int DeformableBVHModel<BV>::checkOrigins(const std::vector<int>& origins,
                                          std::size_t num_triangles) {
   if (origins.empty()) return BVH_OK;
   if (origins.size() != num_triangles)
-    return refuse(BVH_ERR_INCORRECT_DATA,
-                  std::to_string(origins.size()) + " origins given for " +
-                      std::to_string(num_triangles) + " triangles");
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(origins.size()) +
+                                              " origins given for " +
+                                              std::to_string(num_triangles) +
+                                              " triangles. Give one a triangle, or none");
   for (std::size_t i = 0; i < num_triangles; ++i)
     if (origins[i] < -1 || origins[i] >= this->num_tris)
-      return refuse(BVH_ERR_INCORRECT_DATA, "triangle " + std::to_string(i) +
-                                                " comes from triangle " +
-                                                std::to_string(origins[i]) + " of " +
-                                                std::to_string(this->num_tris));
+      return refuse(BVH_ERR_INCORRECT_DATA,
+                    "triangle " + std::to_string(i) + " comes from triangle " +
+                        std::to_string(origins[i]) + " of " +
+                        std::to_string(this->num_tris) + ". -1 is for a new triangle");
   return BVH_OK;
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::setNumThreads(int num_threads) {
   if (num_threads < 0)
-    return refuse(BVH_ERR_INCORRECT_DATA,
-                  std::to_string(num_threads) + " is not a number of threads");
+    return refuse(
+        BVH_ERR_INCORRECT_DATA,
+        std::to_string(num_threads) + " is not a number of threads. Give 0 or more");
   num_threads_ = num_threads;
   return accept();
 }
@@ -243,13 +257,13 @@ bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
   return this->getNumBVs() > 0 && !isFclTreeBehind();
 }
 
-/// Whether FCL's tree, if there is any, is one of other frames or triangles.
+/// Whether FCL's tree is missing, or belongs to other frames or triangles.
 template <typename BV>
 bool DeformableBVHModel<BV>::isFclTreeBehind() const {
   if (isInStep()) return !fcl_tree_up_to_date_;
   if (isHalfUpdated()) return true;
-  // Changed through the base class, which keeps its tree up to date, unless it never had
-  // one: vertices were added after endModel(FclTree::kSkip).
+  // The model was changed through the base class, which keeps its tree up to date. It has
+  // none if vertices were added after endModel(FclTree::kSkip).
   return seal_.vertices && this->build_state == BVH_BUILD_STATE_BEGUN;
 }
 
@@ -267,23 +281,24 @@ template <typename BV>
 NODE_TYPE DeformableBVHModel<BV>::getNodeType() const {
   if (isHalfUpdated())
     throw Exception(
-        "DeformableBVHModel: the last update failed, for want of memory or in an "
-        "exception; give both frames first, through updateFrames() or a replacement");
+        "DeformableBVHModel: the last update failed, because an exception ended it (out "
+        "of memory, for example). Give both frames again, by updateFrames()");
   if (isFclTreeBehind() && !isInStep())
     throw Exception(
-        "DeformableBVHModel: the model has grown since endModel(); call that again");
+        "DeformableBVHModel: the model has grown since endModel(). Call endModel() "
+        "again");
   if (isFclTreeBehind())
     throw Exception(
-        "DeformableBVHModel: FCL's tree was skipped (FclTree::kSkip) and discrete "
-        "queries need it; call updateFclTree() first");
+        "DeformableBVHModel: this query needs FCL's own tree, which is out of date "
+        "(FclTree::kSkip). Call updateFclTree() first");
   if (this->getNumBVs() == 0)
-    throw Exception("DeformableBVHModel: the model is not built");
+    throw Exception("DeformableBVHModel: the model is not built. Call endModel() first");
   return Base::getNodeType();
 }
 
 template <typename BV>
 void DeformableBVHModel<BV>::computeLocalAABB() {
-  // A model that was never begun has no array.
+  // A model without beginModel() has no array.
   const S* current = this->vertices ? this->vertices->data() : nullptr;
   const bool has_previous = this->prev_vertices && !isPreviousShort();
   const auto bounds = detail::deformable::boundFrames(

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a model is built and brought to its next frames or triangles; its states and the
-// checks of what it is given are in deformable_bvh_model.cpp.
+// Builds and updates of a model. Its states and the checks of its input are in
+// deformable_bvh_model.cpp.
 #include "api/model_instances.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
@@ -19,10 +19,10 @@ namespace fcl {
 
 namespace {
 
-/// FCL 0.7 merges two RSSs into one that can leave points out, and the oriented boxes of
-/// single triangles that are thin or have no area are not around them, so that a
-/// bottom-up refit of a tree that holds them makes distances too large and misses
-/// contacts; from the top down each volume is fitted to the vertices.
+/// Whether FCL may refit a tree of this BV from the bottom up. FCL 0.7 merges two RSSs
+/// into one that can leave points out, and its oriented boxes of thin triangles do not
+/// contain them. A bottom-up refit of such trees makes distances too large and misses
+/// contacts. A refit from the top down fits each volume to the vertices.
 template <typename BV>
 struct RefitsBottomUp : std::false_type {};
 template <typename S>
@@ -32,15 +32,16 @@ struct RefitsBottomUp<KDOP<S, N>> : std::true_type {};
 
 }  // namespace
 
-// FCL itself writes beyond its arrays where none was begun, and forgets the previous
+// Without beginModel() FCL itself writes beyond its arrays. It also loses the previous
 // frame of a model that was updated.
 template <typename BV>
 template <typename Add>
 int DeformableBVHModel<BV>::grow(Add&& add) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "an add...() without beginModel()");
-  // FCL may have moved the vertices and taken new ones when it finds no room for
-  // triangles.
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "add...() on a model that is not open. Call beginModel() first");
+  // If FCL finds no memory for triangles, it may have moved the vertices and added new
+  // ones already.
   const int num_vertices = this->num_vertices;
   const bool was_in_step = isInStep();
   const auto restore = [&] {
@@ -50,7 +51,7 @@ int DeformableBVHModel<BV>::grow(Add&& add) {
   try {
     if (const int code = add()) {
       restore();
-      return refuse(code, "FCL has no room for what was added");
+      return refuse(code, "FCL has no memory for the vertices or triangles to be added");
     }
   } catch (...) {
     restore();
@@ -88,19 +89,20 @@ int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
 template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   if (this->build_state != BVH_BUILD_STATE_BEGUN)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "endModel() without beginModel()");
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "endModel() on a model that is not open. Call beginModel() first");
   if (isInStep())
     return refuse(
         BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-        "endModel() of a model that has not grown; the tree that was skipped is "
-        "built by updateFclTree()");
+        "endModel() on a model that is built and has not grown. Call updateFclTree() "
+        "to build FCL's tree");
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
   if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
     return code;
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
-  // What fails leaves an open model, which no seal fits.
+  // A failure leaves an open model, which no seal fits.
   open_ = Open::kNone;
   seal_.build_state = BVH_BUILD_STATE_EMPTY;
   std::unique_ptr<Vector3<S>[]> previous(new Vector3<S>[count]);
@@ -126,8 +128,9 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
 template <typename BV>
 int DeformableBVHModel<BV>::open(Open what, const char* caller) {
   if (!isBuilt())
-    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-                  std::string(caller) + "() on a model that is not built");
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+        std::string(caller) + "() on a model that is not built. Call endModel() first");
   staged_.clear();
   staged_.reserve(static_cast<std::size_t>(this->num_vertices));
   open_ = what;
@@ -139,7 +142,9 @@ template <typename BV>
 int DeformableBVHModel<BV>::stage(const Vector3<S>* points, std::size_t count,
                                   Open expected) {
   if (open_ != expected)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE, "a vertex without a begin...Model()");
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "a vertex is given outside of begin...Model() and end...Model(). Call "
+                  "beginUpdateModel() or beginReplaceModel() first");
   staged_.insert(staged_.end(), points, points + count);
   return accept();
 }
@@ -148,12 +153,14 @@ template <typename BV>
 int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
   if (open_ != expected)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  std::string(caller) + "() without its begin...Model()");
+                  std::string(caller) +
+                      "() without its begin...Model(). Call begin...Model() first");
   open_ = Open::kNone;
   if (!(opened_ == currentSeal()))
     return refuse(
         BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-        std::string(caller) + "() of a model that was changed since its begin...Model()");
+        std::string(caller) +
+            "() on a model that was changed since its begin...Model(). Begin again");
   const auto count = static_cast<std::size_t>(this->num_vertices);
   if (staged_.size() != count)
     return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(staged_.size()) +
@@ -167,7 +174,8 @@ int DeformableBVHModel<BV>::beginUpdateModel() {
   if (isHalfUpdated())
     return refuse(
         BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-        "beginUpdateModel() after an update that failed: both frames are needed");
+        "beginUpdateModel() on a model whose last update failed. Give both frames, by "
+        "updateFrames()");
   return open(Open::kUpdate, "beginUpdateModel");
 }
 
@@ -231,14 +239,17 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
                                          std::size_t num_vertices, FclTree fcl_tree) {
   if (const int code = checkSteppable("updateFrames")) return code;
   if (!previous || !current)
-    return refuse(BVH_ERR_INCORRECT_DATA, "updateFrames() with a null frame");
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  "updateFrames() with a null frame. Give the previous and the current "
+                  "frame");
   if (num_vertices != static_cast<std::size_t>(this->num_vertices))
     return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
                                               " vertices given for a model of " +
                                               std::to_string(this->num_vertices));
   if (const int code = checkFrames(previous, current, num_vertices)) return code;
 
-  // Both copies are made before an array changes: the frames may be the model's own.
+  // Both copies are made before an array changes, since the frames may be the model's
+  // own.
   staged_.resize(num_vertices);
   std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
   const bool build = fcl_tree == FclTree::kUpdate && !fcl_tree_built_;
@@ -255,13 +266,15 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
                                            std::size_t num_vertices, FclTree fcl_tree) {
   if (const int code = checkSteppable("updateTopology")) return code;
   if (!previous || !current)
-    return refuse(BVH_ERR_INCORRECT_DATA, "updateTopology() with a null frame");
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  "updateTopology() with a null frame. Give the previous and the current "
+                  "frame");
   if (const int code = checkTriangles(triangles.data(), triangles.size(), num_vertices))
     return code;
   if (const int code = checkOrigins(origins, triangles.size())) return code;
   if (const int code = checkFrames(previous, current, num_vertices)) return code;
 
-  // All is made beside the model. What of it is no mesh stays.
+  // Everything is made beside the model. What does not belong to the mesh stays.
   Base next;
   static_cast<CollisionGeometry<S>&>(next) = *this;
   next.bv_splitter = this->bv_splitter;
@@ -284,7 +297,7 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   else
     buildTree(next.tri_indices, triangles.size(), new_frames);
 
-  // What fails from here on leaves an update half done.
+  // From here on a failure leaves a model that is half updated.
   seal_ = {};
   is_changing_ = true;
   this->build_state = next.build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
@@ -298,9 +311,10 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   return accept();
 }
 
-/// `previous`, or else the current frame, becomes the previous one, staged_ the current
-/// one. Until seal() the model is in the state of an update that has begun and not ended:
-/// if an exception comes between them it stays there, and no query takes it.
+/// `previous` becomes the previous frame; if it is null, the current frame does. staged_
+/// becomes the current frame. Until seal() the model is in the state of an update that
+/// has not ended. If an exception comes before seal(), the model stays in that state, and
+/// no query accepts it.
 template <typename BV>
 void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool refit,
                                      bool bottomup) {
@@ -315,9 +329,9 @@ void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool r
   }
   is_changing_ = true;
   this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
-  // After a change through the base class the base alone knows what the model is.
+  // After a change through the base class only the base knows the state of the model.
   if (rebuild && !repair) fcl_tree_built_ = true;
-  // FCL's tree may have been left half made: a repair makes it anew.
+  // FCL's tree may be half made. Then it is built again.
   fcl_tree_up_to_date_ = fcl_tree_built_ && (repair || fcl_tree == FclTree::kUpdate);
   const std::size_t size = 3 * count * sizeof(S);
   if (fcl_tree_up_to_date_) {
@@ -328,7 +342,8 @@ void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool r
     Base::endUpdateModel(refit && !repair, bottomup && RefitsBottomUp<BV>::value);
     this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   } else {
-    // Each array stays in its place: FCL may have room for more vertices in `vertices`.
+    // Each array stays in its place, since FCL may have room for more vertices in
+    // `vertices`.
     std::memmove(this->prev_vertices->data(),
                  previous ? previous : this->vertices->data(), size);
     std::copy(staged_.begin(), staged_.end(), this->vertices);
@@ -348,13 +363,15 @@ template <typename BV>
 int DeformableBVHModel<BV>::updateFclTree() {
   if (isHalfUpdated())
     return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-                  "updateFclTree() after an update that failed: both frames are needed");
+                  "updateFclTree() on a model whose last update failed. Give both frames "
+                  "first, by updateFrames()");
   if (!isBuilt())
     return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
-                  "updateFclTree() on a model that is not built");
+                  "updateFclTree() on a model that is not built. Call endModel() first");
   if (isUpdateOpen())
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "updateFclTree() between begin...Model() and end...Model()");
+                  "updateFclTree() between begin...Model() and end...Model(). Call "
+                  "end...Model() first");
   // A change through the base class has refit FCL's tree.
   if (!isInStep()) return accept();
   if (!fcl_tree_built_) {

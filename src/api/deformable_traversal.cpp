@@ -39,7 +39,10 @@ class BinaryView {
     const int k = heapIndex(b);
     if (k < 8) return 16 * (b / 16) + 2 * k;
     const int child = node(b).child[firstLane(b)];
-    if (child >= kMostNodes) throw Exception("the tree has too many nodes for FCL's int");
+    if (child >= kMostNodes)
+      throw Exception(
+          "the tree has more nodes than FCL's traversal can number. Use "
+          "continuousCollide() or continuousSelfCollide(), which have no such limit");
     return 16 * child + 2;
   }
 
@@ -139,7 +142,8 @@ namespace {
 
 template <typename S>
 deformable::QueryOptions makeOptions(S toc_err, const CollisionRequest<S>& request) {
-  if (request.num_max_contacts == 0) throw Exception("request.num_max_contacts is 0");
+  if (request.num_max_contacts == 0)
+    throw Exception("request.num_max_contacts is 0. Give 1 or more");
   deformable::QueryOptions options;
   options.max_contacts = request.num_max_contacts;
   options.toc_err = requireTocErr(static_cast<double>(toc_err), "toc_err");

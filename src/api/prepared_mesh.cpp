@@ -21,7 +21,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Calls visit with the geometry as the BVHModel that it is; false if it is none.
+/// Calls visit with the geometry as a BVHModel of its type. Returns false if it is none.
 template <typename S, typename Visit>
 bool visitModel(const CollisionGeometry<S>& geometry, Visit&& visit) {
   if (geometry.getObjectType() != OT_BVH) return false;
@@ -57,7 +57,7 @@ bool isDeforming(const BVHModel<BV>& model) {
   return model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;
 }
 
-/// The geometry as a model of ours whose own tree can be used.
+/// The geometry as a DeformableBVHModel whose moving tree is up to date; null otherwise.
 template <typename S>
 const DeformableMesh* deformableMeshOf(const CollisionGeometry<S>& geometry) {
   const auto* mesh = dynamic_cast<const DeformableMesh*>(&geometry);
@@ -71,8 +71,9 @@ void requireFinite(const Vector3<S>* vertices, int count, const std::string& wha
       throw Exception(what + ": vertex " + std::to_string(i) + " is not finite");
 }
 
-/// What is finite can be posed out of range. Boxes of that are unbounded, the root's too:
-/// where this one has bounds no vertex has to be looked at.
+/// A finite vertex can leave the range of numbers when it is posed. Then its box is
+/// unbounded, and so is the root's. If the root's box has bounds, no vertex need be
+/// checked.
 bool areBoxesBounded(const MovingKdopTree& tree) {
   const MovingKdopNode& root = tree.node(0);
   float most = 0;
@@ -82,8 +83,8 @@ bool areBoxesBounded(const MovingKdopTree& tree) {
   return std::isfinite(most);
 }
 
-/// Whether no translation takes a vertex of the tree out of range. Half of the range is
-/// more than what rounds here and in reach().
+/// Whether no translation moves a vertex of the tree out of range. The factor of one half
+/// is far more than the rounding here and in reach().
 bool stayInRange(const MovingKdopTree& tree, const double (&translation)[2][3]) {
   double most = 0;
   for (int frame = 0; frame < 2; ++frame)
@@ -102,7 +103,8 @@ void requireFinite(const MovingKdopTree& tree, const VertexFrames& frames,
       for (int k = 0; k < 3; ++k)
         if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
           throw Exception(name + ": vertex " + std::to_string(id) +
-                          ", posed, is not finite");
+                          ", posed, is not finite: the transform moves it out of the "
+                          "range of double");
     }
 }
 
@@ -139,7 +141,9 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beg
   }
   const auto* any = dynamic_cast<const DeformableMesh*>(&geometry);
   if (any && any->isUpdateOpen())
-    throw Exception(name + ": an update of the model has begun and not ended");
+    throw Exception(name +
+                    ": an update of the model has begun and not ended. Call "
+                    "endUpdateModel() or endReplaceModel() first");
   if (const DeformableMesh* mesh = deformableMeshOf(geometry)) {
     instance_.frames = mesh->frames();
     instance_.frames.setPoses(beginning, end);
@@ -168,7 +172,8 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
   const bool deforming = isDeforming(model);
   if (!deforming && model.build_state != BVH_BUILD_STATE_PROCESSED)
     throw Exception(name +
-                    ": the model is not built, or an update has begun and not ended");
+                    ": the model is not built, or an update has begun and not ended. "
+                    "Call endModel(), endUpdateModel() or endReplaceModel() first");
   const auto count = static_cast<std::size_t>(model.num_vertices);
   const std::string too_many =
       findTooMany(static_cast<std::size_t>(model.num_tris), count);
@@ -202,7 +207,8 @@ void PreparedMesh::requireIndices(const BVHModel<BV>& model, const std::string& 
   const std::size_t bad = findOutOfRange(model.tri_indices, num_triangles, num_vertices);
   if (bad < 3 * num_triangles)
     throw Exception(name + ": triangle " + std::to_string(bad / 3) +
-                    " refers to a vertex that is not there");
+                    " refers to a vertex that is not there. The model has " +
+                    std::to_string(num_vertices) + ", numbered from 0");
 }
 
 template <typename BV>
@@ -233,7 +239,7 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
   tree_.refit(instance_.frames, num_threads);
   if (!areBoxesBounded(tree_)) requireFinite(tree_, instance_.frames, name);
   instance_.tree = &tree_;
-  // The boxes are posed already.
+  // The boxes have the poses already.
   for (auto& translation : instance_.translation)
     std::fill(translation, translation + 3, 0.);
 }

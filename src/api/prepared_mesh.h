@@ -12,40 +12,42 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief How a geometry moves, as far as the choice of the method needs it.
+/// @brief How a geometry moves. The choice of the method depends on it.
 enum class MeshKind {
   kNotAMesh,   ///< a shape, an octree, a point cloud
   kRigid,      ///< a triangle mesh with one frame
   kDeforming,  ///< a triangle mesh whose two frames differ
 };
 
-/// @brief Whether every mesh must have feature owners.
+/// @brief Which meshes get feature owners.
 enum class FeatureOwners {
-  kIfKept,  ///< not a rigid mesh that brings none
-  kAlways   ///< of such a mesh they are computed, in time and memory linear in its
-            ///< triangles
+  kIfKept,  ///< only meshes that have them already
+  kAlways   ///< all; for a rigid BVHModel they are computed, in time and memory linear
+            ///< in its triangles
 };
 
 template <typename S>
 MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
-/// @throws fcl::Exception that calls the geometry `name`, when a number is not finite
+/// @throws fcl::Exception when a number is not finite; the text names the geometry `name`
 void requireFinite(const Pose& beginning, const Pose& end, const std::string& name);
 
-/// @brief A geometry made ready for one query, with what had to be computed for it:
-/// nothing for a DeformableBVHModel that is only translated and for a rigid mesh (but see
-/// FeatureOwners); owners and boxes for a plain BVHModel in FCL's updated state, and for
-/// a rigid mesh whose tree is not sound (RigidTree::isSound()); boxes for a rotated
-/// DeformableBVHModel.
+/// @brief A geometry made ready for one query. It owns what had to be computed:
+/// - nothing for a DeformableBVHModel that is only translated;
+/// - nothing for a rigid mesh, but see FeatureOwners;
+/// - boxes for a DeformableBVHModel that is rotated;
+/// - owners and boxes for a plain BVHModel in FCL's updated state, and for a rigid mesh
+///   whose tree is not sound (RigidTree::isSound()).
 class PreparedMesh {
  public:
-  /// @param name  how errors call the geometry, for example "o1"
+  /// @param name  the name of the geometry in errors, for example "o1"
   /// @param num_threads  for boxes, as in parallelFor(); the mesh does not depend on it
   /// @pre the floating-point mode is the default one; meshKindOf(geometry) != kNotAMesh;
-  /// a rigid mesh is not rotated between the poses
-  /// @throws fcl::Exception  model not built or being updated, or too large, pose or
-  /// frame not finite, vertex index out of range, a vertex that leaves the range of
-  /// double in its pose (not of a rigid mesh, whose vertices are not looked at)
+  /// a rigid mesh has the same rotation in both poses
+  /// @throws fcl::Exception  when the model is not built, is being updated or is too
+  /// large; when a pose or a frame is not finite; when a vertex index is out of range;
+  /// when the pose moves a vertex out of the range of double (vertices of a rigid mesh
+  /// are not checked here)
   template <typename S>
   PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
                const Pose& end, const std::string& name, int num_threads = 1,
@@ -56,7 +58,8 @@ class PreparedMesh {
 
   const MeshInstance& instance() const { return instance_; }
 
-  /// @brief Seconds that boxes, owners and a tree took, if they had to be made.
+  /// @brief Seconds that the boxes, owners and tree of this query took; 0 if none were
+  /// made.
   double updateTime() const { return update_time_; }
 
  private:

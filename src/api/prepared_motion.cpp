@@ -11,7 +11,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Paths that go further are refused, so that no product overflows.
+/// Longer paths are refused, so that no product overflows.
 constexpr double kMostSize = 0x1p200;
 
 double norm(const double (&v)[3]) {
@@ -22,7 +22,8 @@ bool haveSameRotation(const Pose& x, const Pose& y) {
   return std::equal(x.rotation, x.rotation + 9, y.rotation);
 }
 
-/// Whether the vertices, posed at both ends, go straight, and not the mesh as a whole.
+/// Whether each vertex goes on a straight line between its poses, while the rotation of
+/// the mesh changes.
 template <typename S>
 bool isPosed(const PlacedGeometry<S>& placed) {
   return placed.goesStraight() && !placed.isRigid() &&
@@ -73,9 +74,9 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
   requireInRange(mesh.frames, name);
 }
 
-// A reference point that was never set is whatever memory held: NaN, or a number so large
-// that what it adds to the rounding of the path is more than the time may be off by, for
-// a mesh that moves by its own size. 1e-9 stands for a toc_err of 0.
+// A reference point that was never set has the value that was in memory. It may be NaN.
+// It may also be so large that its rounding error changes the time by more than toc_err,
+// for a mesh that moves by its own size. Both are refused. 1e-9 replaces a toc_err of 0.
 template <typename S>
 void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
                                     const std::string& name, double toc_err) const {
@@ -84,9 +85,9 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   if (moving.path == PathKind::kUndefined)
     throw Exception(
         name +
-        ": request.ccd_motion_type says nothing of how a mesh turns between "
-        "two transforms: use CCDM_LINEAR or CCDM_SCREW; a spline needs control "
-        "points, which a SplineMotion has");
+        ": request.ccd_motion_type does not define how a mesh turns between two "
+        "transforms. Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has "
+        "the control points of a spline");
   if (moving.path != PathKind::kTurn) return;
   double way[3];
   for (int k = 0; k < 3; ++k)
@@ -96,9 +97,9 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kLeastTocErr) * size))
     throw Exception(
         name +
-        ": the reference point of the InterpMotion is not finite or far too large; its "
-        "constructors of two poses leave it unset: use the one of five arguments, R1, "
-        "T1, R2, T2, O, with O = 0");
+        ": the reference point of the InterpMotion is not finite or far too large. FCL's "
+        "constructors of two poses do not set it. Use the constructor of five arguments, "
+        "InterpMotion(R1, T1, R2, T2, O), with O = 0");
 }
 
 void PreparedMotion::requireInRange(const VertexFrames& frames,
@@ -112,7 +113,9 @@ void PreparedMotion::requireInRange(const VertexFrames& frames,
       if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
         throw Exception(name + ": vertex " + std::to_string(i) + " is not finite");
   }
-  throw Exception(name + ": the path of a mesh that turns has coordinates beyond 2^200");
+  throw Exception(name +
+                  ": the mesh turns and its path has coordinates beyond 2^200. Use "
+                  "smaller units or a smaller translation");
 }
 
 VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
@@ -137,7 +140,7 @@ VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
 
 MeshInstance PreparedMotion::beginning() const {
   MeshInstance mesh = mesh_->instance();
-  // Of a mesh whose vertices are posed that is the identity.
+  // Where the vertices are posed already, the path of the body is the identity.
   if (mesh.frames.isPosed()) return mesh;
   const Pose pose = body_->path().pose(0);
   mesh.frames.setPoses(pose, pose);

@@ -13,22 +13,23 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The path of a geometry that is answered here.
+/// @brief The path of a geometry that this library answers.
 /// @pre placed.isKnown()
-/// @throws fcl::Exception  a spline whose rotation is too large
+/// @throws fcl::Exception  when the rotation of a spline is too large
 template <typename S>
 MotionPath motionPathOf(const PlacedGeometry<S>& placed);
 
-/// @brief A mesh made ready for a query of meshes of which one turns, with what had to be
-/// computed for it: as PreparedMesh, in the frame that the motion moves. Only a mesh that
-/// deforms and whose vertices go straight between poses that turn has them posed.
+/// @brief A mesh made ready for a query in which one of the meshes turns. It owns what
+/// was computed for the query, as PreparedMesh does. Vertices are in the frame that the
+/// motion moves. Exception: if a mesh deforms, its rotation changes and its vertices go
+/// straight, the vertices are posed.
 class PreparedMotion {
  public:
   /// @param name  how errors call the geometry, for example "o1"
-  /// @param toc_err  how much of the step rounding may be
+  /// @param toc_err  largest error of time that rounding of the path may cause
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
-  /// @throws fcl::Exception as PreparedMesh; a path that is not defined, or leaves the
-  /// range of numbers
+  /// @throws fcl::Exception  as PreparedMesh; also when the path is not defined or leaves
+  /// the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
                  int num_threads);
@@ -39,10 +40,11 @@ class PreparedMotion {
   const MotionBody& body() const { return *body_; }
   double updateTime() const { return mesh_->updateTime(); }
 
-  /// @brief Where a vertex is at a time, and a unit of time later if it went on as then.
+  /// @brief The position of a vertex at time t, and its position one unit of time later
+  /// if it kept its velocity.
   VertexPath tangentAt(std::uint32_t vertex, double t) const;
 
-  /// @brief The mesh as it is at t = 0.
+  /// @brief The mesh in its pose at t = 0.
   MeshInstance beginning() const;
 
  private:

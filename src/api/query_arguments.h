@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the public queries share: their arguments and their errors.
+// Arguments and errors that all public queries have in common.
 #ifndef FCL_CCD_API_QUERY_ARGUMENTS_H
 #define FCL_CCD_API_QUERY_ARGUMENTS_H
 
@@ -25,13 +25,16 @@ inline void require(const void* argument, const char* name) {
 template <typename S>
 void requireMesh(const CollisionGeometry<S>& o, const char* function) {
   if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
-    throw Exception(std::string(function) + ": the geometry is not a triangle mesh");
+    throw Exception(std::string(function) +
+                    ": o is not a triangle mesh. Give a BVHModel or a DeformableBVHModel "
+                    "with triangles");
 }
 
-/// The width of a time bracket that the engine is given for the one asked for: 0 is the
-/// least that doubles can be asked for.
+/// The width of the time bracket for the engine. The user's 0 becomes the smallest
+/// positive double.
 inline double requireTocErr(double toc_err, const char* name) {
-  if (!(toc_err >= 0)) throw Exception(std::string(name) + " is negative or NaN");
+  if (!(toc_err >= 0))
+    throw Exception(std::string(name) + " is negative or NaN. Give 0 or more");
   return std::max(toc_err, std::numeric_limits<double>::min());
 }
 
@@ -43,8 +46,8 @@ deformable::Pose toPose(const PoseNumbers<S>& numbers) {
   return pose;
 }
 
-/// A geometry and the poses in which a query prepares it. Made in the default
-/// floating-point mode: others may lose subnormal floats that are converted.
+/// A geometry and the poses in which a query prepares it. It must be made in the default
+/// floating-point mode. Other modes may flush subnormal floats to zero in the conversion.
 template <typename S>
 class PlacedGeometry {
  public:
@@ -54,7 +57,7 @@ class PlacedGeometry {
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
     const bool is_constant = isConstantRotation(moving.pose[0], moving.pose[1]);
-    // The few roundings of a rotation that is constant are no rotation.
+    // A rotation that differs by a few roundings only is constant.
     if (kind_ == MeshKind::kRigid && is_constant)
       std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
     const bool bends = moving.path == PathKind::kSpline || (isTurn() && !is_constant);
@@ -71,10 +74,10 @@ class PlacedGeometry {
   bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
   bool isRigid() const { return kind_ == deformable::MeshKind::kRigid; }
 
-  /// Whether all vertices go on straight lines.
+  /// Whether all vertices move on straight lines.
   bool goesStraight() const { return goes_straight_; }
 
-  /// Whether the path is one that this library has.
+  /// Whether this library can follow the path.
   bool isKnown() const {
     return isMesh() && (goes_straight_ || moving_.path != PathKind::kUnknown);
   }
@@ -91,15 +94,15 @@ class PlacedGeometry {
 };
 
 enum class Answerer {
-  kStraightPaths,  ///< all vertices of both go on straight lines
-  kCurvedPaths,    ///< meshes of which one turns or bends
-  kFcl
+  kStraightPaths,  ///< all vertices of both meshes move on straight lines
+  kCurvedPaths,    ///< two meshes, and at least one turns or follows a spline
+  kFcl             ///< FCL: one is no mesh, or follows a motion class of the program
 };
 
 /// Which method answers a pair.
-/// @throws fcl::Exception  meshes that do not go straight, in a pose that is not finite
-/// (a rotation that is not finite is not constant; the poses of others are PreparedMesh's
-/// to look at, and what is no mesh is FCL's)
+/// @throws fcl::Exception  when one of two meshes does not go straight and a pose is not
+/// finite. (A rotation that is not finite is not constant. PreparedMesh checks the poses
+/// of straight paths. FCL gets other geometries as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   if (o1.goesStraight() && o2.goesStraight()) return Answerer::kStraightPaths;
@@ -110,7 +113,7 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   return o1.isKnown() && o2.isKnown() ? Answerer::kCurvedPaths : Answerer::kFcl;
 }
 
-/// Runs a query; what it finds wrong with a vertex becomes FCL's exception.
+/// Runs a query. A vertex that is not finite becomes FCL's exception.
 template <typename Query>
 auto answerOf(Query&& query) {
   try {

@@ -15,7 +15,7 @@ std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices) {
   if (!triangles && num_vertices <= kMaxMeshSize) return {};
   return std::to_string(triangles ? num_triangles : num_vertices) +
          (triangles ? " triangles" : " vertices") + " are more than " +
-         std::to_string(kMaxMeshSize);
+         std::to_string(kMaxMeshSize) + ", the most that a model can have";
 }
 
 std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,

@@ -174,7 +174,8 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
     const std::size_t id = triangles_[place][k];
     if (id >= frames_.size())
       throw Exception("triangle " + std::to_string(place) +
-                      " refers to a vertex that is not there");
+                      " refers to a vertex that is not there. The model has " +
+                      std::to_string(frames_.size()) + ", numbered from 0");
     double p[3];
     frames_.at(0, id, p);
     for (const double x : p)

@@ -277,7 +277,9 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
   std::copy(&rotation[0][0], &rotation[0][0] + 12, &path.rotation_points_[0][0]);
   const double most = largestPoint(rotation);
   if (!(most <= kMostAngle))
-    throw Exception("a rotation vector of a spline is longer than 2^20 or not finite");
+    throw Exception(
+        "a rotation vector of a SplineMotion is longer than 2^20 radians or not finite. "
+        "Divide the motion into steps with smaller rotations");
   path.stretch_ = kUpward;
   path.turn_speed_ = largestDifference(rotation);
   path.translation_speed_ = largestDifference(translation);
