@@ -241,8 +241,8 @@ TEST_F(CcdSequence, ABadFrameLeavesTheStepsBefore) {
     EXPECT_EQ(outcome.exit_code, 3);
     EXPECT_NE(outcome.err.find("f/tip7.ply: vertex 4"), std::string::npos) << outcome.err;
     EXPECT_EQ(linesOf(outcome.err).back(),
-              "fcl-ccd: stopped after 6 of 11 steps; they are in c.csv and s.jsonl, "
-              "--resume goes on from there");
+              "fcl-ccd: stopped after 6 of 11 steps; they are in c.csv and s.jsonl. "
+              "--resume continues from there");
     EXPECT_EQ(linesOf(readText(path("s.jsonl"))).size(), 7u);
     EXPECT_EQ(whole.first.rfind(readText(path("c.csv")), 0), 0u);
     EXPECT_NE(readText(path("r.json")).find("\"complete\":false"), std::string::npos);
@@ -419,7 +419,7 @@ TEST_F(CcdSequence, SoupIsNoticedAndWelded) {
   EXPECT_GT(
       rowsOf("0.stl 1.stl",
              "fcl-ccd: 0.stl: 27 vertices, none shared: neighbours will be reported "
-             "as contacts; pass --weld\n"),
+             "as contacts; pass --weld to join them\n"),
       10u);
   for (const char* weld : {"--weld", "--weld 0", "--weld 1e-3"})
     EXPECT_EQ(rowsOf("0.stl 1.stl " + std::string(weld),

@@ -49,10 +49,11 @@ std::vector<std::string> meshesIn(const std::string& word) {
     formats.insert(format);
   }
   if (meshes.empty())
-    throw std::runtime_error(word + ": the folder has no .obj, .ply, .off or .stl");
+    throw std::runtime_error(word + ": the folder has no .obj, .ply, .off or .stl file");
   if (formats.size() > 1)
     throw std::runtime_error(word + ": the folder has ." + *formats.begin() + " and ." +
-                             *formats.rbegin() + " files; say which, as in '" +
+                             *formats.rbegin() +
+                             " files. Name one format by a pattern: '" +
                              (fs::path(word) / ("*." + *formats.begin())).string() + "'");
   return sortedPaths(word, std::move(meshes));
 }
@@ -63,11 +64,12 @@ std::vector<std::string> matchesOf(const std::string& word) {
   std::vector<std::string> matches;
   for (const std::string& name : filesIn(folder))
     if (fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0) matches.push_back(name);
-  if (matches.empty()) throw std::runtime_error(word + ": no file matches");
+  if (matches.empty()) throw std::runtime_error(word + ": no file matches this pattern");
   return sortedPaths(folder, std::move(matches));
 }
 
-/// @brief frame_%04d.ply: what is before and after the number, and its least digits.
+/// @brief A name with a number, as frame_%04d.ply: the parts before and after the number,
+/// and its least number of digits.
 struct NumberedName {
   std::string before, after;
   std::size_t width{0};
@@ -100,7 +102,8 @@ std::optional<NumberedName> parseNumbered(const std::string& name) {
   NumberedName numbered{name.substr(0, percent), name.substr(end + 1), 0};
   const std::string width = name.substr(percent + 1, end - percent - 1);
   if (width.size() > 3 || (!width.empty() && width[0] != '0'))
-    throw std::runtime_error(name + ": write the number as %d or, with zeros, as %04d");
+    throw std::runtime_error(name +
+                             ": write the number as %d, or with leading zeros as %04d");
   if (!width.empty()) numbered.width = std::stoul(width);
   return numbered;
 }
@@ -115,7 +118,7 @@ std::vector<std::string> numbersOf(const std::string& word, const FrameRange& ra
     lowest = std::min(lowest.value_or(*number), *number);
     highest = std::max(highest.value_or(*number), *number);
   }
-  if (!lowest) throw std::runtime_error(word + ": no file matches");
+  if (!lowest) throw std::runtime_error(word + ": no file matches this name");
   std::vector<std::string> paths;
   const long long end = range.end.value_or(*highest);
   for (long long number = range.start.value_or(*lowest); number <= end;
@@ -127,7 +130,10 @@ std::vector<std::string> numbersOf(const std::string& word, const FrameRange& ra
                                std::to_string(*highest) + ")");
     paths.push_back(frame.string());
   }
-  if (paths.empty()) throw std::runtime_error(word + ": no number is in the range");
+  if (paths.empty())
+    throw std::runtime_error(
+        word + ": no number is between --start and --end. The files " + "are numbered " +
+        std::to_string(*lowest) + " to " + std::to_string(*highest));
   return paths;
 }
 
@@ -143,7 +149,9 @@ std::vector<std::string> select(const std::string& word,
   for (long long i = range.start.value_or(0); i <= range.end.value_or(last);
        i += range.stride)
     taken.push_back(paths[static_cast<std::size_t>(i)]);
-  if (taken.empty()) throw std::runtime_error(word + ": no file is in the range");
+  if (taken.empty())
+    throw std::runtime_error(word + ": no file is between --start and --end. It has " +
+                             "files 0 to " + std::to_string(last));
   return taken;
 }
 
@@ -187,7 +195,7 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
     } else if (!is_there && name.find_first_of("*?[") != std::string::npos) {
       found = select(word, matchesOf(word), range);
     } else {
-      // A file, or nothing: whoever opens it says why it cannot.
+      // A file. If it does not exist, opening it fails with a message.
       frames.push_back(word);
       continue;
     }
@@ -196,8 +204,8 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
   }
   if (!range_is_used)
     throw std::runtime_error(
-        "--start, --end and --stride select from a folder, a pattern or a name with %d; "
-        "these files were named one by one");
+        "--start, --end and --stride select frames of a folder, a pattern or a name with "
+        "%d, but these files were named one by one");
   return frames;
 }
 

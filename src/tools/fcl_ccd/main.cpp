@@ -29,54 +29,60 @@ constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
   fcl-ccd queries edge-edge.csv --kind ee --json errors.json
 
-'fcl-ccd COMMAND --help' tells more. Exit code: 0 when done, with or without contacts;
-2 when refused, in which case no output file is written or changed; 3 and above when
-stopped on the way ('fcl-ccd run --help').)";
+'fcl-ccd COMMAND --help' explains a command. Exit code: 0 when done, with or without
+contacts; 2 when the command is refused and no output file is written or changed; 3 and
+above when a run stops before its end ('fcl-ccd run --help').)";
 
 constexpr const char* kRunDetails = R"(Frames:
-  A file, a folder (its meshes, f9 before f10), a pattern in quotes ('frames/*.ply') or a
-  name with a number (frame_%04d.ply). --start, --end and --stride select from the last
-  three: numbers of %04d, places from 0 otherwise. All frames of a mesh have the same
-  vertices and faces in the same order. Read are OBJ, PLY (ascii and binary, float and
-  double), OFF (text) and STL (both kinds). Polygons are divided into triangles as they
-  are in the first frame: convex ones into the fan around their first vertex. All files
-  are checked before the first step; of binary PLY, all but the positions.
-  Step i goes from frame i to frame i + 1, counted from 0; vertices move on straight lines.
+  FRAMES is a file, a folder (its meshes; f9 comes before f10), a pattern in quotes
+  ('frames/*.ply') or a name with a number (frame_%04d.ply). --start, --end and --stride
+  select frames of the last three: numbers for %04d, otherwise files counted from 0.
+  All frames of a mesh have the same vertices and faces in the same order.
+  Formats: OBJ, PLY (ascii and binary, float and double), OFF (text), STL (ascii and
+  binary). Polygons are divided into triangles, in all frames as in the first. A convex
+  polygon becomes the fan of triangles around its first vertex.
+  All files are checked before the first step. Positions in binary PLY files are checked
+  in their step.
+  Step i goes from frame i to frame i + 1, counted from 0. Vertices move on straight lines.
 
-What is tested:
+Tests:
   Without --against: A against itself. With --against: A against itself and A against B,
-  never B against itself; --no-self leaves A against B. One frame of B: it stands still.
-  A mesh in which no triangle shares a vertex has contacts between all neighbours: --weld
-  joins vertices that coincide in all frames; ids stay those of the file.
+  never B against itself. With --no-self: A against B only. If B has one frame, it does
+  not move.
+  If no triangle of a mesh shares a vertex, neighbours are reported as contacts. --weld
+  joins the vertices that coincide in all frames. Ids are those of the file.
 
 Output:
-  A contact counts as vf (vertex-face) or ee (edge-edge); each is proved, so that the
-  table's 'uncertain' is 0. 'vertices' and 'triangles' count those of all meshes. With
-  '--query first' the contacts are those that may be the first, with '--query any'
-  at most one, not always the earliest.
-  --contacts: step,kind,i0,i1,i2,i3,toc_lo,toc_hi with kind vf (vertex, face) or ee (edge
-  a, edge b); ids count from 0, those of B are prefixed b; the first time of contact lies
-  in [toc_lo, toc_hi], in fractions of the step. --columns adds t0,t1 (the triangles of
-  both features), x,y,z (where they touch) and nx,ny,nz (normal, from A to B).
-  --steps: JSON lines: the options, one object a step, a summary when all is done.
-  --json: all steps with times in milliseconds; build: the hierarchy, in the first step of
-  each job; total = update + traverse + test.
-  --paint: vertices of vf contacts red, of ee contacts orange, of the edge and face that
-  cross at t = 0 violet; B's vertices follow A's.
-  --contacts and --steps grow with each step. --json and --paint appear at the end.
+  A contact is vf (vertex-face) or ee (edge-edge). Each contact is proved, so that
+  'uncertain' in the table is 0. 'vertices' and 'triangles' count those of all meshes.
+  '--query first' reports the contacts that may be the first. '--query any' reports at most
+  one contact, not always the earliest.
+  --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi. kind is vf (i0 is
+  the vertex, i1 to i3 the face) or ee (i0 and i1 are edge a, i2 and i3 edge b). Ids count
+  from 0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in
+  fractions of the step. --columns adds t0,t1 (the triangles of both features), x,y,z (the
+  point where they touch) and nx,ny,nz (unit normal, from A to B).
+  --steps: JSON lines: the options, one object for each step, and a summary at the end.
+  --json: JSON with all steps and their times in milliseconds. build: making the tree, in
+  the first step of each job. total = update + traverse + test.
+  --paint: PLY of the last frame. Vertices of vf contacts are red, those of ee contacts
+  orange, those of an edge and a face that cross at t = 0 violet. B's vertices come after
+  A's.
+  --contacts and --steps grow with each step. --json and --paint are written at the end.
 
 Stopping:
-  Ctrl-C, SIGTERM and SIGHUP let the steps that are in work finish; a second one does not.
-  --resume goes on behind the last whole step of the files of --contacts and --steps,
-  which then are as if the run had never stopped.
-  Exit code: 0 done; 2 refused, no file written or changed; 3 a frame on the way cannot be
-  read or used; 4 an output cannot be written (disk full); 128 + N stopped by signal N.
+  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. A second signal
+  ends the program at once.
+  --resume continues after the last whole step in the files of --contacts and --steps. At
+  the end the files are as if the run had never stopped.
+  Exit code: 0 done; 2 refused, no file written or changed; 3 a later frame cannot be read
+  or used; 4 an output cannot be written (disk full); 128 + N stopped by signal N.
   After 3, 4 and 128 + N the files have all steps that were done.
 
 Cores:
-  By default as many steps side by side as there are cores; with --repeat or --threads one
-  after the other, so that times are those of a step that has the machine to itself. The
-  output is the same.
+  By default the program does as many steps at the same time as there are cores. With
+  --repeat or --threads it does one step after the other, so that the times are those of a
+  step that has the machine to itself. The output is the same.
 
 Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply cloth_2.ply --json times.json --repeat 5
@@ -88,23 +94,24 @@ Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
 
 constexpr const char* kQueriesDetails = R"(Input:
-  Eight rows a query: the four points at t = 0, then at t = 1; vertex, face or edge a,
-  edge b. A row is num,den,num,den,num,den (x, y, z as fractions of integers of any size)
-  and optionally 0 or 1, whether the features truly touch. Coordinates become the nearest
-  double.
+  Eight rows for each query: four points at t = 0, then the same points at t = 1. The points
+  are a vertex and a face (--kind vf), or edge a and edge b (--kind ee). A row is
+  num,den,num,den,num,den: x, y and z as fractions of integers of any size. A seventh field
+  may be 0 or 1: whether the features truly touch. Coordinates become the nearest double.
 
 Output:
-  --print: index,answer,toc_lo,toc_hi with answer yes, no or unsure, instead of the table.
-  --json: false_positives counts answers 'yes' (not 'unsure') that are wrong; what needs
-  the truth is null without it.
+  Without --print: a table of counts and errors.
+  --print: index,answer,toc_lo,toc_hi for each query; answer is yes, no or unsure.
+  --json: the counts. false_positives counts wrong answers 'yes' (not 'unsure'). Counts that
+  need the seventh field are null without it.
 
 Examples:
   fcl-ccd queries vertex-face.csv --kind vf
   fcl-ccd queries a/edge-edge.csv b/edge-edge.csv --kind ee --repeat 10 --json errors.json
   fcl-ccd queries edge-edge.csv --kind ee --print > answers.csv)";
 
-/// @brief A validator that takes finite numbers of a type that are more than 0. (CLI11's
-/// own lets inf through, and answers a word with the range of double.)
+/// @brief A validator that accepts finite numbers of a type above 0. (CLI11's own accepts
+/// inf, and its message for a word is the range of double.)
 template <typename Number>
 CLI::Validator positive(const char* what) {
   return {[what](std::string& text) {
@@ -116,7 +123,7 @@ CLI::Validator positive(const char* what) {
           ""};
 }
 
-/// @brief A validator that takes finite numbers of a type from 0.
+/// @brief A validator that accepts finite numbers of a type from 0 on.
 template <typename Number>
 CLI::Validator notNegative(const char* what) {
   return {[what](std::string& text) {
@@ -128,7 +135,7 @@ CLI::Validator notNegative(const char* what) {
           ""};
 }
 
-/// @brief A validator that takes the names of a map and hands on their values.
+/// @brief A validator that accepts the names of a map and replaces them by their values.
 template <typename Value>
 CLI::Validator oneOf(const std::map<std::string, Value>& names, const char* what) {
   return {[&names, what](std::string& text) {
@@ -140,21 +147,24 @@ CLI::Validator oneOf(const std::map<std::string, Value>& names, const char* what
           ""};
 }
 
-/// @brief A validator of files to be written.
+/// @brief A validator of names of output files.
 CLI::Validator named() {
   return {[](const std::string& text) {
-            return text.empty() ? "no file is named" : std::string();
+            return text.empty() ? "no file is named: the name is empty" : std::string();
           },
           ""};
 }
 
 void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
                       std::string& json_path) {
-  command.add_option("--toc-err", toc_err, "Width of a contact's time bracket")
+  command
+      .add_option("--toc-err", toc_err,
+                  "Largest width of a contact's time bracket, in fractions of the step")
       ->type_name("X")
       ->check(positive<double>("a positive number"))
       ->capture_default_str();
-  command.add_option("--repeat", repeat, "Do everything N times, report the least time")
+  command
+      .add_option("--repeat", repeat, "Do everything N times, report the smallest time")
       ->type_name("N")
       ->check(positive<int>("a positive whole number"))
       ->capture_default_str();
@@ -163,7 +173,7 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
       ->check(named());
 }
 
-/// @brief Columns from their names, with commas between them.
+/// @brief Reads the names of columns, which are separated by commas.
 fcl_ccd::ContactColumns parseColumns(const std::string& list) {
   fcl_ccd::ContactColumns columns;
   const std::map<std::string, bool*> names{{"triangles", &columns.triangles},
@@ -188,12 +198,12 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
       ->required()
       ->expected(1, kUnlimited);
   run->add_option("--against", options.against,
-                  "Frames of mesh B, as many as of A or one")
+                  "Frames of mesh B: as many as of A, or one if it does not move")
       ->type_name("FRAMES")
       ->expected(1, kUnlimited);
   run->add_option("--start", options.range.start, "First frame")->type_name("N");
   run->add_option("--end", options.range.end, "Last frame")->type_name("N");
-  run->add_option("--stride", options.range.stride, "Every so many frames")
+  run->add_option("--stride", options.range.stride, "Take each N-th frame")
       ->type_name("N")
       ->check(positive<int>("a positive whole number"))
       ->capture_default_str();
@@ -208,17 +218,18 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   run->add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(oneOf(kQueries, "all, first or any"));
-  run->add_option("--jobs", options.jobs,
-                  "Steps side by side, one thread each; 0: as many as there are cores")
+  run->add_option(
+         "--jobs", options.jobs,
+         "Steps at the same time, one thread each; 0: as many as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of jobs"));
   run->add_option(
          "--threads", options.threads,
-         "Threads of a build, an update or a query; 0: as many as there are cores")
+         "Threads of a step, one step after the other; 0: as many as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of threads"));
   run->add_option("--weld", options.weld,
-                  "Join vertices that coincide in all frames, up to EPS (default: 0)")
+                  "Join vertices that coincide in all frames, within EPS (default: 0)")
       ->type_name("[EPS]")
       ->expected(0, 1)
       ->default_str("0")
@@ -233,13 +244,13 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
       ->type_name("LIST")
       ->needs("--contacts");
   run->add_option("--steps", options.steps_path,
-                  "Write a JSON object a step, as it comes")
+                  "Write a JSON object for each step when it is done")
       ->type_name("FILE")
       ->check(named());
   run->add_flag("--resume", options.resume,
-                "Go on where --contacts and --steps were left");
+                "Continue the files of --contacts and --steps");
   run->add_option("--paint", options.paint_path,
-                  "Write the last frame as PLY, contacts in colour")
+                  "Write the last frame as PLY, with contacts in colour")
       ->type_name("FILE")
       ->check(named());
   addCommonOptions(*run, options.settings.toc_err, options.settings.repeat,
@@ -261,13 +272,15 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
       ->type_name("KIND")
       ->required()
       ->transform(oneOf(kKinds, "vf or ee"));
-  queries->add_flag("--print", options.print_answers, "One line a query on stdout");
+  queries->add_flag("--print", options.print_answers,
+                    "Print one line for each query, not the table");
   addCommonOptions(*queries, options.toc_err, options.repeat, options.json_path);
   return queries;
 }
 
-/// Gives standard streams that are closed to what cannot be written to: else a file that
-/// is opened would take the place of one, and the table be written into it.
+/// Opens a file that cannot be written to for each standard stream that is closed.
+/// Otherwise the next file that is opened would become that stream, and the table would
+/// be written into it.
 void occupyStandardStreams() {
   int file;
   do file = open("/dev/null", O_RDONLY);
@@ -297,7 +310,7 @@ int main(int argc, char** argv) try {
     app.parse(argc, argv);
     if (run_options.resume && run_options.contacts_path.empty() &&
         run_options.steps_path.empty())
-      throw CLI::ValidationError("--resume", "needs --contacts or --steps to go on with");
+      throw CLI::ValidationError("--resume", "needs --contacts or --steps to continue");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : fcl_ccd::kRefused;
   }
@@ -313,7 +326,8 @@ int main(int argc, char** argv) try {
   reportFailure(stopped.what());
   return fcl_ccd::kSignalled + fcl_ccd::stopSignal();
 } catch (const std::bad_alloc&) {
-  return reportFailure("out of memory");
+  return reportFailure(
+      "out of memory. Fewer --jobs need less: each step holds two frames and a tree");
 } catch (const std::exception& error) {
   return reportFailure(error.what());
 }

@@ -30,7 +30,7 @@ struct PolygonSoup {
   std::vector<std::vector<std::size_t>> polygons;
 };
 
-/// A stream over bytes that stay where they are.
+/// A stream buffer over bytes, without a copy.
 class ByteStreamBuffer : public std::streambuf {
  public:
   explicit ByteStreamBuffer(std::string& bytes) {
@@ -38,8 +38,8 @@ class ByteStreamBuffer : public std::streambuf {
   }
 };
 
-/// @brief Hands the plain form of a text file to CGAL's polygon soup reader of its
-/// format.
+/// @brief Converts a text file to its plain form, and reads that with CGAL's polygon soup
+/// reader.
 PolygonSoup readSoup(const std::string& extension, std::string bytes) {
   if (extension == "obj")
     bytes = plainObj(bytes);
@@ -59,10 +59,11 @@ PolygonSoup readSoup(const std::string& extension, std::string bytes) {
     read = CGAL::IO::read_OFF(stream, soup.points, soup.polygons, quiet);
   else
     read = CGAL::IO::read_PLY(stream, soup.points, soup.polygons, quiet);
-  if (!read && !stream.eof()) throw std::runtime_error("a value does not fit its type");
+  constexpr const char* kBadValue = "a number does not fit its type";
+  if (!read && !stream.eof()) throw std::runtime_error(kBadValue);
   if (soup.points.empty()) throw std::runtime_error("the mesh has no vertices");
   if (soup.polygons.empty()) throw std::runtime_error("the mesh has no faces");
-  if (!read) throw std::runtime_error("a value does not fit its type");
+  if (!read) throw std::runtime_error(kBadValue);
   return soup;
 }
 
@@ -81,8 +82,9 @@ Faces takeFaces(const PolygonSoup& soup) {
     };
     for (const std::size_t id : soup.polygons[i]) {
       if (id >= soup.points.size())
-        throw std::runtime_error(faceName() + " names a vertex out of range; there are " +
-                                 std::to_string(soup.points.size()));
+        throw std::runtime_error(faceName() + " has a vertex id that is out of range; " +
+                                 "there are " + std::to_string(soup.points.size()) +
+                                 " vertices");
       faces.corners.push_back(static_cast<int>(id));
     }
     if (!faces.endFace())
@@ -93,13 +95,13 @@ Faces takeFaces(const PolygonSoup& soup) {
 
 void requireFewEnough(std::size_t count, const char* what) {
   if (count > std::size_t{std::numeric_limits<int>::max()})
-    throw std::runtime_error(std::string("too many ") + what);
+    throw std::runtime_error(std::string("more than 2,147,483,647 ") + what);
 }
 
 PolygonMesh parse(const std::string& extension, std::string bytes) {
   PolygonMesh mesh;
   if (extension == "stl") return parseStl(bytes);
-  // What is unusual in a binary PLY, or wrong, is left to the careful reader.
+  // A binary PLY that is unusual or wrong goes to the careful reader below.
   if (extension == "ply" && parseBinaryPly(bytes, mesh)) return mesh;
   const PolygonSoup soup = readSoup(extension, std::move(bytes));
   requireFewEnough(soup.points.size(), "vertices");
@@ -152,8 +154,8 @@ PolygonMesh readPolygonMesh(const std::string& path) {
     const std::string extension = extensionOf(path);
     if (!isMeshFormat(extension))
       throw std::runtime_error(
-          "unknown mesh format; expected .obj, .ply, .off or .stl. Another program can "
-          "convert it, for example: meshio convert IN OUT.ply (package meshio-tools)");
+          "unknown mesh format; expected .obj, .ply, .off or .stl. Convert it first, for "
+          "example with: meshio convert IN OUT.ply (Debian package meshio-tools)");
     PolygonMesh mesh = parse(extension, readBytes(path));
     requireFinite(mesh.vertices);
     // A polygon has fewer triangles than corners.

@@ -97,9 +97,11 @@ Vertices MeshSequence::read(std::size_t frame) const {
   if (mesh.vertices.size() != vertices_.size())
     throw std::runtime_error(path + ": has " + std::to_string(mesh.vertices.size()) +
                              " vertices, but " + paths_[0] + " has " +
-                             std::to_string(vertices_.size()));
+                             std::to_string(vertices_.size()) +
+                             ". All frames need the same vertices");
   if (mesh.faces != faces_)
-    throw std::runtime_error(path + ": its faces differ from those of " + paths_[0]);
+    throw std::runtime_error(path + ": its faces differ from those of " + paths_[0] +
+                             ". All frames need the same faces in the same order");
   return std::move(mesh.vertices);
 }
 

@@ -109,8 +109,8 @@ void queriesCommand(const QueriesOptions& options) {
   const QueryList list = readQueries(options.files);
   if (list.num_rounded > 0)
     std::fprintf(stderr,
-                 "fcl-ccd: warning: %zu coordinates are not exactly a double and were "
-                 "rounded to the nearest\n",
+                 "fcl-ccd: warning: %zu coordinates are not exactly doubles. They were "
+                 "rounded to the nearest double\n",
                  list.num_rounded);
 
   double seconds = 0;

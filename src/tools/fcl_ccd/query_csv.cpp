@@ -24,7 +24,8 @@ std::string_view trimmed(std::string_view field) {
   std::string_view token;
   takeToken(field, token);
   std::string_view rest;
-  if (takeToken(field, rest)) throw std::runtime_error("a field holds two words");
+  if (takeToken(field, rest))
+    throw std::runtime_error("a field has two words; fields are separated by commas");
   return token;
 }
 
@@ -68,7 +69,9 @@ class QueryBuilder {
     }
     if (list_.queries.empty() && point == 0) list_.has_truth = row.has_truth;
     if (row.has_truth != list_.has_truth)
-      throw std::runtime_error("some rows have a seventh field and some have not");
+      throw std::runtime_error(
+          "some rows have a seventh field and some do not; give it in all rows or in "
+          "none");
     if (row.truth != query_.truth)
       throw std::runtime_error("the rows of one query differ in the seventh field");
     auto& path = query_.x[point % 4];

@@ -35,18 +35,18 @@ class LineFile {
   std::uint64_t end_{0};
 };
 
-/// @brief Opens a file behind its head; false if nothing is behind it.
+/// @brief Reads the head of a file. Returns false if there is no file or no whole head.
 bool takeHead(LineFile& file, const std::string& path, const std::string& head,
               const char* other) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return false;
   if (!std::filesystem::is_regular_file(path, error))
-    throw std::runtime_error(path + ": is no file that --resume could go on with");
+    throw std::runtime_error(path + ": is not a regular file, which --resume needs");
   if (!file.next()) return false;
   if (file.line() + '\n' != head)
     throw std::runtime_error(
         path + ": cannot go on: it was written with other " + other +
-        "; name another file, or leave out --resume to overwrite it");
+        ". Name another file, or leave out --resume to overwrite it");
   return true;
 }
 
@@ -85,7 +85,8 @@ ContactList scanContacts(const GrowingOutputs& outputs) {
     const auto index = static_cast<std::size_t>(step);
     if (!valid || (!list.steps.empty() && index < list.steps.rbegin()->first))
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(line) +
-                               " is no row of a contact list");
+                               " is not a row of a contact list. Leave out --resume to " +
+                               "overwrite the file");
     ContactRows& rows = list.steps[index];
     if (rows.count++ == 0) rows.begin = begin;
     list.end = file.end();
@@ -112,11 +113,12 @@ std::vector<StepLine> scanSteps(const GrowingOutputs& outputs) {
     const std::size_t step = steps.size();
     if (!line.is_object() || line.value("step", Json()) != step)
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(file.line()) +
-                               " is not step " + std::to_string(step));
+                               " is not step " + std::to_string(step) +
+                               ". Leave out --resume to overwrite the file");
     if (step >= outputs.num_steps || line.value("files", Json()) != outputs.filesOf(step))
       throw std::runtime_error(path + ": step " + std::to_string(step) +
-                               " was of other frames than it is now; --resume needs " +
-                               "those of the run that it goes on with");
+                               " was of other frames than it is now. Give --resume the " +
+                               "frames and options of the run that it continues");
     steps.push_back({file.end(), summaryOf(line)});
   }
   return steps;
@@ -131,9 +133,11 @@ ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
   if (!outputs.steps_path.empty()) steps = scanSteps(outputs);
   if (!outputs.contacts_path.empty()) contacts = scanContacts(outputs);
   if (!contacts.steps.empty() && contacts.steps.rbegin()->first >= outputs.num_steps)
-    throw std::runtime_error(outputs.contacts_path + ": has step " +
-                             std::to_string(contacts.steps.rbegin()->first) + ", but " +
-                             "there are only " + std::to_string(outputs.num_steps));
+    throw std::runtime_error(
+        outputs.contacts_path + ": has step " +
+        std::to_string(contacts.steps.rbegin()->first) + ", but these frames have only " +
+        std::to_string(outputs.num_steps) +
+        " steps. Give --resume the frames of the run that it " + "continues");
   if (outputs.steps_path.empty()) {
     if (!contacts.steps.empty()) point.step = contacts.steps.rbegin()->first;
   } else if (outputs.contacts_path.empty()) {

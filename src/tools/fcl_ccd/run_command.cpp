@@ -32,12 +32,12 @@ struct Parallelism {
   int threads{1};
 };
 
-/// @brief How the cores are used.
+/// @brief The number of jobs and of threads.
 Parallelism parallelismOf(const RunOptions& options, std::size_t num_steps) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   Parallelism parallelism;
   parallelism.threads = options.threads.value_or(1);
-  // Steps side by side wait for nothing of each other, as threads of one step do; but
+  // Steps at the same time do not wait for each other, as threads of one step do. But
   // their times are not those of a step that has the machine to itself.
   const bool times_count = options.settings.repeat > 1 || options.threads;
   parallelism.jobs = options.jobs ? static_cast<std::size_t>(*options.jobs)
@@ -47,7 +47,7 @@ Parallelism parallelismOf(const RunOptions& options, std::size_t num_steps) {
   return parallelism;
 }
 
-/// @brief What a step leaves for the outputs.
+/// @brief The results of a step, ready for the outputs.
 struct StepRecord {
   RunSummary summary;
   std::string row;
@@ -57,8 +57,8 @@ struct StepRecord {
   std::optional<PaintedMesh> painted;
 };
 
-/// @brief Makes the records of steps; one thread may make one while another makes
-/// another.
+/// @brief Makes the records of steps. Several threads may make different records at the
+/// same time.
 class StepMaker {
  public:
   StepMaker(const RunOptions& options, const FramePaths& paths, const RunInputs& inputs,
@@ -108,8 +108,8 @@ class StepMaker {
       return std::runtime_error(name + ' ' + what);
     };
     try {
-      // Which contact a query for any one finds depends on the hierarchy: then each step
-      // has its own, so that the answer does not depend on where a run began.
+      // A query for any contact may find another one in another tree. So each step has
+      // its own tree, and the answer does not depend on the step with which a run began.
       const bool is_new =
           scene == nullptr || settings_.query == fcl::ContinuousQuery::kAny;
       if (is_new) scene = std::make_unique<Scene>(inputs_.triangles(), from, settings_);
@@ -117,7 +117,7 @@ class StepMaker {
       if (is_new) result.times.build = scene->buildTime();
       return result;
     } catch (const std::bad_alloc&) {
-      throw namingFiles("out of memory");
+      throw namingFiles("out of memory. Fewer --jobs need less");
     } catch (const std::exception& error) {
       throw namingFiles(error.what());
     }
@@ -146,7 +146,7 @@ class StepMaker {
   std::vector<std::unique_ptr<Scene>> scenes_;  ///< of each worker
 };
 
-/// @brief The first line of the list of steps: what the answers depend on.
+/// @brief The first line of the list of steps: the options on which answers depend.
 std::string stepsHead(const RunOptions& options) {
   constexpr const char* kQueries[] = {"all", "first", "any"};
   const Json head = {{"fcl_ccd", FCL_CCD_VERSION},
@@ -188,7 +188,8 @@ class RunOutputs {
     commit();
   }
 
-  /// @brief Ends all files; those that tell so say whether all steps are in them.
+  /// @brief Ends all files. The list of steps and the report say whether they are
+  /// complete.
   void finish(bool is_complete) {
     Json summary = toJson(summary_);
     if (steps_ && is_complete) steps_->append(Json{{"summary", summary}}.dump() + '\n');
@@ -201,7 +202,7 @@ class RunOutputs {
     for (OutputFile* file : wholeFiles()) file->publish();
   }
 
-  /// @brief Leaves the steps that are whole in the growing files.
+  /// @brief Removes the part of a step that is not whole from the growing files.
   void rollBack() noexcept {
     for (auto* file : {&contacts_, &steps_})
       if (*file) (*file)->rollBack();
@@ -257,7 +258,7 @@ class Run {
     } catch (const WriteError& error) {
       return endAfter(error);
     } catch (const std::bad_alloc&) {
-      return end(kBadFrame, "out of memory");
+      return end(kBadFrame, "out of memory. Fewer --jobs need less");
     } catch (const std::runtime_error& error) {
       return end(kBadFrame, error.what());
     }
@@ -312,7 +313,7 @@ class Run {
         num_done_, num_steps_,
         where.empty()
             ? ""
-            : ("; they are in " + where + ", --resume goes on from there").c_str());
+            : ("; they are in " + where + ". --resume continues from there").c_str());
   }
 
   const RunOptions& options_;
@@ -324,7 +325,7 @@ class Run {
   ProgressLine progress_;
 };
 
-/// Refuses outputs that cannot be written or that are inputs, before anything is read.
+/// Refuses outputs that cannot be written or that are inputs, before any file is read.
 void reserveOutputs(const FramePaths& paths, const RunOptions& options) {
   std::vector<std::string> inputs = paths.a;
   inputs.insert(inputs.end(), paths.b.begin(), paths.b.end());

@@ -13,7 +13,7 @@ bool goOn() { return stopSignal() == 0; }
 void requireNoSignal() {
   if (!goOn())
     throw StoppedBySignal(
-        "stopped by a signal before the first step; no file was written");
+        "stopped by a signal before the first step. No file was written");
 }
 
 /// 86,400
@@ -58,7 +58,7 @@ MeshSequence openSequence(const std::vector<std::string>& paths,
   if (isSoup(meshes.firstVertices(), meshes.triangles()))
     notes.push_back(meshes.path(0) + ": " + withCommas(meshes.firstVertices().size()) +
                     " vertices, none shared: neighbours will be reported as contacts; " +
-                    "pass --weld");
+                    "pass --weld to join them");
   return meshes;
 }
 
@@ -78,14 +78,15 @@ FramePaths listFrames(const RunOptions& options) {
   FramePaths paths;
   paths.a = listFrames(options.frames, options.range);
   if (paths.a.size() < 2)
-    throw std::runtime_error("A needs two frames or more; there is only " + paths.a[0]);
+    throw std::runtime_error("A needs two frames or more; there is only " + paths.a[0] +
+                             ". Name two files, or a folder of frames");
   if (options.against.empty()) return paths;
   paths.b =
       listFrames(options.against, isFile(options.against) ? FrameRange() : options.range);
   if (paths.b.size() != 1 && paths.b.size() != paths.a.size())
     throw std::runtime_error("A has " + std::to_string(paths.a.size()) +
                              " frames and B " + std::to_string(paths.b.size()) +
-                             "; B needs as many, or one if it stands still");
+                             "; B needs as many, or one if it does not move");
   return paths;
 }
 

@@ -29,7 +29,7 @@ class Stopwatch {
 
 void requireSuccess(int code, const std::string& error, const char* mesh) {
   if (code != fcl::BVH_OK)
-    throw std::runtime_error(std::string("mesh ") + mesh + " is refused: " + error);
+    throw std::runtime_error(std::string("mesh ") + mesh + ": " + error);
 }
 
 template <typename Model>
@@ -74,7 +74,7 @@ void updateModel(Model& model, const Vertices& from, const Vertices& to,
   requireSuccess(code, model.lastError(), name);
 }
 
-/// How many of the contact's vertices belong to the first feature.
+/// The number of vertices of the contact's first feature.
 std::size_t firstFeatureSize(Kind kind) { return kind == Kind::kVertexFace ? 1 : 2; }
 
 SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) {
@@ -98,13 +98,13 @@ SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) 
   return out;
 }
 
-/// Puts the contacts of two queries in the order of time.
+/// Sorts the contacts of two queries by time.
 void sortContacts(std::vector<SceneContact>& contacts) {
   std::stable_sort(contacts.begin(), contacts.end(),
                    [](const auto& a, const auto& b) { return a.toc_lo < b.toc_lo; });
 }
 
-/// Of the first contacts of two queries leaves those that may be the first of both.
+/// Keeps, of the first contacts of two queries, those that may be the first of both.
 void keepFirst(std::vector<SceneContact>& contacts) {
   double first_hi = std::numeric_limits<double>::infinity();
   for (const SceneContact& c : contacts) first_hi = std::min(first_hi, c.toc_hi);

@@ -114,7 +114,8 @@ PolygonMesh parseStl(std::string_view file) {
   PolygonMesh mesh;
   mesh.vertices = isBinary(file) ? parseBinary(file) : AsciiStl(file).parse();
   if (mesh.vertices.empty()) throw std::runtime_error("the mesh has no faces");
-  if (mesh.vertices.size() > 0x7fffffff) throw std::runtime_error("too many vertices");
+  if (mesh.vertices.size() > 0x7fffffff)
+    throw std::runtime_error("more than 2,147,483,647 vertices");
   mesh.faces.corners.reserve(mesh.vertices.size());
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
     mesh.faces.corners.push_back(static_cast<int>(i));
