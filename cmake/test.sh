@@ -63,7 +63,7 @@ if $all; then
   echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
   cmake --preset plain
   cmake --build --preset plain --target "${plain_tests[@]}"
-  for test in "${plain_tests[@]}"; do "build/plain/test/$test" --gtest_brief=1; done
+  for test in "${plain_tests[@]}"; do "build/plain/test/unit/$test" --gtest_brief=1; done
   build asan-ubsan
   echo "== asan-ubsan: unit tests"
   ctest --preset asan-ubsan -j "$jobs"
