@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The kernel of fans: what it calls embedded touches itself nowhere.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "elementary/elementary.h"
+#include "kernel_checks.h"
+#include "kernels/kernels.h"
+#include "mesh/feature_pairs.h"
+#include "mesh/mesh_topology.h"
+#include "mesh/vertex_fans.h"
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using test::allSets;
+using test::Random;
+
+/// A vertex and its spokes.
+struct RandomFan {
+  std::vector<TreeVertex> vertices;  // the spokes, then the center
+  std::vector<std::uint32_t> spokes;
+  bool is_closed;
+
+  /// Spokes around a center, `turns` times round, more or less in a plane.
+  RandomFan(Random& random, std::size_t count, bool closed, double turns, double noise)
+      : is_closed(closed) {
+    const Vector3<double> tilt = random.point(1), at = random.point(5);
+    const double motion = random.uniform(0, 1);
+    const auto add = [&](const Vector3<double>& p) {
+      const Vector3<double> a = p + random.point(noise),
+                            b = a + motion * random.point(noise);
+      TreeVertex x{};
+      for (int k = 0; k < 3; ++k) {
+        // A shear, so that the plane is not one of the axes'.
+        x.t0[k] = a[k] + tilt[k] * a[(k + 1) % 3] + at[k];
+        x.t1[k] = b[k] + tilt[k] * b[(k + 1) % 3] + at[k];
+      }
+      vertices.push_back(x);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const double angle = 2 * 3.14159265358979 * turns * static_cast<double>(i) /
+                           static_cast<double>(closed ? count : count - 1);
+      const double length = random.uniform(0.5, 1.5);
+      add({length * std::cos(angle), length * std::sin(angle), 0});
+      spokes.push_back(static_cast<std::uint32_t>(i));
+    }
+    add({0, 0, 0});
+  }
+
+  /// Whether features of the triangles that share no vertex touch at some time.
+  bool doTouch() const {
+    std::vector<Triangle> triangles;
+    const std::size_t n = spokes.size();
+    for (std::size_t i = 0; i + (is_closed ? 0 : 1) < n; ++i)
+      triangles.emplace_back(n, i, (i + 1) % n);
+    const auto mesh = assignFeatures(triangles.data(), triangles.size(), n + 1);
+    bool touch = false;
+    for (std::size_t i = 0; i < mesh.size(); ++i)
+      for (std::size_t j = i + 1; j < mesh.size(); ++j)
+        forEachFeaturePair<true>(mesh[i], mesh[j], [&](const FeaturePair& f) {
+          const MeshTriangle &a = f.first_on_a ? mesh[i] : mesh[j],
+                             &b = f.first_on_a ? mesh[j] : mesh[i];
+          if (touch) return;
+          const bool vf = f.kind == ContinuousContactKind::kVertexFace;
+          const VertexPath x[4] = {path(a.v[f.first]),
+                                   path(vf ? b.v[0] : a.v[(f.first + 1) % 3]),
+                                   path(vf ? b.v[1] : b.v[f.second]),
+                                   path(vf ? b.v[2] : b.v[(f.second + 1) % 3])};
+          touch = elementaryTest(f.kind, x, 0, 1, 1e-6).answer != Answer::kNo;
+        });
+    return touch;
+  }
+
+ private:
+  VertexPath path(std::uint32_t i) const {
+    const TreeVertex& x = vertices[i];
+    return {{x.t0[0], x.t0[1], x.t0[2]}, {x.t1[0], x.t1[1], x.t1[2]}};
+  }
+};
+
+/// The answers of every instruction set for up to eight fans that are alike, a bit each.
+unsigned areEmbedded(const std::vector<RandomFan>& fans) {
+  // Their vertices one behind the other, the first fan's last.
+  std::vector<TreeVertex> vertices;
+  std::vector<std::uint32_t> spokes[8];
+  std::size_t centers[8];
+  for (std::size_t i = 8; i-- > 0;) {
+    const RandomFan& fan = fans[std::min(i, fans.size() - 1)];
+    for (const std::uint32_t spoke : fan.spokes)
+      spokes[i].push_back(spoke + static_cast<std::uint32_t>(vertices.size()));
+    vertices.insert(vertices.end(), fan.vertices.begin(), fan.vertices.end());
+    centers[i] = vertices.size() - 1;
+  }
+  EightFans eight;
+  eight.count = static_cast<std::uint32_t>(fans.front().spokes.size());
+  eight.is_closed = fans.front().is_closed;
+  for (std::size_t i = 0; i < 8; ++i) {
+    eight.center[i] = &vertices[centers[i]];
+    eight.spokes[i] = spokes[i].data();
+  }
+  const unsigned found = allSets().front()->areFansEmbedded(vertices.data(), eight);
+  for (const Kernels* k : allSets())
+    EXPECT_EQ(k->areFansEmbedded(vertices.data(), eight), found) << k->name;
+  const bool last = found >> (fans.size() - 1) & 1U;
+  for (std::size_t i = fans.size(); i < 8; ++i) EXPECT_EQ(found >> i & 1U, last) << i;
+  return found;
+}
+
+bool isEmbedded(const RandomFan& fan) { return areEmbedded({fan}) & 1U; }
+
+TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
+  constexpr std::uint64_t kSeed = 78;
+  Random random(kSeed);
+  int embedded[2] = {}, not_proved[2] = {}, touching = 0;
+  for (int i = 0; i < 200; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const bool closed = random.index(2);
+    const std::size_t count = i % 8 ? 3 + random.index(6) : 9 + random.index(16);
+    std::vector<RandomFan> fans;
+    for (int n = 0; n < 8; ++n) {
+      const double turns = closed ? (random.index(4) ? 1 : 2) : random.uniform(0.2, 1.4);
+      fans.emplace_back(random, count, closed, turns, std::pow(random.uniform(0, 1), 2));
+    }
+    const unsigned found = areEmbedded(fans);
+    for (std::size_t n = 0; n < 8; ++n) {
+      const bool proved = found >> n & 1U;
+      ++(proved ? embedded : not_proved)[closed];
+      const bool touch = fans[n].doTouch();
+      touching += touch;
+      EXPECT_FALSE(proved && touch) << n << ", " << count << (closed ? ", closed" : "");
+      // Nor does an answer depend on what lies beside it.
+      EXPECT_EQ(isEmbedded(fans[n]), proved) << n;
+    }
+  }
+  for (const int c : {0, 1}) {
+    EXPECT_GT(embedded[c], 100) << c;
+    EXPECT_GT(not_proved[c], 100) << c;
+  }
+  EXPECT_GT(touching, 200);
+}
+
+// A flat fan is embedded, one that goes round twice is not; every number of spokes.
+TEST(FCL_KERNELS, flatFans) {
+  Random random(79);
+  for (std::size_t count = 2; count <= 3 * VertexFans::kShort; ++count) {
+    EXPECT_TRUE(isEmbedded(RandomFan(random, count, false, 0.4, 0))) << count;
+    if (count < 3) continue;
+    EXPECT_TRUE(isEmbedded(RandomFan(random, count, true, 1, 0)) || count == 3) << count;
+    if (count >= 5) {
+      EXPECT_FALSE(isEmbedded(RandomFan(random, count, true, 2, 0))) << count;
+      EXPECT_FALSE(isEmbedded(RandomFan(random, count, false, 1.2, 0))) << count;
+    }
+  }
+}
+
+/// A fan in the plane z = 0 that does not move.
+RandomFan flatFan(const std::vector<std::array<double, 2>>& spokes, bool closed) {
+  Random random(81);
+  RandomFan fan(random, spokes.size(), closed, 1, 0);
+  for (std::size_t i = 0; i <= spokes.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      fan.vertices[i].t0[k] = fan.vertices[i].t1[k] =
+          i < spokes.size() && k < 2 ? spokes[i][k] : 0;
+  return fan;
+}
+
+// The ray goes through the middle of the first sector. A spoke that lies on it hides that
+// the fan goes round twice.
+TEST(FCL_KERNELS, spokeOnTheRay) {
+  const RandomFan twice = flatFan(
+      {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}, true);
+  EXPECT_TRUE(twice.doTouch());
+  EXPECT_FALSE(isEmbedded(twice));
+  EXPECT_TRUE(isEmbedded(flatFan({{1, 0}, {0, 1}, {-1, 0}, {0, -1}}, true)));
+}
+
+// All triangles face the same way at both ends of the step, and all vertices meet in
+// between.
+TEST(FCL_KERNELS, fansThatTurnInsideOut) {
+  for (const bool closed : {false, true}) {
+    std::vector<std::array<double, 2>> spokes{{1, 0}, {0, 1}, {-1, 0}};
+    if (closed) spokes.push_back({0, -1});
+    RandomFan fan = flatFan(spokes, closed);
+    EXPECT_TRUE(isEmbedded(fan)) << closed;
+    for (TreeVertex& x : fan.vertices)
+      for (int k = 0; k < 3; ++k) x.t1[k] = -x.t0[k];
+    EXPECT_TRUE(fan.doTouch()) << closed;
+    EXPECT_FALSE(isEmbedded(fan)) << closed;
+  }
+}
+
+// What is not finite, or has no size, proves nothing.
+TEST(FCL_KERNELS, fansOfAllSizes) {
+  constexpr std::uint64_t kSeed = 80;
+  Random random(kSeed);
+  const double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
+                         std::numeric_limits<double>::infinity(), 1e300};
+  for (int i = 0; i < 2000; ++i) {
+    const std::size_t count = 3 + random.index(14);
+    RandomFan fan(random, count, random.index(2), 1, 0.05);
+    const int exponent = static_cast<int>(random.index(2098)) - 1074;
+    for (TreeVertex& x : fan.vertices)
+      for (int k = 0; k < 3; ++k) {
+        x.t0[k] = std::ldexp(x.t0[k], exponent);
+        x.t1[k] = std::ldexp(x.t1[k], exponent);
+      }
+    const bool proved = isEmbedded(fan);
+    if (count < 7 && proved) {
+      EXPECT_FALSE(fan.doTouch()) << "seed " << kSeed << ", " << i;
+    }
+    TreeVertex& x = fan.vertices[random.index(count + 1)];
+    (random.index(2) ? x.t0 : x.t1)[random.index(3)] = kBad[random.index(2)];
+    EXPECT_FALSE(isEmbedded(fan)) << "seed " << kSeed << ", " << i;
+  }
+}
+
+}  // namespace
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
