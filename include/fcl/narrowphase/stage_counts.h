@@ -10,7 +10,6 @@
 
 namespace fcl {
 
-<<<<<<< HEAD
 /// @brief Which features meet in a continuous contact.
 enum class ContinuousContactKind {
   kVertexFace,  ///< a vertex meets a triangle
@@ -18,24 +17,18 @@ enum class ContinuousContactKind {
   kCrossing     ///< an edge already passes through a triangle at t = 0
 };
 
-/// @brief What a continuous query has to find.
+/// @brief What a continuous query looks for.
 enum class ContinuousQuery {
-  kAll,    ///< every contact (the num_max_contacts earliest)
-  kFirst,  ///< the first time of contact; contacts that start later are skipped
-  kAny     ///< whether there is a contact at all; stops at the first proof
+  kAll,    ///< all contacts (at most num_max_contacts, the earliest ones)
+  kFirst,  ///< the first time of contact; later contacts are skipped
+  kAny     ///< whether there is a contact; the query stops at the first proof
 };
 
-/// @brief How many candidates each stage of a continuous query saw and removed, in
-/// pipeline order. Every candidate that enters a stage leaves it culled or goes on:
-/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts,
-/// but for those that a query for any contact no longer looks at.
-=======
 /// @brief How many candidates each stage of a continuous query saw and removed, in the
 /// order of the pipeline. A stage culls a candidate or passes it on:
 /// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts.
 /// In a query for any contact the sum is smaller, since the query stops at the first
 /// proof.
->>>>>>> 97224b3 (Public headers: plain sentences, and messages that name a way out)
 struct StageCounts {
   /// pairs of moving boxes of nodes and triangles that were compared
   std::uint64_t node_pairs{0};
