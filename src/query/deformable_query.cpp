@@ -4,11 +4,9 @@
 #include <algorithm>
 #include <cassert>
 #include <chrono>
-#include <deque>
-#include <limits>
-#include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
@@ -247,11 +245,11 @@ struct MeshPair {
   }
 };
 
-/// What a query of the mesh with itself leaves out.
-SelfProofs proveSelf(const MeshInstance& mesh, bool with_regions, int num_threads,
-                     StageTimes& times) {
+/// What a query of a mesh with itself leaves out; nothing of two meshes.
+SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
+                     bool with_regions, int num_threads, StageTimes& times) {
   SelfProofs proofs;
-  if (!mesh.tree || !mesh.isInPlace()) return proofs;
+  if (&mesh != &other || !mesh.tree || !mesh.isInPlace()) return proofs;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
   std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
@@ -267,86 +265,6 @@ SelfProofs proveSelf(const MeshInstance& mesh, bool with_regions, int num_thread
   return proofs;
 }
 
-/// The answer of one task.
-struct TaskAnswer {
-  /// Without a list where there is none, which most tasks of a first contact are.
-  std::optional<std::deque<FeatureContact>> contacts;
-  bool cut{false};
-  bool has_crossing{false};
-  Crossing crossing{};
-  std::optional<QueryError> error;
-  StageCounts counts;
-  StageTimes times;
-
-  void take(NarrowPhase& leaves) {
-    cut = leaves.sink().isCut();
-    has_crossing = leaves.hasCrossing();
-    crossing = leaves.crossing();
-    if (!leaves.sink().contacts().empty()) contacts = leaves.sink().takeContacts();
-    error = leaves.error();
-    counts = leaves.counts();
-  }
-};
-
-/// Throws what the query has to end with, whatever the tasks did in what order: the error
-/// of the first task that has an answer or an error; of a first-contact query the
-/// earliest error, unless the first contact is earlier than its triangles meet.
-void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& options,
-                const QueryProgress& progress) {
-  const double latest = options.query == ContinuousQuery::kFirst
-                            ? progress.first_hi.load()
-                            : std::numeric_limits<double>::infinity();
-  const std::size_t last = progress.answered_by.load();
-  const QueryError* earliest = nullptr;
-  for (std::size_t i = 0; i < tasks.size() && i <= last; ++i) {
-    const std::optional<QueryError>& error = tasks[i].error;
-    if (error && error->earliest <= latest &&
-        (!earliest || error->earliest < earliest->earliest))
-      earliest = &*error;
-  }
-  if (earliest) throw NonFiniteVertex(earliest->vertex);
-}
-
-/// The answers of all tasks as one, which does not depend on how the tasks went: the
-/// first task that has a crossing tells it, a first-contact query keeps only what may be
-/// the first contact, a yes-or-no query only what the first task found.
-/// @param first_hi  upper end of the earliest bracket
-QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
-                  double first_hi, bool may_repeat) {
-  QueryAnswer answer;
-  const bool first = options.query == ContinuousQuery::kFirst;
-  const bool any = options.query == ContinuousQuery::kAny;
-  std::size_t count = 0;
-  for (const TaskAnswer& task : tasks)
-    if (task.contacts) count += task.contacts->size();
-  // A sink only where something may have to be left out.
-  const bool keeps_all = !first && !any && !may_repeat && count <= options.max_contacts;
-  std::vector<std::deque<FeatureContact>> lists;
-  ContactSink sink(any ? 1 : options.max_contacts, may_repeat);
-  for (TaskAnswer& task : tasks) {
-    answer.counts += task.counts;
-    answer.times.traverse += task.times.traverse;
-    answer.times.test += task.times.test;
-    if (any && (answer.has_crossing || !sink.contacts().empty())) continue;
-    if (task.has_crossing && !answer.has_crossing) {
-      answer.has_crossing = true;
-      answer.crossing = task.crossing;
-    }
-    answer.cut |= task.cut && !first && !any;
-    if (!task.contacts) continue;
-    if (keeps_all) {
-      lists.push_back(std::move(*task.contacts));
-      continue;
-    }
-    for (const FeatureContact& c : *task.contacts)
-      if (!first || c.toc_lo <= first_hi) sink.add(c);
-  }
-  answer.cut |= sink.isCut() && !any;
-  if (!keeps_all) lists.push_back(sink.takeContacts());
-  answer.contacts = SortedContacts(std::move(lists));
-  return answer;
-}
-
 /// How many steps of each work a first contact of a mesh with itself does before all
 /// others, so that an early contact prunes the whole traversal, wherever it is. A work
 /// has about as many steps as triangles; where it has few, one contact is as good as
@@ -360,78 +278,112 @@ std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
   return steps < kLeast ? 0 : steps;
 }
 
-QueryAnswer query(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                  const QueryOptions& options) {
-  const auto start = Clock::now();
-  const bool all = options.query == ContinuousQuery::kAll;
-  const Schedule& schedule = all ? kAllSchedule : kFirstSchedule;
-  QueryOptions task_options = options;
-  // One more, so that it is known whether there were more.
-  if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
-    ++task_options.max_contacts;
+/// A query for contacts. The traversal is divided into tasks; task 0 is what was done to
+/// divide it.
+class ContactQuery {
+ public:
+  ContactQuery(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+               const QueryOptions& options)
+      : options_(options),
+        task_options_(options),
+        schedule_(options.query == ContinuousQuery::kAll ? kAllSchedule : kFirstSchedule),
+        meshes_{a, b, shift,
+                proveSelf(a, b, options.leaves_out_regions, options.num_threads,
+                          proof_times_)},
+        may_repeat_(!a.hasOwners() || !b.hasOwners()) {
+    // One more, so that it is known whether there were more.
+    if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
+      ++task_options_.max_contacts;
+  }
 
-  StageTimes times;
-  SelfProofs proofs;
-  if (&a == &b)
-    proofs = proveSelf(a, options.leaves_out_regions, options.num_threads, times);
-  const MeshPair pair{a, b, shift, std::move(proofs)};
-  QueryProgress progress;
-  std::vector<NodePair> works;
-  std::vector<TaskAnswer> answers(1);
-  const bool parallel = numThreads(options.num_threads) > 1;
-  StageTimes opening_times;
-  const std::size_t sample = sampleOf(a, b, options.query);
-  NarrowPhase leaves(a, b, shift, task_options, &progress, 0);
-  pair.visitPart(schedule, leaves, opening_times, [&](auto& part) {
-    part.divide(works);
-    answers.resize(1 + works.size());
-    answers[0].take(leaves);
-    if (sample > 0) {
-      // Not one of the tasks, which meet all of it again and count it. Earlier than that,
-      // little is left to prune.
-      constexpr double kEarlyEnough = 0x1p-10;
-      leaves.begin(1 + works.size());
-      for (const NodePair& work : works)
-        if (progress.first_hi.load() > kEarlyEnough) part.run(work, sample);
-    }
-    if (parallel) return;
-    // One part for all tasks: what it has read of a rigid tree stays.
-    for (std::size_t i = 0; i < works.size(); ++i) {
-      leaves.begin(i + 1);
-      part.run(works[i]);
-      answers[i + 1].take(leaves);
-    }
-  });
-  answers[0].times = opening_times;
-  if (parallel)
-    parallelFor(works.size(), options.num_threads, [&](std::size_t i) {
-      NarrowPhase task(a, b, shift, task_options, &progress, i + 1);
-      pair.visitPart(schedule, task, answers[i + 1].times,
-                     [&](auto& part) { part.run(works[i]); });
-      answers[i + 1].take(task);
+  QueryAnswer answer() {
+    const bool parallel = numThreads(options_.num_threads) > 1;
+    NarrowPhase leaves = narrowPhase(0);
+    StageTimes times;
+    meshes_.visitPart(schedule_, leaves, times, [&](auto& part) {
+      divide(part, leaves);
+      lookForEarlyContact(part, leaves);
+      // One part for all tasks: what it has read of a rigid tree stays.
+      if (!parallel) runTasks(part, leaves);
     });
+    tasks_[0].times = times;
+    if (parallel) runTasksSideBySide();
+    QueryAnswer answer = merge(tasks_, options_, progress_, may_repeat_);
+    setWallTimes(answer.times);
+    return answer;
+  }
 
-  throwError(answers, options, progress);
-  QueryAnswer answer =
-      merge(answers, options, progress.first_hi.load(), !a.hasOwners() || !b.hasOwners());
-  // Wall time, divided as the tasks' own; what is left is the tests'.
-  const double wall = secondsSince(start);
-  const double sum = answer.times.traverse + answer.times.test;
-  const double share = sum > 0 ? answer.times.traverse / sum : 0;
-  const double in_tasks = std::min(sum, wall - times.traverse);
-  answer.times.traverse = times.traverse + in_tasks * share;
-  answer.times.test = wall - answer.times.traverse;
-  return answer;
-}
+ private:
+  NarrowPhase narrowPhase(std::size_t task) {
+    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shift, task_options_, &progress_,
+                       task);
+  }
+
+  template <typename Part>
+  void divide(Part& part, NarrowPhase& leaves) {
+    part.divide(works_);
+    tasks_.resize(1 + works_.size());
+    tasks_[0].take(leaves);
+  }
+
+  /// Not one of the tasks, which meet all of it again and count it.
+  template <typename Part>
+  void lookForEarlyContact(Part& part, NarrowPhase& leaves) {
+    // Earlier than that, little is left to prune.
+    constexpr double kEarlyEnough = 0x1p-10;
+    const std::size_t steps = sampleOf(meshes_.a, meshes_.b, options_.query);
+    if (steps == 0) return;
+    leaves.begin(1 + works_.size());
+    for (const NodePair& work : works_)
+      if (progress_.first_hi.load() > kEarlyEnough) part.run(work, steps);
+  }
+
+  template <typename Part>
+  void runTasks(Part& part, NarrowPhase& leaves) {
+    for (std::size_t i = 0; i < works_.size(); ++i) {
+      leaves.begin(i + 1);
+      part.run(works_[i]);
+      tasks_[i + 1].take(leaves);
+    }
+  }
+
+  void runTasksSideBySide() {
+    parallelFor(works_.size(), options_.num_threads, [&](std::size_t i) {
+      NarrowPhase leaves = narrowPhase(i + 1);
+      meshes_.visitPart(schedule_, leaves, tasks_[i + 1].times,
+                        [&](auto& part) { part.run(works_[i]); });
+      tasks_[i + 1].take(leaves);
+    });
+  }
+
+  /// Wall time, divided as the tasks' own; what is left is the tests'.
+  void setWallTimes(StageTimes& times) const {
+    const double wall = secondsSince(start_);
+    const double sum = times.traverse + times.test;
+    const double share = sum > 0 ? times.traverse / sum : 0;
+    const double in_tasks = std::min(sum, wall - proof_times_.traverse);
+    times.traverse = proof_times_.traverse + in_tasks * share;
+    times.test = wall - times.traverse;
+  }
+
+  const Clock::time_point start_{Clock::now()};
+  const QueryOptions options_;
+  QueryOptions task_options_;
+  const Schedule& schedule_;
+  StageTimes proof_times_;
+  const MeshPair meshes_;
+  const bool may_repeat_;
+  QueryProgress progress_;
+  std::vector<NodePair> works_;
+  std::vector<TaskAnswer> tasks_;
+};
 
 bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                 const CandidateSink& sink) {
   CandidateCollector leaves(a, b, shift, sink);
   StageTimes times;
-  SelfProofs proofs;
-  if (&a == &b) proofs = proveSelf(a, true, 1, times);
-  const MeshPair pair{a, b, shift, std::move(proofs)};
-  pair.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
+  const MeshPair meshes{a, b, shift, proveSelf(a, b, true, 1, times)};
+  meshes.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
     part.divide(works);
     for (const NodePair& work : works) part.run(work);
@@ -455,14 +407,14 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
 
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  return query(a, a, nullptr, options);
+  return ContactQuery(a, a, nullptr, options).answer();
 }
 
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
   const DefaultFloatingPoint mode;
   const KdopShift shift = relativeShift(a, b);
-  return query(a, b, &shift, options);
+  return ContactQuery(a, b, &shift, options).answer();
 }
 
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink) {

@@ -1,26 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
+//
+// The queries of two meshes, or of one with itself: their tasks, and in what order work
+// is done. Every task does the same for its part of the traversal: boxes against boxes
+// (Traversal), and block by block what is done to the triangle pairs that are left
+// (NarrowPhase, CandidateCollector). What the tasks find becomes one answer in merge().
 #ifndef FCL_CCD_QUERY_DEFORMABLE_QUERY_H
 #define FCL_CCD_QUERY_DEFORMABLE_QUERY_H
 
-#include <vector>
-
 #include "query/candidate_collector.h"
-#include "query/contact_sink.h"
 #include "query/narrow_phase.h"
+#include "query/query_answer.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-struct QueryAnswer {
-  SortedContacts contacts;
-  bool cut{false};
-  bool has_crossing{false};
-  Crossing crossing{};
-  StageCounts counts;
-  StageTimes times;
-};
 
 /// @brief Traverses the tree of a with itself and tests what it finds.
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options);
