@@ -3,17 +3,17 @@
 #
 # bash cmake/check_includes.sh [SOURCE_FOLDER]
 #
-# The folders of src/ are the stages of the pipeline. Fails and names the line when
+# The folders of src/ are the stages of the pipeline. This script fails and names the file when
 #  - a file includes one of a folder that comes later in the order below,
 #  - a file below api/ includes a public header, of which only stage_counts.h is plain data,
 #  - a public header includes an internal one,
-#  - files include each other in a circle (x.h and x.cpp count as one).
+#  - files include each other in a circle (x.h and x.cpp count as one file).
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
 
 order=(base numerics mesh elementary kernels tree self_culling query motion api)
 
-# Lines "file included", of quoted includes.
+# Prints a line "file included" for each quoted include.
 includes() {
   find "$@" \( -name '*.h' -o -name '*.cpp' \) -exec grep -H '^#include "' {} + |
     sed 's|:#include "| |; s|".*||' | LC_ALL=C sort
@@ -28,7 +28,7 @@ complain() {
 for folder in src/*/; do
   folder=$(basename "$folder")
   [[ " ${order[*]} tools " == *" $folder "* ]] ||
-    complain "src/$folder: give it a place in the order of folders in cmake/check_includes.sh"
+    complain "src/$folder: add it to the order of folders in cmake/check_includes.sh"
 done
 
 declare -A rank
@@ -39,19 +39,19 @@ while read -r file included; do
   target=${included%%/*}
   if [[ $target == fcl ]]; then
     [[ $folder == api || ! -e include/$included || $included == */stage_counts.h ]] ||
-      complain "$file: includes $included, a public header, which only api/ does"
+      complain "$file: includes $included, a public header, which only api/ may include"
   elif [[ -n ${rank[$target]+is} ]]; then
-    [[ -e src/$included ]] || complain "$file: includes $included, which is not there"
+    [[ -e src/$included ]] || complain "$file: includes $included, which does not exist"
     ((rank[$target] <= rank[$folder])) ||
       complain "$file: includes $included, from a folder that comes later"
   elif [[ $target != hwy ]]; then
-    complain "$file: includes $included, which is not named by its folder"
+    complain "$file: includes $included; name the file with its folder below src/"
   fi
 done < <(includes "${order[@]/#/src/}")
 
 while read -r file included; do
   [[ $included == fcl/* ]] ||
-    complain "$file: includes $included; public headers include public headers only"
+    complain "$file: includes $included; a public header may include public headers only"
 done < <(includes include)
 
 circle=$(includes "${order[@]/#/src/}" include |

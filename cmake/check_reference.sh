@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Fails when a public function is missing from the reference, after doxygen has made it.
+# Fails when a public function is missing from the reference. Run doxygen first.
 #   bash cmake/check_reference.sh [TAG_FILE]
-# Functions are found in the public headers by their form: a declaration outside of detail
-# begins a line, and so does, two columns in, a public member of DeformableBVHModel.
+# The script finds functions in the public headers by their form: a declaration outside of
+# detail begins at the first column, a public member of DeformableBVHModel at the third.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tags=${1:-build/doc/fcl_ccd.tag}
 
-# Lines "count name": how often a function is declared, and how often it is listed.
+# Lines "count name": how often a function is declared.
 declared=$(
   {
     grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>) [a-z][A-Za-z]+\(' \
@@ -28,7 +28,7 @@ while read -r count name; do
   fi
 done <<<"$declared"
 if [ "$total" -lt 40 ]; then
-  echo "Only $total public functions were found: their form has changed" >&2
+  echo "Only $total public functions were found: their form in the headers has changed." >&2
   exit 1
 fi
 [ $missing -eq 0 ] || exit 1

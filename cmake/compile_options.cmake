@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Compile options of everything in this project; none of them reaches a user's target.
+# Compile options of all targets of this project. None of them reaches a user's target.
 function(fcl_ccd_compile_options target)
-  # Certified decisions count roundings: no product may be fused into a sum, and each
-  # operation is IEEE's, whatever a user asks for in CMAKE_CXX_FLAGS.
+  # Certified decisions count roundings. So no product may be fused into a sum, and each
+  # operation must be an IEEE operation, whatever CMAKE_CXX_FLAGS says.
   target_compile_options(${target} PRIVATE -fno-fast-math -ffp-contract=off -Wall -Wextra -Wpedantic
                                            -Wconversion)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    # FCL's indices are int, and clang's -Wconversion minds signs; gcc's does not.
+    # FCL's indices are int. clang's -Wconversion warns about signs, gcc's does not.
     target_compile_options(${target} PRIVATE -Wno-sign-conversion)
   else()
-    # False alarms of gcc 12 in what it inlines from FCL, Eigen and Boost.
+    # gcc 12 gives false alarms in code that it inlines from FCL, Eigen and Boost.
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
   endif()
   if(FCL_CCD_WERROR)

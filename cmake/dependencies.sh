@@ -1,21 +1,21 @@
 # shellcheck shell=bash
-# Installs the Debian packages that the project needs and the system does not have. Sourced
-# by test.sh, demo.sh and report.sh.
+# Installs the Debian packages that the project needs and the system does not have. test.sh,
+# demo.sh and report.sh source this file.
 
 # fcl_ccd_install_dependencies build|all [PACKAGE ...]
 fcl_ccd_install_dependencies() {
-  # To build everything and run the tests. pkg-config: a test builds with fcl.pc.
+  # These are for the build and the tests. pkg-config: a test builds with fcl.pc.
   local packages=(
     g++ cmake ninja-build make pkg-config
     libfcl-dev libeigen3-dev libboost-dev libhwy-dev libtbb-dev
     libcli11-dev nlohmann-json3-dev libcgal-dev
     libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
   )
-  # The second compiler, the style checks and the reference.
+  # These are for the second compiler, the style checks and the reference.
   if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14 doxygen); fi
   packages+=("${@:2}")
 
-  # On another system CMake says what it cannot find.
+  # On another system CMake names the packages that it cannot find.
   command -v dpkg-query >/dev/null || return 0
 
   local package missing=()

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Inside of another project: whoever there links the target fcl gets both libraries, as with
-# the installed package.
+# Used inside of another project. A target there that links fcl gets both libraries, as with the
+# installed package.
 get_property(imported_here DIRECTORY PROPERTY IMPORTED_TARGETS)
 if(fcl IN_LIST imported_here)
-  # Found by this project: other folders of the program do not see it otherwise.
+  # This project found FCL. Other folders of the program see the target only if it is global.
   set_target_properties(fcl PROPERTIES IMPORTED_GLOBAL TRUE)
   foreach(library IN LISTS stock_libraries ITEMS Eigen3::Eigen)
     if(library IN_LIST imported_here)

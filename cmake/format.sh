@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-# Everything in the source folders, so that files new to git are checked as well.
+# All files of the source folders, also those that git does not know yet.
 files() { find examples include src test \( -name '*.h' -o -name '*.cpp' \) -print0; }
 
 if [ "${1-}" = --fix ]; then

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Installs the library as a package named "fcl" that stands before stock FCL and uses it:
-# a program that asks for FCL gets both when this prefix comes first on its search path.
+# Installs the library as a package named "fcl" that uses stock FCL. If this prefix comes first
+# on the search path, a program that asks for FCL gets both.
 include(CMakePackageConfigHelpers)
 
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl)
 
-# Before all else: the overlay includes the stock header of the same name, so it cannot
-# replace it. An installation that is staged with DESTDIR is looked at in both places: it
-# ends in the prefix.
+# This check comes first. A header of this package includes the stock header of the same name, so
+# it must not replace it. An installation that is staged with DESTDIR is checked in both places,
+# since it ends in the prefix.
 install(CODE "set(include_dir \"${CMAKE_INSTALL_INCLUDEDIR}\")")
 install(
   CODE [[
@@ -17,7 +17,7 @@ install(
     if(EXISTS "${place}/fcl/config.h")
       message(FATAL_ERROR
               "Stock FCL is installed in ${place}, and some of its files would be overwritten. This "
-              "package stands in front of FCL and needs a prefix of its own, for example\n"
+              "package needs a prefix without stock FCL, for example\n"
               "  cmake --install BUILD_FOLDER --prefix $ENV{HOME}/.local/fcl-ccd")
     endif()
   endforeach()
@@ -39,13 +39,13 @@ install(
   PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
-# What a program links besides the library and FCL: nothing where the library is shared.
+# What a program links in addition to the library and FCL: nothing if the library is shared.
 set(FCL_CCD_PRIVATE_LIBS "")
 set(FCL_CCD_STATIC_PACKAGES "")
 set(FCL_CCD_LINKED_FILE $<TARGET_FILE_NAME:fcl_ccd>)
 get_target_property(library_type fcl_ccd TYPE)
 if(library_type STREQUAL "SHARED_LIBRARY")
-  # Not linked where nothing of it is called.
+  # The linker leaves the library out if the program calls nothing of it.
   set(FCL_CCD_LINKED_FILE "AS_NEEDED ( $<TARGET_LINKER_FILE_NAME:fcl_ccd> )")
 else()
   if(FCL_CCD_USE_HIGHWAY)
@@ -58,7 +58,7 @@ else()
   endif()
 endif()
 
-# The package states the version of the FCL that it extends, by FCL's own rule.
+# The version of the package is that of the FCL that it extends, with FCL's own rule.
 write_basic_package_version_file(
   ${CMAKE_CURRENT_BINARY_DIR}/basic-version.cmake
   VERSION ${fcl_VERSION}
@@ -76,10 +76,10 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake
         DESTINATION ${package_dir})
 
-# -lfcl, written out, has to mean both libraries. The name is that of an archive, which a
-# linker takes as it takes libfcl.so, and a program that loads "libfcl.so" at run time does
-# not find: that wants a library, and goes on to FCL's own. The directory of this file is
-# searched for the library first.
+# The flag -lfcl must mean both libraries. So a linker script has the name of an archive,
+# libfcl.a. A linker accepts it in place of libfcl.so. A program that loads "libfcl.so" at run
+# time does not find it, and finds FCL's own library. The linker searches the folder of the
+# script for the library first.
 file(
   GENERATE
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
@@ -89,7 +89,8 @@ GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_FILE_DIR:fcl>/$<TARGET_SONAME_FILE_NAME:
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
         DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
-# pkg-config cannot chain to a package of the same name: fcl.pc repeats what stock says.
+# pkg-config cannot refer to another package of the same name. So fcl.pc repeats the flags of
+# stock FCL.
 file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
      ${CMAKE_INSTALL_PREFIX})
 file(RELATIVE_PATH FCL_CCD_PC_TO_INCLUDE ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig

@@ -3,10 +3,10 @@
 # evaluation and runs its experiments on them; doc/reproduction.md explains the report.
 #   bash cmake/paper.sh                            # everything: two to three hours
 #   bash cmake/paper.sh --short                    # small scenes: minutes
-#   bash cmake/paper.sh --scenes balls alphabets   # some of them
-# Frames go to build/scenes, or build/scenes_short, and are kept: what is there is
-# not simulated again. Tables, pictures and page go to build/paper; those of everything
-# also replace the ones in doc/results. Other options are passed to fcl_ccd_paper.
+#   bash cmake/paper.sh --scenes balls alphabets   # some of the scenes
+# Frames go to build/scenes, or build/scenes_short. They are kept and not simulated again.
+# Tables, pictures and page go to build/paper. When everything is measured they also replace
+# those in doc/results. Other options are passed to fcl_ccd_paper.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
@@ -39,8 +39,8 @@ if $is_short; then
   esac
 fi
 
-# A hundredth of the lion is as large as a tenth of the others, and a tenth of the letters would
-# be too few to break. frames.csv is written last: a scene without it is not complete.
+# A hundredth of the lion is as large as a tenth of the others. A tenth of the letters would be
+# too few to break. frames.csv is written last: a scene without it is not complete.
 fcl_ccd_simulate() {
   local scene=$1 scale=1
   if [ -f "$frames/$scene/frames.csv" ]; then return; fi

@@ -1,12 +1,13 @@
 # shellcheck shell=bash
-# What the reports have in common. Sourced by speed.sh, speed_error.sh and paper.sh; a
-# report NAME is what the program fcl_ccd_NAME writes, tables and pictures are made by
-# test/benchmark/NAME, or test/reproduction/NAME.
+# The parts that the reports have in common. speed.sh, speed_error.sh and paper.sh source this
+# file. The program fcl_ccd_NAME writes the report NAME. The scripts of its tables and pictures
+# are in test/benchmark/NAME or test/reproduction/NAME.
 
 # fcl_ccd_build_report NAME [TARGET ...]
 #
-# Installs missing packages (Debian), builds in Release: the report's program, and TARGETs.
-# Goes to the project's folder. Sets `out`, where the tables are, and `sources`.
+# Goes to the project's folder. Installs missing packages (Debian). Builds the report's program
+# and the TARGETs in Release. Sets `out`, the folder of the tables, and `sources`, the folder of
+# the scripts.
 fcl_ccd_build_report() {
   local name=$1
   shift
@@ -25,8 +26,8 @@ fcl_ccd_build_report() {
 
 # fcl_ccd_begin_report NAME [DATA_FOLDER] [OPTION ...]
 #
-# Builds and measures, which takes `duration`. Sets `is_whole`: whether everything was
-# measured.
+# Builds and measures. `duration` says how long the measurement takes. Sets `is_whole`: whether
+# everything was measured.
 fcl_ccd_begin_report() {
   local name=$1 data=
   shift
@@ -38,14 +39,14 @@ fcl_ccd_begin_report() {
   if [ -n "$data" ] && [ $# -eq 0 ]; then is_whole=true; fi
   fcl_ccd_build_report "$name"
   # shellcheck disable=SC2154
-  echo "== Measuring ($duration when everything is measured)"
+  echo "== Measuring (everything takes $duration)"
   rm -rf "$out"
   "build/release/test/fcl_ccd_$name" "$out" ${data:+--data "$data"} "$@"
 }
 
 # fcl_ccd_end_report PAGE FILE ...
 #
-# Copies the files of `out` to doc/results if `is_whole`, and says where the page is.
+# Copies the files of `out` to doc/results if `is_whole`. Prints where the page is.
 fcl_ccd_end_report() {
   if $is_whole; then
     mkdir -p doc/results

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release, and measures the speed of whole
-# queries, the library's beside the paper's method; doc/speed.md explains the report.
+# queries, of the library and of the paper's method; doc/speed.md explains the report.
 #   bash cmake/speed.sh [DATA_FOLDER] [OPTION ...]
 # Tables, pictures and page go to build/speed. With DATA_FOLDER (scenes/) and no options
-# they also replace those in doc/results; without it the generated scenes are measured
-# alone. Options are passed to fcl_ccd_speed: --groups smooth,size --repeats 3
-# A quarter of an hour; the largest scene needs 6 GiB of memory.
+# they also replace those in doc/results. Without DATA_FOLDER only the generated scenes are
+# measured. Options are passed to fcl_ccd_speed: --groups smooth,size --repeats 3
+# Measuring everything takes a quarter of an hour. The largest scene needs 6 GiB of memory.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release, and measures speed against error of
-# elementary tests, ours beside others; doc/speed_error.md explains the report.
+# elementary tests, ours and others; doc/speed_error.md explains the report.
 #   bash cmake/speed_error.sh [DATA_FOLDER] [OPTION ...]
 # Tables, picture and page go to build/speed_error. With DATA_FOLDER (scenes/, queries/) and
-# no options they also replace those in doc/results; without it only the generated queries
-# are measured. Options are passed to fcl_ccd_speed_error: --solver NAME=COMMAND.
-# About five minutes, nearly all of it the million generated queries.
+# no options they also replace those in doc/results. Without DATA_FOLDER only the generated
+# queries are measured. Options are passed to fcl_ccd_speed_error: --solver NAME=COMMAND.
+# Measuring everything takes about five minutes, mostly for the million generated queries.
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"

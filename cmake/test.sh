@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release and runs the tests.
-#   bash cmake/test.sh           the test suite
-#   bash cmake/test.sh --all     also: sanitizers, clang with -Werror, clang-tidy, the
-#                                reference, a build without vectors and threads, and the
-#                                checks that need clang (what CI runs; CI=true means the same)
-#   bash cmake/test.sh --doors   only: every way to link the package (test/consumer), with
-#                                gcc and clang and each set of flags; half an hour
+#   bash cmake/test.sh           the test suite: 20 to 25 minutes on two cores
+#   bash cmake/test.sh --all     also sanitizers, clang with -Werror, clang-tidy, the
+#                                reference, and a build without vectors and threads (CI runs
+#                                this; CI=true means the same)
+#   bash cmake/test.sh --doors   only every way to link the package (test/consumer), with
+#                                gcc and clang and each set of flags: half an hour or more
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/dependencies.sh
@@ -28,7 +28,8 @@ else
 fi
 jobs=$(nproc)
 if ! $all && ! $doors; then
-  echo "== About 15 to 30 minutes on two cores the first time, nearly all of it compiling"
+  echo "== About 20 to 25 minutes on two cores the first time: building takes 10 to 14,"
+  echo "   the tests 1.5, and the programs that link the package 7"
 fi
 
 build() {
@@ -47,18 +48,19 @@ if $doors; then
   exit
 fi
 
-# The Release run is the last, so that its summary closes the output.
+# The Release run comes last, so that its summary is at the end of the output.
 if $all; then
   build clang-werror
   echo "== clang-tidy"
-  command -v clang-tidy-14 >/dev/null || { echo "clang-tidy-14 is not there" >&2; exit 1; }
-  # Its stderr only counts the findings in other people's headers.
+  command -v clang-tidy-14 >/dev/null ||
+    { echo "clang-tidy-14 is missing. Install the package clang-tidy-14" >&2; exit 1; }
+  # Its stderr only counts findings in headers of other projects.
   find src -name '*.cpp' -print0 |
     xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
   echo "== reference"
   doxygen doc/Doxyfile
   bash cmake/check_reference.sh
-  # What compares with scalar code and brute force.
+  # The tests that compare with scalar code and brute force.
   plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
   echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
   cmake --preset plain
@@ -74,6 +76,6 @@ fi
 echo "== release: tests ($((SECONDS / 60)) min so far)"
 ctest --preset release -j "$jobs"
 if [ ! -d "${FCL_CCD_TEST_DATA:-../shared/data}" ]; then
-  echo "Tests of the public data were skipped. doc/data.md says where the data come from;"
-  echo "FCL_CCD_TEST_DATA=FOLDER bash cmake/test.sh runs them."
+  echo "Tests of the public data were skipped. doc/data.md says where to download the data."
+  echo "This line runs them: FCL_CCD_TEST_DATA=FOLDER bash cmake/test.sh"
 fi

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# The doors through which a program comes to this package: each is built and run.
+# Builds and runs a program for each door. A door is a way in which a program finds and links
+# this package.
 #   run.sh BUILD_DIR COMPILER WORK_DIR [DOOR ...]
-# BUILD_DIR is a built tree of this project; it is installed into WORK_DIR. Without DOORs:
-# all of them, a quarter of an hour with each compiler.
+# BUILD_DIR is the folder of a finished build of this project; it is installed into WORK_DIR.
+# Without DOORs all are run, which takes a quarter of an hour with each compiler.
 set -euo pipefail
 source_dir=$(cd "$(dirname "$0")" && pwd)
 build_dir=$1
@@ -39,7 +40,7 @@ config=$lib/cmake/fcl/fcl-config.cmake
 recorded='^set(_fcl_ccd_stock_dir "\(.*\)")$'
 stock_dir=$(sed -n "s|$recorded|\1|p" "$prefix/$config")
 
-# What a makefile written by hand says of the packages around FCL.
+# The flags of Eigen, libccd and octomap in a makefile that is written by hand.
 read -ra around <<<"$(pkg-config --cflags eigen3 ccd octomap)"
 run_with() { LD_LIBRARY_PATH=$1/$lib "${@:2}"; }
 
@@ -58,48 +59,48 @@ package() {
   cmake -S "$source_dir/package" -B "$work/$1" -DFCL_CCD_PREFIX="$2" "${@:3}" >/dev/null
 }
 
-door_package() { # what the package says of itself, also when configured again
+door_package() { # the properties of the CMake package, also when configured a second time
   package package "$prefix" -DCMAKE_PREFIX_PATH="$prefix"
   package package "$prefix"
 }
 
-door_stock_gone() { # the same when stock FCL is no longer where it was
-  # A second copy of the package lies on the path and must not pass for stock FCL.
+door_stock_gone() { # the same when stock FCL has moved
+  # A second copy of the package is on the path and must not be taken for stock FCL.
   cp -r "$prefix" "$work/prefix2"
   sed -i "s|$recorded|set(_fcl_ccd_stock_dir /gone)|" "$work/prefix2/$config"
   package package2 "$work/prefix2" "-DCMAKE_PREFIX_PATH=$work/prefix2;$prefix"
   package package2 "$work/prefix2"
 }
 
-door_taken_prefix() { # a prefix that has stock FCL is left as it is, staged or not
+door_taken_prefix() { # an installation into a prefix with stock FCL is refused, staged or not
   local taken=$work/taken
   mkdir -p "$work/dest$taken/include/fcl" "$taken/include/fcl"
   touch "$work/dest$taken/include/fcl/config.h"
   if DESTDIR=$work/dest cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
-    fail "installed over stock FCL"
+    fail "The package was installed over stock FCL"
   fi
   [ "$(find "$work/dest" -type f)" = "$work/dest$taken/include/fcl/config.h" ]
-  # Staged elsewhere, it would end over stock FCL all the same.
+  # A staged installation would also end over stock FCL.
   touch "$taken/include/fcl/config.h"
   if DESTDIR=$work/dest2 cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
-    fail "staged for a place that stock FCL has"
+    fail "The package was staged for a prefix that has stock FCL"
   fi
-  if [ -n "$(find "$work/dest2" -type f 2>/dev/null)" ]; then fail "staged some files"; fi
+  if [ -n "$(find "$work/dest2" -type f 2>/dev/null)" ]; then fail "A refused installation has staged files"; fi
 }
 
 door_stock() { # control: with stock FCL alone the program fails
   cmake -S "$source_dir" -B "$work/stock" -Dfcl_DIR="$stock_dir" >/dev/null
   cmake --build "$work/stock" --target app >/dev/null
   if "$work/stock/app" >"$work/stock/output"; then
-    fail "app succeeded with stock FCL: it tests nothing"
+    fail "app succeeded with stock FCL, so it does not test this package"
   fi
 }
 
-door_cmake_target() { # find_package, target fcl; FCL's part in C++11 as in C++17
-  # As some distributions link by default: a library that nothing needs is dropped.
+door_cmake_target() { # find_package and the target fcl
+  # Some distributions link in this way by default: the linker drops a library without calls.
   LDFLAGS=-Wl,--as-needed configure_and_run cmake_target "$prefix"
   grep -q "extended by fcl_ccd .* $prefix/$lib" "$work/cmake_target.log" ||
-    fail "CMake does not say which FCL is used"
+    fail "CMake does not print which FCL it uses"
 }
 
 door_cmake_variables() { # find_package, FCL_INCLUDE_DIRS and FCL_LIBRARIES
@@ -112,17 +113,17 @@ door_pkg_config() {
   read -ra cflags <<<"$(pkg-config --cflags fcl)"
   read -ra libs <<<"$(pkg-config --libs fcl)"
   unset PKG_CONFIG_PATH
-  # With the standard that stock FCL's fcl.pc asks for.
+  # The standard is the one of stock FCL's fcl.pc.
   "$CXX" -std=c++11 "${cflags[@]}" "$source_dir"/{main,fcl_header}.cpp -o "$work/pc_app" \
     -Wl,--as-needed "${libs[@]}"
   run_with "$prefix" "$work/pc_app"
-  # What FCL does not have needs C++17, which fcl.pc leaves to the program.
+  # The names of this package need C++17. fcl.pc does not set it, the program does.
   "$CXX" -std=c++17 "${cflags[@]}" "$source_dir/deforming.cpp" -o "$work/pc_deforming" \
     "${libs[@]}"
   run_with "$prefix" "$work/pc_deforming"
 }
 
-# object NAME SOURCE FLAGS...: compiles a source once, and says where the object is.
+# object NAME SOURCE FLAGS...: compiles a source once, and prints the path of the object.
 object() {
   local out=$work/objects/$1.o source=$2
   shift 2
@@ -147,7 +148,7 @@ by_hand() {
 
 door_plain_flags() { by_hand plain "$prefix" -lfcl_ccd -lfcl; }
 
-door_lfcl() { # -lfcl written out, also by path, for another linker, and in a plugin
+door_lfcl() { # the flag -lfcl; also the library's path, other linkers, and a plugin
   by_hand lfcl "$prefix" -lfcl
   "$CXX" "$(object deforming deforming.cpp -std=c++17)" -o "$work/lfcl_path" \
     "$prefix/$lib/libfcl.a" -lccd
@@ -158,7 +159,7 @@ door_lfcl() { # -lfcl written out, also by path, for another linker, and in a pl
       by_hand "lfcl_$linker" "$prefix" -fuse-ld=$linker -lfcl
     fi
   done
-  # A plugin, as a Python extension is one, may leave symbols open: they have to be there
+  # A plugin, for example a Python extension, may have undefined symbols. They must be found
   # when it is loaded.
   "$CXX" -shared "$(object plugin deforming.cpp -std=c++17 -Dmain=run_deforming)" \
     -o "$work/plugin.so" -L"$prefix/$lib" -lfcl
@@ -177,7 +178,7 @@ door_spaces() { # a prefix with spaces in its path
   by_hand spaces_by_hand "$work/a prefix" -lfcl
 }
 
-door_standards() { # FCL's part from C++11 on, all of it from C++17 on
+door_standards() { # FCL's names from C++11 on, all names from C++17 on
   local standard
   for standard in 11 20; do
     "$CXX" -std=c++$standard -Wall -Wextra -Wpedantic -Werror -I"$prefix/include" \
@@ -191,15 +192,15 @@ door_standards() { # FCL's part from C++11 on, all of it from C++17 on
   run_with "$prefix" "$work/deforming_20"
 }
 
-door_cxx14_message() { # what is new says which standard it needs
+door_cxx14_message() { # in C++14 the names of this package say that they need C++17
   if "$CXX" -std=c++14 -fsyntax-only -I"$prefix/include" "${around[@]}" \
     "$source_dir/deforming.cpp" 2>"$work/cxx14"; then
-    fail "DeformableBVHModel compiles as C++14: the message is not needed"
+    fail "DeformableBVHModel compiles as C++14, so the message is not needed"
   fi
-  grep -q "needs C++17" "$work/cxx14" || fail "the error does not say C++17"
+  grep -q "needs C++17" "$work/cxx14" || fail "The error message does not name C++17"
 }
 
-door_two_consumers() { # two parts of one program that each look for FCL
+door_two_consumers() { # two parts of a program that each call find_package(fcl)
   cmake -S "$source_dir/two_consumers" -B "$work/two" -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
   cmake --build "$work/two" >/dev/null
   "$work/two/first/first"
@@ -228,12 +229,12 @@ every_overload() {
   run_with "$prefix" "$work/flags_$name"
 }
 
-door_flags_cxx11() { # FCL's part in C++11, where memory is not aligned as types ask
+door_flags_cxx11() { # FCL's names in C++11, where new does not align memory as types ask
   "$CXX" -std=c++11 -O1 -march=native -I"$prefix/include" "${around[@]}" \
     "$source_dir/rotation.cpp" -o "$work/flags_cxx11" -L"$prefix/$lib" -lfcl -lccd
   run_with "$prefix" "$work/flags_cxx11"
 }
-door_flags_baseline() { # with and without assertions, as those that follow
+door_flags_baseline() { # with and without assertions, as the next doors
   every_overload baseline -O1
   every_overload baseline_ndebug -O1 -DNDEBUG
 }
@@ -245,10 +246,10 @@ door_flags_native() {
   every_overload native -O1 -march=native
   every_overload native_ndebug -O1 -DNDEBUG -march=native
 }
-# The one of these that CI has time for: Eigen's assertions and the answers.
+# CI has time for this one of them only. It checks Eigen's assertions and the answers.
 door_flags_native_O0() { every_overload native_O0 -O0 -march=native; }
 
-# subproject NAME OPTION...: part of a larger build, which has flags of its own.
+# subproject NAME OPTION...: a part of a larger build that has its own flags.
 subproject() {
   local name=$1 program
   shift
