@@ -95,7 +95,7 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
     (i < 2 ? first : second)
         .frames.at(0, i < 2 ? crossing.edge[i] : crossing.face[i - 2], point[i]);
   const auto vec = [&point](int i) { return toVector<double>(point[i]); };
-  // So that no product of tiny or huge meshes leaves the range of numbers.
+  // Scaled so that no product of tiny or huge meshes leaves the range of numbers.
   const auto scaled = [](const Vector3<double>& v) -> Vector3<double> {
     const double size = v.cwiseAbs().maxCoeff();
     if (!(size > 0) || !std::isfinite(size)) return v;
@@ -106,7 +106,7 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
       scaled(scaled(vec(3) - vec(2)).cross(scaled(vec(4) - vec(2))));
   const double below = (vec(0) - vec(2)).dot(normal),
                above = (vec(1) - vec(2)).dot(normal);
-  // The ends are on different sides; of an edge in the plane the middle.
+  // The ends are on different sides. For an edge in the plane it is the middle.
   const double s = above != below ? below / (below - above) : 0.5;
   out.pos = (vec(0) + std::min(std::max(s, 0.), 1.) * edge).template cast<S>();
   const double length = normal.norm();

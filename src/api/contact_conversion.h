@@ -21,14 +21,15 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          bool with_geometry);
 
 /// @overload
-/// Position and normal as the vertices are and go at toc_lo.
+/// Position and normal are computed from positions and velocities of the vertices at
+/// toc_lo.
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const PreparedMotion& a, const PreparedMotion& b,
                                          bool with_geometry);
 
-/// @brief A crossing at t = 0 as the public type, without o1 and o2. Its position is
-/// where the edge meets the plane of the face.
+/// @brief A crossing at t = 0 as the public type, without o1 and o2. Its position is the
+/// point where the edge crosses the plane of the face.
 template <typename S>
 ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshInstance& a,
                                          const MeshInstance& b, bool with_geometry);

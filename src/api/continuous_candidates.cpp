@@ -33,8 +33,8 @@ ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
   return out;
 }
 
-/// Runs query(inner sink), whose blocks reach the caller's sink in public form and in the
-/// caller's floating-point mode.
+/// Runs query(inner sink). The inner sink converts its blocks to the public type and
+/// hands them to the caller's sink in the caller's floating-point mode.
 template <typename Query>
 bool handOut(const ContinuousCandidateSink& sink, Query&& query) {
   std::fenv_t callers_mode;

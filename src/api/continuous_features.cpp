@@ -39,7 +39,7 @@ ContinuousFeatureTestResult<S> test(ContinuousContactKind kind,
                                     const std::array<const char*, 4>& names,
                                     const Points<S>& t0, const Points<S>& t1,
                                     double toc_err) {
-  // Before floats are converted: other modes may lose the subnormal ones.
+  // Set before floats are converted: other modes may flush subnormal floats to zero.
   const detail::deformable::DefaultFloatingPoint mode;
   toc_err = detail::requireTocErr(toc_err, "toc_err");
   VertexPath x[4];

@@ -14,11 +14,11 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A task: so many vertices.
+/// The number of vertices of a task.
 constexpr std::size_t kBlock = 8192;
 
-/// Calls visit(first, last) for blocks of vertices and returns what it returned, block by
-/// block, after `none`.
+/// Calls visit(first, last) for blocks of vertices. Returns `none`, then its results
+/// block by block.
 template <typename T, typename Visit>
 std::vector<T> ofBlocks(std::size_t num_vertices, int num_threads, const T& none,
                         Visit&& visit) {
@@ -30,7 +30,7 @@ std::vector<T> ofBlocks(std::size_t num_vertices, int num_threads, const T& none
   return results;
 }
 
-/// Without a branch, so that several are looked at together.
+/// It has no branch, so that several numbers are tested at the same time.
 template <typename S>
 bool areFinite(const S* coordinates, std::size_t count) {
   int bad = 0;
@@ -39,7 +39,7 @@ bool areFinite(const S* coordinates, std::size_t count) {
   return bad == 0;
 }
 
-/// Four vertices side by side.
+/// Four vertices at the same time.
 template <typename S>
 struct WideBounds {
   static constexpr std::size_t kWidth = 12;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a model asks of its frames as a whole: arrays of float or double, x y z per
-// vertex.
+// Tests and bounds of whole frames: arrays of float or double, x y z for each vertex.
 #ifndef FCL_CCD_API_COORDINATE_ARRAYS_H
 #define FCL_CCD_API_COORDINATE_ARRAYS_H
 

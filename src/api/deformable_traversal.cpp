@@ -17,10 +17,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// A tree of eight children a node, seen as the binary tree that FCL's traversal walks.
-/// Node i stands for 15 binary nodes 16 i + k, k = 1 for all its children, 2 k and 2 k +
-/// 1 for the two halves of k, 8 + lane for one child; such a child, if it is a node, is
-/// the same as its own k = 1. The root is 0.
+/// A tree with eight children a node, seen as the binary tree that FCL's traversal walks.
+/// Node i stands for 15 binary nodes 16 i + k: k = 1 for all its children, 2 k and 2 k +
+/// 1 for the two halves of k, and 8 + lane for one child. If such a child is a node, it
+/// is the same as its own k = 1. The root is 0.
 class BinaryView {
  public:
   explicit BinaryView(const MeshInstance& mesh) : tree_(mesh.tree) {
@@ -70,7 +70,7 @@ class BinaryView {
 
   const MovingKdopNode& node(int b) const {
     if (tree_) return tree_->node(b / 16);
-    // It may have to be made.
+    // The reader may have to make the node.
     const DefaultFloatingPoint mode;
     return reader_->node(b / 16);
   }
@@ -81,10 +81,10 @@ class BinaryView {
 
 }  // namespace deformable
 
-/// A traversal that is ready; made whole before it takes the place of another.
+/// A traversal that is ready. It is complete before it replaces another one.
 template <typename S>
 struct DeformableTraversal<S>::State {
-  /// @param prepared2  null: the first with itself
+  /// @param prepared2  null: the first mesh with itself
   State(const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2,
         std::unique_ptr<deformable::PreparedMesh> prepared1,
         std::unique_ptr<deformable::PreparedMesh> prepared2,
@@ -131,7 +131,7 @@ struct DeformableTraversal<S>::State {
   std::unique_ptr<deformable::NarrowPhase> test;
   const bool enable_contact;
   CollisionResult<S>& result;
-  /// What the result held before.
+  /// The contacts that the result had before.
   const CollisionResult<S> earlier;
   std::size_t reported{0};
   bool crossing_reported{false};
@@ -255,7 +255,7 @@ bool DeformableTraversal<S>::isDone() const {
   return state_->test->isDone();
 }
 
-/// Brings the result up to date: contacts that are new, or, once some had to be dropped,
+/// Brings the result up to date: adds the new contacts or, once some were dropped, writes
 /// all that are kept.
 template <typename S>
 void DeformableTraversal<S>::report() {
@@ -268,7 +268,7 @@ void DeformableTraversal<S>::report() {
     return deformable::toContact(out);
   };
   const auto& contacts = state.test->sink().contacts();
-  // A crossing stands in the result only while there is no contact.
+  // A crossing is in the result only while there is no contact.
   const bool drop_crossing = state.crossing_reported && !contacts.empty();
   if (state.test->sink().isCut() || drop_crossing) {
     state.result = state.earlier;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's motions in double, which are compiled in libfcl, read where their layout is
-// libfcl's.
+// Reads FCL's motions in double. They are compiled in libfcl, which decides their layout.
 #include <cstddef>
 #include <new>
 #include <typeinfo>
@@ -25,7 +24,7 @@ PoseNumbers<double> toNumbers(const Transform3<double>& tf) {
   return pose;
 }
 
-/// The transforms that a motion of FCL's was made from, which it keeps to itself.
+/// Reads the transforms from which a motion of FCL was made, which are protected.
 template <typename Motion>
 class MotionEnds : public Motion {
  public:
@@ -35,13 +34,13 @@ class MotionEnds : public Motion {
   }
 };
 
-/// Of this class and of none derived from it, which may move otherwise.
+/// A derived class may move differently: only this class itself is read.
 template <typename Motion>
 const Motion* as(const MotionBase<double>& motion) {
   return typeid(motion) == typeid(Motion) ? static_cast<const Motion*>(&motion) : nullptr;
 }
 
-/// More than Eigen aligns to on any machine, and so right for a libfcl compiled for any.
+/// More than Eigen's alignment on any machine, and so right for any libfcl.
 constexpr std::size_t kMostAlignment = 64;
 
 void integrate(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2]) {
@@ -55,19 +54,19 @@ void integrate(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2])
 
 template <typename Motion>
 void integrateCopy(const Motion& motion, PoseNumbers<double> (&pose)[2]) {
-  // integrate() changes the motion, const or not.
+  // integrate() changes the motion, although it is const.
   // NOLINTNEXTLINE(performance-unnecessary-copy-initialization)
   const Motion copy(motion);
   integrate(copy, pose);
 }
 
-/// Whether libfcl lays its motions out as this file does: asked of one that libfcl makes,
-/// by what it says of itself and what is read.
+/// Whether libfcl's layout of motions is that of this file. libfcl makes a motion, and
+/// its own functions are compared with what is read here.
 bool isLaidOutAsHere() {
   alignas(kMostAlignment) Transform3<double> beg = Transform3<double>::Identity();
   alignas(kMostAlignment) Transform3<double> end = beg;
   end.translation() = Vector3<double>(1, 2, 3);
-  // With room for more than this file believes it to need.
+  // The memory is larger than the size that this file knows.
   using Motion = InterpMotion<double>;
   alignas(kMostAlignment) unsigned char memory[2 * sizeof(Motion)] = {};
   auto* motion = new (memory) Motion(beg, end);
@@ -77,8 +76,8 @@ bool isLaidOutAsHere() {
                               pose[1].translation[1] == 2 && pose[1].translation[2] == 3;
   motion->~Motion();
 
-  // Where Eigen aligns to 32 bytes this class alone differs, by a gap before its last
-  // member.
+  // If Eigen aligns to 32 bytes, this is the only class that differs: it has a gap before
+  // its last member.
   using Translation = TranslationMotion<double>;
   alignas(kMostAlignment) unsigned char more_memory[2 * sizeof(Translation)] = {};
   auto* translation = new (more_memory) Translation(beg, end);
@@ -94,7 +93,7 @@ bool isLaidOutAsHere() {
 
 namespace {
 
-/// The control points of a spline, which it keeps to itself.
+/// Reads the control points of a spline, which are protected.
 class SplineControl : public SplineMotion<double> {
  public:
   static void read(const SplineMotion<double>& motion, double (&control)[2][4][3]) {
@@ -108,8 +107,9 @@ class SplineControl : public SplineMotion<double> {
   }
 };
 
-/// Of a libfcl compiled for another machine only its own functions know its motions: the
-/// ends of all, but neither a reference point nor control points.
+/// If libfcl was compiled for another machine, only its own functions can read its
+/// motions. They give the ends of all motions, but no reference point and no control
+/// points.
 bool readForeignMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
   const bool is_turn = as<InterpMotion<double>>(motion),
              is_screw = as<ScrewMotion<double>>(motion),

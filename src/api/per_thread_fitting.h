@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL answers a discrete query of a model whose volumes cannot be turned with a copy of
-// the model, whose tree it builds anew in the query's pose. The copies share the model's
-// fitter and splitter, and FCL's own keep what a build is about in themselves: two
-// threads that ask about one model would write to it at the same time. These keep it for
-// each thread.
+// FCL cannot turn some volumes. For a discrete query of such a model it makes a copy and
+// builds its tree in the query's pose. The copies share the fitter and the splitter of
+// the model. FCL's own classes keep the state of a build in themselves, so that two
+// threads that query one model would write to it at the same time. The classes here keep
+// this state for each thread.
 #ifndef FCL_CCD_API_PER_THREAD_FITTING_H
 #define FCL_CCD_API_PER_THREAD_FITTING_H
 

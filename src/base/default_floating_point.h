@@ -8,9 +8,9 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief While it lives, the thread computes in the default floating-point mode, which
-/// all error bounds assume (round to nearest, subnormals kept); then the caller's mode
-/// and flags are back.
+/// @brief While this object exists, the thread computes in the default floating-point
+/// mode (round to nearest, subnormals kept), which all error bounds assume. Its
+/// destructor restores the caller's mode and flags.
 class DefaultFloatingPoint {
  public:
   DefaultFloatingPoint() {
@@ -25,8 +25,8 @@ class DefaultFloatingPoint {
   std::fenv_t saved_;
 };
 
-/// @brief While it lives, a mode that was saved before is back, for a callback of the
-/// caller's; then the default mode is.
+/// @brief While this object exists, the thread has the caller's saved mode, for a
+/// callback of the caller. Its destructor restores the default mode.
 class CallersFloatingPoint {
  public:
   explicit CallersFloatingPoint(const std::fenv_t& mode) { std::fesetenv(&mode); }

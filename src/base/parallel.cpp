@@ -51,8 +51,8 @@ void parallelFor(std::size_t count, int num_threads,
         },
         tbb::simple_partitioner());
   };
-  // Isolated: while the caller waits it does none of its own other tasks, which may want
-  // what it holds.
+  // Isolated: while the caller waits, it does not start its own other tasks. They may
+  // need a lock that it holds.
   if (threads == tbb::this_task_arena::max_concurrency())
     tbb::this_task_arena::isolate(run);
   else

@@ -11,24 +11,24 @@ namespace detail {
 namespace deformable {
 
 /// @brief Calls visit(0) ... visit(count - 1), each once, in the default floating-point
-/// mode; on one thread in this order and without a task. An exception of the lowest index
-/// is passed on once no call runs.
-/// @param num_threads  at most so many; 0: as many as the task arena around has. Without
-/// oneTBB always one.
+/// mode. One thread does it in this order and without a task. If calls throw, the
+/// exception of the lowest index is thrown after all running calls have ended.
+/// @param num_threads  the largest number of threads; 0: as many as the task arena around
+/// the call has. Without oneTBB it is always one.
 void parallelFor(std::size_t count, int num_threads,
                  const std::function<void(std::size_t)>& visit);
 
-/// @brief Calls work() once, on this thread. What it does with parallelFor() and the same
-/// number shares one task arena, which each call would make for itself otherwise. Without
-/// such calls, or for one thread, nothing is made.
+/// @brief Calls work() once, on this thread. All its calls of parallelFor() with the same
+/// number share one task arena. Otherwise each call would make its own. Without such
+/// calls, or for one thread, no arena is made.
 void inArena(int num_threads, const std::function<void()>& work);
 
-/// @brief How many threads parallelFor() uses.
+/// @brief The number of threads that parallelFor() uses.
 int numThreads(int num_threads);
 
-/// @brief parallelFor() over the blocks of 0 ... count - 1, all of one length but for the
-/// last: calls visit(first, last) for each. The blocks are the same for any number of
-/// threads.
+/// @brief Divides 0 ... count - 1 into blocks of one length (the last may be shorter),
+/// and calls visit(first, last) for each by parallelFor(). The blocks are the same for
+/// any number of threads.
 template <typename Visit>
 void parallelForBlocks(std::size_t count, std::size_t length, int num_threads,
                        Visit&& visit) {

@@ -12,13 +12,13 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Leaves elements that are given no value without one.
+/// @brief An allocator that does not initialize elements without a given value.
 template <typename T>
 struct DefaultInitAllocator : std::allocator<T> {
   static_assert(std::is_trivial<T>::value, "what is left without a value");
 
   DefaultInitAllocator() = default;
-  // Between types, as every allocator: a library's vector may need it for its own.
+  // Allocators convert between types: a vector may allocate helper types with this.
   template <typename U>
   DefaultInitAllocator(const DefaultInitAllocator<U>&) noexcept {}
 
@@ -37,7 +37,8 @@ struct DefaultInitAllocator : std::allocator<T> {
   }
 };
 
-/// @brief A vector whose resize() writes nothing: for arrays that are filled afterwards.
+/// @brief A vector whose resize() does not write elements, for arrays that are filled
+/// later.
 template <typename T>
 using UninitializedVector = std::vector<T, DefaultInitAllocator<T>>;
 

@@ -47,8 +47,8 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
   }
 }
 
-/// The least or the largest of all, or their sum; the numbers are used up. Two by two:
-/// each of a chain would wait for the one before.
+/// The least, the largest or the sum of all numbers, which are overwritten. They are
+/// combined two by two: in a chain each operation would wait for the one before.
 template <std::size_t kCount, typename Operation>
 HWY_INLINE Floats fold(Floats (&x)[kCount], const Operation& operation) {
   for (std::size_t half = kCount / 2; half > 0; half /= 2)
@@ -204,7 +204,7 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
   }
   left &= ~signs(apart);
   if (left == 0) return 0;
-  // A window that is cut at one end only is not empty.
+  // Only a window that is cut at both ends can be empty.
   if ((signs(request.timed ? cut0 : bothNegative(cut0, cut1)) & left) == 0) {
     store(whereNegative(cut0, broadcast<kEight>(FLT_MIN)), earliest);
     return left;
@@ -334,8 +334,9 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
   return first + swapHalves(second);
 }
 
-/// Leaves the codes of which keeps(code) is true; returns how many. Sixteen at a time:
-/// where one goes depends on all before, and whoever reads on would wait for it.
+/// Keeps the codes for which keeps(code) is true, and returns their number. It does
+/// sixteen at a time: the place of a code depends on all codes before it, and later reads
+/// would wait for each of them.
 template <typename Keeps>
 HWY_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
                                  const Keeps& keeps) {
@@ -361,7 +362,7 @@ HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* 
   const auto at1 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 1>(pairs[code / 16], code % 16, shift, turned_shift);
   };
-  // A loop for each look at the boxes: none has a branch that depends on them.
+  // One loop for each comparison of the boxes, so that no branch depends on the boxes.
   if (gaps)
     count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
       return isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));

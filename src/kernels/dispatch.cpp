@@ -59,8 +59,9 @@ const Kernels& kernels() {
 std::vector<const Kernels*> allKernels() {
   std::vector<const Kernels*> all;
 #if defined(FCL_CCD_USE_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1)) != 0
-  // A choice of our own: Highway's is the whole process's. The best has the lowest bit;
-  // no bit at all chooses what needs no vector instructions.
+  // The library makes its own choice, since Highway's is valid for the whole process. The
+  // best target has the lowest bit. Without any bit the code without vector instructions
+  // is used.
   hwy::ChosenTarget choice;
   for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; true;
        left &= left - 1) {

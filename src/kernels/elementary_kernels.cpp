@@ -21,7 +21,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// A difference of two points that moves linearly, at the ends of the window, and its
+/// A difference of two points that move linearly: at the ends of the window, with its
 /// norm over the step.
 struct Segments {
   Vectors l, h;
@@ -42,7 +42,7 @@ class EightFeatures {
   }
 
  private:
-  /// Of both triangles, and which of them the points are.
+  /// The vertices of both triangles, and which of them are the points.
   const TreeVertex* const* vertices_[kEight];
   const unsigned char* corners_[kEight];
 };
@@ -66,7 +66,7 @@ struct Points {
     for (std::size_t i = 0; i < 4; ++i) {
       const TreeVertex* x[kEight];
       for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);
-      // Straight to where they stay: by way of loadPaths() tests take 2% longer.
+      // Stored directly in their place: through loadPaths() tests take 2% longer.
       loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, t0[i].x,
                   t0[i].y, t0[i].z);
       loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, t1[i].x,
@@ -75,8 +75,8 @@ struct Points {
   }
 };
 
-/// As Difference::at(); 0 and 1 need no case of their own, but what is not finite in one
-/// frame shows at all times.
+/// As Difference::at(). 0 and 1 need no special case, but a number that is not finite in
+/// one frame makes the result not finite at all times.
 HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
   const Doubles s = broadcast<kEight>(1.) - t;
   return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
@@ -201,7 +201,8 @@ struct Pairs {
         q(differences(x, 3, 0)) {}
 };
 
-/// Where all inside conditions are surely met, and where one is surely not.
+/// The lanes in which all inside conditions are certainly met, and those in which one is
+/// certainly not.
 struct Sides {
   DoubleMask positive, negative;
 
@@ -241,11 +242,11 @@ HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles
   return sides;
 }
 
-/// Where cubics that change sign are zero: false position, then Halley's method, whose
-/// steps leave the third power of a distance, and halving where it leaves the bracket.
-/// Each lane until the square of its step is within its tolerance: no lane's answer
-/// depends on the others. What follows from it is for the caller to prove.
-/// @param open  the lanes that count, a bit each
+/// Roots of cubics that change sign: by false position, then Halley's method, whose error
+/// is the third power of the one before, and by halving if a step leaves the bracket.
+/// Each lane stops when the square of its step is within its tolerance, so that no lane
+/// depends on the others. The caller has to prove what it concludes from the result.
+/// @param open  the lanes that are computed, a bit each
 HWY_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance) {
   constexpr int kMaxSteps = 24;
   const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.),
@@ -288,8 +289,9 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const unsigned open = bits(f.changesSign());
   if (open == 0) return answers;
 
-  // [a, b] around the root: before it and behind it there is none. A step d leaves some
-  // d^3; where other roots are near, many times that: hence d^2 far below the width.
+  // [a, b] is around the root; outside of it there is no other. A step d leaves an error
+  // of about d^3, and many times that if other roots are near. So d^2 must be far below
+  // the width.
   const Doubles half = broadcast<kEight>(0.25 * toc_err);
   const Doubles t = lo + root(f, open, broadcast<kEight>(0x1p-10) * half / width) * width;
   const Doubles a = max(lo, t - half), b = min(hi, t + half);
@@ -312,8 +314,8 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   return answers;
 }
 
-/// Where volumes are positive and where they are negative beyond doubt, as in
-/// orientation().
+/// The lanes in which volumes are certainly positive, and those in which they are
+/// certainly negative, as in orientation().
 struct Orientations {
   DoubleMask positive, negative;
 
@@ -336,8 +338,8 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
-/// The points of eight triangle pairs at t = 0, relative to the first, and by how much
-/// those of the two come closer to each other at most along an axis in the step.
+/// The points of eight triangle pairs at t = 0, relative to the first point, and the
+/// largest approach of the two triangles along an axis during the step.
 struct TrianglePoints {
   Vectors x[6];
   Doubles norm, approach;
@@ -362,8 +364,8 @@ struct TrianglePoints {
   }
 };
 
-/// Where d separates the triangles, whatever direction that is, by more than `approach`
-/// along x, y and z can bridge.
+/// The lanes in which the direction d separates the triangles by more than an approach of
+/// `approach` along x, y and z can bridge.
 HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
                                    const Doubles& approach) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
@@ -416,8 +418,9 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
   return open & ~beside;
 }
 
-/// Where the cubics that have one sign at 0 and at 1 come nearest to zero in between, as
-/// far as doubles tell: of b0's sign, the lowest point; 1/2 where there is none.
+/// The times at which cubics with the same sign at 0 and at 1 come nearest to zero in
+/// between, in doubles: the lowest point relative to the sign of b0; 1/2 if there is
+/// none.
 HWY_INLINE Doubles nearestToZero(const Cubics& f) {
   const Doubles zero = broadcast<kEight>(0.), three = broadcast<kEight>(3.),
                 half = broadcast<kEight>(0.5);

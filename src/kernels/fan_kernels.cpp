@@ -49,7 +49,7 @@ class ShortFans {
   MovingNormals normals_[VertexFans::kShort];
 };
 
-/// Those of long ones, made whenever they are asked for.
+/// The spokes and normals of long fans, which are computed when they are needed.
 class LongFans {
  public:
   HWY_INLINE LongFans(const TreeVertex* vertices, const EightFans& fans)
@@ -69,13 +69,13 @@ class LongFans {
   MovingVectors center_;
 };
 
-/// On which side of a ray spokes of eight fans lie at one time: a bit a fan where they
-/// lie before (after) it beyond doubt, turning the fan's way.
+/// The side of a ray on which spokes of eight fans lie at one time: a bit for each fan
+/// whose spoke lies certainly before (after) it in the direction of the fan.
 struct SideOfRay {
   unsigned before, after;
 };
 
-/// @param across  its product with what lies before the ray is above the bound
+/// @param across  a direction whose product with spokes before the ray is above the bound
 HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
                                const Doubles& bound, const Doubles& minus_bound) {
   const Doubles g = dot(spoke, across);
@@ -109,8 +109,8 @@ HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) 
   const unsigned left = bits(facing);
   if (left == 0) return 0;
 
-  // The ray: through the middle of the first sector of a closed fan; away from an open
-  // one.
+  // The ray goes through the middle of the first sector of a closed fan. It points away
+  // from an open fan.
   Vectors ray = {zero, zero, zero};
   if (is_closed) {
     const Vectors p = fans.spoke(0).t0, q = fans.spoke(1).t0;
@@ -131,7 +131,7 @@ HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) 
                         HWY_ATTR { return sideOfRay(spoke, across, bound, minus_bound); };
 
   if (is_closed) {
-    // Those go round once of which one sector has the ray.
+    // A fan goes round once if exactly one sector contains the ray.
     const SideOfRay first = side(fans.spoke(0).t0);
     SideOfRay at = first;
     unsigned decided = ~0U, once = 0, again = 0;
@@ -145,8 +145,8 @@ HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) 
     }
     return left & in_range & decided & once & ~again;
   }
-  // No sector ever covers the ray: each has its first spoke after it all the time, or its
-  // last one before.
+  // No sector ever covers the ray: its first spoke is after the ray all the time, or its
+  // last spoke before it.
   unsigned free = ~0U, after = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const MovingVectors spoke = fans.spoke(i);

@@ -142,8 +142,8 @@ HWY_INLINE Lanes<T, N> swapHalves(const Lanes<T, N>& a) {
   return out;
 }
 
-/// Where the sign bit is set. As integers, since what bothNegative() leaves is no number
-/// but for its sign.
+/// The lanes whose sign bit is set. Compared as integers, since only the sign of the
+/// result of bothNegative() has a meaning.
 template <typename T, std::size_t N>
 HWY_INLINE LaneMask<T, N> isNegative(const Lanes<T, N>& a) {
   const typename Lanes<T, N>::Tag tag;
@@ -187,7 +187,8 @@ HWY_INLINE bool isAll(const LaneMask<T, N>& mask) {
   return hn::AllTrue(typename Lanes<T, N>::Tag(), all);
 }
 
-/// Rounded to floats; beyond their range FLT_MAX or infinity, whatever the machine has.
+/// Rounded to floats. Beyond their range the result is FLT_MAX or infinity, as the
+/// machine does it.
 template <std::size_t N>
 HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
   const typename Lanes<float, N>::Tag tag;
@@ -223,7 +224,7 @@ HWY_INLINE void loadTwoEach(const float* from, Lanes<double, kEight>& first,
   }
 }
 
-/// Of 16 numbers those whose bit is set, in their order; up to 16 are written.
+/// Copies those of 16 numbers whose bit is set, in their order. Up to 16 are written.
 /// @param numbers  numbers(tag, i): as many as the tag has lanes, from number i on
 template <typename Numbers>
 HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32_t* to) {
@@ -238,8 +239,8 @@ HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32
   }
 }
 
-/// Of the 16 numbers at `from` those whose bit is set; up to 16 are written. They may be
-/// written where they are, or before that.
+/// Copies those of the 16 numbers at `from` whose bit is set. Up to 16 are written, to
+/// the same place or before it.
 HWY_INLINE void storeSelected(unsigned mask, const std::uint32_t* from,
                               std::uint32_t* to) {
   const auto numbers = [from](auto tag, std::size_t i)
@@ -247,8 +248,8 @@ HWY_INLINE void storeSelected(unsigned mask, const std::uint32_t* from,
   storeWhereSet(mask, numbers, to);
 }
 
-/// first + i for the bits i of a mask of 16, in ascending order; up to 16 numbers more
-/// are written.
+/// Writes first + i for the set bits i of a mask of 16, in ascending order. Up to 16 more
+/// numbers may be written.
 HWY_INLINE void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
   static constexpr std::uint32_t kNumbers[kSixteen] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                        8, 9, 10, 11, 12, 13, 14, 15};

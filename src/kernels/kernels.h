@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The inner loops, compiled for every instruction set and chosen at run time. All give
-// the same bits.
+// The inner loops. They are compiled for every instruction set, and one is chosen at run
+// time. All give the same bits.
 #ifndef FCL_CCD_KERNELS_KERNELS_H
 #define FCL_CCD_KERNELS_KERNELS_H
 
@@ -20,38 +20,38 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A moving box, row r of MovingKdopNode at t0[r * stride] and t1[r * stride]; the
-/// stride is 1, or that of a box in a node.
+/// @brief A moving box. Row r of MovingKdopNode is at t0[r * stride] and t1[r * stride].
+/// The stride is 1 for a single box and kInNode for a box in a node.
 struct BoxView {
   static constexpr std::size_t kInNode = MovingKdopNode::kWidth;
   const float* t0;
   const float* t1;
   std::size_t stride;
-  /// As that of a child.
+  /// As MovingKdopNode::displacement.
   float displacement;
 };
 
-/// @brief Whether what is apart at t = 0 can be left out of a query to which nothing
-/// after `latest` matters. Of a larger part of the step it is not worth a look: motion
-/// bridges most of what is between boxes then, and their other frame tells more.
+/// @brief Whether a query to which nothing after `latest` matters should first compare
+/// boxes at t = 0. For a larger part of the step this does not pay: motion bridges most
+/// gaps between boxes, and the box at t = 1 tells more.
 inline bool isEarly(double latest) { return latest < 0x1p-4; }
 
 /// @brief Which overlaps of boxes matter to a query.
 struct OverlapRequest {
-  /// Whether it matters from when on boxes overlap; false: only whether they do at t = 0
-  /// does. `earliest` is 0 for those that do, and for the others a number above 0,
-  /// FLT_MIN or the right one.
+  /// Whether the query needs the time from which on boxes overlap. If false, it only
+  /// needs to know whether they overlap at t = 0: `earliest` is 0 for boxes that do, and
+  /// a number above 0 for others.
   bool timed;
-  /// Boxes a and b are left out if the gap between them at t = 0, along one of the
-  /// directions, is larger than share * (a.displacement + b.displacement) + slack;
-  /// infinity: none are.
+  /// Boxes a and b are left out if their gap at t = 0 along one of the directions is
+  /// larger than share * (a.displacement + b.displacement) + slack. Infinity: none are
+  /// left out.
   float share{std::numeric_limits<float>::infinity()};
   float slack{0};
 
-  /// @brief Leaves out boxes that do not meet until `latest`, if that isEarly(). Two
-  /// coordinates enter a direction; 2^-20 is more than what the kernels round: three
-  /// operations and the sum of two half-axes, 2^-24 each.
-  /// @param pose_displacement  of both meshes together
+  /// @brief Leaves out boxes that do not overlap until `latest`, if that isEarly(). A
+  /// direction has at most two coordinates, hence the factor 2. 2^-20 is more than the
+  /// rounding of the kernels: three operations and the sum of two half-axes, 2^-24 each.
+  /// @param pose_displacement  sum of the displacements of both poses
   void leaveOutAfter(double latest, double pose_displacement) {
     const double twice = 2 * (1 + 0x1p-20) * latest;
     share =
@@ -61,31 +61,31 @@ struct OverlapRequest {
   bool leavesOut() const { return share <= FLT_MAX; }
 };
 
-/// @brief Two nodes whose triangles are compared, or, without a shift, one twice: then
-/// each pair of different triangles once.
+/// @brief Two nodes whose triangles are compared. If both are the same node and there is
+/// no shift, each pair of different triangles is compared once.
 struct LeafPairing {
   const MovingKdopNode& a;
   const MovingKdopNode& b;
-  /// Triangles of a that count.
+  /// The triangles of a that are compared, a bit each.
   unsigned lanes;
   /// Added to the boxes of a: row r in frame k, shift[k][r]; null: none.
   const float (*shift)[16];
-  /// For each vertex of the tree, whether its fan is embedded: pairs of triangles in one
-  /// are left out; null: unknown.
+  /// For each vertex of the tree, whether its fan is embedded. Pairs of triangles in the
+  /// same embedded fan are left out. Null: no fan is known to be embedded.
   const std::uint8_t* embedded;
   OverlapRequest request;
 };
 
-/// @brief Pairs of children of two nodes, and from when on they overlap.
+/// @brief Pairs of children of two nodes, and the times from which on they overlap.
 struct LanePairs {
   static constexpr std::size_t kWidth = MovingKdopNode::kWidth;
   /// Child i of one and j of the other: bit kWidth * i + j.
   std::uint64_t pairs;
-  /// For those that are set.
+  /// Set for the pairs whose bit is set.
   float earliest[kWidth][kWidth];
-  /// Boxes that were compared, in all calls.
+  /// The number of boxes that were compared, in all calls.
   std::uint64_t compared{0};
-  /// Pairs that overlap and lie in an embedded fan, in all calls.
+  /// The number of pairs that overlap and lie in an embedded fan, in all calls.
   std::uint64_t fan_culled{0};
 };
 
@@ -114,7 +114,7 @@ inline void crossingPoints(const TrianglePair* pairs, std::uint32_t code,
   for (int i = 0; i < 3; ++i) x[2 + i] = face[i];
 }
 
-/// @brief The windows of pairs of features as the tests take them, with a margin.
+/// @brief The windows of pairs of features, with a margin for the tests.
 inline double windowLo(const TimeWindow& w) { return std::max(w.lo - kWindowMargin, 0.); }
 inline double windowHi(const TimeWindow& w) { return std::min(w.hi + kWindowMargin, 1.); }
 
@@ -134,7 +134,7 @@ struct EightPairs {
   }
 };
 
-/// @brief Eight fans of equally many spokes, all closed or all open.
+/// @brief Eight fans with the same number of spokes, all closed or all open.
 struct EightFans {
   const TreeVertex* center[8];
   const std::uint32_t* spokes[8];
@@ -143,8 +143,8 @@ struct EightFans {
   bool is_closed;
 };
 
-/// @brief What coplanarityInDoubles() says of up to eight pairs, a bit each; where
-/// neither is set, kNever.
+/// @brief The answers of coplanarityInDoubles() for up to eight pairs, a bit each. If
+/// neither bit of a pair is set, the answer is kNever.
 struct EightCoplanarities {
   unsigned possible, unclear;
 };
@@ -157,8 +157,8 @@ struct EightAnswers {
 };
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
-/// coplanar, and lanes that may be plain cases in two parts, a bit each; where to divide
-/// the windows.
+/// coplanar; lanes that may be plain cases in two parts; and the times at which to divide
+/// their windows.
 struct EightDivisions {
   unsigned never_inside, divisible;
   double at[8];
@@ -181,95 +181,98 @@ struct Kernels {
   void (*fitPoints)(const double (&offsets)[3][8], int frame, std::size_t count,
                     TreeVertex* vertices);
 
-  /// Sets the boxes and displacements of a node's children, from those of the vertices
-  /// and of the nodes below: the smallest that hold for all of them.
+  /// Sets the boxes and displacements of a node's children: the smallest that contain the
+  /// vertices and the nodes below.
   /// @param is_still  the boxes of these are the same in both frames
   /// @param[out] extents  of each, along all directions, in both frames
   void (*fitNode)(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
                   MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]);
 
-  /// Which children of the node overlap the box at some time, a bit each, and from when
-  /// on: overlapWindow() of each, unless the request leaves it out.
+  /// Finds the children of the node that overlap the box at some time, a bit each, and
+  /// the times from which on they do: overlapWindow() of each, unless the request leaves
+  /// it out.
   unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
                               const OverlapRequest& request,
                               float (&earliest)[MovingKdopNode::kWidth]);
 
-  /// Pairs of triangles among the children of two nodes, or of one, that overlap at some
-  /// time.
+  /// Finds the pairs of triangles among the children of two nodes, or of one node, that
+  /// overlap at some time.
   void (*overlapTriangles)(const LeafPairing& leaves, LanePairs& out);
 
-  /// Lists the pairs of features that bits of masks stand for, a mask for each triangle
-  /// pair: codes, in ascending order. Returns how many; writes up to 16 more.
-  /// @param kept  bits that count
+  /// Lists the pairs of features whose bits are set in the masks of triangle pairs, as
+  /// codes in ascending order. Returns their number. It may write up to 16 codes more.
+  /// @param kept  the bits that are listed
   std::size_t (*listFeatures)(const std::uint16_t* masks, std::size_t count,
                               unsigned kept, std::uint32_t* codes);
 
-  /// Leaves, of pairs of features of one kind, those whose moving boxes overlap, with
-  /// their windows: overlapWindow() of each. Returns how many.
+  /// Keeps, of pairs of features of one kind, those whose moving boxes overlap, with
+  /// their windows: overlapWindow() of each. Returns their number.
   /// @param shift, turned_shift  added to boxes of a's features, and the same with the
   /// halves exchanged; null: none
   /// @param latest  windows that begin later are left out
-  /// @param gaps  for each triangle pair: its features are left out if they are further
-  /// apart at t = 0, along one of the directions; null: none are
+  /// @param gaps  a gap for each triangle pair. Its features are left out if they are
+  /// further apart than this at t = 0 along one of the directions. Null: none are left
+  /// out
   /// @param codes  with room for 15 more, which may be written
   std::size_t (*cullFeatures)(ContinuousContactKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
                               float latest, const float* gaps, std::uint32_t* codes,
                               std::size_t count, TimeWindow* windows);
 
-  /// Leaves, of pairs of an edge and a face, those whose boxes overlap at t = 0; bits 0-2
-  /// of the code for an edge of a, 3-5 of b.
+  /// Keeps, of pairs of an edge and a face, those whose boxes overlap at t = 0. Bits 0-2
+  /// of the code are the edges of a, bits 3-5 those of b.
   /// @param codes  with room for 15 more, which may be written
   std::size_t (*cullCrossings)(const TrianglePair* pairs, const KdopShift* shift,
                                const KdopShift* turned_shift, std::uint32_t* codes,
                                std::size_t count);
 
-  /// Which of up to eight pairs of triangles are apart at t = 0, a bit each, and stay so
-  /// during the first part of the step: the plane of one of the two provably separates
-  /// them by more than their vertices can come closer to each other.
+  /// Finds which of up to eight pairs of triangles are apart at t = 0 and stay apart
+  /// during the first part of the step, a bit each. The plane of one of the two provably
+  /// separates them by more than their vertices can approach each other.
   /// @param count  1 to 8
-  /// @param share  how much of the step that is, with room for the rounding of a sum and
-  /// a product
-  /// @param[out] gaps  of each: what is further apart at t = 0, along one of the
-  /// directions, does not meet in that part of the step
+  /// @param share  the length of that part of the step, rounded up by more than the
+  /// rounding of a sum and a product
+  /// @param[out] gaps  a gap for each pair. Features that are further apart than this at
+  /// t = 0 along one of the directions do not touch in that part of the step
   unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
                        float (&gaps)[8]);
 
-  /// Which of up to eight edges may pass through their faces at t = 0, a bit each:
-  /// isCrossing() says no to all others.
+  /// Finds which of up to eight edges may pass through their faces at t = 0, a bit each.
+  /// isCrossing() is false for all others.
   /// @param codes  as of cullCrossings()
   /// @param count  1 to 8
   unsigned (*mayCross)(const TrianglePair* pairs, const std::uint32_t* codes,
                        std::size_t count);
 
-  /// Which of eight fans provably stay embedded, a bit each: their triangles meet nowhere
-  /// but in what they share, at every time of the step. Along a direction d they all keep
-  /// turning the same way, n(t) . d > 0, so that their shadows along d are sectors that
-  /// follow each other and the angle that a closed fan goes through cannot change with t;
-  /// at t = 0 it goes round once, a ray lies in one sector. The sectors of an open fan
-  /// never cover a fixed ray. Then no two sectors overlap.
+  /// Finds which of eight fans provably stay embedded, a bit each: at every time of the
+  /// step their triangles touch only in what they share. All triangles face a direction
+  /// d, n(t) . d > 0. So their projections along d are sectors that follow each other.
+  /// The total angle of a closed fan cannot change with t, and at t = 0 it is one circle,
+  /// since a ray lies in one sector only. The sectors of an open fan never cover a fixed
+  /// ray. So no two sectors overlap.
   unsigned (*areFansEmbedded)(const TreeVertex* vertices, const EightFans& fans);
 
-  /// The directions d that all of up to eight triangles provably face at every time of
-  /// the step, n(t) . d > 0, a bit each.
+  /// Finds the directions d that all of up to eight triangles provably face at every time
+  /// of the step, n(t) . d > 0, a bit each.
   /// @param count  1 to 8
   std::uint32_t (*facedDirections)(const TreeVertex* vertices,
                                    const TreeTriangle* triangles, std::size_t count);
 
-  /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() left, in
+  /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() kept, in
   /// [windowLo(), min(windowHi(), latest)].
   /// @param count  1 to 8
   EightCoplanarities (*coplanarity)(ContinuousContactKind kind, const TrianglePair* pairs,
                                     const std::uint32_t* codes, const TimeWindow* windows,
                                     std::size_t count, double latest);
 
-  /// The plain cases of solveCoplanarity(): a pair whose volume has one sign, or changes
-  /// it once, well inside or outside. What is proved keeps the properties (1) and (2)
-  /// there.
+  /// Solves the plain cases of solveCoplanarity(): a pair whose volume has one sign or
+  /// changes it once, clearly inside or outside. Proved lanes have the properties (1) and
+  /// (2) of that function.
   EightAnswers (*solve)(const EightPairs& pairs, double toc_err);
 
-  /// For what solve() leaves. Most of it has a volume that is clear of zero at both ends
-  /// of the window: divided where it comes nearest to zero, each part is a plain case.
+  /// Divides the windows of pairs that solve() leaves open. Most of them have a volume
+  /// that is clearly not zero at both ends of the window. If the window is divided where
+  /// the volume comes nearest to zero, each part is a plain case.
   EightDivisions (*divide)(const EightPairs& pairs);
 };
 

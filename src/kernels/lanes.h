@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Eight or sixteen numbers that are computed together, whatever the machine has: as many
-// of Highway's vectors as that takes, or a plain loop where Highway is switched off.
-// Every operation is IEEE's, lane by lane; none is fused: all machines give the same
-// bits.
+// Eight or sixteen numbers that are computed at the same time, in as many of Highway's
+// vectors as the machine needs for them, or in a plain loop if Highway is switched off.
+// Every operation is an IEEE operation, lane by lane, and none is fused. So all machines
+// give the same bits.
 //
 // Included once for each of Highway's targets, hence no ordinary include guard.
 #if defined(FCL_CCD_USE_HIGHWAY)
@@ -50,8 +50,8 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// The larger (smaller) of two; b where one is a NaN. Not Highway's, whose answer to a
-/// NaN depends on the target.
+/// The larger (smaller) of two numbers; b if one is a NaN. Highway's own function is not
+/// used, since its answer for a NaN depends on the target.
 template <typename T, std::size_t N>
 HWY_INLINE Lanes<T, N> max(const Lanes<T, N>& a, const Lanes<T, N>& b) {
   return select(a > b, a, b);

@@ -22,7 +22,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// A vector, or what is left of one, times an axis.
+/// A vector (or the computed part of one) times an axis.
 template <std::size_t kAxis>
 HWY_INLINE Doubles along(const Vectors& a) {
   constexpr int x = kAxes[kAxis][0], y = kAxes[kAxis][1], z = kAxes[kAxis][2];
@@ -57,7 +57,7 @@ HWY_INLINE std::uint32_t facedAlongAll(const BoundedNormals& normals,
   return (... | facedAlong<kAxis>(normals));
 }
 
-/// Whether no coordinate is a NaN; infinities of both signs are one.
+/// Whether no coordinate is a NaN. Infinities of different signs count as one.
 HWY_INLINE bool areNumbers(const Vectors& a) {
   const Doubles sum = a.x + a.y + a.z;
   return bits(sum == sum) == (1U << kEight) - 1;

@@ -52,7 +52,7 @@ HWY_INLINE Doubles maxNorm(const Vectors& a) {
   return max(max(abs(a.x), abs(a.y)), abs(a.z));
 }
 
-/// Where the bounds on errors of this size hold: see kTiny.
+/// The lanes in which the bounds on errors of this size hold: see kTiny.
 HWY_INLINE DoubleMask isInRange(const Doubles& size) {
   return (size >= broadcast<kEight>(kTiny)) & (size <= broadcast<kEight>(kHuge));
 }

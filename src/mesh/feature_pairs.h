@@ -12,11 +12,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief One feature of each of two triangles, by corners of the triangles: VF, vertex
-/// `first` of one and the whole other; EE, edge `first` of a and edge `second` of b.
+/// @brief One feature of each of two triangles, by corners of the triangles. VF: vertex
+/// `first` of one triangle, and the other triangle. EE: edge `first` of a and edge
+/// `second` of b.
 struct FeaturePair {
   ContinuousContactKind kind;
-  /// VF: the vertex is a's.
+  /// VF: whether the vertex belongs to a.
   bool first_on_a;
   unsigned first;
   unsigned second;
@@ -33,9 +34,9 @@ struct FeatureIds {
   std::int32_t triangles[2];
 };
 
-/// @brief The pairs of features of two triangles a and b, a bit each: bit k, vertex k of
-/// a and the face of b; 3 + k, vertex k of b and the face of a; 6 + 3 i + j, edge i of a
-/// and edge j of b.
+/// @brief The pairs of features of two triangles a and b, a bit each. Bit k: vertex k of
+/// a and the face of b. Bit 3 + k: vertex k of b and the face of a. Bit 6 + 3 i + j: edge
+/// i of a and edge j of b.
 constexpr int kNumVertexFacePairs = 6;
 constexpr int kNumFeaturePairs = 15;
 
@@ -79,8 +80,8 @@ inline unsigned sharedVertices(const std::uint32_t (&a)[3], const std::uint32_t 
   return shared;
 }
 
-/// @brief For each mask of MeshTriangle::owned the pairs of features of two triangles
-/// whose part is owned that is a's, or b's.
+/// @brief For each mask of MeshTriangle::owned, the pairs of features whose feature of a
+/// (or of b) is owned.
 struct OwnedParts {
   std::uint16_t of_a[kOwnsAll + 1];
   std::uint16_t of_b[kOwnsAll + 1];
@@ -129,9 +130,9 @@ inline unsigned edgesAtBoth(unsigned shared) {
   return edgesAt(of_a) | edgesAt(of_b) << 3;
 }
 
-/// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own;
-/// over all triangle pairs of a scene that is every VF and EE pair once.
-/// @tparam kSelf  a and b index the same vertices: pairs that share one are left out.
+/// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own.
+/// Over all triangle pairs of a scene it visits every VF and EE pair once.
+/// @tparam kSelf  a and b have the same vertices; pairs that share one are left out.
 template <bool kSelf, typename Visit>
 void forEachFeaturePair(const MeshTriangle& a, const MeshTriangle& b, Visit&& visit) {
   unsigned pairs = ownedPairs(a.owned, b.owned);

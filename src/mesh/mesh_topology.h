@@ -16,8 +16,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief What of a mesh is more than kMaxMeshSize, for example "536870913 triangles are
-/// more than 536870912"; empty if nothing is.
+/// @brief The text of an error if a mesh has more than kMaxMeshSize triangles or
+/// vertices; empty if it does not.
 std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices);
 
 /// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A 16-DOP (8 directions, as FCL's KDOP<S, 16>) that moves: one box at t = 0, one at t
-// = 1. For vertices on straight paths the box interpolated between the two contains the
-// subtree at every t. Tang, Manocha, Tong 2010 bound the whole sweep with one box
+// A moving 16-DOP (8 directions, as FCL's KDOP<S, 16>): one box at t = 0 and one at t
+// = 1. If vertices move on straight paths, the box interpolated between the two contains
+// the subtree at every t. Tang, Manocha, Tong 2010 use one box around the whole sweep
 // instead.
 #ifndef FCL_CCD_MESH_MOVING_KDOP_H
 #define FCL_CCD_MESH_MOVING_KDOP_H
@@ -31,8 +31,8 @@ struct MovingKdop {
   Kdop16 t1;
 };
 
-/// @brief Part of the step, 0 <= lo <= hi <= 1, in which something can happen; empty when
-/// lo > hi.
+/// @brief The part of the step, 0 <= lo <= hi <= 1, in which two things may touch. Empty
+/// if lo > hi.
 struct TimeWindow {
   float lo;
   float hi;
@@ -73,23 +73,24 @@ inline float roundUp(double value, float pad) {
   return up == up ? up : std::numeric_limits<float>::infinity();
 }
 
-/// @brief What roundUp() adds for a coordinate that was rounded before it came here, of a
-/// point at most `size` away from the origin along an axis: relative to the origin by
-/// 2^-53 of itself, posed in relativeShift() by as much, and a sum of two by 2^-52 of the
-/// larger: six of 2^-53 in all.
+/// @brief The pad of roundUp() for a coordinate that was rounded before, of a point at
+/// most `size` away from the origin along an axis. The difference to the origin rounds by
+/// 2^-53 of itself, the pose in relativeShift() by the same, and a sum of two by 2^-52 of
+/// the larger: 6 * 2^-53 in all.
 inline float offsetPad(double size) {
   const auto pad = static_cast<float>(size * 0x1p-49);
   return pad >= FLT_MAX ? std::numeric_limits<float>::infinity() : pad;
 }
 
-/// @brief A half-axis of a box that is moved, not less than the sum: that loses 2^-24 of
-/// itself where it is a normal number, and nothing where it is not.
+/// @brief A half-axis of a box that is moved, not less than the exact sum. The float sum
+/// loses at most 2^-24 of itself if it is a normal number, and nothing if it is
+/// subnormal.
 inline float shifted(float half, float shift) {
   const float sum = half + shift;
   return std::max(sum + std::fabs(sum) * kOutward, kLeastHalf);
 }
 
-/// @brief What is added to the sum of two boxes whose origins differ.
+/// @brief The shift that is added to the sum of two boxes whose origins differ.
 struct KdopShift {
   Kdop16 t0;
   Kdop16 t1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a moving tree is made of: its nodes, and the triangles and vertices in its order.
+// The parts of a moving tree: its nodes, and the triangles and vertices in its order.
 #ifndef FCL_CCD_MESH_TREE_NODES_H
 #define FCL_CCD_MESH_TREE_NODES_H
 
@@ -18,9 +18,9 @@ namespace detail {
 namespace deformable {
 
 /// @brief Up to eight children, each a subtree or a triangle, with their moving boxes. A
-/// row holds one half-axis of all children, so that one box is compared with eight at
-/// once; the two half-axes of a direction follow each other. What holds at t = 0 lies
-/// together: much of a first-contact query reads nothing else.
+/// row has one half-axis of all children, so that one box is compared with eight at once.
+/// The two half-axes of a direction follow each other. The rows of t = 0 are together:
+/// much of a first-contact query reads only these.
 struct alignas(64) MovingKdopNode {
   static constexpr int kWidth = 8;
   static constexpr std::uint32_t kNoPlace = ~std::uint32_t{0};
@@ -30,7 +30,7 @@ struct alignas(64) MovingKdopNode {
   float t1[16][kWidth];
   /// Vertices of the triangles, as places in the tree's order; kNoPlace for a node.
   std::uint32_t places[3][kWidth];
-  /// Bound on the change of a coordinate of a vertex of the child in the step.
+  /// Bound on the change of any coordinate of any vertex of the child during the step.
   float displacement[kWidth];
   /// >= 0: a node; < 0: ~triangle. The first `count` are in use.
   std::int32_t child[kWidth];
@@ -44,7 +44,7 @@ struct alignas(64) MovingKdopNode {
   /// @brief Lanes that are in use, a bit each.
   unsigned lanes() const { return (1U << count) - 1; }
 
-  /// @brief To be called when the children are set.
+  /// @brief Sets `triangles`. Call it when the children are set.
   void markTriangles() {
     triangles = 0;
     for (int lane = 0; lane < count; ++lane)
@@ -81,7 +81,7 @@ struct alignas(64) MovingKdopNode {
   }
 };
 
-/// @brief A triangle where the tests read it.
+/// @brief A triangle, as the tests read it.
 struct TreeTriangle {
   /// Places of the vertices in the tree's order.
   std::uint32_t place[3];
@@ -100,8 +100,8 @@ inline ThreeIds idsOf(const TreeTriangle& t) {
   return ids;
 }
 
-/// @brief A vertex where the tests read it: its path, t0[3] a bound on the change of a
-/// coordinate in the step, which is a float (t1[3] is not used); and its moving box.
+/// @brief A vertex, as the tests read it: its path and its moving box. t0[3] is a bound
+/// on the change of a coordinate during the step, which is a float. t1[3] is not used.
 struct alignas(64) TreeVertex {
   double t0[4];
   double t1[4];

@@ -12,7 +12,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A task: the corners of so many vertices.
+/// The number of vertices whose corners one task does.
 constexpr std::size_t kBlock = 2048;
 
 /// Not a vertex.
@@ -21,7 +21,7 @@ constexpr std::uint32_t kNone = ~std::uint32_t{0};
 /// Four numbers that are computed together, see Float4.
 typedef std::uint32_t Quad __attribute__((vector_size(16)));
 
-/// Brings corners into the order of a fan, if they form one: each begins where the one
+/// Sorts corners into the order of a fan if they form one: each begins where the one
 /// before ends.
 /// @param count  1 ... 4 * kQuads
 template <std::uint32_t kQuads>
@@ -30,8 +30,8 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   std::uint32_t last[kWidth];
   std::fill(last, last + kWidth, kNone);
   for (std::uint32_t i = 0; i < count; ++i) last[i] = corners[i].last;
-  // Which corners begin where each ends, a bit each. No branch on what is found: nobody
-  // could foretell it.
+  // For each corner, the corners that begin where it ends, a bit each. There is no branch
+  // on the result, which would be unpredictable.
   Quad quads[kQuads], found[kQuads] = {};
   std::memcpy(quads, last, sizeof(last));
   for (std::uint32_t k = 0; k < count; ++k)
@@ -41,14 +41,15 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   std::memcpy(after, found, sizeof(found));
   after[kWidth] = 0;
 
-  // A spoke that is met twice belongs to three triangles or to two sheets: at most one
-  // may follow each, and each may follow one.
+  // If a spoke occurs too often, it belongs to three triangles or to two sheets. In a fan
+  // at most one corner follows each corner, and each follows at most one.
   std::uint32_t followers = 0, surplus = 0;
   for (std::uint32_t i = 0; i < count; ++i) {
     surplus |= (after[i] & (after[i] - 1)) | (followers & after[i]);
     followers |= after[i];
   }
-  // All are on one way, from the one that follows none; from any if there is none.
+  // The walk from the corner that follows none (or from any, in a closed fan) must visit
+  // all corners.
   const std::uint32_t all = (1U << count) - 1, begins = all & ~followers;
   const bool is_closed = begins == 0;
   Corner sorted[kWidth];
@@ -77,7 +78,7 @@ CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
   const auto begin_together = [](const Corner& a, const Corner& b) {
     return a.next == b.next;
   };
-  // Of each spoke that is not met twice one corner may begin and one end there.
+  // At each spoke at most one corner may begin and at most one may end.
   if (std::adjacent_find(lasts.begin(), lasts.end()) != lasts.end() ||
       std::adjacent_find(by_next.begin(), by_next.end(), begin_together) != by_next.end())
     return CornersAtVertex::kNoFan;
@@ -87,7 +88,7 @@ CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
       });
   const bool is_closed = first == by_next.end();
   const Corner begin = is_closed ? corners[0] : *first;
-  // All are on one way.
+  // The walk must visit all corners.
   std::vector<Corner> sorted{begin};
   while (sorted.size() < count) {
     const auto next = std::lower_bound(
@@ -102,7 +103,7 @@ CornersAtVertex::Kind sortIntoLongFan(Corner* corners, std::uint32_t count) {
   return is_closed ? CornersAtVertex::kClosedFan : CornersAtVertex::kOpenFan;
 }
 
-/// Brings the corners at a vertex into order.
+/// Sorts the corners at a vertex.
 CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
   if (count == 0) return CornersAtVertex::kNoFan;
   if (count <= 8) return sortIntoFan<2>(corners, count);
@@ -110,15 +111,15 @@ CornersAtVertex::Kind sortCorners(Corner* corners, std::uint32_t count) {
   return sortIntoLongFan(corners, count);
 }
 
-/// What each corner's triangle owns of the features at a vertex: the vertex, and the
-/// edges and faces that have no lower one. By the place of the corner.
+/// The features at a vertex that the triangle of each corner owns: the vertex, and the
+/// edges and faces that no lower triangle has. By the place of the corner.
 class Owned {
  public:
   Owned(std::uint32_t vertex, const CornersAtVertex& at, std::uint8_t* owned)
       : vertex_(vertex), corners_(at.corners), count_(at.count), owned_(owned) {}
 
-  /// In a fan every face is there once, and every edge in two triangles that follow each
-  /// other, or at an end.
+  /// In a fan every face occurs once. Every edge is in two triangles that follow each
+  /// other, or at an end of the fan.
   void ofFan(bool is_closed) const {
     const Corner* lowest = corners_;
     std::uint32_t before = is_closed ? lastEdge(corners_[count_ - 1]) : kNone;
@@ -136,7 +137,7 @@ class Owned {
     owned_[lowest->place] |= bit(true, lowest->number % 4);
   }
 
-  /// Of what is claimed several times the lowest number is first.
+  /// If several triangles have a feature, the lowest number comes first.
   void ofAny(std::vector<std::array<std::uint32_t, 5>>& claims) const {
     claims.clear();
     for (const Corner* c = corners_; c != corners_ + count_; ++c) {
@@ -181,7 +182,7 @@ class Owned {
 VertexCorners::VertexCorners(const std::vector<TreeTriangle>& triangles,
                              std::size_t num_vertices, int num_threads)
     : first_(num_vertices + 2, 0), corners_(3 * triangles.size()), kinds_(num_vertices) {
-  // While corners are put down, first_[v + 1] is where the next one of v goes.
+  // While corners are stored, first_[v + 1] is the place of the next corner of v.
   for (const TreeTriangle& t : triangles)
     for (const std::uint32_t v : t.place) ++first_[v + 2];
   for (std::size_t v = 0; v < num_vertices; ++v) first_[v + 2] += first_[v + 1];

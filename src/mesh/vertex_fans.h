@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The triangles around a vertex. Where they provably stay a fan that does not fold over
-// itself during the step, no two of them meet but in what they share, and the pairs of
+// The triangles around a vertex. If they provably stay a fan that does not fold over
+// itself during the step, two of them touch only in what they share. Then the pairs of
 // features that they own need no test.
 #ifndef FCL_CCD_MESH_VERTEX_FANS_H
 #define FCL_CCD_MESH_VERTEX_FANS_H
@@ -19,20 +19,21 @@ namespace deformable {
 class VertexCorners;
 struct TreeTriangle;
 
-/// @brief The spokes around one vertex, in order: triangle i lies between spokes i and i
-/// + 1, all triangles turning the same way. A closed fan has as many triangles as spokes,
-/// an open one (a vertex on the border) one less.
+/// @brief The spokes around one vertex, in order. Triangle i lies between spokes i and i
+/// + 1, and all triangles have the same orientation. A closed fan has as many triangles
+/// as spokes, an open one (of a vertex on the border) has one less.
 struct VertexFan {
   const std::uint32_t* spokes;
   std::uint32_t count;
   bool is_closed;
 };
 
-/// @brief The fans of a mesh. A vertex whose triangles form no fan (several sheets, edges
-/// with three triangles, opposite windings) has none.
+/// @brief The fans of a mesh. A vertex has no fan if its triangles form several sheets,
+/// have an edge with three triangles, or have opposite windings.
 class VertexFans {
  public:
-  /// Most fans have no more spokes. The others are long: a pole, the middle of a lid.
+  /// Most fans have at most this number of spokes. Longer ones are at a pole or in the
+  /// middle of a lid.
   static constexpr std::uint32_t kShort = 16;
 
   VertexFans() = default;
@@ -43,14 +44,15 @@ class VertexFans {
   /// @param num_threads  as in parallelFor()
   VertexFans(const VertexCorners& corners, int num_threads);
 
-  /// @brief Takes over the fans that other ones have, and makes the others.
-  /// @param old_places  of the vertex at each place, among those of `before`; ~0: its fan
+  /// @brief Copies the fans of unchanged vertices from `before`, and makes the others.
+  /// @param old_places  for the vertex at each place, its place in `before`; ~0: its fan
   /// is made from the corners
-  /// @param new_places  of the vertices of `before` that are spokes of those taken over
+  /// @param new_places  the new places of the vertices of `before` that are spokes of
+  /// copied fans
   VertexFans(const VertexFans& before, const std::vector<std::uint32_t>& old_places,
              const std::vector<std::uint32_t>& new_places, const VertexCorners& corners);
 
-  /// @brief Follows the vertices to other places; needs no memory.
+  /// @brief Moves the fans to the new places of their vertices. It allocates nothing.
   /// @param before  a copy of these fans
   /// @param new_places  of the vertex at each place
   /// @param old_places  of the vertex at each new place

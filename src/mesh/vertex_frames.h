@@ -50,7 +50,7 @@ class VertexFrames {
 
   std::size_t size() const { return count_; }
 
-  /// @brief Whether both frames are the same arrays and in no pose: then nothing moves.
+  /// @brief Whether both frames are the same array and have no pose. Then nothing moves.
   bool isStill() const {
     return !posed_ && double_[0] == double_[1] && float_[0] == float_[1];
   }
@@ -66,7 +66,7 @@ class VertexFrames {
     return path;
   }
 
-  /// @brief Brings vertex i near, which is about to be read.
+  /// @brief Prefetches vertex i.
   void prefetch(std::size_t i) const {
     for (int frame = 0; frame < 2; ++frame) {
       if (double_[frame])

@@ -14,7 +14,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Sizes are not larger, so that no product of them overflows; nothing bounded is.
+/// The largest size of a box with bounds, so that no product of sizes overflows.
 constexpr double kMostExtent = 0x1p300;
 constexpr double kUpward = 1 + 0x1p-40;
 constexpr double kUnitRounding = 0x1p-53;
@@ -34,7 +34,7 @@ double norm(const double (&v)[3]) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/// A box along the axes that has a 16-DOP's first six half-axes.
+/// The axis-aligned box of the first six half-axes of a 16-DOP.
 /// @param half  half(j): minus the lower bound along axis j, half(j + 8): the upper one
 template <typename HalfAxis>
 MotionBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
@@ -78,7 +78,8 @@ BodyPart MotionBody::root() const {
   return {link < 0 ? link : 0, 0};
 }
 
-// FCL's volume with points that stand out of it by the slack times their coordinates.
+// FCL's volume, padded by the slack times its coordinates, since points may stand out of
+// it by that much.
 MotionBox MotionBody::rigidBox(int node) const {
   OrientedBox from;
   rigid_->orientedBox(node, from);
@@ -183,14 +184,14 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
     out.vertex[k] = static_cast<std::int32_t>(id);
     out.corner[0][k] = out.corner[1][k] = {p[0], p[1], p[2]};
   }
-  // As in assignFeatures(), an edge with two equal ids is none.
+  // As in assignFeatures(), an edge with two equal ids is not an edge.
   for (unsigned k = 0; k < 3; ++k)
     if (out.vertex[k] == out.vertex[(k + 1) % 3]) out.owned &= ~(1U << (3 + k));
   return out;
 }
 
-// A vertex of a mesh that deforms is interpolated, by 3 u of its coordinates; its
-// velocity has R x' on top, for a difference that rounds once.
+// The interpolation of a vertex of a mesh that deforms rounds by 3 u of its coordinates.
+// Its velocity has the additional term R x', where x' is a difference that rounds once.
 double MotionBody::positionError() const {
   const double deforming = displacement_ > 0 ? 6 * kUnitRounding * radius_ : 0;
   return path_.positionError(radius_) + path_.stretch() * deforming;

@@ -16,20 +16,20 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A node or a triangle of a body's tree, and where its box is found.
+/// @brief A node or a triangle of a body's tree, and the place of its box.
 struct BodyPart {
   /// >= 0: a node; < 0: ~triangle.
   std::int32_t child;
-  /// Of a RigidTree: FCL's node. Of a MovingKdopTree: eight times the node above, and
-  /// the lane; kRoot for the whole of it.
+  /// RigidTree: the number of FCL's node. MovingKdopTree: eight times the number of the
+  /// parent, plus the lane; kRoot for the whole tree.
   std::int32_t box;
 
   static constexpr std::int32_t kRoot = -1;
   bool isTriangle() const { return child < 0; }
 };
 
-/// @brief The children of a node: their boxes at t = 0 and t = 1, the same of a rigid
-/// mesh.
+/// @brief The children of a node, with their boxes at t = 0 and t = 1. Both are equal for
+/// a rigid mesh.
 struct MotionNode {
   MotionBoxes box[2];
   BodyPart part[MotionBoxes::kWidth];
@@ -41,11 +41,12 @@ struct BodyTriangle {
   Vec corner[2][3];
   std::int32_t index;
   std::int32_t vertex[3];
-  /// MeshTriangle::owned; a rigid mesh has no owners: all features.
+  /// As MeshTriangle::owned. A rigid mesh has no owners: each triangle owns all its
+  /// features.
   std::uint32_t owned;
 };
 
-/// @brief A mesh that moves along a path, as a query reads it. Owns nothing.
+/// @brief A mesh that moves along a path, as a query reads it. It does not own the mesh.
 class MotionBody {
  public:
   /// @brief A rigid mesh.
@@ -73,7 +74,7 @@ class MotionBody {
   /// @brief Bound on the distance of the mesh from the origin of the body frame, in both
   /// frames.
   double radius() const { return radius_; }
-  /// @brief Bound on how far a vertex goes in the body frame.
+  /// @brief Bound on the motion of a vertex in the body frame.
   double displacement() const { return displacement_; }
 
   /// @brief Bounds on the rounding of a vertex that is posed, and of its velocity.
@@ -81,7 +82,7 @@ class MotionBody {
   double rateError() const;
   /// @brief Bound on the velocity of a vertex.
   double speed() const;
-  /// @brief Size of what a posed vertex is made of.
+  /// @brief Size of the terms whose sum is a posed vertex.
   double size() const { return path_.translationReach() + path_.stretch() * radius_; }
 
  private:
@@ -98,8 +99,8 @@ class MotionBody {
   double displacement_{0};
 };
 
-/// @brief A body as one traversal reads it: nodes that were opened stay in a small table.
-/// For one thread.
+/// @brief A body, as one traversal reads it. It keeps the last opened nodes in a small
+/// table. For one thread.
 class MotionBodyReader {
  public:
   static constexpr int kSlots = 64;
@@ -108,7 +109,7 @@ class MotionBodyReader {
     for (auto& key : key_) key = -1;
   }
 
-  /// @brief The children; valid until another node is asked for.
+  /// @brief The children of a node; valid until the next call.
   const MotionNode& open(const BodyPart& part) {
     const int slot = part.child % kSlots;
     if (key_[slot] != part.child) {

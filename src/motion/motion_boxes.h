@@ -10,17 +10,17 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A box in the frame of its body; its points are center + sum of c_i axis_i +
-/// r, with |c_i| <= extent_i, |r| <= pad, unit axes at right angles (both but for what
-/// the pad makes up for).
+/// @brief A box in the frame of its body. Its points are center + sum of c_i axis_i + r,
+/// with |c_i| <= extent_i and |r| <= pad. The axes are unit vectors at right angles, up
+/// to rounding that the pad includes.
 struct MotionBox {
   double center[3];
   double axis[3][3];
   double extent[3];
   double pad;
-  /// Of a ball around the center that contains the box.
+  /// The radius of a ball around the center that contains the box.
   double radius;
-  /// Bound on how far a point goes in the body frame during the step.
+  /// Bound on the motion of a point in the body frame during the step.
   double displacement;
 };
 
@@ -63,9 +63,10 @@ struct SpanPoses {
   Pose beginning, middle, end;
 };
 
-/// @brief When eight boxes may meet another one, as parts of a span.
+/// @brief The windows in which eight boxes may overlap another one, as fractions of a
+/// span.
 struct MeetingWindows {
-  /// Boxes that may meet it at all, a bit each.
+  /// The boxes that may overlap it at all, a bit each.
   unsigned mask;
   double lo[MotionBoxes::kWidth];
   double hi[MotionBoxes::kWidth];
@@ -75,15 +76,15 @@ struct MotionKernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
 
-  /// The windows of eight boxes of body b against one of body a. Along a fixed direction
-  /// d a point is never further than `margin` from the straight line between where it is
-  /// at both ends of the span, so that boxes are apart while the gap between them,
-  /// interpolated between both ends, is larger. Tried are the axes of both boxes in the
-  /// middle of the span and the line between the centers.
+  /// Computes the windows of eight boxes of body b against one of body a. Along a fixed
+  /// direction a point deviates by at most `margin` from the straight line between its
+  /// positions at both ends of the span. So boxes are apart while the gap between them,
+  /// interpolated between both ends, is larger than that. The directions are the axes of
+  /// both boxes in the middle of the span and the line between the centers.
   /// @param a, b  boxes at both ends
-  /// @param margin  of each pair: deviation from straight lines, pads, distance asked for
-  /// and rounding, for unit directions; of the rest 0
-  /// @param count  how many of the eight are in use
+  /// @param margin  for each pair: deviation from straight lines, pads, requested
+  /// distance and rounding, for unit directions; 0 for unused pairs
+  /// @param count  the number of used pairs
   void (*meetingWindows)(const MotionBox (&a)[2], const SpanPoses& pose_a,
                          const MotionBoxes* const (&b)[2], const SpanPoses& pose_b,
                          const double (&margin)[8], int count, MeetingWindows& out);

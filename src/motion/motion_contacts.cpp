@@ -15,8 +15,8 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A feature of a triangle as a triangle without area: a vertex or an edge, the last one
-/// repeated.
+/// A feature of a triangle as a triangle without area: a vertex, or an edge whose second
+/// end is repeated.
 BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second) {
   BodyTriangle out = triangle;
   const unsigned corner[3] = {first, second, second};
@@ -33,12 +33,13 @@ class FeatureContacts {
       : body_{&a, &b},
         options_(options),
         tolerance_(a, b, 0),
-        // Rigid meshes have no owners. What is not wanted of a first contact is known
-        // last.
+        // Rigid meshes have no owners. Which contacts a first-contact query drops is
+        // known at the end only.
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
               a.isRigid() || b.isRigid()) {}
 
-  /// The contacts of the features that two triangles own, from when on these touch.
+  /// The contacts of the features that two triangles own, from the time at which the
+  /// triangles touch.
   void add(const MotionContact& contact, double last) {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
@@ -58,8 +59,8 @@ class FeatureContacts {
     put(a, b, bit, contact.toc_lo, contact.toc_hi);
   }
 
-  /// Whether an edge of one triangle passes through the other at t = 0; the first one
-  /// that does.
+  /// Whether an edge of one triangle passes through the other at t = 0, and the first
+  /// such edge.
   bool findCrossing(const MotionContact& contact, Crossing& out) const {
     const BodyTriangle x[2] = {body_[0]->triangle(contact.place[0]),
                                body_[1]->triangle(contact.place[1])};
@@ -89,7 +90,7 @@ class FeatureContacts {
   const MotionCounts& counts() const { return counts_; }
 
  private:
-  /// As VertexFrames poses.
+  /// Poses a vertex as VertexFrames does.
   static void posed(const Pose& pose, const Vec& x, double (&out)[3]) {
     const double(&r)[9] = pose.rotation;
     for (int k = 0; k < 3; ++k)
@@ -129,7 +130,7 @@ class FeatureContacts {
       contact.vertices[i] = static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner]
                                                                   : b.vertex[corner - 3]);
     }
-    // An edge is one, whichever of its triangles it is met in.
+    // An edge is the same, in whichever of its triangles it is found.
     if (pair.kind == ContinuousContactKind::kEdgeEdge)
       for (int i = 0; i < 4; i += 2)
         if (contact.vertices[i] > contact.vertices[i + 1])
@@ -137,7 +138,7 @@ class FeatureContacts {
     contact.triangles[0] = a.index;
     contact.triangles[1] = b.index;
     contact.toc_lo = lo;
-    // What is there at the beginning is there at that time.
+    // A contact at the beginning has exactly the time 0.
     contact.toc_hi = lo == 0 ? 0 : hi;
     sink_.add(contact);
   }
@@ -151,8 +152,8 @@ class FeatureContacts {
   MotionCounts counts_;
 };
 
-/// Of a first contact those that may be it; of any one.
-/// @return whether some were dropped for want of room
+/// Keeps the contacts that the query wants: those that may be the first, or one.
+/// @return whether max_contacts dropped some
 bool keepWanted(const QueryOptions& options, double first_hi,
                 std::deque<FeatureContact>& contacts) {
   if (options.query == ContinuousQuery::kAll || contacts.empty()) return false;
@@ -201,8 +202,8 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
         answer.has_crossing = unmoved.findCrossing(contact, answer.crossing);
       features.add(contact, wanted.last);
     }
-    // Features that pass at the distance of the tolerance round otherwise than their
-    // triangles.
+    // Features that pass at the distance of the tolerance may round differently than
+    // their triangles.
     if (features.sink().contacts().empty() && !answer.has_crossing)
       features.addNearest(touching.contacts.front());
   }

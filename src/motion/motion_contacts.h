@@ -9,16 +9,17 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The contacts of two bodies, of each pair of features once: a vertex and a face,
-/// or two edges, that come within the tolerance of each other (MotionAnswer::touching);
-/// toc_lo is not after the first time at which they touch, and toc_hi a time at which the
-/// two triangles provably cross, or toc_lo where none is found within toc_err. Features
-/// touch where their triangles do: found are the triangles first. What crosses at t = 0
-/// is told by signs of the vertices posed there, as for straight paths.
-/// @param options  with stop_at_crossing contacts are triangles' only: the first one,
-/// with the pair of features that is nearest then
+/// @brief Finds the contacts of two bodies, each pair of features once: a vertex and a
+/// face, or two edges, that come within the tolerance of each other
+/// (MotionAnswer::touching). toc_lo is not after the first time at which they touch.
+/// toc_hi is a time at which the two triangles provably cross; it is toc_lo if no such
+/// time is found within toc_err. Features touch only where their triangles touch, so that
+/// triangles are found first. Crossings at t = 0 are decided by signs of the vertices
+/// posed there, as for straight paths.
+/// @param options  with stop_at_crossing the answer is the first contact of triangles,
+/// with the pair of features that is nearest at that time
 /// @pre the floating-point mode is the default one
-/// @throws NonFiniteVertex, fcl::Exception  a triangle that refers to no vertex
+/// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
 QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
                                 const QueryOptions& options);
 

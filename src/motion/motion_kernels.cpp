@@ -38,7 +38,7 @@ HWY_INLINE Vectors turnedBack(const double (&r)[9], const Vectors& v) {
           all(r[2]) * v.x + all(r[5]) * v.y + all(r[8]) * v.z};
 }
 
-/// The one box at one end of the span, in the world; numbers, or the same in all lanes.
+/// The single box at one end of the span, in the world frame.
 struct WorldBox {
   double center[3];
   double half_axis[3][3];
@@ -58,7 +58,7 @@ HWY_INLINE WorldBox inWorld(const MotionBox& box, const Pose& pose) {
   return out;
 }
 
-/// Where boxes are along a direction: b's center minus a's, and both reaches.
+/// Boxes along a direction: b's center minus a's center, and the sum of both reaches.
 struct Projection {
   Doubles between, reach;
 };
@@ -75,13 +75,13 @@ HWY_INLINE Projection project(const WorldBox& a, const MotionBoxes& b, const Pos
   return out;
 }
 
-/// The parts of the span at its beginning and its end in which the boxes are apart.
+/// The parts at the beginning and at the end of the span in which the boxes are apart.
 struct Losses {
   Doubles before, after;
   DoubleMask apart;
 };
 
-/// Seen from the side on which b's center is at the beginning, and from that at the end.
+/// Uses the side of b's center at the beginning, and the side at the end.
 HWY_INLINE void addLosses(const Projection& p0, const Projection& p1,
                           const Doubles& margin, Losses& losses) {
   const Doubles zero = all(0), reach0 = p0.reach + margin, reach1 = p1.reach + margin;

@@ -28,7 +28,7 @@ namespace {
 constexpr double kUnitRounding = 0x1p-53;
 /// More than the rounding of a bound itself.
 constexpr double kUpward = 1 + 0x1p-40;
-/// Rotations by less are the rounding of the poses they were made from.
+/// A smaller rotation is only the rounding of the poses from which it was made.
 constexpr double kLeastAngle = 0x1p-50;
 
 Vec vecOf(const double* v) { return {v[0], v[1], v[2]}; }
@@ -73,8 +73,8 @@ void crossColumns(const Vec& a, const double (&m)[9], double (&out)[9]) {
   }
 }
 
-/// The rotation that takes one pose's to the other's: a unit axis and an angle in [0,
-/// pi]; 0 where it is mere rounding.
+/// The rotation from one pose to the other: a unit axis and an angle in [0, pi]. The
+/// angle is 0 if the rotation is only rounding.
 double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
   double m[3][3];
   for (int i = 0; i < 3; ++i)
@@ -156,7 +156,7 @@ Vec splineAccelerationAt(const double (&points)[4][3], double t) {
   return vecOf(v);
 }
 
-/// NaN if there is one.
+/// The result is NaN if a number is.
 double largestPoint(const double (&points)[4][3]) {
   double most = 0;
   for (const auto& point : points) {
@@ -210,8 +210,9 @@ MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end) {
   return path;
 }
 
-/// What goes straight takes the path to the end pose. From the way, not the end itself:
-/// far from the origin that rounds much more.
+/// Sets the straight part so that the path ends at the end pose. It is computed from the
+/// difference of the poses, not from the end pose, which rounds much more far from the
+/// origin.
 void MotionPath::reachEnd(const Pose& end) {
   const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_);
   for (int i = 0; i < 9; ++i)
@@ -386,9 +387,9 @@ PoseRate MotionPath::splineRate(double t) const {
   return out;
 }
 
-// p'' = w^2 (cos (D x + Q) - sin (C x + P)): the two vectors are perpendicular and of one
-// length but for rounding, 16 u (|x| + |P| + |Q|) at most, that adds no more than twice
-// as much to the length of their mean.
+// p'' = w^2 (cos (D x + Q) - sin (C x + P)). The two vectors are perpendicular and have
+// the same length, up to a rounding of at most 16 u (|x| + |P| + |Q|). This adds no more
+// than twice as much to the length of the result.
 AccelerationBound MotionPath::turnAcceleration() const {
   AccelerationBound bound{};
   if (angle_ == 0) {

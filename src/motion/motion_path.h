@@ -17,9 +17,9 @@ struct PoseRate {
 
 /// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
 /// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
-/// per_distance |center| + constant; of points that move in the body frame from x0 to x1
-/// on top (straight, during the whole step) per_displacement |x1 - x0|. The first two are
-/// convex in the center: of a center that moves straight the ends of its way are enough.
+/// per_distance |center| + constant. For points that move straight in the body frame from
+/// x0 to x1 during the step, add per_displacement |x1 - x0|. The terms with the center
+/// are convex in it. So for a center that moves straight, its two ends are enough.
 struct AccelerationBound {
   double turn[9];
   double offset[3];
@@ -27,28 +27,28 @@ struct AccelerationBound {
   double per_distance;
   double constant;
   double per_displacement;
-  /// |p'''(t)| is at most so many times as large, of a point that rests in the body; or
-  /// infinite: unknown.
+  /// |p'''(t)| of a point at rest in the body is at most this factor times the bound.
+  /// Infinite: unknown.
   double jerk;
 
   double of(const Vec& center, double radius) const;
-  /// @brief Whether all points go straight, unless they move in the body frame.
+  /// @brief Whether all points at rest in the body frame go straight.
   bool isZero() const;
 };
 
-/// @brief How a rigid body, or the frame in which a mesh deforms, moves during t in [0,
-/// 1]: the real-number evaluation of parameters that are doubles. Either a turn at
+/// @brief The motion of a rigid body, or of the frame in which a mesh deforms, for t in
+/// [0, 1]: the real-number evaluation of parameters that are doubles. It is a turn at
 /// constant speed,
 ///
 ///   p(t) = (R1 x + T1) + t (E x + L) + sin(w t) (C x + P) + (1 - cos(w t)) (D x + Q),
 ///
-/// with C = [a] R1, D = [a]^2 R1 for an axis a; R1, T1 the pose at the beginning; E and L
-/// such that t = 1 is the pose at the end (E makes up for rounding, and for rotations
-/// that were not quite; L is how a point goes straight). Interpolation turns about a
-/// reference point that goes straight, a screw about a fixed axis; P and Q are zero for
-/// the origin of the body as reference. Without a turn w, C, D, P and Q are zero. Or a
-/// uniform cubic B-spline of translations and of rotation vectors, as FCL's SplineMotion
-/// has it.
+/// with C = [a] R1, D = [a]^2 R1 for an axis a. R1 and T1 are the pose at the beginning.
+/// E and L are such that t = 1 gives the pose at the end: E corrects rounding and
+/// matrices that are not exactly rotations, L is the straight part of the motion.
+/// Interpolation turns about a reference point that goes straight, a screw about a fixed
+/// axis. P and Q are zero if the reference point is the origin of the body. Without a
+/// turn w, C, D, P and Q are zero. Or it is a uniform cubic B-spline of translations and
+/// of rotation vectors, as FCL's SplineMotion.
 class MotionPath {
  public:
   /// @brief At rest.
@@ -62,7 +62,7 @@ class MotionPath {
   static MotionPath screw(const Pose& beginning, const Pose& end);
 
   /// @brief The control points of the translation and of the rotation vector.
-  /// @throws fcl::Exception  a rotation of more than kMostAngle
+  /// @throws fcl::Exception  when a rotation vector is longer than kMostAngle
   static MotionPath spline(const double (&translation)[4][3],
                            const double (&rotation)[4][3]);
 
@@ -72,7 +72,8 @@ class MotionPath {
   /// @brief The pose at a time in [0, 1].
   Pose pose(double t) const;
   PoseRate rate(double t) const;
-  /// @brief The second derivative, within 2^-46 of the bound on it; of a turn only.
+  /// @brief The second derivative of a turn, within 2^-46 of the bound on it. Not for
+  /// splines.
   PoseRate turnAccelerationAt(double t) const;
 
   /// @brief Bound on the acceleration during [t0, t1].
@@ -84,17 +85,17 @@ class MotionPath {
   /// @brief Bound on |T(t)|.
   double translationReach() const { return translation_reach_; }
 
-  /// @brief By how much at most a rotation makes a vector longer.
+  /// @brief The largest factor by which a rotation makes a vector longer.
   double stretch() const { return stretch_; }
 
   /// @brief Bound on the rounding, along any unit direction, of pose(t) applied to a
-  /// point with |x| <= radius: in the sum of three products and the translation too.
+  /// point with |x| <= radius. It includes the sum of three products and the translation.
   double positionError(double radius) const;
 
   /// @brief Bound on the velocity of a point with |x| <= radius that rests in the body.
   double speed(double radius) const { return turn_speed_ * radius + translation_speed_; }
 
-  /// @brief As positionError(), of rate(t).
+  /// @brief As positionError(), for rate(t).
   double rateError(double radius) const;
 
  private:
@@ -127,7 +128,7 @@ class MotionPath {
 
   double stretch_{1};
   double translation_reach_{0};
-  /// Size of what is added up to a translation.
+  /// Size of the terms whose sum is a translation.
   double translation_size_{0};
   double turn_speed_{0};
   double translation_speed_{0};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnitRounding = 0x1p-53;
 
-/// The poses of a body at times that come again.
+/// Stores the poses of a body, since the same times are needed again.
 class PoseTable {
  public:
   explicit PoseTable(const MotionPath& path) : path_(path) {
@@ -38,7 +38,7 @@ class PoseTable {
   Pose pose_[kSlots];
 };
 
-/// What a traversal has of a body.
+/// The data of a body in a traversal.
 struct Side {
   explicit Side(const MotionBody& b) : body(b), reader(b), poses(b.path()) {}
 
@@ -53,16 +53,15 @@ struct Side {
 
 /// Two parts in a span of time.
 struct Work {
-  /// Provably apart before, from t0 on.
+  /// From t0 to this time the parts are provably apart.
   double start;
   double t0, t1;
   BodyPart a, b;
   std::int32_t steps;
 };
 
-/// Of works that start together, as those that overlap at t = 0 do, what is further down
-/// in the trees comes first: it lies behind what is above it. The rest makes the order
-/// that of the works alone.
+/// Works that start at the same time, for example at t = 0: those further down in the
+/// trees come first. The other comparisons make the order depend on the works alone.
 bool isLater(const Work& x, const Work& y) {
   if (x.start != y.start) return x.start > y.start;
   const std::int64_t x_depth = std::int64_t{x.a.box} + x.b.box,
@@ -78,7 +77,7 @@ bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
   return x.triangle[1] < y.triangle[1];
 }
 
-/// The largest power of two that is not above a quarter of x.
+/// The largest power of two that is at most a quarter of x.
 double quarterUnit(double x) {
   int exponent;
   std::frexp(x, &exponent);
@@ -147,7 +146,7 @@ class MotionTraversal {
     return std::max(at(begin), at(end)) + bound.per_displacement * begin.displacement;
   }
 
-  /// How far points of a part may be from straight lines during a span.
+  /// The largest deviation of points of a part from straight lines during a span.
   double deviation(int k, const BodyPart& part, double t0, double t1) const {
     const MotionBody& body = side_[k].body;
     const double dt = t1 - t0;
@@ -155,7 +154,7 @@ class MotionTraversal {
     return 0.125 * dt * dt * accelerationOf(body.path().acceleration(t0, t1), begin, end);
   }
 
-  /// Tests the pair in its span, and adds what may meet.
+  /// Tests the pair in its span, and adds the parts that may overlap.
   void testAlone(const Work& work) {
     MotionNode node;
     node.count = 1;
@@ -220,8 +219,8 @@ class MotionTraversal {
     }
   }
 
-  /// The span of a work, that of the work that it comes from, cut to [start, end], and to
-  /// points in time that come again.
+  /// The span of a work: that of its parent, cut to [start, end], with ends that are
+  /// dyadic so that poses are used again.
   static void setSpan(double end, Work& work) {
     if (work.a.isTriangle() && work.b.isTriangle()) {
       work.t0 = work.start;
@@ -292,8 +291,8 @@ class MotionTraversal {
     if (!options_.all) latest_ = std::min(latest_, contact.toc_lo);
   }
 
-  /// Sorted; of each pair of triangles, which may have been met in several spans, the
-  /// first; of a first contact the first of all.
+  /// Sorts the contacts. A pair of triangles may have been found in several spans; its
+  /// first contact is kept. A first-contact query keeps the first of all.
   MotionAnswer finish() {
     MotionAnswer answer;
     answer.counts = counts_;
@@ -320,7 +319,7 @@ class MotionTraversal {
   MotionTolerance tolerance_;
   double box_margin_;
   double direction_bound_;
-  /// Nothing later matters.
+  /// The latest time that matters.
   double latest_;
   std::vector<Work> works_;
   std::vector<MotionContact> contacts_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Sine, cosine and rotation angles with bits that do not depend on the machine: libm
-// chooses its functions by the instruction set, and they differ in the last place.
+// Sine, cosine and rotation angles with the same bits on all machines. libm chooses its
+// functions by the instruction set, and they differ in the last place.
 #ifndef FCL_CCD_MOTION_SINE_H
 #define FCL_CCD_MOTION_SINE_H
 
@@ -66,8 +66,8 @@ inline SineCosine sineCosine(double x) {
 }
 
 /// @brief The angle in [0, pi / 2] of a unit vector (cosine, sine), both not negative, to
-/// a few u. A guess good to 0.005, then Newton's method of third order twice: 2e-8,
-/// 1e-24.
+/// a few u. The first estimate is within 0.005. Then Newton's method of third order is
+/// applied twice: 2e-8, 1e-24.
 inline double angleOf(double cosine, double sine) {
   const bool steep = sine > cosine;
   const double ratio = steep ? cosine / sine : sine / cosine;

@@ -20,8 +20,8 @@ double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 
 Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
 
-/// Point of an edge pq and of an edge rs that are nearest to each other, as parts of the
-/// edges, which may be points.
+/// The nearest points of an edge pq and an edge rs, as fractions of the edges. An edge
+/// may be a point.
 void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, double& s,
                     double& t) {
   const Vec w = p - r;
@@ -81,8 +81,8 @@ Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
 /// The part of a vector across another one.
 Vec across(const Vec& edge, const Vec& v) { return cross(edge, cross(v, edge)); }
 
-/// The direction in which nearest features are apart; less rounded than the line between
-/// their nearest points.
+/// The direction along which nearest features are apart. It rounds less than the line
+/// between their nearest points.
 Vec directionOf(const NearestFeatures& near, const Vec (&a)[3], const Vec (&b)[3]) {
   switch (near.kind) {
     case NearestFeatures::Kind::kVertexOfA:
@@ -137,10 +137,10 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
   return best;
 }
 
-// Distances are differences of two posed points, projected on a direction that is rounded
-// too, 16 u of their size more than the error of the points. A time is rounded by u. What
-// touches is found while the distance, with its error, is at most `touching`, and a step
-// may leave as much gap as the error: four times the error are in its reach.
+// A distance is the difference of two posed points, projected on a direction that is
+// rounded too. Its error is that of the points and 16 u of their size. A time is rounded
+// by u. A pair is touching if its computed distance is at most `touching`, and a step may
+// leave a gap as large as the error. So `touching` is four times the error.
 MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                                  double wanted_distance)
     : distance(wanted_distance) {
@@ -210,9 +210,10 @@ struct TrianglePairMotion::Projection {
       }
   }
 
-  /// How far all nine pairs of vertices are provably further apart than the margin, at
-  /// most the longest step, if they are now; negative if they are not. The gap of a pair
-  /// is at least g + v h - M h^2 / 2, concave in h: positive at the end it is so before.
+  /// The largest step, at most the longest one, during which all nine pairs of vertices
+  /// are provably further apart than the margin; negative if they are not now. The gap of
+  /// a pair is at least g + v h - M h^2 / 2. This is concave in h: if it is positive at
+  /// the end of a step, it is positive before.
   double advance(double margin, double rate_margin, double most_approach,
                  double longest) const {
     double h = longest;
@@ -233,8 +234,8 @@ struct TrianglePairMotion::Projection {
   double speed[2][3];
 };
 
-/// By how much at most the corners are accelerated towards each other at t along the
-/// direction; negative if away. Of turns.
+/// The largest acceleration of the corners towards each other at t along the direction;
+/// negative if they are accelerated away. For turns only.
 double TrianglePairMotion::greatestApproach(double t, const Vec& direction) const {
   double most[2] = {-HUGE_VAL, -HUGE_VAL};
   for (int body = 0; body < 2; ++body) {
@@ -254,24 +255,25 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
   return most[0] + most[1];
 }
 
-/// How far the direction keeps the triangles apart, at most to the end of the span;
-/// negative if it does not at all. The bound on the acceleration is that of all
-/// directions or, for a step of at most H, what it is now along this one and H times the
-/// third derivative: steps are made longer as long as that holds.
+/// The step during which the direction separates the triangles, at most to the end of the
+/// span; negative if it does not separate them now. The bound on the acceleration is that
+/// of all directions. For a step of at most H it is also the present acceleration along
+/// this direction plus H times the bound on the third derivative. H is doubled as long as
+/// the step allows it.
 double TrianglePairMotion::step(double t, const State& state,
                                 const Vec& direction) const {
   const Projection along(state, direction);
   const double margin = tolerance_.position + tolerance_.distance, longest = t1_ - t;
   double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
   if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
-  // What rounds in it is far less than this part of the bound.
+  // Its rounding is far less than this part of the bound.
   const double approach = greatestApproach(t, direction) + 0x1p-40 * acceleration_;
   const auto within = [&](double horizon) {
     const double most = std::min(std::max(approach + jerk_ * horizon, 0.), acceleration_);
     return along.advance(margin, tolerance_.rate, most, horizon);
   };
   best = std::max(best, within(longest));
-  // Doubled each time, until it is all of the span or the bound gives way.
+  // H is doubled until it is the whole span or the step no longer reaches it.
   while (best > 0 && 2 * best < longest) {
     const double horizon = 2 * best, h = within(horizon);
     best = std::max(best, h);
@@ -297,7 +299,7 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
     if (!(gap > 0.5 * distance)) {
       ++counts.all_directions;
       tryDirection(nearest_.between, state.p[0], state.p[1], direction, gap);
-      // Of edges that are parallel.
+      // For parallel edges.
       for (int body = 0; body < 2; ++body)
         tryDirection(across(edge(state.p[body], body == 0 ? nearest_.a : nearest_.b),
                             nearest_.between),
@@ -310,8 +312,8 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
     }
     const double h = step(t, state, direction);
     if (h >= t1_ - t) return Answer::kApart;
-    // Rounded down by more than the rounding of the step; that of the time is in the
-    // tolerance.
+    // Rounded down by more than the rounding of the step. The tolerance includes the
+    // rounding of the time.
     const double next = t + h * (1 - 0x1p-48);
     if (!(next > t))
       return t == 0 && isCrossingAt(state) ? Answer::kContact : Answer::kGivenUp;
@@ -320,7 +322,7 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
   }
 }
 
-/// Whether an edge of one passes through the other, of the points as they are.
+/// Whether an edge of one triangle passes through the other, for these points.
 bool TrianglePairMotion::isCrossingAt(const State& state) {
   double x[2][3][3];
   for (int body = 0; body < 2; ++body)
@@ -348,8 +350,8 @@ bool TrianglePairMotion::provesCrossing(const State& state) const {
       x[body][i][2] = from.z;
       size = std::max(size, norm(from));
     }
-  // A volume u . (v x w) of vectors below 2 size: each of them is off by 2 errors at
-  // most, 3 * 2 e (2 size)^2, and what rounds is below that, since e is above 16 u size.
+  // A volume u . (v x w) of vectors below 2 size. Each vector has an error of at most 2
+  // e, in all 3 * 2 e (2 size)^2. The rounding is below that, since e is above 16 u size.
   const double bound = 48 * tolerance_.position * size * size;
   const auto volume = [](const double(&p)[3], const double(&a)[3], const double(&b)[3],
                          const double(&c)[3]) {
@@ -380,7 +382,7 @@ double TrianglePairMotion::proveContact(double t, double width) const {
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
   const double longest = std::min(width, 1 - t);
-  // Twice as long each time; fewer than 1100 doublings of a double.
+  // The width is doubled each time. A double has fewer than 1100 doublings.
   for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
        h *= 2) {
     const double time = std::min(t + std::min(h, longest), 1.);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// When two triangles that move on curved paths first touch, decided on the true paths.
+// The first time at which two triangles that move on curved paths touch. The decision is
+// on the true paths, not on chords.
 #ifndef FCL_CCD_MOTION_TRIANGLE_ADVANCE_H
 #define FCL_CCD_MOTION_TRIANGLE_ADVANCE_H
 
@@ -12,27 +13,27 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief What a query of two bodies knows of rounding: S is the size of the coordinates
-/// that posed vertices are made of.
+/// @brief Bounds on the rounding in a query of two bodies, derived from the size of their
+/// coordinates.
 struct MotionTolerance {
-  /// @brief Of two bodies: derived from their bounds.
-  /// @param distance  at which bodies are in contact
+  /// @brief The bounds for two bodies.
+  /// @param distance  the distance at which bodies are in contact
   MotionTolerance(const MotionBody& a, const MotionBody& b, double distance);
 
   /// Bound on the error of a distance between computed points along a unit direction.
   double position;
   /// The same of a relative velocity.
   double rate;
-  /// What comes within distance + touching counts as contact.
+  /// Features that come within distance + touching count as contact.
   double touching;
   double distance;
 };
 
-/// @brief How sure a contact is.
+/// @brief What is proved about a contact.
 enum class MotionCertainty {
   kCrossing,         ///< toc_hi is a time at which the surfaces provably cross
   kWithinTolerance,  ///< the surfaces come within the tolerance of each other
-  kGivenUp           ///< neither proved apart nor found as near, after too many steps
+  kGivenUp           ///< after too many steps neither proved apart nor found as near
 };
 
 /// @brief The features of two triangles that are nearest to each other.
@@ -60,7 +61,7 @@ struct MotionCounts {
   std::uint64_t box_tests{0};
   std::uint64_t triangle_pairs{0};
   std::uint64_t steps{0};
-  /// Steps in which the direction of the nearest features was not good enough.
+  /// The number of steps in which the direction of the nearest features was not enough.
   std::uint64_t all_directions{0};
 };
 
@@ -78,18 +79,18 @@ class TrianglePairMotion {
     kGivenUp   ///< provably apart before t, no direction that leads on
   };
 
-  /// @brief Advances from t, at which the triangles are apart or just touch unless it is
-  /// 0, to the first time at which they are within the tolerance.
-  /// @param[in,out] t  from when on
-  /// @param last  stops after the first step that comes here
-  /// @param[in,out] steps  left
+  /// @brief Advances from t to the first time at which the triangles are within the
+  /// tolerance. Unless t is 0, they are apart or just touch at t.
+  /// @param[in,out] t  the time from which on
+  /// @param last  stops after the first step that reaches this time
+  /// @param[in,out] steps  the number of steps left
   Answer advance(double& t, double last, int& steps, MotionCounts& counts);
 
   const NearestFeatures& nearest() const { return nearest_; }
 
   /// @brief A time in (t, t + width] at which an edge provably passes through the other
-  /// triangle (with a distance asked for: at which they provably are as near); t if there
-  /// is none that is found.
+  /// triangle (with a requested distance: at which they provably are as near). t if no
+  /// such time is found.
   double proveContact(double t, double width) const;
 
  private:
@@ -116,8 +117,8 @@ class TrianglePairMotion {
   NearestFeatures nearest_;
 };
 
-/// @brief The points of two closed triangles that are nearest to each other, as far as
-/// rounding allows; of triangles that cross not 0.
+/// @brief The nearest points of two closed triangles, up to rounding. The distance of
+/// triangles that cross is not 0.
 NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]);
 
 }  // namespace deformable

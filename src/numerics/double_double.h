@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Numbers as unevaluated sums of two doubles, for where one is not enough.
+// Numbers as unevaluated sums of two doubles: twice the digits of a double.
 //
 // After Dekker 1971; error bounds: Joldes, Muller, Popescu 2017, "Tight and rigorous
 // error bounds for basic building blocks of double-word arithmetic", algorithms 6 and 10.
-// They hold while nothing underflows or overflows; an underflow adds less than 2^-1070,
-// which a later factor multiplies.
+// They hold if nothing underflows or overflows. An underflow adds less than 2^-1070,
+// times the later factors.
 #ifndef FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
 #define FCL_CCD_NUMERICS_DOUBLE_DOUBLE_H
 
@@ -15,7 +15,7 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief hi + lo, hi the double nearest to the sum.
+/// @brief The sum hi + lo; hi is the double nearest to it.
 struct DoubleDouble {
   double hi, lo;
 
@@ -32,8 +32,8 @@ struct DoubleDouble {
   }
 };
 
-/// Relative errors: of a product 7 u^2, of a sum, also of terms of different sign, 3 u^2
-/// + 13 u^3, u = 2^-53. A product of two doubles (lo = 0) is exact.
+/// Relative errors, with u = 2^-53: a product 7 u^2; a sum 3 u^2 + 13 u^3, also for terms
+/// of different sign. A product of two doubles (lo = 0) is exact.
 constexpr double kProductBound = 0x1p-103;
 constexpr double kSumBound = 0x1p-104;
 

@@ -15,10 +15,10 @@ namespace detail {
 namespace deformable {
 
 // Error analysis. u = 2^-53. A difference of two coordinates is rounded once (relative
-// error u); interpolated at a time t its components have an absolute error of at most 4 u
-// times its norm (the larger max-norm of both frames): difference, weight 1 - t, product,
-// sum. U, V, W below are such norms. Second-order terms are below 2^-40 of the bounds and
-// lie in the room that each constant leaves.
+// error u). Interpolated at a time t, its components have an absolute error of at most 4
+// u times its norm (the larger max-norm of both frames): difference, weight 1 - t,
+// product, sum. U, V, W below are such norms. Second-order terms are below 2^-40 of the
+// bounds. Each constant is rounded up by more than that.
 //
 // A component of v x w: two products of size VW, error (4 + 4 + 1) u VW each, and a sum
 // of size 2 VW: 20 u VW; its size is 2 VW. Of v0 x w1 + v1 x w0: size 4 VW, error 44 u
@@ -36,15 +36,14 @@ constexpr double kInnerBound = 344 * kUnit;
 // d . (x - o), for a direction of norm D and points at most N from o: an error of 12 u
 // DN; the difference of two such numbers 24 u DN, and it rounds by 6 u DN.
 constexpr double kPlaneBound = 32 * kUnit;
-// Of D, where three coordinates come closer: more than the rounding of this product.
+// A factor for D in three coordinates: more than the rounding of this product.
 constexpr double kPlaneApproach = 3 * (1 + 8 * kUnit);
 // The filter takes the largest norm N for all of U, V, W and makes the inner coefficients
-// smaller, so that all four have one bound, kOuterBound N^3. Computing that, and making
-// them smaller, rounds by 4 u of their own size: in the room.
+// smaller, so that all four have one bound, kOuterBound N^3. This computation rounds by 4
+// u of their own size, which the constant includes.
 constexpr double kInnerScale = 0.302;
 static_assert(kInnerScale * kInnerBound < kOuterBound, "the inner bound, made smaller");
-// Between these norms what underflows is below 2^-150 of that bound, and nothing
-// overflows.
+// Between these norms an underflow is below 2^-150 of that bound, and nothing overflows.
 constexpr double kLeastFilterNorm = 0x1p-290;
 constexpr double kMostFilterNorm = 0x1p290;
 // Inside conditions (x y cross product)(v w cross product), coefficients of degree 4:
@@ -95,8 +94,8 @@ constexpr double kBorderHalfBound = 640 * kUnit;
 constexpr double kTiny = 0x1p-900;
 constexpr double kHuge = 0x1p900;
 inline bool isInRange(double size) { return size >= kTiny && size <= kHuge; }
-// A norm counts for no less than this: what underflows in the products with 1 - t and t,
-// 2^-1074 each, is then below the 4 u that the bounds allow for.
+// The least norm that is used. Then an underflow in the products with 1 - t and t,
+// 2^-1074 each, is below the 4 u of the bounds.
 constexpr double kLeastNorm = 0x1p-1010;
 
 }  // namespace deformable

@@ -179,8 +179,8 @@ Polynomial gcd(Polynomial a, Polynomial b) {
   return a.degree() > 0 ? a.primitive() : a;
 }
 
-/// Where in (k, k + 1) / 2^m, 0 to 1, a polynomial of different signs at its ends seems
-/// to be zero.
+/// An estimate of the root in (k, k + 1) / 2^m, from 0 to 1, of a polynomial with
+/// different signs at the ends.
 static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
   const Polynomial::Coefficients exact = p.bernstein(k, m);
   std::size_t bits = 0;
@@ -219,8 +219,8 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
   Polynomial p = polynomial;
   bool square_free = p.degree() <= 1;
   std::vector<Root> roots;
-  // Roots found on the way at dyadic points are divided out, so that ends of intervals
-  // are never roots; the search then starts again.
+  // A root that is found at a dyadic point is divided out, so that ends of intervals are
+  // never roots. The search then starts again.
   const auto takeDyadic = [&](const Integer& k, unsigned m) {
     bool taken = false;
     while (p.degree() >= 1 && p.signAt(k, m) == 0) {
@@ -236,9 +236,9 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
     again = false;
     std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
     std::vector<Root> isolated;
-    // Roots that crowd at an end (frames of very different size) or where the polynomial
-    // turns (touching but for a rounding): a part of the interval with all its sign
-    // changes leaves none for the rest, nor a root between.
+    // Roots may lie close together at an end (frames of very different size) or at an
+    // extremum (features that touch up to rounding). If a part of the interval has all
+    // its sign changes, the rest has no root.
     const auto jump = [&](const Interval& i) {
       const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
       const auto jumpTo = [&](const Integer& k, int cuts) {
@@ -301,7 +301,7 @@ int Root::probe(const Integer& k, unsigned m) {
 }
 
 bool Root::narrow(unsigned bits) {
-  // The neighbours of the place where the root seems to be.
+  // The points on both sides of the estimate.
   if (bits > 1) {
     const Integer first = k_ << bits, end = (k_ + 1) << bits;
     const Integer guess = first + guessInside(bits);
@@ -354,8 +354,8 @@ int Root::signOf(const Polynomial& g) {
   bool common_known = false;
   for (bool first = true; !is_dyadic_ && g.signChanges(k_, m_) > 0; first = false) {
     if (!first && !common_known) {
-      // A common root in the interval is this root: the only one of its polynomial
-      // there, at which the divisor changes sign.
+      // A common root in the interval is this root, since its polynomial has no other
+      // there. The divisor changes its sign at it.
       const Polynomial common = gcd(polynomial_, g);
       if (common.degree() > 0 && common.signAt(k_, m_) != common.signAt(k_ + 1, m_))
         return 0;
@@ -373,11 +373,11 @@ double Root::upperBound() const {
 }
 
 std::pair<double, double> Root::bracket(double width, int clock_exponent) {
-  // No interval between doubles is shorter, and 1 / width stays finite.
+  // No two doubles are closer, and 1 / width is finite.
   width = std::max(width, std::numeric_limits<double>::min());
   if (clock_exponent != 0) return bracketOnClock(width, clock_exponent);
-  // With more bits than a double has, an interval closer than doubles would not show. A
-  // root below 2^-1074 has none.
+  // More bits than a double has would not change the doubles around the root. A root
+  // below 2^-1074 has no bits of a double.
   const auto hasBitsOfDouble = [this] {
     return !k_.is_zero() && boost::multiprecision::msb(k_) > 54;
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Polynomials with integer coefficients and their real roots in [0, 1], exactly: what the
-// last stage of the elementary test needs and no more.
+// Exact polynomials with integer coefficients and their real roots in [0, 1], as far as
+// the last stage of the elementary test needs them.
 #ifndef FCL_CCD_NUMERICS_EXACT_POLYNOMIAL_H
 #define FCL_CCD_NUMERICS_EXACT_POLYNOMIAL_H
 
@@ -16,13 +16,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// An integer of any size; up to 512 bits, which conditions on coordinates of like
-/// magnitude need, it lies in the object itself.
+/// An integer of any size. Up to 512 bits are stored in the object itself. Conditions on
+/// coordinates of similar magnitude need no more.
 using Integer =
     boost::multiprecision::number<boost::multiprecision::cpp_int_backend<512, 0>,
                                   boost::multiprecision::et_off>;
 
-/// @brief Coefficients by ascending power, no zero in the last place; empty is zero.
+/// @brief Coefficients by ascending power. The last one is not 0; the polynomial 0 has
+/// none.
 class Polynomial {
  public:
   /// The conditions of a contact have at most this degree.
@@ -49,8 +50,7 @@ class Polynomial {
   Polynomial derivative() const;
   /// @brief Divided by the greatest common divisor of the coefficients.
   Polynomial primitive() const;
-  /// @brief Quotient by a divisor that divides this without rest, up to a constant
-  /// factor.
+  /// @brief Quotient by a divisor that leaves no remainder, up to a constant factor.
   Polynomial quotient(const Polynomial& divisor) const;
 
   /// @brief The value at k / 2^m, times 2^(m degree).
@@ -84,8 +84,9 @@ class Polynomial {
 /// root.
 Polynomial gcd(Polynomial a, Polynomial b);
 
-/// @brief A root in [0, 1] of a polynomial: the number k / 2^m itself, or the only root
-/// in the open interval (k, k + 1) / 2^m, simple, and whose ends are not roots.
+/// @brief A root in [0, 1] of a polynomial. It is the number k / 2^m itself, or the only
+/// root in the open interval (k, k + 1) / 2^m. In this case it is simple, and the ends of
+/// the interval are not roots.
 class Root {
  public:
   /// @brief The number k / 2^m.
@@ -98,7 +99,7 @@ class Root {
         sign_below_(polynomial.signAt(k_, m_)),
         polynomial_(std::move(polynomial)) {}
 
-  /// @brief Sign of g at the root, exact; may narrow the interval.
+  /// @brief The exact sign of g at the root. It may narrow the interval.
   int signOf(const Polynomial& g);
 
   /// @brief Doubles not above and not below the root.
@@ -111,10 +112,11 @@ class Root {
   std::pair<double, double> bracket(double width, int clock_exponent);
 
  private:
-  /// What a double can say of the root's place inside the interval.
+  /// The number of bits of the root's place in the interval that an estimate in doubles
+  /// has.
   static constexpr unsigned kEstimateBits = 48;
 
-  /// No double above 0 needs more.
+  /// No positive double needs more bits.
   static constexpr unsigned kMaxBits = 1100;
 
   std::pair<double, double> bracketOnClock(double width, int clock_exponent);
@@ -122,9 +124,9 @@ class Root {
   /// Narrows the interval by 2^-bits if the root is where it seems to be, else to a half.
   /// @return whether it was
   bool narrow(unsigned bits);
-  /// Sign at the inner point k / 2^m, where the root is found to be if it is 0.
+  /// Sign at the inner point k / 2^m. If it is 0, this point becomes the root.
   int probe(const Integer& k, unsigned m);
-  /// Where in the interval, cut in 2^bits parts, the root seems to be.
+  /// The part of the interval, divided into 2^bits parts, in which the root seems to be.
   Integer guessInside(unsigned bits) const;
 
   Integer k_;

@@ -8,10 +8,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief About a root of f between lo and hi, where it has the values f_lo and f_hi of
-/// different sign: the Illinois method, false position that halves the weight of an end
-/// that stays. Only a place to cut or to look: nothing is proved about it.
-/// @param tol  steps this short end the search
+/// @brief An estimate of a root of f between lo and hi, where f has the values f_lo and
+/// f_hi of different sign. It uses the Illinois method: false position that halves the
+/// weight of an end that stays. Nothing is proved about the result.
+/// @param tol  a step of this length ends the search
 template <typename F>
 double illinois(F&& f, double lo, double hi, double f_lo, double f_hi, double tol,
                 int max_steps) {

@@ -13,8 +13,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A finite double as digits * 2^exponent, with odd digits unless it is 0: 53 of
-/// them at most, 24 if it was a float.
+/// @brief A finite double as digits * 2^exponent. digits is odd, or 0 for the number 0.
+/// It has at most 53 bits, or 24 if the number was a float.
 struct BinaryDigits {
   std::int64_t digits;
   int exponent;
@@ -38,7 +38,7 @@ struct BinaryDigits {
   }
 };
 
-/// @brief The exponents of the lowest and of the highest digit of some numbers that are
+/// @brief The exponents of the lowest and the highest bit of a set of numbers that are
 /// not 0.
 struct DigitRange {
   int lowest{std::numeric_limits<int>::max()};
@@ -51,11 +51,11 @@ struct DigitRange {
     highest = std::max(highest, x.exponent + x.numDigits() - 1);
   }
   bool isEmpty() const { return lowest > highest; }
-  /// @brief What the integers need; of a range that is not empty.
+  /// @brief The number of bits of the integers. The range must not be empty.
   int numDigits() const { return highest - lowest + 1; }
 };
 
-/// @brief value * 2^-lowest, for a finite value of a DigitRange.
+/// @brief value * 2^-lowest, for a finite value in a DigitRange.
 template <typename Integer>
 Integer toInteger(double value, int lowest) {
   const BinaryDigits x(value);

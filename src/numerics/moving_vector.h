@@ -33,8 +33,8 @@ inline double maxNorm(const Vec& a) {
 }
 
 /// @brief Cross product of two moving vectors over an interval, c0 (1-s)^2 + c1 s (1-s) +
-/// c2 s^2. No component of c0, c1 / 2 and c2 is larger than size, nor further than error
-/// from the truth.
+/// c2 s^2. Each component of c0, c1 / 2 and c2 is at most `size`, and its error is at
+/// most `error`.
 struct MovingCross {
   Vec c0, c1, c2;
   double size;
