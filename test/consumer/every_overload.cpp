@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every call that takes or gives back something of FCL's that Eigen aligns as the
-// compiler's flags say. Built with flags that the library was not built with: wherever
-// such a thing crossed the border, answers would be wrong or the program would stop.
+// Makes every call that takes or returns a type of FCL whose alignment depends on the
+// compiler's flags. It is built with other flags than the library. If such a type crossed
+// the border, answers would be wrong or the program would crash.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -147,7 +147,7 @@ class Checks {
   void doubleMotions(const Pointer&, const Pointer&, const Transform&, const Transform&,
                      float) {}
 
-  /// FCL's other motions are abstract in float.
+  /// In float FCL's other motions are abstract.
   template <typename Request, typename Result, typename Pointer>
   void doubleMotions(const Pointer& rest, const Pointer& fall, const Transform& beg,
                      const Transform& end, double) {
@@ -167,7 +167,7 @@ class Checks {
     try_motions(*s1, *s2, "continuousCollide(screws)");
   }
 
-  /// A motion of the program's own, which only a mesh that deforms follows here.
+  /// A motion class of the program. Only a mesh that deforms follows it in this test.
   class Fall : public fcl::MotionBase<S> {
    public:
     bool integrate(S t) const override {
@@ -324,8 +324,8 @@ class Checks {
     }
   }
 
-  /// What FCL answers: the time alone, since in double stock's own library writes poses
-  /// where the program does not look for them.
+  /// A pair that FCL answers. Only the time is tested: in double stock's library writes
+  /// poses to other places than the program reads.
   void shapes() {
     const auto ball = std::make_shared<fcl::Sphere<S>>(S(1));
     fcl::ContinuousCollisionRequest<S> request;
@@ -395,7 +395,7 @@ class Checks {
     checkTurn(time, result, "interpolation");
   }
 
-  /// What the library throws, the program catches.
+  /// The program catches the exceptions of the library.
   void exceptions() {
     fcl::ContinuousCollisionRequest<S> request;
     request.toc_err = -1;

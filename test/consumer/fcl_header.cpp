@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The same query as in main.cpp, through FCL's header of everything.
+// The same query as in main.cpp, with FCL's header <fcl/fcl.h>.
 #include <fcl/fcl.h>
 
 double timeThroughFclHeader(const fcl::CollisionGeometryd& a,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A program that uses FCL's names only. A small plate flies through a large one, both
-// without thickness: at none of the 10 times that stock FCL samples do they touch, so
-// that this program succeeds only where the continuous queries are answered by fcl_ccd.
+// A program that uses FCL's names only. A small plate flies through a large one. Both
+// have no thickness, and they touch at none of the 10 times that stock FCL samples. So
+// this program succeeds only if fcl_ccd answers the continuous queries.
 #include <cmath>
 #include <cstdio>
 #include <memory>
