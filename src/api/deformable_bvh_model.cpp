@@ -316,6 +316,6 @@ void DeformableBVHModel<BV>::fitPerThread() {
   this->bv_fitter = std::make_shared<detail::PerThreadFitter<BV>>();
 }
 
-FCL_CCD_INSTANTIATE_MODELS
+FCL_CCD_FOR_VOLUMES(FCL_CCD_INSTANTIATE_MODEL)
 
 }  // namespace fcl

@@ -394,6 +394,6 @@ int DeformableBVHModel<BV>::updateFclTree() {
   return accept();
 }
 
-FCL_CCD_INSTANTIATE_MODELS
+FCL_CCD_FOR_VOLUMES(FCL_CCD_INSTANTIATE_MODEL)
 
 }  // namespace fcl

@@ -3,12 +3,28 @@
 // FCL's own continuous query in float, between two transforms. libfcl has none, and
 // stock's header does not compile there: FCL's getMotionBase<float>() makes motions that
 // are abstract.
+#include "api/fcl_in_float.h"
+
 #include <memory>
 
+#include "api/model_instances.h"
 #include "fcl/common/exception.h"
-#include "fcl/narrowphase/continuous_collision.h"
 
 namespace fcl {
+
+template std::size_t collide<float>(const CollisionGeometry<float>*,
+                                    const Transform3<float>&,
+                                    const CollisionGeometry<float>*,
+                                    const Transform3<float>&,
+                                    const CollisionRequest<float>&,
+                                    CollisionResult<float>&);
+template float continuousCollide<float>(const CollisionGeometry<float>*,
+                                        const MotionBase<float>*,
+                                        const CollisionGeometry<float>*,
+                                        const MotionBase<float>*,
+                                        const ContinuousCollisionRequest<float>&,
+                                        ContinuousCollisionResult<float>&);
+
 namespace detail {
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <memory>
 
-#include "fcl/geometry/bvh/BVH_model.h"
+#include "api/model_instances.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {

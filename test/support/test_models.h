@@ -12,6 +12,9 @@
 #include <tuple>
 #include <vector>
 
+// What the library has of FCL's templates is not compiled again.
+#include "api/fcl_in_float.h"
+#include "api/model_instances.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
