@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Builds and updates of a model. Its states and the checks of its input are in
-// deformable_bvh_model.cpp.
+// Builds and updates of a model. Its state is in model_state.cpp, and the checks of its
+// input are in deformable_mesh.cpp.
 #include "api/model_instances.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
@@ -46,7 +46,7 @@ int DeformableBVHModel<BV>::grow(Add&& add) {
   const bool was_in_step = isInStep();
   const auto restore = [&] {
     this->num_vertices = num_vertices;
-    if (was_in_step) seal_.vertices = this->vertices;
+    if (was_in_step) state_.setCurrent(arrays());
   };
   try {
     if (const int code = add()) {
@@ -88,29 +88,19 @@ int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
 
 template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
-  if (this->build_state != BVH_BUILD_STATE_BEGUN)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "endModel() on a model that is not open. Call beginModel() first");
-  if (isInStep())
-    return refuse(
-        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-        "endModel() on a model that is built and has not grown. Call updateFclTree() "
-        "to build FCL's tree");
+  if (const int code = checkInConstruction()) return code;
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
   if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
     return code;
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
-  // A failure leaves an open model, which no seal fits.
-  open_ = Open::kNone;
-  seal_.build_state = BVH_BUILD_STATE_EMPTY;
+  state_.beginBuild();
   std::unique_ptr<Vector3<S>[]> previous(new Vector3<S>[count]);
   std::copy(this->vertices, this->vertices + count, previous.get());
   delete[] this->prev_vertices;
   this->prev_vertices = previous.release();
-  seal_.prev_vertices = this->prev_vertices;
-  seal_.num_vertices = this->num_vertices;
+  state_.setPrevious(arrays());
   const detail::deformable::VertexFrames still(this->vertices->data(),
                                                this->vertices->data(), count);
   buildTree(this->tri_indices, num_triangles, still);
@@ -120,85 +110,66 @@ int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
     if (const int code = Base::endModel())
       return refuse(code, "FCL refused to build its tree");
   }
-  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  state_.setFclTree(fcl_tree == FclTree::kUpdate ? FclTreeIs::kUpToDate
+                                                 : FclTreeIs::kMissing);
   seal();
   return accept();
 }
 
 template <typename BV>
-int DeformableBVHModel<BV>::open(Open what, const char* caller) {
-  if (!isBuilt())
-    return refuse(
-        BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-        std::string(caller) + "() on a model that is not built. Call endModel() first");
-  staged_.clear();
-  staged_.reserve(static_cast<std::size_t>(this->num_vertices));
-  open_ = what;
-  opened_ = currentSeal();
-  return accept();
+int DeformableBVHModel<BV>::open(OpenUpdate what, const char* caller) {
+  if (isBuilt()) {
+    staged_.clear();
+    staged_.reserve(static_cast<std::size_t>(this->num_vertices));
+  }
+  return openUpdate(what, caller);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::stage(const Vector3<S>* points, std::size_t count,
-                                  Open expected) {
-  if (open_ != expected)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "a vertex is given outside of begin...Model() and end...Model(). Call "
-                  "beginUpdateModel() or beginReplaceModel() first");
+                                  OpenUpdate expected) {
+  if (const int code = checkOpen(expected)) return code;
   staged_.insert(staged_.end(), points, points + count);
   return accept();
 }
 
 template <typename BV>
-int DeformableBVHModel<BV>::close(Open expected, const char* caller) {
-  if (open_ != expected)
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  std::string(caller) +
-                      "() without its begin...Model(). Call begin...Model() first");
-  open_ = Open::kNone;
-  if (!(opened_ == currentSeal()))
-    return refuse(
-        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-        std::string(caller) +
-            "() on a model that was changed since its begin...Model(). Begin again");
-  const auto count = static_cast<std::size_t>(this->num_vertices);
-  if (staged_.size() != count)
-    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(staged_.size()) +
-                                              " vertices given for a model of " +
-                                              std::to_string(count));
-  return checkFinite(staged_.data()->data(), count, "current");
+int DeformableBVHModel<BV>::close(OpenUpdate expected, const char* caller) {
+  if (const int code = closeUpdate(expected, caller)) return code;
+  if (const int code = checkCount(staged_.size())) return code;
+  return checkFinite(staged_.data()->data(), staged_.size(), "current");
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::beginUpdateModel() {
-  if (isHalfUpdated())
+  if (phase() == Phase::kHalfUpdated)
     return refuse(
         BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
         "beginUpdateModel() on a model whose last update failed. Give both frames, by "
         "updateFrames()");
-  return open(Open::kUpdate, "beginUpdateModel");
+  return open(OpenUpdate::kUpdate, "beginUpdateModel");
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::updateVertex(const Vector3<S>& p) {
-  return stage(&p, 1, Open::kUpdate);
+  return stage(&p, 1, OpenUpdate::kUpdate);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::updateTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
                                            const Vector3<S>& p3) {
   const Vector3<S> points[3] = {p1, p2, p3};
-  return stage(points, 3, Open::kUpdate);
+  return stage(points, 3, OpenUpdate::kUpdate);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::updateSubModel(const std::vector<Vector3<S>>& ps) {
-  return stage(ps.data(), ps.size(), Open::kUpdate);
+  return stage(ps.data(), ps.size(), OpenUpdate::kUpdate);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
-  if (const int code = close(Open::kUpdate, "endUpdateModel")) return code;
+  if (const int code = close(OpenUpdate::kUpdate, "endUpdateModel")) return code;
   advance(nullptr, FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
@@ -206,29 +177,29 @@ int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
 
 template <typename BV>
 int DeformableBVHModel<BV>::beginReplaceModel() {
-  return open(Open::kReplace, "beginReplaceModel");
+  return open(OpenUpdate::kReplace, "beginReplaceModel");
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::replaceVertex(const Vector3<S>& p) {
-  return stage(&p, 1, Open::kReplace);
+  return stage(&p, 1, OpenUpdate::kReplace);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::replaceTriangle(const Vector3<S>& p1, const Vector3<S>& p2,
                                             const Vector3<S>& p3) {
   const Vector3<S> points[3] = {p1, p2, p3};
-  return stage(points, 3, Open::kReplace);
+  return stage(points, 3, OpenUpdate::kReplace);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::replaceSubModel(const std::vector<Vector3<S>>& ps) {
-  return stage(ps.data(), ps.size(), Open::kReplace);
+  return stage(ps.data(), ps.size(), OpenUpdate::kReplace);
 }
 
 template <typename BV>
 int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
-  if (const int code = close(Open::kReplace, "endReplaceModel")) return code;
+  if (const int code = close(OpenUpdate::kReplace, "endReplaceModel")) return code;
   advance(staged_.data()->data(), FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
@@ -242,20 +213,17 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
     return refuse(BVH_ERR_INCORRECT_DATA,
                   "updateFrames() with a null frame. Give the previous and the current "
                   "frame");
-  if (num_vertices != static_cast<std::size_t>(this->num_vertices))
-    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
-                                              " vertices given for a model of " +
-                                              std::to_string(this->num_vertices));
+  if (const int code = checkCount(num_vertices)) return code;
   if (const int code = checkFrames(previous, current, num_vertices)) return code;
 
   // Both copies are made before an array changes, since the frames may be the model's
   // own.
   staged_.resize(num_vertices);
   std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
-  const bool build = fcl_tree == FclTree::kUpdate && !fcl_tree_built_;
   advance(previous, fcl_tree, true, true);
   finish();
-  if (build) return updateFclTree();
+  if (fcl_tree == FclTree::kUpdate && state_.fclTree() == FclTreeIs::kMissing)
+    return updateFclTree();
   return accept();
 }
 
@@ -297,14 +265,12 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   else
     buildTree(next.tri_indices, triangles.size(), new_frames);
 
-  // From here on a failure leaves a model that is half updated.
-  seal_ = {};
-  is_changing_ = true;
+  state_.beginChange();
   this->build_state = next.build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
   swapBase(next);
-  seal_.prev_vertices = this->prev_vertices;
-  seal_.num_vertices = this->num_vertices;
-  fcl_tree_built_ = fcl_tree_up_to_date_ = fcl_tree == FclTree::kUpdate;
+  state_.setPrevious(arrays());
+  state_.setFclTree(fcl_tree == FclTree::kUpdate ? FclTreeIs::kUpToDate
+                                                 : FclTreeIs::kMissing);
   refitChangedTree(frames());
   computeLocalAABB();
   seal();
@@ -319,22 +285,25 @@ template <typename BV>
 void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool refit,
                                      bool bottomup) {
   const auto count = static_cast<std::size_t>(this->num_vertices);
-  const bool rebuild = !isInStep(), repair = isHalfUpdated();
-  if (!this->prev_vertices || isPreviousShort()) {
-    std::unique_ptr<Vector3<S>[]> room(new Vector3<S>[count]);
+  const Phase before = phase();
+  const bool repair = before == Phase::kHalfUpdated;
+  std::unique_ptr<Vector3<S>[]> room;
+  if (!this->prev_vertices || state_.isPreviousShort(arrays()))
+    room.reset(new Vector3<S>[count]);
+  state_.beginChange();
+  this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
+  if (room) {
     delete[] this->prev_vertices;
     this->prev_vertices = room.release();
-    seal_.prev_vertices = this->prev_vertices;
-    seal_.num_vertices = this->num_vertices;
+    state_.setPrevious(arrays());
   }
-  is_changing_ = true;
-  this->build_state = BVH_BUILD_STATE_UPDATE_BEGUN;
-  // After a change through the base class only the base knows the state of the model.
-  if (rebuild && !repair) fcl_tree_built_ = true;
-  // FCL's tree may be half made. Then it is built again.
-  fcl_tree_up_to_date_ = fcl_tree_built_ && (repair || fcl_tree == FclTree::kUpdate);
+  // A model that was changed through the base class has FCL's tree. A tree that may be
+  // half made is built again.
+  if (before == Phase::kChangedThroughBase || state_.fclTree() != FclTreeIs::kMissing)
+    state_.setFclTree(repair || fcl_tree == FclTree::kUpdate ? FclTreeIs::kUpToDate
+                                                             : FclTreeIs::kBehind);
   const std::size_t size = 3 * count * sizeof(S);
-  if (fcl_tree_up_to_date_) {
+  if (state_.fclTree() == FclTreeIs::kUpToDate) {
     if (previous) std::memmove(this->vertices->data(), previous, size);
     this->build_state = BVH_BUILD_STATE_PROCESSED;
     Base::beginUpdateModel();
@@ -348,7 +317,7 @@ void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool r
                  previous ? previous : this->vertices->data(), size);
     std::copy(staged_.begin(), staged_.end(), this->vertices);
   }
-  if (rebuild)
+  if (before != Phase::kInStep)
     buildTree(this->tri_indices, static_cast<std::size_t>(this->num_tris), frames());
 }
 
@@ -361,20 +330,10 @@ void DeformableBVHModel<BV>::finish() {
 
 template <typename BV>
 int DeformableBVHModel<BV>::updateFclTree() {
-  if (isHalfUpdated())
-    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
-                  "updateFclTree() on a model whose last update failed. Give both frames "
-                  "first, by updateFrames()");
-  if (!isBuilt())
-    return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
-                  "updateFclTree() on a model that is not built. Call endModel() first");
-  if (isUpdateOpen())
-    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
-                  "updateFclTree() between begin...Model() and end...Model(). Call "
-                  "end...Model() first");
+  if (const int code = checkFclTreeUpdate()) return code;
   // A change through the base class has refit FCL's tree.
   if (!isInStep()) return accept();
-  if (!fcl_tree_built_) {
+  if (state_.fclTree() == FclTreeIs::kMissing) {
     // FCL may have moved the vertices before it fails.
     int code;
     try {
@@ -383,10 +342,10 @@ int DeformableBVHModel<BV>::updateFclTree() {
       seal();
       throw;
     }
-    fcl_tree_built_ = fcl_tree_up_to_date_ = code == BVH_OK;
+    if (code == BVH_OK) state_.setFclTree(FclTreeIs::kUpToDate);
     seal();
     if (code) return refuse(code, "FCL refused to build its tree");
-  } else if (!fcl_tree_up_to_date_) {
+  } else if (state_.fclTree() == FclTreeIs::kBehind) {
     staged_.assign(this->vertices, this->vertices + this->num_vertices);
     advance(this->prev_vertices->data(), FclTree::kUpdate, true, true);
     seal();

@@ -1,17 +1,34 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cstddef>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 
+#include "api/coordinate_arrays.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
+#include "mesh/mesh_topology.h"
 #include "mesh/vertex_frames.h"
 #include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace detail {
+namespace {
+
+/// Returns what is wrong, or an empty string.
+template <typename S>
+std::string notFinite(const S* coordinates, std::size_t count, const char* frame,
+                      int num_threads) {
+  const std::size_t bad = deformable::findNotFinite(coordinates, count, num_threads);
+  if (bad == count) return {};
+  return "vertex " + std::to_string(bad) + " of the " + frame + " frame is not finite";
+}
+
+}  // namespace
 
 DeformableMesh::DeformableMesh()
     : tree_(std::make_unique<deformable::MovingKdopTree>()) {}
@@ -19,13 +36,207 @@ DeformableMesh::DeformableMesh()
 DeformableMesh::~DeformableMesh() = default;
 
 DeformableMesh::DeformableMesh(const DeformableMesh& other)
-    : open_(other.open_),
-      num_threads_(other.num_threads_),
+    : state_(other.state_),
+      last_error_(other.last_error_),
       tree_(std::make_unique<deformable::MovingKdopTree>(*other.tree_)),
+      num_threads_(other.num_threads_),
       num_restructurings_(other.num_restructurings_),
       is_deforming_(other.is_deforming_) {}
 
 DeformableMesh& DeformableMesh::operator=(DeformableMesh&& other) noexcept = default;
+
+bool DeformableMesh::isBuilt() const {
+  const Phase now = phase();
+  return now == Phase::kInStep || now == Phase::kHalfUpdated ||
+         now == Phase::kChangedThroughBase;
+}
+
+bool DeformableMesh::isFclTreeBehind() const {
+  switch (phase()) {
+    case Phase::kInStep:
+      return state_.fclTree() != FclTreeIs::kUpToDate;
+    case Phase::kHalfUpdated:
+    case Phase::kGrown:
+      return true;
+    default:
+      // The base class keeps its tree up to date.
+      return false;
+  }
+}
+
+int DeformableMesh::refuse(int code, std::string why) {
+  last_error_ = std::move(why);
+  return code;
+}
+
+int DeformableMesh::accept() {
+  last_error_.clear();
+  return BVH_OK;
+}
+
+int DeformableMesh::allowThreads(int num_threads) {
+  if (num_threads < 0)
+    return refuse(
+        BVH_ERR_INCORRECT_DATA,
+        std::to_string(num_threads) + " is not a number of threads. Give 0 or more");
+  num_threads_ = num_threads;
+  return accept();
+}
+
+int DeformableMesh::checkCount(std::size_t num_vertices) {
+  const int expected = arrays().num_vertices;
+  if (num_vertices == static_cast<std::size_t>(expected)) return BVH_OK;
+  return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(num_vertices) +
+                                            " vertices given for a model of " +
+                                            std::to_string(expected));
+}
+
+int DeformableMesh::checkFinite(const float* coordinates, std::size_t count,
+                                const char* frame) {
+  std::string wrong = notFinite(coordinates, count, frame, num_threads_);
+  return wrong.empty() ? BVH_OK : refuse(BVH_ERR_INCORRECT_DATA, std::move(wrong));
+}
+
+int DeformableMesh::checkFinite(const double* coordinates, std::size_t count,
+                                const char* frame) {
+  std::string wrong = notFinite(coordinates, count, frame, num_threads_);
+  return wrong.empty() ? BVH_OK : refuse(BVH_ERR_INCORRECT_DATA, std::move(wrong));
+}
+
+int DeformableMesh::checkTriangles(const Triangle* triangles, std::size_t num_triangles,
+                                   std::size_t num_vertices) {
+  if (num_triangles == 0 || num_vertices == 0)
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_MODEL,
+        "the model has no triangles. Add some by addTriangle() or addSubModel()");
+  std::string too_many = deformable::findTooMany(num_triangles, num_vertices);
+  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
+  const std::size_t bad =
+      deformable::findOutOfRange(triangles, num_triangles, num_vertices);
+  if (bad == 3 * num_triangles) return BVH_OK;
+  return refuse(BVH_ERR_INCORRECT_DATA,
+                "triangle " + std::to_string(bad / 3) + " refers to vertex " +
+                    std::to_string(triangles[bad / 3][static_cast<int>(bad % 3)]) +
+                    " of " + std::to_string(num_vertices) +
+                    " vertices, which are numbered from 0");
+}
+
+int DeformableMesh::checkOrigins(const std::vector<int>& origins,
+                                 std::size_t num_triangles) {
+  if (origins.empty()) return BVH_OK;
+  if (origins.size() != num_triangles)
+    return refuse(BVH_ERR_INCORRECT_DATA, std::to_string(origins.size()) +
+                                              " origins given for " +
+                                              std::to_string(num_triangles) +
+                                              " triangles. Give one a triangle, or none");
+  const int num_tris = arrays().num_tris;
+  for (std::size_t i = 0; i < num_triangles; ++i)
+    if (origins[i] < -1 || origins[i] >= num_tris)
+      return refuse(BVH_ERR_INCORRECT_DATA,
+                    "triangle " + std::to_string(i) + " comes from triangle " +
+                        std::to_string(origins[i]) + " of " + std::to_string(num_tris) +
+                        ". -1 is for a new triangle");
+  return BVH_OK;
+}
+
+int DeformableMesh::checkInConstruction() {
+  if (arrays().build_state != BVH_BUILD_STATE_BEGUN)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "endModel() on a model that is not open. Call beginModel() first");
+  if (phase() == Phase::kInStep)
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        "endModel() on a model that is built and has not grown. Call updateFclTree() "
+        "to build FCL's tree");
+  return BVH_OK;
+}
+
+int DeformableMesh::checkSteppable(const char* caller) {
+  const std::string name(caller);
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  name + "() on a model that is not built. Call endModel() first");
+  if (isUpdateOpen())
+    return refuse(
+        BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+        name + "() between begin...Model() and end...Model(). Call end...Model() first");
+  return BVH_OK;
+}
+
+int DeformableMesh::checkFclTreeUpdate() {
+  if (phase() == Phase::kHalfUpdated)
+    return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+                  "updateFclTree() on a model whose last update failed. Give both frames "
+                  "first, by updateFrames()");
+  if (!isBuilt())
+    return refuse(BVH_ERR_BUILD_EMPTY_MODEL,
+                  "updateFclTree() on a model that is not built. Call endModel() first");
+  if (isUpdateOpen())
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  "updateFclTree() between begin...Model() and end...Model(). Call "
+                  "end...Model() first");
+  return BVH_OK;
+}
+
+int DeformableMesh::openUpdate(OpenUpdate what, const char* caller) {
+  if (!isBuilt())
+    return refuse(
+        BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
+        std::string(caller) + "() on a model that is not built. Call endModel() first");
+  state_.beginUpdate(what, arrays());
+  return accept();
+}
+
+int DeformableMesh::checkOpen(OpenUpdate expected) {
+  if (state_.openUpdate() == expected) return BVH_OK;
+  return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                "a vertex is given outside of begin...Model() and end...Model(). Call "
+                "beginUpdateModel() or beginReplaceModel() first");
+}
+
+int DeformableMesh::closeUpdate(OpenUpdate expected, const char* caller) {
+  if (state_.openUpdate() != expected)
+    return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+                  std::string(caller) +
+                      "() without its begin...Model(). Call begin...Model() first");
+  if (state_.endUpdate(arrays())) return BVH_OK;
+  return refuse(
+      BVH_ERR_BUILD_OUT_OF_SEQUENCE,
+      std::string(caller) +
+          "() on a model that was changed since its begin...Model(). Begin again");
+}
+
+void DeformableMesh::checkDiscreteQuery(int num_bvs) const {
+  const Phase now = phase();
+  if (now == Phase::kHalfUpdated)
+    throw Exception(
+        "DeformableBVHModel: the last update failed, because an exception ended it (out "
+        "of memory, for example). Give both frames again, by updateFrames()");
+  if (now == Phase::kGrown)
+    throw Exception(
+        "DeformableBVHModel: the model has grown since endModel(). Call endModel() "
+        "again");
+  if (isFclTreeBehind())
+    throw Exception(
+        "DeformableBVHModel: this query needs FCL's own tree, which is out of date "
+        "(FclTree::kSkip). Call updateFclTree() first");
+  if (num_bvs == 0)
+    throw Exception("DeformableBVHModel: the model is not built. Call endModel() first");
+}
+
+// FCL copies the same number of vertices of both frames, and the nodes of the tree. A
+// tree that is half made has fewer nodes than FCL expects.
+void DeformableMesh::checkCopy() const {
+  if (state_.isPreviousShort(arrays()))
+    throw Exception(
+        "DeformableBVHModel: a copy of a model to which vertices were added through its "
+        "base class. Call endModel() of the model first");
+  if (phase() == Phase::kHalfUpdated)
+    throw Exception(
+        "DeformableBVHModel: a copy of a model whose last update failed. Give both "
+        "frames "
+        "to the model first, by updateFrames()");
+}
 
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
                                const deformable::VertexFrames& frames) {

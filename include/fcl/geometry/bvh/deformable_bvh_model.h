@@ -26,8 +26,81 @@ class MovingKdopTree;
 class VertexFrames;
 }  // namespace deformable
 
+/// @brief The arrays and the state of a BVHModel at one time, to compare with a later
+/// time.
+struct ModelArrays {
+  const void* vertices{nullptr};
+  const void* prev_vertices{nullptr};
+  const void* tri_indices{nullptr};
+  int num_vertices{0};
+  int num_tris{0};
+  BVHBuildState build_state{BVH_BUILD_STATE_EMPTY};
+
+  bool operator==(const ModelArrays& other) const;
+};
+
+/// @brief The state of a DeformableBVHModel: its phase, the state of FCL's tree, and the
+/// begin...Model() that is open. A change of the base through a reference to its class
+/// calls nothing here. Therefore the functions take the base's arrays as they are `now`.
+///
+/// Invariants, which seal() asserts: a model in step has both frames, and its build_state
+/// is BVH_BUILD_STATE_BEGUN if FCL's tree is missing, else BVH_BUILD_STATE_PROCESSED.
+class ModelState {
+ public:
+  enum class Phase {
+    kUnbuilt,            ///< open, or without beginModel()
+    kGrown,              ///< open again after endModel()
+    kInStep,             ///< built; the moving tree belongs to the base's arrays
+    kHalfUpdated,        ///< an exception ended an update
+    kChangedThroughBase  ///< built; only the base knows the frames
+  };
+  /// FCL's own tree of a model in step.
+  enum class FclTreeIs { kMissing, kBehind, kUpToDate };
+  enum class OpenUpdate { kNone, kUpdate, kReplace };
+
+  Phase phase(const ModelArrays& now) const;
+  FclTreeIs fclTree() const { return fcl_tree_; }
+  OpenUpdate openUpdate() const { return open_; }
+
+  /// @brief Whether vertices were added through the base class to a model that ended
+  /// without FCL's tree. The array of its previous frame has no room for them.
+  bool isPreviousShort(const ModelArrays& now) const;
+
+  /// @brief The state of a copy. The base of the copy has the arrays `copied`.
+  ModelState ofCopy(const ModelArrays& now, const ModelArrays& copied) const;
+
+  void beginUpdate(OpenUpdate what, const ModelArrays& now);
+  /// @return whether the arrays are the same as at beginUpdate()
+  bool endUpdate(const ModelArrays& now);
+
+  /// @brief From here to seal() a failure leaves an open model.
+  void beginBuild();
+  /// @brief From here to seal() a failure leaves a model that is half updated.
+  void beginChange();
+  /// @brief The base has a new array for the previous frame of all vertices.
+  void setPrevious(const ModelArrays& now);
+  /// @brief FCL has moved the array of the current frame of a model in step.
+  void setCurrent(const ModelArrays& now);
+  void setFclTree(FclTreeIs is) { fcl_tree_ = is; }
+  /// @brief The build_state of the base while the model is in step.
+  BVHBuildState builtState() const;
+  /// @brief From now on the model is in step with these arrays.
+  void seal(const ModelArrays& now);
+
+ private:
+  enum class Made { kNothing, kTree, kHalfATree };
+
+  Made made_{Made::kNothing};
+  /// The arrays for which the moving tree was made. Without a tree: the last array that
+  /// was made for the previous frame, and its number of vertices.
+  ModelArrays made_for_;
+  FclTreeIs fcl_tree_{FclTreeIs::kMissing};
+  OpenUpdate open_{OpenUpdate::kNone};
+  ModelArrays opened_on_;
+};
+
 /// @brief The part of a DeformableBVHModel that does not depend on its BV: feature
-/// owners, moving tree, and the state of the model as far as queries need it.
+/// owners, moving tree, state, and the checks of its input.
 class DeformableMesh {
  public:
   virtual ~DeformableMesh();
@@ -44,7 +117,7 @@ class DeformableMesh {
   std::size_t numRestructurings() const { return num_restructurings_; }
 
   /// @brief Whether an update or replacement has begun and not ended.
-  bool isUpdateOpen() const { return open_ != Open::kNone; }
+  bool isUpdateOpen() const { return state_.openUpdate() != OpenUpdate::kNone; }
 
   /// @brief Whether the moving tree belongs to the arrays that the base model has now.
   /// False after a change through a reference to the base class.
@@ -54,12 +127,47 @@ class DeformableMesh {
   virtual deformable::VertexFrames frames() const = 0;
 
  protected:
-  enum class Open { kNone, kUpdate, kReplace };
+  using Phase = ModelState::Phase;
+  using FclTreeIs = ModelState::FclTreeIs;
+  using OpenUpdate = ModelState::OpenUpdate;
 
   DeformableMesh();
   DeformableMesh(const DeformableMesh& other);
   /// @brief Moves. After it `other` can only be destroyed.
   DeformableMesh& operator=(DeformableMesh&& other) noexcept;
+
+  /// @brief The base model's arrays as they are now.
+  virtual ModelArrays arrays() const = 0;
+  Phase phase() const { return state_.phase(arrays()); }
+  bool isBuilt() const;
+  /// @brief Whether FCL's tree is missing, or belongs to other frames or triangles.
+  bool isFclTreeBehind() const;
+
+  /// @name Checks that return FCL's code and say for lastError() what is wrong
+  /// @{
+  int refuse(int code, std::string why);
+  int accept();
+  int allowThreads(int num_threads);
+  int checkCount(std::size_t num_vertices);
+  int checkFinite(const float* coordinates, std::size_t count, const char* frame);
+  int checkFinite(const double* coordinates, std::size_t count, const char* frame);
+  int checkTriangles(const Triangle* triangles, std::size_t num_triangles,
+                     std::size_t num_vertices);
+  int checkOrigins(const std::vector<int>& origins, std::size_t num_triangles);
+  /// endModel() needs an open model.
+  int checkInConstruction();
+  /// Whoever gives both frames needs a model that is built, with no update open.
+  int checkSteppable(const char* caller);
+  int checkFclTreeUpdate();
+  int openUpdate(OpenUpdate what, const char* caller);
+  int checkOpen(OpenUpdate expected);
+  int closeUpdate(OpenUpdate expected, const char* caller);
+  /// @}
+
+  /// @brief Throws fcl::Exception if FCL's tree cannot answer.
+  void checkDiscreteQuery(int num_bvs) const;
+  /// @brief Throws fcl::Exception if FCL's copy constructor would read beyond an array.
+  void checkCopy() const;
 
   /// @brief Computes owners and tree structure for triangles that have been checked.
   void buildTree(const Triangle* triangles, std::size_t num_triangles,
@@ -80,11 +188,12 @@ class DeformableMesh {
 
   std::size_t treeMemUsage() const;
 
-  Open open_{Open::kNone};
-  int num_threads_{1};
+  ModelState state_;
+  std::string last_error_;
 
  private:
   std::unique_ptr<deformable::MovingKdopTree> tree_;
+  int num_threads_{1};
   std::size_t num_restructurings_{0};
   bool is_deforming_{false};
 };
@@ -273,37 +382,14 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   EIGEN_MAKE_ALIGNED_OPERATOR_NEW
 
  private:
-  /// The arrays and sizes of the base class for which the moving tree was made.
-  struct Seal {
-    const Vector3<S>* vertices{nullptr};
-    const Vector3<S>* prev_vertices{nullptr};
-    const Triangle* tri_indices{nullptr};
-    int num_vertices{0};
-    int num_tris{0};
-    BVHBuildState build_state{BVH_BUILD_STATE_EMPTY};
-
-    bool operator==(const Seal& other) const;
-  };
-
-  int refuse(int code, std::string why);
-  int accept();
-  bool isBuilt() const;
-  Seal currentSeal() const;
-  int checkFinite(const S* coordinates, std::size_t count, const char* frame);
+  detail::ModelArrays arrays() const override;
+  static const Base& copyable(const DeformableBVHModel& model);
   int checkFrames(const S* previous, const S* current, std::size_t num_vertices);
-  int checkSteppable(const char* caller);
-  int checkTriangles(const Triangle* triangles, std::size_t num_triangles,
-                     std::size_t num_vertices);
-  int checkOrigins(const std::vector<int>& origins, std::size_t num_triangles);
-  int open(Open what, const char* caller);
-  int stage(const Vector3<S>* points, std::size_t count, Open expected);
-  int close(Open expected, const char* caller);
+  int open(OpenUpdate what, const char* caller);
+  int stage(const Vector3<S>* points, std::size_t count, OpenUpdate expected);
+  int close(OpenUpdate expected, const char* caller);
   template <typename Add>
   int grow(Add&& add);
-  bool isHalfUpdated() const;
-  bool isPreviousShort() const;
-  static const Base& copyable(const DeformableBVHModel& model);
-  bool isFclTreeBehind() const;
   void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
   void seal();
@@ -313,14 +399,6 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
 
   /// Coordinates given since begin.... A refused frame changes nothing.
   std::vector<Vector3<S>> staged_;
-  Seal seal_;
-  /// The arrays and sizes when the open update began.
-  Seal opened_;
-  bool fcl_tree_built_{false};
-  bool fcl_tree_up_to_date_{false};
-  /// True from the first change of an update to seal().
-  bool is_changing_{false};
-  std::string last_error_;
 };
 
 #define FCL_CCD_EXTERN_MODELS(S)                         \
