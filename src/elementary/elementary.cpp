@@ -12,6 +12,7 @@
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
 #include "elementary/predicates.h"
+#include "elementary/separating_direction.h"
 #include "numerics/error_bounds.h"
 #include "numerics/illinois.h"
 #include "numerics/moving_vector.h"
@@ -187,27 +188,6 @@ Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
   return side;
 }
 
-/// Point of segment [p, q] nearest to the origin, in floating point.
-Vec nearestOnSegment(const Vec& p, const Vec& q) {
-  const Vec e = q - p;
-  const double length = dot(e, e);
-  const double s = length > 0 ? std::max(0., std::min(1., -dot(p, e) / length)) : 0.;
-  return p + s * e;
-}
-
-/// Point of triangle pqr nearest to the origin, in floating point.
-Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
-  const Vec n = cross(q - p, r - p);
-  const double area = dot(n, n);
-  if (area > 0 && dot(cross(p, q), n) >= 0 && dot(cross(q, r), n) >= 0 &&
-      dot(cross(r, p), n) >= 0)
-    return (dot(p, n) / area) * n;
-  Vec best = nearestOnSegment(p, q);
-  for (const Vec& c : {nearestOnSegment(q, r), nearestOnSegment(r, p)})
-    if (dot(c, c) < dot(best, best)) best = c;
-  return best;
-}
-
 /// Whether the direction from one feature to the other's nearest point in the middle of
 /// [lo, hi] keeps them apart at both ends, hence in between: the differences of their
 /// vertices stay on one side of a plane through the origin. The only test that decides
@@ -221,11 +201,7 @@ bool areSeparated(const Pair& pair, double lo, double hi) {
   const int corners = vf ? 3 : 4;
   Vec at_mid[4] = {};
   for (int i = 0; i < corners; ++i) at_mid[i] = sign[i] * corner[i]->at(mid);
-  Vec d = nearestOnTriangle(at_mid[0], at_mid[1], at_mid[vf ? 2 : 3]);
-  if (!vf) {  // the parallelogram's corners in order are u, -r, z, q
-    const Vec e = nearestOnTriangle(at_mid[0], at_mid[3], at_mid[2]);
-    if (dot(e, e) < dot(d, d)) d = e;
-  }
+  const Vec d = separatingDirection(at_mid, vf);
   const double size = maxNorm(d);
   for (int i = 0; i < corners; ++i) {
     const double scale = size * corner[i]->norm;
@@ -256,6 +232,14 @@ bool isStill(const FeaturePoints& x) {
     for (int k = 0; k < 3; ++k)
       if (x[i].t0[k] != x[i].t1[k]) return false;
   return isFinite(x);
+}
+
+/// Whether the points pass each other so close that twice the digits of a double will not
+/// tell how: the volume there is a 2^-78th of what it is elsewhere.
+bool nearlyMeet(const Pair& pair) {
+  const Difference &u = pair.u, &v = pair.v, &w = pair.w;
+  const ClosestApproach closest({u.t0, v.t0, w.t0}, {u.t1, v.t1, w.t1});
+  return closest.s > 0 && closest.s < 1 && closest.duration < 0x1p-26;
 }
 
 /// Intervals still to be looked at, the earliest on top. Each look replaces one by at
@@ -365,7 +349,16 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
       if (areSeparated(pair, lo, hi)) continue;
       if (look == 0 && lo == 0 && touchAtStart(kind, x))
         return {Answer::kYes, 0, 0, DecidedBy::kSolver};
+      // Norms out of range are so in all intervals, and for the accurate pair.
+      if (!f.hasBounds() && !accurate) {
+        found.addUnsure(lo, open.isEmpty() ? hi : open.latest());
+        break;
+      }
       if (!accurate && (f.isLost() || look >= kAccurateLook)) {
+        if (nearlyMeet(pair)) {
+          found.addUnsure(lo, open.isEmpty() ? hi : open.latest());
+          break;
+        }
         accurate.emplace(kind, x);
         open.push(lo, hi);
         continue;
@@ -402,7 +395,8 @@ ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints&
     return {Answer::kNo, 0, 0, DecidedBy::kFilter};
   const ElementaryResult solved =
       solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
-  return solved.answer == Answer::kUnsure ? decideExactly(kind, x, toc_err) : solved;
+  if (solved.answer != Answer::kUnsure) return solved;
+  return decideExactly(kind, x, toc_err, t_stop);
 }
 
 namespace {

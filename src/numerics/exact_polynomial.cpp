@@ -280,6 +280,14 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
   return roots;
 }
 
+double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction) {
+  if (clock_exponent == 0) return toDouble(k, m, direction);
+  Integer before = (Integer(1) << m) - k, after = k;
+  (clock_exponent > 0 ? before : after) <<=
+      static_cast<unsigned>(std::abs(clock_exponent));
+  return ratioToDouble(after, before + after, direction);
+}
+
 Integer Root::guessInside(unsigned bits) const {
   if (bits <= kEstimateBits)
     return static_cast<std::int64_t>(
@@ -329,14 +337,18 @@ bool Root::narrow(unsigned bits) {
   return bits == 1;
 }
 
+int Root::compare(const Integer& numerator, const Integer& denominator) const {
+  const Integer scaled = numerator << m_, place = k_ * denominator;
+  if (is_dyadic_) return place.compare(scaled);
+  if (scaled <= place) return 1;
+  if (scaled >= place + denominator) return -1;
+  return sign_below_ * polynomial_.signAtFraction(numerator, denominator);
+}
+
 /// Sign of a line at the root: on which side of the root its own, a fraction, lies.
 int Root::signOfLine(const Polynomial& g) const {
   const int slope = g[1].sign();
-  const Integer numerator = slope > 0 ? -g[0] : g[0], denominator = abs(g[1]);
-  const Integer scaled = numerator << m_;
-  if (scaled <= k_ * denominator) return slope;
-  if (scaled >= (k_ + 1) * denominator) return -slope;
-  return slope * sign_below_ * polynomial_.signAtFraction(numerator, denominator);
+  return slope * compare(slope > 0 ? -g[0] : g[0], abs(g[1]));
 }
 
 int Root::signOf(const Polynomial& g) {
@@ -366,6 +378,10 @@ int Root::signOf(const Polynomial& g) {
   return is_dyadic_ ? g.signAt(k_, m_) : g.signAt(2 * k_ + 1, m_ + 1);
 }
 
+double Root::timeBelow(int clock_exponent) const {
+  return timeOf(k_, m_, clock_exponent, -1);
+}
+
 double Root::lowerBound() const { return toDouble(k_, m_, -1); }
 
 double Root::upperBound() const {
@@ -391,13 +407,9 @@ std::pair<double, double> Root::bracket(double width, int clock_exponent) {
 
 std::pair<double, double> Root::bracketOnClock(double width, int clock_exponent) {
   const auto shift = static_cast<unsigned>(std::abs(clock_exponent));
-  const auto timeOf = [&](const Integer& k, int direction) {
-    Integer before = (Integer(1) << m_) - k, after = k;
-    (clock_exponent > 0 ? before : after) <<= shift;
-    return ratioToDouble(after, before + after, direction);
-  };
   for (;;) {
-    const double lo = timeOf(k_, -1), hi = timeOf(is_dyadic_ ? k_ : Integer(k_ + 1), 1);
+    const double lo = timeOf(k_, m_, clock_exponent, -1),
+                 hi = timeOf(is_dyadic_ ? k_ : Integer(k_ + 1), m_, clock_exponent, 1);
     constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
     if (is_dyadic_ || hi - lo <= width || hi - lo <= kUlps * lo || m_ > kMaxBits + shift)
       return {lo, hi};

@@ -102,6 +102,12 @@ class Root {
   /// @brief The exact sign of g at the root. It may narrow the interval.
   int signOf(const Polynomial& g);
 
+  /// @brief Sign of root - numerator / denominator, denominator > 0; exact.
+  int compare(const Integer& numerator, const Integer& denominator) const;
+
+  /// @brief A double not above the time of bracket().
+  double timeBelow(int clock_exponent) const;
+
   /// @brief Doubles not above and not below the root.
   double lowerBound() const;
   double upperBound() const;
@@ -135,6 +141,10 @@ class Root {
   int sign_below_{0};
   Polynomial polynomial_;
 };
+
+/// @brief A double not above (direction -1) or not below (1) the time t in [0, 1] with
+/// 2^clock_exponent t / (1 - t) = s / (1 - s) for s = k / 2^m: t = s for 0.
+double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction);
 
 /// @brief All roots of p (not zero) in [0, 1], in no order.
 std::vector<Root> rootsInUnitInterval(const Polynomial& p);

@@ -41,6 +41,29 @@ struct MovingCross {
   double error;
 };
 
+/// @brief Where three vectors that move linearly from l to h for s from 0 to 1 are
+/// shortest together, and by how much s changes while they move as far as they are long
+/// there. In floating point; not finite if there is no such place.
+struct ClosestApproach {
+  double s;
+  double duration;
+
+  ClosestApproach(const Vec (&l)[3], const Vec (&h)[3]) {
+    double along = 0, speed = 0, length = 0;
+    for (int i = 0; i < 3; ++i) {
+      const Vec change = h[i] - l[i];
+      along -= dot(l[i], change);
+      speed += dot(change, change);
+    }
+    s = along / speed;
+    for (int i = 0; i < 3; ++i) {
+      const Vec there = (1 - s) * l[i] + s * h[i];
+      length += dot(there, there);
+    }
+    duration = std::sqrt(length / speed);
+  }
+};
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

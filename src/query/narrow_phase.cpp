@@ -182,7 +182,7 @@ void NarrowPhase::solve(const FeatureCandidate& candidate) {
                        options_.toc_err, latest());
   if (result.answer == Answer::kUnsure) {
     ++counts_.exact_tests;
-    result = decideExactly(candidate.kind, points, options_.toc_err);
+    result = decideExactly(candidate.kind, points, options_.toc_err, latest());
   }
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled

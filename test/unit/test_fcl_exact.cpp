@@ -11,8 +11,11 @@
 #include <utility>
 
 #include "elementary/exact.h"
+#include "elementary/exact_pair.h"
+#include "elementary/magnified_solve.h"
 #include "elementary/predicates.h"
 #include "feature_pair_generators.h"
+#include "query_generators.h"
 #include "rational_geometry.h"
 
 namespace fcl {
@@ -121,6 +124,144 @@ TEST(FCL_EXACT_TEST, bracketsContainKnownTimes) {
         ASSERT_GE(Rational(r.toc_hi), time) << pair;
       }
   }
+}
+
+/// Pairs for which doubles do not tell: all families of degenerate ones, points that
+/// nearly meet in one point, and coordinates far apart in size.
+MovingPair hardPair(Random& random, int i) {
+  const auto& families = test::queryFamilies();
+  MovingPair pair =
+      families[static_cast<std::size_t>(i) % families.size()].generate(random);
+  if (i % 3 == 1) {  // to the other side of a point, rounded
+    const Vector3<double> center = random.point(0.5);
+    const double factor = -random.uniform(0.1, 2);
+    for (auto& p : pair.x)
+      for (int k = 0; k < 3; ++k) p.t1[k] = center[k] + factor * (p.t0[k] - center[k]);
+  }
+  const int power = static_cast<int>(random.index(1200)) - 600;
+  if (i % 7 == 2)
+    for (auto& p : pair.x)
+      for (double& c : p.t1) c = std::ldexp(c, power);
+  if (i % 11 == 3)
+    pair = test::mapped(pair, [power](double c) { return std::ldexp(c, power); });
+  return pair;
+}
+
+bool isNarrow(const ElementaryResult& r, double toc_err) {
+  return r.toc_hi - r.toc_lo <= std::max(toc_err, 0x1p-50 * r.toc_hi);
+}
+
+/// solveMagnified() of a pair that need not be worth it.
+ElementaryResult solve(const MovingPair& pair, double toc_err, double t_stop,
+                       double t_max) {
+  ExactQuery query(pair.kind, pair.points());
+  if (query.touchInFrame(0)) return {Answer::kYes, 0, 0, DecidedBy::kExact};
+  if (t_max == 0) return {Answer::kNo, 0, 0, DecidedBy::kExact};
+  return solveMagnified(query, toc_err, t_stop, t_max);
+}
+
+TEST(FCL_EXACT_TEST, magnifiedSolveAgreesWithRoots) {
+  constexpr std::uint64_t kSeed = 27;
+  constexpr int kQueries = 8000;
+  Random random(kSeed);
+  int contacts = 0, with_limit = 0, decided = 0;
+  for (int i = 0; i < kQueries; ++i) {
+    const MovingPair pair = hardPair(random, i);
+    const double toc_err = i % 2 ? 1e-4 : 1e-12;
+    const ElementaryResult truth = decideByRoots(pair.kind, pair.points(), 1e-300),
+                           r = decideExactly(pair.kind, pair.points(), toc_err);
+    ASSERT_EQ(r.answer, truth.answer) << pair << "\nseed " << kSeed << ", " << i;
+    const double any = random.uniform(0, 1),
+                 limits[] = {any, truth.toc_lo, std::nextafter(truth.toc_lo, 0),
+                             truth.toc_hi, std::ldexp(std::floor(8 * any), -3)};
+    const double limit = truth.answer == Answer::kYes ? limits[random.index(5)] : any;
+    const ElementaryResult magnified = solve(pair, toc_err, 1, 1);
+    decided += magnified.answer != Answer::kUnsure;
+    if (magnified.answer != Answer::kUnsure) {
+      ASSERT_EQ(magnified.answer, truth.answer)
+          << pair << "\nseed " << kSeed << ", " << i;
+      if (truth.answer == Answer::kYes) {
+        ASSERT_TRUE(isNarrow(magnified, toc_err)) << pair;
+        ASSERT_LE(magnified.toc_lo, truth.toc_hi) << pair << "\nseed " << kSeed;
+        ASSERT_GE(magnified.toc_hi, truth.toc_lo) << pair << "\nseed " << kSeed;
+      }
+    }
+    ElementaryResult until = solve(pair, toc_err, 1, limit);
+    if (until.answer == Answer::kUnsure)
+      until = decideExactly(pair.kind, pair.points(), toc_err, 1, limit);
+    ASSERT_EQ(until.answer,
+              decideByRoots(pair.kind, pair.points(), toc_err, 1, limit).answer)
+        << pair << "\nseed " << kSeed << ", " << i << ", until " << limit;
+    ElementaryResult early = solve(pair, toc_err, limit, 1);
+    if (early.answer == Answer::kUnsure)
+      early = decideExactly(pair.kind, pair.points(), toc_err, limit);
+    if (truth.answer == Answer::kNo) {
+      ASSERT_EQ(until.answer, Answer::kNo) << pair;
+      ASSERT_EQ(early.answer, Answer::kNo) << pair;
+      continue;
+    }
+    ++contacts;
+    ASSERT_TRUE(isNarrow(r, toc_err)) << pair << "\nseed " << kSeed << ", " << i;
+    ASSERT_LE(r.toc_lo, truth.toc_hi) << pair << "\nseed " << kSeed << ", " << i;
+    ASSERT_GE(r.toc_hi, truth.toc_lo) << pair << "\nseed " << kSeed << ", " << i;
+    if (truth.toc_hi <= limit) {
+      ASSERT_EQ(until.answer, Answer::kYes) << pair << "\nuntil " << limit;
+      ASSERT_LE(until.toc_lo, truth.toc_hi) << pair << "\nuntil " << limit;
+      ASSERT_GE(until.toc_hi, truth.toc_lo) << pair << "\nuntil " << limit;
+      ASSERT_LE(until.toc_hi, limit) << pair;
+      ASSERT_EQ(early.answer, Answer::kYes) << pair << "\nafter " << limit;
+      ++with_limit;
+    } else if (truth.toc_lo > limit) {
+      ASSERT_EQ(until.answer, Answer::kNo) << pair << "\nuntil " << limit;
+    }
+    const ElementaryResult stopped =
+        decideExactly(pair.kind, pair.points(), toc_err, limit);
+    if (stopped.answer == Answer::kYes) {
+      ASSERT_EQ(stopped.toc_lo, r.toc_lo) << pair << "\nafter " << limit;
+      ASSERT_EQ(stopped.toc_hi, r.toc_hi) << pair << "\nafter " << limit;
+    }
+    if (early.answer == Answer::kNo) {
+      ASSERT_GT(truth.toc_hi, limit) << pair << "\nafter " << limit;
+    }
+  }
+  EXPECT_GT(contacts, kQueries / 4);
+  EXPECT_GT(with_limit, kQueries / 10);
+  EXPECT_GT(decided, kQueries / 2);
+}
+
+// Features that touch by construction at k / 8, a double: a limit there counts, the
+// double before does not.
+TEST(FCL_EXACT_TEST, touchExactlyAtTheLatestTime) {
+  constexpr std::uint64_t kSeed = 28;
+  constexpr int kParts = 8;
+  Random random(kSeed);
+  int tested = 0;
+  for (int i = 0; i < 60000; ++i) {
+    MovingPair pair = test::gridPair(random, 2);
+    const auto k = static_cast<int>(random.index(kParts + 1));
+    for (auto& p : pair.x)
+      for (int c = 0; c < 3; ++c) {
+        const double position = p.t0[c], velocity = p.t1[c];
+        p.t0[c] = position - k * velocity;
+        p.t1[c] = position + (kParts - k) * velocity;
+      }
+    if (!doTouchAt(pair, k, kParts)) continue;
+    const double t = static_cast<double>(k) / kParts;
+    const ElementaryResult until = decideExactly(pair.kind, pair.points(), 1e-9, 1, t);
+    ASSERT_EQ(until.answer, Answer::kYes) << pair << "\nat " << t;
+    ASSERT_LE(until.toc_hi, t) << pair;
+    const ElementaryResult first = decideByRoots(pair.kind, pair.points(), 1e-300);
+    if (first.toc_lo != t) continue;
+    ASSERT_EQ(first.toc_hi, t) << pair;
+    if (t > 0) {
+      const double before = std::nextafter(t, 0);
+      ASSERT_EQ(decideExactly(pair.kind, pair.points(), 1e-9, 1, before).answer,
+                Answer::kNo)
+          << pair << "\nbefore " << t;
+    }
+    ++tested;
+  }
+  EXPECT_GT(tested, 2000);
 }
 
 struct Tetrahedron {

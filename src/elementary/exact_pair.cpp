@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/exact_pair.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "elementary/in_plane.h"
+#include "elementary/predicates.h"
+#include "numerics/integer_coordinates.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using MovingPoint = ExactPair::MovingPoint;
+
+MovingPoint operator-(const MovingPoint& a, const MovingPoint& b) {
+  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+
+Polynomial crossComponent(const MovingPoint& a, const MovingPoint& b, std::size_t k) {
+  const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
+  return a[i] * b[j] - a[j] * b[i];
+}
+
+MovingPoint cross(const MovingPoint& a, const MovingPoint& b) {
+  return {crossComponent(a, b, 0), crossComponent(a, b, 1), crossComponent(a, b, 2)};
+}
+
+/// The four paths as integers.
+std::array<MovingPoint, 4> integerPaths(const FeaturePoints& x,
+                                        const FrameDigits& digits) {
+  std::array<MovingPoint, 4> points;
+  for (int i = 0; i < 4; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const Integer from = toInteger<Integer>(x[i].t0[k], digits.lowest[0]);
+      points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
+          Polynomial{from, toInteger<Integer>(x[i].t1[k], digits.lowest[1]) - from};
+    }
+  return points;
+}
+
+}  // namespace
+
+ExactPair::ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
+                     const FrameDigits& digits)
+    : kind_(kind), p_(integerPaths(x, digits)) {
+  const auto& [a, b, c, d] = p_;
+  u_ = isVertexFace() ? a - b : c - a;
+  v_ = isVertexFace() ? c - b : b - a;
+  w_ = isVertexFace() ? d - b : d - c;
+  if (const int axis = axisOfCommonPlane(x); axis >= 0) {
+    const auto k = static_cast<std::size_t>(axis);
+    n_[k] = crossComponent(v_, w_, k);
+    return;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    n_[k] = crossComponent(v_, w_, k);
+    volume_ += u_[k] * n_[k];
+  }
+}
+
+std::vector<Root> ExactPair::candidates() const {
+  std::vector<Root> times;
+  const auto addRootsOf = [&times](const Polynomial& p) {
+    if (p.degree() < 1) return;
+    for (Root& root : rootsInUnitInterval(p)) times.push_back(std::move(root));
+  };
+  if (!volume_.isZero()) {
+    addRootsOf(volume_);
+    return times;
+  }
+  // Always coplanar: contacts begin where a weight changes its sign.
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!n_[k].isZero()) {
+      addRootsOf(n_[k]);
+      for (std::size_t i = 0; i < numWeights(); ++i) addRootsOf(weight(i, k));
+      return times;
+    }
+  // Always parallel, or without area. Parallel edges touch only while a is on the line
+  // of cd, or c is d.
+  if (!isVertexFace())
+    for (const Polynomial& off : cross(u_, w_))
+      if (!off.isZero()) {
+        addRootsOf(off);
+        return times;
+      }
+  for (const auto& [p, q, r] : pointsOnSegments()) {
+    const MovingPoint off = cross(p - q, r - q);
+    const auto not_zero =
+        std::find_if(off.begin(), off.end(), [](const auto& o) { return !o.isZero(); });
+    if (not_zero != off.end()) {
+      addRootsOf(*not_zero);
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      addRootsOf(p[k] - q[k]);
+      addRootsOf(p[k] - r[k]);
+    }
+  }
+  return times;
+}
+
+bool ExactPair::touchAt(Root& t) const {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int sign = t.signOf(n_[k]);
+    if (sign == 0) continue;
+    for (std::size_t i = 0; i < numWeights(); ++i)
+      if (sign * t.signOf(weight(i, k)) < 0) return false;
+    return true;
+  }
+  for (const auto& [p, q, r] : pointsOnSegments())
+    if (isOnSegmentAt(t, p, q, r)) return true;
+  return false;
+}
+
+/// Component k of the cross product that gives weight i.
+Polynomial ExactPair::weight(std::size_t i, std::size_t k) const {
+  const auto& [a, b, c, d] = p_;
+  const auto component = [k](const MovingPoint& x, const MovingPoint& y) {
+    return crossComponent(x, y, k);
+  };
+  if (i == 0) return component(u_, w_);
+  if (isVertexFace()) return i == 1 ? component(v_, u_) : component(c - a, d - a);
+  return i == 1   ? component(b - c, w_)
+         : i == 2 ? component(u_, v_)
+                  : component(v_, d - a);
+}
+
+std::vector<ExactPair::PointAndSegment> ExactPair::pointsOnSegments() const {
+  const auto& [a, b, c, d] = p_;
+  if (isVertexFace()) return {{a, b, c}, {a, c, d}, {a, d, b}};
+  return {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
+}
+
+bool ExactPair::isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,
+                              const MovingPoint& r) {
+  for (std::size_t k = 0; k < 3; ++k)
+    if (t.signOf(p[k] - q[k]) * t.signOf(p[k] - r[k]) > 0) return false;
+  const MovingPoint off = cross(p - q, r - q);
+  return std::all_of(off.begin(), off.end(),
+                     [&t](const Polynomial& o) { return t.signOf(o) == 0; });
+}
+
+bool ExactQuery::touchInFrame(int t) const {
+  const auto at = [&](int i) -> const double(&)[3] {
+    return t == 0 ? x_[i].t0 : x_[i].t1;
+  };
+  return kind_ == ContinuousContactKind::kVertexFace
+             ? isOnTriangle(at(0), at(1), at(2), at(3))
+             : doSegmentsTouch(at(0), at(1), at(2), at(3));
+}
+
+bool ExactQuery::isCoplanarInFrame(int t) const {
+  const auto at = [&](int i) -> const double(&)[3] {
+    return t == 0 ? x_[i].t0 : x_[i].t1;
+  };
+  return orientation(at(0), at(1), at(2), at(3)) == 0;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

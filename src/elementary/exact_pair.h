@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The definition of a contact, evaluated with integers. Coordinates are doubles, hence
+// integers times a common power of two; everything here is a polynomial in t with integer
+// coefficients, and times of contact are its roots.
+#ifndef FCL_CCD_ELEMENTARY_EXACT_PAIR_H
+#define FCL_CCD_ELEMENTARY_EXACT_PAIR_H
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "elementary/feature_points.h"
+#include "elementary/frame_digits.h"
+#include "numerics/exact_polynomial.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// The conditions of a contact.
+///
+/// With u, v, w, n = v x w as in elementary_test.cpp, the features' points are coplanar
+/// where u . n = 0. Seen along an axis k in which n does not vanish, their plane is seen
+/// one to one, and the weights of the contact are quotients of components k: VF u = beta
+/// v + gamma w with beta = (u x w)_k / n_k, gamma = (v x u)_k / n_k, 1 - beta - gamma =
+/// ((b-p) x (c-p))_k / n_k; EE u = s v - r w with s = (u x w)_k / n_k, 1 - s = ((b-c) x
+/// w)_k / n_k, r = (u x v)_k / n_k, 1 - r = (v x (d-a))_k / n_k. All have to be >= 0.
+///
+/// Where n = 0, a triangle without area is the union of its edges, and two parallel edges
+/// touch in an end of one of them.
+class ExactPair {
+ public:
+  using MovingPoint = std::array<Polynomial, 3>;
+
+  ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
+            const FrameDigits& digits);
+
+  /// @brief The volume u . (v x w) of the four points.
+  const Polynomial& volume() const { return volume_; }
+
+  /// @brief Times one of which is the first contact after 0, if there is any.
+  std::vector<Root> candidates() const;
+
+  /// @brief Whether the features touch at one of the candidates().
+  bool touchAt(Root& t) const;
+
+ private:
+  struct PointAndSegment {
+    const MovingPoint &p, &q, &r;
+  };
+
+  bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
+  std::size_t numWeights() const { return isVertexFace() ? 3 : 4; }
+  Polynomial weight(std::size_t i, std::size_t k) const;
+  std::vector<PointAndSegment> pointsOnSegments() const;
+  static bool isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,
+                            const MovingPoint& r);
+
+  ContinuousContactKind kind_;
+  std::array<MovingPoint, 4> p_;
+  MovingPoint u_, v_, w_, n_;
+  Polynomial volume_;
+};
+
+/// @brief A pair for the exact stages, whose polynomials are made when they are asked
+/// for.
+class ExactQuery {
+ public:
+  ExactQuery(ContinuousContactKind kind, const FeaturePoints& x)
+      : kind_(kind), x_(x), digits_(x) {}
+
+  ContinuousContactKind kind() const { return kind_; }
+  const FeaturePoints& points() const { return x_; }
+  const FrameDigits& digits() const { return digits_; }
+  const ExactPair& pair() {
+    if (!pair_) pair_.emplace(kind_, x_, digits_);
+    return *pair_;
+  }
+
+  /// @brief Whether the features touch at t = 0 or 1.
+  bool touchInFrame(int t) const;
+  /// @brief Whether the four points are coplanar at t = 0 or 1.
+  bool isCoplanarInFrame(int t) const;
+
+ private:
+  ContinuousContactKind kind_;
+  FeaturePoints x_;
+  FrameDigits digits_;
+  std::optional<ExactPair> pair_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,562 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/magnified_solve.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "elementary/separating_direction.h"
+#include "numerics/error_bounds.h"
+#include "numerics/exact_polynomial.h"
+#include "numerics/fixed_integer.h"
+#include "numerics/illinois.h"
+#include "numerics/moving_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+// Error analysis, in units u = 2^-53 as in error_bounds.h. Each difference has been
+// rounded once at each end of the interval. Its bounds there are its norms there: where
+// everything shrinks towards one end, so do they. U0 is the norm of u at the beginning,
+// U1 at the end, and so on.
+//
+// Volume. Outer coefficients: kVolumeBound. v0 x w1 + v1 x w0: each term is of size 2 VW
+// and 8 u VW off, the sum rounds by 2 u of V0 W1 + V1 W0 =: S. Its product with u0: three
+// products (2 + 10 + 2) u U0 S, sums of sizes 4 and 6: 52 u U0 S. The sum with u1 . (v0 x
+// w0), 46 u off, is below 6 (U1 V0 W0 + U0 S) in size: 58 u.
+constexpr double kEndsVolumeBound = 64 * kUnit;
+// Inside conditions. Components of a cross product are of size 2 Q and 10 u Q off at
+// most, Q = X0 Y0, X0 Y1 + X1 Y0 or X1 Y1. A dot product of two such: three products (20
+// + 20 + 4) u Q N, sums of sizes 8 and 12: 152 u Q N. Sums of three of these: 12 + 12 u.
+constexpr double kEndsInsideBound = 192 * kUnit;
+
+/// A vector that moves linearly over an interval, at both ends of it.
+struct Segment {
+  Vec l, h;
+  double l_norm, h_norm;
+};
+
+Segment segment(const Vec& l, const Vec& h) { return {l, h, maxNorm(l), maxNorm(h)}; }
+
+/// Bernstein coefficients of a cross product, the inner one times 2, and their sizes.
+struct Cross {
+  Vec c[3];
+  double size[3];
+
+  Cross(const Segment& a, const Segment& b)
+      : c{cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h)},
+        size{a.l_norm * b.l_norm, a.l_norm * b.h_norm + a.h_norm * b.l_norm,
+             a.h_norm * b.h_norm} {}
+};
+
+/// The volume over the interval: b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3]
+/// s^3, with a bound on the error of each coefficient.
+struct Cubic {
+  double b[4], error[4];
+
+  Cubic(const Segment& u, const Cross& n)
+      : b{dot(u.l, n.c[0]), dot(u.h, n.c[0]) + dot(u.l, n.c[1]),
+          dot(u.h, n.c[1]) + dot(u.l, n.c[2]), dot(u.h, n.c[2])},
+        error{u.l_norm * n.size[0], u.h_norm * n.size[0] + u.l_norm * n.size[1],
+              u.h_norm * n.size[1] + u.l_norm * n.size[2], u.h_norm * n.size[2]} {
+    for (double& e : error) e *= kEndsVolumeBound;
+  }
+
+  int sign(int i) const { return b[i] > error[i] ? 1 : b[i] < -error[i] ? -1 : 0; }
+  bool hasNoRoot() const {
+    const int first = sign(0);
+    return first != 0 && sign(1) == first && sign(2) == first && sign(3) == first;
+  }
+  bool changesSign() const { return sign(0) * sign(3) < 0; }
+  /// Whether the derivative has one sign beyond doubt.
+  bool isMonotone() const {
+    const double d[3] = {b[1] - 3 * b[0], b[2] - b[1], 3 * b[3] - b[2]};
+    // The half is for the rounding of the differences.
+    const double bound[3] = {1.5 * (error[1] + 3 * error[0]), 1.5 * (error[2] + error[1]),
+                             1.5 * (3 * error[3] + error[2])};
+    return (d[0] > bound[0] && d[1] > bound[1] && d[2] > bound[2]) ||
+           (d[0] < -bound[0] && d[1] < -bound[1] && d[2] < -bound[2]);
+  }
+  /// Whether the only roots are at ends where the volume is known to be zero.
+  bool hasNoRootBetween(bool zero_at_0, bool zero_at_1) const {
+    const int inside = sign(1);
+    return inside != 0 && sign(2) == inside && (zero_at_0 || sign(0) == inside) &&
+           (zero_at_1 || sign(3) == inside);
+  }
+
+  static double mix(const double (&c)[4], double s) {
+    const double r = 1 - s;
+    return r * r * (c[0] * r + c[1] * s) + s * s * (c[2] * r + c[3] * s);
+  }
+  double operator()(double s) const { return mix(b, s); }
+  /// Whether the sign at s seems to be beyond doubt.
+  bool seemsKnownAt(double s) const { return std::abs(mix(b, s)) > 2 * mix(error, s); }
+  /// f times (1 - x + ratio x)^3 in x with s / (1 - s) = ratio x / (1 - x).
+  Cubic withRatio(double ratio) const {
+    Cubic f = *this;
+    double factor = 1;
+    for (int i = 1; i < 4; ++i) {
+      factor *= ratio;
+      f.b[i] *= factor;
+      f.error[i] *= factor;
+    }
+    return f;
+  }
+  /// Nothing but rounding.
+  bool isLost() const {
+    return sign(0) == 0 && sign(1) == 0 && sign(2) == 0 && sign(3) == 0;
+  }
+  /// Where the volume turns, if it does so once.
+  void findTurn(double& s) const {
+    const double d[3] = {b[1] - 3 * b[0], b[2] - b[1], 3 * b[3] - b[2]};
+    if (d[0] == 0 || d[2] == 0 || (d[0] < 0) == (d[2] < 0)) return;
+    s = illinois(
+        [&d](double x) {
+          const double r = 1 - x;
+          return r * (d[0] * r + 2 * d[1] * x) + d[2] * x * x;
+        },
+        0, 1, d[0], d[2], 0x1p-40, 40);
+  }
+};
+
+/// Ends are lo / 2^m and hi / 2^m.
+struct Interval {
+  DoubleWord lo, hi;
+  unsigned m;
+};
+
+/// The points whose differences u, v and w are, of a VF and of an EE pair.
+constexpr int kEnds[2][3][2] = {{{0, 1}, {2, 1}, {3, 1}}, {{2, 0}, {1, 0}, {3, 2}}};
+
+/// The differences of the pair's points as integers, and what of them is in an interval.
+/// Letters as in solveCoplanarity(): the volume is u . (v x w), VF (p; a, b, c): u = p-a,
+/// v = b-a, w = c-a, r = b-p, q = c-p; EE (a b; c d): u = c-a, v = b-a, w = d-c, r = b-c,
+/// q = d-a, z = d-b.
+template <std::size_t kWords>
+class MagnifiedPair {
+ public:
+  using Integer = FixedInteger<kWords>;
+  /// What times of 2^-m need.
+  static constexpr int kMaxTimeBits = 124;
+
+  MagnifiedPair(ContinuousContactKind kind, const FeaturePoints& x,
+                const FrameDigits& digits)
+      : is_vertex_face_(kind == ContinuousContactKind::kVertexFace) {
+    // A difference of differences, and a sign.
+    time_bits_ = std::min(kMaxTimeBits, Integer::kBits - digits.num_digits - 4);
+    if (!fits()) return;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto& ends = kEnds[is_vertex_face_ ? 0 : 1][i];
+        const auto difference = [&](int frame) {
+          const auto at = [&](int p) {
+            const BinaryDigits d((frame == 0 ? x[p].t0 : x[p].t1)[k]);
+            const int shift = d.digits == 0 ? 0 : d.exponent - digits.lowest[frame];
+            return Integer(d.digits, static_cast<unsigned>(shift));
+          };
+          return at(ends[0]) - at(ends[1]);
+        };
+        start_[i][k] = difference(0);
+        change_[i][k] = difference(1) - start_[i][k];
+      }
+  }
+
+  /// Whether the integers are long enough for anything.
+  bool fits() const { return time_bits_ >= kLeastTimeBits; }
+  unsigned timeBits() const { return static_cast<unsigned>(time_bits_); }
+  bool isVertexFace() const { return is_vertex_face_; }
+
+  void moveTo(const Interval& i) {
+    double largest = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        at_lo_[j][k] = (start_[j][k] << i.m) + change_[j][k] * i.lo;
+        at_hi_[j][k] = at_lo_[j][k] + change_[j][k] * (i.hi - i.lo);
+      }
+      scale_ = 1;
+      uvw_[j] = rounded(at_lo_[j], at_hi_[j]);
+      largest = std::max(largest, std::max(uvw_[j].l_norm, uvw_[j].h_norm));
+    }
+    // A power of two: nothing is rounded by it, and products of four stay in range.
+    if (largest == 0) return;
+    scale_ = Integer::powerOfTwo(-std::ilogb(largest));
+    for (Segment& s : uvw_) {
+      s.l = scale_ * s.l;
+      s.h = scale_ * s.h;
+      s.l_norm *= scale_;
+      s.h_norm *= scale_;
+    }
+  }
+
+  const Segment& u() const { return uvw_[0]; }
+  const Segment& v() const { return uvw_[1]; }
+  const Segment& w() const { return uvw_[2]; }
+  Segment r() const { return combined(1, -1, 0); }
+  Segment q() const { return is_vertex_face_ ? combined(2, -1, 0) : combined(0, 1, 2); }
+  Segment z() const { return combined(0, 1, 2, 1); }
+
+ private:
+  using Point = Integer[3];
+  static constexpr int kLeastTimeBits = 60;
+
+  Segment rounded(const Point& lo, const Point& hi) const {
+    const auto vec = [this](const Point& p) {
+      return scale_ * Vec{p[0].toDouble(), p[1].toDouble(), p[2].toDouble()};
+    };
+    return segment(vec(lo), vec(hi));
+  }
+  /// The sum (sign 1) or difference (-1) of two differences, without a third.
+  Segment combined(std::size_t a, int sign, std::size_t b, int without = -1) const {
+    Point lo, hi;
+    for (std::size_t k = 0; k < 3; ++k) {
+      lo[k] = sign > 0 ? at_lo_[a][k] + at_lo_[b][k] : at_lo_[a][k] - at_lo_[b][k];
+      hi[k] = sign > 0 ? at_hi_[a][k] + at_hi_[b][k] : at_hi_[a][k] - at_hi_[b][k];
+      if (without < 0) continue;
+      lo[k] = lo[k] - at_lo_[static_cast<std::size_t>(without)][k];
+      hi[k] = hi[k] - at_hi_[static_cast<std::size_t>(without)][k];
+    }
+    return rounded(lo, hi);
+  }
+
+  bool is_vertex_face_;
+  int time_bits_;
+  Point start_[3], change_[3];
+  Point at_lo_[3], at_hi_[3];
+  double scale_{1};
+  Segment uvw_[3];
+};
+
+/// Sign of a condition q . n over the whole interval: 0 if it has not one sign beyond
+/// doubt.
+int signOver(const Cross& q, const Cross& n) {
+  const double c[5] = {dot(q.c[0], n.c[0]), dot(q.c[0], n.c[1]) + dot(q.c[1], n.c[0]),
+                       dot(q.c[0], n.c[2]) + dot(q.c[1], n.c[1]) + dot(q.c[2], n.c[0]),
+                       dot(q.c[1], n.c[2]) + dot(q.c[2], n.c[1]), dot(q.c[2], n.c[2])};
+  const double size[5] = {
+      q.size[0] * n.size[0], q.size[0] * n.size[1] + q.size[1] * n.size[0],
+      q.size[0] * n.size[2] + q.size[1] * n.size[1] + q.size[2] * n.size[0],
+      q.size[1] * n.size[2] + q.size[2] * n.size[1], q.size[2] * n.size[2]};
+  bool positive = true, negative = true;
+  for (int i = 0; i < 5; ++i) {
+    // What underflows is far below the bounds of such sizes.
+    if (size[i] < kTiny) return 0;
+    positive &= c[i] > kEndsInsideBound * size[i];
+    negative &= c[i] < -kEndsInsideBound * size[i];
+  }
+  return positive ? 1 : negative ? -1 : 0;
+}
+
+/// Whether the features touch where the points of the pair are coplanar: 1 always, -1
+/// never in the interval. See insideness() in elementary.cpp.
+template <typename Pair>
+int insideness(const Pair& pair, const Cross& n) {
+  int all = 1;
+  const auto require = [&](const Segment& x, const Segment& y) {
+    const int sign = signOver(Cross(x, y), n);
+    all = sign < 0 ? -1 : all > 0 ? sign : all;
+    return sign >= 0;
+  };
+  if (pair.isVertexFace())
+    require(pair.u(), pair.w()) && require(pair.v(), pair.u()) &&
+        require(pair.r(), pair.q());
+  else
+    require(pair.u(), pair.w()) && require(pair.r(), pair.w()) &&
+        require(pair.u(), pair.v()) && require(pair.v(), pair.q());
+  return all;
+}
+
+/// Whether a plane keeps the features apart over the interval. See areSeparated() in
+/// elementary.cpp.
+template <typename Pair>
+bool areSeparated(const Pair& pair) {
+  const bool vf = pair.isVertexFace();
+  const auto negated = [](Segment s) {
+    s.l = -1. * s.l;
+    s.h = -1. * s.h;
+    return s;
+  };
+  Segment corner[4] = {pair.u(), negated(pair.r()), pair.q(), {}};
+  if (vf)
+    corner[2] = negated(corner[2]);
+  else
+    corner[3] = pair.z();
+  const int num_corners = vf ? 3 : 4;
+  Vec middle[4];
+  for (int i = 0; i < num_corners; ++i) middle[i] = 0.5 * (corner[i].l + corner[i].h);
+  const Vec d = separatingDirection(middle, vf);
+  const double bound = kSideBound * maxNorm(d);
+  if (!(bound > kTiny)) return false;
+  for (int i = 0; i < num_corners; ++i)
+    if (!(dot(d, corner[i].l) > bound * corner[i].l_norm &&
+          dot(d, corner[i].h) > bound * corner[i].h_norm))
+      return false;
+  return true;
+}
+
+/// A part of the interval to look at closely, 0 <= a <= b <= 1; a place to cut it if a =
+/// b.
+struct Place {
+  double a, b;
+  bool isUseful() const { return a > 0 || b < 1; }
+};
+
+/// Somewhat more than the rounding of a place in the interval.
+constexpr double kLeastPart = 0x1p-48;
+
+/// Where u, v and w together are shortest, if they nearly vanish there.
+template <typename Pair>
+std::optional<Place> meetingPlace(const Pair& pair) {
+  // Seen from further away than this many times the distance at which the points pass
+  // each other, they seem to meet.
+  constexpr double kFar = 8;
+  const Segment &u = pair.u(), &v = pair.v(), &w = pair.w();
+  const auto [s, duration] = ClosestApproach({u.l, v.l, w.l}, {u.h, v.h, w.h});
+  if (!(s > 0 && s < 1)) return std::nullopt;
+  const double half = std::max(kLeastPart, kFar * duration);
+  if (half > 1 / kFar) return std::nullopt;
+  return Place{std::max(0., s - half), std::min(1., s + half)};
+}
+
+/// How much shorter u, v and w are at the beginning than at the end.
+template <typename Pair>
+double ratioOfEnds(const Pair& pair) {
+  double l = 0, h = 0;
+  for (const Segment* x : {&pair.u(), &pair.v(), &pair.w()}) {
+    l = std::max(l, x->l_norm);
+    h = std::max(h, x->h_norm);
+  }
+  return l > 0 && h > 0 ? l / h : 1;
+}
+
+/// Around a root of f, or where f turns; where the signs of f are known on both sides, it
+/// seems.
+Place placeOfRoot(const Cubic& f) {
+  // So much wider that derivatives are known as well.
+  constexpr double kWider = 8, kMostPart = 0x1p-7;
+  double s = 0.5;
+  if (f.sign(0) == 0)
+    s = 0;
+  else if (f.sign(3) == 0)
+    s = 1;
+  else if (f.changesSign())
+    s = illinois(f, 0, 1, f.b[0], f.b[3], 0x1p-50, 60);
+  else
+    f.findTurn(s);
+  if (s > 0 && s < 1 && f.seemsKnownAt(s)) return {s, s};
+  for (double half = kLeastPart; half < kMostPart; half *= 8)
+    if ((s <= half || f.seemsKnownAt(s - half)) &&
+        (s >= 1 - half || f.seemsKnownAt(s + half)))
+      return {std::max(0., s - kWider * half), std::min(1., s + kWider * half)};
+  return {0, 1};
+}
+
+template <typename Pair>
+Place placeToLook(const Pair& pair, const Cubic& f) {
+  if (const std::optional<Place> place = meetingPlace(pair)) return *place;
+  if (f.isLost()) return {0, 1};
+  // In x with s / (1 - s) = ratio x / (1 - x), the volume looks alike near both ends.
+  const double ratio = ratioOfEnds(pair);
+  const auto back = [ratio](double x) { return ratio * x / (1 - x + ratio * x); };
+  const Place place = placeOfRoot(f.withRatio(ratio));
+  return {back(place.a), back(place.b)};
+}
+
+/// Intervals still to be looked at, the earliest on top.
+class Agenda {
+ public:
+  /// Some eight are usual. Each look adds at most two intervals.
+  static constexpr int kMaxLooks = 48;
+
+  explicit Agenda(const Interval& all) { items_[size_++] = all; }
+  bool isEmpty() const { return size_ == 0; }
+  Interval pop() { return items_[--size_]; }
+
+  /// Cuts an interval at both ends of the place.
+  /// @return false if times have too few bits for it
+  bool push(const Interval& i, const Place& place, unsigned time_bits) {
+    constexpr unsigned kCutBits = 52;
+    DoubleWord width = i.hi - i.lo;
+    unsigned bits = 0;
+    while (bits < kCutBits && (width >> (kCutBits - bits)) == 0) ++bits;
+    bits = std::min(bits, time_bits - i.m);
+    width <<= bits;
+    const DoubleWord lo = i.lo << bits, hi = i.hi << bits;
+    const auto size = static_cast<double>(width);
+    if (width < 2) return false;
+    DoubleWord a = lo + static_cast<DoubleWord>(place.a * size), b = hi;
+    if (place.b < 1) b = std::min(hi, lo + static_cast<DoubleWord>(place.b * size) + 1);
+    if (place.a == place.b) a = b = std::min(hi - 1, std::max(lo + 1, a));
+    if (a == lo && b == hi) return false;
+    const unsigned m = i.m + bits;
+    if (b < hi) items_[size_++] = {b, hi, m};
+    if (a < b) items_[size_++] = {a, b, m};
+    if (lo < a) items_[size_++] = {lo, a, m};
+    return true;
+  }
+
+ private:
+  Interval items_[2 * kMaxLooks + 3];
+  int size_{0};
+};
+
+/// The only root of p, simple, between lo / 2^m and hi / 2^m.
+Root rootBetween(const Polynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) {
+  const int sign_lo = p.signAt(lo, m);
+  for (;;) {
+    const DoubleWord width = hi - lo;
+    unsigned bits = 0;
+    while (width >> bits > 1) ++bits;
+    const DoubleWord unit = DoubleWord{1} << bits;
+    if (width == unit && (lo & (unit - 1)) == 0) return Root(lo >> bits, m - bits, p);
+    const DoubleWord cut = ((lo >> bits) + 1) << bits;
+    const int sign = p.signAt(cut, m);
+    if (sign == 0) return Root(cut, m);
+    (sign == sign_lo ? lo : hi) = cut;
+  }
+}
+
+/// What is known of the times in an interval.
+enum class Finding { kNoContact, kContact, kOpen };
+
+template <std::size_t kWords>
+class Solver {
+ public:
+  Solver(ExactQuery& query, double toc_err)
+      : query_(query),
+        toc_err_(toc_err),
+        pair_(query.kind(), query.points(), query.digits()) {}
+
+  /// The first contact in (0, t_end].
+  ElementaryResult solve(double t_end);
+
+ private:
+  Finding look(const Interval& interval, const Cross& n, const Cubic& f);
+  Finding lookAtEnds(const Interval& interval, const Cubic& f);
+  Finding lookAtRoot(const Interval& interval);
+  Finding contactIn(const Interval& interval);
+
+  int clockExponent() const { return query_.digits().clock_exponent; }
+
+  ExactQuery& query_;
+  double toc_err_;
+  MagnifiedPair<kWords> pair_;
+  ElementaryResult contact_{};
+};
+
+/// What doubles tell.
+template <std::size_t kWords>
+Finding Solver<kWords>::look(const Interval& interval, const Cross& n, const Cubic& f) {
+  if (f.hasNoRoot()) return Finding::kNoContact;
+  const int inside = insideness(pair_, n);
+  if (inside < 0) return Finding::kNoContact;
+  if (inside > 0 && f.changesSign()) return contactIn(interval);
+  return areSeparated(pair_) ? Finding::kNoContact : Finding::kOpen;
+}
+
+/// A contact that is somewhere in the interval, if this is short enough.
+template <std::size_t kWords>
+Finding Solver<kWords>::contactIn(const Interval& interval) {
+  const double lo = timeOf(interval.lo, interval.m, clockExponent(), -1),
+               hi = timeOf(interval.hi, interval.m, clockExponent(), 1);
+  constexpr double kUlps = 4 * std::numeric_limits<double>::epsilon();
+  if (hi - lo > std::max(toc_err_, kUlps * lo)) return Finding::kOpen;
+  contact_ = {Answer::kYes, lo, hi, DecidedBy::kExact};
+  return Finding::kContact;
+}
+
+/// Features that are coplanar in a frame and at no other time of the interval.
+template <std::size_t kWords>
+Finding Solver<kWords>::lookAtEnds(const Interval& interval, const Cubic& f) {
+  const bool zero_at_lo = f.sign(0) == 0 && interval.lo == 0,
+             zero_at_hi = f.sign(3) == 0 && interval.hi == DoubleWord{1} << interval.m;
+  if (!zero_at_lo && !zero_at_hi) return Finding::kOpen;
+  if (!f.hasNoRootBetween(zero_at_lo, zero_at_hi)) return Finding::kOpen;
+  if (zero_at_lo && !query_.isCoplanarInFrame(0)) return Finding::kOpen;
+  if (!zero_at_hi) return Finding::kNoContact;
+  if (!query_.isCoplanarInFrame(1)) return Finding::kOpen;
+  contact_ = {Answer::kYes, 1, 1, DecidedBy::kExact};
+  return query_.touchInFrame(1) ? Finding::kContact : Finding::kNoContact;
+}
+
+/// A single root at which a weight of the contact is nearly zero, or zero.
+template <std::size_t kWords>
+Finding Solver<kWords>::lookAtRoot(const Interval& interval) {
+  const ExactPair& pair = query_.pair();
+  Root root = rootBetween(pair.volume(), interval.lo, interval.hi, interval.m);
+  if (!pair.touchAt(root)) return Finding::kNoContact;
+  const auto [lo, hi] = root.bracket(toc_err_, clockExponent());
+  contact_ = {Answer::kYes, lo, hi, DecidedBy::kExact};
+  return Finding::kContact;
+}
+
+template <std::size_t kWords>
+ElementaryResult Solver<kWords>::solve(double t_end) {
+  const ElementaryResult unsure = {Answer::kUnsure, 0, t_end, DecidedBy::kExact};
+  const BinaryDigits end(t_end);
+  const auto end_bits = static_cast<unsigned>(-end.exponent);
+  if (!pair_.fits() || end_bits > pair_.timeBits()) return unsure;
+  Agenda open({0, static_cast<DoubleWord>(end.digits), end_bits});
+  for (int looks = 0; !open.isEmpty(); ++looks) {
+    const Interval interval = open.pop();
+    if (looks == Agenda::kMaxLooks) return unsure;
+    pair_.moveTo(interval);
+    const Cross n(pair_.v(), pair_.w());
+    const Cubic f(pair_.u(), n);
+    Finding found = look(interval, n, f);
+    if (found == Finding::kOpen) found = lookAtEnds(interval, f);
+    if (found == Finding::kOpen) {
+      const Place place = placeToLook(pair_, f);
+      if (place.isUseful() && open.push(interval, place, pair_.timeBits())) continue;
+      if (!f.changesSign() || !f.isMonotone()) return unsure;
+      found = lookAtRoot(interval);
+    }
+    if (found == Finding::kContact) {
+      contact_.toc_hi = std::min(contact_.toc_hi, t_end);
+      return contact_;
+    }
+  }
+  return {Answer::kNo, 0, 0, DecidedBy::kExact};
+}
+
+}  // namespace
+
+ElementaryResult solveMagnified(ExactQuery& query, double toc_err, double t_stop,
+                                double t_max) {
+  const int clock_exponent = query.digits().clock_exponent;
+  // On another clock t_max is a fraction.
+  if (t_max < 1 && clock_exponent != 0)
+    return {Answer::kUnsure, 0, t_max, DecidedBy::kExact};
+  Solver<4> solver(query, toc_err);
+  // The bracket of a contact must not depend on t_stop.
+  const ElementaryResult no = {Answer::kNo, 0, 0, DecidedBy::kExact};
+  const bool stops = t_stop < t_max && clock_exponent == 0;
+  if (stops && (t_stop == 0 || solver.solve(t_stop).answer == Answer::kNo)) return no;
+  return solver.solve(t_max);
+}
+
+bool isWorthMagnifying(ContinuousContactKind kind, const FeaturePoints& x) {
+  constexpr double kSmall = 0x1p-10, kLeastVolume = 0x1p-590, kMostVolume = 0x1p590;
+  Vec l[3], h[3];
+  double volume = 1, l_norm = 0, h_norm = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& [p, q] = kEnds[kind == ContinuousContactKind::kVertexFace ? 0 : 1][i];
+    const auto &a = x[p], &b = x[q];
+    l[i] = {a.t0[0] - b.t0[0], a.t0[1] - b.t0[1], a.t0[2] - b.t0[2]};
+    h[i] = {a.t1[0] - b.t1[0], a.t1[1] - b.t1[1], a.t1[2] - b.t1[2]};
+    volume *= std::max(maxNorm(l[i]), maxNorm(h[i]));
+    l_norm = std::max(l_norm, maxNorm(l[i]));
+    h_norm = std::max(h_norm, maxNorm(h[i]));
+  }
+  if (!(volume > kLeastVolume && volume < kMostVolume)) return true;
+  if (l_norm < kSmall * h_norm || h_norm < kSmall * l_norm) return true;
+  const ClosestApproach closest(l, h);
+  return closest.s > 0 && closest.s < 1 && closest.duration < kSmall;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
