@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
-#include <type_traits>
 #include <utility>
 
 #include "base/default_floating_point.h"
@@ -15,6 +14,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
+#include "tree/sound_tree.h"
 
 namespace fcl {
 namespace detail {
@@ -183,20 +183,18 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
-  // FCL 0.7 merges two RSSs into one that can leave points out.
-  if constexpr (!std::is_same_v<BV, RSS<typename BV::S>>)
-    if (!deforming && RigidTree::isSound(model)) {
-      instance_.rigid = RigidTree(model, beginning);
-      if (owners == FeatureOwners::kAlways) {
-        requireIndices(model, name);
-        measure([&] {
-          owners_ = assignFeatures(model.tri_indices,
-                                   static_cast<std::size_t>(model.num_tris), count);
-        });
-        instance_.owners = owners_.data();
-      }
-      return;
+  if (!deforming && isTreeSound(model)) {
+    instance_.rigid = RigidTree(model, beginning);
+    if (owners == FeatureOwners::kAlways) {
+      requireIndices(model, name);
+      measure([&] {
+        owners_ = assignFeatures(model.tri_indices,
+                                 static_cast<std::size_t>(model.num_tris), count);
+      });
+      instance_.owners = owners_.data();
     }
+    return;
+  }
   measure([&] { prepareDeforming(model, name, num_threads); });
 }
 

@@ -37,7 +37,7 @@ void requireFinite(const Pose& beginning, const Pose& end, const std::string& na
 /// - nothing for a rigid mesh, but see FeatureOwners;
 /// - boxes for a DeformableBVHModel that is rotated;
 /// - owners and boxes for a plain BVHModel in FCL's updated state, and for a rigid mesh
-///   whose tree is not sound (RigidTree::isSound()).
+///   whose tree is not known to be sound (isTreeSound()).
 class PreparedMesh {
  public:
   /// @param name  the name of the geometry in errors, for example "o1"

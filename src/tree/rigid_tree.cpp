@@ -5,44 +5,15 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include "fcl/geometry/bvh/BVH_model.h"
+#include "tree/fcl_volumes.h"
 #include "tree/open_binary.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-/// FCL fits its volumes in S with rounding to nearest, so that a point can stand out of
-/// its volume by a few units in the last place of its coordinates, and merges add a few
-/// more on each level; 2^12 units cover any depth that a tree in memory can have (two
-/// units a level would take 2000 levels). Too large a margin costs only a box test.
-template <typename S>
-constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
-
-/// The OBB that a bounding volume consists of, or has beside other volumes.
-template <typename S>
-const OBB<S>& obbOf(const OBB<S>& bv) {
-  return bv;
-}
-template <typename S>
-const OBB<S>& obbOf(const OBBRSS<S>& bv) {
-  return bv.obb;
-}
-template <typename S>
-const OBB<S>& obbOf(const kIOS<S>& bv) {
-  return bv.obb;
-}
-
-/// Whether a volume has bounds along our directions ready.
-template <typename BV>
-constexpr bool kHasSlabs = false;
-template <typename S>
-constexpr bool kHasSlabs<AABB<S>> = true;
-template <typename S, std::size_t N>
-constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
 /// Bounds along our directions.
 struct Slabs {
@@ -78,42 +49,9 @@ Slabs slabsOf(const KDOP<S, N>& bv) {
   return slabs;
 }
 
-/// Whether the leaf is surely no oriented box that FCL fitted to a triangle by itself,
-/// along its longest edge (fit3() in fcl/math/bv/utility-inl.h), but one that has the
-/// directions in which the corners scatter (BVFitter). They are the same for a triangle
-/// with two equal sides, and nearly so for a thin one.
-template <typename S>
-bool isFittedToScatter(const OBB<S>& box, const Vector3<S> (&corners)[3]) {
-  constexpr double kSameDirection = 1 - 1e-5;
-  const Vector3<double> axis = box.axis.col(0).template cast<double>();
-  for (int k = 0; k < 3; ++k) {
-    const Vector3<double> edge =
-        corners[(k + 1) % 3].template cast<double>() - corners[k].template cast<double>();
-    if (!(std::abs(axis.dot(edge)) < kSameDirection * axis.norm() * edge.norm()))
-      return false;
-  }
-  return true;
-}
-
 /// Contains all that is in range.
 constexpr OrientedBox kUnbounded = {
     {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
-
-/// Whether axes are unit vectors at right angles but for an error that is a part of what
-/// points may stand out, which it multiplies as their coordinates do. FCL's are mere
-/// numbers where sums of squares of coordinates left the range of S.
-bool isBox(const OrientedBox& box, double slack) {
-  bool is_box = true;
-  for (int i = 0; i < 3; ++i) {
-    is_box &= std::abs(box.center[i]) < DBL_MAX && box.extent[i] < DBL_MAX;
-    for (int j = 0; j <= i; ++j) {
-      double product = i == j ? -1 : 0;
-      for (int k = 0; k < 3; ++k) product += box.axis[i][k] * box.axis[j][k];
-      is_box &= std::abs(product) < slack / 8;
-    }
-  }
-  return is_box;
-}
 
 constexpr float kFloatUnit = 0x1p-24f;
 
@@ -184,29 +122,6 @@ inline const BVNodeBase* RigidTree::at(int node) const {
 int RigidTree::link(int node) const { return at(node)->first_child; }
 
 template <typename BV>
-bool RigidTree::isSound(const BVHModel<BV>& model) {
-  if constexpr (!kHasSlabs<BV>) {
-    // FCL refits all nodes or none: one leaf is enough, and as a rule the first one is.
-    constexpr int kMostNodes = 4096, kStride = 7919;
-    const int count = model.getNumBVs();
-    for (int i = 0, at = 0; i < std::min(count, kMostNodes);
-         ++i, at = (at + kStride) % count) {
-      const BVNode<BV>& node = model.getBV(at);
-      if (!node.isLeaf()) continue;
-      const Triangle& triangle = model.tri_indices[node.primitiveId()];
-      Vector3<typename BV::S> corners[3];
-      bool is_there = true;
-      for (int k = 0; k < 3; ++k) {
-        is_there &= triangle[k] < static_cast<std::size_t>(model.num_vertices);
-        if (is_there) corners[k] = model.vertices[triangle[k]];
-      }
-      if (is_there && isFittedToScatter(obbOf(node.bv), corners)) return true;
-    }
-  }
-  return kHasSlabs<BV>;
-}
-
-template <typename BV>
 RigidTree::Volumes RigidTree::volumesOf() {
   return {sizeof(BVNode<BV>), kFitSlack<typename BV::S>, kHasSlabs<BV>,
           &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
@@ -263,12 +178,7 @@ void RigidTree::setBox(int node, OrientedBox& box) const {
       box.extent[k] = 0.5 * (slabs.hi[k] - slabs.lo[k]);
     }
   } else {
-    const auto& obb = obbOf(bv);
-    for (int k = 0; k < 3; ++k) {
-      box.center[k] = double{obb.To[k]};
-      for (int i = 0; i < 3; ++i) box.axis[i][k] = double{obb.axis(k, i)};
-      box.extent[k] = double{obb.extent[k]};
-    }
+    box = orientedBoxOf(bv);
     if (!isBox(box, volumes_.slack)) box = kUnbounded;
   }
   if (is_rotated_) rotate(box);
@@ -347,14 +257,15 @@ MovingKdop RigidTree::box(int node) const {
   return out.box(0);
 }
 
-#define FCL_CCD_INSTANTIATE(BV)                              \
-  template bool RigidTree::isSound<BV>(const BVHModel<BV>&); \
+#define FCL_CCD_INSTANTIATE(BV) \
   template RigidTree::RigidTree(const BVHModel<BV>&, const Pose&);
 #define FCL_CCD_COMMA ,
 FCL_CCD_INSTANTIATE(AABB<double>)
 FCL_CCD_INSTANTIATE(AABB<float>)
 FCL_CCD_INSTANTIATE(OBB<double>)
 FCL_CCD_INSTANTIATE(OBB<float>)
+FCL_CCD_INSTANTIATE(RSS<double>)
+FCL_CCD_INSTANTIATE(RSS<float>)
 FCL_CCD_INSTANTIATE(OBBRSS<double>)
 FCL_CCD_INSTANTIATE(OBBRSS<float>)
 FCL_CCD_INSTANTIATE(kIOS<double>)

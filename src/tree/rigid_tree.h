@@ -34,16 +34,8 @@ class RigidTree {
  public:
   RigidTree() = default;
 
-  /// @brief Whether FCL's volumes surely bound what is below them. The oriented box of a
-  /// triangle that is not fitted with others is nowhere near it if it has no area, and
-  /// misses a thin one by a part of its size: such a tree, that a replacement of the
-  /// vertices refit from the bottom up, counts as none, and so does one of which that
-  /// cannot be excluded.
-  /// @tparam BV  any of FCL's but RSS
-  template <typename BV>
-  static bool isSound(const BVHModel<BV>& model);
-
-  /// @tparam BV  any of FCL's but RSS.
+  /// @tparam BV  any of FCL's
+  /// @pre isTreeSound(model)
   /// @param pose  its rotation turns the boxes; its translation is left to
   /// relativeShift().
   template <typename BV>

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Rigid models whose trees FCL made badly: their contacts are the others'.
-#include "tree/rigid_tree.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
+#include <thread>
 
+#include "brute_force.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/geometry/bvh/refit_top_down.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
@@ -19,35 +21,6 @@
 namespace fcl {
 namespace test {
 namespace {
-
-/// Of a model as it is built, and after its vertices were replaced.
-template <typename BV>
-void expectSound(bool built, bool from_the_bottom) {
-  using S = typename BV::S;
-  const TestMesh mesh = bentSheet(6), next = shaken(mesh, 0.15, 3);
-  const auto model = makeModel<BVHModel<BV>>(mesh);
-  EXPECT_EQ(detail::deformable::RigidTree::isSound(*model), built);
-  for (const bool bottom_up : {true, false}) {
-    model->beginReplaceModel();
-    model->replaceSubModel(pointsAs<S>(next.vertices));
-    model->endReplaceModel(true, bottom_up);
-    EXPECT_EQ(detail::deformable::RigidTree::isSound(*model),
-              bottom_up ? from_the_bottom : built);
-  }
-}
-
-// What a query leaves to FCL's tree, and what it does not.
-TEST(FCL_RIGID_TREE, whatIsSound) {
-  expectSound<AABB<double>>(true, true);
-  expectSound<KDOP<float, 24>>(true, true);
-  expectSound<OBB<double>>(true, false);
-  expectSound<OBB<float>>(true, false);
-  expectSound<OBBRSS<double>>(true, false);
-  expectSound<kIOS<float>>(true, false);
-  // Triangles with two equal sides tell nothing.
-  EXPECT_FALSE(detail::deformable::RigidTree::isSound(
-      *makeModel<BVHModel<OBB<double>>>(makeSheet(4, 4))));
-}
 
 /// The contacts of two rigid models, one of which moves, are those of models with AABBs.
 /// @return how many
@@ -139,6 +112,102 @@ TYPED_TEST(FCL_RIGID_TREE_QUERY, coordinatesOfAllSizes) {
                                           scale * Vector3<double>(0.3, 0.2, 0.1));
     }
   EXPECT_GT(contacts, 200U);
+}
+
+/// The second of two meshes moves by `way`: all contacts of the step.
+template <typename S>
+ContinuousContactResult<S> contactsAlong(const CollisionGeometry<S>& a,
+                                         const CollisionGeometry<S>& b,
+                                         const Vector3<double>& way,
+                                         int num_threads = 1) {
+  const Transform3<S> still = Transform3<S>::Identity();
+  Transform3<S> end = still;
+  end.translation() = way.cast<S>();
+  ContinuousContactRequest<S> request;
+  request.num_threads = num_threads;
+  ContinuousContactResult<S> result;
+  continuousCollide(&a, still, still, &b, still, end, request, result);
+  return result;
+}
+
+/// How many pairs of features of two meshes touch, each tested by itself; of one mesh
+/// without contacts within, whose second part is that which moves.
+std::size_t bruteForceCount(const TestMesh& a, const TestMesh& b,
+                            const Vector3<double>& way) {
+  FramePairMesh both;
+  both.previous = a.vertices;
+  both.previous.insert(both.previous.end(), b.vertices.begin(), b.vertices.end());
+  both.current = both.previous;
+  both.triangles = a.triangles;
+  const std::size_t n = a.vertices.size();
+  for (std::size_t i = n; i < both.current.size(); ++i) both.current[i] += way;
+  for (const Triangle& t : b.triangles)
+    both.triangles.emplace_back(t[0] + n, t[1] + n, t[2] + n);
+  return bruteForceSelfContacts(both).size();
+}
+
+// A model that is replaced and refit again and again answers as a model that was made of
+// its vertices: with every refit, after each replacement. Coordinates are multiples of
+// 2^-10, so that all that is added here is exact.
+TYPED_TEST(FCL_RIGID_TREE_QUERY, replacedAgainAndAgain) {
+  using Plain = BVHModel<TypeParam>;
+  using Deformable = DeformableBVHModel<TypeParam>;
+  using S = typename TypeParam::S;
+  const auto onGrid = [](TestMesh mesh) {
+    for (Vector3<double>& p : mesh.vertices)
+      p = (1024 * p).array().round().matrix() / 1024;
+    return mesh;
+  };
+  const TestMesh floor = onGrid(makeSheet(8, 8));
+  const TestMesh ball = onGrid(moved(makeIcosphere(1, 0.25), 0.4, 0.5, 0.5));
+  const Vector3<double> way(0.125, 0, -0.5);
+  const auto model = makeModel<Plain>(floor), falling = makeModel<Plain>(ball);
+  const auto true_falling = makeModel<Deformable>(ball);
+  std::size_t contacts = 0;
+  for (int round = 0; round < 4; ++round) {
+    SCOPED_TRACE(round);
+    const TestMesh next = onGrid(makeSheet(8, 8, [round](double u, double v) {
+      return Vector3<double>(u, v, 0.05 * round * (u * u + v) - (round == 2 ? 30 : 0));
+    }));
+    const auto expected =
+        contactsAlong<S>(*makeModel<Deformable>(next), *true_falling, way);
+    EXPECT_EQ(expected.contacts.size(), bruteForceCount(next, ball, way));
+    contacts += expected.contacts.size();
+    const auto expectRight = [&] {
+      expectSameContacts(contactsAlong<S>(*model, *falling, way), expected);
+    };
+    for (const bool bottom_up : {true, true, false}) {
+      ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
+      ASSERT_EQ(model->replaceSubModel(pointsAs<S>(next.vertices)), BVH_OK);
+      ASSERT_EQ(model->endReplaceModel(true, bottom_up), BVH_OK);
+      expectRight();
+    }
+    refitTopDown(*model);
+    expectRight();
+  }
+  EXPECT_GT(contacts, 50U);
+}
+
+// Queries only read: two threads that share models, and two threads within a query.
+TYPED_TEST(FCL_RIGID_TREE_QUERY, twoThreads) {
+  using S = typename TypeParam::S;
+  const Vector3<double> way(0.1, 0, -0.6);
+  const auto model = makeModel<BVHModel<TypeParam>>(makeSheet(12, 12));
+  const auto ball =
+      makeModel<BVHModel<TypeParam>>(moved(makeIcosphere(2, 0.25), 0.4, 0.5, 0.5));
+  for (const bool bottom_up : {false, true}) {
+    ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
+    ASSERT_EQ(model->replaceSubModel(pointsAs<S>(makeSheet(12, 12).vertices)), BVH_OK);
+    ASSERT_EQ(model->endReplaceModel(true, bottom_up), BVH_OK);
+    const auto expected = contactsAlong<S>(*model, *ball, way);
+    EXPECT_FALSE(expected.contacts.empty());
+    ContinuousContactResult<S> results[2];
+    std::thread other([&] { results[1] = contactsAlong<S>(*model, *ball, way); });
+    results[0] = contactsAlong<S>(*model, *ball, way);
+    other.join();
+    for (const auto& result : results) expectIdentical(result, expected);
+    expectIdentical(contactsAlong<S>(*model, *ball, way, 2), expected);
+  }
 }
 
 }  // namespace

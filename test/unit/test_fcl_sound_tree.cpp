@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Which of FCL's trees bound their triangles, and that those which are read do so.
+#include "tree/sound_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/geometry/bvh/refit_top_down.h"
+#include "fcl/math/bv/utility.h"
+#include "mesh/moving_kdop.h"
+#include "test_models.h"
+#include "tree/fcl_volumes.h"
+#include "tree/rigid_tree.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using detail::deformable::isTreeSound;
+using detail::deformable::kdopCoordinates;
+using detail::deformable::kHasSlabs;
+using detail::deformable::OrientedBox;
+using detail::deformable::orientedBoxOf;
+using detail::deformable::Pose;
+using detail::deformable::RigidTree;
+
+/// Meshes whose triangles, or whose whole, have equal sides, right angles, no thickness
+/// or no area.
+struct NamedMesh {
+  std::string name;
+  TestMesh mesh;
+  /// Whether a tree that FCL makes from the top down can be told from another.
+  bool can_be_told;
+};
+std::vector<NamedMesh> hardMeshes() {
+  std::vector<NamedMesh> out;
+  for (const int n : {1, 2, 3, 8})
+    out.push_back({"floor of " + std::to_string(n), makeSheet(n, n), true});
+  const auto strip = [](double u, double v) { return Vector3<double>(20 * u, v, 0); };
+  out.push_back({"strip of squares", makeSheet(20, 1, strip), true});
+  out.push_back({"slab", makeBox(Vector3<double>(1, 2, 0.01), 3), true});
+  out.push_back({"box of 12", makeBox(Vector3<double>(1, 1, 1), 1), true});
+  out.push_back({"finely cut box", makeBox(Vector3<double>(1, 1, 1), 4), true});
+  out.push_back({"sphere", makeIcosphere(1, 1), true});
+  out.push_back({"sphere with thin triangles", makeUvSphere(16, 6, 1), true});
+  out.push_back({"specks far apart", makeTriangleSoup(40, 50, 0.01, 5), true});
+  const auto wire = [](double u, double) { return Vector3<double>(u, 2 * u, 3 * u); };
+  out.push_back({"wire", makeSheet(30, 1, wire), false});
+  const auto point = [](double, double) { return Vector3<double>(1, 2, 3); };
+  out.push_back({"point", makeSheet(5, 5, point), false});
+  // A turned copy: no axis of these boxes is one of the coordinates.
+  const Matrix3<double> turn =
+      AngleAxis<double>(0.7, Vector3<double>(1, 2, -1).normalized()).toRotationMatrix();
+  for (std::size_t i = 0, n = out.size(); i < n; ++i) {
+    NamedMesh copy = out[i];
+    copy.name += ", turned";
+    for (Vector3<double>& p : copy.mesh.vertices) p = turn * p;
+    out.push_back(copy);
+  }
+  return out;
+}
+
+/// Calls visit(vertex) for the corners of all triangles below a node.
+template <typename BV, typename Visit>
+void forEachCorner(const BVHModel<BV>& model, int node, Visit&& visit) {
+  const BVNode<BV>& below = model.getBV(node);
+  if (!below.isLeaf()) {
+    forEachCorner(model, below.leftChild(), visit);
+    forEachCorner(model, below.rightChild(), visit);
+    return;
+  }
+  const Triangle& triangle = model.tri_indices[below.primitiveId()];
+  for (int i = 0; i < 3; ++i)
+    visit(Vector3<double>(model.vertices[triangle[i]].template cast<double>()));
+}
+
+/// The 16-DOP and the oriented box of every node contain what is below it.
+template <typename BV>
+void expectBounds(const BVHModel<BV>& model, const Pose& pose) {
+  const RigidTree tree(model, pose);
+  const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(
+      pose.rotation);
+  const Vector3<double> origin(tree.origin()[0], tree.origin()[1], tree.origin()[2]);
+  for (int node = 0; node < model.getNumBVs(); ++node) {
+    const MovingKdop box = tree.box(node);
+    OrientedBox oriented;
+    tree.orientedBox(node, oriented);
+    // What RigidTree promises of an oriented box: no coordinate below it is larger.
+    double slack = 0;
+    for (int k = 0; k < 3; ++k)
+      slack += tree.slack() * (std::abs(oriented.center[k]) + oriented.extent[k]);
+    forEachCorner(model, node, [&](const Vector3<double>& p) {
+      const Vector3<double> turned = rotation * p;
+      // What rounds in this test.
+      const double rounding = 0x1p-48 * p.norm();
+      const double q[3] = {turned[0] - origin[0], turned[1] - origin[1],
+                           turned[2] - origin[2]};
+      double d[8];
+      kdopCoordinates(q, d);
+      for (int j = 0; j < 8; ++j) {
+        ASSERT_GE(double{box.t0.half[j]}, -d[j] - rounding) << node << " " << j;
+        ASSERT_GE(double{box.t1.half[j + 8]}, d[j] - rounding) << node << " " << j;
+      }
+      for (int i = 0; i < 3; ++i) {
+        double along = 0;
+        for (int k = 0; k < 3; ++k)
+          along += oriented.axis[i][k] * (turned[k] - oriented.center[k]);
+        ASSERT_LE(std::abs(along), oriented.extent[i] + slack) << node << " " << i;
+      }
+    });
+  }
+}
+
+template <typename BV>
+void expectBoundsIfSound(const BVHModel<BV>& model) {
+  if (!isTreeSound(model)) return;
+  Pose turned;
+  const Matrix3<double> rotation =
+      AngleAxis<double>(0.9, Vector3<double>(2, -1, 3).normalized()).toRotationMatrix();
+  for (int k = 0; k < 9; ++k) turned.rotation[k] = rotation(k / 3, k % 3);
+  for (const Pose& pose : {Pose(), turned}) expectBounds(model, pose);
+}
+
+template <typename BV>
+void replace(BVHModel<BV>& model, const TestMesh& mesh, bool refit = true,
+             bool bottom_up = true) {
+  using S = typename BV::S;
+  ASSERT_EQ(model.beginReplaceModel(), BVH_OK);
+  ASSERT_EQ(model.replaceSubModel(pointsAs<S>(mesh.vertices)), BVH_OK);
+  ASSERT_EQ(model.endReplaceModel(refit, bottom_up), BVH_OK);
+}
+
+template <typename BV>
+class FCL_SOUND_TREE : public testing::Test {};
+using Volumes =
+    testing::Types<AABB<double>, OBB<double>, RSS<double>, OBBRSS<double>, kIOS<double>,
+                   KDOP<double, 16>, KDOP<double, 18>, KDOP<double, 24>, AABB<float>,
+                   OBB<float>, RSS<float>, OBBRSS<float>, kIOS<float>, KDOP<float, 16>,
+                   KDOP<float, 18>, KDOP<float, 24>>;
+TYPED_TEST_SUITE(FCL_SOUND_TREE, Volumes, );
+
+// Trees as FCL builds them are read, however square the triangles are.
+TYPED_TEST(FCL_SOUND_TREE, builtTrees) {
+  for (const NamedMesh& named : hardMeshes()) {
+    SCOPED_TRACE(named.name);
+    const auto model = makeModel<BVHModel<TypeParam>>(named.mesh);
+    if (named.can_be_told || kHasSlabs<TypeParam>) {
+      EXPECT_TRUE(isTreeSound(*model));
+    }
+    expectBoundsIfSound(*model);
+    if (this->HasFailure()) return;
+  }
+}
+
+// Trees that FCL refit, of vertices that went far: what is said to be sound is.
+TYPED_TEST(FCL_SOUND_TREE, replacedVertices) {
+  constexpr int kTold = 15;  // nodes of which all can be measured
+  std::uint64_t seed = 1;
+  for (const NamedMesh& named : hardMeshes()) {
+    SCOPED_TRACE(named.name);
+    const auto model = makeModel<BVHModel<TypeParam>>(named.mesh);
+    const bool is_small = model->getNumBVs() <= kTold;
+    for (const double half : {0., 0.3, 10.}) {
+      SCOPED_TRACE("shaken by " + std::to_string(half));
+      const TestMesh next = shaken(named.mesh, half, seed++);
+      for (int times = 0; times < 2; ++times) {
+        replace(*model, next);
+        if (!is_small) {
+          EXPECT_EQ(isTreeSound(*model), kHasSlabs<TypeParam>);
+        }
+        expectBoundsIfSound(*model);
+      }
+      refitTopDown(*model);
+      if (named.can_be_told || half > 0) {
+        EXPECT_TRUE(isTreeSound(*model));
+      }
+      expectBoundsIfSound(*model);
+      replace(*model, next, true, false);
+      if (named.can_be_told || half > 0) {
+        EXPECT_TRUE(isTreeSound(*model));
+      }
+      expectBoundsIfSound(*model);
+      replace(*model, next, false);
+      if (named.can_be_told || half > 0) {
+        EXPECT_TRUE(isTreeSound(*model));
+      }
+      expectBoundsIfSound(*model);
+      if (this->HasFailure()) return;
+    }
+  }
+}
+
+// Coordinates of all sizes, and far from the origin. Floats have few digits left there.
+TYPED_TEST(FCL_SOUND_TREE, scalesAndOffsets) {
+  using S = typename TypeParam::S;
+  for (const NamedMesh& named : hardMeshes())
+    for (const double scale : {1e-6, 1., 1e6})
+      for (const double away : {0., 1e6}) {
+        SCOPED_TRACE(named.name + ", scale " + std::to_string(scale) + ", away " +
+                     std::to_string(away));
+        TestMesh mesh = named.mesh;
+        for (Vector3<double>& p : mesh.vertices)
+          p = scale * (p + away * Vector3<double>(1, -0.7, 0.3));
+        const auto model = makeModel<BVHModel<TypeParam>>(mesh);
+        const bool is_told = named.can_be_told && (sizeof(S) == 8 || away == 0);
+        if (is_told || kHasSlabs<TypeParam>) {
+          EXPECT_TRUE(isTreeSound(*model));
+        }
+        expectBoundsIfSound(*model);
+        replace(*model, mesh);
+        expectBoundsIfSound(*model);
+        refitTopDown(*model);
+        if (is_told || kHasSlabs<TypeParam>) {
+          EXPECT_TRUE(isTreeSound(*model));
+        }
+        expectBoundsIfSound(*model);
+        if (this->HasFailure()) return;
+      }
+}
+
+/// The most that a corner stands out of the oriented box of a node above it, relative to
+/// the extents of the box.
+template <typename BV>
+double mostOutside(const BVHModel<BV>& model) {
+  double most = 0;
+  for (int node = 0; node < model.getNumBVs(); ++node) {
+    const OrientedBox box = orientedBoxOf(model.getBV(node).bv);
+    const double size = box.extent[0] + box.extent[1] + box.extent[2];
+    forEachCorner(model, node, [&](const Vector3<double>& p) {
+      for (int i = 0; i < 3; ++i) {
+        double along = 0;
+        for (int k = 0; k < 3; ++k) along += box.axis[i][k] * (p[k] - box.center[k]);
+        most = std::max(most, (std::abs(along) - box.extent[i]) / size);
+      }
+    });
+  }
+  return most;
+}
+
+// Why trees that were refit from the bottom up are not read: in plain meshes, without any
+// thin triangle, FCL 0.7 makes sums of boxes that triangles stand out of.
+TEST(FCL_SOUND_TREE, sumsOfBoxesLeaveTrianglesOut) {
+  const auto model = makeModel<BVHModel<OBB<double>>>(makeIcosphere(3, 1));
+  EXPECT_LT(mostOutside(*model), 1e-12);
+  replace(*model, makeIcosphere(3, 1));
+  EXPECT_GT(mostOutside(*model), 1e-2);
+  EXPECT_FALSE(isTreeSound(*model));
+  refitTopDown(*model);
+  EXPECT_LT(mostOutside(*model), 1e-12);
+}
+
+// A volume that cannot be a sum is enough; numbers that are none prove nothing.
+TEST(FCL_SOUND_TREE, whatIsNoNumber) {
+  using Model = BVHModel<OBB<double>>;
+  const auto model = makeModel<Model>(makeIcosphere(2, 1));
+  for (int node = 0; node < model->getNumBVs(); ++node)
+    model->getBV(node).bv.axis.setConstant(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(isTreeSound(*model));
+  const auto single = makeModel<Model>(makeSheet(1, 1));
+  EXPECT_TRUE(isTreeSound(*single));
+  single->vertices[1][2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(isTreeSound(*single));
+  single->vertices[1][2] = 1;  // written past FCL: outside of the boxes
+  EXPECT_FALSE(isTreeSound(*single));
+}
+
+TEST(FCL_SOUND_TREE, refitTopDownRefuses) {
+  BVHModel<OBB<double>> empty;
+  EXPECT_THROW(refitTopDown(empty), std::invalid_argument);
+  const auto model = makeModel<BVHModel<OBB<double>>>(makeSheet(2, 2));
+  ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
+  EXPECT_THROW(refitTopDown(*model), std::invalid_argument);
+  const auto updated = makeModel<BVHModel<OBB<double>>>(makeSheet(2, 2), bentSheet(2));
+  EXPECT_THROW(refitTopDown(*updated), std::invalid_argument);
+  const auto deformable =
+      makeModel<DeformableBVHModel<OBB<double>>>(makeSheet(2, 2), bentSheet(2));
+  EXPECT_THROW(refitTopDown<OBB<double>>(*deformable), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
