@@ -32,6 +32,7 @@ int main(int argc, char** argv) {
     for (const auto& files : {cloth, balls}) fcl::test::benchmarkScene(files, repeats);
     fcl::test::benchmarkPlanar(repeats);
     fcl::test::benchmarkRigid(repeats);
+    fcl::test::benchmarkRigidTrees(repeats);
     fcl::test::benchmarkMotions(repeats);
     fcl::test::benchmarkAgainstStock(balls, repeats);
   } catch (const std::exception& error) {
