@@ -8,6 +8,7 @@
 #include "api/prepared_mesh.h"
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
+#include "api/request_filter.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "fcl/common/exception.h"
@@ -22,6 +23,7 @@ namespace {
 
 using deformable::DefaultFloatingPoint;
 using deformable::inArena;
+using deformable::numTrianglesOf;
 using deformable::PreparedMesh;
 using deformable::PreparedMotion;
 using deformable::QueryAnswer;
@@ -45,16 +47,31 @@ QueryOptions makeOptions(const QuerySettings& settings) {
         "request.num_threads is negative. Give a number of threads, or 0 for all "
         "threads of the task arena");
   options.num_threads = settings.num_threads;
+  if (!(settings.t_max >= 0 && settings.t_max <= 1))
+    throw Exception("request.t_max is " + std::to_string(settings.t_max) +
+                    "; it must be in [0, 1]");
+  options.t_max = settings.t_max;
+  if (settings.enable_crossings && settings.query == ContinuousQuery::kAny)
+    throw Exception(
+        "request.enable_crossings lists all crossings, which ContinuousQuery::kAny does "
+        "not look for: use kFirst or kAll");
+  options.all_crossings = settings.enable_crossings;
   return options;
 }
 
 template <typename S>
 QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
-  if (answer.has_crossing) return {true, 0, 0};
+  if (answer.hasCrossing()) return {true, 0, 0};
   if (answer.contacts.empty()) return {false, 1, 1};
   const auto& first = answer.contacts.front();
   return {true, deformable::roundTimeDown<S>(first.toc_lo),
           deformable::roundTimeUp<S>(first.toc_hi)};
+}
+
+/// Runs a query, unless its filter rejects all pairs.
+template <typename Query>
+QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
+  return filter.rejectsAll() ? QueryAnswer() : answerOf(query);
 }
 
 /// @param convert  a FeatureContact or a Crossing into the public type
@@ -72,6 +89,7 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
   };
   // Allocate first: an exception must leave the result unchanged.
   result.contacts.reserve(count);
+  result.crossings.reserve(settings.enable_crossings ? answer.crossings.size() : 0);
   if (deformable::numThreads(settings.num_threads) == 1) {
     result.contacts.clear();
     for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
@@ -86,9 +104,13 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
                                   });
   }
   result.contacts_cut = answer.cut;
-  result.initially_crossing = answer.has_crossing;
+  result.initially_crossing = answer.hasCrossing();
   result.crossing =
-      answer.has_crossing ? convert(answer.crossing) : ContinuousContact<S>();
+      answer.hasCrossing() ? convert(answer.crossings.front()) : ContinuousContact<S>();
+  result.crossings.clear();
+  if (settings.enable_crossings)
+    for (const auto& crossing : answer.crossings)
+      result.crossings.push_back(convert(crossing));
   result.counts = answer.counts;
   result.times = answer.times;
   result.times.update += update;
@@ -152,12 +174,17 @@ class MotionConverter {
 /// Answers two meshes, one of which turns. Threads are used only to make trees.
 template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                   const QueryOptions& options, const QuerySettings& settings,
-                   QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+                   QueryOptions options, const QuerySettings& settings,
+                   RequestFilter& filter, QueryOutcome<S>& outcome,
+                   ContinuousContacts<S>* contacts) {
+  // Triangles stand for all their features there.
+  const deformable::MeshInstance without_owners;
+  options.filter = filter.prepare(without_owners, without_owners);
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
-  const QueryAnswer answer = answerOf(
-      [&] { return queryMotionContacts(motion1.body(), motion2.body(), options); });
+  const QueryAnswer answer = filteredAnswerOf(filter, [&] {
+    return queryMotionContacts(motion1.body(), motion2.body(), options);
+  });
   if (contacts) {
     const MotionConverter<S> converter(motion1, motion2, settings.enable_contact);
     const auto convert = [&](const auto& contact) {
@@ -182,16 +209,20 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const PlacedGeometry<S> placed1(o1), placed2(o2);
   const Answerer answerer = answererOf(placed1, placed2);
   if (answerer == Answerer::kFcl) return false;
-  const QueryOptions options = makeOptions(settings);
+  QueryOptions options = makeOptions(settings);
+  RequestFilter filter(settings, numTrianglesOf(*o1.geometry),
+                       numTrianglesOf(*o2.geometry), false);
   const auto answer_pair = [&] {
     if (answerer == Answerer::kCurvedPaths)
-      return answerMotions(placed1, placed2, options, settings, outcome, contacts);
+      return answerMotions(placed1, placed2, options, settings, filter, outcome,
+                           contacts);
     const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
                              options.num_threads);
     const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",
                              options.num_threads);
-    const QueryAnswer answer =
-        answerOf([&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
+    options.filter = filter.prepare(mesh1.instance(), mesh2.instance());
+    const QueryAnswer answer = filteredAnswerOf(
+        filter, [&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
     if (contacts)
       fillContacts(answer, QueriedMeshes<S>{*o1.geometry, *o2.geometry, mesh1, mesh2},
                    settings, *contacts);
@@ -212,14 +243,17 @@ template <typename S>
 void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
                 QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
   require(o, "o");
-  const QueryOptions options = makeOptions(settings);
+  QueryOptions options = makeOptions(settings);
   requireMesh(*o, "continuousSelfCollide");
+  const std::size_t num_triangles = numTrianglesOf(*o);
+  RequestFilter filter(settings, num_triangles, num_triangles, true);
   const deformable::Pose still;
   inArena(options.num_threads, [&] {
     const DefaultFloatingPoint mode;
     const PreparedMesh mesh(*o, still, still, "o", options.num_threads);
+    options.filter = filter.prepare(mesh.instance(), mesh.instance());
     const QueryAnswer answer =
-        answerOf([&] { return querySelf(mesh.instance(), options); });
+        filteredAnswerOf(filter, [&] { return querySelf(mesh.instance(), options); });
     if (contacts)
       fillContacts(answer, QueriedMeshes<S>{*o, *o, mesh, mesh}, settings, *contacts);
     outcome = outcomeOf<S>(answer);

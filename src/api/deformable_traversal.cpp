@@ -284,7 +284,7 @@ void DeformableTraversal<S>::report() {
   if (!state.test->hasCrossing()) return;
   state.time_of_contact = 0;
   if (contacts.empty() && !state.crossing_reported) {
-    state.result.addContact(convert(state.test->crossing()));
+    state.result.addContact(convert(state.test->crossings().front()));
     state.crossing_reported = true;
   }
 }

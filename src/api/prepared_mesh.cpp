@@ -131,6 +131,15 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
 }
 
 template <typename S>
+std::size_t numTrianglesOf(const CollisionGeometry<S>& geometry) {
+  std::size_t count = 0;
+  visitModel(geometry, [&count](const auto& model) {
+    count = static_cast<std::size_t>(model.num_tris);
+  });
+  return count;
+}
+
+template <typename S>
 PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
                            const Pose& end, const std::string& name, int num_threads,
                            FeatureOwners owners) {
@@ -244,6 +253,7 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
 
 #define FCL_CCD_INSTANTIATE(S)                                                  \
   template MeshKind meshKindOf(const CollisionGeometry<S>&);                    \
+  template std::size_t numTrianglesOf(const CollisionGeometry<S>&);             \
   template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Pose&, \
                                       const Pose&, const std::string&, int,     \
                                       FeatureOwners);

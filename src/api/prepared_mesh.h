@@ -29,6 +29,10 @@ enum class FeatureOwners {
 template <typename S>
 MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 
+/// @brief The number of triangles of a geometry; 0 if it is no mesh.
+template <typename S>
+std::size_t numTrianglesOf(const CollisionGeometry<S>& geometry);
+
 /// @throws fcl::Exception when a number is not finite; the text names the geometry `name`
 void requireFinite(const Pose& beginning, const Pose& end, const std::string& name);
 

@@ -36,14 +36,14 @@ class FeatureContacts {
         // Rigid meshes have no owners. Which contacts a first-contact query drops is
         // known at the end only.
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
-              a.isRigid() || b.isRigid()) {}
+              options.filter || a.isRigid() || b.isRigid()) {}
 
   /// The contacts of the features that two triangles own, from the time at which the
   /// triangles touch.
   void add(const MotionContact& contact, double last) {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
-    for (unsigned pairs = ownedPairs(a.owned, b.owned); pairs != 0; pairs &= pairs - 1)
+    for (unsigned pairs = pairsOf(a, b); pairs != 0; pairs &= pairs - 1)
       addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, last);
   }
 
@@ -59,9 +59,8 @@ class FeatureContacts {
     put(a, b, bit, contact.toc_lo, contact.toc_hi);
   }
 
-  /// Whether an edge of one triangle passes through the other at t = 0, and the first
-  /// such edge.
-  bool findCrossing(const MotionContact& contact, Crossing& out) const {
+  /// Adds the edges of one triangle that pass through the other at t = 0.
+  void addCrossings(const MotionContact& contact, std::vector<Crossing>& out) const {
     const BodyTriangle x[2] = {body_[0]->triangle(contact.place[0]),
                                body_[1]->triangle(contact.place[1])};
     double p[2][3][3];
@@ -74,16 +73,16 @@ class FeatureContacts {
         const int end = (k + 1) % 3, other = 1 - body;
         if (!isCrossing(p[body][k], p[body][end], p[other][0], p[other][1], p[other][2]))
           continue;
-        out.first_on_a = body == 0;
-        out.edge[0] = static_cast<std::uint32_t>(x[body].vertex[k]);
-        out.edge[1] = static_cast<std::uint32_t>(x[body].vertex[end]);
+        Crossing crossing;
+        crossing.first_on_a = body == 0;
+        crossing.edge[0] = static_cast<std::uint32_t>(x[body].vertex[k]);
+        crossing.edge[1] = static_cast<std::uint32_t>(x[body].vertex[end]);
         for (int i = 0; i < 3; ++i)
-          out.face[i] = static_cast<std::uint32_t>(x[other].vertex[i]);
-        out.triangles[0] = x[0].index;
-        out.triangles[1] = x[1].index;
-        return true;
+          crossing.face[i] = static_cast<std::uint32_t>(x[other].vertex[i]);
+        crossing.triangles[0] = x[0].index;
+        crossing.triangles[1] = x[1].index;
+        out.push_back(crossing);
       }
-    return false;
   }
 
   ContactSink& sink() { return sink_; }
@@ -96,6 +95,20 @@ class FeatureContacts {
     for (int k = 0; k < 3; ++k)
       out[k] = ((r[3 * k] * x.x + r[3 * k + 1] * x.y) + r[3 * k + 2] * x.z) +
                pose.translation[k];
+  }
+
+  /// The pairs of features that two triangles own. With a filter the owners may be left
+  /// out: then each triangle stands for all its features.
+  unsigned pairsOf(const BodyTriangle& a, const BodyTriangle& b) const {
+    if (!options_.filter) return ownedPairs(a.owned, b.owned);
+    return ownedPairs(featuresOf(a), featuresOf(b));
+  }
+
+  static std::uint32_t featuresOf(const BodyTriangle& triangle) {
+    std::uint32_t features = kOwnsAll;
+    for (unsigned k = 0; k < 3; ++k)
+      if (triangle.vertex[k] == triangle.vertex[(k + 1) % 3]) features &= ~(8U << k);
+    return features;
   }
 
   void addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
@@ -117,7 +130,9 @@ class FeatureContacts {
       return;
     if (t > last) return;
     const TrianglePairMotion whole(path_a, a, path_b, b, t, last, tolerance_);
-    put(a, b, bit, t, whole.proveContact(t, options_.toc_err));
+    put(a, b, bit, t,
+        whole.proveContact(
+            t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max)));
   }
 
   void put(const BodyTriangle& a, const BodyTriangle& b, int bit, double lo, double hi) {
@@ -182,6 +197,8 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
   MotionQueryOptions wanted;
   wanted.toc_err = options.toc_err;
   wanted.all = options.query == ContinuousQuery::kAll;
+  wanted.last = options.t_max;
+  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   MotionAnswer touching = queryMotions(a, b, wanted);
   QueryAnswer answer;
   count(touching.counts, answer.counts);
@@ -198,13 +215,14 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
     }
     FeatureContacts unmoved(a, b, options);
     for (const MotionContact& contact : touching.contacts) {
-      if (contact.toc_lo == 0 && !answer.has_crossing)
-        answer.has_crossing = unmoved.findCrossing(contact, answer.crossing);
+      if (contact.toc_lo == 0 && (options.all_crossings || answer.crossings.empty()))
+        unmoved.addCrossings(contact, answer.crossings);
       features.add(contact, wanted.last);
     }
+    if (options.all_crossings) sortCrossings(answer.crossings);
     // Features that pass at the distance of the tolerance may round differently than
     // their triangles.
-    if (features.sink().contacts().empty() && !answer.has_crossing)
+    if (features.sink().contacts().empty() && answer.crossings.empty())
       features.addNearest(touching.contacts.front());
   }
   const double first_hi = features.sink().firstHi();

@@ -261,6 +261,7 @@ class MotionTraversal {
   void advance(Work work) {
     const BodyTriangle a = side_[0].body.triangle(~work.a.child),
                        b = side_[1].body.triangle(~work.b.child);
+    if (options_.rules && !options_.rules->accept(a.index, b.index)) return;
     const double end = std::min(work.t1, latest_);
     TrianglePairMotion pair(side_[0].body.path(), a, side_[1].body.path(), b, work.start,
                             end, tolerance_);
@@ -282,7 +283,9 @@ class MotionTraversal {
     contact.certainty = MotionCertainty::kGivenUp;
     contact.nearest = pair.nearest();
     if (answer == TrianglePairMotion::Answer::kContact) {
-      contact.toc_hi = pair.proveContact(work.start, options_.toc_err);
+      contact.toc_hi = pair.proveContact(
+          work.start,
+          TrianglePairMotion::bracketWidth(work.start, options_.toc_err, options_.last));
       contact.certainty = contact.toc_hi > contact.toc_lo
                               ? MotionCertainty::kCrossing
                               : MotionCertainty::kWithinTolerance;

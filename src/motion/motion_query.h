@@ -6,6 +6,7 @@
 
 #include "motion/motion_body.h"
 #include "motion/triangle_advance.h"
+#include "query/pair_filter.h"
 
 namespace fcl {
 namespace detail {
@@ -24,6 +25,8 @@ struct MotionQueryOptions {
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
   int max_steps{10000};
+  /// Pairs of triangles that count; null: all do.
+  const PairRules* rules{nullptr};
 };
 
 struct MotionAnswer {

@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_MOTION_TRIANGLE_ADVANCE_H
 #define FCL_CCD_MOTION_TRIANGLE_ADVANCE_H
 
+#include <algorithm>
 #include <cstdint>
 
 #include "motion/motion_body.h"
@@ -92,6 +93,12 @@ class TrianglePairMotion {
   /// triangle (with a requested distance: at which they provably are as near). t if no
   /// such time is found.
   double proveContact(double t, double width) const;
+
+  /// @brief How long after the time t of a contact a proof is looked for: as a bracket of
+  /// the first contact may be wide, and not beyond `last`.
+  static double bracketWidth(double t, double toc_err, double last) {
+    return std::min(std::min(toc_err, 0.125 * t), last - t);
+  }
 
  private:
   struct State {

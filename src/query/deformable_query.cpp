@@ -80,7 +80,8 @@ class Part {
   Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
        const SeparatingAxes* axes, double pose_displacement, const Schedule& schedule,
        Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, culling, axes, kernels(), schedule.in_order),
+      : traversal_(tree_a, tree_b, shift, culling, axes, kernels(),
+                   schedule.in_order || leaves.latest() < 1),
         pose_displacement_(pose_displacement),
         schedule_(schedule),
         leaves_(leaves),
@@ -289,8 +290,7 @@ class ContactQuery {
         schedule_(options.query == ContinuousQuery::kAll ? kAllSchedule : kFirstSchedule),
         meshes_{a, b, shift,
                 proveSelf(a, b, options.leaves_out_regions, options.num_threads,
-                          proof_times_)},
-        may_repeat_(!a.hasOwners() || !b.hasOwners()) {
+                          proof_times_)} {
     // One more, so that it is known whether there were more.
     if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
       ++task_options_.max_contacts;
@@ -308,7 +308,8 @@ class ContactQuery {
     });
     tasks_[0].times = times;
     if (parallel) runTasksSideBySide();
-    QueryAnswer answer = merge(tasks_, options_, progress_, may_repeat_);
+    QueryAnswer answer = merge(tasks_, options_, progress_, meshes_.a, meshes_.b,
+                               [this] { return firstContact(); });
     setWallTimes(answer.times);
     return answer;
   }
@@ -356,6 +357,16 @@ class ContactQuery {
     });
   }
 
+  /// The first contact, asked for alone.
+  FeatureContact firstContact() const {
+    QueryOptions first = options_;
+    first.query = ContinuousQuery::kFirst;
+    first.max_contacts = 1;
+    return ContactQuery(meshes_.a, meshes_.b, meshes_.shift, first)
+        .answer()
+        .contacts.front();
+  }
+
   /// Wall time, divided as the tasks' own; what is left is the tests'.
   void setWallTimes(StageTimes& times) const {
     const double wall = secondsSince(start_);
@@ -372,7 +383,6 @@ class ContactQuery {
   const Schedule& schedule_;
   StageTimes proof_times_;
   const MeshPair meshes_;
-  const bool may_repeat_;
   QueryProgress progress_;
   std::vector<NodePair> works_;
   std::vector<TaskAnswer> tasks_;

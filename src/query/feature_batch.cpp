@@ -223,6 +223,22 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, List& list,
   counts.box_culled += size - list.size;
 }
 
+std::size_t FeatureBatch::keep(ContinuousContactKind kind, const PairFilter& filter) {
+  List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < list.size; ++i) {
+    FeatureCandidate candidate;
+    setCandidate(list.codes[i], list.windows[i], candidate);
+    std::int32_t triangles[2];
+    if (!filter.find(candidate, triangles)) continue;
+    list.codes[kept] = list.codes[i];
+    list.windows[kept++] = list.windows[i];
+  }
+  const std::size_t rejected = list.size - kept;
+  list.size = kept;
+  return rejected;
+}
+
 FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
   const std::uint32_t code = crossings_[i], bit = code % 16;
   return {&pairs_[code / 16], bit % 3, bit < 3};

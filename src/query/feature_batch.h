@@ -16,6 +16,7 @@
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/moving_kdop.h"
+#include "query/pair_filter.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
@@ -136,6 +137,10 @@ class FeatureBatch {
   /// @param latest  pairs that overlap only later are of no interest
   /// @param counts  plane_culled, feature_pairs and box_culled are counted
   void cull(double latest, StageCounts& counts);
+
+  /// @brief Leaves the pairs of one kind that a filter accepts.
+  /// @return how many it does not
+  std::size_t keep(ContinuousContactKind kind, const PairFilter& filter);
 
   /// @brief How many pairs of one kind are left.
   std::size_t size(ContinuousContactKind kind) const { return list(kind).size; }

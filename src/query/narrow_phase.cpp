@@ -50,8 +50,7 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
 void NarrowPhase::begin(std::size_t task) {
   sink_.clear();
   task_ = task;
-  has_crossing_ = false;
-  crossing_ = {};
+  crossings_.clear();
   error_.reset();
   counts_ = {};
 }
@@ -69,6 +68,7 @@ void NarrowPhase::flush() {
   testCrossings();
   for (const ContinuousContactKind kind :
        {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+    if (options_.filter) counts_.mask_culled += batch_.keep(kind, *options_.filter);
     filter(kind);
     solve();
   }
@@ -94,6 +94,8 @@ void NarrowPhase::filter(ContinuousContactKind kind) {
       // Written where it lies: what is stored in parts is slow to copy as a whole.
       candidates_.emplace_back();
       batch_.setCandidate(codes[i], windows[i], candidates_.back());
+      candidates_.back().window_hi =
+          std::min(candidates_.back().window_hi, options_.t_max);
       if (found.unclear >> lane & 1U &&
           !mayBecomeCoplanarAccurately(candidates_.back(), latest))
         candidates_.pop_back();
@@ -114,7 +116,8 @@ void NarrowPhase::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
       if (answers.no >> lane & 1U)
         on_no(pieces[i]);
       else if (answers.yes >> lane & 1U)
-        add(candidates_[pieces[i].candidate], answers.toc_lo[lane], answers.toc_hi[lane]);
+        add(candidates_[pieces[i].candidate],
+            {answers.toc_lo[lane], answers.toc_hi[lane]});
       else
         on_open(pieces[i]);
     }
@@ -166,11 +169,21 @@ void NarrowPhase::solve() {
   solve(later, isNo, solveAlone);
 }
 
-void NarrowPhase::add(const FeatureIds& pair, double toc_lo, double toc_hi) {
+/// Whether a contact may be the first one, and nobody looks at its bracket afterwards.
+bool NarrowPhase::isLeading(const TimeBracket& bracket) const {
+  const bool is_kept = progress_ && options_.query == ContinuousQuery::kAll;
+  return !is_kept && bracket.lo <= firstHi() && !bracket.isTight();
+}
+
+void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
   ++counts_.contacts;
-  sink_.add({pair, toc_lo, toc_hi});
+  if (isLeading(bracket))
+    bracket = tightened(candidate.kind, CandidatePoints(candidate).get(), bracket);
+  FeatureContact contact{candidate, bracket.lo, bracket.hi};
+  if (options_.filter) options_.filter->find(candidate, contact.triangles);
+  sink_.add(contact);
   if (!progress_) return;
-  QueryProgress::lower(progress_->first_hi, toc_hi);
+  QueryProgress::lower(progress_->first_hi, bracket.hi);
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 
@@ -182,24 +195,25 @@ void NarrowPhase::solve(const FeatureCandidate& candidate) {
                        options_.toc_err, latest());
   if (result.answer == Answer::kUnsure) {
     ++counts_.exact_tests;
-    result = decideExactly(candidate.kind, points, options_.toc_err, latest());
+    result = decideExactly(candidate.kind, points, options_.toc_err, latest(),
+                           options_.t_max);
   }
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled
                                               : counts_.solver_culled);
     return;
   }
-  add(candidate, result.toc_lo, result.toc_hi);
+  add(candidate, {result.toc_lo, result.toc_hi});
 }
 
 void NarrowPhase::testCrossings() {
   const std::size_t size = batch_.numCrossings();
-  for (std::size_t first = 0; first < size && !has_crossing_; first += 8) {
+  for (std::size_t first = 0; first < size && wantsCrossings(); first += 8) {
     const std::size_t count = std::min<std::size_t>(size - first, 8);
     counts_.crossing_tests += count;
     for (unsigned left =
              kernels_.mayCross(batch_.pairs(), batch_.crossings() + first, count);
-         left != 0 && !has_crossing_; left &= left - 1)
+         left != 0 && wantsCrossings(); left &= left - 1)
       testCrossing(first + static_cast<std::size_t>(__builtin_ctz(left)));
   }
 }
@@ -211,21 +225,36 @@ void NarrowPhase::testCrossing(std::size_t i) {
     return reinterpret_cast<const double(&)[3]>(x[k]->t0);
   };
   if (!isCrossing(start(0), start(1), start(2), start(3), start(4))) return;
-  has_crossing_ = true;
-  if (progress_ && hasAnswer()) {
-    QueryProgress::lower(progress_->answered_by, task_);
-    if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
-  }
+  Crossing crossing = crossingAt(i);
+  if (options_.filter && !accept(crossing)) return;
+  crossings_.push_back(crossing);
+  if (!progress_ || !hasAnswer()) return;
+  QueryProgress::lower(progress_->answered_by, task_);
+  if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+}
+
+Crossing NarrowPhase::crossingAt(std::size_t i) const {
   const FeatureBatch::EdgeAndFace c = batch_.crossing(i);
   const bool self = batch_.isSelf();
   const TreeTriangle &edge = c.edge_on_a ? *c.pair->a : *c.pair->b,
                      &face = c.edge_on_a ? *c.pair->b : *c.pair->a;
-  crossing_.first_on_a = c.edge_on_a || self;
-  crossing_.edge[0] = edge.id[c.edge];
-  crossing_.edge[1] = edge.id[(c.edge + 1) % 3];
-  std::copy(face.id, face.id + 3, crossing_.face);
-  crossing_.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
-  crossing_.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
+  Crossing crossing;
+  crossing.first_on_a = c.edge_on_a || self;
+  crossing.edge[0] = edge.id[c.edge];
+  crossing.edge[1] = edge.id[(c.edge + 1) % 3];
+  std::copy(face.id, face.id + 3, crossing.face);
+  crossing.triangles[0] = static_cast<std::int32_t>((self ? edge : *c.pair->a).index);
+  crossing.triangles[1] = static_cast<std::int32_t>((self ? face : *c.pair->b).index);
+  return crossing;
+}
+
+/// Names triangles that the filter accepts, if there are any.
+bool NarrowPhase::accept(Crossing& crossing) const {
+  const HeldFeature edge{crossing.edge, 2,
+                         crossing.triangles[crossing.first_on_a ? 0 : 1]},
+      face{crossing.face, 3, crossing.triangles[crossing.first_on_a ? 1 : 0]};
+  return crossing.first_on_a ? options_.filter->find(edge, face, crossing.triangles)
+                             : options_.filter->find(face, edge, crossing.triangles);
 }
 
 }  // namespace deformable

@@ -11,7 +11,10 @@
 
 #include "fcl/narrowphase/stage_counts.h"
 #include "query/contact_sink.h"
+#include "query/crossing.h"
 #include "query/feature_batch.h"
+#include "query/leading_contact.h"
+#include "query/pair_filter.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
@@ -29,6 +32,12 @@ struct QueryOptions {
   /// Whether a self query leaves out embedded regions; only which contact kAny names may
   /// depend on it.
   bool leaves_out_regions{true};
+  /// Contacts that begin later are none.
+  double t_max{1};
+  /// Whether all crossings at t = 0 are wanted, not one.
+  bool all_crossings{false};
+  /// Null: all pairs count.
+  const PairFilter* filter{nullptr};
 };
 
 /// @brief What the tasks of one query tell each other, so that none does what cannot
@@ -55,16 +64,6 @@ struct QueryError {
   std::size_t vertex;
 };
 
-/// @brief An edge of one mesh that passes through a face of the other at t = 0.
-struct Crossing {
-  /// The edge belongs to mesh a and the face to mesh b, not the other way round.
-  bool first_on_a;
-  std::uint32_t edge[2];
-  std::uint32_t face[3];
-  /// Triangle of mesh a and of mesh b.
-  std::int32_t triangles[2];
-};
-
 /// @brief Everything that is done to the triangle pairs whose boxes meet: crossing at t =
 /// 0, feature pairs, elementary tests, contacts into the sink. Each stage works on the
 /// pairs of a block, eight at a time; what a stage leaves goes on to the next. Holds the
@@ -89,7 +88,7 @@ class NarrowPhase {
   /// end `last`
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
-    batch_.add(next, last, latest(), !has_crossing_, counts_);
+    batch_.add(next, last, latest(), wantsCrossings(), counts_);
   }
 
   /// @brief Notes what visit() threw for a pair; the pair is left out. Whether the query
@@ -110,19 +109,21 @@ class NarrowPhase {
 
   /// @brief A pair whose window starts after this time cannot change the answer.
   double latest() const {
-    if (options_.query == ContinuousQuery::kAny) return 1;
-    double latest = sink_.latestKept();
+    if (options_.query == ContinuousQuery::kAny) return options_.t_max;
+    // A contact that is later than this has a bracket that begins later.
+    const double width = options_.toc_err + kTimeRounding;
+    double latest = sink_.latestKept() + width;
     if (options_.query == ContinuousQuery::kFirst) {
-      latest = std::min(latest, sink_.firstHi());
-      if (progress_)
-        latest = std::min(latest, progress_->first_hi.load(std::memory_order_relaxed));
+      const double first_hi = firstHi();
+      latest = std::min(latest, std::min(first_hi + width, latestLeading(first_hi)));
     }
-    // A contact that is later than this has a bracket that begins later than `latest`.
-    return latest + (options_.toc_err + kTimeRounding);
+    return std::min(latest, options_.t_max);
   }
 
-  bool hasCrossing() const { return has_crossing_; }
-  const Crossing& crossing() const { return crossing_; }
+  bool hasCrossing() const { return !crossings_.empty(); }
+  /// @brief The first one that was found, or, where all are wanted, all of them; those of
+  /// a mesh without owners repeatedly.
+  const std::vector<Crossing>& crossings() const { return crossings_; }
   ContactSink& sink() { return sink_; }
   const ContactSink& sink() const { return sink_; }
   const StageCounts& counts() const { return counts_; }
@@ -137,16 +138,23 @@ class NarrowPhase {
   }
 
  private:
-  /// More than the rounding of a time of contact, and than that of a window.
-  static constexpr double kTimeRounding = 0x1p-20;
+  /// More than a bracket is wider than toc_err: a few units in the last place of 1.
+  static constexpr double kTimeRounding = 0x1p-40;
 
   bool hasAnswer() const {
-    if (has_crossing_ && options_.stop_at_crossing) return true;
+    if (hasCrossing() && options_.stop_at_crossing) return true;
     // No contact is earlier than the start.
     if (error_ && (options_.query != ContinuousQuery::kFirst || error_->earliest <= 0.f))
       return true;
     return options_.query == ContinuousQuery::kAny &&
-           (!sink_.contacts().empty() || has_crossing_);
+           (!sink_.contacts().empty() || hasCrossing());
+  }
+  bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
+  /// Upper end of the earliest bracket, of all tasks.
+  double firstHi() const {
+    const double mine = sink_.firstHi();
+    return progress_ ? std::min(mine, progress_->first_hi.load(std::memory_order_relaxed))
+                     : mine;
   }
   /// A candidate in a part of its window.
   struct Piece {
@@ -156,13 +164,16 @@ class NarrowPhase {
 
   void testCrossings();
   void testCrossing(std::size_t i);
+  Crossing crossingAt(std::size_t i) const;
+  bool accept(Crossing& crossing) const;
   void filter(ContinuousContactKind kind);
   void solve();
   template <typename OnNo, typename OnOpen>
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
   void solve(const FeatureCandidate& candidate);
-  void add(const FeatureIds& pair, double toc_lo, double toc_hi);
+  void add(const FeatureCandidate& candidate, TimeBracket bracket);
+  bool isLeading(const TimeBracket& bracket) const;
 
   QueryOptions options_;
   const Kernels& kernels_;
@@ -174,8 +185,7 @@ class NarrowPhase {
   ContactSink sink_;
   QueryProgress* progress_;
   std::size_t task_;
-  bool has_crossing_{false};
-  Crossing crossing_{};
+  std::vector<Crossing> crossings_;
   std::optional<QueryError> error_;
   StageCounts counts_;
 };

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/query_answer.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <utility>
+
+#include "query/leading_contact.h"
 
 namespace fcl {
 namespace detail {
@@ -35,14 +38,13 @@ void addEffort(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
   }
 }
 
-void takeCrossing(const TaskAnswer& task, QueryAnswer& answer) {
-  if (!task.has_crossing || answer.has_crossing) return;
-  answer.has_crossing = true;
-  answer.crossing = task.crossing;
-}
-
-void takeCrossing(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
-  for (const TaskAnswer& task : tasks) takeCrossing(task, answer);
+/// The crossings of the first task that has one, or of all.
+void takeCrossings(const std::vector<TaskAnswer>& tasks, bool all, QueryAnswer& answer) {
+  for (const TaskAnswer& task : tasks)
+    if (all || !answer.hasCrossing())
+      answer.crossings.insert(answer.crossings.end(), task.crossings.begin(),
+                              task.crossings.end());
+  if (all) sortCrossings(answer.crossings);
 }
 
 SortedContacts sorted(std::deque<FeatureContact> contacts) {
@@ -54,8 +56,8 @@ SortedContacts sorted(std::deque<FeatureContact> contacts) {
 /// The crossing and the earliest contact of the first task that has either.
 void takeAny(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
   for (const TaskAnswer& task : tasks) {
-    if (!task.has_crossing && !task.contacts) continue;
-    takeCrossing(task, answer);
+    if (task.crossings.empty() && !task.contacts) continue;
+    answer.crossings = task.crossings;
     if (!task.contacts) return;
     ContactSink sink(1, false);
     for (const FeatureContact& contact : *task.contacts) sink.add(contact);
@@ -64,20 +66,24 @@ void takeAny(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
   }
 }
 
+using ContactLists = std::vector<std::deque<FeatureContact>>;
+
 /// The contacts whose brackets begin no later than `latest`.
-void takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
-               std::size_t max_contacts, bool may_repeat, QueryAnswer& answer) {
+ContactLists takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
+                       std::size_t max_contacts, bool may_repeat, QueryAnswer& answer) {
   ContactSink sink(max_contacts, may_repeat);
   for (const TaskAnswer& task : tasks)
     if (task.contacts)
       for (const FeatureContact& contact : *task.contacts)
         if (contact.toc_lo <= latest) sink.add(contact);
   answer.cut |= sink.isCut();
-  answer.contacts = sorted(sink.takeContacts());
+  ContactLists lists(1);
+  lists[0] = sink.takeContacts();
+  return lists;
 }
 
-void takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts, bool may_repeat,
-             QueryAnswer& answer) {
+ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
+                     bool may_repeat, QueryAnswer& answer) {
   std::size_t count = 0;
   for (const TaskAnswer& task : tasks) {
     answer.cut |= task.cut;
@@ -86,25 +92,33 @@ void takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts, bool may_
   // A sink only where something may have to be left out.
   if (may_repeat || count > max_contacts)
     return takeUntil(kInfinity, tasks, max_contacts, may_repeat, answer);
-  std::vector<std::deque<FeatureContact>> lists;
+  ContactLists lists;
   for (TaskAnswer& task : tasks)
     if (task.contacts) lists.push_back(std::move(*task.contacts));
-  answer.contacts = SortedContacts(std::move(lists));
+  return lists;
+}
+
+double latestBeginning(const ContactLists& contacts) {
+  double latest = 0;
+  for (const auto& list : contacts)
+    for (const FeatureContact& contact : list) latest = std::max(latest, contact.toc_lo);
+  return latest;
 }
 
 }  // namespace
 
 void TaskAnswer::take(NarrowPhase& leaves) {
   cut = leaves.sink().isCut();
-  has_crossing = leaves.hasCrossing();
-  crossing = leaves.crossing();
+  crossings = leaves.crossings();
   if (!leaves.sink().contacts().empty()) contacts = leaves.sink().takeContacts();
   error = leaves.error();
   counts = leaves.counts();
 }
 
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
-                  const QueryProgress& progress, bool may_repeat) {
+                  const QueryProgress& progress, const MeshInstance& a,
+                  const MeshInstance& b,
+                  const std::function<FeatureContact()>& firstContact) {
   throwError(tasks, options, progress);
   QueryAnswer answer;
   addEffort(tasks, answer);
@@ -112,11 +126,23 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
     takeAny(tasks, answer);
     return answer;
   }
-  takeCrossing(tasks, answer);
-  if (options.query == ContinuousQuery::kFirst)
-    takeUntil(progress.first_hi.load(), tasks, options.max_contacts, may_repeat, answer);
-  else
-    takeAll(tasks, options.max_contacts, may_repeat, answer);
+  takeCrossings(tasks, options.all_crossings, answer);
+  const bool may_repeat = !a.hasOwners() || !b.hasOwners();
+  double first_hi = progress.first_hi.load();
+  ContactLists contacts;
+  if (options.query == ContinuousQuery::kFirst) {
+    contacts = takeUntil(first_hi, tasks, options.max_contacts, may_repeat, answer);
+  } else {
+    contacts = takeAll(tasks, options.max_contacts, may_repeat, answer);
+    // What was dropped begins no earlier than anything that was kept.
+    if (answer.cut && latestBeginning(contacts) < first_hi) {
+      const FeatureContact first = firstContact();
+      putLeading(first, contacts);
+      first_hi = first.toc_hi;
+    }
+    tightenLeading(a, b, first_hi, contacts);
+  }
+  answer.contacts = SortedContacts(std::move(contacts));
   return answer;
 }
 

@@ -5,6 +5,7 @@
 #define FCL_CCD_QUERY_QUERY_ANSWER_H
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -18,10 +19,12 @@ namespace deformable {
 struct QueryAnswer {
   SortedContacts contacts;
   bool cut{false};
-  bool has_crossing{false};
-  Crossing crossing{};
+  /// One, or all where these are wanted.
+  std::vector<Crossing> crossings;
   StageCounts counts;
   StageTimes times;
+
+  bool hasCrossing() const { return !crossings.empty(); }
 };
 
 /// @brief The answer of one task of a query.
@@ -29,8 +32,7 @@ struct TaskAnswer {
   /// Without a list where there is none, which most tasks of a first contact are.
   std::optional<std::deque<FeatureContact>> contacts;
   bool cut{false};
-  bool has_crossing{false};
-  Crossing crossing{};
+  std::vector<Crossing> crossings;
   std::optional<QueryError> error;
   StageCounts counts;
   StageTimes times;
@@ -41,14 +43,19 @@ struct TaskAnswer {
 
 /// @brief The answers of all tasks as one, which does not depend on how the tasks went:
 /// the first task that has a crossing tells it, a first-contact query keeps only what may
-/// be the first contact, a yes-or-no query only what the first task found.
-/// @param may_repeat  whether tasks may have met the same pair of features
+/// be the first contact, a yes-or-no query only what the first task found. The bracket of
+/// the first contact is tight (leading_contact.h).
+/// @param a, b  the meshes that the contacts are between
+/// @param firstContact  asks for the first contact alone; called where it may be among
+/// those that were dropped
 /// @throws NonFiniteVertex  that the query has to end with, whatever the tasks did in
 /// what order: the error of the first task that has an answer or an error; of a
 /// first-contact query the earliest error, unless the first contact is earlier than its
 /// triangles meet
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
-                  const QueryProgress& progress, bool may_repeat);
+                  const QueryProgress& progress, const MeshInstance& a,
+                  const MeshInstance& b,
+                  const std::function<FeatureContact()>& firstContact);
 
 }  // namespace deformable
 }  // namespace detail

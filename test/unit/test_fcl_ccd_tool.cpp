@@ -261,12 +261,12 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
     EXPECT_EQ(keysOf(stages),
               (std::set<std::string>{"node_pairs", "triangle_pairs", "adjacent_pairs",
                                      "fan_culled", "plane_culled", "feature_pairs",
-                                     "box_culled", "filter_culled", "solver_culled",
-                                     "exact_culled", "exact_tests", "contacts",
-                                     "crossing_tests"}));
+                                     "box_culled", "mask_culled", "filter_culled",
+                                     "solver_culled", "exact_culled", "exact_tests",
+                                     "contacts", "crossing_tests"}));
     int left = stages.at("feature_pairs").get<int>();
     for (const char* culled :
-         {"box_culled", "filter_culled", "solver_culled", "exact_culled"})
+         {"box_culled", "mask_culled", "filter_culled", "solver_culled", "exact_culled"})
       left -= stages.at(culled).get<int>();
     EXPECT_EQ(left, stages.at("contacts").get<int>());
   }

@@ -220,10 +220,10 @@ void expectAll(const Body& a, const Body& b, const Truth& truth) {
   expectTrueContacts(all, truth, a, b, options.toc_err);
   EXPECT_EQ(all.contacts.size(), truth.contacts.size());
   EXPECT_FALSE(all.cut);
-  EXPECT_EQ(all.has_crossing, truth.has_crossing);
+  EXPECT_EQ(all.hasCrossing(), truth.has_crossing);
   const StageCounts& n = all.counts;
-  EXPECT_EQ(n.feature_pairs, n.box_culled + n.filter_culled + n.solver_culled +
-                                 n.exact_culled + n.contacts);
+  EXPECT_EQ(n.feature_pairs, n.box_culled + n.mask_culled + n.filter_culled +
+                                 n.solver_culled + n.exact_culled + n.contacts);
   EXPECT_LE(n.exact_culled, n.exact_tests);
   if (a.instance.hasOwners() && b.instance.hasOwners()) {
     EXPECT_EQ(n.contacts, truth.contacts.size());
@@ -238,7 +238,7 @@ void expectEarliest(const Body& a, const Body& b, const Truth& truth,
   options.toc_err = 1e-6;
   const QueryAnswer first = query(a, b, options);
   expectTrueContacts(first, truth, a, b, options.toc_err);
-  EXPECT_EQ(first.has_crossing, truth.has_crossing);
+  EXPECT_EQ(first.hasCrossing(), truth.has_crossing);
   ASSERT_EQ(first.contacts.empty(), truth.contacts.empty());
   if (truth.contacts.empty()) return;
   EXPECT_LE(first.contacts.front().toc_lo, truth.earliestHi());
@@ -254,7 +254,7 @@ void expectKEarliest(const Body& a, const Body& b, const Truth& truth, std::size
   expectTrueContacts(some, truth, a, b, options.toc_err);
   EXPECT_EQ(some.contacts.size(), std::min(k, truth.contacts.size()));
   EXPECT_EQ(some.cut, truth.contacts.size() > k);
-  EXPECT_EQ(some.has_crossing, truth.has_crossing);
+  EXPECT_EQ(some.hasCrossing(), truth.has_crossing);
   if (some.contacts.empty()) return;
   std::set<PairName> kept;
   for (const FeatureContact& c : some.contacts) kept.insert(nameOf(c, &a == &b));
@@ -277,11 +277,11 @@ std::size_t expectRightAnswers(const Body& a, const Body& b) {
   QueryOptions any;
   any.query = ContinuousQuery::kAny;
   const QueryAnswer answer = query(a, b, any);
-  EXPECT_EQ(answer.has_crossing || !answer.contacts.empty(),
+  EXPECT_EQ(answer.hasCrossing() || !answer.contacts.empty(),
             truth.has_crossing || total > 0);
   QueryOptions stop;
   stop.stop_at_crossing = true;
-  EXPECT_EQ(query(a, b, stop).has_crossing, truth.has_crossing);
+  EXPECT_EQ(query(a, b, stop).hasCrossing(), truth.has_crossing);
   return total;
 }
 
@@ -1043,9 +1043,10 @@ TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
       options.num_threads = num_threads;
       options.toc_err = toc_err;
       const QueryAnswer answer = querySelf(prepared.instance(), options);
-      EXPECT_TRUE(answer.has_crossing);
-      return std::make_tuple(Ids(answer.crossing.edge, answer.crossing.edge + 2),
-                             Ids(answer.crossing.face, answer.crossing.face + 3));
+      EXPECT_TRUE(answer.hasCrossing());
+      return std::make_tuple(
+          Ids(answer.crossings.front().edge, answer.crossings.front().edge + 2),
+          Ids(answer.crossings.front().face, answer.crossings.front().face + 3));
     };
     const auto expected = crossing(1, 1e-6);
     for (const double toc_err : {0.5, 1e-3, 1e-6})
@@ -1104,7 +1105,7 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     MovingMesh mesh = withLayers(movingTriangles(random, 400, 0.02, 1e-3));
-    if (querySelf(PreparedMovingMesh(mesh).instance(), QueryOptions()).has_crossing)
+    if (querySelf(PreparedMovingMesh(mesh).instance(), QueryOptions()).hasCrossing())
       continue;
     ++scenes;
     const Vector3<double> x(0.02, 0, 0), y(0, 0.02, 0), z(0, 0, 0.02), rest(0, 0, 0);
@@ -1119,7 +1120,7 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
     QueryOptions options;
     options.query = ContinuousQuery::kFirst;
     const QueryAnswer answer = querySelf(prepared.instance(), options);
-    EXPECT_TRUE(answer.has_crossing);
+    EXPECT_TRUE(answer.hasCrossing());
     EXPECT_TRUE(isEarly(answer.contacts[0].toc_hi));
     EXPECT_GT(answer.counts.plane_culled, 1000U);
   }

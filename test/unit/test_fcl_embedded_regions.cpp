@@ -611,7 +611,7 @@ TEST(FCL_EMBEDDED_REGIONS, queriesAnswerTheSame) {
     const QueryAnswer with = answerOf(mesh, ContinuousQuery::kAll, true),
                       without = answerOf(mesh, ContinuousQuery::kAll, false);
     EXPECT_EQ(bitsOf(with), bitsOf(without));
-    EXPECT_EQ(with.has_crossing, without.has_crossing);
+    EXPECT_EQ(with.hasCrossing(), without.hasCrossing());
     EXPECT_LE(with.counts.node_pairs, without.counts.node_pairs);
     less += with.counts.node_pairs < without.counts.node_pairs;
     contacts += with.counts.contacts;

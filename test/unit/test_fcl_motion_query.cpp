@@ -432,7 +432,7 @@ TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
       EXPECT_NEAR(found->second, contact.toc_lo, 1e-9);
       ++nearest;
     }
-    if (!answer.contacts.empty() && !answer.has_crossing) {
+    if (!answer.contacts.empty() && !answer.hasCrossing()) {
       EXPECT_NEAR(answer.contacts.front().toc_lo, timeOf(triangles), 1e-9);
     }
   }

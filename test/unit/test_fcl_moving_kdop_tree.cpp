@@ -1008,7 +1008,7 @@ QueryAnswer answerOf(const MeshInstance& mesh) {
 }
 
 void expectSameAnswer(const QueryAnswer& x, const QueryAnswer& y) {
-  EXPECT_EQ(x.has_crossing, y.has_crossing);
+  EXPECT_EQ(x.hasCrossing(), y.hasCrossing());
   EXPECT_EQ(x.counts.feature_pairs, y.counts.feature_pairs);
   EXPECT_EQ(x.counts.exact_tests, y.counts.exact_tests);
   ASSERT_EQ(x.contacts.size(), y.contacts.size());

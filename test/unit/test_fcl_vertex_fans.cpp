@@ -362,7 +362,7 @@ struct CullingCheck {
     for (const FeatureContact& c : answer.contacts)
       EXPECT_TRUE(found.insert(nameOf(c)).second) << "reported twice";
     EXPECT_EQ(found, truth.contacts);
-    EXPECT_EQ(answer.has_crossing, truth.has_crossing);
+    EXPECT_EQ(answer.hasCrossing(), truth.has_crossing);
     EXPECT_EQ(answer.counts.contacts, truth.contacts.size());
     culled += answer.counts.fan_culled;
     culled_by[static_cast<std::size_t>(motion)] += answer.counts.fan_culled > 0;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -42,11 +43,14 @@ struct ContinuousContact {
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
   /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
-  /// 0] if the features touch at t = 0. If a mesh turns: the features do not touch before
-  /// toc_lo, and are within the query's tolerance of each other then
-  /// (continuous_collision.h). At toc_hi the two triangles provably cross. If no such
-  /// time is found within toc_err, for example because they only graze, toc_hi equals
-  /// toc_lo.
+  /// 0] if the features touch at t = 0. The brackets of the first contact, and of every
+  /// contact that may be the first, are also no wider than an eighth of toc_hi. So a
+  /// simulation that advances by toc_lo makes progress: toc_lo is 0 only for features
+  /// that touch at t = 0. (No double lies between 0 and 2^-1074: an earlier time has the
+  /// bracket [0, 2^-1074].) If a mesh turns: the features do not touch before toc_lo, and
+  /// are within the query's tolerance of each other then (continuous_collision.h). At
+  /// toc_hi the two triangles provably cross. If no such time is found within toc_err,
+  /// for example because they only graze, toc_hi equals toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -73,9 +77,28 @@ struct ContinuousContact {
 using ContinuousContactf = ContinuousContact<float>;
 using ContinuousContactd = ContinuousContact<double>;
 
+/// @brief Which objects and triangles can be in contact. Two triangles can if the group
+/// of each one has a bit in common with the mask of the other one.
+struct ContinuousFilter {
+  /// @brief The groups of the object, one bit for each group.
+  std::uint32_t group{1};
+
+  /// @brief The groups that the object can be in contact with, one bit for each group.
+  std::uint32_t mask{~std::uint32_t{0}};
+
+  /// @brief The groups and masks of the triangles. They replace those of the object.
+  /// Empty, or one entry for each triangle of the mesh.
+  std::vector<std::uint32_t> triangle_groups;
+  std::vector<std::uint32_t> triangle_masks;
+};
+
 /// @brief A continuous request that asks for contacts. Two fields of FCL's request act:
 /// toc_err, the largest width of a contact's time bracket, and ccd_motion_type, the path
 /// between two transforms.
+///
+/// Filters: a vertex or an edge belongs to several triangles. A pair of features is
+/// tested if filter1, filter2 and accepts_triangles accept any two triangles that hold
+/// the features. The contact names two such triangles.
 template <typename S>
 struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   using ContinuousCollisionRequest<S>::ContinuousCollisionRequest;
@@ -88,6 +111,26 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief Whether position and normal of each contact are computed.
   bool enable_contact{true};
+
+  /// @brief Only contacts whose time is at most t_max are reported, in [0, 1]. The
+  /// decision is exact; if a mesh turns, it is within the tolerance of the query. The
+  /// query does no work for later contacts. If the first contact is later, there is no
+  /// collision and time_of_contact is 1.
+  S t_max{1};
+
+  /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be
+  /// combined with ContinuousQuery::kAny.
+  bool enable_crossings{false};
+
+  /// @brief The filters of o1 and of o2. In a self-collision filter1 is used for both.
+  ContinuousFilter filter1;
+  ContinuousFilter filter2;
+
+  /// @brief Is called with a triangle of o1 and a triangle of o2 that the filters accept;
+  /// false rejects the two. Empty: none are rejected. In a self-collision the two
+  /// triangles come in any order. The function must always give the same answer for the
+  /// same triangles; with several threads it is called from all of them at the same time.
+  std::function<bool(std::intptr_t b1, std::intptr_t b2)> accepts_triangles;
 
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
@@ -120,6 +163,10 @@ struct ContinuousContacts {
 
   /// @brief An edge and a face that cross at t = 0, if initially_crossing.
   ContinuousContact<S> crossing;
+
+  /// @brief All pairs of an edge and a face that cross at t = 0, each once, sorted by
+  /// side and vertex ids. Only with ContinuousContactRequest::enable_crossings.
+  std::vector<ContinuousContact<S>> crossings;
 
   /// @brief What each stage of the query saw and removed.
   StageCounts counts;

@@ -26,7 +26,8 @@ enum class ContinuousQuery {
 
 /// @brief How many candidates each stage of a continuous query saw and removed, in the
 /// order of the pipeline. A stage culls a candidate or passes it on:
-/// feature_pairs = box_culled + filter_culled + solver_culled + exact_culled + contacts.
+/// feature_pairs = box_culled + mask_culled + filter_culled + solver_culled +
+/// exact_culled + contacts.
 /// In a query for any contact the sum is smaller, since the query stops at the first
 /// proof.
 struct StageCounts {
@@ -47,6 +48,8 @@ struct StageCounts {
   std::uint64_t feature_pairs{0};
   /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};
+  /// feature pairs that the filters of the request reject
+  std::uint64_t mask_culled{0};
   /// feature pairs that provably never become coplanar while their boxes overlap
   std::uint64_t filter_culled{0};
   /// feature pairs for which the certified solve proved that there is no contact
@@ -69,6 +72,7 @@ struct StageCounts {
     plane_culled += other.plane_culled;
     feature_pairs += other.feature_pairs;
     box_culled += other.box_culled;
+    mask_culled += other.mask_culled;
     filter_culled += other.filter_culled;
     solver_culled += other.solver_culled;
     exact_culled += other.exact_culled;

@@ -23,8 +23,17 @@ inline void requireNotNull(const void* argument, const char* name) {
 
 template <typename S>
 QuerySettings settingsOf(const ContinuousCollisionRequest<S>& request) {
-  return {
-      static_cast<double>(request.toc_err), false, ContinuousQuery::kFirst, 1, false, 1};
+  return {static_cast<double>(request.toc_err),
+          false,
+          ContinuousQuery::kFirst,
+          1,
+          false,
+          1,
+          1.,
+          false,
+          nullptr,
+          nullptr,
+          nullptr};
 }
 
 template <typename S>
@@ -34,7 +43,12 @@ QuerySettings settingsOf(const ContinuousContactRequest<S>& request) {
           request.query,
           request.num_max_contacts,
           request.enable_contact,
-          request.num_threads};
+          request.num_threads,
+          static_cast<double>(request.t_max),
+          request.enable_crossings,
+          &request.filter1,
+          &request.filter2,
+          request.accepts_triangles ? &request.accepts_triangles : nullptr};
 }
 
 template <typename S>

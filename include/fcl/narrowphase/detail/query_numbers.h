@@ -12,6 +12,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -79,6 +80,12 @@ struct QuerySettings {
   std::size_t num_max_contacts;
   bool enable_contact;
   int num_threads;
+  double t_max;
+  bool enable_crossings;
+  /// Of o1 and o2; null: none. They are read during the call.
+  const ContinuousFilter* filter1;
+  const ContinuousFilter* filter2;
+  const std::function<bool(std::intptr_t, std::intptr_t)>* accepts_triangles;
 };
 
 /// @brief The answer: the fields of FCL's own result, with the time bracket of the first
