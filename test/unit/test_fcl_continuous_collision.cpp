@@ -18,7 +18,6 @@
 #include "fcl/math/bv/utility.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/translation_motion.h"
-#include "queries_along_motions.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -69,15 +68,15 @@ ContinuousCollisionResult<S> collideEveryWay(
                                        b.geometry.get(), b.beginning, b.end, request,
                                        results[0]));
   const auto motion_a = motion(a), motion_b = motion(b);
-  returned.push_back(collideAlong(a.geometry.get(), motion_a.get(), b.geometry.get(),
-                                  motion_b.get(), request, results[1]));
+  returned.push_back(continuousCollide(a.geometry.get(), motion_a.get(), b.geometry.get(),
+                                       motion_b.get(), request, results[1]));
   const CollisionObject<S> object_a(a.geometry, a.beginning),
       object_b(b.geometry, b.beginning);
   returned.push_back(
       continuousCollide(&object_a, a.end, &object_b, b.end, request, results[2]));
   const ContinuousCollisionObject<S> moving_a(a.geometry, motion_a),
       moving_b(b.geometry, motion_b);
-  returned.push_back(collideAlong(&moving_a, &moving_b, request, results[3]));
+  returned.push_back(collide(&moving_a, &moving_b, request, results[3]));
   for (std::size_t i = 0; i < 4; ++i) {
     EXPECT_EQ(returned[i], results[i].time_of_contact) << "signature " << i;
     EXPECT_EQ(results[i].is_collide, results[0].is_collide) << "signature " << i;
@@ -186,8 +185,8 @@ TYPED_TEST(ContinuousCollide, ModelsAndMotionsStayAsTheyAre) {
       request.ccd_solver_type = solver;
       for (int i = 0; i < 2; ++i) {
         ContinuousCollisionResult<S> result;
-        collideAlong(a.geometry.get(), &motion, b.geometry.get(), &still, request,
-                     result);
+        continuousCollide(a.geometry.get(), &motion, b.geometry.get(), &still, request,
+                          result);
         this->expectTime(result, 0.25);
         this->expectTime(collideEveryWay(a, b, request), 0.25);
       }

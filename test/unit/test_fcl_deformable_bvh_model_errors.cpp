@@ -248,7 +248,7 @@ TYPED_TEST(DeformableModel, DiscreteQueriesRefuseWhatIsNotBuilt) {
     expectRefused(
         [&] { collide(&model, tf, built.get(), tf, CollisionRequest<S>(), result); },
         word);
-    // Of float the compiler would have to make all of FCL's functions.
+    // In float the compiler would have to make all of FCL's distance functions.
     if constexpr (std::is_same_v<S, double>) {
       DistanceResult<S> distances;
       expectRefused(

@@ -308,19 +308,16 @@ TYPED_TEST_SUITE(DropInThreads, AllBVs, );
 
 TYPED_TEST(DropInThreads, DiscreteQueriesOfOneModel) {
   using S = typename TypeParam::S;
-  // Of float the compiler would have to make all of FCL's functions.
-  if constexpr (std::is_same_v<S, double>) {
-    const auto model = makeModel<DeformableBVHModel<TypeParam>>(makeIcosphere(2, 1));
-    Transform3<S> tf1 = Transform3<S>::Identity(), tf2 = tf1;
-    tf1.translation() = Vector3<S>(S(0.1), 0, 0);
-    tf2.translation() = Vector3<S>(0, S(1.9), S(0.1));
-    expectSameInThreads(200, [&] {
-      CollisionRequest<S> request(1000, true);
-      CollisionResult<S> result;
-      collide(model.get(), tf1, model.get(), tf2, request, result);
-      return result.numContacts();
-    });
-  }
+  const auto model = makeModel<DeformableBVHModel<TypeParam>>(makeIcosphere(2, 1));
+  Transform3<S> tf1 = Transform3<S>::Identity(), tf2 = tf1;
+  tf1.translation() = Vector3<S>(S(0.1), 0, 0);
+  tf2.translation() = Vector3<S>(0, S(1.9), S(0.1));
+  expectSameInThreads(200, [&] {
+    CollisionRequest<S> request(1000, true);
+    CollisionResult<S> result;
+    collide(model.get(), tf1, model.get(), tf2, request, result);
+    return result.numContacts();
+  });
 }
 
 TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
