@@ -15,7 +15,7 @@
 #include "fcl/math/bv/RSS.h"
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
-#include "tree/rigid_tree.h"
+#include "tree/oriented_box.h"
 
 namespace fcl {
 namespace detail {

@@ -9,6 +9,7 @@
 #include "mesh/moving_kdop.h"
 #include "mesh/tree_nodes.h"
 #include "mesh/vertex_frames.h"
+#include "tree/oriented_box.h"
 
 namespace fcl {
 
@@ -18,14 +19,6 @@ struct BVNodeBase;
 
 namespace detail {
 namespace deformable {
-
-/// @brief A box around one of FCL's bounding volumes; every point of it is center + sum
-/// of c_i axis_i with |c_i| <= extent_i.
-struct OrientedBox {
-  double center[3];
-  double axis[3][3];
-  double extent[3];
-};
 
 /// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs: the
 /// box of a node is made from FCL's bounding volume when a traversal asks for it, so that
