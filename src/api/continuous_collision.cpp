@@ -68,6 +68,14 @@ QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
           deformable::roundTimeUp<S>(first.toc_hi)};
 }
 
+/// The filter of a request for two meshes that are in order, or for one twice.
+template <typename S>
+RequestFilter filterOf(const QuerySettings& settings, const CollisionGeometry<S>& o1,
+                       const CollisionGeometry<S>& o2, bool is_self) {
+  if (!settings.with_contacts) return RequestFilter();
+  return RequestFilter(settings, numTrianglesOf(o1), numTrianglesOf(o2), is_self);
+}
+
 /// Runs a query, unless its filter rejects all pairs.
 template <typename Query>
 QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
@@ -175,13 +183,13 @@ class MotionConverter {
 template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                    QueryOptions options, const QuerySettings& settings,
-                   RequestFilter& filter, QueryOutcome<S>& outcome,
-                   ContinuousContacts<S>* contacts) {
+                   QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+  const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
+      motion2(o2, "o2", options.toc_err, options.num_threads);
+  RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
   // Triangles stand for all their features there.
   const deformable::MeshInstance without_owners;
   options.filter = filter.prepare(without_owners, without_owners);
-  const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
-      motion2(o2, "o2", options.toc_err, options.num_threads);
   const QueryAnswer answer = filteredAnswerOf(filter, [&] {
     return queryMotionContacts(motion1.body(), motion2.body(), options);
   });
@@ -210,16 +218,14 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const Answerer answerer = answererOf(placed1, placed2);
   if (answerer == Answerer::kFcl) return false;
   QueryOptions options = makeOptions(settings);
-  RequestFilter filter(settings, numTrianglesOf(*o1.geometry),
-                       numTrianglesOf(*o2.geometry), false);
   const auto answer_pair = [&] {
     if (answerer == Answerer::kCurvedPaths)
-      return answerMotions(placed1, placed2, options, settings, filter, outcome,
-                           contacts);
+      return answerMotions(placed1, placed2, options, settings, outcome, contacts);
     const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
                              options.num_threads);
     const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",
                              options.num_threads);
+    RequestFilter filter = filterOf(settings, *o1.geometry, *o2.geometry, false);
     options.filter = filter.prepare(mesh1.instance(), mesh2.instance());
     const QueryAnswer answer = filteredAnswerOf(
         filter, [&] { return queryPair(mesh1.instance(), mesh2.instance(), options); });
@@ -245,12 +251,11 @@ void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
   require(o, "o");
   QueryOptions options = makeOptions(settings);
   requireMesh(*o, "continuousSelfCollide");
-  const std::size_t num_triangles = numTrianglesOf(*o);
-  RequestFilter filter(settings, num_triangles, num_triangles, true);
   const deformable::Pose still;
   inArena(options.num_threads, [&] {
     const DefaultFloatingPoint mode;
     const PreparedMesh mesh(*o, still, still, "o", options.num_threads);
+    RequestFilter filter = filterOf(settings, *o, *o, true);
     options.filter = filter.prepare(mesh.instance(), mesh.instance());
     const QueryAnswer answer =
         filteredAnswerOf(filter, [&] { return querySelf(mesh.instance(), options); });

@@ -231,7 +231,7 @@ bool DeformableTraversal<S>::areApart(int b1, int b2) {
   if (state_->view1.isEmpty(b1) || state_->view2().isEmpty(b2)) return true;
   ++state_->test->counts().node_pairs;
   const TimeWindow w = state_->window(b1, b2);
-  return w.isEmpty() || w.lo > state_->test->latest();
+  return w.isEmpty() || w.lo > deformable::lastBeginning(state_->test->latest());
 }
 
 template <typename S>

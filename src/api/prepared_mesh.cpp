@@ -132,6 +132,9 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry) {
 
 template <typename S>
 std::size_t numTrianglesOf(const CollisionGeometry<S>& geometry) {
+  // It says what kind of node it has only while FCL's tree is up to date.
+  if (const DeformableMesh* mesh = deformableMeshOf(geometry))
+    return mesh->movingTree().triangles().size();
   std::size_t count = 0;
   visitModel(geometry, [&count](const auto& model) {
     count = static_cast<std::size_t>(model.num_tris);

@@ -46,7 +46,7 @@ RequestFilter::RequestFilter(const QuerySettings& settings, std::size_t size1,
 
 const deformable::PairFilter* RequestFilter::prepare(const deformable::MeshInstance& a,
                                                      const deformable::MeshInstance& b) {
-  if (accepts_all_) return nullptr;
+  if (accepts_all_ || rejects_all_) return nullptr;
   return &filter_.emplace(a, b, rules_);
 }
 

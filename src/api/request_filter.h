@@ -14,6 +14,9 @@ namespace detail {
 /// @brief The filters of a request as a query uses them.
 class RequestFilter {
  public:
+  /// @brief Accepts all pairs.
+  RequestFilter() = default;
+
   /// @brief For two objects, or for one twice.
   /// @param size1, size2  their numbers of triangles
   /// @throws fcl::Exception  a filter has another number of entries than its object has

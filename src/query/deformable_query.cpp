@@ -100,7 +100,7 @@ class Part {
          ++next) {
       const NodePair work = open_[next];
       const double latest = leaves_.latest();
-      if (work.earliest <= latest) step(work, latest);
+      if (work.earliest <= lastBeginning(latest)) step(work, latest);
     }
     finish();
     if (!leaves_.isDone()) works.assign(open_.data() + next, open_.data() + open_.size());
@@ -116,7 +116,7 @@ class Part {
       const NodePair& last = open_[first];
       open_.cut(first);
       const double latest = leaves_.latest();
-      if (last.earliest > latest) continue;
+      if (last.earliest > lastBeginning(latest)) continue;
       step(last, latest);
       if (schedule_.in_order)
         sortLatestFirst(open_.data() + first, open_.data() + open_.size());

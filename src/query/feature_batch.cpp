@@ -132,11 +132,12 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
                            StageCounts& counts) {
   // Triangles lie anywhere in memory: the cache is told before they are read.
   constexpr std::ptrdiff_t kAhead = 8;
+  const float last_beginning = lastBeginning(latest);
   for (; next != last; ++next) {
     const LeafPair& ahead = next[std::min(kAhead, last - 1 - next)];
     reader_a.prefetch(ahead.a);
     reader_b.prefetch(ahead.b);
-    if (next->earliest > latest) continue;
+    if (next->earliest > last_beginning) continue;
     TrianglePair& pair = pairs_[num_pairs_];
     pair.a = reader_a.read(next->a, pair.x);
     pair.b = reader_b.read(next->b, pair.x + 3);

@@ -41,6 +41,10 @@ struct LeafPair {
   float earliest;
 };
 
+/// @brief For comparisons with the beginnings of windows, floats that are rounded to
+/// either side below FLT_MIN: what is above this begins after `latest`.
+inline float lastBeginning(double latest) { return roundUp(latest, 0.f); }
+
 /// @brief The triangles of a tree that are read where they lie.
 struct TrianglesInPlace {
   const TreeTriangle* triangles;

@@ -2,6 +2,7 @@
 #include "query/leading_contact.h"
 
 #include <cassert>
+#include <cmath>
 #include <limits>
 
 #include "elementary/elementary.h"
@@ -36,6 +37,22 @@ bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo
   return solveCoplanarity(kind, x, lo, latest, kCoarse * latest).answer != Answer::kNo;
 }
 
+/// Beside contacts that touch at t = 0: those that do not begin later than 0.
+void separateFromStart(const MeshInstance& a, const MeshInstance& b,
+                       std::vector<std::deque<FeatureContact>>& contacts) {
+  constexpr double kEarlyShare = 0x1p-20;
+  for (std::deque<FeatureContact>& list : contacts)
+    for (FeatureContact& contact : list) {
+      if (contact.toc_lo > 0 || contact.toc_hi == 0) continue;
+      const ContactPaths paths(contact, a, b);
+      TimeBracket bracket{kEarlyShare * contact.toc_hi, contact.toc_hi};
+      if (mayTouchUntil(contact.kind, paths.points(), 0, bracket.lo))
+        bracket = tightened(contact.kind, paths.points(), {0, contact.toc_hi});
+      contact.toc_lo = bracket.lo;
+      contact.toc_hi = bracket.hi;
+    }
+}
+
 /// A contact that may be the first, and its tight bracket.
 struct Leading {
   FeatureContact* contact;
@@ -63,8 +80,7 @@ TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
 
 void tightenLeading(const MeshInstance& a, const MeshInstance& b, double first_hi,
                     std::vector<std::deque<FeatureContact>>& contacts) {
-  // What touches at t = 0 has the bracket [0, 0].
-  if (first_hi == 0) return;
+  if (first_hi == 0) return separateFromStart(a, b, contacts);
   std::vector<Leading> leading;
   for (std::deque<FeatureContact>& list : contacts)
     for (FeatureContact& contact : list) {
@@ -79,11 +95,13 @@ void tightenLeading(const MeshInstance& a, const MeshInstance& b, double first_h
       first_hi = std::min(first_hi, bracket.hi);
       leading.push_back({&contact, bracket});
     }
-  // None of the others touches before first_hi; nor do those whose tight brackets begin
-  // later.
+  // None of the others touches before the next double: they do not touch until
+  // latestLeading(), or their tight brackets begin later.
+  const double next = std::nextafter(first_hi, 1.);
+  const double others = next < latestLeading(first_hi) ? next : first_hi;
   for (std::deque<FeatureContact>& list : contacts)
     for (FeatureContact& contact : list)
-      contact.toc_lo = std::max(contact.toc_lo, first_hi);
+      contact.toc_lo = std::max(contact.toc_lo, others);
   for (const Leading& lead : leading)
     if (lead.bracket.lo <= first_hi) {
       lead.contact->toc_lo = lead.bracket.lo;

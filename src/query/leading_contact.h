@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <limits>
 #include <vector>
 
 #include "elementary/feature_points.h"
@@ -33,7 +34,7 @@ struct TimeBracket {
 /// lo >= (1 - kTightShare) hi, and 1 / (1 - kTightShare) < 1 + 2 kTightShare. The sum of
 /// these rounds by 2^-53.
 inline double latestLeading(double first_hi) {
-  return first_hi * (1 + 2.5 * kTightShare);
+  return first_hi * (1 + 2.5 * kTightShare) + std::numeric_limits<double>::denorm_min();
 }
 
 /// @brief The bracket of a contact, tight or, where no double lies between its ends, as

@@ -171,8 +171,11 @@ void NarrowPhase::solve() {
 
 /// Whether a contact may be the first one, and nobody looks at its bracket afterwards.
 bool NarrowPhase::isLeading(const TimeBracket& bracket) const {
+  if (bracket.isTight()) return false;
+  // Which task's contact is the answer does not depend on what others found.
+  if (options_.query == ContinuousQuery::kAny) return true;
   const bool is_kept = progress_ && options_.query == ContinuousQuery::kAll;
-  return !is_kept && bracket.lo <= firstHi() && !bracket.isTight();
+  return !is_kept && bracket.lo <= firstHi();
 }
 
 void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
@@ -195,8 +198,8 @@ void NarrowPhase::solve(const FeatureCandidate& candidate) {
                        options_.toc_err, latest());
   if (result.answer == Answer::kUnsure) {
     ++counts_.exact_tests;
-    result = decideExactly(candidate.kind, points, options_.toc_err, latest(),
-                           options_.t_max);
+    result =
+        decideExactly(candidate.kind, points, options_.toc_err, latest(), options_.t_max);
   }
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled

@@ -2,12 +2,14 @@
 #include "query/pair_filter.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
 TrianglesAtVertices::TrianglesAtVertices(const MeshInstance& mesh) {
+  assert(mesh.tree || !mesh.owners);
   if (!mesh.tree) return;
   const auto& triangles = mesh.tree->triangles();
   first_.assign(mesh.frames.size() + 1, 0);

@@ -98,11 +98,17 @@ ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
   return lists;
 }
 
-double latestBeginning(const ContactLists& contacts) {
+/// Whether the first contact is certainly among those that were kept: one with the
+/// earliest end is, and the latest that was kept begins no earlier.
+bool isFirstKept(double first_hi, const ContactLists& contacts) {
   double latest = 0;
+  bool is_kept = false;
   for (const auto& list : contacts)
-    for (const FeatureContact& contact : list) latest = std::max(latest, contact.toc_lo);
-  return latest;
+    for (const FeatureContact& contact : list) {
+      latest = std::max(latest, contact.toc_lo);
+      is_kept |= contact.toc_hi == first_hi;
+    }
+  return is_kept && latest >= first_hi;
 }
 
 }  // namespace
@@ -135,7 +141,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   } else {
     contacts = takeAll(tasks, options.max_contacts, may_repeat, answer);
     // What was dropped begins no earlier than anything that was kept.
-    if (answer.cut && latestBeginning(contacts) < first_hi) {
+    if (answer.cut && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
       putLeading(first, contacts);
       first_hi = first.toc_hi;

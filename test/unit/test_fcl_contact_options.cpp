@@ -43,9 +43,13 @@ TestMesh triangleOver(double height) {
           {Triangle(0, 1, 2)}};
 }
 
+/// Without FCL's own tree, as a simulation updates.
 std::shared_ptr<Model> modelOf(const MovingMesh& mesh) {
-  return makeModel<Model>(TestMesh{mesh.t0, mesh.triangles},
-                          TestMesh{mesh.t1, mesh.triangles});
+  auto model = makeModel<Model>(TestMesh{mesh.t0, mesh.triangles});
+  EXPECT_EQ(model->updateFrames(mesh.previous(), mesh.current(), mesh.t0.size(),
+                                FclTree::kSkip),
+            BVH_OK);
+  return model;
 }
 
 // ---- The first contact
@@ -169,6 +173,43 @@ TEST(FCL_LEADING_CONTACT, isTheFirstOfAllWithACoarseTolerance) {
       }
   }
   EXPECT_GE(collisions, 20);
+}
+
+/// Whatever else begins in the bracket [0, toc_err]: only what touches at t = 0 has 0.
+TEST(FCL_LEADING_CONTACT, onlyWhatTouchesAtTheStartBeginsThere) {
+  int at_start = 0, later = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    MovingMesh mesh = randomSoup(random, 30, 40, 1, 2);
+    for (auto& p : mesh.t0)
+      for (int k = 0; k < 3; ++k) p[k] = std::round(2 * p[k]) / 2;
+    Request request;
+    request.toc_err = 0.5;
+    const Result result = selfContacts(*modelOf(mesh), request);
+    for (const Contact& contact : result.contacts) {
+      EXPECT_EQ(contact.toc_lo == 0, contact.toc_hi == 0);
+      ++(contact.toc_lo == 0 ? at_start : later);
+    }
+  }
+  EXPECT_GE(at_start, 100);
+  EXPECT_GE(later, 100);
+}
+
+TEST(FCL_LEADING_CONTACT, doesNotDependOnThreads) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    const auto model = modelOf(crumpledSheet(random, 24, 0.05));
+    for (const ContinuousQuery query : kQueries) {
+      Request request;
+      request.query = query;
+      request.toc_err = 0.2;
+      const Result alone = selfContacts(*model, request);
+      request.num_threads = 4;
+      for (int i = 0; i < 4; ++i) expectIdentical(alone, selfContacts(*model, request));
+    }
+  }
 }
 
 // ---- t_max

@@ -49,8 +49,8 @@ struct ContinuousContact {
   /// that touch at t = 0. (No double lies between 0 and 2^-1074: an earlier time has the
   /// bracket [0, 2^-1074].) If a mesh turns: the features do not touch before toc_lo, and
   /// are within the query's tolerance of each other then (continuous_collision.h). At
-  /// toc_hi the two triangles provably cross. If no such time is found within toc_err,
-  /// for example because they only graze, toc_hi equals toc_lo.
+  /// toc_hi the two triangles provably cross. If no such time is found within toc_err, an
+  /// eighth of toc_lo and until t_max (they may only graze), toc_hi equals toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -127,9 +127,9 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   ContinuousFilter filter2;
 
   /// @brief Is called with a triangle of o1 and a triangle of o2 that the filters accept;
-  /// false rejects the two. Empty: none are rejected. In a self-collision the two
-  /// triangles come in any order. The function must always give the same answer for the
-  /// same triangles; with several threads it is called from all of them at the same time.
+  /// false rejects the two. Empty: none are rejected. It must always give the same answer
+  /// for the same triangles; in a self-collision also for (x, y) and (y, x), since it is
+  /// asked about either. Several threads of a query call it at the same time.
   std::function<bool(std::intptr_t b1, std::intptr_t b2)> accepts_triangles;
 
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
@@ -165,7 +165,7 @@ struct ContinuousContacts {
   ContinuousContact<S> crossing;
 
   /// @brief All pairs of an edge and a face that cross at t = 0, each once, sorted by
-  /// side and vertex ids. Only with ContinuousContactRequest::enable_crossings.
+  /// side and ascending vertex ids. Only with enable_crossings.
   std::vector<ContinuousContact<S>> crossings;
 
   /// @brief What each stage of the query saw and removed.
