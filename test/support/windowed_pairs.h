@@ -45,8 +45,7 @@ inline void randomWindow(Random& random, double& lo, double& hi) {
 }
 
 /// @brief Points here and there; many of the pairs stay on one side of each other.
-inline MovingPair scatteredPair(Random& random,
-                                detail::deformable::ContinuousContactKind kind) {
+inline MovingPair scatteredPair(Random& random, ContinuousContactKind kind) {
   MovingPair pair{kind, {}};
   const double step = random.index(2) ? 0.2 : 1;
   const bool on_grid = random.index(4) == 0;

@@ -364,10 +364,11 @@ TEST(FCL_FEATURE_PAIRS, findsWhatIsTooMany) {
   EXPECT_EQ(kMaxMeshSize, 536870912U);
   EXPECT_EQ(findTooMany(kMaxMeshSize, kMaxMeshSize), "");
   EXPECT_EQ(findTooMany(0, 0), "");
-  EXPECT_EQ(findTooMany(kMaxMeshSize + 1, kMaxMeshSize + 2),
-            "536870913 triangles are more than 536870912");
+  EXPECT_EQ(
+      findTooMany(kMaxMeshSize + 1, kMaxMeshSize + 2),
+      "536870913 triangles are more than 536870912, the most that a model can have");
   EXPECT_EQ(findTooMany(1, kMaxMeshSize + 1),
-            "536870913 vertices are more than 536870912");
+            "536870913 vertices are more than 536870912, the most that a model can have");
   // What is numbered up to there.
   EXPECT_LE(4 * (kMaxMeshSize - 1) + 2, std::numeric_limits<std::uint32_t>::max());
   EXPECT_LE(6 * kMaxMeshSize, std::numeric_limits<std::uint32_t>::max());
