@@ -63,9 +63,8 @@ template <typename S>
 QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
   if (answer.hasCrossing()) return {true, 0, 0};
   if (answer.contacts.empty()) return {false, 1, 1};
-  const auto& first = answer.contacts.front();
-  return {true, deformable::roundTimeDown<S>(first.toc_lo),
-          deformable::roundTimeUp<S>(first.toc_hi)};
+  return {true, deformable::roundTimeDown<S>(answer.first.lo),
+          deformable::roundTimeUp<S>(answer.first.hi)};
 }
 
 /// The filter of a request for two meshes that are in order, or for one twice.

@@ -276,11 +276,10 @@ void DeformableTraversal<S>::report() {
     state.crossing_reported = false;
   }
   for (; state.reported < contacts.size(); ++state.reported) {
-    const auto& contact = contacts[state.reported];
-    const S toc = deformable::roundTimeDown<S>(contact.toc_lo);
-    if (toc < state.time_of_contact) state.time_of_contact = toc;
-    state.result.addContact(convert(contact));
+    state.result.addContact(convert(contacts[state.reported]));
   }
+  if (!contacts.empty())
+    state.time_of_contact = deformable::roundTimeDown<S>(state.test->firstBracket().lo);
   if (!state.test->hasCrossing()) return;
   state.time_of_contact = 0;
   if (contacts.empty() && !state.crossing_reported) {

@@ -230,6 +230,8 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
   std::vector<std::deque<FeatureContact>> lists(1, features.sink().takeContacts());
   answer.cut |= keepWanted(options, first_hi, lists.front());
   answer.contacts = SortedContacts(std::move(lists));
+  if (!answer.contacts.empty())
+    answer.first = {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
   answer.counts.contacts = answer.contacts.size();
   return answer;
 }

@@ -94,10 +94,9 @@ class TrianglePairMotion {
   /// such time is found.
   double proveContact(double t, double width) const;
 
-  /// @brief How long after the time t of a contact a proof is looked for: as a bracket of
-  /// the first contact may be wide, and not beyond `last`.
+  /// @brief How long after the time t of a contact a proof is looked for.
   static double bracketWidth(double t, double toc_err, double last) {
-    return std::min(std::min(toc_err, 0.125 * t), last - t);
+    return std::min(toc_err, last - t);
   }
 
  private:

@@ -17,7 +17,7 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
   return key(x) < key(y);
 }
 
-PairKey keyOf(const FeatureContact& c) {
+ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   const std::uint32_t tag =
       (c.kind == ContinuousContactKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
   PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};

@@ -28,11 +28,6 @@ struct FeatureContact : FeatureIds {
 /// contacts of one scene.
 bool isEarlier(const FeatureContact& x, const FeatureContact& y);
 
-/// @brief The features of a contact: equal for those of one pair, in whatever order the
-/// vertices of a face are.
-using PairKey = std::array<std::uint32_t, 5>;
-PairKey keyOf(const FeatureContact& contact);
-
 /// @brief Keeps the earliest contacts, at most capacity.
 class ContactSink {
  public:
@@ -65,6 +60,8 @@ class ContactSink {
   void clear();
 
  private:
+  using PairKey = std::array<std::uint32_t, 5>;
+  static PairKey keyOf(const FeatureContact& contact);
   struct Seen {
     FeatureContact contact;
     /// Where it is until cut_.

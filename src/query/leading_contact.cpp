@@ -37,28 +37,6 @@ bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo
   return solveCoplanarity(kind, x, lo, latest, kCoarse * latest).answer != Answer::kNo;
 }
 
-/// Beside contacts that touch at t = 0: those that do not begin later than 0.
-void separateFromStart(const MeshInstance& a, const MeshInstance& b,
-                       std::vector<std::deque<FeatureContact>>& contacts) {
-  constexpr double kEarlyShare = 0x1p-20;
-  for (std::deque<FeatureContact>& list : contacts)
-    for (FeatureContact& contact : list) {
-      if (contact.toc_lo > 0 || contact.toc_hi == 0) continue;
-      const ContactPaths paths(contact, a, b);
-      TimeBracket bracket{kEarlyShare * contact.toc_hi, contact.toc_hi};
-      if (mayTouchUntil(contact.kind, paths.points(), 0, bracket.lo))
-        bracket = tightened(contact.kind, paths.points(), {0, contact.toc_hi});
-      contact.toc_lo = bracket.lo;
-      contact.toc_hi = bracket.hi;
-    }
-}
-
-/// A contact that may be the first, and its tight bracket.
-struct Leading {
-  FeatureContact* contact;
-  TimeBracket bracket;
-};
-
 }  // namespace
 
 TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
@@ -78,47 +56,39 @@ TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
   return bracket;
 }
 
-void tightenLeading(const MeshInstance& a, const MeshInstance& b, double first_hi,
-                    std::vector<std::deque<FeatureContact>>& contacts) {
-  if (first_hi == 0) return separateFromStart(a, b, contacts);
-  std::vector<Leading> leading;
-  for (std::deque<FeatureContact>& list : contacts)
-    for (FeatureContact& contact : list) {
-      if (contact.toc_lo > first_hi) continue;
-      TimeBracket bracket{contact.toc_lo, contact.toc_hi};
-      if (!bracket.isTight()) {
-        const ContactPaths paths(contact, a, b);
-        const double latest = std::min(bracket.hi, latestLeading(first_hi));
-        if (!mayTouchUntil(contact.kind, paths.points(), bracket.lo, latest)) continue;
-        bracket = tightened(contact.kind, paths.points(), bracket);
-      }
-      first_hi = std::min(first_hi, bracket.hi);
-      leading.push_back({&contact, bracket});
-    }
-  // None of the others touches before the next double: they do not touch until
-  // latestLeading(), or their tight brackets begin later.
-  const double next = std::nextafter(first_hi, 1.);
-  const double others = next < latestLeading(first_hi) ? next : first_hi;
-  for (std::deque<FeatureContact>& list : contacts)
-    for (FeatureContact& contact : list)
-      contact.toc_lo = std::max(contact.toc_lo, others);
-  for (const Leading& lead : leading)
-    if (lead.bracket.lo <= first_hi) {
-      lead.contact->toc_lo = lead.bracket.lo;
-      lead.contact->toc_hi = lead.bracket.hi;
-    }
+void FirstBracket::add(const TimeBracket& tight) {
+  first_hi_ = std::min(first_hi_, tight.hi);
+  brackets_.push_back(tight);
 }
 
-void putLeading(const FeatureContact& first,
-                std::vector<std::deque<FeatureContact>>& contacts) {
-  FeatureContact *same = nullptr, *latest = nullptr;
-  for (std::deque<FeatureContact>& list : contacts)
-    for (FeatureContact& contact : list) {
-      if (keyOf(contact) == keyOf(first)) same = &contact;
-      if (!latest || isEarlier(*latest, contact)) latest = &contact;
+TimeBracket FirstBracket::get() const {
+  assert(!brackets_.empty());
+  const auto isEarlier = [](const TimeBracket& x, const TimeBracket& y) {
+    return x.lo != y.lo ? x.lo < y.lo : x.hi < y.hi;
+  };
+  return *std::min_element(brackets_.begin(), brackets_.end(), isEarlier);
+}
+
+TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,
+                           const std::vector<std::deque<FeatureContact>>& contacts) {
+  // What touches at t = 0 has the bracket [0, 0].
+  if (first_hi == 0) return {0, 0};
+  FirstBracket first;
+  for (const std::deque<FeatureContact>& list : contacts)
+    for (const FeatureContact& contact : list) {
+      const TimeBracket bracket{contact.toc_lo, contact.toc_hi};
+      first_hi = std::min(first_hi, first.firstHi());
+      if (bracket.lo > first_hi) continue;
+      if (bracket.isTight()) {
+        first.add(bracket);
+        continue;
+      }
+      const ContactPaths paths(contact, a, b);
+      const double latest = std::min(bracket.hi, latestLeading(first_hi));
+      if (mayTouchUntil(contact.kind, paths.points(), bracket.lo, latest))
+        first.add(tightened(contact.kind, paths.points(), bracket));
     }
-  assert(latest);
-  *(same ? same : latest) = first;
+  return first.get();
 }
 
 }  // namespace deformable

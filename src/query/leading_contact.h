@@ -43,19 +43,30 @@ inline double latestLeading(double first_hi) {
 TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
                       TimeBracket bracket);
 
-/// @brief Makes the brackets tight of all contacts that may be the first, and those of
-/// the others begin no earlier than that one's end. The answer does not depend on the
-/// order of the contacts.
-/// @param first_hi  the earliest end of a bracket
+/// @brief The tight bracket of the first of some contacts, whatever their order.
+/// @pre there is a contact; first_hi is the earliest end of a bracket
 /// @param a, b  the meshes that the contacts are between
-void tightenLeading(const MeshInstance& a, const MeshInstance& b, double first_hi,
-                    std::vector<std::deque<FeatureContact>>& contacts);
+TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,
+                           const std::vector<std::deque<FeatureContact>>& contacts);
 
-/// @brief Puts the first contact among the earliest ones that were kept, whose brackets
-/// all begin before others end, so that it may have been dropped: in place of itself, or
-/// of the latest one.
-void putLeading(const FeatureContact& first,
-                std::vector<std::deque<FeatureContact>>& contacts);
+/// @brief The tight bracket of the first of contacts that come one by one.
+class FirstBracket {
+ public:
+  /// @param bracket  of a contact
+  /// @return whether the contact may be the first, so that its tight bracket is wanted
+  bool wants(const TimeBracket& bracket) const { return bracket.lo <= first_hi_; }
+  void add(const TimeBracket& tight);
+
+  /// @brief Upper end of the earliest tight bracket; 1 without one.
+  double firstHi() const { return first_hi_; }
+  /// @pre add() was called
+  TimeBracket get() const;
+
+ private:
+  double first_hi_{1};
+  /// Those that begin no later than first_hi_ ended when they came.
+  std::vector<TimeBracket> brackets_;
+};
 
 }  // namespace deformable
 }  // namespace detail

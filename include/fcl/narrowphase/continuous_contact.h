@@ -43,14 +43,14 @@ struct ContinuousContact {
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
   /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
-  /// 0] if the features touch at t = 0. The brackets of the first contact, and of every
-  /// contact that may be the first, are also no wider than an eighth of toc_hi. So a
-  /// simulation that advances by toc_lo makes progress: toc_lo is 0 only for features
-  /// that touch at t = 0. (No double lies between 0 and 2^-1074: an earlier time has the
-  /// bracket [0, 2^-1074].) If a mesh turns: the features do not touch before toc_lo, and
+  /// 0] if the features touch at t = 0. With ContinuousQuery::kFirst and kAny it is no
+  /// wider than an eighth of toc_hi either: toc_lo is 0 only for features that touch at t
+  /// = 0 (or before 2^-1074, the first double above 0). With kAll that holds for the
+  /// time_of_contact of the result; the brackets in the list may begin before it.
+  /// If a mesh turns: the features do not touch before toc_lo, and
   /// are within the query's tolerance of each other then (continuous_collision.h). At
-  /// toc_hi the two triangles provably cross. If no such time is found within toc_err, an
-  /// eighth of toc_lo and until t_max (they may only graze), toc_hi equals toc_lo.
+  /// toc_hi the two triangles provably cross. If no such time is found within toc_err
+  /// and until t_max (they may only graze), toc_hi equals toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -177,9 +177,10 @@ struct ContinuousContacts {
 
 /// @brief FCL's continuous result (is_collide, time_of_contact, contact_tf1, contact_tf2)
 /// together with the contacts. time_of_contact is never later than the true first time:
-/// it is toc_lo of the earliest contact (rounded down if S is float), 0 if the surfaces
-/// cross at t = 0, and 1 without collision. contact_tf1 and contact_tf2 are the poses at
-/// toc_hi of that contact; see @ref continuous_queries.
+/// it is the beginning of the first contact's bracket, made no wider than an eighth of
+/// its end (rounded down if S is float), 0 if the surfaces cross at t = 0, 1 without
+/// collision. contact_tf1 and contact_tf2 are the poses at its end; see @ref
+/// continuous_queries.
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContacts<S> {};
 
