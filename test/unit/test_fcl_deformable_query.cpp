@@ -540,8 +540,8 @@ void expectFirstOfAll(const Body& a, const Body& b, std::size_t count,
   options.query = ContinuousQuery::kFirst;
   const QueryAnswer first = query(a, b, options);
   ASSERT_FALSE(first.contacts.empty());
-  EXPECT_EQ(first.contacts.front().toc_lo, all.contacts.front().toc_lo);
-  EXPECT_EQ(first.contacts.front().toc_hi, all.contacts.front().toc_hi);
+  EXPECT_EQ(first.contacts.front().toc_lo, all.first.lo);
+  EXPECT_EQ(first.contacts.front().toc_hi, all.first.hi);
   left_out += all.counts.feature_pairs - first.counts.feature_pairs;
 }
 

@@ -173,39 +173,42 @@ TEST(FCL_THREADS, sameAnswerWithAnyNumber) {
         }
 }
 
-// A first-contact query returns what the query for all finds that may be the first.
+/// The contacts are some of all, with brackets inside of theirs (of a pair that is met
+/// repeatedly, another bracket may be kept), and the time is the same to the bit.
+void expectFirstOf(const Result& first, const Result& all, bool may_repeat) {
+  EXPECT_EQ(first.time_of_contact, all.time_of_contact);
+  ASSERT_EQ(first.contacts.empty(), all.contacts.empty());
+  for (const auto& contact : first.contacts) {
+    const auto same =
+        std::find_if(all.contacts.begin(), all.contacts.end(),
+                     [&](const auto& other) { return nameOf(other) == nameOf(contact); });
+    ASSERT_NE(same, all.contacts.end());
+    if (may_repeat) continue;
+    EXPECT_GE(contact.toc_lo, same->toc_lo);
+    EXPECT_LE(contact.toc_hi, same->toc_hi);
+  }
+}
+
+// A first-contact query returns some of all contacts, whatever the number that is kept
+// and that of threads.
 TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
   for (const Scene& scene : scenes())
     for (const double toc_err : {0.3, 1e-2, 1e-4, 1e-9}) {
       SCOPED_TRACE(scene.name + ", toc_err " + std::to_string(toc_err));
-      Result all = scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, toc_err, 1));
-      double first_hi = 1;
-      for (const auto& c : all.contacts) first_hi = std::min(first_hi, c.toc_hi);
-      const auto end =
-          std::find_if(all.contacts.begin(), all.contacts.end(),
-                       [first_hi](const auto& c) { return c.toc_lo > first_hi; });
-      all.contacts.erase(end, all.contacts.end());
-      // Of a pair that is met repeatedly, brackets that were not kept count, too.
-      const auto expectBeginning = [&](const Result& first, std::size_t max_contacts) {
-        if (scene.may_repeat) {
-          ASSERT_EQ(first.contacts.empty(), all.contacts.empty());
-          ASSERT_LE(first.contacts.size(), all.contacts.size());
-        }
-        Result expected = all;
-        const std::size_t count = scene.may_repeat
-                                      ? first.contacts.size()
-                                      : std::min(max_contacts, all.contacts.size());
-        expected.contacts.resize(count);
-        expected.contacts_cut =
-            scene.may_repeat ? first.contacts_cut : all.contacts.size() > max_contacts;
-        // Another crossing may be told, and other triangles of an unprepared mesh.
-        expectIdentical(first, expected, !scene.may_repeat);
-      };
+      const Result whole =
+          scene.run(requestOf(ContinuousQuery::kFirst, kNoLimit, toc_err, 1));
+      expectFirstOf(whole,
+                    scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, toc_err, 1)),
+                    scene.may_repeat);
       for (const std::size_t max_contacts : {std::size_t{1}, std::size_t{5}, kNoLimit})
         for (const int threads : {1, 0}) {
-          expectBeginning(scene.run(requestOf(ContinuousQuery::kFirst, max_contacts,
+          Result expected = whole;
+          expected.contacts_cut = whole.contacts.size() > max_contacts;
+          if (expected.contacts_cut) expected.contacts.resize(max_contacts);
+          // Another crossing may be told, and other triangles of an unprepared mesh.
+          expectIdentical(scene.run(requestOf(ContinuousQuery::kFirst, max_contacts,
                                               toc_err, threads)),
-                          max_contacts);
+                          expected, !scene.may_repeat);
           ASSERT_FALSE(HasFailure()) << max_contacts << ", " << threads;
         }
     }
