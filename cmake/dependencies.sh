@@ -11,10 +11,8 @@ fcl_ccd_install_dependencies() {
     libcli11-dev nlohmann-json3-dev libcgal-dev
     libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
   )
-  # These are for the second compiler and its sanitizers, the style checks and the reference.
-  if [ "$1" = all ]; then
-    packages+=(clang libclang-rt-14-dev clang-format-14 clang-tidy-14 doxygen)
-  fi
+  # These are for the second compiler, the style checks and the reference.
+  if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14 doxygen); fi
   packages+=("${@:2}")
 
   # On another system CMake names the packages that it cannot find.

@@ -50,15 +50,13 @@ fi
 
 # The Release run comes last, so that its summary is at the end of the output.
 if $all; then
-  build asan-ubsan
-  echo "== asan-ubsan: unit tests ($((SECONDS / 60)) min so far)"
-  ctest --preset asan-ubsan -j "$jobs"
+  build clang-werror
   echo "== clang-tidy"
   command -v clang-tidy-14 >/dev/null ||
     { echo "clang-tidy-14 is missing. Install the package clang-tidy-14" >&2; exit 1; }
   # Its stderr only counts findings in headers of other projects.
   find src -name '*.cpp' -print0 |
-    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/asan-ubsan 2>/dev/null
+    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
   echo "== reference"
   doxygen doc/Doxyfile
   bash cmake/check_reference.sh
@@ -68,6 +66,9 @@ if $all; then
   cmake --preset plain
   cmake --build --preset plain --target "${plain_tests[@]}"
   for test in "${plain_tests[@]}"; do "build/plain/test/unit/$test" --gtest_brief=1; done
+  build asan-ubsan
+  echo "== asan-ubsan: unit tests"
+  ctest --preset asan-ubsan -j "$jobs"
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON
 else
   build release

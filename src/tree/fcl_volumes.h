@@ -31,11 +31,11 @@ constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
 /// @brief Whether a volume has bounds along our directions ready. All others are boxes
 /// with axes of their own.
 template <typename BV>
-constexpr bool kHasSlabs = false;
+inline constexpr bool kHasSlabs = false;
 template <typename S>
-constexpr bool kHasSlabs<AABB<S>> = true;
+inline constexpr bool kHasSlabs<AABB<S>> = true;
 template <typename S, std::size_t N>
-constexpr bool kHasSlabs<KDOP<S, N>> = true;
+inline constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
 /// @brief The oriented box that a volume is, or has beside other volumes.
 template <typename S>
