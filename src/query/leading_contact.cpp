@@ -2,7 +2,6 @@
 #include "query/leading_contact.h"
 
 #include <cassert>
-#include <cmath>
 #include <limits>
 
 #include "elementary/elementary.h"
@@ -58,15 +57,9 @@ TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
 
 void FirstBracket::add(const TimeBracket& tight) {
   first_hi_ = std::min(first_hi_, tight.hi);
-  brackets_.push_back(tight);
-}
-
-TimeBracket FirstBracket::get() const {
-  assert(!brackets_.empty());
-  const auto isEarlier = [](const TimeBracket& x, const TimeBracket& y) {
-    return x.lo != y.lo ? x.lo < y.lo : x.hi < y.hi;
-  };
-  return *std::min_element(brackets_.begin(), brackets_.end(), isEarlier);
+  const bool is_earlier =
+      tight.lo != first_.lo ? tight.lo < first_.lo : tight.hi < first_.hi;
+  if (is_earlier) first_ = tight;
 }
 
 TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,

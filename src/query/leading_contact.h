@@ -59,13 +59,12 @@ class FirstBracket {
 
   /// @brief Upper end of the earliest tight bracket; 1 without one.
   double firstHi() const { return first_hi_; }
-  /// @pre add() was called
-  TimeBracket get() const;
+  /// @brief The one that begins first; [1, 1] without one.
+  const TimeBracket& get() const { return first_; }
 
  private:
   double first_hi_{1};
-  /// Those that begin no later than first_hi_ ended when they came.
-  std::vector<TimeBracket> brackets_;
+  TimeBracket first_{1, 1};
 };
 
 }  // namespace deformable
