@@ -13,6 +13,6 @@ source "$(dirname "$0")/report.sh"
 duration='a quarter of an hour'
 fcl_ccd_begin_report speed "$@"
 gnuplot -e "folder='$out'" "$sources/plot.gp"
-awk -F, -f "$sources/tables.awk" "$out"/speed{,_baselines,_sequence}.csv >"$out/speed.md"
-fcl_ccd_end_report speed.md speed{,_baselines,_sequence}.csv \
+awk -F, -f "$sources/tables.awk" "$out"/speed{,_baselines,_options,_sequence}.csv >"$out/speed.md"
+fcl_ccd_end_report speed.md speed{,_baselines,_options,_sequence}.csv \
   speed_{size,stages,ablation,sequence}.png

@@ -168,6 +168,39 @@ std::pair<FramePairMesh, FramePairMesh> makeMeetingBodies(int subdivisions) {
           body(2, {2.11, 0.3, 0.2}, {1.93, 0.28, 0.17})};
 }
 
+std::pair<FramePairMesh, FramePairMesh> makeLayers(int triangles, std::uint64_t seed) {
+  constexpr double kGap = 1e-6, kRoughness = 1e-8;
+  const int quads = static_cast<int>(std::ceil(std::sqrt(triangles / 2.)));
+  Random random(seed);
+  const auto layer = [&](double height, double way) {
+    const TestMesh sheet = makeIrregularSheet(quads, quads, random);
+    FramePairMesh mesh{{}, {}, sheet.triangles};
+    for (const auto& uv : sheet.vertices) {
+      const double z = height + random.uniform(0, kRoughness);
+      mesh.previous.push_back(snapped({uv[0], uv[1], z}));
+      mesh.current.push_back(snapped({uv[0], uv[1], z - way * random.uniform(1, 1.1)}));
+    }
+    return mesh;
+  };
+  return {layer(0, 0), layer(kGap, 1)};
+}
+
+std::pair<FramePairMesh, FramePairMesh> makeThrownSpheres(int subdivisions,
+                                                          std::uint64_t seed) {
+  constexpr double kFar = 1e4;
+  const TestMesh sphere = makeIcosphere(subdivisions, 1);
+  Random random(seed);
+  const auto body = [&](double x) {
+    FramePairMesh mesh{{}, {}, sphere.triangles};
+    for (const auto& p : sphere.vertices) {
+      mesh.previous.push_back(snapped(p + Vector3<double>(x, 0, 0)));
+      mesh.current.push_back(snapped(mesh.previous.back() + random.point(kFar)));
+    }
+    return mesh;
+  };
+  return {body(0), body(2.1)};
+}
+
 void move(FramePairMesh& mesh, const Vector3<double>& by) {
   for (auto* points : {&mesh.previous, &mesh.current})
     for (auto& p : *points) p += by;

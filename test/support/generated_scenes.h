@@ -30,6 +30,16 @@ constexpr int kTileTriangles = 1024;
 /// meet in the second half of the step.
 std::pair<FramePairMesh, FramePairMesh> makeMeetingBodies(int subdivisions);
 
+/// @brief Two rough layers of at least `triangles` triangles each, 1e-6 apart. The upper
+/// one falls through the lower one, each vertex at a speed of its own: all pairs meet in
+/// the first 2e-6 of the step.
+std::pair<FramePairMesh, FramePairMesh> makeLayers(int triangles, std::uint64_t seed = 1);
+
+/// @brief Two spheres of 20 * 4^subdivisions triangles side by side. Each vertex is
+/// thrown to a place of its own, within 1e4 times their size.
+std::pair<FramePairMesh, FramePairMesh> makeThrownSpheres(int subdivisions,
+                                                          std::uint64_t seed = 1);
+
 /// @brief The scene somewhere else.
 void move(FramePairMesh& mesh, const Vector3<double>& by);
 

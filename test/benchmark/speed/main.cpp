@@ -24,8 +24,8 @@ using Query = fcl::ContinuousQuery;
 struct Options {
   std::string out;
   std::string data;
-  std::vector<std::string> groups{"data", "smooth",   "size",     "first",
-                                  "far",  "sequence", "baselines"};
+  std::vector<std::string> groups{"data", "smooth",   "size",      "first",
+                                  "far",  "sequence", "baselines", "options"};
   Effort effort;
   int max_triangles{10000000};
   bool is_short{false};
@@ -196,6 +196,19 @@ void runBaselines(Table& table, const Options& options) {
   }
 }
 
+/// Each option of a request, off and on.
+void runOptions(Table& table, const Options& options) {
+  const auto add = [&](const Scene& scene) {
+    for (const OptionRow& row : measureOptions(scene, options.effort)) table.add(row);
+  };
+  for (const DataScene& data : readDataScenes(options)) add(data.scene);
+  add(smoothCloth(options.pick(80000, 2000)));
+  auto layers = makeLayers(options.pick(20000, 800));
+  add({"layers", std::move(layers.first), std::move(layers.second)});
+  auto spheres = makeThrownSpheres(options.pick(4, 1));
+  add({"thrown spheres", std::move(spheres.first), std::move(spheres.second)});
+}
+
 void run(const Options& options) {
   Table table(options.out, options.is_scalar);
   const struct {
@@ -208,7 +221,8 @@ void run(const Options& options) {
                 {"first", runFirst, false},
                 {"far", runFar, false},
                 {"sequence", runSequences, false},
-                {"baselines", runBaselines, false}};
+                {"baselines", runBaselines, false},
+                {"options", runOptions, false}};
   for (const auto& group : groups)
     for (const std::string& wanted : options.groups)
       if (wanted == group.name && (group.has_ablation || !options.is_scalar))
@@ -233,15 +247,15 @@ int runAgain(int argc, char** argv) {
 int main(int argc, char** argv) {
   Options options;
   CLI::App app{
-      "Speed of whole queries; writes speed.csv, speed_sequence.csv and "
-      "speed_baselines.csv."};
+      "Speed of whole queries; writes speed.csv, speed_sequence.csv, "
+      "speed_baselines.csv and speed_options.csv."};
   app.add_option("out", options.out, "Folder for the tables")->required();
   app.add_option("--data", options.data,
                  "Folder with scenes/; without it: generated scenes only");
   app.add_option("--groups", options.groups, "Which scenes, comma between; all if absent")
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          {"data", "smooth", "size", "first", "far", "sequence", "baselines"}));
+      ->check(CLI::IsMember({"data", "smooth", "size", "first", "far", "sequence",
+                             "baselines", "options"}));
   auto* repeats = app.add_option("--repeats", options.effort.repeats,
                                  "Each time is the least of so many")
                       ->check(CLI::PositiveNumber);

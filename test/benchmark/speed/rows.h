@@ -71,6 +71,12 @@ Row measurePaper(const Scene& scene, const std::string& boxes, const std::string
 std::vector<BaselineRow> measureBaselines(const Scene& scene, const Effort& effort,
                                           const std::vector<PairName>& truth);
 
+/// @brief Times of the library without and with each option of a request, on one thread,
+/// and the errors of the answers with it; of two meshes only the tolerance. Errors are
+/// against answers without the option, of which the rows know which ones are to stay,
+/// and against brute force (crossings).
+std::vector<OptionRow> measureOptions(const Scene& scene, const Effort& effort);
+
 /// @brief All self-contacts in every step of a sequence, with a model that is updated
 /// from frame to frame, and with one that is built anew for each.
 /// @throws std::logic_error if the two differ in their contacts

@@ -53,7 +53,8 @@ Table::Table(const std::string& folder, bool add) : machine_(machineName()) {
   rows_.open(folder + "/speed.csv", mode);
   sequences_.open(folder + "/speed_sequence.csv", mode);
   baselines_.open(folder + "/speed_baselines.csv", mode);
-  if (!rows_ || !sequences_ || !baselines_)
+  options_.open(folder + "/speed_options.csv", mode);
+  if (!rows_ || !sequences_ || !baselines_ || !options_)
     throw std::runtime_error(folder + ": cannot be written to");
   if (add) return;
   rows_ << "scene,triangles,query,boxes,filter,kernels,threads,ms_build,ms_update,"
@@ -63,6 +64,8 @@ Table::Table(const std::string& folder, bool add) : machine_(machineName()) {
   baselines_ << "scene,triangles,technique,filter,kernels,ms_build,ms_update,ms_traverse,"
                 "ms_test,ms_total,triangle_pairs,feature_pairs,elementary_tests,contacts,"
                 "missed,extra,machine\n";
+  options_ << "scene,triangles,option,query,ms_off,ms_on,ratio,contacts,missed,extra,"
+              "machine\n";
 }
 
 void Table::add(const Row& row) {
@@ -101,8 +104,17 @@ void Table::add(const BaselineRow& row) {
                row.times.total());
 }
 
+void Table::add(const OptionRow& row) {
+  options_ << row.scene << ',' << row.triangles << ',' << row.option << ',' << row.query
+           << ',' << number(row.off) << ',' << number(row.on) << ','
+           << number(row.on / row.off) << ',' << row.contacts << ',' << row.missed << ','
+           << row.extra << ',' << machine_ << std::endl;
+  std::fprintf(stderr, "%s: %s, %s: %.2f ms, %.2f without it\n", row.scene.c_str(),
+               row.query.c_str(), row.option.c_str(), row.on, row.off);
+}
+
 void Table::finish() {
-  if (!rows_.flush() || !sequences_.flush() || !baselines_.flush())
+  if (!rows_.flush() || !sequences_.flush() || !baselines_.flush() || !options_.flush())
     throw std::runtime_error("the tables cannot be written");
 }
 

@@ -99,6 +99,19 @@ struct BaselineRow {
   Errors errors{};
 };
 
+/// @brief A row of speed_options.csv: a query without and with an option.
+struct OptionRow {
+  std::string scene;
+  std::size_t triangles{0};
+  std::string option;
+  std::string query;
+  double off{0};
+  double on{0};
+  std::size_t contacts{0};
+  std::size_t missed{0};
+  std::size_t extra{0};
+};
+
 /// @brief A row of speed_sequence.csv: a step from one frame to the next, with the tree
 /// made for the first frame and with one made for this.
 struct SequenceRow {
@@ -114,7 +127,8 @@ struct SequenceRow {
   bool is_restructured{false};
 };
 
-/// @brief speed.csv, speed_sequence.csv and speed_baselines.csv in a folder.
+/// @brief speed.csv, speed_sequence.csv, speed_baselines.csv and speed_options.csv in a
+/// folder.
 class Table {
  public:
   /// @param add  to the files that are there
@@ -124,6 +138,7 @@ class Table {
   void add(const Row& row);
   void add(const SequenceRow& row);
   void add(const BaselineRow& row);
+  void add(const OptionRow& row);
 
   /// @throws std::runtime_error if not everything could be written
   void finish();
@@ -133,6 +148,7 @@ class Table {
   std::ofstream rows_;
   std::ofstream sequences_;
   std::ofstream baselines_;
+  std::ofstream options_;
 };
 
 }  // namespace test

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 #
-# awk -F, -f tables.awk speed.csv speed_baselines.csv speed_sequence.csv > speed.md
+# awk -F, -f tables.awk speed.csv speed_baselines.csv speed_options.csv \
+#     speed_sequence.csv > speed.md
 # The tables as a page to read.
 
 function heading(title) {
@@ -46,8 +47,20 @@ file == 2 {
   print line
 }
 
-# Sequences: the ratio of both trees' times, in four parts of each.
 file == 3 {
+  if (FNR == 2) {
+    print "\n## Options of a request\n"
+    print "ms of the query without and with the option, one thread.\n"
+    print "| scene | triangles | option | query | off | on | ratio | contacts | missed | extra |"
+    print "|---|---|---|---|---|---|---|---|---|---|"
+  }
+  line = "|"
+  for (i = 1; i <= 10; ++i) line = line " " $i " |"
+  print line
+}
+
+# Sequences: the ratio of both trees' times, in four parts of each.
+file == 4 {
   if (!($1 in steps)) order[++sequences] = $1
   ratio[$1, steps[$1]++] = $8
   if ($8 > worst[$1]) worst[$1] = $8
