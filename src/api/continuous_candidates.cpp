@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "api/prepared_mesh.h"
+#include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
+#include "motion/motion_candidates.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -19,6 +21,7 @@ namespace {
 using deformable::FeatureCandidate;
 using deformable::FeatureOwners;
 using deformable::PreparedMesh;
+using deformable::PreparedMotion;
 
 ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
   ContinuousCandidate out;
@@ -62,6 +65,25 @@ PreparedMesh prepared(const PlacedGeometry<S>& placed, const char* name) {
                       FeatureOwners::kAlways);
 }
 
+template <typename S>
+PreparedMotion preparedMotion(const PlacedGeometry<S>& placed, const char* name) {
+  // A reference point that rounds by more than this part of the step is refused.
+  constexpr double kTocErr = 1e-9;
+  const deformable::DefaultFloatingPoint mode;
+  return PreparedMotion(placed, name, kTocErr, 1);
+}
+
+/// The candidates of two meshes, one of which turns.
+template <typename S>
+bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                      const CandidateSink& sink) {
+  const PreparedMotion motion1 = preparedMotion(o1, "o1"),
+                       motion2 = preparedMotion(o2, "o2");
+  return handOut(sink, [&](const auto& inner) {
+    return deformable::candidatesOfMotions(motion1.body(), motion2.body(), inner);
+  });
+}
+
 }  // namespace
 
 template <typename S>
@@ -92,16 +114,17 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     return PlacedGeometry<S>(o);
   };
   const PlacedGeometry<S> placed1 = placed(o1), placed2 = placed(o2);
-  if (answererOf(placed1, placed2) != Answerer::kStraightPaths) {
-    const PlacedGeometry<S>& unfit = placed1.goesStraight() ? placed2 : placed1;
+  const Answerer answerer = answererOf(placed1, placed2);
+  if (answerer == Answerer::kFcl) {
+    const PlacedGeometry<S>& unfit = placed1.isKnown() ? placed2 : placed1;
     throw Exception(
         std::string("continuousCandidates: ") + (&unfit == &placed1 ? "o1" : "o2") +
-        (unfit.isMesh() ? " is a rigid mesh that turns, and candidates need straight "
-                          "paths. continuousCollide() with a ContinuousContactRequest "
-                          "answers meshes that turn"
+        (unfit.isMesh() ? " follows a motion class of the program, whose path is not "
+                          "known. Give one of FCL's motions"
                         : " is not a triangle mesh, and candidates need two triangle "
                           "meshes. Give a mesh of its surface"));
   }
+  if (answerer == Answerer::kCurvedPaths) return motionCandidates(placed1, placed2, sink);
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);

@@ -100,22 +100,35 @@ class MotionTraversal {
   }
 
   MotionAnswer run() {
-    Work first{0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0};
-    testAlone(first);
+    traverse([this](const Work& work) { advance(work); });
+    return finish();
+  }
+
+  std::vector<NearTriangles> nearTriangles() {
+    std::vector<NearTriangles> near;
+    traverse([&near](const Work& work) {
+      near.push_back({{~work.a.child, ~work.b.child}, work.t0, work.t1});
+    });
+    return near;
+  }
+
+ private:
+  /// Calls visit(work) for pairs of triangles, in the order of their starts.
+  template <typename Visit>
+  void traverse(Visit&& visit) {
+    testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0});
     while (!works_.empty()) {
       std::pop_heap(works_.begin(), works_.end(), isLater);
       Work work = works_.back();
       works_.pop_back();
       if (work.start > latest_) break;
       if (work.a.isTriangle() && work.b.isTriangle())
-        advance(work);
+        visit(work);
       else
         divide(work);
     }
-    return finish();
   }
 
- private:
   void push(const Work& work) {
     if (work.start > latest_) return;
     works_.push_back(work);
@@ -345,6 +358,10 @@ MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
                           const MotionQueryOptions& options) {
   const BodiesNearOrigin near(a, b);
   return MotionTraversal(near.a, near.b, options).run();
+}
+
+std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b) {
+  return MotionTraversal(a, b, MotionQueryOptions()).nearTriangles();
 }
 
 }  // namespace deformable

@@ -52,6 +52,17 @@ struct BodiesNearOrigin {
 MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
                           const MotionQueryOptions& options);
 
+/// @brief Two triangles that may touch during [t0, t1], by their places in the trees.
+struct NearTriangles {
+  std::int32_t place[2];
+  double t0, t1;
+};
+
+/// @brief The pairs of triangles that no box keeps apart. A pair may come several times,
+/// with other spans. Outside of these the triangles do not touch.
+/// @pre the floating-point mode is the default one
+std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b);
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -17,7 +17,6 @@
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
 #include "fcl/math/motion/translation_motion.h"
-#include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "test_models.h"
 
@@ -471,12 +470,6 @@ TEST_F(MotionCollision, WhatIsRefused) {
   expectRefused([&] { ask(*bar_, nowhere, CCDM_LINEAR); }, "o1: the transform");
   nowhere.translation()[1] = 1e300;
   expectRefused([&] { ask(*bar_, nowhere, CCDM_LINEAR); }, "2^200");
-  expectRefused(
-      [&] {
-        continuousCandidates(bar_.get(), kStill, end, square_.get(), kStill, kStill,
-                             [](const auto*, std::size_t) { return true; });
-      },
-      "o1 is a rigid mesh that turns");
 }
 
 TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {

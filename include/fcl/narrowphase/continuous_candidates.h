@@ -11,6 +11,7 @@
 #include <functional>
 
 #include "fcl/geometry/collision_geometry.h"
+#include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -50,30 +51,33 @@ using ContinuousCandidateSink =
 /// @defgroup continuous_candidates Candidates of continuous collision queries
 ///
 /// They hand out, in blocks, every feature pair that culling leaves: the pairs whose
-/// moving boxes overlap. continuousSelfCollide() and continuousCollide() with
-/// ContinuousQuery::kAll give the same pairs to their coplanarity filter.
+/// moving boxes overlap. On straight paths continuousSelfCollide() and
+/// continuousCollide() with ContinuousQuery::kAll give the same pairs to their
+/// coplanarity filter.
 ///
 /// (1) Every pair that touches is among them. (A pair that crosses at t = 0 and never
 /// touches may be missing.) (2) No pair comes twice. Faces with the same three vertices
 /// are one face. (3) The order depends on the trees and is the same in every call. (4)
-/// vertexFace() and edgeEdge() on all pairs give the contacts of the query if they get
-/// the same vertex paths. A posed coordinate is ((r0 x + r1 y) + r2 z) + t, computed in
-/// doubles.
+/// on straight paths vertexFace() and edgeEdge() on all pairs give the contacts of the
+/// query if they get the same vertex paths. A posed coordinate is ((r0 x + r1 y) + r2 z)
+/// + t, computed in doubles.
 ///
-/// Memory: one block. A rigid BVHModel that is not a DeformableBVHModel has no table of
-/// feature owners, which (2) needs. The table is made in each call, in time and memory
-/// linear in the triangles.
+/// Memory: one block; all candidates if a mesh turns. A rigid BVHModel that is not a
+/// DeformableBVHModel has no table of feature owners, which (2) needs. On straight paths
+/// the table is made in each call, in time and memory linear in the triangles.
 ///
-/// Paths, models and thread-safety are those of the @ref continuous_queries. All paths
-/// must be straight: a rigid mesh must not turn. The query runs in the caller's thread.
+/// Paths, models and thread-safety are those of the @ref continuous_queries. Between two
+/// transforms a rigid mesh turns about its origin, as with CCDM_LINEAR. The query runs in
+/// the caller's thread.
 /// After Tang, Manocha, Tong 2010, section 4 and, for (2), Curtis, Tamstorf, Manocha
 /// 2008.
 ///
 /// @param sink  takes the candidates, see ContinuousCandidateSink
 /// @return true when all candidates were handed out, false when the sink ended the query
 /// @throws fcl::Exception when an argument or the sink is null, a geometry is not a
-/// triangle mesh, a rigid mesh turns, a mesh is not built or is in the middle of an
-/// update, a coordinate is not finite, or a triangle index is out of range. The exception
+/// triangle mesh, a motion is not one of FCL's classes, a mesh is not built or is in the
+/// middle of an update, a coordinate is not finite, or a triangle index is out of range.
+/// The exception
 /// of a vertex that is not finite may come after candidates were handed out.
 /// @{
 
@@ -99,6 +103,19 @@ bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const CollisionGeometry<float>* o2,
                           const Transform3<float>& tf2_beg,
                           const Transform3<float>& tf2_end,
+                          const ContinuousCandidateSink& sink);
+
+/// @brief The candidates of two meshes that follow FCL's motions.
+bool continuousCandidates(const CollisionGeometry<double>* o1,
+                          const MotionBase<double>* motion1,
+                          const CollisionGeometry<double>* o2,
+                          const MotionBase<double>* motion2,
+                          const ContinuousCandidateSink& sink);
+/// @overload
+bool continuousCandidates(const CollisionGeometry<float>* o1,
+                          const MotionBase<float>* motion1,
+                          const CollisionGeometry<float>* o2,
+                          const MotionBase<float>* motion2,
                           const ContinuousCandidateSink& sink);
 /// @}
 
@@ -132,6 +149,38 @@ inline bool continuousCandidates(const CollisionGeometry<float>* o1,
                                  const ContinuousCandidateSink& sink) {
   return detail::answerCandidates(detail::movingGeometry(o1, tf1_beg, tf1_end),
                                   detail::movingGeometry(o2, tf2_beg, tf2_end), sink);
+}
+
+namespace detail {
+
+template <typename S>
+bool motionCandidates(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
+                      const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+                      const ContinuousCandidateSink& sink) {
+  requireNotNull(o1, "o1");
+  requireNotNull(o2, "o2");
+  requireNotNull(motion1, "motion1");
+  requireNotNull(motion2, "motion2");
+  return answerCandidates(movingGeometry(o1, motion1, o2),
+                          movingGeometry(o2, motion2, o1), sink);
+}
+
+}  // namespace detail
+
+inline bool continuousCandidates(const CollisionGeometry<double>* o1,
+                                 const MotionBase<double>* motion1,
+                                 const CollisionGeometry<double>* o2,
+                                 const MotionBase<double>* motion2,
+                                 const ContinuousCandidateSink& sink) {
+  return detail::motionCandidates(o1, motion1, o2, motion2, sink);
+}
+
+inline bool continuousCandidates(const CollisionGeometry<float>* o1,
+                                 const MotionBase<float>* motion1,
+                                 const CollisionGeometry<float>* o2,
+                                 const MotionBase<float>* motion2,
+                                 const ContinuousCandidateSink& sink) {
+  return detail::motionCandidates(o1, motion1, o2, motion2, sink);
 }
 
 }  // namespace fcl
