@@ -70,6 +70,7 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
   const auto path_of = [&](bool on_a, std::uint32_t id) {
     return (on_a ? a : b).tangentAt(id, contact.toc_lo);
   };
+  out.within_tolerance = contact.toc_hi == contact.toc_lo;
   if (with_geometry) addGeometry(contact, path_of, 0, out);
   return out;
 }

@@ -279,6 +279,29 @@ TEST_F(MotionCollision, ContactsNameFeaturesThatTouch) {
   }
 }
 
+/// A wall that the corner of the bar reaches, passes by far, or does not reach.
+TEST_F(MotionCollision, SaysWhetherACrossingIsProved) {
+  const double reach = std::hypot(2, kHalfWidth);
+  const auto ask = [&](double distance) {
+    const auto wall = makeModel<Rigid<double>>(TestMesh{
+        {{-9, distance, -9}, {9, distance, -9}, {0, distance, 9}}, {Triangle(0, 1, 2)}});
+    ContactResult result;
+    continuousCollide(bar_.get(), kStill, turned(0.75 * kPi), wall.get(), kStill, kStill,
+                      requestOf<ContactRequest>(), result);
+    return result;
+  };
+  EXPECT_FALSE(ask(reach + 1e-12).is_collide);
+  const ContactResult graze = ask(reach), crossing = ask(0.9 * reach);
+  ASSERT_TRUE(graze.is_collide);
+  for (const auto& contact : graze.contacts) {
+    EXPECT_TRUE(contact.within_tolerance);
+    EXPECT_EQ(contact.toc_hi, contact.toc_lo);
+  }
+  ASSERT_TRUE(crossing.is_collide);
+  EXPECT_FALSE(crossing.contacts.front().within_tolerance);
+  EXPECT_GT(crossing.contacts.front().toc_hi, crossing.contacts.front().toc_lo);
+}
+
 TEST_F(MotionCollision, GoalsAndLimitsOfContacts) {
   const auto ask = [&](ContinuousQuery query, std::size_t limit) {
     ContactRequest request = requestOf<ContactRequest>();

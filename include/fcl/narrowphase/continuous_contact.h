@@ -40,6 +40,11 @@ struct ContinuousContact {
   /// False: the reverse. EE: edge a always belongs to o1.
   bool first_on_o1{true};
 
+  /// @brief True: it is not proved that the surfaces cross in the bracket, only that the
+  /// features are within the query's tolerance of each other at toc_lo. Only if a mesh
+  /// turns. On straight paths contacts are exact, and this is false.
+  bool within_tolerance{false};
+
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
   /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
