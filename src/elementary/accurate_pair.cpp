@@ -90,11 +90,10 @@ struct AccuratePair::Cross {
 // where n1 counts twice: the errors of n, 9 UE; products, 9 UN; sums of 2, 3, 4, 6 and 9
 // UN: (9 * 2 + 24) 2^-104 UN < 2^-98 UN.
 AccuratePair::AccuratePair(ContinuousContactKind kind, const FeaturePoints& x)
-    : kind_(kind), x_(x) {
-  const bool vf = kind == ContinuousContactKind::kVertexFace;
-  u_ = vf ? AccurateDifference(x[0], x[1]) : AccurateDifference(x[2], x[0]);
-  v_ = vf ? AccurateDifference(x[2], x[1]) : AccurateDifference(x[1], x[0]);
-  w_ = vf ? AccurateDifference(x[3], x[1]) : AccurateDifference(x[3], x[2]);
+    : table_(pairTable(kind)), x_(x) {
+  u_ = difference(kU);
+  v_ = difference(kV);
+  w_ = difference(kW);
   const Cross n(v_, w_);
   normal_ = n.rounded;
   volume_[0] = dot(u_.t0, n.c0);
@@ -109,15 +108,14 @@ AccuratePair::AccuratePair(ContinuousContactKind kind, const FeaturePoints& x)
                       : kInfinity;
 }
 
+AccurateDifference AccuratePair::difference(PairDifference i) const {
+  const auto [to, from] = table_.difference[i];
+  return {x_[to], x_[from]};
+}
+
 AccuratePair::Factors AccuratePair::factors(int i) const {
-  if (i == 0) return {u_, w_};
-  if (kind_ == ContinuousContactKind::kVertexFace) {
-    if (i == 1) return {v_, u_};
-    return {{x_[2], x_[0]}, {x_[3], x_[0]}};
-  }
-  if (i == 1) return {{x_[1], x_[2]}, w_};
-  if (i == 2) return {u_, v_};
-  return {v_, {x_[3], x_[0]}};
+  const auto& [x, y] = table_.inside[i];
+  return {difference(x), difference(y)};
 }
 
 bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) const {
@@ -224,7 +222,7 @@ Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
   const Vec n = rounded(c);
   const double n_size = maxNorm(n), n_error = crossError(v_.norm, w_.norm);
   Answer answer = Answer::kYes;
-  for (int i = 0; i < numSides(); ++i) {
+  for (int i = 0; i < table_.num_inside; ++i) {
     const auto [x, y] = factors(i);
     x.at(t, a);
     y.at(t, b);

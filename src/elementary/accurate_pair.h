@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "elementary/feature_points.h"
+#include "elementary/pair_table.h"
 #include "numerics/double_double.h"
 #include "numerics/moving_vector.h"
 
@@ -63,18 +64,18 @@ class AccuratePair {
  private:
   struct Cross;
 
-  /// The differences whose cross product inside condition i has, see insideness().
+  /// The differences whose cross product inside condition i has.
   struct Factors {
     AccurateDifference x, y;
   };
-  int numSides() const { return kind_ == ContinuousContactKind::kVertexFace ? 3 : 4; }
+  AccurateDifference difference(PairDifference i) const;
   Factors factors(int i) const;
 
   DoubleDouble volumeAt(const DoubleDouble& t) const;
   /// @brief Whether the features touch at the root, which is within t_error of t.
   Answer touchAt(const DoubleDouble& t, double t_error) const;
 
-  ContinuousContactKind kind_;
+  const PairTable& table_;
   FeaturePoints x_;
   AccurateDifference u_, v_, w_;
   DoubleDouble volume_[4];  // Bernstein coefficients, the inner ones times 3

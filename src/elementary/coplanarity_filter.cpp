@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "elementary/accurate_pair.h"
+#include "elementary/pair_table.h"
 #include "numerics/error_bounds.h"
 
 namespace fcl {
@@ -66,11 +67,13 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
 /// pairs.
 Coplanarity inDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                       double window_lo, double window_hi) {
-  const bool vf = kind == ContinuousContactKind::kVertexFace;
+  const PairTable& table = pairTable(kind);
   FramePair most_coordinate = {0, 0};
-  DifferencePair u = differenceOf(x[vf ? 0 : 2], x[vf ? 1 : 0], most_coordinate),
-                 v = differenceOf(x[vf ? 2 : 1], x[vf ? 1 : 0], most_coordinate),
-                 w = differenceOf(x[3], x[vf ? 1 : 2], most_coordinate);
+  const auto difference = [&](PairDifference i) {
+    const auto [to, from] = table.difference[i];
+    return differenceOf(x[to], x[from], most_coordinate);
+  };
+  DifferencePair u = difference(kU), v = difference(kV), w = difference(kW);
   if (window_lo != 0 || window_hi != 1)
     for (DifferencePair* d : {&u, &v, &w}) d->restrict(FramePair{window_lo, window_hi});
   const DifferencePair n = cross(v, w), half = cross(v, swapped(w));

@@ -11,6 +11,7 @@
 #include "elementary/coplanarity_filter.h"
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
+#include "elementary/pair_table.h"
 #include "elementary/predicates.h"
 #include "elementary/separating_direction.h"
 #include "numerics/error_bounds.h"
@@ -128,28 +129,16 @@ Side sideOf(const MovingCross& q, const MovingCross& n) {
   return Side::kLost;
 }
 
-/// The pair as differences. The volume is u . (v x w); v x w is normal to the triangle
-/// (VF) or to both edges (EE).
+/// The pair as differences, see pair_table.h.
 struct Pair {
   ContinuousContactKind kind;
-  // VF (p; a, b, c): u = p-a, v = b-a, w = c-a, r = b-p, q = c-p.
-  // EE (a b; c d):   u = c-a, v = b-a, w = d-c, r = b-c, q = d-a, z = d-b.
-  Difference u, v, w, r, q, z;
+  const PairTable& table;
+  Difference difference[kNumPairDifferences];
 
-  Pair(ContinuousContactKind k, const FeaturePoints& x) : kind(k) {
-    if (kind == ContinuousContactKind::kVertexFace) {
-      u = {x[0], x[1]};
-      v = {x[2], x[1]};
-      w = {x[3], x[1]};
-      r = {x[2], x[0]};
-      q = {x[3], x[0]};
-    } else {
-      u = {x[2], x[0]};
-      v = {x[1], x[0]};
-      w = {x[3], x[2]};
-      r = {x[1], x[2]};
-      q = {x[3], x[0]};
-      z = {x[3], x[1]};
+  Pair(ContinuousContactKind k, const FeaturePoints& x) : kind(k), table(pairTable(k)) {
+    for (int i = 0; i < table.num_differences; ++i) {
+      const auto [to, from] = table.difference[i];
+      difference[i] = {x[to], x[from]};
     }
   }
 };
@@ -157,34 +146,20 @@ struct Pair {
 /// Whether, at the times at which the four points of the pair are coplanar, the features
 /// touch: kPositive, always; kNegative, never.
 ///
-/// With n = v x w, a coplanar u is a combination of v and w, and (x x y) . n / n^2 gives
-/// its coordinates: VF u = beta v + gamma w with beta n^2 = (u x w).n, gamma n^2 =
-/// (v x u).n and the third barycentric ((b-p) x (c-p)).n; EE u = s v - r w with s n^2 =
-/// (u x w).n, (1-s) n^2 = ((v-u) x w).n, r n^2 = (u x v).n, (1-r) n^2 = (v x (w+u)).n.
-/// One of them strictly negative implies n != 0 and a point outside.
-///
-/// @param accurate  null, or what n comes from; it then has what is lost to doubles
+/// @param accurate  null, or the pair that n comes from; it finds signs that doubles lose
 Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
                 const Segment& v, const Segment& w, const MovingCross& n,
                 AccuratePair* accurate) {
-  const Segment r = restrict(pair.r, lo, hi), q = restrict(pair.q, lo, hi);
-  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
+  const Segment segments[] = {u, v, w, restrict(pair.difference[kR], lo, hi),
+                              restrict(pair.difference[kQ], lo, hi)};
   Side side = Side::kPositive;
-  int i = 0;
-  const auto require = [&](const Segment& x, const Segment& y) {
-    Side s = sideOf(cross(x, y), n);
-    if (s == Side::kLost && accurate) s = sideOf(accurate->side(i, lo, hi), n);
-    ++i;
-    if (s == Side::kNegative)
-      side = s;
-    else if (s != Side::kPositive && side == Side::kPositive)
-      side = Side::kMixed;
-    return s != Side::kNegative;
-  };
-  if (vf)
-    require(u, w) && require(v, u) && require(r, q);
-  else
-    require(u, w) && require(r, w) && require(u, v) && require(v, q);
+  for (int i = 0; i < pair.table.num_inside; ++i) {
+    const auto& [x, y] = pair.table.inside[i];
+    Side found = sideOf(cross(segments[x], segments[y]), n);
+    if (found == Side::kLost && accurate) found = sideOf(accurate->side(i, lo, hi), n);
+    if (found == Side::kNegative) return found;
+    if (found != Side::kPositive) side = Side::kMixed;
+  }
   return side;
 }
 
@@ -196,7 +171,8 @@ bool areSeparated(const Pair& pair, double lo, double hi) {
   const double mid = lo + 0.5 * (hi - lo);
   const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
   // The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
-  const Difference* corner[4] = {&pair.u, &pair.r, &pair.q, &pair.z};
+  const Difference* corner[4] = {&pair.difference[kU], &pair.difference[kR],
+                                 &pair.difference[kQ], &pair.difference[kZ]};
   const double sign[4] = {1, -1, vf ? -1. : 1., 1};
   const int corners = vf ? 3 : 4;
   Vec at_mid[4] = {};
@@ -221,10 +197,7 @@ bool isFinite(const FeaturePoints& x) {
 
 /// Whether the features touch at t = 0, whatever comes later.
 bool touchAtStart(ContinuousContactKind kind, const FeaturePoints& x) {
-  if (!isFinite(x)) return false;
-  return kind == ContinuousContactKind::kVertexFace
-             ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
-             : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
+  return isFinite(x) && doTouchAtStart(kind, x);
 }
 
 bool isStill(const FeaturePoints& x) {
@@ -237,7 +210,8 @@ bool isStill(const FeaturePoints& x) {
 /// Whether the points pass each other so close that twice the digits of a double will not
 /// tell how: the volume there is a 2^-78th of what it is elsewhere.
 bool nearlyMeet(const Pair& pair) {
-  const Difference &u = pair.u, &v = pair.v, &w = pair.w;
+  const Difference &u = pair.difference[kU], &v = pair.difference[kV],
+                   &w = pair.difference[kW];
   const ClosestApproach closest({u.t0, v.t0, w.t0}, {u.t1, v.t1, w.t1});
   return closest.s > 0 && closest.s < 1 && closest.duration < 0x1p-26;
 }
@@ -326,8 +300,9 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
       break;
     }
     const double width = hi - lo;
-    const Segment u = restrict(pair.u, lo, hi), v = restrict(pair.v, lo, hi),
-                  w = restrict(pair.w, lo, hi);
+    const Segment u = restrict(pair.difference[kU], lo, hi),
+                  v = restrict(pair.difference[kV], lo, hi),
+                  w = restrict(pair.difference[kW], lo, hi);
     const MovingCross n = accurate ? accurate->normal(lo, hi) : cross(v, w);
     const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
     if (f.hasNoRoot()) continue;
@@ -386,17 +361,49 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
   return found.withoutProof();
 }
 
-ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints& x,
-                                double window_lo, double window_hi, double toc_err,
-                                double t_stop) {
-  if (!narrowWindow(kind, x, window_lo, window_hi))
-    return {Answer::kNo, 0, 0, DecidedBy::kBox};
-  if (!mayBecomeCoplanar(kind, x, window_lo, window_hi))
-    return {Answer::kNo, 0, 0, DecidedBy::kFilter};
+ElementaryResult decide(ContinuousContactKind kind, const FeaturePoints& x,
+                        double window_lo, double window_hi, double toc_err, double t_stop,
+                        double t_max) {
   const ElementaryResult solved =
       solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
   if (solved.answer != Answer::kUnsure) return solved;
-  return decideExactly(kind, x, toc_err, t_stop);
+  return decideExactly(kind, x, toc_err, t_stop, t_max);
+}
+
+namespace {
+
+/// A single pair, for runStages().
+struct SinglePair {
+  ContinuousContactKind kind;
+  const FeaturePoints& x;
+  double window_lo, window_hi, toc_err, t_stop;
+  ElementaryResult result;
+
+  void cullByBoxes() {
+    const bool may_meet = narrowWindow(kind, x, window_lo, window_hi);
+    result = {may_meet ? Answer::kUnsure : Answer::kNo, 0, 0, DecidedBy::kBox};
+  }
+  void filter() {
+    if (result.answer == Answer::kUnsure &&
+        !mayBecomeCoplanar(kind, x, window_lo, window_hi))
+      result = {Answer::kNo, 0, 0, DecidedBy::kFilter};
+  }
+  /// Only for eight pairs at a time; solveRest() decides plain cases as well.
+  void solvePlainCases() {}
+  void solveRest() {
+    if (result.answer == Answer::kUnsure)
+      result = decide(kind, x, window_lo, window_hi, toc_err, t_stop);
+  }
+};
+
+}  // namespace
+
+ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints& x,
+                                double window_lo, double window_hi, double toc_err,
+                                double t_stop) {
+  SinglePair pair{kind, x, window_lo, window_hi, toc_err, t_stop, {}};
+  runStages(pair);
+  return pair.result;
 }
 
 namespace {
@@ -435,7 +442,8 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
   constexpr double kParallel = 0x1p-48;
   const bool vf = kind == ContinuousContactKind::kVertexFace;
   const Pair pair(kind, x);
-  const Vec u = pair.u.at(t), v_there = pair.v.at(t), w_there = pair.w.at(t);
+  const Vec u = pair.difference[kU].at(t), v_there = pair.difference[kV].at(t),
+            w_there = pair.difference[kW].at(t);
   const double v_scale = scaleOf(v_there), w_scale = scaleOf(w_there);
   const Vec v = v_scale * v_there, w = w_scale * w_there;
   Vec n = cross(v, w);

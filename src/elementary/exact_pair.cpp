@@ -45,19 +45,22 @@ std::array<MovingPoint, 4> integerPaths(const FeaturePoints& x,
 
 ExactPair::ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
                      const FrameDigits& digits)
-    : kind_(kind), p_(integerPaths(x, digits)) {
-  const auto& [a, b, c, d] = p_;
-  u_ = isVertexFace() ? a - b : c - a;
-  v_ = isVertexFace() ? c - b : b - a;
-  w_ = isVertexFace() ? d - b : d - c;
+    : table_(pairTable(kind)),
+      is_edge_edge_(kind == ContinuousContactKind::kEdgeEdge),
+      p_(integerPaths(x, digits)) {
+  for (std::size_t i = 0; i < differences_.size(); ++i) {
+    const auto [to, from] = table_.difference[i];
+    differences_[i] = p_[to] - p_[from];
+  }
+  const auto& [u, v, w, r, q] = differences_;
   if (const int axis = axisOfCommonPlane(x); axis >= 0) {
     const auto k = static_cast<std::size_t>(axis);
-    n_[k] = crossComponent(v_, w_, k);
+    n_[k] = crossComponent(v, w, k);
     return;
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    n_[k] = crossComponent(v_, w_, k);
-    volume_ += u_[k] * n_[k];
+    n_[k] = crossComponent(v, w, k);
+    volume_ += u[k] * n_[k];
   }
 }
 
@@ -75,13 +78,13 @@ std::vector<Root> ExactPair::candidates() const {
   for (std::size_t k = 0; k < 3; ++k)
     if (!n_[k].isZero()) {
       addRootsOf(n_[k]);
-      for (std::size_t i = 0; i < numWeights(); ++i) addRootsOf(weight(i, k));
+      for (int i = 0; i < table_.num_inside; ++i) addRootsOf(weight(i, k));
       return times;
     }
   // Always parallel, or without area. Parallel edges touch only while a is on the line
   // of cd, or c is d.
-  if (!isVertexFace())
-    for (const Polynomial& off : cross(u_, w_))
+  if (is_edge_edge_)
+    for (const Polynomial& off : cross(differences_[kU], differences_[kW]))
       if (!off.isZero()) {
         addRootsOf(off);
         return times;
@@ -106,7 +109,7 @@ bool ExactPair::touchAt(Root& t) const {
   for (std::size_t k = 0; k < 3; ++k) {
     const int sign = t.signOf(n_[k]);
     if (sign == 0) continue;
-    for (std::size_t i = 0; i < numWeights(); ++i)
+    for (int i = 0; i < table_.num_inside; ++i)
       if (sign * t.signOf(weight(i, k)) < 0) return false;
     return true;
   }
@@ -116,22 +119,18 @@ bool ExactPair::touchAt(Root& t) const {
 }
 
 /// Component k of the cross product that gives weight i.
-Polynomial ExactPair::weight(std::size_t i, std::size_t k) const {
-  const auto& [a, b, c, d] = p_;
-  const auto component = [k](const MovingPoint& x, const MovingPoint& y) {
-    return crossComponent(x, y, k);
-  };
-  if (i == 0) return component(u_, w_);
-  if (isVertexFace()) return i == 1 ? component(v_, u_) : component(c - a, d - a);
-  return i == 1   ? component(b - c, w_)
-         : i == 2 ? component(u_, v_)
-                  : component(v_, d - a);
+Polynomial ExactPair::weight(int i, std::size_t k) const {
+  const auto& [x, y] = table_.inside[i];
+  return crossComponent(differences_[x], differences_[y], k);
 }
 
 std::vector<ExactPair::PointAndSegment> ExactPair::pointsOnSegments() const {
-  const auto& [a, b, c, d] = p_;
-  if (isVertexFace()) return {{a, b, c}, {a, c, d}, {a, d, b}};
-  return {{a, c, d}, {b, c, d}, {c, a, b}, {d, a, b}};
+  std::vector<PointAndSegment> all;
+  for (int i = 0; i < table_.num_inside; ++i) {
+    const auto [p, q, r] = table_.meeting[i];
+    all.push_back({p_[p], p_[q], p_[r]});
+  }
+  return all;
 }
 
 bool ExactPair::isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,

@@ -13,23 +13,17 @@
 
 #include "elementary/feature_points.h"
 #include "elementary/frame_digits.h"
+#include "elementary/pair_table.h"
 #include "numerics/exact_polynomial.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// The conditions of a contact.
-///
-/// With u, v, w, n = v x w as in elementary_test.cpp, the features' points are coplanar
-/// where u . n = 0. Seen along an axis k in which n does not vanish, their plane is seen
-/// one to one, and the weights of the contact are quotients of components k: VF u = beta
-/// v + gamma w with beta = (u x w)_k / n_k, gamma = (v x u)_k / n_k, 1 - beta - gamma =
-/// ((b-p) x (c-p))_k / n_k; EE u = s v - r w with s = (u x w)_k / n_k, 1 - s = ((b-c) x
-/// w)_k / n_k, r = (u x v)_k / n_k, 1 - r = (v x (d-a))_k / n_k. All have to be >= 0.
-///
-/// Where n = 0, a triangle without area is the union of its edges, and two parallel edges
-/// touch in an end of one of them.
+/// The conditions of a contact, see pair_table.h. Seen along an axis k in which n does
+/// not vanish, the plane of the points is seen one to one, and the weights of the contact
+/// are quotients of components k: those of the inside conditions' cross products, and
+/// n_k. All have to be >= 0.
 class ExactPair {
  public:
   using MovingPoint = std::array<Polynomial, 3>;
@@ -51,16 +45,16 @@ class ExactPair {
     const MovingPoint &p, &q, &r;
   };
 
-  bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
-  std::size_t numWeights() const { return isVertexFace() ? 3 : 4; }
-  Polynomial weight(std::size_t i, std::size_t k) const;
+  Polynomial weight(int i, std::size_t k) const;
   std::vector<PointAndSegment> pointsOnSegments() const;
   static bool isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,
                             const MovingPoint& r);
 
-  ContinuousContactKind kind_;
+  const PairTable& table_;
+  bool is_edge_edge_;
   std::array<MovingPoint, 4> p_;
-  MovingPoint u_, v_, w_, n_;
+  std::array<MovingPoint, kQ + 1> differences_;
+  MovingPoint n_;
   Polynomial volume_;
 };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "elementary/pair_table.h"
 #include "numerics/error_bounds.h"
 #include "numerics/illinois.h"
 
@@ -243,18 +244,13 @@ int axisOfCommonPlane(const FeaturePoints& x) {
 ElementaryResult solveInPlane(ContinuousContactKind kind, const FeaturePoints& x,
                               int axis, double window_lo, double window_hi,
                               double toc_err) {
-  struct PointAndSegment {
-    int p, q, r;
-  };
-  static constexpr PointAndSegment kVertexFace[3] = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}},
-                                   kEdgeEdge[4] = {
-                                       {0, 2, 3}, {1, 2, 3}, {2, 0, 1}, {3, 0, 1}};
+  const PairTable& table = pairTable(kind);
   const bool vf = kind == ContinuousContactKind::kVertexFace;
   if (window_lo > 0 && !areApartAt(window_lo, vf, x, axis))
     return {Answer::kUnsure, window_lo, window_hi, DecidedBy::kSolver};
   FirstContact found;
-  for (int i = 0; i < (vf ? 3 : 4); ++i) {
-    const auto [p, q, r] = vf ? kVertexFace[i] : kEdgeEdge[i];
+  for (int i = 0; i < table.num_inside; ++i) {
+    const auto [p, q, r] = table.meeting[i];
     findPointOnSegment(x[p], x[q], x[r], axis, window_lo, std::min(window_hi, found.hi),
                        toc_err, found);
   }

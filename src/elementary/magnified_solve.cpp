@@ -7,6 +7,7 @@
 #include <limits>
 #include <optional>
 
+#include "elementary/pair_table.h"
 #include "elementary/separating_direction.h"
 #include "numerics/error_bounds.h"
 #include "numerics/exact_polynomial.h"
@@ -129,13 +130,8 @@ struct Interval {
   unsigned m;
 };
 
-/// The points whose differences u, v and w are, of a VF and of an EE pair.
-constexpr int kEnds[2][3][2] = {{{0, 1}, {2, 1}, {3, 1}}, {{2, 0}, {1, 0}, {3, 2}}};
-
 /// The differences of the pair's points as integers, and what of them is in an interval.
-/// Letters as in solveCoplanarity(): the volume is u . (v x w), VF (p; a, b, c): u = p-a,
-/// v = b-a, w = c-a, r = b-p, q = c-p; EE (a b; c d): u = c-a, v = b-a, w = d-c, r = b-c,
-/// q = d-a, z = d-b.
+/// Letters as in pair_table.h.
 template <std::size_t kWords>
 class MagnifiedPair {
  public:
@@ -145,20 +141,20 @@ class MagnifiedPair {
 
   MagnifiedPair(ContinuousContactKind kind, const FeaturePoints& x,
                 const FrameDigits& digits)
-      : is_vertex_face_(kind == ContinuousContactKind::kVertexFace) {
+      : kind_(kind) {
     // A difference of differences, and a sign.
     time_bits_ = std::min(kMaxTimeBits, Integer::kBits - digits.num_digits - 4);
     if (!fits()) return;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto& ends = kEnds[is_vertex_face_ ? 0 : 1][i];
+        const auto [to, from] = table().difference[i];
         const auto difference = [&](int frame) {
           const auto at = [&](int p) {
             const BinaryDigits d((frame == 0 ? x[p].t0 : x[p].t1)[k]);
             const int shift = d.digits == 0 ? 0 : d.exponent - digits.lowest[frame];
             return Integer(d.digits, static_cast<unsigned>(shift));
           };
-          return at(ends[0]) - at(ends[1]);
+          return at(to) - at(from);
         };
         start_[i][k] = difference(0);
         change_[i][k] = difference(1) - start_[i][k];
@@ -168,7 +164,8 @@ class MagnifiedPair {
   /// Whether the integers are long enough for anything.
   bool fits() const { return time_bits_ >= kLeastTimeBits; }
   unsigned timeBits() const { return static_cast<unsigned>(time_bits_); }
-  bool isVertexFace() const { return is_vertex_face_; }
+  bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
+  const PairTable& table() const { return pairTable(kind_); }
 
   void moveTo(const Interval& i) {
     double largest = 0;
@@ -196,8 +193,12 @@ class MagnifiedPair {
   const Segment& v() const { return uvw_[1]; }
   const Segment& w() const { return uvw_[2]; }
   Segment r() const { return combined(1, -1, 0); }
-  Segment q() const { return is_vertex_face_ ? combined(2, -1, 0) : combined(0, 1, 2); }
+  Segment q() const { return isVertexFace() ? combined(2, -1, 0) : combined(0, 1, 2); }
   Segment z() const { return combined(0, 1, 2, 1); }
+  Segment difference(PairDifference i) const {
+    if (i <= kW) return uvw_[i];
+    return i == kR ? r() : i == kQ ? q() : z();
+  }
 
  private:
   using Point = Integer[3];
@@ -222,7 +223,7 @@ class MagnifiedPair {
     return rounded(lo, hi);
   }
 
-  bool is_vertex_face_;
+  ContinuousContactKind kind_;
   int time_bits_;
   Point start_[3], change_[3];
   Point at_lo_[3], at_hi_[3];
@@ -255,17 +256,12 @@ int signOver(const Cross& q, const Cross& n) {
 template <typename Pair>
 int insideness(const Pair& pair, const Cross& n) {
   int all = 1;
-  const auto require = [&](const Segment& x, const Segment& y) {
-    const int sign = signOver(Cross(x, y), n);
-    all = sign < 0 ? -1 : all > 0 ? sign : all;
-    return sign >= 0;
-  };
-  if (pair.isVertexFace())
-    require(pair.u(), pair.w()) && require(pair.v(), pair.u()) &&
-        require(pair.r(), pair.q());
-  else
-    require(pair.u(), pair.w()) && require(pair.r(), pair.w()) &&
-        require(pair.u(), pair.v()) && require(pair.v(), pair.q());
+  for (int i = 0; i < pair.table().num_inside; ++i) {
+    const auto& [x, y] = pair.table().inside[i];
+    const int sign = signOver(Cross(pair.difference(x), pair.difference(y)), n);
+    if (sign < 0) return sign;
+    if (sign == 0) all = 0;
+  }
   return all;
 }
 
@@ -543,8 +539,8 @@ bool isWorthMagnifying(ContinuousContactKind kind, const FeaturePoints& x) {
   Vec l[3], h[3];
   double volume = 1, l_norm = 0, h_norm = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    const auto& [p, q] = kEnds[kind == ContinuousContactKind::kVertexFace ? 0 : 1][i];
-    const auto &a = x[p], &b = x[q];
+    const auto [to, from] = pairTable(kind).difference[i];
+    const auto &a = x[to], &b = x[from];
     l[i] = {a.t0[0] - b.t0[0], a.t0[1] - b.t0[1], a.t0[2] - b.t0[2]};
     h[i] = {a.t1[0] - b.t1[0], a.t1[1] - b.t1[1], a.t1[2] - b.t1[2]};
     volume *= std::max(maxNorm(l[i]), maxNorm(h[i]));

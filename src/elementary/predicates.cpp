@@ -220,6 +220,12 @@ bool doSegmentsTouch(const double (&a)[3], const double (&b)[3], const double (&
          isOnSegment(d, a, b);
 }
 
+bool doTouchAtStart(ContinuousContactKind kind, const FeaturePoints& x) {
+  return kind == ContinuousContactKind::kVertexFace
+             ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
+             : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
+}
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

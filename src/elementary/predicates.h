@@ -5,6 +5,8 @@
 #ifndef FCL_CCD_ELEMENTARY_PREDICATES_H
 #define FCL_CCD_ELEMENTARY_PREDICATES_H
 
+#include "elementary/feature_points.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -30,6 +32,9 @@ bool isOnTriangle(const double (&p)[3], const double (&a)[3], const double (&b)[
 /// @brief Whether the closed segments ab and cd touch; one without length is a point.
 bool doSegmentsTouch(const double (&a)[3], const double (&b)[3], const double (&c)[3],
                      const double (&d)[3]);
+
+/// @brief Whether the features touch at t = 0; the points are finite.
+bool doTouchAtStart(ContinuousContactKind kind, const FeaturePoints& x);
 
 }  // namespace deformable
 }  // namespace detail

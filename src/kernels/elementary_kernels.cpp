@@ -10,6 +10,7 @@
 #include "hwy/foreach_target.h"
 #endif
 
+#include "elementary/pair_table.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
@@ -88,8 +89,9 @@ struct Differences {
   Doubles norm;
 };
 
-HWY_INLINE Differences differences(const Points& x, std::size_t p, std::size_t q) {
-  const Vectors t0 = x.t0[p] - x.t0[q], t1 = x.t1[p] - x.t1[q];
+HWY_INLINE Differences differences(const Points& x, const PairTable::Ends& ends) {
+  const Vectors t0 = x.t0[ends.to] - x.t0[ends.from],
+                t1 = x.t1[ends.to] - x.t1[ends.from];
   return {t0, t1, max(max(maxNorm(t0), maxNorm(t1)), broadcast<kEight>(kLeastNorm))};
 }
 
@@ -153,7 +155,7 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
     codes = eight_codes;
     windows = eight_windows;
   }
-  const bool vf = kind == ContinuousContactKind::kVertexFace;
+  const PairTable& table = pairTable(kind);
   const Points x(EightFeatures(pairs, codes));
   Doubles starts, ends;
   static_assert(sizeof(TimeWindow) == 2 * sizeof(float), "two floats each");
@@ -163,9 +165,9 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
   const Doubles lo = max(broadcast<kEight>(0.), starts - margin),
                 hi = min(broadcast<kEight>(latest),
                          min(broadcast<kEight>(1.), ends + margin));
-  const Segments u = restrict(vf ? differences(x, 0, 1) : differences(x, 2, 0), lo, hi);
-  const Segments v = restrict(vf ? differences(x, 2, 1) : differences(x, 1, 0), lo, hi);
-  const Segments w = restrict(vf ? differences(x, 3, 1) : differences(x, 3, 2), lo, hi);
+  const Segments u = restrict(differences(x, table.difference[kU]), lo, hi),
+                 v = restrict(differences(x, table.difference[kV]), lo, hi),
+                 w = restrict(differences(x, table.difference[kW]), lo, hi);
   const Cubics f = spannedVolume(u, cross(v, w));
   // min() and max() pick a NaN on the right, as the scalar filter does: there, inner
   // ones.
@@ -183,22 +185,16 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
   return {used & ~signs_agree, used & signs_agree & ~clear};
 }
 
-/// The differences that the inside conditions use, see Pair in elementary.cpp.
+/// The differences that the volumes and the inside conditions have.
 struct Pairs {
-  bool vf;
-  Differences u, v, w, r, q;
+  const PairTable& table;
+  Differences difference[kQ + 1];
 
-  HWY_INLINE explicit Pairs(const EightPairs& pairs)
-      : Pairs(Points(pairs), pairs.kind == ContinuousContactKind::kVertexFace) {}
-
- private:
-  HWY_INLINE Pairs(const Points& x, bool is_vf)
-      : vf(is_vf),
-        u(vf ? differences(x, 0, 1) : differences(x, 2, 0)),
-        v(vf ? differences(x, 2, 1) : differences(x, 1, 0)),
-        w(vf ? differences(x, 3, 1) : differences(x, 3, 2)),
-        r(vf ? differences(x, 2, 0) : differences(x, 1, 2)),
-        q(differences(x, 3, 0)) {}
+  HWY_INLINE explicit Pairs(const EightPairs& pairs) : table(pairTable(pairs.kind)) {
+    const Points x(pairs);
+    for (std::size_t i = 0; i <= kQ; ++i)
+      difference[i] = differences(x, table.difference[i]);
+  }
 };
 
 /// The lanes in which all inside conditions are certainly met, and those in which one is
@@ -227,17 +223,14 @@ struct Sides {
 HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
                             const Segments& u, const Segments& v, const Segments& w,
                             const MovingCrosses& n) {
-  const Segments r = restrict(pairs.r, lo, hi), q = restrict(pairs.q, lo, hi);
+  const Segments r = restrict(pairs.difference[kR], lo, hi),
+                 q = restrict(pairs.difference[kQ], lo, hi);
+  const Segments* const segments[] = {&u, &v, &w, &r, &q};
   const Doubles zero = broadcast<kEight>(0.);
   Sides sides = {zero <= zero, zero < zero};
-  sides.require(cross(u, w), n);
-  if (pairs.vf) {
-    sides.require(cross(v, u), n);
-    sides.require(cross(r, q), n);
-  } else {
-    sides.require(cross(r, w), n);
-    sides.require(cross(u, v), n);
-    sides.require(cross(v, q), n);
+  for (int i = 0; i < pairs.table.num_inside; ++i) {
+    const auto& [a, b] = pairs.table.inside[i];
+    sides.require(cross(*segments[a], *segments[b]), n);
   }
   return sides;
 }
@@ -280,8 +273,9 @@ HWY_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance
 EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
-  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
-                 w = restrict(pairs.w, lo, hi);
+  const Segments u = restrict(pairs.difference[kU], lo, hi),
+                 v = restrict(pairs.difference[kV], lo, hi),
+                 w = restrict(pairs.difference[kW], lo, hi);
   const Cubics f = spannedVolume(u, cross(v, w));
   EightAnswers answers;
   answers.yes = 0;
@@ -295,14 +289,16 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   const Doubles half = broadcast<kEight>(0.25 * toc_err);
   const Doubles t = lo + root(f, open, broadcast<kEight>(0x1p-10) * half / width) * width;
   const Doubles a = max(lo, t - half), b = min(hi, t + half);
-  const Segments ua = restrict(pairs.u, a, b), va = restrict(pairs.v, a, b),
-                 wa = restrict(pairs.w, a, b);
+  const Segments ua = restrict(pairs.difference[kU], a, b),
+                 va = restrict(pairs.difference[kV], a, b),
+                 wa = restrict(pairs.difference[kW], a, b);
   const MovingCrosses na = cross(va, wa);
   const Sides sides = insideness(pairs, a, b, ua, va, wa, na);
   const unsigned crosses = bits(spannedVolume(ua, na).changesSign());
   const auto isFree = [&](const Doubles& from, const Doubles& to) HWY_ATTR {
-    const Segments us = restrict(pairs.u, from, to), vs = restrict(pairs.v, from, to),
-                   ws = restrict(pairs.w, from, to);
+    const Segments us = restrict(pairs.difference[kU], from, to),
+                   vs = restrict(pairs.difference[kV], from, to),
+                   ws = restrict(pairs.difference[kW], from, to);
     return bits(spannedVolume(us, cross(vs, ws)).hasNoRoot() | (from >= to));
   };
   const unsigned first = open & isFree(lo, a);
@@ -442,8 +438,9 @@ HWY_INLINE Doubles nearestToZero(const Cubics& f) {
 EightDivisions divideEight(const EightPairs& x) {
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
-  const Segments u = restrict(pairs.u, lo, hi), v = restrict(pairs.v, lo, hi),
-                 w = restrict(pairs.w, lo, hi);
+  const Segments u = restrict(pairs.difference[kU], lo, hi),
+                 v = restrict(pairs.difference[kV], lo, hi),
+                 w = restrict(pairs.difference[kW], lo, hi);
   const MovingCrosses n = cross(v, w);
   EightDivisions out;
   out.never_inside = bits(insideness(pairs, lo, hi, u, v, w, n).negative);

@@ -6,14 +6,16 @@ namespace detail {
 namespace deformable {
 
 void CandidateCollector::flush() {
-  batch_.cull(latest(), counts_);
+  batch_.cullTriangles(latest(), counts_);
   block_.clear();
   for (const ContinuousContactKind kind :
-       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+    batch_.cull(kind, latest(), counts_);
     for (std::size_t i = 0; i < batch_.size(kind); ++i) {
       block_.emplace_back();
       batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], block_.back());
     }
+  }
   batch_.clear();
   if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());
 }

@@ -168,10 +168,8 @@ void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double lates
     addFrom(reader_a_, reader_b_, next, last, latest, with_crossings, counts);
 }
 
-void FeatureBatch::cull(double latest, StageCounts& counts) {
+void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   leaveOutApart(latest, counts);
-  cull(ContinuousContactKind::kVertexFace, latest, lists_[0], counts);
-  cull(ContinuousContactKind::kEdgeEdge, latest, lists_[1], counts);
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
@@ -209,8 +207,8 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   if (is_early) num_pairs_ = kept;
 }
 
-void FeatureBatch::cull(ContinuousContactKind kind, double latest, List& list,
-                        StageCounts& counts) {
+void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& counts) {
+  List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
   constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_,

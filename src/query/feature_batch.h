@@ -135,12 +135,16 @@ class FeatureBatch {
 
   void clear();
 
-  /// @brief Leaves the pairs of features whose moving boxes overlap, with their windows,
-  /// and the edges and faces whose boxes overlap at t = 0; none of triangles that are
-  /// apart until `latest`.
+  /// @brief Leaves no triangles that are apart until `latest`, and the edges and faces
+  /// whose boxes overlap at t = 0.
   /// @param latest  pairs that overlap only later are of no interest
-  /// @param counts  plane_culled, feature_pairs and box_culled are counted
-  void cull(double latest, StageCounts& counts);
+  /// @param counts  plane_culled is counted
+  void cullTriangles(double latest, StageCounts& counts);
+
+  /// @brief Leaves the pairs of features of one kind whose moving boxes overlap, with
+  /// their windows; after cullTriangles().
+  /// @param counts  feature_pairs and box_culled are counted
+  void cull(ContinuousContactKind kind, double latest, StageCounts& counts);
 
   /// @brief Leaves the pairs of one kind that a filter accepts.
   /// @return how many it does not
@@ -191,7 +195,6 @@ class FeatureBatch {
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
   void leaveOutApart(double latest, StageCounts& counts);
-  void cull(ContinuousContactKind kind, double latest, List& list, StageCounts& counts);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;

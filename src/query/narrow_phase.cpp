@@ -5,7 +5,6 @@
 
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
-#include "elementary/exact.h"
 #include "elementary/predicates.h"
 
 namespace fcl {
@@ -63,15 +62,30 @@ void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 
+/// What runStages() does with the pairs of one kind of a block.
+struct NarrowPhase::BlockPairs {
+  NarrowPhase& phase;
+  ContinuousContactKind kind;
+  /// As it was when the block began.
+  double latest;
+
+  void cullByBoxes() {
+    phase.batch_.cull(kind, latest, phase.counts_);
+    if (const PairFilter* filter = phase.options_.filter)
+      phase.counts_.mask_culled += phase.batch_.keep(kind, *filter);
+  }
+  void filter() { phase.filter(kind); }
+  void solvePlainCases() { phase.solvePlainCases(); }
+  void solveRest() { phase.solveRest(); }
+};
+
 void NarrowPhase::flush() {
-  batch_.cull(latest(), counts_);
+  const double latest = this->latest();
+  batch_.cullTriangles(latest, counts_);
   testCrossings();
   for (const ContinuousContactKind kind :
-       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
-    if (options_.filter) counts_.mask_culled += batch_.keep(kind, *options_.filter);
-    filter(kind);
-    solve();
-  }
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
+    runStages(BlockPairs{*this, kind, latest});
   batch_.clear();
 }
 
@@ -136,37 +150,50 @@ EightPairs NarrowPhase::eightOf(const std::vector<Piece>& pieces,
   return eight;
 }
 
-void NarrowPhase::solve() {
+/// Whole windows; what is no plain case is left in open_.
+void NarrowPhase::solvePlainCases() {
+  pieces_.clear();
+  open_.clear();
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    pieces_.push_back({i, candidates_[i].window_lo, candidates_[i].window_hi});
+  solve(
+      pieces_, [this](const Piece&) { ++counts_.solver_culled; },
+      [this](const Piece& p) { open_.push_back(p); });
+}
+
+/// Two parts of a window, the second if the first one holds no contact.
+void NarrowPhase::solveRest() {
   const auto isNo = [this](const Piece&) { ++counts_.solver_culled; };
   const auto solveAlone = [this](const Piece& p) { solve(candidates_[p.candidate]); };
-  std::vector<Piece>&pieces = pieces_[0], &open = pieces_[1], &later = pieces_[2];
-  for (std::vector<Piece>& list : pieces_) list.clear();
-  for (std::size_t i = 0; i < candidates_.size(); ++i)
-    pieces.push_back({i, candidates_[i].window_lo, candidates_[i].window_hi});
-  solve(pieces, isNo, [&open](const Piece& p) { open.push_back(p); });
+  divide(isNo, solveAlone);
+  second_parts_.clear();
+  solve(
+      pieces_,
+      [this](const Piece& p) {
+        const double window_hi = candidates_[p.candidate].window_hi;
+        second_parts_.push_back({p.candidate, p.hi, window_hi});
+      },
+      solveAlone);
+  solve(second_parts_, isNo, solveAlone);
+}
 
-  // The first part of a window, and the second if the first one holds no contact.
-  pieces.clear();
-  for (std::size_t first = 0; first < open.size() && !isDone(); first += 8) {
-    const EightDivisions found = kernels_.divide(eightOf(open, first));
-    const std::size_t last = std::min(open.size(), first + 8);
+/// Makes pieces of the first parts of those windows that can be divided.
+template <typename OnNo, typename OnOpen>
+void NarrowPhase::divide(OnNo&& on_no, OnOpen&& on_open) {
+  pieces_.clear();
+  for (std::size_t first = 0; first < open_.size() && !isDone(); first += 8) {
+    const EightDivisions found = kernels_.divide(eightOf(open_, first));
+    const std::size_t last = std::min(open_.size(), first + 8);
     for (std::size_t i = first; i < last && !isDone(); ++i) {
       const std::size_t lane = i - first;
       if (found.never_inside >> lane & 1U)
-        isNo(open[i]);
+        on_no(open_[i]);
       else if (found.divisible >> lane & 1U)
-        pieces.push_back({open[i].candidate, open[i].lo, found.at[lane]});
+        pieces_.push_back({open_[i].candidate, open_[i].lo, found.at[lane]});
       else
-        solveAlone(open[i]);
+        on_open(open_[i]);
     }
   }
-  solve(
-      pieces,
-      [this, &later](const Piece& p) {
-        later.push_back({p.candidate, p.hi, candidates_[p.candidate].window_hi});
-      },
-      solveAlone);
-  solve(later, isNo, solveAlone);
 }
 
 /// Whether a contact that may be the answer needs a tight bracket.
@@ -195,14 +222,10 @@ void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
 void NarrowPhase::solve(const FeatureCandidate& candidate) {
   const CandidatePoints paths(candidate);
   const FeaturePoints points = paths.get();
-  ElementaryResult result =
-      solveCoplanarity(candidate.kind, points, candidate.window_lo, candidate.window_hi,
-                       options_.toc_err, latest());
-  if (result.answer == Answer::kUnsure) {
-    ++counts_.exact_tests;
-    result =
-        decideExactly(candidate.kind, points, options_.toc_err, latest(), options_.t_max);
-  }
+  const ElementaryResult result =
+      decide(candidate.kind, points, candidate.window_lo, candidate.window_hi,
+             options_.toc_err, latest(), options_.t_max);
+  if (result.decided_by == DecidedBy::kExact) ++counts_.exact_tests;
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled
                                               : counts_.solver_culled);

@@ -170,8 +170,12 @@ class NarrowPhase {
   void testCrossing(std::size_t i);
   Crossing crossingAt(std::size_t i) const;
   bool accept(Crossing& crossing) const;
+  struct BlockPairs;
   void filter(ContinuousContactKind kind);
-  void solve();
+  void solvePlainCases();
+  void solveRest();
+  template <typename OnNo, typename OnOpen>
+  void divide(OnNo&& on_no, OnOpen&& on_open);
   template <typename OnNo, typename OnOpen>
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
@@ -184,8 +188,8 @@ class NarrowPhase {
   FeatureBatch batch_;
   /// Pairs of one kind that may become coplanar.
   std::vector<FeatureCandidate> candidates_;
-  /// Scratch of solve().
-  std::vector<Piece> pieces_[3];
+  /// What the kernels get, what they leave, and the second parts of divided windows.
+  std::vector<Piece> pieces_, open_, second_parts_;
   ContactSink sink_;
   FirstBracket first_;
   QueryProgress* progress_;

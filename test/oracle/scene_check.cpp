@@ -76,9 +76,10 @@ class CullCheck {
     const deformable::LeafPair leaves{a, b, 0.f};
     const deformable::LeafPair* next = &leaves;
     batch_.add(next, next + 1, 1, false, counts);
-    batch_.cull(1, counts);
+    batch_.cullTriangles(1, counts);
     for (const ContinuousContactKind kind :
-         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+      batch_.cull(kind, 1, counts);
       for (std::size_t i = 0; i < batch_.size(kind); ++i) {
         deformable::FeatureCandidate c;
         batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i], c);
@@ -88,6 +89,7 @@ class CullCheck {
                             kind, batch_.pairs(), batch_.codes(kind) + i,
                             batch_.windows(kind) + i, 1, 1.));
       }
+    }
     batch_.clear();
     forEachPair(a, b, [&](const MovingPair& pair, const PairKey& key) {
       if (std::find(left.begin(), left.end(), key) == left.end()) addCulled(kBoxes, pair);
