@@ -30,8 +30,8 @@ struct Body {
   BVHModel<OBBRSS<double>> model;
 };
 
-/// One motion: a turns by 90 degrees in place, b rests at an offset.
-struct Scene {
+/// Body a turns by 90 degrees in place, body b rests at an offset.
+struct TurningPair {
   ReferenceMotion turn;
   Transform3<double> place{Transform3<double>::Identity()};
   Vector3<double> direction;
@@ -39,7 +39,7 @@ struct Scene {
   void setOffset(double offset) { place.translation() = offset * direction; }
 };
 
-MotionAnswer firstContact(const Body& a, const Body& b, const Scene& scene) {
+MotionAnswer firstContact(const Body& a, const Body& b, const TurningPair& pair) {
   const auto framesOf = [](const Body& body) {
     const double* points = body.model.vertices->data();
     return VertexFrames(points, points,
@@ -47,19 +47,20 @@ MotionAnswer firstContact(const Body& a, const Body& b, const Scene& scene) {
   };
   const RigidTree tree_a(a.model, Pose()), tree_b(b.model, Pose());
   return queryMotions(
-      MotionBody(tree_a, framesOf(a), a.model.tri_indices, scene.turn.path()),
+      MotionBody(tree_a, framesOf(a), a.model.tri_indices, pair.turn.path()),
       MotionBody(tree_b, framesOf(b), b.model.tri_indices,
-                 MotionPath::still(toPose(scene.place))),
+                 MotionPath::still(toPose(pair.place))),
       {});
 }
 
 /// FCL's samples; 2 without a contact.
-double sample(const Body& a, const Body& b, const Scene& scene, std::size_t samples) {
+double sample(const Body& a, const Body& b, const TurningPair& pair,
+              std::size_t samples) {
   const InterpMotion<double> motion(
-      scene.turn.beginning.linear(), scene.turn.beginning.translation(),
-      scene.turn.end.linear(), scene.turn.end.translation(), Vector3<double>::Zero());
-  const InterpMotion<double> rest(scene.place.linear(), scene.place.translation(),
-                                  scene.place.linear(), scene.place.translation(),
+      pair.turn.beginning.linear(), pair.turn.beginning.translation(),
+      pair.turn.end.linear(), pair.turn.end.translation(), Vector3<double>::Zero());
+  const InterpMotion<double> rest(pair.place.linear(), pair.place.translation(),
+                                  pair.place.linear(), pair.place.translation(),
                                   Vector3<double>::Zero());
   ContinuousCollisionRequest<double> request(samples);
   request.ccd_solver_type = CCDC_NAIVE;
@@ -68,21 +69,22 @@ double sample(const Body& a, const Body& b, const Scene& scene, std::size_t samp
   return result.is_collide ? result.time_of_contact : 2;
 }
 
-Scene makeScene(std::uint64_t seed, const Body& a, const Body& b, double gap) {
+TurningPair makeTurningPair(std::uint64_t seed, const Body& a, const Body& b,
+                            double gap) {
   Random random(seed);
-  Scene scene;
-  scene.turn.beginning.linear() = randomRotation(random);
-  scene.turn.turn(randomDirection(random), M_PI / 2);
-  scene.place.linear() = randomRotation(random);
-  scene.direction = randomDirection(random);
+  TurningPair pair;
+  pair.turn.beginning.linear() = randomRotation(random);
+  pair.turn.turn(randomDirection(random), M_PI / 2);
+  pair.place.linear() = randomRotation(random);
+  pair.direction = randomDirection(random);
   double lo = 0, hi = 3;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (lo + hi);
-    scene.setOffset(middle);
-    (firstContact(a, b, scene).contacts.empty() ? hi : lo) = middle;
+    pair.setOffset(middle);
+    (firstContact(a, b, pair).contacts.empty() ? hi : lo) = middle;
   }
-  scene.setOffset((gap < 0 ? lo : hi) + gap);
-  return scene;
+  pair.setOffset((gap < 0 ? lo : hi) + gap);
+  return pair;
 }
 
 double medianOf(std::vector<double> x) {
@@ -112,12 +114,13 @@ void benchmarkMotions(int repeats) {
     int contacts = 0, given_up = 0, missed = 0;
     double late = 0;
     for (int i = 0; i < kMotions; ++i) {
-      const Scene scene = makeScene(100 + static_cast<std::uint64_t>(i), a, b, gap);
+      const TurningPair pair =
+          makeTurningPair(100 + static_cast<std::uint64_t>(i), a, b, gap);
       MotionAnswer answer;
       ours.push_back(
-          leastMilliseconds(repeats, [&] { answer = firstContact(a, b, scene); }));
+          leastMilliseconds(repeats, [&] { answer = firstContact(a, b, pair); }));
       double sampled = 2;
-      fcl.push_back(leastMilliseconds(1, [&] { sampled = sample(a, b, scene, 1000); }));
+      fcl.push_back(leastMilliseconds(1, [&] { sampled = sample(a, b, pair, 1000); }));
       if (answer.contacts.empty()) continue;
       ++contacts;
       given_up += answer.contacts[0].certainty == MotionCertainty::kGivenUp;

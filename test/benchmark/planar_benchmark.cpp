@@ -28,7 +28,7 @@ using Model = DeformableBVHModel<>;
 using Place = std::function<Vector3<double>(const Vector3<double>&)>;
 
 /// A scene of one or two meshes in two frames.
-struct Scene {
+struct PlanarScene {
   const char* name;
   TestMesh a;
   std::vector<Vector3<double>> a_end;
@@ -44,16 +44,17 @@ std::vector<Vector3<double>> placed(const std::vector<Vector3<double>>& points,
 }
 
 /// Two sheets of 2 x 100 x 100 triangles, the second moved by the map.
-Scene twoSheets(const char* name, const SheetPosition& surface, const Place& beginning,
-                const Place& end) {
-  Scene scene{name, makeSheet(100, 100, surface), {}, makeSheet(100, 100, surface), {}};
+PlanarScene twoSheets(const char* name, const SheetPosition& surface,
+                      const Place& beginning, const Place& end) {
+  PlanarScene scene{
+      name, makeSheet(100, 100, surface), {}, makeSheet(100, 100, surface), {}};
   scene.a_end = scene.a.vertices;
   scene.b_end = placed(scene.b.vertices, end);
   scene.b.vertices = placed(scene.b.vertices, beginning);
   return scene;
 }
 
-Scene tilted(Scene scene) {
+PlanarScene tilted(PlanarScene scene) {
   const Matrix3<double> turn =
       AngleAxis<double>(0.7, Vector3<double>(1, 2, 3).normalized()).toRotationMatrix();
   for (auto* points : {&scene.a.vertices, &scene.a_end, &scene.b.vertices, &scene.b_end})
@@ -62,8 +63,8 @@ Scene tilted(Scene scene) {
   return scene;
 }
 
-Scene still(const char* name, TestMesh mesh) {
-  Scene scene{name, std::move(mesh), {}, {}, {}};
+PlanarScene still(const char* name, TestMesh mesh) {
+  PlanarScene scene{name, std::move(mesh), {}, {}, {}};
   scene.a_end = scene.a.vertices;
   return scene;
 }
@@ -80,7 +81,7 @@ using Name = std::tuple<ContinuousContactKind, bool, std::array<int, 4>>;
 
 /// The candidates of the scene that touch, by the exact stage alone.
 template <typename HandOut>
-std::set<Name> truthOf(const Scene& scene, HandOut&& handOut) {
+std::set<Name> truthOf(const PlanarScene& scene, HandOut&& handOut) {
   namespace deformable = detail::deformable;
   std::set<Name> truth;
   const bool self = scene.b.vertices.empty();
@@ -110,7 +111,7 @@ std::set<Name> truthOf(const Scene& scene, HandOut&& handOut) {
   return truth;
 }
 
-void run(const Scene& scene, int repeats) {
+void run(const PlanarScene& scene, int repeats) {
   Model a, b;
   makeStep(a, scene.a, scene.a_end);
   const bool self = scene.b.vertices.empty();
@@ -171,18 +172,19 @@ void benchmarkPlanar(int repeats) {
   run(twoSheets("waves through waves", wavy, moved(0.0123, 0.0071, 0.02),
                 moved(0.0411, 0.0313, -0.01)),
       repeats);
-  const Scene sliding = twoSheets("flat sheets sliding", flat, moved(0.0123, 0.0071, 0),
-                                  moved(0.0411, 0.0313, 0));
+  const PlanarScene sliding = twoSheets(
+      "flat sheets sliding", flat, moved(0.0123, 0.0071, 0), moved(0.0411, 0.0313, 0));
   run(sliding, repeats);
   run(tilted(sliding), repeats);
-  const Scene aligned = twoSheets("flat sheets sliding along their edges", flat,
-                                  moved(0, 0, 0), moved(0.0351, 0, 0));
+  const PlanarScene aligned = twoSheets("flat sheets sliding along their edges", flat,
+                                        moved(0, 0, 0), moved(0.0351, 0, 0));
   run(aligned, repeats);
   run(tilted(aligned), repeats);
   const auto folded = [](double u, double v) {
     return Vector3<double>(u < 0.5 ? u : 1 - u, v, 0);
   };
-  const Scene fold = still("folded flat sheet at rest", makeSheet(200, 100, folded));
+  const PlanarScene fold =
+      still("folded flat sheet at rest", makeSheet(200, 100, folded));
   run(fold, repeats);
   run(tilted(fold), repeats);
   run(still("waves at rest", makeSheet(100, 100, wavy)), repeats);

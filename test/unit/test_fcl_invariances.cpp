@@ -207,7 +207,7 @@ TEST(FeatureTestInvariances, TypeOfNumber) {
 /// A mesh with itself, or with another one. Coordinates are multiples of 2^-12 (in every
 /// third scene of 2^-3: much then touches exactly) below 8: floats hold them, also after
 /// the motions below.
-struct Scene {
+struct GridScene {
   MovingMesh a;
   std::optional<MovingMesh> b;
 };
@@ -219,7 +219,7 @@ MovingMesh onGrid(MovingMesh mesh, double step) {
   return mesh;
 }
 
-Scene makeScene(std::uint64_t seed) {
+GridScene makeGridScene(std::uint64_t seed) {
   Random random(seed);
   const double step = seed % 3 ? 0x1p-12 : 0x1p-3;
   const auto sheet = [&] { return onGrid(crumpledSheet(random, 6, 0.3), step); };
@@ -255,7 +255,7 @@ struct Naming {
   Ids a, b;
 };
 
-Naming sameNames(const Scene& scene) {
+Naming sameNames(const GridScene& scene) {
   Naming naming;
   naming.a.resize(scene.a.t0.size());
   naming.b.resize(scene.b ? scene.b->t0.size() : naming.a.size());
@@ -286,7 +286,7 @@ auto modelOf(const MovingMesh& mesh) {
 
 /// All contacts, by the names that their vertices have in `naming`.
 template <typename ModelA, typename ModelB = ModelA>
-Answer answerOf(const Scene& scene, const Naming& naming) {
+Answer answerOf(const GridScene& scene, const Naming& naming) {
   using S = typename std::decay_t<decltype(*ModelA::vertices)>::Scalar;
   const auto a = modelOf<ModelA>(scene.a);
   ContinuousContactRequest<S> request;
@@ -308,7 +308,9 @@ using Ours = DeformableBVHModel<KDOP<double, 16>>;
 using OursOfFloats = DeformableBVHModel<KDOP<float, 16>>;
 using Plain = BVHModel<OBBRSS<double>>;
 
-Answer answerOf(const Scene& scene) { return answerOf<Ours>(scene, sameNames(scene)); }
+Answer answerOf(const GridScene& scene) {
+  return answerOf<Ours>(scene, sameNames(scene));
+}
 
 void expectSamePairs(const Answer& x, const Answer& y) {
   EXPECT_EQ(x.contacts.size(), y.contacts.size());
@@ -329,12 +331,12 @@ void expectSame(const Answer& x, const Answer& y) {
 
 /// Calls visit(scene, its answer, random) for scenes of each kind.
 void forEachScene(
-    const std::function<void(const Scene&, const Answer&, Random&)>& visit) {
+    const std::function<void(const GridScene&, const Answer&, Random&)>& visit) {
   std::size_t contacts = 0;
   for (std::uint64_t seed = 700; seed < 748; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed + 1000);
-    const Scene scene = makeScene(seed);
+    const GridScene scene = makeGridScene(seed);
     const Answer answer = answerOf(scene);
     contacts += answer.contacts.size();
     visit(scene, answer, random);
@@ -345,7 +347,7 @@ void forEachScene(
 
 /// The scene with visit(mesh) done to each mesh.
 template <typename Visit>
-Scene changed(Scene scene, Visit&& visit) {
+GridScene changed(GridScene scene, Visit&& visit) {
   visit(scene.a);
   if (scene.b) visit(*scene.b);
   return scene;
@@ -353,7 +355,7 @@ Scene changed(Scene scene, Visit&& visit) {
 
 /// The scene with every position put through f.
 template <typename F>
-Scene mappedScene(const Scene& scene, F&& f) {
+GridScene mappedScene(const GridScene& scene, F&& f) {
   return changed(scene, [&f](MovingMesh& mesh) {
     for (auto* frame : {&mesh.t0, &mesh.t1})
       for (auto& p : *frame) p = f(p);
@@ -384,8 +386,8 @@ Ids renumber(MovingMesh& mesh, Random& random) {
 }
 
 TEST(SceneInvariances, VertexIds) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random& random) {
-    Scene other = scene;
+  forEachScene([](const GridScene& scene, const Answer& expected, Random& random) {
+    GridScene other = scene;
     Naming naming;
     naming.a = renumber(other.a, random);
     if (other.b) naming.b = renumber(*other.b, random);
@@ -394,16 +396,16 @@ TEST(SceneInvariances, VertexIds) {
 }
 
 TEST(SceneInvariances, OrderOfTriangles) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random& random) {
-    const Scene other =
+  forEachScene([](const GridScene& scene, const Answer& expected, Random& random) {
+    const GridScene other =
         changed(scene, [&random](MovingMesh& mesh) { shuffle(mesh.triangles, random); });
     expectSame(answerOf(other), expected);
   });
 }
 
 TEST(SceneInvariances, OrderInsideTriangles) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random& random) {
-    const Scene other = changed(scene, [&random](MovingMesh& mesh) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random& random) {
+    const GridScene other = changed(scene, [&random](MovingMesh& mesh) {
       for (Triangle& t : mesh.triangles) {
         const auto& order = kOrders[random.index(6)];
         t = {t[static_cast<int>(order[0])], t[static_cast<int>(order[1])],
@@ -415,9 +417,9 @@ TEST(SceneInvariances, OrderInsideTriangles) {
 }
 
 TEST(SceneInvariances, OrderOfModels) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     if (!scene.b) return;
-    const Scene other{*scene.b, scene.a};
+    const GridScene other{*scene.b, scene.a};
     const Answer swapped = answerOf(other);
     Answer back{{}, swapped.crossing};
     for (const auto& [name, bracket] : swapped.contacts) {
@@ -431,7 +433,7 @@ TEST(SceneInvariances, OrderOfModels) {
 }
 
 TEST(SceneInvariances, Axes) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     for (unsigned view = 0; view < 8; ++view) {
       const std::size_t order = view % kOrders.size();
       expectSame(
@@ -443,7 +445,7 @@ TEST(SceneInvariances, Axes) {
 }
 
 TEST(SceneInvariances, PowersOfTwo) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     for (const int exponent : {-60, -10, 1, 20, 60})
       expectSame(
           answerOf(mappedScene(scene,
@@ -455,7 +457,7 @@ TEST(SceneInvariances, PowersOfTwo) {
 }
 
 TEST(SceneInvariances, DirectionOfTime) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     expectSamePairs(
         answerOf(changed(scene, [](MovingMesh& mesh) { std::swap(mesh.t0, mesh.t1); })),
         expected);
@@ -463,10 +465,10 @@ TEST(SceneInvariances, DirectionOfTime) {
 }
 
 TEST(SceneInvariances, Place) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     for (const double far : {4., 1000., 0x1p30}) {
       const Vector3<double> shift(far + 0x1p-12, -far, 0.5);
-      const Scene other = mappedScene(scene, [&shift](const Vector3<double>& p) {
+      const GridScene other = mappedScene(scene, [&shift](const Vector3<double>& p) {
         const Vector3<double> q = p + shift;
         EXPECT_TRUE(q - shift == p) << "not exact";
         return q;
@@ -477,7 +479,7 @@ TEST(SceneInvariances, Place) {
 }
 
 TEST(SceneInvariances, TypeOfModelAndNumber) {
-  forEachScene([](const Scene& scene, const Answer& expected, Random&) {
+  forEachScene([](const GridScene& scene, const Answer& expected, Random&) {
     const Naming naming = sameNames(scene);
     expectSame(answerOf<OursOfFloats>(scene, naming), expected);
     expectSame(answerOf<Plain>(scene, naming), expected);

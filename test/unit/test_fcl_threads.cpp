@@ -49,7 +49,7 @@ constexpr ContinuousQuery kQueries[] = {ContinuousQuery::kAll, ContinuousQuery::
 constexpr std::size_t kNoLimit = std::numeric_limits<std::size_t>::max();
 
 /// One mesh with itself, or two of which the first may move.
-struct Scene {
+struct NamedScene {
   std::string name;
   std::shared_ptr<const Geometry> o1, o2;
   Pose end = Pose::Identity();
@@ -85,9 +85,9 @@ Pose translation(double x, double y, double z) {
 
 /// Scenes with few and many contacts, at different times and all at the same one, with
 /// and without surfaces that cross at the start.
-const std::vector<Scene>& scenes() {
-  static const std::vector<Scene> all = [] {
-    std::vector<Scene> out;
+const std::vector<NamedScene>& scenes() {
+  static const std::vector<NamedScene> all = [] {
+    std::vector<NamedScene> out;
     const TestMesh sheet = bentSheet(16), tangle = shaken(sheet, 0.08, 9);
     out.push_back({"crumpling", makeModel<Model>(sheet, tangle), nullptr});
     out.push_back(
@@ -134,7 +134,7 @@ void expectSame(const Result& x, const Result& y) {
 
 TEST(FCL_THREADS, scenesHaveWhatTheyShould) {
   std::size_t contacts = 0, crossing = 0;
-  for (const Scene& scene : scenes()) {
+  for (const NamedScene& scene : scenes()) {
     const Result all = scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1));
     if (scene.name != "apart") {
       EXPECT_GT(all.contacts.size(), 30U) << scene.name;
@@ -148,7 +148,7 @@ TEST(FCL_THREADS, scenesHaveWhatTheyShould) {
 }
 
 TEST(FCL_THREADS, sameAnswerWithAnyNumber) {
-  for (const Scene& scene : scenes())
+  for (const NamedScene& scene : scenes())
     for (const ContinuousQuery query : kQueries)
       for (const std::size_t max_contacts : {std::size_t{3}, kNoLimit})
         for (const double toc_err : {1e-2, 1e-4}) {
@@ -192,7 +192,7 @@ void expectFirstOf(const Result& first, const Result& all, bool may_repeat) {
 // A first-contact query returns some of all contacts, whatever the number that is kept
 // and that of threads.
 TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
-  for (const Scene& scene : scenes())
+  for (const NamedScene& scene : scenes())
     for (const double toc_err : {0.3, 1e-2, 1e-4, 1e-9}) {
       SCOPED_TRACE(scene.name + ", toc_err " + std::to_string(toc_err));
       const Result whole =
@@ -216,7 +216,7 @@ TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
 
 // The earliest so many are the beginning of all.
 TEST(FCL_THREADS, fewAreTheBeginningOfAll) {
-  for (const Scene& scene : scenes())
+  for (const NamedScene& scene : scenes())
     for (const double toc_err : {0.3, 1e-4}) {
       SCOPED_TRACE(scene.name + ", toc_err " + std::to_string(toc_err));
       const Result all =
@@ -233,7 +233,7 @@ TEST(FCL_THREADS, fewAreTheBeginningOfAll) {
 }
 
 TEST(FCL_THREADS, refusesANegativeNumber) {
-  const Scene& scene = scenes().front();
+  const NamedScene& scene = scenes().front();
   for (const int threads : {-1, std::numeric_limits<int>::min()})
     expectRefused(
         [&] { scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads)); },
@@ -246,14 +246,14 @@ TEST(FCL_THREADS, refusesANegativeNumber) {
 // Queries of several threads on the same models.
 TEST(FCL_THREADS, manyCallersOnTheSameModels) {
   std::vector<Result> expected;
-  for (const Scene& scene : scenes())
+  for (const NamedScene& scene : scenes())
     for (const ContinuousQuery query : kQueries)
       expected.push_back(scene.run(requestOf(query, kNoLimit, 1e-4, 1)));
   std::vector<std::vector<Result>> results(4);
   std::vector<std::thread> callers;
   for (std::size_t i = 0; i < results.size(); ++i)
     callers.emplace_back([&, i] {
-      for (const Scene& scene : scenes())
+      for (const NamedScene& scene : scenes())
         for (const ContinuousQuery query : kQueries)
           results[i].push_back(
               scene.run(requestOf(query, kNoLimit, 1e-4, static_cast<int>(i) % 3)));
@@ -272,7 +272,7 @@ TEST(FCL_THREADS, exceptionsComeThrough) {
   const auto rigid = makeModel<Plain>(moved(flat, 0, 0, 1));
   for (const int v : {77, 200, 333, 500})
     rigid->vertices[v][2] = std::numeric_limits<double>::quiet_NaN();
-  const Scene scene{"broken", rigid, makeModel<Plain>(flat), translation(0, 0, -2)};
+  const NamedScene scene{"broken", rigid, makeModel<Plain>(flat), translation(0, 0, -2)};
   const auto messageOf = [&](int threads) {
     try {
       scene.run(requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads));
@@ -294,7 +294,7 @@ struct Outcome {
   Result result;
   std::string error;
 
-  Outcome(const Scene& scene, const Request& request) {
+  Outcome(const NamedScene& scene, const Request& request) {
     try {
       result = scene.run(request);
     } catch (const Exception& thrown) {
@@ -345,7 +345,7 @@ TEST(FCL_THREADS, errorsWithAnyNumber) {
         for (int i = 0; i < 2; ++i)
           rigid->vertices[random.index(upper.vertices.size())][1] =
               std::numeric_limits<double>::quiet_NaN();
-        const Scene scene{"broken", rigid, lower, translation(0, 0, -approach.way)};
+        const NamedScene scene{"broken", rigid, lower, translation(0, 0, -approach.way)};
         const Outcome one(scene, requestOf(query, kNoLimit, 1e-4, 1));
         ++(one.error.empty() ? answered : failed);
         for (int i = 0; i < 3; ++i)
@@ -370,7 +370,7 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
   const TestMesh upper = moved(bentSheet(16), 0, 0, 1);
   const auto lower = makeModel<Plain>(makeSheet(16, 16));
   const auto rigid = makeModel<Plain>(upper);
-  const Scene scene{"broken", rigid, lower, translation(0, 0, -1.5)};
+  const NamedScene scene{"broken", rigid, lower, translation(0, 0, -1.5)};
   const Request request = requestOf(ContinuousQuery::kFirst, kNoLimit, 1e-4, 1);
   const double toc = scene.run(request).time_of_contact;
   const auto lowest =
@@ -395,7 +395,7 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
 // The caller's floating-point mode changes no answer, and is the same afterwards. Even
 // where a pose is smaller than what it keeps.
 TEST(FCL_THREADS, callersFloatingPointMode) {
-  std::vector<Scene> all = scenes();
+  std::vector<NamedScene> all = scenes();
   TestMesh face, tip;
   face.vertices = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   tip.vertices = {{0, 0, -1e-310}, {0.1, 0, -1}, {0, 0.1, -1}};
@@ -404,7 +404,7 @@ TEST(FCL_THREADS, callersFloatingPointMode) {
                  translation(0, 0, 2e-310)});
   all.push_back({"tiny motion of a deformable model", makeModel<Model>(tip),
                  makeModel<Model>(face), translation(0, 0, 2e-310)});
-  for (const Scene& scene : all)
+  for (const NamedScene& scene : all)
     for (const int threads : {1, 4, 0}) {
       SCOPED_TRACE(scene.name + ", " + std::to_string(threads) + " threads");
       const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads);
@@ -516,7 +516,7 @@ TEST(FCL_THREADS, sameModelWithAnyNumber) {
   for (const Step& step : steps()) {
     const auto one = step.model(1), still = step.model(1);
     ASSERT_EQ(step.update(*one), BVH_OK);
-    const Scene scene{step.name, one, nullptr};
+    const NamedScene scene{step.name, one, nullptr};
     const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1);
     const Result expected = scene.run(request);
     for (const int threads : {2, 3, 4, 0, std::numeric_limits<int>::max()}) {
@@ -529,7 +529,7 @@ TEST(FCL_THREADS, sameModelWithAnyNumber) {
       expectSameModel(*several, *one);
       ASSERT_FALSE(HasFailure());
       if (threads == 2)
-        expectSame(Scene{step.name, several, nullptr}.run(request), expected);
+        expectSame(NamedScene{step.name, several, nullptr}.run(request), expected);
     }
   }
 }
@@ -631,7 +631,7 @@ class Watcher : public tbb::task_scheduler_observer {
 
 /// Every scene and query, in an arena.
 void runAll(tbb::task_arena& arena, int num_threads) {
-  for (const Scene& scene : scenes())
+  for (const NamedScene& scene : scenes())
     for (const ContinuousQuery query : kQueries) {
       Result result;
       const Request request = requestOf(query, kNoLimit, 1e-4, num_threads);
@@ -713,7 +713,7 @@ TEST(FCL_THREADS, arenaOfTwoIsRespected) {
 // A caller's other tasks are not done while it waits in a query, where it may hold what
 // they want.
 TEST(FCL_THREADS, callersOtherTasksWait) {
-  const Scene& scene = scenes().front();
+  const NamedScene& scene = scenes().front();
   const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 0);
   tbb::task_arena arena(4);
   std::mutex mutex;

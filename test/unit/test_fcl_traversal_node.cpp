@@ -62,9 +62,9 @@ std::vector<Row> rowsOf(const ContinuousContactResult<S>& result) {
   return rows;
 }
 
-/// One scene: a pair, or one model with itself.
+/// One model with itself, or two models of which the first moves.
 template <typename S>
-struct Scene {
+struct PosedScene {
   std::shared_ptr<CollisionGeometry<S>> o1;
   std::shared_ptr<CollisionGeometry<S>> o2;  // null: o1 with itself
   Transform3<S> beg{Transform3<S>::Identity()};
@@ -98,7 +98,7 @@ struct Scene {
 };
 
 template <typename S>
-void expectNodeAgrees(const Scene<S>& scene, std::size_t at_least) {
+void expectNodeAgrees(const PosedScene<S>& scene, std::size_t at_least) {
   const std::size_t all = std::size_t{1} << 30;
   EXPECT_GE(scene.expected(all, true).contacts.size(), at_least);
   Contact<S> earlier;
@@ -146,7 +146,7 @@ void expectAgreement() {
   expectNodeAgrees<S>({falling, plain}, 100);
   expectNodeAgrees<S>({falling, own}, 100);
   expectNodeAgrees<S>({own, falling}, 100);
-  Scene<S> posed{falling, own};
+  PosedScene<S> posed{falling, own};
   posed.beg.translation() = Vector3<S>(S(0.1), 0, 0);
   posed.end.translation() = Vector3<S>(0, S(0.2), S(-0.1));
   expectNodeAgrees<S>(posed, 50);
@@ -170,8 +170,8 @@ TEST(TraversalNode, AgreesWithThePublicCallsInFloat) { expectAgreement<float>();
 // Which triangle of a rigid mesh stands for a feature depends on the order of traversal.
 TEST(TraversalNode, AgreesOnRigidMeshes) {
   using Plain = BVHModel<OBBRSS<double>>;
-  Scene<double> scene{makeModel<Plain>(bentSheet(8, 0.5)),
-                      makeModel<Plain>(shaken(bentSheet(8), 0.1, 4))};
+  PosedScene<double> scene{makeModel<Plain>(bentSheet(8, 0.5)),
+                           makeModel<Plain>(shaken(bentSheet(8), 0.1, 4))};
   scene.end.translation() = Vector3<double>(0.01, 0.02, -1);
   const auto expected = scene.expected(std::size_t{1} << 30, true);
   CollisionResult<double> result;
@@ -246,7 +246,8 @@ TEST(TraversalNode, CrossingAloneIsOneContact) {
   TestMesh both = face;
   append(both, needle);
   const auto one = makeModel<Model>(both);
-  for (const Scene<double>& scene : {Scene<double>{a, b}, Scene<double>{one, nullptr}}) {
+  for (const PosedScene<double>& scene :
+       {PosedScene<double>{a, b}, PosedScene<double>{one, nullptr}}) {
     for (const std::size_t count : {1u, 9u}) {
       CollisionResult<double> result;
       Node<double> node;

@@ -5,7 +5,7 @@
 namespace fcl {
 namespace test {
 
-std::vector<BaselineRow> measureBaselines(const Scene& scene, const Effort& effort,
+std::vector<BaselineRow> measureBaselines(const SpeedScene& scene, const Effort& effort,
                                           const std::vector<PairName>& truth) {
   const struct {
     const char* name;

@@ -129,7 +129,7 @@ Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery 
           "certified", libraryKernels(), threads};
 }
 
-Row measureLibrary(const Scene& scene, ContinuousQuery kind, int threads,
+Row measureLibrary(const SpeedScene& scene, ContinuousQuery kind, int threads,
                    const Effort& effort, const std::vector<PairName>* truth,
                    std::vector<PairName>* found) {
   Row row = libraryRow(scene.name, scene.a.triangles.size() + scene.b.triangles.size(),
@@ -167,7 +167,7 @@ Row measureLibrary(const Scene& scene, ContinuousQuery kind, int threads,
   return row;
 }
 
-Row measureSwept(const Scene& scene, const Effort& effort,
+Row measureSwept(const SpeedScene& scene, const Effort& effort,
                  const std::vector<PairName>& truth) {
   Row row = libraryRow(scene.name, scene.a.triangles.size(), ContinuousQuery::kAll, 1);
   row.boxes = "swept";

@@ -36,7 +36,7 @@ struct Options {
   int pick(int full, int brief) const { return is_short ? brief : full; }
 };
 
-Scene smoothCloth(int triangles) {
+SpeedScene smoothCloth(int triangles) {
   char size[16];
   if (triangles < 1000000)
     std::snprintf(size, sizeof size, "%dK", triangles / 1000);
@@ -57,7 +57,8 @@ std::vector<int> threadNumbers() {
 /// The rows of a self-collision, all contacts first.
 /// @param queries  of the library
 /// @return the true contacts, or else what is found
-std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& options,
+std::vector<PairName> addSelf(Table& table, const SpeedScene& scene,
+                              const Options& options,
                               std::initializer_list<Query> queries, PaperRows paper,
                               const std::vector<PairName>* known_truth = nullptr) {
   std::vector<PairName> truth;
@@ -82,7 +83,7 @@ std::vector<PairName> addSelf(Table& table, const Scene& scene, const Options& o
 
 /// A scene of the data folder and its true contacts.
 struct DataScene {
-  Scene scene;
+  SpeedScene scene;
   std::vector<PairName> truth;
 };
 
@@ -131,7 +132,8 @@ void runSize(Table& table, const Options& options) {
 /// Scenes that are free of contact when the step begins.
 void runFirst(Table& table, const Options& options) {
   auto bodies = makeMeetingBodies(options.pick(6, 2));
-  const Scene pair{"meeting bodies", std::move(bodies.first), std::move(bodies.second)};
+  const SpeedScene pair{"meeting bodies", std::move(bodies.first),
+                        std::move(bodies.second)};
   for (const Query query : {Query::kAll, Query::kFirst, Query::kAny})
     for (const int threads : threadNumbers())
       table.add(measureLibrary(pair, query, threads, options.effort, nullptr));
@@ -140,7 +142,7 @@ void runFirst(Table& table, const Options& options) {
 }
 
 void runFar(Table& table, const Options& options) {
-  Scene scene{"cloth at the origin", makeSmoothCloth(options.pick(80000, 2000))};
+  SpeedScene scene{"cloth at the origin", makeSmoothCloth(options.pick(80000, 2000))};
   const auto queries = {Query::kAll, Query::kFirst};
   const auto truth = addSelf(table, scene, options, queries, PaperRows::kNone);
   scene.name = "cloth at 1e6";
@@ -183,13 +185,14 @@ void runSequences(Table& table, const Options& options) {
 }
 
 void runBaselines(Table& table, const Options& options) {
-  const auto add = [&](const Scene& scene, const std::vector<PairName>& truth) {
+  const auto add = [&](const SpeedScene& scene, const std::vector<PairName>& truth) {
     for (const BaselineRow& row : measureBaselines(scene, options.effort, truth))
       table.add(row);
   };
   for (const DataScene& data : readDataScenes(options)) add(data.scene, data.truth);
-  for (const Scene& scene : {smoothCloth(options.pick(80000, 2000)),
-                             Scene{"tiles", makeTiles(options.pick(100000, 2000))}}) {
+  for (const SpeedScene& scene :
+       {smoothCloth(options.pick(80000, 2000)),
+        SpeedScene{"tiles", makeTiles(options.pick(100000, 2000))}}) {
     std::vector<PairName> truth;
     measureLibrary(scene, Query::kAll, 1, {1, 0}, nullptr, &truth);
     add(scene, truth);

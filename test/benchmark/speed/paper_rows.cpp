@@ -28,8 +28,8 @@ BaselineMethod methodOf(const std::string& boxes, const std::string& filter,
 
 }  // namespace
 
-Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
-                 KernelSet kernels, const Effort& effort,
+Row measurePaper(const SpeedScene& scene, const std::string& boxes,
+                 const std::string& filter, KernelSet kernels, const Effort& effort,
                  const std::vector<PairName>& truth) {
   const char* name = kernels == KernelSet::kScalar ? kPaperKernels : kPaperVectorKernels;
   Row row{scene.name, scene.a.triangles.size(), "all", boxes, filter, name, 1};

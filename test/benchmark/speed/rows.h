@@ -18,7 +18,7 @@ namespace fcl {
 namespace test {
 
 /// @brief A self-collision, or one between two meshes.
-struct Scene {
+struct SpeedScene {
   std::string name;
   FramePairMesh a;
   FramePairMesh b{};
@@ -48,13 +48,13 @@ Row libraryRow(const std::string& scene, std::size_t triangles, ContinuousQuery 
 /// @param threads  of builds, updates and queries
 /// @param truth  sorted, or null for a row without errors; self-collisions only
 /// @param found  if not null, gets the contacts of a self-collision, sorted
-Row measureLibrary(const Scene& scene, ContinuousQuery query, int threads,
+Row measureLibrary(const SpeedScene& scene, ContinuousQuery query, int threads,
                    const Effort& effort, const std::vector<PairName>* truth,
                    std::vector<PairName>* found = nullptr);
 
 /// @brief Times of the library for all self-contacts, on one thread, with swept boxes in
 /// its tree, by its inner functions.
-Row measureSwept(const Scene& scene, const Effort& effort,
+Row measureSwept(const SpeedScene& scene, const Effort& effort,
                  const std::vector<PairName>& truth);
 
 /// @brief Times of the paper's method for all self-contacts, on one thread.
@@ -62,13 +62,13 @@ Row measureSwept(const Scene& scene, const Effort& effort,
 /// @param filter  "none", "plain" (the paper's) or "certified"
 /// @param kernels  scalar ones are the paper's
 /// @throws std::invalid_argument for other words
-Row measurePaper(const Scene& scene, const std::string& boxes, const std::string& filter,
-                 KernelSet kernels, const Effort& effort,
+Row measurePaper(const SpeedScene& scene, const std::string& boxes,
+                 const std::string& filter, KernelSet kernels, const Effort& effort,
                  const std::vector<PairName>& truth);
 
 /// @brief Times and counts of the methods of earlier papers for all self-contacts, with
 /// and without a filter, scalar and with the library's kernels; on one thread.
-std::vector<BaselineRow> measureBaselines(const Scene& scene, const Effort& effort,
+std::vector<BaselineRow> measureBaselines(const SpeedScene& scene, const Effort& effort,
                                           const std::vector<PairName>& truth);
 
 /// @brief Times of the library without and with each option of a request, on one thread,
