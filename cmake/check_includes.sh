@@ -7,6 +7,7 @@
 #  - a file includes one of a folder that comes later in the order below,
 #  - a file below api/ includes a public header, of which only stage_counts.h is plain data,
 #  - a public header includes an internal one,
+#  - there are more public headers than CONTRIBUTING.md allows,
 #  - files include each other in a circle (x.h and x.cpp count as one file).
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -53,6 +54,11 @@ while read -r file included; do
   [[ $included == fcl/* ]] ||
     complain "$file: includes $included; a public header may include public headers only"
 done < <(includes include)
+
+max_headers=16
+num_headers=$(find include -name '*.h' | wc -l)
+((num_headers <= max_headers)) ||
+  complain "include/: $num_headers public headers, $max_headers are allowed"
 
 circle=$(includes "${order[@]/#/src/}" include |
   sed -E 's/^(src|include)\///; s/\.(h|cpp)( |$)/\2/g' | awk '$1 != $2' |

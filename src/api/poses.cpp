@@ -4,7 +4,6 @@
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "base/default_floating_point.h"
-#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {

@@ -13,7 +13,6 @@
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {

@@ -11,7 +11,6 @@
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/fcl_queries.h"
-#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl {

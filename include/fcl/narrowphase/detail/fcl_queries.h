@@ -14,7 +14,6 @@
 #include "fcl/math/motion/spline_motion.h"
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "fcl/narrowphase/detail/stock_continuous_collision.h"
 

@@ -3,10 +3,11 @@
 // The border between a program and the library. The compiler's flags decide how Eigen
 // aligns its types: with -march=native a Transform3, and each type that contains one, has
 // another layout than in the library. So functions that are compiled with the program
-// convert FCL's types into the plain numbers below, and convert the answer back. Only
-// these numbers cross the border, and types without alignment of their own: geometries,
-// requests, contacts, vectors of three. FCL's motions in double cross too, since libfcl
-// compiles them and decides their layout.
+// convert FCL's types into the plain numbers below, and convert the answer back
+// (toNumbers(), toTransform(), movingGeometry()). Only these numbers cross the border,
+// and types without alignment of their own: geometries, requests, contacts, vectors of
+// three. FCL's motions in double cross too, since libfcl compiles them and decides their
+// layout.
 #ifndef FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 #define FCL_NARROWPHASE_DETAIL_QUERY_NUMBERS_H
 
@@ -17,6 +18,7 @@
 #include <limits>
 #include <memory>
 
+#include "fcl/common/types.h"
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/math/motion/motion_base.h"
 #include "fcl/narrowphase/continuous_contact.h"
@@ -33,6 +35,33 @@ struct PoseNumbers {
   S rotation[9];
   S translation[3];
 };
+
+/// @brief FCL's transform as numbers. Compiled with the caller.
+template <typename S>
+PoseNumbers<S> toNumbers(const Matrix3<S>& rotation, const Vector3<S>& translation) {
+  PoseNumbers<S> pose;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) pose.rotation[3 * i + k] = rotation(i, k);
+    pose.translation[i] = translation[i];
+  }
+  return pose;
+}
+
+template <typename S>
+PoseNumbers<S> toNumbers(const Transform3<S>& tf) {
+  return toNumbers<S>(tf.linear(), tf.translation());
+}
+
+/// @brief Numbers as FCL's transform. Compiled with the caller.
+template <typename S>
+Transform3<S> toTransform(const PoseNumbers<S>& pose) {
+  Transform3<S> tf = Transform3<S>::Identity();
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k) tf.linear()(i, k) = pose.rotation[3 * i + k];
+    tf.translation()[i] = pose.translation[i];
+  }
+  return tf;
+}
 
 /// @brief Whether two poses have the same rotation. Rotations are computed from
 /// quaternions and products, so that a constant rotation may differ by a few roundings at
@@ -70,6 +99,14 @@ struct MovingGeometry {
   /// kSpline: the control points of the translation and of the rotation vector.
   double control[2][4][3];
 };
+
+/// @brief A geometry that goes from one transform to another. Compiled with the caller.
+template <typename S>
+MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
+                                 const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
+                                 PathKind path = PathKind::kStraight) {
+  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}};
+}
 
 /// @brief The request, as numbers.
 struct QuerySettings {

@@ -8,7 +8,6 @@
 #include "fcl/narrowphase/collision_request.h"
 #include "fcl/narrowphase/collision_result.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/pose_numbers.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "fcl/narrowphase/detail/traversal/collision/collision_traversal_node_base.h"
 #include "fcl/narrowphase/stage_counts.h"
