@@ -4,6 +4,7 @@
 #if defined(FCL_CCD_USE_TBB)
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <cassert>
 
 #include <algorithm>
 #include <exception>
@@ -27,6 +28,7 @@ void forEach(std::size_t count, const std::function<void(std::size_t)>& visit) {
 #if defined(FCL_CCD_USE_TBB)
 
 int numThreads(int num_threads) {
+  assert(num_threads >= 0);
   if (num_threads == 1) return 1;
   const int available = tbb::this_task_arena::max_concurrency();
   return num_threads > 0 ? std::min(num_threads, available) : available;

@@ -3,6 +3,7 @@
 #define FCL_CCD_BASE_PARALLEL_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <functional>
 
@@ -32,6 +33,7 @@ int numThreads(int num_threads);
 template <typename Visit>
 void parallelForBlocks(std::size_t count, std::size_t length, int num_threads,
                        Visit&& visit) {
+  assert(length > 0);
   parallelFor((count + length - 1) / length, num_threads, [&](std::size_t block) {
     visit(block * length, std::min(count, (block + 1) * length));
   });

@@ -2,6 +2,7 @@
 #include "elementary/accurate_pair.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -119,6 +120,7 @@ AccuratePair::Factors AccuratePair::factors(int i) const {
 }
 
 bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) const {
+  assert(0 <= lo && lo <= hi && hi <= 1);
   const double v[4] = {volume_[0].hi, volume_[1].hi / 3, volume_[2].hi / 3,
                        volume_[3].hi};
   // Three steps, 9 units, after two for the rounding of the coefficients and with two for
@@ -148,6 +150,7 @@ MovingCross AccuratePair::normal(double lo, double hi) const {
 }
 
 MovingCross AccuratePair::side(int i, double lo, double hi) {
+  assert(i >= 0 && i < table_.num_inside);
   std::optional<MovingCross>& side = side_[i];
   if (!side) {
     const auto [x, y] = factors(i);

@@ -2,6 +2,7 @@
 #include "elementary/elementary.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -48,6 +49,7 @@ struct Segment {
 };
 
 Segment restrict(const Difference& d, double lo, double hi) {
+  assert(0 <= lo && lo <= hi && hi <= 1);
   return {d.at(lo), d.at(hi), d.norm};
 }
 
@@ -227,14 +229,24 @@ class IntervalStack {
   };
 
   void push(double lo, double hi) {
-    if (lo < hi || (lo == hi && size_ == 0)) items_[size_++] = {lo, hi};
+    if (!(lo < hi || (lo == hi && size_ == 0))) return;
+    assert(size_ < kCapacity);
+    items_[size_++] = {lo, hi};
   }
-  Interval pop() { return items_[--size_]; }
+  Interval pop() {
+    assert(!isEmpty());
+    return items_[--size_];
+  }
   bool isEmpty() const { return size_ == 0; }
-  double latest() const { return items_[0].hi; }
+  double latest() const {
+    assert(!isEmpty());
+    return items_[0].hi;
+  }
 
  private:
-  Interval items_[2 * kMaxLooks + 3];
+  static constexpr int kCapacity = 2 * kMaxLooks + 3;
+
+  Interval items_[kCapacity];
   int size_{0};
 };
 
@@ -267,6 +279,7 @@ struct Undecided {
 ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoints& x,
                                   double window_lo, double window_hi, double toc_err,
                                   double t_stop) {
+  assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1 && toc_err > 0);
   // An interval this short is not cut further.
   const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
   // A flat interval (no sign in sight) is cut only while the inside conditions may
@@ -440,6 +453,7 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
                      double (&position)[3], double (&normal)[3]) {
   // Rounding is what two edges span whose cross product is smaller.
   constexpr double kParallel = 0x1p-48;
+  assert(0 <= t && t <= 1);
   const bool vf = kind == ContinuousContactKind::kVertexFace;
   const Pair pair(kind, x);
   const Vec u = pair.difference[kU].at(t), v_there = pair.difference[kV].at(t),

@@ -2,6 +2,7 @@
 #include "elementary/exact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstdlib>
 #include <vector>
 
@@ -64,6 +65,7 @@ bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& r
 
 ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& x,
                                double toc_err, double t_stop, double t_max) {
+  assert(toc_err > 0 && 0 <= t_max && t_max <= 1);
   ExactQuery query(kind, x);
   ElementaryResult result;
   if (isDecidedAtStart(query, t_max, result)) return result;

@@ -2,6 +2,7 @@
 #include "elementary/in_plane.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -167,6 +168,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
   constexpr int kMaxLooks = 32;
   double end[2 * kMaxLooks + 1];
   int open = 0;
+  assert(lo <= hi && toc_err > 0);
   end[open++] = hi;
   for (int look = 0; open > 0; ++look) {
     hi = end[open - 1];
@@ -195,7 +197,10 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
           break;
         }
     for (const double t : {cut[1], cut[0]})
-      if (t > lo && t < end[open - 1]) end[open++] = t;
+      if (t > lo && t < end[open - 1]) {
+        assert(open < 2 * kMaxLooks + 1);
+        end[open++] = t;
+      }
     if (end[open - 1] == hi) {
       found.addUnsure(lo);
       lo = hi;
@@ -244,6 +249,8 @@ int axisOfCommonPlane(const FeaturePoints& x) {
 ElementaryResult solveInPlane(ContinuousContactKind kind, const FeaturePoints& x,
                               int axis, double window_lo, double window_hi,
                               double toc_err) {
+  assert(axis >= 0 && axis < 3 && axisOfCommonPlane(x) >= 0);
+  assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1 && toc_err > 0);
   const PairTable& table = pairTable(kind);
   const bool vf = kind == ContinuousContactKind::kVertexFace;
   if (window_lo > 0 && !areApartAt(window_lo, vf, x, axis))

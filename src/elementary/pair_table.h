@@ -22,6 +22,8 @@
 #ifndef FCL_CCD_ELEMENTARY_PAIR_TABLE_H
 #define FCL_CCD_ELEMENTARY_PAIR_TABLE_H
 
+#include <cassert>
+
 #include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl {
@@ -71,6 +73,7 @@ constexpr PairTable kEdgeEdgeTable = {6,
 
 /// @param kind  VF or EE
 inline const PairTable& pairTable(ContinuousContactKind kind) {
+  assert(kind != ContinuousContactKind::kCrossing);
   return kind == ContinuousContactKind::kVertexFace ? kVertexFaceTable : kEdgeEdgeTable;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cassert>
 #include <cmath>
 #include <type_traits>
 
@@ -169,6 +170,7 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
 
 int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
               const double (&d)[3], int axis) {
+  assert(axis >= 0 && axis < 3);
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double s = b[i] - a[i], t = d[j] - c[j], u = b[j] - a[j], v = d[i] - c[i];
   if ((s == 0 || t == 0) && (u == 0 || v == 0)) return 0;

@@ -6,6 +6,7 @@
 #define FCL_CCD_KERNELS_KERNELS_H
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cstddef>
 #include <cstdint>
@@ -53,6 +54,7 @@ struct OverlapRequest {
   /// rounding of the kernels: three operations and the sum of two half-axes, 2^-24 each.
   /// @param pose_displacement  sum of the displacements of both poses
   void leaveOutAfter(double latest, double pose_displacement) {
+    assert(latest >= 0 && pose_displacement >= 0);
     const double twice = 2 * (1 + 0x1p-20) * latest;
     share =
         isEarly(latest) ? roundUp(twice, 0.f) : std::numeric_limits<float>::infinity();
@@ -99,6 +101,7 @@ struct TrianglePair {
 /// @brief A pair of features of one of many triangle pairs: 16 times the number of the
 /// triangle pair and a bit of feature_pairs.h.
 inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
+  assert(bit >= 0 && bit < kNumFeaturePairs);
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 
@@ -128,6 +131,7 @@ struct EightPairs {
 
   void set(std::size_t lane, const TreeVertex* const (&points)[4], double window_lo,
            double window_hi) {
+    assert(lane < 8 && 0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
     for (std::size_t i = 0; i < 4; ++i) x[i][lane] = points[i];
     lo[lane] = window_lo;
     hi[lane] = window_hi;

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_MESH_FEATURE_PAIRS_H
 #define FCL_CCD_MESH_FEATURE_PAIRS_H
 
+#include <cassert>
 #include <cstdint>
 
 #include "fcl/narrowphase/stage_counts.h"
@@ -41,6 +42,7 @@ constexpr int kNumVertexFacePairs = 6;
 constexpr int kNumFeaturePairs = 15;
 
 inline FeaturePair featurePair(int bit) {
+  assert(bit >= 0 && bit < kNumFeaturePairs);
   const auto k = static_cast<unsigned>(bit);
   if (k < 3) return {ContinuousContactKind::kVertexFace, true, k, 0};
   if (k < 6) return {ContinuousContactKind::kVertexFace, false, k - 3, 0};
@@ -103,6 +105,7 @@ constexpr OwnedParts kOwnedParts = makeOwnedParts();
 
 /// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned).
 inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b) {
+  assert(owned_a <= kOwnsAll && owned_b <= kOwnsAll);
   return kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
 }
 

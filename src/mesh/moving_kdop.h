@@ -12,6 +12,7 @@
 #endif
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -67,6 +68,7 @@ constexpr float kLeastHalf = -0.5f * FLT_MAX;
 /// keeps it right where a float would be subnormal. Infinity for a NaN, never below
 /// kLeastHalf.
 inline float roundUp(double value, float pad) {
+  assert(pad >= 0);
   const auto f =
       static_cast<float>(value < double{kLeastHalf} ? double{kLeastHalf} : value);
   const float up = f + (std::fabs(f) * kOutward + (pad + FLT_MIN));

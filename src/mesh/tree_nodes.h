@@ -5,6 +5,7 @@
 #define FCL_CCD_MESH_TREE_NODES_H
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -39,13 +40,17 @@ struct alignas(64) MovingKdopNode {
   std::uint32_t triangles;
 
   bool isTriangle(int lane) const { return child[lane] < 0; }
-  int triangle(int lane) const { return ~child[lane]; }
+  int triangle(int lane) const {
+    assert(lane < count && isTriangle(lane));
+    return ~child[lane];
+  }
 
   /// @brief Lanes that are in use, a bit each.
   unsigned lanes() const { return (1U << count) - 1; }
 
   /// @brief Sets `triangles`. Call it when the children are set.
   void markTriangles() {
+    assert(count > 0 && count <= kWidth);
     triangles = 0;
     for (int lane = 0; lane < count; ++lane)
       triangles |= unsigned{isTriangle(lane)} << lane;
@@ -58,6 +63,7 @@ struct alignas(64) MovingKdopNode {
   static constexpr int rowOf(int half_axis) { return half_axis % 8 * 2 + half_axis / 8; }
 
   void setBox(int lane, const MovingKdop& box) {
+    assert(lane >= 0 && lane < kWidth);
     for (int r = 0; r < 16; ++r) {
       t0[r][lane] = box.t0.half[halfAxis(r)];
       t1[r][lane] = box.t1.half[halfAxis(r)];

@@ -5,6 +5,7 @@
 #ifndef FCL_CCD_MESH_VERTEX_CORNERS_H
 #define FCL_CCD_MESH_VERTEX_CORNERS_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -47,6 +48,7 @@ class VertexCorners {
   std::size_t size() const { return kinds_.size(); }
 
   CornersAtVertex operator[](std::size_t place) const {
+    assert(place < size());
     return {corners_.data() + first_[place], first_[place + 1] - first_[place],
             kinds_[place]};
   }

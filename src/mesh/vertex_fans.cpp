@@ -2,6 +2,7 @@
 #include "mesh/vertex_fans.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel.h"
 #include "mesh/vertex_corners.h"
@@ -79,6 +80,7 @@ void VertexFans::renumber(const VertexFans& before,
                           const std::vector<std::uint32_t>& new_places,
                           const std::vector<std::uint32_t>& old_places) {
   std::uint32_t num_spokes = 0;
+  assert(new_places.size() == size() && old_places.size() == size());
   for (std::size_t i = 0; i < old_places.size(); ++i) {
     const VertexFan fan = before[old_places[i]];
     first_[i] = num_spokes;

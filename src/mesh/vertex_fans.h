@@ -6,6 +6,7 @@
 #ifndef FCL_CCD_MESH_VERTEX_FANS_H
 #define FCL_CCD_MESH_VERTEX_FANS_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -63,6 +64,7 @@ class VertexFans {
 
   /// @brief The fan of the vertex at a place; without spokes if it has none.
   VertexFan operator[](std::size_t place) const {
+    assert(place < size());
     const std::uint32_t first = first_[place];
     return {spokes_.data() + first, first_[place + 1] - first, closed_[place] != 0};
   }

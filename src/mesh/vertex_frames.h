@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_MESH_VERTEX_FRAMES_H
 #define FCL_CCD_MESH_VERTEX_FRAMES_H
 
+#include <cassert>
 #include <cstddef>
 
 namespace fcl {
@@ -61,6 +62,7 @@ class VertexFrames {
   /// translation, evaluated in double; this value is what every contact refers to.
   VertexPath operator[](std::size_t i) const {
     VertexPath path;
+    assert(i < count_);
     at(0, i, path.t0);
     at(1, i, path.t1);
     return path;
@@ -78,6 +80,7 @@ class VertexFrames {
 
   /// @brief Position of vertex i in one frame.
   void at(int frame, std::size_t i, double (&out)[3]) const {
+    assert((frame == 0 || frame == 1) && i < count_);
     for (std::size_t k = 0; k < 3; ++k)
       out[k] =
           double_[frame] ? double_[frame][3 * i + k] : double{float_[frame][3 * i + k]};

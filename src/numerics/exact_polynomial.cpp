@@ -2,6 +2,7 @@
 #include "numerics/exact_polynomial.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -15,6 +16,7 @@ namespace {
 
 /// k / 2^m rounded to a double below (direction -1) or above (1), or equal.
 double toDouble(const Integer& k, unsigned m, int direction) {
+  assert(k >= 0 && (direction == 1 || direction == -1));
   if (k.is_zero()) return 0;
   const auto bits = static_cast<unsigned>(boost::multiprecision::msb(k)) + 1;
   const unsigned drop = bits > 53 ? bits - 53 : 0;
@@ -30,6 +32,7 @@ double toDouble(const Integer& k, unsigned m, int direction) {
 
 /// a / b <= 1 rounded likewise.
 double ratioToDouble(const Integer& a, const Integer& b, int direction) {
+  assert(a >= 0 && b > 0 && a <= b);
   if (a.is_zero()) return 0;
   const auto bits = static_cast<unsigned>(msb(b) - msb(a)) + 64;
   Integer quotient, rest;
@@ -62,6 +65,7 @@ Polynomial& Polynomial::operator-=(const Polynomial& other) {
 Polynomial operator*(const Polynomial& a, const Polynomial& b) {
   Polynomial product;
   if (a.isZero() || b.isZero()) return product;
+  assert(a.degree() + b.degree() <= Polynomial::kMaxDegree);
   product.c_.resize(a.c_.size() + b.c_.size() - 1);
   for (std::size_t i = 0; i < a.c_.size(); ++i)
     for (std::size_t j = 0; j < b.c_.size(); ++j) product.c_[i + j] += a.c_[i] * b.c_[j];
@@ -85,6 +89,7 @@ Polynomial Polynomial::primitive() const {
 
 /// Remainder of a by b, times a constant.
 Polynomial remainder(const Polynomial& a, const Polynomial& b) {
+  assert(!b.isZero());
   Polynomial rest = a;
   const std::size_t n = b.c_.size();
   while (rest.c_.size() >= n) {
@@ -100,6 +105,7 @@ Polynomial remainder(const Polynomial& a, const Polynomial& b) {
 }
 
 Polynomial Polynomial::quotient(const Polynomial& divisor) const {
+  assert(!divisor.isZero() && degree() >= divisor.degree());
   Polynomial rest = *this, q;
   const std::size_t n = divisor.c_.size();
   const Integer& lead = divisor.c_.back();
@@ -134,6 +140,7 @@ Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
 
 int Polynomial::signAtFraction(const Integer& numerator,
                                const Integer& denominator) const {
+  assert(denominator > 0);
   if (isZero()) return 0;
   Integer value = c_.back(), power = 1;
   for (int i = degree() - 1; i >= 0; --i) {
@@ -205,6 +212,7 @@ static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
 }
 
 std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
+  assert(!polynomial.isZero());
   // A root of higher multiplicity keeps two sign changes at every depth.
   constexpr int kMaxCuts = 12, kCutsOfTurn = 4;
   constexpr unsigned kMaxJump = 256, kMaxTurnJump = 48;
@@ -309,6 +317,7 @@ int Root::probe(const Integer& k, unsigned m) {
 }
 
 bool Root::narrow(unsigned bits) {
+  assert(bits > 0 && !is_dyadic_);
   // The points on both sides of the estimate.
   if (bits > 1) {
     const Integer first = k_ << bits, end = (k_ + 1) << bits;
@@ -347,6 +356,7 @@ int Root::compare(const Integer& numerator, const Integer& denominator) const {
 
 /// Sign of a line at the root: on which side of the root its own, a fraction, lies.
 int Root::signOfLine(const Polynomial& g) const {
+  assert(g.degree() == 1 && !is_dyadic_);
   const int slope = g[1].sign();
   return slope * compare(slope > 0 ? -g[0] : g[0], abs(g[1]));
 }

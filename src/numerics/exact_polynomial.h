@@ -7,6 +7,7 @@
 
 #include <boost/container/static_vector.hpp>
 #include <boost/multiprecision/cpp_int.hpp>
+#include <cassert>
 #include <cstddef>
 #include <initializer_list>
 #include <utility>
@@ -39,7 +40,10 @@ class Polynomial {
   bool isZero() const { return c_.empty(); }
   bool operator==(const Polynomial& other) const { return c_ == other.c_; }
   int degree() const { return static_cast<int>(c_.size()) - 1; }
-  const Integer& operator[](int i) const { return c_[static_cast<std::size_t>(i)]; }
+  const Integer& operator[](int i) const {
+    assert(i >= 0 && i <= degree());
+    return c_[static_cast<std::size_t>(i)];
+  }
 
   Polynomial& operator+=(const Polynomial& other);
   Polynomial& operator-=(const Polynomial& other);

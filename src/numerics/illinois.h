@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_NUMERICS_ILLINOIS_H
 #define FCL_CCD_NUMERICS_ILLINOIS_H
 
+#include <cassert>
 #include <cmath>
 
 namespace fcl {
@@ -15,6 +16,7 @@ namespace deformable {
 template <typename F>
 double illinois(F&& f, double lo, double hi, double f_lo, double f_hi, double tol,
                 int max_steps) {
+  assert(lo <= hi && tol >= 0);
   double t = lo;
   for (int i = 0; i < max_steps; ++i) {
     const double previous = t;

@@ -5,6 +5,7 @@
 #define FCL_CCD_NUMERICS_INTEGER_COORDINATES_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -21,6 +22,7 @@ struct BinaryDigits {
 
   explicit BinaryDigits(double value) : digits{0}, exponent{0} {
     std::uint64_t bits;
+    assert(std::isfinite(value));
     std::memcpy(&bits, &value, sizeof bits);
     constexpr std::uint64_t kHidden = std::uint64_t{1} << 52;
     const auto field = static_cast<int>(bits >> 52 & 0x7ff);
@@ -33,6 +35,7 @@ struct BinaryDigits {
   }
 
   int numDigits() const {
+    assert(!isEmpty());
     return 64 -
            __builtin_clzll(static_cast<std::uint64_t>(digits < 0 ? -digits : digits));
   }
@@ -60,6 +63,7 @@ template <typename Integer>
 Integer toInteger(double value, int lowest) {
   const BinaryDigits x(value);
   if (x.digits == 0) return 0;
+  assert(x.exponent >= lowest);
   return Integer(x.digits) << static_cast<unsigned>(x.exponent - lowest);
 }
 

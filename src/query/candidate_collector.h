@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_QUERY_CANDIDATE_COLLECTOR_H
 #define FCL_CCD_QUERY_CANDIDATE_COLLECTOR_H
 
+#include <cassert>
 #include <cstddef>
 #include <functional>
 #include <vector>
@@ -25,7 +26,9 @@ class CandidateCollector {
   /// @pre both meshes have owners: otherwise pairs would come repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                      const CandidateSink& sink)
-      : batch_(a, b, shift, kernels()), sink_(sink) {}
+      : batch_(a, b, shift, kernels()), sink_(sink) {
+    assert(a.hasOwners() && b.hasOwners());
+  }
 
   /// @brief Takes pairs of triangles; between two calls of flush() at most
   /// FeatureBatch::kMaxPairs.

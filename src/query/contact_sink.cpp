@@ -2,6 +2,7 @@
 #include "query/contact_sink.h"
 
 #include <algorithm>
+#include <cassert>
 #include <tuple>
 
 namespace fcl {
@@ -41,6 +42,7 @@ bool ContactSink::addAgain(const FeatureContact& contact, Seen& seen) {
 }
 
 bool ContactSink::add(const FeatureContact& contact) {
+  assert(0 <= contact.toc_lo && contact.toc_lo <= contact.toc_hi && contact.toc_hi <= 1);
   first_hi_ = std::min(first_hi_, contact.toc_hi);
   if (may_repeat_) {
     const auto seen = seen_.find(keyOf(contact));

@@ -3,6 +3,7 @@
 #define FCL_CCD_QUERY_CONTACT_SINK_H
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -35,7 +36,9 @@ class ContactSink {
   /// @param may_repeat  whether add() can be given a pair more than once; the earliest
   /// counts, whatever the order.
   ContactSink(std::size_t capacity, bool may_repeat)
-      : capacity_(capacity), may_repeat_(may_repeat) {}
+      : capacity_(capacity), may_repeat_(may_repeat) {
+    assert(capacity > 0);
+  }
 
   /// @return whether the contact was kept.
   bool add(const FeatureContact& contact);

@@ -2,6 +2,7 @@
 #include "query/feature_batch.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -35,6 +36,7 @@ TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
 }
 
 void TriangleReader::readIntoStore(int i) {
+  assert(i >= 0);
   const auto index = static_cast<std::size_t>(i);
   if (!triangles_) {
     // Not initialized: written before they are read.
@@ -138,6 +140,7 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
     reader_a.prefetch(ahead.a);
     reader_b.prefetch(ahead.b);
     if (next->earliest > last_beginning) continue;
+    assert(num_pairs_ < kMaxPairs);
     TrianglePair& pair = pairs_[num_pairs_];
     pair.a = reader_a.read(next->a, pair.x);
     pair.b = reader_b.read(next->b, pair.x + 3);
@@ -239,6 +242,7 @@ std::size_t FeatureBatch::keep(ContinuousContactKind kind, const PairFilter& fil
 }
 
 FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
+  assert(i < num_crossings_);
   const std::uint32_t code = crossings_[i], bit = code % 16;
   return {&pairs_[code / 16], bit % 3, bit < 3};
 }
@@ -276,6 +280,7 @@ struct OrderedEdge {
 /// the vertex of a VF pair is always mesh a's.
 void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
                                 FeatureCandidate& out) const {
+  assert(code / 16 < num_pairs_ && code % 16 < kNumFeaturePairs && !window.isEmpty());
   const TrianglePair& triangles = pairs_[code / 16];
   const FeaturePair pair = featurePair(static_cast<int>(code % 16));
   out.kind = pair.kind;

@@ -2,6 +2,7 @@
 #include "query/narrow_phase.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
@@ -44,7 +45,10 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             !a.hasOwners() || !b.hasOwners()),
       progress_(progress),
-      task_(task) {}
+      task_(task) {
+  assert(options.toc_err > 0 && options.max_contacts > 0);
+  assert((&a == &b) == !shift);
+}
 
 void NarrowPhase::begin(std::size_t task) {
   sink_.clear();
@@ -141,6 +145,7 @@ void NarrowPhase::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
 /// The pieces that begin at `first`; the last one fills up the last eight.
 EightPairs NarrowPhase::eightOf(const std::vector<Piece>& pieces,
                                 std::size_t first) const {
+  assert(first < pieces.size());
   EightPairs eight;
   eight.kind = candidates_.front().kind;
   for (std::size_t lane = 0; lane < 8; ++lane) {
@@ -205,6 +210,7 @@ bool NarrowPhase::isLeading(const TimeBracket& bracket) const {
 }
 
 void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
+  assert(bracket.lo <= bracket.hi);
   ++counts_.contacts;
   if (isLeading(bracket))
     bracket = tightened(candidate.kind, CandidatePoints(candidate).get(), bracket);

@@ -2,6 +2,7 @@
 #include "query/query_answer.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <limits>
 #include <utility>
@@ -130,6 +131,7 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                   const QueryProgress& progress, const MeshInstance& a,
                   const MeshInstance& b,
                   const std::function<FeatureContact()>& firstContact) {
+  assert(!tasks.empty());
   throwError(tasks, options, progress);
   QueryAnswer answer;
   addEffort(tasks, answer);

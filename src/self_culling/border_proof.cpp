@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 
 #include "numerics/error_bounds.h"
@@ -49,6 +50,7 @@ struct PlaneAxes {
 }  // namespace
 
 bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t directions) {
+  assert(border.size() > 0 && border.points.size() > border.begins.back() + 1);
   border_ = &border;
   const double size = tree_.reach() * tree_.reach();
   if (directions == 0 || !isInRange(size)) return false;
@@ -73,6 +75,7 @@ int BorderProof::widest(std::uint32_t directions) const {
       for (int k = 0; k < 3; ++k)
         area[k] += p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3];
     }
+  assert(directions != 0);
   int best = __builtin_ctz(directions);
   double most = 0;
   for (; directions != 0; directions &= directions - 1) {

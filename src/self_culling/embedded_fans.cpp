@@ -2,6 +2,7 @@
 #include "self_culling/embedded_fans.h"
 
 #include <algorithm>
+#include <cassert>
 
 #include "base/parallel.h"
 
@@ -24,6 +25,7 @@ class FanQueue {
       const VertexFan first = tree_.fans()[alike.vertices[0]];
       if (first.count != fan.count || first.is_closed != fan.is_closed) prove(alike);
     }
+    assert(fan.count >= (fan.is_closed ? 3U : 2U) && alike.size < 8);
     alike.vertices[alike.size++] = vertex;
     if (alike.size == 8) prove(alike);
   }
@@ -74,6 +76,7 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
                                            const Kernels& kernels, int num_threads) {
   constexpr std::size_t kBlock = 4096, kAhead = 64;
   const std::size_t count = tree.vertices().size();
+  assert(left_out.size() == count);
   std::vector<std::uint8_t> embedded(count, 0);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
     FanQueue queue(tree, kernels, embedded);
@@ -91,6 +94,7 @@ std::vector<std::uint32_t> findNodesInFans(const MovingKdopTree& tree,
                                            const std::vector<std::uint8_t>& embedded) {
   // Pairs in smaller ones are not worth a look at all nodes.
   constexpr std::uint32_t kLeastSpokes = 64, kNoPlace = MovingKdopNode::kNoPlace;
+  assert(embedded.size() == tree.vertices().size());
   if (tree.fans().longest() < kLeastSpokes) return {};
   std::vector<std::uint32_t> centers(tree.numNodes(), kNoPlace);
   const auto isIn = [&](const MovingKdopNode& node, int lane, std::uint32_t center) {

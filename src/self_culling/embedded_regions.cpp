@@ -2,6 +2,7 @@
 #include "self_culling/embedded_regions.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 
 #include "base/parallel.h"
@@ -23,6 +24,7 @@ class FacedDirections {
 
   /// Those of triangles [first, last). Not for ranges with common triangles at a time.
   std::uint32_t of(std::size_t first, std::size_t last) {
+    assert(first < last && last <= tree_.triangles().size());
     const std::size_t from = (first + kLength - 1) / kLength, to = last / kLength;
     if (from > to) return ofEight(first, last);
     std::uint32_t faced = kUnknown;
@@ -170,6 +172,7 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
                                     int num_threads, std::uint32_t least_triangles) {
   EmbeddedRegions found{std::vector<std::uint8_t>(tree.numNodes(), 0),
                         std::vector<std::uint8_t>(tree.vertices().size(), 0)};
+  assert(tree.numNodes() > 0 && least_triangles > 0);
   RegionSearch regions(tree, kernels, least_triangles, found);
   // No two that are open have a triangle in common, nor are the same vertices written to.
   constexpr std::size_t kTasks = 64;

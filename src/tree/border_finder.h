@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_TREE_BORDER_FINDER_H
 #define FCL_CCD_TREE_BORDER_FINDER_H
 
+#include <cassert>
 #include <cstdint>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct Region {
 inline Region regionOf(const MovingKdopTree& tree, std::int32_t node,
                        std::uint32_t last) {
   const std::uint32_t first = tree.firstTriangle(node);
+  assert(first < last && last <= tree.triangles().size());
   return {first, last, tree.placesBefore(first), tree.placesBefore(last)};
 }
 

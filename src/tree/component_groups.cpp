@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree/component_groups.h"
 
+#include <cassert>
+
 #include "tree/item_splitter.h"
 
 namespace fcl {
@@ -39,6 +41,7 @@ std::vector<std::uint32_t> inTreeOrder(const std::vector<Group>& groups) {
 std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
                                     std::size_t num_components, std::size_t least,
                                     UninitializedVector<TreeItem>& items) {
+  assert(component_of.size() == items.size());
   std::vector<std::uint32_t> size(num_components, 0);
   for (const std::uint32_t i : component_of) ++size[i];
   // Group 0 is what is left of the mesh.

@@ -5,6 +5,7 @@
 #define FCL_CCD_TREE_ITEM_SPLITTER_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -101,19 +102,26 @@ class Splitter {
   /// @param ends  where each of the groups ends in which the items lie, if they do: a
   /// range of several is split between them
   Splitter(UninitializedVector<TreeItem> items, std::vector<std::size_t> ends)
-      : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {}
+      : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {
+    assert(std::is_sorted(ends_.begin(), ends_.end()));
+    assert(ends_.empty() || ends_.back() == items_.size());
+  }
 
   struct ItemRange {
     std::size_t first, count;
   };
 
-  std::uint32_t index(std::size_t i) const { return items_[i].index; }
+  std::uint32_t index(std::size_t i) const {
+    assert(i < items_.size());
+    return items_[i].index;
+  }
 
   /// Splits a range into at most `max_parts`, which are no more than eight. None is
   /// empty.
   std::size_t split(ItemRange all, std::size_t max_parts, int depth,
                     ItemRange (&out)[MovingKdopNode::kWidth]) {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+    assert(all.count > 0 && all.first + all.count <= items_.size() && max_parts > 0);
     max_parts = std::min(max_parts, kWidth);
     std::size_t n = splitGroups(all, max_parts, out);
     if (n > 1) return n;

@@ -2,6 +2,7 @@
 #include "tree/moving_kdop_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -9,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "kernels/kernels.h"
+#include "mesh/mesh_topology.h"
 #include "mesh/vertex_corners.h"
 #include "tree/open_binary.h"
 #include "tree/region_borders.h"
@@ -48,6 +50,8 @@ void prefetchRows(const MovingKdopNode& node) {
 
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
                            const VertexFrames& frames, int num_threads) {
+  assert(num_triangles > 0 &&
+         findOutOfRange(triangles, num_triangles, frames.size()) == 3 * num_triangles);
   arrange(splitTriangles(triangles, num_triangles, frames, num_threads), triangles,
           frames.size(), num_threads);
 }
@@ -197,6 +201,7 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
 }
 
 std::uint32_t MovingKdopTree::placesBefore(std::size_t i) const {
+  assert(i <= triangles_.size());
   if (i == triangles_.size()) return static_cast<std::uint32_t>(vertices_.size());
   std::uint32_t count = places_before_[i / kPlacesBlock];
   for (std::size_t k = i / kPlacesBlock * kPlacesBlock; k < i; ++k)
@@ -357,6 +362,8 @@ void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
 /// some vertex flies off or all of it jumps, they are mere rounding. Then the origin goes
 /// to where most is.
 void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
+  assert(!nodes_.empty() && vertices_.size() == vertex_ids_.size());
+  assert(*std::max_element(vertex_ids_.begin(), vertex_ids_.end()) < frames.size());
   const CoordinateBounds bounds = boundsOf(frames, num_threads);
   for (int k = 0; k < 3; ++k)
     origin_[0][k] = origin_[1][k] = 0.5 * std::min(bounds.lo[0][k], bounds.lo[1][k]) +

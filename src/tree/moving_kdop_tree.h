@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_TREE_MOVING_KDOP_TREE_H
 #define FCL_CCD_TREE_MOVING_KDOP_TREE_H
 
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -72,7 +73,10 @@ class MovingKdopTree {
                       const std::vector<int>& origins, const VertexFrames& frames,
                       int num_threads = 1);
 
-  const MovingKdopNode& node(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  const MovingKdopNode& node(int i) const {
+    assert(i >= 0 && static_cast<std::size_t>(i) < nodes_.size());
+    return nodes_[static_cast<std::size_t>(i)];
+  }
   std::size_t numNodes() const { return nodes_.size(); }
 
   /// @brief The first of the triangles below node i, which lie together.

@@ -5,6 +5,7 @@
 #define FCL_CCD_TREE_REGION_BORDERS_H
 
 #include <atomic>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -49,6 +50,7 @@ class RegionBorders {
   /// @param find  find() is the border of the node
   template <typename Find>
   const RegionBorder& of(std::int32_t node, Find&& find) {
+    assert(node >= 0 && static_cast<std::size_t>(node) < borders_.size());
     std::atomic<const RegionBorder*>& kept = borders_[static_cast<std::size_t>(node)];
     const RegionBorder* border = kept.load(std::memory_order_acquire);
     if (border) return *border;

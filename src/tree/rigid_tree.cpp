@@ -2,6 +2,7 @@
 #include "tree/rigid_tree.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -239,6 +240,7 @@ void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
 }
 
 void RigidTree::open(int i, MovingKdopNode& out) const {
+  assert(nodes_ && i >= 0);
   // The boxes are needed of FCL's nodes, the links of what is below them.
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, i);

@@ -3,6 +3,7 @@
 #define FCL_CCD_TREE_RIGID_TREE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 
@@ -112,6 +113,7 @@ class RigidTreeReader {
 
   /// @brief The node; valid until another is asked for.
   const MovingKdopNode& node(int i) {
+    assert(i >= 0);
     const int slot = i % kSlots;
     if (made_[slot] != i) {
       tree_.open(i, node_[slot]);

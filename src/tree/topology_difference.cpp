@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tree/topology_difference.h"
 
+#include <cassert>
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -33,6 +35,7 @@ TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
 void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
                                      std::size_t num_triangles,
                                      const std::vector<int>& origins) {
+  assert(origins.empty() || origins.size() == num_triangles);
   std::vector<std::uint32_t> places(before.size());
   for (std::uint32_t i = 0; i < before.size(); ++i) places[before[i].index] = i;
   origins_.resize(num_triangles);

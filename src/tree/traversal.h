@@ -5,6 +5,7 @@
 #define FCL_CCD_TREE_TRAVERSAL_H
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cstdint>
 #include <utility>
@@ -35,7 +36,10 @@ struct NodePair {
 class WorkList {
  public:
   std::size_t size() const { return size_; }
-  const NodePair& operator[](std::size_t i) const { return items_[i]; }
+  const NodePair& operator[](std::size_t i) const {
+    assert(i < size_);
+    return items_[i];
+  }
   NodePair* data() { return items_.data(); }
 
   void add(std::int32_t parent, int lane, std::int32_t node, bool swapped,
@@ -49,7 +53,10 @@ class WorkList {
     work.earliest = earliest;
   }
   /// @brief Forgets all but the first so many.
-  void cut(std::size_t size) { size_ = size; }
+  void cut(std::size_t size) {
+    assert(size <= size_);
+    size_ = size;
+  }
 
  private:
   std::vector<NodePair> items_;
@@ -95,6 +102,7 @@ class Traversal {
         axes_(axes),
         kernels_(kernels),
         request_{timed} {
+    assert(kSelf == !shift);
     if (!shift) return;
     // What is added to a box of tree b is the same with the half-axes exchanged.
     for (int r = 0; r < 16; ++r) {

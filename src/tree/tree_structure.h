@@ -5,6 +5,7 @@
 #define FCL_CCD_TREE_TREE_STRUCTURE_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -48,6 +49,7 @@ TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
     const Numbered o = open.back();
     open.pop_back();
     TreeChildren node = children(o.node, o.number);
+    assert(node.count > 0 && node.count <= MovingKdopNode::kWidth);
     // The first child is the first to go on with.
     const std::size_t num_open = open.size();
     for (int i = 0; i < node.count; ++i) {
