@@ -133,16 +133,6 @@ inline unsigned edgesAtBoth(unsigned shared) {
   return edgesAt(of_a) | edgesAt(of_b) << 3;
 }
 
-/// @brief Calls visit(FeaturePair) for each pair of features that triangles a and b own.
-/// Over all triangle pairs of a scene it visits every VF and EE pair once.
-/// @tparam kSelf  a and b have the same vertices; pairs that share one are left out.
-template <bool kSelf, typename Visit>
-void forEachFeaturePair(const MeshTriangle& a, const MeshTriangle& b, Visit&& visit) {
-  unsigned pairs = ownedPairs(a.owned, b.owned);
-  if (kSelf) pairs &= ~pairsAt(sharedVertices(a.v, b.v));
-  for (; pairs != 0; pairs &= pairs - 1) visit(featurePair(__builtin_ctz(pairs)));
-}
-
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -15,15 +15,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Vertex ids of a triangle and the features that it owns. Edge k joins vertices k
-/// and (k + 1) % 3.
+/// @brief Vertex ids of a triangle and the features that it owns.
 struct MeshTriangle {
   std::uint32_t v[3];
+  /// One bit for each feature that the triangle owns: bit k for vertex k; bit 3 + k for
+  /// edge k, which joins vertices k and (k + 1) % 3; bit 6 for the face.
   std::uint32_t owned;
-
-  bool ownsVertex(unsigned k) const { return (owned >> k) & 1U; }
-  bool ownsEdge(unsigned k) const { return (owned >> (3 + k)) & 1U; }
-  bool ownsFace() const { return (owned >> 6) & 1U; }
 };
 
 /// @brief Three vertices; the fourth number does not count.

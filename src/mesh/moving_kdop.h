@@ -102,12 +102,6 @@ struct KdopShift {
 /// whatever the target has, without a change in any result.
 typedef float Float4 __attribute__((vector_size(16)));
 
-inline Float4 quad(const Kdop16& box, int q) {
-  Float4 v;
-  __builtin_memcpy(&v, box.half + 4 * q, sizeof(v));
-  return v;
-}
-
 /// A comparison of two Float4: all bits of a lane, or none.
 typedef int Mask4 __attribute__((vector_size(16)));
 

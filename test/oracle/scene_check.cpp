@@ -15,6 +15,7 @@
 #include "feature_pair_generators.h"
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
+#include "owned_features.h"
 #include "query/feature_batch.h"
 #include "swept_tree.h"
 #include "traverse.h"
@@ -146,7 +147,7 @@ class CullCheck {
   void forEachPair(int a, int b, Visit&& visit) const {
     const MeshTriangle ta = triangleOf(model_.movingTree(), a),
                        tb = triangleOf(model_.movingTree(), b);
-    deformable::forEachFeaturePair<true>(ta, tb, [&](const FeaturePair& f) {
+    forEachFeaturePair<true>(ta, tb, [&](const FeaturePair& f) {
       const MeshTriangle &first = f.first_on_a ? ta : tb, &other = f.first_on_a ? tb : ta;
       const std::uint32_t vertex = first.v[f.first];
       const std::array<std::uint32_t, 4> ids =

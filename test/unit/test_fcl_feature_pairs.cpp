@@ -18,12 +18,18 @@
 
 #include "mesh/mesh_topology.h"
 #include "mesh_generators.h"
+#include "owned_features.h"
 #include "tree/moving_kdop_tree.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
+
+using test::forEachFeaturePair;
+using test::ownsEdge;
+using test::ownsFace;
+using test::ownsVertex;
 
 using Ids = std::vector<std::uint32_t>;
 /// Kind and side, sorted ids of the first and of the second feature.
@@ -198,15 +204,15 @@ TEST(FCL_FEATURE_PAIRS, ownedPairsByDefinition) {
         const MeshTriangle &first = pair.first_on_a ? ta : tb,
                            &second = pair.first_on_a ? tb : ta;
         const bool owned = pair.kind == ContinuousContactKind::kEdgeEdge
-                               ? ta.ownsEdge(pair.first) && tb.ownsEdge(pair.second)
-                               : first.ownsVertex(pair.first) && second.ownsFace();
+                               ? ownsEdge(ta, pair.first) && ownsEdge(tb, pair.second)
+                               : ownsVertex(first, pair.first) && ownsFace(second);
         expected |= unsigned{owned} << bit;
       }
       ASSERT_EQ(ownedPairs(a, b), expected) << a << ' ' << b;
       unsigned expected_edges = 0;
       for (unsigned k = 0; k < 3; ++k)
-        expected_edges |= unsigned{ta.ownsEdge(k)} << k | unsigned{tb.ownsEdge(k)}
-                                                              << (3 + k);
+        expected_edges |= unsigned{ownsEdge(ta, k)} << k | unsigned{ownsEdge(tb, k)}
+                                                               << (3 + k);
       ASSERT_EQ(ownedEdges(a, b), expected_edges) << a << ' ' << b;
     }
 }
@@ -283,9 +289,9 @@ TEST(FCL_FEATURE_PAIRS, theLowestTriangleOwns) {
   const auto mesh = assignFeatures(triangles.data(), triangles.size(), 4);
   EXPECT_EQ(mesh[0].owned, kOwnsAll);
   // Of the second, vertex 3, its two new edges and the face.
-  EXPECT_FALSE(mesh[1].ownsVertex(0) || mesh[1].ownsVertex(1) || mesh[1].ownsEdge(0));
-  EXPECT_TRUE(mesh[1].ownsVertex(2) && mesh[1].ownsEdge(1) && mesh[1].ownsEdge(2));
-  EXPECT_TRUE(mesh[1].ownsFace());
+  EXPECT_FALSE(ownsVertex(mesh[1], 0) || ownsVertex(mesh[1], 1) || ownsEdge(mesh[1], 0));
+  EXPECT_TRUE(ownsVertex(mesh[1], 2) && ownsEdge(mesh[1], 1) && ownsEdge(mesh[1], 2));
+  EXPECT_TRUE(ownsFace(mesh[1]));
   EXPECT_EQ(mesh[2].owned, 0U);
 }
 

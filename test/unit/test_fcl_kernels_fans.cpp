@@ -19,6 +19,7 @@
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_fans.h"
 #include "mesh_generators.h"
+#include "owned_features.h"
 
 namespace fcl {
 namespace detail {
@@ -26,6 +27,7 @@ namespace deformable {
 namespace {
 
 using test::allSets;
+using test::forEachFeaturePair;
 using test::Random;
 
 /// A vertex and its spokes.

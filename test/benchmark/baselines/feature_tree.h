@@ -26,6 +26,13 @@
 namespace fcl {
 namespace test {
 
+/// @brief Four half-axes of a box.
+inline detail::deformable::Float4 quad(const Kdop16& box, int q) {
+  detail::deformable::Float4 v;
+  __builtin_memcpy(&v, box.half + 4 * q, sizeof(v));
+  return v;
+}
+
 /// @brief One box around both frames.
 struct SweptBox {
   Kdop16 box;
@@ -33,7 +40,7 @@ struct SweptBox {
 
 inline void merge(const Kdop16& a, const Kdop16& b, Kdop16& out) {
   for (int q = 0; q < 4; ++q) {
-    const auto x = detail::deformable::quad(a, q), y = detail::deformable::quad(b, q);
+    const auto x = quad(a, q), y = quad(b, q);
     const auto most = x > y ? x : y;
     __builtin_memcpy(out.half + 4 * q, &most, sizeof(most));
   }
@@ -69,7 +76,6 @@ inline void fit(const double (&t0)[3], const double (&t1)[3], float pad, SweptBo
 /// @brief When boxes overlap; for swept boxes, all the time or never.
 inline TimeWindow overlap(const SweptBox& a, const SweptBox& b) {
   using detail::deformable::Float4;
-  using detail::deformable::quad;
   const Float4 zero = {0.f, 0.f, 0.f, 0.f};
   const Float4 s0 = quad(a.box, 0) + quad(b.box, 2), s1 = quad(a.box, 1) + quad(b.box, 3);
   const Float4 s2 = quad(a.box, 2) + quad(b.box, 0), s3 = quad(a.box, 3) + quad(b.box, 1);
