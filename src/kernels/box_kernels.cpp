@@ -47,8 +47,9 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
   }
 }
 
-/// The least, the largest or the sum of all numbers, which are overwritten. They are
-/// combined two by two: in a chain each operation would wait for the one before.
+/// The least, the largest or the sum of the numbers in x, which is overwritten. The
+/// numbers are combined two by two: in a chain each operation would wait for the one
+/// before.
 template <std::size_t kCount, typename Operation>
 HWY_INLINE Floats fold(Floats (&x)[kCount], const Operation& operation) {
   for (std::size_t half = kCount / 2; half > 0; half /= 2)
@@ -61,7 +62,7 @@ HWY_INLINE float largest(float a, float b, float c) {
   return ab < c ? c : ab;
 }
 
-/// Half of the half-axes of boxes in one frame.
+/// Eight of the sixteen half-axes of boxes, in one frame.
 /// @tparam kFirst  0 for the lower bounds, 8 for the upper ones
 template <int kFrame, int kFirst>
 struct HalfOfBoxes {
@@ -72,12 +73,13 @@ struct HalfOfBoxes {
   static HWY_INLINE Floats of(const TreeVertex& x) {
     return load<kEight>((kFrame == 0 ? x.box.t0 : x.box.t1).half + kFirst);
   }
-  /// Of the box around three vertices.
+  /// The half-axes of the box around three vertices.
   static HWY_INLINE Floats around(const TreeVertex& a, const TreeVertex& b,
                                   const TreeVertex& c) {
     return larger(larger(of(a), of(b)), of(c));
   }
-  /// Of the box around all children. Lanes that are not in use are below all others.
+  /// The half-axes of the box around all children. Lanes that are not in use have the
+  /// least numbers, so that they do not matter.
   static HWY_INLINE Floats around(const MovingKdopNode& node) {
     Floats x[8];
     for (int i = 0; i < 8; ++i) x[i] = load<kEight>(row(node, i));
@@ -85,7 +87,8 @@ struct HalfOfBoxes {
     return fold(x,
                 [](const Floats& a, const Floats& b) HWY_ATTR { return larger(a, b); });
   }
-  /// Sets the rows of a node, from the boxes of its children; returns the sums of these.
+  /// Sets the rows of a node from the boxes of its children. Returns for each child the
+  /// sum of its half-axes.
   static HWY_INLINE Floats set(Floats (&x)[8], MovingKdopNode& node) {
     transpose(x);
     for (int i = 0; i < 8; ++i) store(x[i], row(node, i));
@@ -148,8 +151,9 @@ void fitNodeOf(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_
     fitNode<false>(vertices, nodes, node, extents);
 }
 
-/// The parts of the step that half-axes leave out, see overlapWindow(): for depths s0 and
-/// s1 at its ends, how much of it is lost before and after.
+/// Makes the windows of boxes smaller, see overlapWindow(). s0 and s1 are the depths
+/// along one half-axis at both ends of the step: `before` and `after` are the parts of
+/// the step that this direction cuts off at the beginning and at the end.
 template <std::size_t N>
 HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
                         Lanes<float, N>& before, Lanes<float, N>& after) {
@@ -159,8 +163,8 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
-/// The children that are near enough to the box at t = 0 for the request, and those of
-/// them that are apart from it.
+/// The children that the request does not leave out: they are near enough to the box at t
+/// = 0. Sets `apart` to those of them that do not overlap the box at t = 0.
 template <std::size_t kStride>
 HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
                                  const OverlapRequest& request, unsigned& apart) {
@@ -234,7 +238,7 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
   const auto first = load<kEight>(b.places[0]), second = load<kEight>(b.places[1]),
              third = load<kEight>(b.places[2]);
   const auto at = [&](std::uint32_t vertex) {
-    // No place of a triangle where the fan is not embedded.
+    // If the fan is not embedded, a number that is not the place of any vertex.
     const auto place = broadcast<kEight>(vertex | (std::uint32_t{embedded[vertex]} - 1));
     return (first == place) | (second == place) | (third == place);
   };
@@ -249,7 +253,8 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
     unsigned left = b.triangles;
-    // Without a shift the trees are one; with it, a node of a tree in two poses.
+    // Without a shift it is one tree, and each pair is compared once. With a shift the
+    // two may be one node of a tree in two poses, and all pairs are compared.
     if (!kShifted && &a == &b) left &= ~((2U << lane) - 1);
     if (left == 0) continue;
     if constexpr (kShifted) {
@@ -310,8 +315,8 @@ HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
   return larger(sum + abs(sum) * broadcast<16>(kOutward), broadcast<16>(kLeastHalf));
 }
 
-/// The overlap depths of a pair of features in one frame. Which feature comes first does
-/// not matter but for the shift.
+/// The overlap depths of a pair of features in one frame. The order of the two features
+/// matters only for the shift.
 template <ContinuousContactKind kind, bool kShifted, int kFrame>
 HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
                            const KdopShift* shift, const KdopShift* turned_shift) {
@@ -319,7 +324,8 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
   HalfAxes first, second;
   const KdopShift* add = shift;
   if (kind == ContinuousContactKind::kVertexFace) {
-    // The vertex, and where the other triangle begins.
+    // The vertex is vertex `bit` of the pair. `face` is the first vertex of the other
+    // triangle.
     const bool on_a = bit < 3;
     const std::size_t face = on_a ? 3 : 0;
     first = box(bit);

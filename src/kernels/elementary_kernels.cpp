@@ -22,14 +22,14 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// A difference of two points that move linearly: at the ends of the window, with its
-/// norm over the step.
+/// Eight differences of points: at both ends of an interval, and their norms over the
+/// whole step.
 struct Segments {
   Vectors l, h;
   Doubles norm;
 };
 
-/// Eight pairs of features of triangle pairs.
+/// Eight pairs of features, given by codes (featureCode()).
 class EightFeatures {
  public:
   HWY_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
@@ -43,12 +43,13 @@ class EightFeatures {
   }
 
  private:
-  /// The vertices of both triangles, and which of them are the points.
+  /// For each pair, the six vertices of both triangles, and the indices of the four
+  /// points among them.
   const TreeVertex* const* vertices_[kEight];
   const unsigned char* corners_[kEight];
 };
 
-/// The points of eight pairs at both times.
+/// The points of eight pairs at t = 0 and at t = 1.
 struct Points {
   Vectors t0[4], t1[4];
 
@@ -61,13 +62,14 @@ struct Points {
                    HWY_ATTR -> const TreeVertex& { return features.point(i, lane); }) {}
 
  private:
-  /// @param vertex  point i of a pair
+  /// @param vertex  vertex(i, lane) is point i of the pair in a lane
   template <typename Vertex>
   HWY_INLINE explicit Points(const Vertex& vertex) {
     for (std::size_t i = 0; i < 4; ++i) {
       const TreeVertex* x[kEight];
       for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);
-      // Stored directly in their place: through loadPaths() tests take 2% longer.
+      // The columns are loaded into their final place. With loadPaths() tests take 2%
+      // longer.
       loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, t0[i].x,
                   t0[i].y, t0[i].z);
       loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, t1[i].x,
@@ -76,14 +78,14 @@ struct Points {
   }
 };
 
-/// As Difference::at(). 0 and 1 need no special case, but a number that is not finite in
-/// one frame makes the result not finite at all times.
+/// As Difference::at() in elementary.cpp. There is no special case for 0 and 1. So if a
+/// number is not finite in one frame, the result is not finite at any time.
 HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
   const Doubles s = broadcast<kEight>(1.) - t;
   return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
 }
 
-/// Differences of two points of each pair over the step, and their norms.
+/// Eight differences of points over the whole step, and their norms.
 struct Differences {
   Vectors t0, t1;
   Doubles norm;
@@ -144,7 +146,7 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
                                          const std::uint32_t* codes,
                                          const TimeWindow* windows, std::size_t count,
                                          double latest) {
-  // The last one fills up the eight.
+  // If there are fewer than eight pairs, the last one is repeated.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
   if (count < kEight) {
@@ -160,7 +162,7 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
   Doubles starts, ends;
   static_assert(sizeof(TimeWindow) == 2 * sizeof(float), "two floats each");
   loadTwoEach(&windows->lo, starts, ends);
-  // windowLo() and windowHi().
+  // As windowLo() and windowHi().
   const Doubles margin = broadcast<kEight>(kWindowMargin);
   const Doubles lo = max(broadcast<kEight>(0.), starts - margin),
                 hi = min(broadcast<kEight>(latest),
@@ -169,8 +171,8 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
                  v = restrict(differences(x, table.difference[kV]), lo, hi),
                  w = restrict(differences(x, table.difference[kW]), lo, hi);
   const Cubics f = spannedVolume(u, cross(v, w));
-  // min() and max() pick a NaN on the right, as the scalar filter does: there, inner
-  // ones.
+  // If one number is a NaN, min() and max() return the second argument. The order of
+  // arguments is that of the scalar filter.
   const Doubles scale = broadcast<kEight>(kInnerScale);
   const Doubles b1 = scale * f.b1, b2 = scale * f.b2;
   const Doubles least = min(min(f.b0, b1), min(f.b3, b2)),
@@ -185,7 +187,7 @@ EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
   return {used & ~signs_agree, used & signs_agree & ~clear};
 }
 
-/// The differences that the volumes and the inside conditions have.
+/// The differences of which the volumes and the inside conditions are products.
 struct Pairs {
   const PairTable& table;
   Differences difference[kQ + 1];
@@ -197,8 +199,8 @@ struct Pairs {
   }
 };
 
-/// The lanes in which all inside conditions are certainly met, and those in which one is
-/// certainly not.
+/// Lanes in which the inside conditions are certain: all are positive, or one of them is
+/// negative.
 struct Sides {
   DoubleMask positive, negative;
 
@@ -235,10 +237,11 @@ HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles
   return sides;
 }
 
-/// Roots of cubics that change sign: by false position, then Halley's method, whose error
-/// is the third power of the one before, and by halving if a step leaves the bracket.
-/// Each lane stops when the square of its step is within its tolerance, so that no lane
-/// depends on the others. The caller has to prove what it concludes from the result.
+/// Roots of cubics that change sign. The first step is false position, the others are
+/// Halley's method, whose error is the third power of the one before. If a step leaves
+/// the bracket, the bracket is halved. Each lane stops when the square of its step is
+/// within its tolerance, so that no lane depends on the others. The caller has to prove
+/// what it concludes from the result.
 /// @param open  the lanes that are computed, a bit each
 HWY_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance) {
   constexpr int kMaxSteps = 24;
@@ -310,12 +313,12 @@ EightAnswers solveEight(const EightPairs& x, double toc_err) {
   return answers;
 }
 
-/// The lanes in which volumes are certainly positive, and those in which they are
-/// certainly negative, as in orientation().
+/// Lanes in which the sign of a volume is certain, as in orientation().
 struct Orientations {
   DoubleMask positive, negative;
 
-  /// @param normal  v x w, and the product of the norms of these
+  /// @param normal  v x w; the volume is u . normal
+  /// @param norms  the product of the norms of v and w
   HWY_INLINE Orientations(const Vectors& u, const Vectors& normal, const Doubles& norms)
       : Orientations(dot(u, normal), maxNorm(u) * norms, norms) {}
 
@@ -334,8 +337,9 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
-/// The points of eight triangle pairs at t = 0, relative to the first point, and the
-/// largest approach of the two triangles along an axis during the step.
+/// The points of eight triangle pairs at t = 0, relative to the first point. `approach`
+/// is the most by which two vertices of the triangles can approach each other along a
+/// coordinate axis during the step.
 struct TrianglePoints {
   Vectors x[6];
   Doubles norm, approach;
@@ -343,11 +347,11 @@ struct TrianglePoints {
   HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
     Doubles moved[6];
     for (std::size_t i = 0; i < 6; ++i) {
-      // The last pair fills up the eight.
+      // If there are fewer than eight pairs, the last one is repeated.
       const auto row = [=](std::size_t lane) HWY_ATTR {
         return pairs[lane < count ? lane : count - 1].x[i]->t0;
       };
-      // See TreeVertex.
+      // The fourth number of TreeVertex::t0 is the displacement of the vertex.
       loadColumns(row, x[i].x, x[i].y, x[i].z, moved[i]);
     }
     approach =
@@ -360,8 +364,8 @@ struct TrianglePoints {
   }
 };
 
-/// The lanes in which the direction d separates the triangles by more than an approach of
-/// `approach` along x, y and z can bridge.
+/// Lanes in which the direction d separates the triangles by so much that they stay apart
+/// even if vertices approach each other by `approach` along each axis.
 HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
                                    const Doubles& approach) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
@@ -389,7 +393,7 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count) {
   const TreeVertex* points[kEight][5];
   for (std::size_t lane = 0; lane < kEight; ++lane)
-    // The last one fills up the eight.
+    // If there are fewer than eight, the last one is repeated.
     crossingPoints(pairs, codes[lane < count ? lane : count - 1], points[lane]);
   Vectors x[5];
   for (std::size_t i = 0; i < 5; ++i) {
@@ -405,7 +409,8 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
       bits((from.positive & to.positive) | (from.negative & to.negative));
   const unsigned open = ((1U << count) - 1) & ~on_one_side;
   if (open == 0) return 0;
-  // The line turns one way around an edge and the other way around another.
+  // Outside of the face, the line through p and q passes one edge clockwise and another
+  // one counter-clockwise.
   const Vectors along = q - p, pa = a - p, pb = b - p, pc = c - p;
   const Orientations ab = turnsOf(along, pa, pb), bc = turnsOf(along, pb, pc),
                      ca = turnsOf(along, pc, pa);
@@ -414,8 +419,8 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
   return open & ~beside;
 }
 
-/// The times at which cubics with the same sign at 0 and at 1 come nearest to zero in
-/// between, in doubles: the lowest point relative to the sign of b0; 1/2 if there is
+/// For cubics with the same sign at 0 and at 1, the time in between at which the cubic is
+/// nearest to zero or passes furthest beyond it, computed in doubles. 1/2 if there is
 /// none.
 HWY_INLINE Doubles nearestToZero(const Cubics& f) {
   const Doubles zero = broadcast<kEight>(0.), three = broadcast<kEight>(3.),

@@ -19,7 +19,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// The ends of spoke i of eight fans.
+/// The paths of the outer ends of spoke i, of eight fans.
 HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices, const EightFans& fans,
                                     std::size_t i) {
   const TreeVertex* x[kEight];
@@ -69,13 +69,14 @@ class LongFans {
   MovingVectors center_;
 };
 
-/// The side of a ray on which spokes of eight fans lie at one time: a bit for each fan
-/// whose spoke lies certainly before (after) it in the direction of the fan.
+/// The side of a ray on which a spoke lies at one time, for eight fans. A bit is set if
+/// the spoke is certainly before (after) the ray, in the order of the fan's spokes.
 struct SideOfRay {
   unsigned before, after;
 };
 
-/// @param across  a direction whose product with spokes before the ray is above the bound
+/// @param across  a direction. A spoke is before the ray if its product with this
+/// direction is above the bound
 HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
                                const Doubles& bound, const Doubles& minus_bound) {
   const Doubles g = dot(spoke, across);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the tables of kernels.cpp point to: each function once for each instruction set.
-// See kernels.h.
+// The functions to which the tables in dispatch.cpp point. Each is compiled for each
+// instruction set. kernels.h describes them.
 //
 // Included once for each of Highway's targets, hence no ordinary include guard.
 #include "kernels/kernels.h"

@@ -22,7 +22,7 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// A vector (or the computed part of one) times an axis.
+/// The product of a vector with axis kAxis, without its error bound.
 template <std::size_t kAxis>
 HWY_INLINE Doubles along(const Vectors& a) {
   constexpr int x = kAxes[kAxis][0], y = kAxes[kAxis][1], z = kAxes[kAxis][2];
@@ -33,14 +33,14 @@ HWY_INLINE Doubles along(const Vectors& a) {
   return sum;
 }
 
-/// The normals of eight triangles during a step, and bounds on their rounding along an
-/// axis. No number is a NaN.
+/// The normals of eight triangles during a step, and the bounds on the rounding of their
+/// products with an axis. No number is a NaN.
 struct BoundedNormals {
   MovingNormals n;
   Doubles bound, minus_bound;
 };
 
-/// Bits of an axis and of its opposite that all triangles face.
+/// If all triangles face axis kAxis or its opposite, the bit of that direction; else 0.
 template <std::size_t kAxis>
 HWY_INLINE std::uint32_t facedAlong(const BoundedNormals& normals) {
   const MovingNormals& n = normals.n;

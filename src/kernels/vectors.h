@@ -23,7 +23,7 @@ namespace deformable {
 namespace HWY_NAMESPACE {
 
 /// roundUp() of eight numbers.
-/// @param pad  with FLT_MIN
+/// @param pad  the pad of roundUp(), with FLT_MIN already added
 HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
   const Floats f = narrowed(max(broadcast<kEight>(double{kLeastHalf}), value));
   const Floats up = f + (abs(f) * broadcast<kEight>(kOutward) + pad);
@@ -57,7 +57,7 @@ HWY_INLINE DoubleMask isInRange(const Doubles& size) {
   return (size >= broadcast<kEight>(kTiny)) & (size <= broadcast<kEight>(kHuge));
 }
 
-/// Vectors at both ends of the step.
+/// Vectors at t = 0 and at t = 1.
 struct MovingVectors {
   Vectors t0, t1;
 };
@@ -75,8 +75,8 @@ HWY_INLINE MovingVectors loadPaths(const TreeVertex* const (&x)[kEight]) {
   return p;
 }
 
-/// The cross product of two moving vectors: Bernstein coefficients in t, the middle one
-/// twice.
+/// The cross product of two moving vectors, as Bernstein coefficients in t. The middle
+/// one is times 2.
 struct MovingNormals {
   Vectors first, middle, last;
 };

@@ -15,34 +15,37 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Takes a block of candidates; false: no more are wanted.
+/// @brief Takes a block of candidates. Returns false if it wants no more.
 using CandidateSink =
     std::function<bool(const FeatureCandidate* block, std::size_t count)>;
 
-/// @brief Stands in place of NarrowPhase: what that would test is handed out.
+/// @brief Takes the place of NarrowPhase in a query for candidates: it hands them to the
+/// caller and does not test them.
 class CandidateCollector {
  public:
-  /// @param a, b, sink  kept by reference; the same mesh twice for a self-collision.
-  /// @pre both meshes have owners: otherwise pairs would come repeatedly
+  /// @param a, b, sink  kept by reference; a and b are the same object for a
+  /// self-collision
+  /// @pre both meshes have owners; otherwise the sink would get pairs repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                      const CandidateSink& sink)
       : batch_(a, b, shift, kernels()), sink_(sink) {
     assert(a.hasOwners() && b.hasOwners());
   }
 
-  /// @brief Takes pairs of triangles; between two calls of flush() at most
+  /// @brief Takes pairs of triangles. The limit between two calls of flush() is
   /// FeatureBatch::kMaxPairs.
-  /// @param next  the first of them; after an error the one that it is about, and in the
-  /// end `last`
+  /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not
+  /// finite
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
     batch_.add(next, last, latest(), false, counts_);
   }
 
-  /// @brief What visit() threw ends the query: all candidates are wanted.
+  /// @brief Ends the query with the error that visit() has thrown, since the query needs
+  /// all candidates.
   [[noreturn]] void refuse(const NonFiniteVertex& error, float) { throw error; }
 
-  /// @brief Hands out what is there.
+  /// @brief Hands the candidates of the block to the sink.
   void flush();
 
   /// @brief Whether the sink wants no more.

@@ -22,12 +22,12 @@ ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
   const std::uint32_t tag =
       (c.kind == ContinuousContactKind::kEdgeEdge ? 2U : 0U) + (c.first_on_a ? 1U : 0U);
   PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
-  // Faces with the same vertices are one face, whatever their order.
+  // Faces with the same vertices are one face, in whatever order the vertices are.
   if (c.kind == ContinuousContactKind::kVertexFace) std::sort(key.begin() + 2, key.end());
   return key;
 }
 
-/// A pair that is kept already.
+/// Takes a contact of a pair that has been added before.
 bool ContactSink::addAgain(const FeatureContact& contact, Seen& seen) {
   if (!isEarlier(contact, seen.contact)) return false;
   auto kept = contacts_.begin() + static_cast<std::ptrdiff_t>(seen.index);
@@ -74,7 +74,8 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     : lists_(std::move(lists)) {
   std::size_t count = 0;
   for (const auto& list : lists_) count += list.size();
-  // As many buckets of equal time as contacts; most hold one or two.
+  // Bucket sort: as many buckets, of equal length in time, as contacts. Most buckets get
+  // one or two.
   const auto bucketOf = [count](const FeatureContact& c) {
     return std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(count)),
                     count - 1);
@@ -84,7 +85,7 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     for (const FeatureContact& c : list) ++ends[bucketOf(c) + 1];
   for (std::size_t i = 1; i <= count; ++i) ends[i] += ends[i - 1];
   sorted_.resize(count);
-  // Leaves the end of each bucket where its beginning was.
+  // After this loop ends[i] is the end of bucket i; before, it is its beginning.
   for (const auto& list : lists_)
     for (const FeatureContact& c : list) sorted_[ends[bucketOf(c)]++] = &c;
   const auto at = [this](std::size_t i) {

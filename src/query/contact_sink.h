@@ -25,38 +25,39 @@ struct FeatureContact : FeatureIds {
   double toc_hi;
 };
 
-/// @brief Order of contacts: by toc_lo, then kind, side and vertex ids; total on the
-/// contacts of one scene.
+/// @brief The order of contacts: by toc_lo, then by kind, side and vertex ids. No two
+/// contacts of a query are equal in it.
 bool isEarlier(const FeatureContact& x, const FeatureContact& y);
 
-/// @brief Keeps the earliest contacts, at most capacity.
+/// @brief Keeps the earliest contacts, up to a capacity.
 class ContactSink {
  public:
   /// @param capacity  at least 1
-  /// @param may_repeat  whether add() can be given a pair more than once; the earliest
-  /// counts, whatever the order.
+  /// @param may_repeat  whether add() may get the same pair of features more than once.
+  /// The sink then keeps the earliest of its contacts, in whatever order they come.
   ContactSink(std::size_t capacity, bool may_repeat)
       : capacity_(capacity), may_repeat_(may_repeat) {
     assert(capacity > 0);
   }
 
-  /// @return whether the contact was kept.
+  /// @return whether the sink keeps the contact
   bool add(const FeatureContact& contact);
 
-  /// @brief The kept contacts, in the order of add() until isCut(), then in none.
+  /// @brief The contacts that are kept. They are in the order of add() as long as isCut()
+  /// is false, then in no order.
   const std::deque<FeatureContact>& contacts() const { return contacts_; }
 
-  /// @brief Whether contacts were dropped for want of capacity.
+  /// @brief Whether the capacity was too small, so that contacts were dropped.
   bool isCut() const { return cut_; }
 
-  /// @brief Upper end of the earliest bracket so far; 1 without contacts.
+  /// @brief The earliest upper end of a bracket so far; 1 without contacts.
   double firstHi() const { return first_hi_; }
 
-  /// @brief A contact that starts after this time would not be kept, nor would it be news
-  /// that some are dropped.
+  /// @brief A contact that begins after this time changes nothing: the sink would drop
+  /// it, and it has dropped others before.
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
-  /// @brief The contacts in no order; the sink is to be cleared before it is used again.
+  /// @brief Moves the contacts out, in no order. Call clear() before the next add().
   std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 
   /// @brief Forgets all contacts.
@@ -67,7 +68,7 @@ class ContactSink {
   static PairKey keyOf(const FeatureContact& contact);
   struct Seen {
     FeatureContact contact;
-    /// Where it is until cut_.
+    /// Its index in contacts_, as long as cut_ is false.
     std::size_t index;
   };
   bool addAgain(const FeatureContact& contact, Seen& seen);
@@ -76,14 +77,14 @@ class ContactSink {
   bool may_repeat_;
   bool cut_{false};
   double first_hi_{1};
-  /// Once cut_, a heap with the latest contact in front.
+  /// If cut_, a heap with the latest contact in front.
   std::deque<FeatureContact> contacts_;
-  /// The kept pairs.
+  /// The pairs that are kept. Only used if may_repeat_.
   std::map<PairKey, Seen> seen_;
 };
 
-/// @brief The contacts of some lists, earliest first. They stay in the lists, since there
-/// may be many.
+/// @brief The contacts of several lists, earliest first. Only pointers are sorted, since
+/// there may be many contacts.
 class SortedContacts {
  public:
   class Iterator {
@@ -117,7 +118,10 @@ class SortedContacts {
 
   std::size_t size() const { return sorted_.size(); }
   bool empty() const { return sorted_.empty(); }
-  const FeatureContact& operator[](std::size_t i) const { return *sorted_[i]; }
+  const FeatureContact& operator[](std::size_t i) const {
+    assert(i < size());
+    return *sorted_[i];
+  }
   const FeatureContact& front() const { return *sorted_.front(); }
   const FeatureContact& back() const { return *sorted_.back(); }
   Iterator begin() const { return Iterator(sorted_.data()); }

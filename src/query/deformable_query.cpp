@@ -26,23 +26,26 @@ double secondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Triangle pairs are visited in blocks, so that the tree and the vertices do not push
-/// each other out of the cache at every pair. A first-contact query begins with small
-/// blocks, since a contact that is found prunes what follows, and takes the earliest work
-/// first.
+/// The order of the work of a query. Triangle pairs go into the narrow phase in blocks:
+/// otherwise the tree and the vertices would push each other out of the cache at every
+/// pair. A first-contact query takes the earliest work first. It begins with small
+/// blocks, since a contact that is found prunes all later work.
 struct Schedule {
-  /// Until only the beginning of the step matters, see isEarly(), and from then on.
+  /// Sizes of blocks: the first as long as a large part of the step matters, the second
+  /// when only its beginning does, see isEarly().
   std::size_t first_block, block;
+  /// Whether the earliest work comes first.
   bool in_order;
-  /// The traversal is cut into about so many tasks, whatever the number of threads.
+  /// The traversal is divided into about this number of tasks. It does not depend on the
+  /// number of threads.
   std::size_t tasks;
 };
 constexpr Schedule kAllSchedule{FeatureBatch::kMaxPairs, FeatureBatch::kMaxPairs, false,
                                 256};
 constexpr Schedule kFirstSchedule{32, 128, true, 64};
 
-/// What is proved of a mesh, so that a query of it with itself can leave it out; empty if
-/// nothing is.
+/// The fans and regions of a mesh that are proved to be embedded, so that a
+/// self-collision query leaves them out. Empty lists: none.
 struct SelfProofs {
   std::vector<std::uint8_t> fans, regions;
   std::vector<std::uint32_t> nodes_in_fans;
@@ -62,9 +65,9 @@ bool isEarlierWork(const NodePair& x, const NodePair& y) {
   return x.earliest < y.earliest;
 }
 
-/// Works that overlap from the start on, as most do, are in order already, and stay so
-/// whatever else is in the list: tasks leave out different works, but meet what touches
-/// at t = 0 in the same order.
+/// The sort is stable. Most works overlap from t = 0 on, and these keep their order,
+/// whatever else is in the list. So what touches at t = 0 is found in the same order,
+/// whether or not other works are left out.
 void sortLatestFirst(NodePair* first, NodePair* last) {
   const auto isLater = [](const NodePair& x, const NodePair& y) {
     return isEarlierWork(y, x);
@@ -72,8 +75,9 @@ void sortLatestFirst(NodePair* first, NodePair* last) {
   if (!std::is_sorted(first, last, isLater)) std::stable_sort(first, last, isLater);
 }
 
-/// Part of a traversal: its work, and what is done to the triangle pairs that it finds.
-/// @tparam Leaves  NarrowPhase or CandidateCollector
+/// A part of a traversal, done by one thread: compares boxes, collects the triangle pairs
+/// that overlap, and passes them on in blocks.
+/// @tparam Leaves  what takes the blocks: NarrowPhase or CandidateCollector
 template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
@@ -87,10 +91,11 @@ class Part {
         leaves_(leaves),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
 
-  /// Seconds in the leaves.
+  /// Seconds that the leaves have taken.
   double testTime() const { return test_time_; }
 
-  /// Opens the whole traversal, level by level, until there is enough work for all tasks.
+  /// Begins the whole traversal, level by level, until there is a work for each task.
+  /// @param[out] works  the work that is left, one for each task
   void divide(std::vector<NodePair>& works) {
     std::size_t next = 0;
     open_.cut(0);
@@ -107,7 +112,7 @@ class Part {
     if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
   }
 
-  /// Does a work to its end, or no more than so many steps of it.
+  /// Does a work to its end, or until it has taken this number of steps.
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
     open_.cut(0);
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
@@ -142,8 +147,9 @@ class Part {
     return isEarly(latest) ? schedule_.block : schedule_.first_block;
   }
 
-  /// Tests what was found, block by block.
-  /// @param with_rest  what does not fill a block as well; else it is kept for later
+  /// Passes on the triangle pairs that were found, block by block.
+  /// @param with_rest  whether to pass on the last pairs if they do not fill a block; if
+  /// not, they wait for more
   void visitBlocks(bool with_rest) {
     const auto start = Clock::now();
     const LeafPair* next = block_.data();
@@ -172,9 +178,9 @@ class Part {
   }
 
   Traversal<kSelf, TreeA, TreeB> traversal_;
-  /// Of both meshes.
+  /// The sum of MeshInstance::poseDisplacement() of both meshes.
   double pose_displacement_;
-  /// As it was in the last step.
+  /// Leaves::latest() in the last step.
   double latest_{1};
   const Schedule& schedule_;
   Leaves& leaves_;
@@ -184,7 +190,7 @@ class Part {
   std::size_t count_{0};
 };
 
-/// Calls visit with the tree to traverse; for one thread.
+/// Calls visit with the tree of the mesh. A RigidTreeReader is for one thread only.
 template <typename Visit>
 void visitTree(const MeshInstance& mesh, Visit&& visit) {
   if (mesh.tree) {
@@ -195,7 +201,7 @@ void visitTree(const MeshInstance& mesh, Visit&& visit) {
   }
 }
 
-/// Two meshes, or one with itself, as a query traverses them.
+/// Two meshes, or a mesh with itself, and what a traversal needs to know of them.
 struct MeshPair {
   const MeshInstance& a;
   const MeshInstance& b;
@@ -204,7 +210,7 @@ struct MeshPair {
 
   bool isSelf() const { return &a == &b; }
 
-  /// Calls visit(part) with a part of the traversal, and adds the time that it takes.
+  /// Calls visit(part) with a part of the traversal, and adds its time to `times`.
   template <typename Leaves, typename Visit>
   void visitPart(const Schedule& schedule, Leaves& leaves, StageTimes& times,
                  Visit&& visit) const {
@@ -246,7 +252,7 @@ struct MeshPair {
   }
 };
 
-/// What a query of a mesh with itself leaves out; nothing of two meshes.
+/// Finds what a query of a mesh with itself leaves out. Finds nothing for two meshes.
 SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
                      bool with_regions, int num_threads, StageTimes& times) {
   SelfProofs proofs;
@@ -259,17 +265,17 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
     proofs.regions = std::move(regions.nodes);
     interior = std::move(regions.interior);
   }
-  // No pair of triangles around a vertex inside of a region is met.
+  // A fan inside of a region needs no proof: the query leaves out the whole region.
   proofs.fans = findEmbeddedFans(tree, interior, kernels(), num_threads);
   proofs.nodes_in_fans = findNodesInFans(tree, proofs.fans);
   times.traverse += secondsSince(start);
   return proofs;
 }
 
-/// How many steps of each work a first contact of a mesh with itself does before all
-/// others, so that an early contact prunes the whole traversal, wherever it is. A work
-/// has about as many steps as triangles; where it has few, one contact is as good as
-/// another.
+/// The number of steps that a first-contact query of a mesh with itself takes of each
+/// work before it does any work to its end. An early contact in any work then prunes the
+/// whole traversal. A work has about as many steps as triangles. If it has few, this does
+/// not pay: the number is 0.
 std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
                      ContinuousQuery query) {
   constexpr std::size_t kTrianglesPerStep = 32, kLeast = 32;
@@ -279,8 +285,8 @@ std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
   return steps < kLeast ? 0 : steps;
 }
 
-/// A query for contacts. The traversal is divided into tasks; task 0 is what was done to
-/// divide it.
+/// A query for contacts. The traversal is divided into tasks. Task 0 is the beginning of
+/// the traversal, which divides it; each other task is one of the works that it leaves.
 class ContactQuery {
  public:
   ContactQuery(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
@@ -291,7 +297,7 @@ class ContactQuery {
         meshes_{a, b, shift,
                 proveSelf(a, b, options.leaves_out_regions, options.num_threads,
                           proof_times_)} {
-    // One more, so that it is known whether there were more.
+    // One contact more than wanted tells whether there are more.
     if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
       ++task_options_.max_contacts;
   }
@@ -303,7 +309,7 @@ class ContactQuery {
     meshes_.visitPart(schedule_, leaves, times, [&](auto& part) {
       divide(part, leaves);
       lookForEarlyContact(part, leaves);
-      // One part for all tasks: what it has read of a rigid tree stays.
+      // One part does all tasks, so that it reads each node of a rigid tree once.
       if (!parallel) runTasks(part, leaves);
     });
     tasks_[0].times = times;
@@ -327,10 +333,11 @@ class ContactQuery {
     tasks_[0].take(leaves);
   }
 
-  /// Not one of the tasks, which meet all of it again and count it.
+  /// Looks into each work for an early contact, see sampleOf(). The result and the counts
+  /// are not used, except for the time of the contact: the tasks find everything again.
   template <typename Part>
   void lookForEarlyContact(Part& part, NarrowPhase& leaves) {
-    // Earlier than that, little is left to prune.
+    // After a contact that is earlier than this, little is left to prune.
     constexpr double kEarlyEnough = 0x1p-10;
     const std::size_t steps = sampleOf(meshes_.a, meshes_.b, options_.query);
     if (steps == 0) return;
@@ -357,7 +364,7 @@ class ContactQuery {
     });
   }
 
-  /// The first contact, asked for alone.
+  /// The first contact, found by a query of its own.
   FeatureContact firstContact() const {
     QueryOptions first = options_;
     first.query = ContinuousQuery::kFirst;
@@ -367,7 +374,8 @@ class ContactQuery {
         .contacts.front();
   }
 
-  /// Wall time, divided as the tasks' own; what is left is the tests'.
+  /// Divides the wall time in proportion to the times of the tasks. The time of
+  /// proveSelf() counts as traversal, all other time outside of tasks as tests.
   void setWallTimes(StageTimes& times) const {
     const double wall = secondsSince(start_);
     const double sum = times.traverse + times.test;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The queries of two meshes, or of one with itself: their tasks, and in what order work
-// is done. Every task does the same for its part of the traversal: boxes against boxes
-// (Traversal), and block by block what is done to the triangle pairs that are left
-// (NarrowPhase, CandidateCollector). What the tasks find becomes one answer in merge().
+// The queries of two meshes, or of a mesh with itself. A query divides the traversal of
+// the trees into tasks. A task compares boxes (Traversal). The triangle pairs whose boxes
+// overlap go block by block into the narrow phase (NarrowPhase), or into
+// CandidateCollector if the query asks for candidates. merge() makes one answer of the
+// answers of the tasks.
 #ifndef FCL_CCD_QUERY_DEFORMABLE_QUERY_H
 #define FCL_CCD_QUERY_DEFORMABLE_QUERY_H
 
@@ -16,25 +17,26 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Traverses the tree of a with itself and tests what it finds.
+/// @brief The contacts of mesh a with itself.
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options);
 
-/// @brief Traverses the trees of a and b and tests what it finds.
+/// @brief The contacts of meshes a and b.
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options);
 
-/// @brief Traverses the tree of a with itself and hands the candidates to the sink.
+/// @brief Hands the candidates of mesh a with itself to the sink.
 /// @pre a has owners
 /// @return whether the sink took them all
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink);
 
-/// @brief Traverses the trees of a and b and hands the candidates to the sink.
+/// @brief Hands the candidates of meshes a and b to the sink.
 /// @pre a and b have owners
 /// @return whether the sink took them all
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const CandidateSink& sink);
 
-/// @brief What overlapWindow() needs between the trees of two instances.
+/// @brief The shift between the boxes of two meshes, which may have different origins and
+/// translations. overlapWindow() adds it.
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b);
 
 }  // namespace deformable

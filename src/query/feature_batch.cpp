@@ -15,7 +15,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Of two triangles.
+/// Edges of two triangles.
 constexpr std::size_t kEdges = 6;
 
 bool isFinite(const TreeVertex& x) {
@@ -39,7 +39,7 @@ void TriangleReader::readIntoStore(int i) {
   assert(i >= 0);
   const auto index = static_cast<std::size_t>(i);
   if (!triangles_) {
-    // Not initialized: written before they are read.
+    // Not initialized, since each is written before it is read.
     triangles_.reset(new TreeTriangle[kStored]);
     vertices_.reset(new TreeVertex[3 * kStored]);
   }
@@ -61,7 +61,7 @@ void TriangleReader::readIntoStore(int i) {
                           " refers to a vertex that is not there");
         triangle.id[k] = static_cast<std::uint32_t>(id);
       }
-      // As in assignFeatures(), an edge with two equal ids is none.
+      // As in assignFeatures(), an edge with two equal ids is not a feature.
       for (unsigned k = 0; k < 3; ++k)
         if (triangle.id[k] == triangle.id[(k + 1) % 3])
           triangle.owned &= ~(1U << (3 + k));
@@ -81,9 +81,10 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   const VertexPath path = mesh_.frames[id];
   out.setPath(path.t0, path.t1);
   if (mesh_.tree) return;
-  // Boxes of a rigid tree are without the translation. Taking it off again rounds by
-  // 2^-53 of what was added, twice, and 2^-53 of a difference and a sum: 2^-50 of all,
-  // and roundUp() may lose a part of what it adds.
+  // The boxes of a rigid tree do not contain the translation, so that it is subtracted
+  // here. Adding and subtracting it each round by 2^-53 of the numbers, and so do the
+  // difference to the origin and a sum. Together this is less than 2^-50 of `size`. The
+  // pad is twice that, since roundUp() may lose a part of it to rounding.
   const auto fit = [&](const double* x, const double(&translation)[3], Kdop16& box) {
     double p[3], size = 0;
     for (int k = 0; k < 3; ++k) {
@@ -117,7 +118,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
   }
 }
 
-// listFeatures() writes behind the last pair.
+// listFeatures() may write up to 16 codes behind the last pair.
 FeatureBatch::List::List(std::size_t pairs_each)
     : codes(new std::uint32_t[kMaxPairs * pairs_each + 16]),
       windows(new TimeWindow[kMaxPairs * pairs_each]) {}
@@ -132,7 +133,8 @@ template <typename ReaderA, typename ReaderB>
 void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                            const LeafPair* last, double latest, bool with_crossings,
                            StageCounts& counts) {
-  // Triangles lie anywhere in memory: the cache is told before they are read.
+  // The triangles of a block are far apart in memory, so that each is prefetched eight
+  // pairs before it is read.
   constexpr std::ptrdiff_t kAhead = 8;
   const float last_beginning = lastBeginning(latest);
   for (; next != last; ++next) {
@@ -157,7 +159,8 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
     owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
     edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
     has_edges_ |= edges != 0;
-    // Three pairs of ten own nothing together: no branch, nobody could foretell it.
+    // Three triangle pairs of ten own no pair of features. There is no branch on this,
+    // since it would be unpredictable.
     num_pairs_ += (owned | edges) != 0;
   }
 }
@@ -180,12 +183,12 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
                                           crossings_.get(), size);
 }
 
-/// Leaves out triangle pairs that are apart until `latest` if that isEarly(), else only
-/// their edges that may cross at t = 0.
+/// If `latest` is early, leaves out the triangle pairs that are apart until then. If not,
+/// it only leaves out their edges that might cross at t = 0.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   const bool is_early = isEarly(latest);
   if (!is_early && !has_edges_) return;
-  // A sum and a product round by 2^-53 each.
+  // The kernel needs more than the rounding of a sum and a product, 2^-53 each.
   const double share = is_early ? latest * (1 + 0x1p-50) : 0;
   std::size_t kept = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
@@ -193,7 +196,7 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
     float gaps[8];
     const unsigned apart = kernels_.areApart(&pairs_[first], count, share, gaps);
     if (!is_early) {
-      // No branch, nobody could foretell it.
+      // There is no branch, since it would be unpredictable.
       for (std::size_t i = 0; i < count; ++i)
         edges_[first + i] &= static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
       continue;
@@ -247,7 +250,7 @@ FeatureBatch::EdgeAndFace FeatureBatch::crossing(std::size_t i) const {
   return {&pairs_[code / 16], bit % 3, bit < 3};
 }
 
-/// Without a branch, where nobody could foretell it.
+/// Exchanges a and b without a branch, which would be unpredictable.
 template <typename T>
 void swapIf(bool condition, T& a, T& b) {
   const T difference = (a ^ b) & static_cast<T>(-static_cast<T>(condition));
@@ -255,15 +258,15 @@ void swapIf(bool condition, T& a, T& b) {
   b ^= difference;
 }
 
-/// An edge by ascending ids.
+/// An edge whose vertices are in the order of their ids.
 struct OrderedEdge {
-  /// Both, 32 bits each.
+  /// Both ids, 32 bits each.
   std::uint64_t ids;
-  /// Vertices of a TrianglePair, four bits each.
+  /// Its vertices as indices of TrianglePair::x, four bits each.
   std::uint32_t corners;
 
-  /// @param k  the corner of the triangle that it begins at
-  /// @param first  number of the triangle's first vertex there
+  /// @param k  the corner of the triangle at which the edge begins
+  /// @param first  index in TrianglePair::x of the triangle's first vertex
   OrderedEdge(const TreeTriangle& triangle, unsigned k, unsigned first) {
     unsigned l = (k + 1) % 3;
     std::uint32_t p = triangle.id[k], q = triangle.id[l];
@@ -275,9 +278,9 @@ struct OrderedEdge {
   }
 };
 
-/// Edges have their ids in ascending order (edges of two meshes stay on their sides) and
-/// the points are in the order of the ids: one name, one evaluation. In a self-collision
-/// the vertex of a VF pair is always mesh a's.
+/// The ids of an edge are in ascending order, and so are the two edges of an EE pair in a
+/// self-collision. The points follow the ids. So a pair of features has one name and one
+/// evaluation. In a self-collision the vertex of a VF pair always belongs to mesh a.
 void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
                                 FeatureCandidate& out) const {
   assert(code / 16 < num_pairs_ && code % 16 < kNumFeaturePairs && !window.isEmpty());

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// From triangle pairs to pairs of features: the pairs that two triangles own and whose
-// moving boxes meet.
+// From triangle pairs to pairs of features: lists the pairs that two triangles own, and
+// culls those whose moving boxes do not overlap.
 #ifndef FCL_CCD_QUERY_FEATURE_BATCH_H
 #define FCL_CCD_QUERY_FEATURE_BATCH_H
 
@@ -23,7 +23,7 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Names a vertex whose coordinates are not finite.
+/// @brief The error for a vertex whose coordinates are not finite.
 class NonFiniteVertex : public std::domain_error {
  public:
   explicit NonFiniteVertex(std::size_t vertex);
@@ -34,23 +34,23 @@ class NonFiniteVertex : public std::domain_error {
   std::size_t vertex_;
 };
 
-/// @brief Two triangles, as their trees count them, whose boxes do not overlap before
-/// `earliest`.
+/// @brief Two triangles, by their numbers in the trees, whose boxes overlap from
+/// `earliest` on.
 struct LeafPair {
   std::int32_t a, b;
   float earliest;
 };
 
-/// @brief For comparisons with the beginnings of windows, floats that are rounded to
-/// either side below FLT_MIN: what is above this begins after `latest`.
+/// @brief A window begins after `latest` if its beginning is above this float. Beginnings
+/// are floats, which below FLT_MIN may be rounded to either side; hence the rounding up.
 inline float lastBeginning(double latest) { return roundUp(latest, 0.f); }
 
-/// @brief The triangles of a tree that are read where they lie.
+/// @brief The triangles and vertices of a moving tree, read without a copy.
 struct TrianglesInPlace {
   const TreeTriangle* triangles;
   const TreeVertex* vertices;
 
-  /// @param[out] x  the vertices, which the cache is told of
+  /// @param[out] x  the vertices, which are prefetched
   const TreeTriangle* read(int i, const TreeVertex** x) const {
     const TreeTriangle& triangle = triangles[i];
     for (int k = 0; k < 3; ++k) {
@@ -63,17 +63,17 @@ struct TrianglesInPlace {
   void prefetch(int i) const { __builtin_prefetch(triangles + i); }
 };
 
-/// @brief Reads the triangles of one mesh: those of a tree as they lie there, others into
-/// a store of its own.
+/// @brief Reads the triangles of a mesh. A moving tree in place is read without a copy.
+/// For other meshes the reader computes vertices and their boxes into a store of its own.
 class TriangleReader {
  public:
-  /// @brief So many reads leave the results of earlier ones in place.
+  /// @brief The size of the store: a result is valid until this number of later reads.
   static constexpr std::size_t kStored = 256;
 
   /// @param mesh  kept by reference
   explicit TriangleReader(const MeshInstance& mesh);
 
-  /// @param i  a triangle as the mesh's tree counts them
+  /// @param i  number of the triangle in the tree of the mesh
   /// @param[out] x  its vertices
   /// @throws NonFiniteVertex
   const TreeTriangle* read(int i, const TreeVertex** x) {
@@ -87,7 +87,8 @@ class TriangleReader {
     if (in_place_.triangles) in_place_.prefetch(i);
   }
 
-  /// @brief What read() does for a tree in place; of no triangles for another mesh.
+  /// @brief The triangles that read() reads without a copy; null pointers if it has to
+  /// copy.
   const TrianglesInPlace& inPlace() const { return in_place_; }
 
  private:
@@ -96,38 +97,39 @@ class TriangleReader {
 
   const MeshInstance& mesh_;
   TrianglesInPlace in_place_{nullptr, nullptr};
-  /// The triangle that was read last into the store, and where it is.
+  /// The triangle that was read last into the store, and its place there.
   int index_{-1};
   std::size_t stored_{0};
   std::unique_ptr<TreeTriangle[]> triangles_;
   std::unique_ptr<TreeVertex[]> vertices_;
 };
 
-/// @brief Two features that do not touch outside [window_lo, window_hi].
+/// @brief Two features and their window: outside of [window_lo, window_hi] they do not
+/// touch.
 struct FeatureCandidate : FeatureIds {
   double window_lo;
   double window_hi;
-  /// The vertices in the order of the ids; valid as long as the batch is.
+  /// The vertices, in the order of the ids. Valid until FeatureBatch::clear().
   const TreeVertex* x[4];
 };
 
-/// @brief Some triangle pairs and the pairs of features that they own.
+/// @brief A block of triangle pairs, and the pairs of features that they own.
 class FeatureBatch {
  public:
   static constexpr std::size_t kMaxPairs = TriangleReader::kStored;
 
-  /// @param a, b  kept by reference; the same object twice for a self-collision
-  /// @param shift  between their trees; null for a self-collision
+  /// @param a, b  kept by reference; the same object for a self-collision
+  /// @param shift  relativeShift(a, b); null for a self-collision
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                const Kernels& kernels);
 
   bool isSelf() const { return self_; }
 
-  /// @brief Adds pairs that overlap no later than `latest`; at most kMaxPairs until
-  /// clear().
-  /// @param next  the first of them; after an error the one that it is about, and in the
-  /// end `last`
-  /// @param with_crossings  whether edges may cross faces at t = 0
+  /// @brief Adds those triangle pairs whose boxes begin to overlap no later than
+  /// `latest`. The limit until clear() is kMaxPairs.
+  /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not
+  /// finite
+  /// @param with_crossings  whether the query looks for edges that cross faces at t = 0
   /// @param counts  triangle_pairs and adjacent_pairs are counted
   /// @throws NonFiniteVertex
   void add(const LeafPair*& next, const LeafPair* last, double latest,
@@ -135,24 +137,26 @@ class FeatureBatch {
 
   void clear();
 
-  /// @brief Leaves no triangles that are apart until `latest`, and the edges and faces
-  /// whose boxes overlap at t = 0.
-  /// @param latest  pairs that overlap only later are of no interest
+  /// @brief Culls triangle pairs that are apart until `latest`, and lists the edges and
+  /// faces whose boxes overlap at t = 0.
+  /// @param latest  later contacts do not matter to the query
   /// @param counts  plane_culled is counted
   void cullTriangles(double latest, StageCounts& counts);
 
-  /// @brief Leaves the pairs of features of one kind whose moving boxes overlap, with
-  /// their windows; after cullTriangles().
+  /// @brief Lists the pairs of features of one kind, and culls those whose moving boxes
+  /// do not overlap. The others get their windows.
+  /// @pre cullTriangles() has been called
   /// @param counts  feature_pairs and box_culled are counted
   void cull(ContinuousContactKind kind, double latest, StageCounts& counts);
 
-  /// @brief Leaves the pairs of one kind that a filter accepts.
-  /// @return how many it does not
+  /// @brief Keeps the pairs of features of one kind that the filter accepts.
+  /// @return the number of the others
   std::size_t keep(ContinuousContactKind kind, const PairFilter& filter);
 
-  /// @brief How many pairs of one kind are left.
+  /// @brief The number of pairs of features of one kind that are left.
   std::size_t size(ContinuousContactKind kind) const { return list(kind).size; }
-  /// @brief Those pairs, features of pairs(), and their windows.
+  /// @brief These pairs, as codes (featureCode()) that refer to pairs(), and their
+  /// windows.
   const std::uint32_t* codes(ContinuousContactKind kind) const {
     return list(kind).codes.get();
   }
@@ -161,11 +165,12 @@ class FeatureBatch {
   }
   const TrianglePair* pairs() const { return pairs_.get(); }
 
-  /// @brief The pair's one name, whatever triangles it is met in.
+  /// @brief Sets the candidate of a pair of features. It is the same whichever triangles
+  /// the pair is found in.
   void setCandidate(std::uint32_t code, const TimeWindow& window,
                     FeatureCandidate& out) const;
 
-  /// @brief An edge of one triangle and the face of the other.
+  /// @brief An edge of one triangle and the face of the other one.
   struct EdgeAndFace {
     const TrianglePair* pair;
     /// The edge joins vertices edge and (edge + 1) % 3 of a (or b).
@@ -173,12 +178,14 @@ class FeatureBatch {
     bool edge_on_a;
   };
   std::size_t numCrossings() const { return num_crossings_; }
-  /// @brief The same as Kernels::mayCross() takes them.
+  /// @brief The edges and faces whose boxes overlap at t = 0, as codes for
+  /// Kernels::mayCross().
   const std::uint32_t* crossings() const { return crossings_.get(); }
   EdgeAndFace crossing(std::size_t i) const;
 
  private:
-  /// Has room for all pairs that kMaxPairs triangle pairs can own; not initialized.
+  /// A list of pairs of features, with room for all that kMaxPairs triangle pairs can
+  /// own. Its memory is not initialized.
   struct List {
     std::unique_ptr<std::uint32_t[]> codes;
     std::unique_ptr<TimeWindow[]> windows;
@@ -202,14 +209,14 @@ class FeatureBatch {
   KdopShift turned_shift_;
   const Kernels& kernels_;
   std::unique_ptr<TrianglePair[]> pairs_;
-  /// The pairs of features of each triangle pair that are to be looked at.
+  /// For each triangle pair, the pairs of features to test, one bit each.
   std::unique_ptr<std::uint16_t[]> owned_;
-  /// The edges of each triangle pair that may pass through the other triangle at t = 0:
-  /// bits 0-2 for a's, 3-5 for b's.
+  /// For each triangle pair, the edges that may pass through the other triangle at t = 0:
+  /// bits 0-2 for those of a, 3-5 for those of b.
   std::unique_ptr<std::uint16_t[]> edges_;
   bool has_edges_{false};
-  /// Features of each triangle pair that are further apart at t = 0 do not meet until the
-  /// time after which nothing matters.
+  /// For each triangle pair, a distance. If its features are further apart than this at t
+  /// = 0, they do not touch until `latest`.
   std::unique_ptr<float[]> gaps_;
   std::size_t num_pairs_{0};
   List lists_[2];

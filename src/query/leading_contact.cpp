@@ -29,7 +29,7 @@ class ContactPaths {
   VertexPath path_[4];
 };
 
-/// False proves that the features do not touch in [lo, latest].
+/// Whether the features may touch in [lo, latest]; false is a proof that they do not.
 bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo,
                    double latest) {
   constexpr double kCoarse = 0x1p-3;
@@ -40,7 +40,7 @@ bool mayTouchUntil(ContinuousContactKind kind, const FeaturePoints& x, double lo
 
 TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
                       TimeBracket bracket) {
-  // Each time the end comes down to less than half of itself, or the bracket is tight.
+  // Each round makes the bracket tight, or its upper end less than half of what it was.
   while (!bracket.isTight()) {
     const double width = std::max(0.25 * kTightShare * bracket.hi,
                                   std::numeric_limits<double>::denorm_min());
@@ -64,7 +64,7 @@ void FirstBracket::add(const TimeBracket& tight) {
 
 TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,
                            const std::vector<std::deque<FeatureContact>>& contacts) {
-  // What touches at t = 0 has the bracket [0, 0].
+  // A contact at t = 0 has the bracket [0, 0].
   if (first_hi == 0) return {0, 0};
   FirstBracket first;
   for (const std::deque<FeatureContact>& list : contacts)

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The bracket of the first contact, by which simulations advance: narrow beside the time
-// itself, however early that is. With a bracket [0, toc_err] they would stand still.
+// The bracket of the first contact. Simulations advance to its lower end. So its width is
+// small relative to the time itself, however early that is: with a bracket [0, toc_err] a
+// simulation would not advance at all.
 #ifndef FCL_CCD_QUERY_LEADING_CONTACT_H
 #define FCL_CCD_QUERY_LEADING_CONTACT_H
 
@@ -18,9 +19,9 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Width of a tight bracket, as a share of its upper end. An eighth is enough to
-/// step by; what is later than the leading contact by more than this is not looked at,
-/// and narrowing a bracket costs the same to either width.
+/// @brief The width of a tight bracket, relative to its upper end. An eighth would be
+/// enough for a simulation to advance. A smaller share costs the same for each bracket,
+/// and fewer contacts are early enough to need one.
 constexpr double kTightShare = 0x1p-10;
 
 struct TimeBracket {
@@ -29,37 +30,39 @@ struct TimeBracket {
   bool isTight() const { return hi - lo <= kTightShare * hi; }
 };
 
-/// @brief A contact whose tight bracket begins no later than first_hi, the end of
-/// another's tight bracket, begins before this: the time t of a contact is at most hi,
-/// lo >= (1 - kTightShare) hi, and 1 / (1 - kTightShare) < 1 + 2 kTightShare. The sum of
-/// these rounds by 2^-53.
+/// @brief Let first_hi be the upper end of a tight bracket. If another tight bracket
+/// begins no later than first_hi, its contact is before the time that this function
+/// returns. Proof: the contact is no later than hi, lo >= (1 - kTightShare) hi, and 1 /
+/// (1 - kTightShare) < 1 + 2 kTightShare. The sum and the product round by 2^-53 each.
 inline double latestLeading(double first_hi) {
   return first_hi * (1 + 2.5 * kTightShare) + std::numeric_limits<double>::denorm_min();
 }
 
-/// @brief The bracket of a contact, tight or, where no double lies between its ends, as
-/// it is. Depends on nothing but the arguments.
+/// @brief A tight bracket of a contact, or the narrowest that doubles allow. It depends
+/// on nothing but the arguments.
 /// @pre the features first touch in [bracket.lo, bracket.hi]
 TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
                       TimeBracket bracket);
 
-/// @brief The tight bracket of the first of some contacts, whatever their order.
-/// @pre there is a contact; first_hi is the earliest end of a bracket
-/// @param a, b  the meshes that the contacts are between
+/// @brief The tight bracket of the first of several contacts. It does not depend on their
+/// order.
+/// @pre there is a contact, and first_hi is the earliest upper end of a bracket
+/// @param a, b  the meshes of the contacts
 TimeBracket bracketOfFirst(const MeshInstance& a, const MeshInstance& b, double first_hi,
                            const std::vector<std::deque<FeatureContact>>& contacts);
 
-/// @brief The tight bracket of the first of contacts that come one by one.
+/// @brief Finds the tight bracket of the first contact, from contacts that come one by
+/// one.
 class FirstBracket {
  public:
-  /// @param bracket  of a contact
-  /// @return whether the contact may be the first, so that its tight bracket is wanted
+  /// @brief Whether a contact with this bracket may be the first. If so, call add() with
+  /// its tight bracket.
   bool wants(const TimeBracket& bracket) const { return bracket.lo <= first_hi_; }
   void add(const TimeBracket& tight);
 
-  /// @brief Upper end of the earliest tight bracket; 1 without one.
+  /// @brief The earliest upper end of a tight bracket; 1 without contacts.
   double firstHi() const { return first_hi_; }
-  /// @brief The one that begins first; [1, 1] without one.
+  /// @brief The tight bracket that begins first; [1, 1] without contacts.
   const TimeBracket& get() const { return first_; }
 
  private:

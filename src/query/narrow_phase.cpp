@@ -13,7 +13,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// The points of a candidate as the tests of single pairs read them.
+/// The points of a candidate in the form that tests of single pairs need.
 class CandidatePoints {
  public:
   explicit CandidatePoints(const FeatureCandidate& candidate) {
@@ -66,11 +66,11 @@ void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 
-/// What runStages() does with the pairs of one kind of a block.
+/// The pairs of one kind in a block, for runStages().
 struct NarrowPhase::BlockPairs {
   NarrowPhase& phase;
   ContinuousContactKind kind;
-  /// As it was when the block began.
+  /// NarrowPhase::latest() when the block began.
   double latest;
 
   void cullByBoxes() {
@@ -93,8 +93,9 @@ void NarrowPhase::flush() {
   batch_.clear();
 }
 
-/// Takes as candidates what may become coplanar, and not too late. They keep their whole
-/// windows, so that a contact's bracket is the same whatever was found before it.
+/// Makes candidates of the pairs that may become coplanar before latest(). A candidate
+/// has its whole window, so that the bracket of a contact does not depend on what was
+/// found before.
 void NarrowPhase::filter(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
@@ -109,7 +110,8 @@ void NarrowPhase::filter(ContinuousContactKind kind) {
     for (; left != 0; left &= left - 1) {
       const auto lane = static_cast<unsigned>(__builtin_ctz(left));
       const std::size_t i = first + lane;
-      // Written where it lies: what is stored in parts is slow to copy as a whole.
+      // It is written in place: a copy right after it was stored in parts would wait for
+      // these stores.
       candidates_.emplace_back();
       batch_.setCandidate(codes[i], windows[i], candidates_.back());
       candidates_.back().window_hi =
@@ -122,7 +124,8 @@ void NarrowPhase::filter(ContinuousContactKind kind) {
   counts_.filter_culled += size - candidates_.size();
 }
 
-/// Decides pieces eight at a time, but for those that are no plain case.
+/// Solves pieces, eight at a time. Adds the contacts. Calls on_no(piece) for each without
+/// contact, and on_open(piece) for each that is no plain case.
 template <typename OnNo, typename OnOpen>
 void NarrowPhase::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
                         OnOpen&& on_open) {
@@ -142,7 +145,7 @@ void NarrowPhase::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
   }
 }
 
-/// The pieces that begin at `first`; the last one fills up the last eight.
+/// Eight pieces from number `first` on. If there are fewer, the last one is repeated.
 EightPairs NarrowPhase::eightOf(const std::vector<Piece>& pieces,
                                 std::size_t first) const {
   assert(first < pieces.size());
@@ -155,7 +158,8 @@ EightPairs NarrowPhase::eightOf(const std::vector<Piece>& pieces,
   return eight;
 }
 
-/// Whole windows; what is no plain case is left in open_.
+/// Solves all candidates over their whole windows. Leaves in open_ those that are no
+/// plain cases.
 void NarrowPhase::solvePlainCases() {
   pieces_.clear();
   open_.clear();
@@ -166,7 +170,8 @@ void NarrowPhase::solvePlainCases() {
       [this](const Piece& p) { open_.push_back(p); });
 }
 
-/// Two parts of a window, the second if the first one holds no contact.
+/// Decides what solvePlainCases() has left. Divides windows in two; the second part is
+/// solved only if there is no contact in the first one.
 void NarrowPhase::solveRest() {
   const auto isNo = [this](const Piece&) { ++counts_.solver_culled; };
   const auto solveAlone = [this](const Piece& p) { solve(candidates_[p.candidate]); };
@@ -182,7 +187,8 @@ void NarrowPhase::solveRest() {
   solve(second_parts_, isNo, solveAlone);
 }
 
-/// Makes pieces of the first parts of those windows that can be divided.
+/// Finds in open_ the windows that can be divided, and makes pieces of their first parts.
+/// Calls on_no(piece) for each that has no contact, and on_open(piece) for all others.
 template <typename OnNo, typename OnOpen>
 void NarrowPhase::divide(OnNo&& on_no, OnOpen&& on_open) {
   pieces_.clear();
@@ -201,10 +207,10 @@ void NarrowPhase::divide(OnNo&& on_no, OnOpen&& on_open) {
   }
 }
 
-/// Whether a contact that may be the answer needs a tight bracket.
+/// Whether this contact may be the answer of the query and its bracket is not tight yet.
 bool NarrowPhase::isLeading(const TimeBracket& bracket) const {
   if (bracket.isTight()) return false;
-  // Which task's contact is the answer does not depend on what others found.
+  // Any contact of this task may be the answer of a kAny query.
   if (options_.query == ContinuousQuery::kAny) return true;
   return options_.query == ContinuousQuery::kFirst && bracket.lo <= firstHi();
 }
@@ -214,7 +220,7 @@ void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
   ++counts_.contacts;
   if (isLeading(bracket))
     bracket = tightened(candidate.kind, CandidatePoints(candidate).get(), bracket);
-  // Of a list of all contacts, for which somebody else looks if there are more tasks.
+  // If the query has more tasks, merge() looks for the first contact.
   if (!progress_ && first_.wants(bracket))
     first_.add(tightened(candidate.kind, CandidatePoints(candidate).get(), bracket));
   FeatureContact contact{candidate, bracket.lo, bracket.hi};
@@ -282,7 +288,8 @@ Crossing NarrowPhase::crossingAt(std::size_t i) const {
   return crossing;
 }
 
-/// Names triangles that the filter accepts, if there are any.
+/// Sets the triangles of the crossing to two that the filter accepts; false if there are
+/// none.
 bool NarrowPhase::accept(Crossing& crossing) const {
   const HeldFeature edge{crossing.edge, 2,
                          crossing.triangles[crossing.first_on_a ? 0 : 1]},

@@ -25,28 +25,30 @@ struct QueryOptions {
   ContinuousQuery query{ContinuousQuery::kAll};
   std::size_t max_contacts{static_cast<std::size_t>(-1)};
   double toc_err{1e-4};
-  /// A crossing at t = 0 answers the query; contacts are of no interest then.
+  /// Whether a crossing at t = 0 answers the query, so that contacts do not matter.
   bool stop_at_crossing{false};
   /// See parallelFor().
   int num_threads{1};
-  /// Whether a self query leaves out embedded regions; only which contact kAny names may
-  /// depend on it.
+  /// Whether a self-collision query leaves out embedded regions. The answer does not
+  /// depend on it, except for which contact kAny finds.
   bool leaves_out_regions{true};
-  /// Contacts that begin later are none.
+  /// Later contacts do not count.
   double t_max{1};
-  /// Whether all crossings at t = 0 are wanted, not one.
+  /// Whether the answer has all crossings at t = 0, not only one.
   bool all_crossings{false};
-  /// Null: all pairs count.
+  /// The pairs that count; null: all.
   const PairFilter* filter{nullptr};
 };
 
-/// @brief What the tasks of one query tell each other, so that none does what cannot
-/// change the answer; which task comes first is known whatever the threads do.
+/// @brief What the tasks of a query tell each other, so that none does work that cannot
+/// change the answer. Tasks have numbers. So the answer does not depend on which thread
+/// is faster.
 struct QueryProgress {
-  /// Upper end of the earliest bracket so far; an error stands for a contact from when on
-  /// its triangles may touch.
+  /// The earliest upper end of a bracket so far. An error counts as a contact at the time
+  /// from which on its triangles may touch.
   std::atomic<double> first_hi{1};
-  /// The lowest task that has the answer on its own, or an error in place of it.
+  /// The lowest number of a task that has found an answer of the whole query, or an error
+  /// instead.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
 
   template <typename T>
@@ -57,48 +59,49 @@ struct QueryProgress {
   }
 };
 
-/// @brief A vertex that is not finite, of two triangles whose boxes overlap from
-/// `earliest` on.
+/// @brief A vertex that is not finite. It belongs to two triangles whose boxes overlap
+/// from `earliest` on.
 struct QueryError {
   float earliest;
   std::size_t vertex;
 };
 
-/// @brief Everything that is done to the triangle pairs whose boxes meet: crossing at t =
-/// 0, feature pairs, elementary tests, contacts into the sink. Each stage works on the
-/// pairs of a block, eight at a time; what a stage leaves goes on to the next. Holds the
-/// state of one query of one thread.
+/// @brief The narrow phase: from a block of triangle pairs whose boxes overlap to
+/// contacts in the sink. It tests for crossings at t = 0, and takes the pairs of features
+/// through runStages(), eight at a time. It holds the state of one query in one thread.
 class NarrowPhase {
  public:
-  /// @param a, b  kept by reference; the same object twice for a self-collision.
-  /// @param shift  between their trees; null for a self-collision
-  /// @param progress  of the query; null: this is all of it
-  /// @param task  number of this part of the query, until begin()
+  /// @param a, b  kept by reference; the same object for a self-collision
+  /// @param shift  relativeShift(a, b); null for a self-collision
+  /// @param progress  of the query; null if the query has no other tasks
+  /// @param task  the number of this task
   NarrowPhase(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
               const QueryOptions& options, QueryProgress* progress = nullptr,
               std::size_t task = 0);
 
-  /// @brief Forgets what was found, for another task of the same query.
-  /// @param task  its number
+  /// @brief Forgets what was found and begins another task of the same query.
+  /// @param task  the number of that task
   void begin(std::size_t task);
 
-  /// @brief Takes pairs of triangles; between two calls of flush() at most
+  /// @brief Takes pairs of triangles. The limit between two calls of flush() is
   /// FeatureBatch::kMaxPairs.
-  /// @param next  the first of them; after an error the one that it is about, and in the
-  /// end `last`
+  /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not
+  /// finite
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
     batch_.add(next, last, latest(), wantsCrossings(), counts_);
   }
 
-  /// @brief Notes what visit() threw for a pair; the pair is left out. Whether the query
-  /// fails is known when all tasks have ended: another may have the answer before.
+  /// @brief Notes an error that visit() has thrown for a pair, and leaves the pair out.
+  /// Whether the query fails is known when all tasks have ended, since another task may
+  /// have an answer that comes before the error.
   void refuse(const NonFiniteVertex& error, float earliest);
 
-  /// @brief The earliest of the errors that were noted, the first one of these.
+  /// @brief The error with the lowest `earliest`; of several the one that was noted
+  /// first.
   const std::optional<QueryError>& error() const { return error_; }
 
-  /// @brief Tests what visit() has taken.
+  /// @brief Tests the pairs that visit() has taken.
   void flush();
 
   /// @brief Whether nothing more can change the answer.
@@ -110,7 +113,7 @@ class NarrowPhase {
   /// @brief A pair whose window starts after this time cannot change the answer.
   double latest() const {
     if (options_.query == ContinuousQuery::kAny) return options_.t_max;
-    // A contact that is later than this has a bracket that begins later.
+    // A contact is at most `width` after the beginning of its bracket.
     const double width = options_.toc_err + kTimeRounding;
     double latest = sink_.latestKept() + width;
     if (options_.query == ContinuousQuery::kFirst) {
@@ -121,19 +124,19 @@ class NarrowPhase {
   }
 
   bool hasCrossing() const { return !crossings_.empty(); }
-  /// @brief The first one that was found, or, where all are wanted, all of them; those of
-  /// a mesh without owners repeatedly.
+  /// @brief The first crossing that was found, or all of them
+  /// (QueryOptions::all_crossings). A crossing of a mesh without owners may be there
+  /// several times.
   const std::vector<Crossing>& crossings() const { return crossings_; }
-  /// @brief The tight bracket of the first contact that was found, if this is all of the
-  /// query.
-  /// @pre there is one
+  /// @brief The tight bracket of the first contact that was found.
+  /// @pre there is a contact, and the query has no other tasks
   TimeBracket firstBracket() const { return first_.get(); }
   ContactSink& sink() { return sink_; }
   const ContactSink& sink() const { return sink_; }
   const StageCounts& counts() const { return counts_; }
   StageCounts& counts() { return counts_; }
 
-  /// @brief Adds what a traversal counted.
+  /// @brief Adds the counts of a traversal.
   void addTraversal(std::uint64_t compared, std::uint64_t fan_culled) {
     counts_.node_pairs += compared;
     counts_.triangle_pairs += fan_culled;
@@ -142,25 +145,26 @@ class NarrowPhase {
   }
 
  private:
-  /// More than a bracket is wider than toc_err: a few units in the last place of 1.
+  /// A bracket is wider than toc_err by less than this: by a few units in the last place
+  /// of 1.
   static constexpr double kTimeRounding = 0x1p-40;
 
   bool hasAnswer() const {
     if (hasCrossing() && options_.stop_at_crossing) return true;
-    // No contact is earlier than the start.
+    // No contact is earlier than t = 0.
     if (error_ && (options_.query != ContinuousQuery::kFirst || error_->earliest <= 0.f))
       return true;
     return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || hasCrossing());
   }
   bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
-  /// Upper end of the earliest bracket, of all tasks.
+  /// The earliest upper end of a bracket, of all tasks.
   double firstHi() const {
     const double mine = sink_.firstHi();
     return progress_ ? std::min(mine, progress_->first_hi.load(std::memory_order_relaxed))
                      : mine;
   }
-  /// A candidate in a part of its window.
+  /// A candidate and a part of its window.
   struct Piece {
     std::size_t candidate;
     double lo, hi;
@@ -186,9 +190,10 @@ class NarrowPhase {
   QueryOptions options_;
   const Kernels& kernels_;
   FeatureBatch batch_;
-  /// Pairs of one kind that may become coplanar.
+  /// The candidates of one kind that may become coplanar.
   std::vector<FeatureCandidate> candidates_;
-  /// What the kernels get, what they leave, and the second parts of divided windows.
+  /// Parts of windows: those to solve next, those that are no plain cases, and the second
+  /// parts of divided windows.
   std::vector<Piece> pieces_, open_, second_parts_;
   ContactSink sink_;
   FirstBracket first_;

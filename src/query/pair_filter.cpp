@@ -16,7 +16,7 @@ TrianglesAtVertices::TrianglesAtVertices(const MeshInstance& mesh) {
   for (const TreeTriangle& triangle : triangles)
     for (const std::uint32_t id : triangle.id) ++first_[id + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  // The tree's order is not that of the numbers.
+  // The triangles of a tree are not in the order of their numbers.
   std::vector<const TreeTriangle*> by_number(triangles.size());
   for (const TreeTriangle& triangle : triangles) by_number[triangle.index] = &triangle;
   corners_.resize(3 * triangles.size());

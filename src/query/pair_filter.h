@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which pairs of triangles count in a query, by bits of groups and masks and by a
-// function of the caller's. A feature is part of several triangles, of which one owns it
-// (mesh_topology.h): a pair of features counts if any two triangles that hold them do.
+// Which pairs of triangles count in a query: bits of groups and masks decide, and a
+// function of the caller. Several triangles hold a feature; one of them owns it
+// (mesh_topology.h). A pair of features counts if any two triangles that hold the
+// features count.
 #ifndef FCL_CCD_QUERY_PAIR_FILTER_H
 #define FCL_CCD_QUERY_PAIR_FILTER_H
 
@@ -19,11 +20,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The groups that the triangles of a mesh are in and those that they meet.
+/// @brief For the triangles of a mesh, the groups to which they belong (a bit each), and
+/// the groups with which they are tested.
 struct TriangleMarks {
   std::uint32_t group{1};
   std::uint32_t mask{~std::uint32_t{0}};
-  /// For each triangle, in place of the above; null: none.
+  /// One number for each triangle, instead of the one above; null: the one above.
   const std::uint32_t* groups{nullptr};
   const std::uint32_t* masks{nullptr};
 
@@ -36,10 +38,11 @@ struct TriangleMarks {
   bool areAllEqual() const { return !groups && !masks; }
 };
 
-/// @brief What counts: of mesh a and b, twice the same for a mesh with itself.
+/// @brief The rules that decide which pairs of triangles count.
 struct PairRules {
+  /// Of mesh a and mesh b; twice the same for a mesh with itself.
   TriangleMarks marks[2];
-  /// Of a triangle of a and one of b; null: all count.
+  /// Whether a triangle of a and one of b count; null: all do.
   const std::function<bool(std::intptr_t, std::intptr_t)>* accepts{nullptr};
 
   /// @brief Whether the groups and masks of two triangles, and then the function, accept
@@ -49,29 +52,29 @@ struct PairRules {
            (marks[1].groupOf(b) & marks[0].maskOf(a)) != 0 &&
            (!accepts || (*accepts)(a, b));
   }
-  /// @brief Whether all pairs get one answer; accept() of any two triangles gives it.
+  /// @brief Whether accept() is the same for all pairs of triangles.
   bool areAllEqual() const {
     return marks[0].areAllEqual() && marks[1].areAllEqual() && !accepts;
   }
 };
 
-/// @brief A vertex, an edge or a face, and a triangle that holds it.
+/// @brief A vertex, an edge or a face, by its vertex ids, and a triangle that holds it.
 struct HeldFeature {
   const std::uint32_t* ids;
   unsigned count;
   std::int32_t triangle;
 };
 
-/// @brief The triangles at each vertex of a mesh whose features have owners.
+/// @brief The triangles at each vertex of a mesh.
 class TrianglesAtVertices {
  public:
-  /// @param mesh  of one without a moving tree nothing is kept: each of its triangles
-  /// meets with all its features
+  /// @param mesh  Without a moving tree its features have no owners: each triangle is
+  /// tested with all its features, so that no list is needed.
   explicit TrianglesAtVertices(const MeshInstance& mesh);
 
-  /// @brief Calls visit with the triangles that hold the feature, lowest number first,
-  /// until it returns true.
-  /// @return whether it did
+  /// @brief Calls visit(triangle) for the triangles that hold the feature, lowest number
+  /// first, until it returns true.
+  /// @return whether visit has returned true
   template <typename Visit>
   bool anyOf(const HeldFeature& feature, Visit&& visit) const {
     if (first_.empty()) return visit(feature.triangle);
@@ -91,12 +94,12 @@ class TrianglesAtVertices {
   std::vector<Corner> corners_;
 };
 
-/// @brief The rules for the pairs of features of two meshes; safe to use from threads as
-/// far as the function in the rules is.
+/// @brief The rules, for pairs of features of two meshes. Several threads may call find()
+/// at the same time, if they may call the function in the rules.
 class PairFilter {
  public:
-  /// @param a, b  the same object twice for a self-collision
-  /// @param rules  copied; what it points to is not
+  /// @param a, b  the same object for a self-collision
+  /// @param rules  copied, but not what its pointers refer to
   PairFilter(const MeshInstance& a, const MeshInstance& b, const PairRules& rules)
       : rules_(rules), holders_of_a_(a) {
     if (&a != &b) holders_of_b_.emplace(b);
@@ -104,9 +107,10 @@ class PairFilter {
 
   const PairRules& rules() const { return rules_; }
 
-  /// @brief Finds two triangles that count and hold the features of a and of b: the ones
-  /// given, or else those with the lowest numbers.
-  /// @param[out] triangles  of a and b; unchanged without any
+  /// @brief Finds two triangles that hold the features of a and b and that count. It
+  /// tries the triangles of `a` and `b` first, then others from the lowest numbers on.
+  /// @param[out] triangles  of mesh a and mesh b; unchanged if there are none
+  /// @return whether there are any
   bool find(const HeldFeature& a, const HeldFeature& b,
             std::int32_t (&triangles)[2]) const;
 
@@ -116,7 +120,7 @@ class PairFilter {
  private:
   PairRules rules_;
   TrianglesAtVertices holders_of_a_;
-  /// Empty: the same mesh.
+  /// Empty for a self-collision.
   std::optional<TrianglesAtVertices> holders_of_b_;
 };
 

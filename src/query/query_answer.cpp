@@ -39,7 +39,7 @@ void addEffort(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
   }
 }
 
-/// The crossings of the first task that has one, or of all.
+/// Takes the crossings of the first task that has one, or of all tasks.
 void takeCrossings(const std::vector<TaskAnswer>& tasks, bool all, QueryAnswer& answer) {
   for (const TaskAnswer& task : tasks)
     if (all || !answer.hasCrossing())
@@ -54,7 +54,7 @@ SortedContacts sorted(std::deque<FeatureContact> contacts) {
   return SortedContacts(std::move(lists));
 }
 
-/// The crossing and the earliest contact of the first task that has either.
+/// Takes the crossing and the earliest contact of the first task that has either.
 void takeAny(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
   for (const TaskAnswer& task : tasks) {
     if (task.crossings.empty() && !task.contacts) continue;
@@ -69,7 +69,8 @@ void takeAny(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
 
 using ContactLists = std::vector<std::deque<FeatureContact>>;
 
-/// The contacts whose brackets begin no later than `latest`.
+/// Takes the contacts whose brackets begin no later than `latest`, the earliest
+/// max_contacts of them.
 ContactLists takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
                        std::size_t max_contacts, bool may_repeat, QueryAnswer& answer) {
   ContactSink sink(max_contacts, may_repeat);
@@ -83,6 +84,7 @@ ContactLists takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
   return lists;
 }
 
+/// Takes the earliest max_contacts of all contacts.
 ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
                      bool may_repeat, QueryAnswer& answer) {
   std::size_t count = 0;
@@ -90,7 +92,7 @@ ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
     answer.cut |= task.cut;
     if (task.contacts) count += task.contacts->size();
   }
-  // A sink only where something may have to be left out.
+  // A sink is needed only if it may have to leave out contacts.
   if (may_repeat || count > max_contacts)
     return takeUntil(kInfinity, tasks, max_contacts, may_repeat, answer);
   ContactLists lists;
@@ -104,8 +106,9 @@ TimeBracket firstListed(const QueryAnswer& answer) {
   return {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
 }
 
-/// Whether the first contact is certainly among those that were kept: one with the
-/// earliest end is, and the latest that was kept begins no earlier.
+/// Whether the first contact is certainly among those that were kept. It is, if a contact
+/// with the earliest upper end is among them, and the latest of them begins no earlier
+/// than that end: contacts that were dropped begin no earlier either.
 bool isFirstKept(double first_hi, const ContactLists& contacts) {
   double latest = 0;
   bool is_kept = false;
@@ -148,7 +151,6 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
     contacts = takeUntil(first_hi, tasks, options.max_contacts, may_repeat, answer);
   } else {
     contacts = takeAll(tasks, options.max_contacts, may_repeat, answer);
-    // What was dropped begins no earlier than anything that was kept.
     if (answer.cut && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
       answer.first = {first.toc_lo, first.toc_hi};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a query answers, and how the answers of its tasks become one.
+// The answer of a query, and how the answers of its tasks become one.
 #ifndef FCL_CCD_QUERY_QUERY_ANSWER_H
 #define FCL_CCD_QUERY_QUERY_ANSWER_H
 
@@ -21,7 +21,7 @@ struct QueryAnswer {
   /// The tight bracket of the first contact, if there is one.
   TimeBracket first{1, 1};
   bool cut{false};
-  /// One, or all where these are wanted.
+  /// One, or all of them (QueryOptions::all_crossings).
   std::vector<Crossing> crossings;
   StageCounts counts;
   StageTimes times;
@@ -31,7 +31,7 @@ struct QueryAnswer {
 
 /// @brief The answer of one task of a query.
 struct TaskAnswer {
-  /// Without a list where there is none, which most tasks of a first contact are.
+  /// Empty without contacts, as for most tasks of a first-contact query.
   std::optional<std::deque<FeatureContact>> contacts;
   bool cut{false};
   std::vector<Crossing> crossings;
@@ -39,22 +39,21 @@ struct TaskAnswer {
   StageCounts counts;
   StageTimes times;
 
-  /// @brief Takes all but the times.
+  /// @brief Takes everything except the times.
   void take(NarrowPhase& leaves);
 };
 
-/// @brief The answers of all tasks as one, which does not depend on how the tasks went:
-/// the first task that has a crossing tells it, a first-contact query keeps only what may
-/// be the first contact, a yes-or-no query only what the first task found. A list of
-/// all contacts has their brackets as they were found, so that it does not depend on how
-/// many are wanted.
-/// @param a, b  the meshes that the contacts are between
-/// @param firstContact  asks for the first contact alone; called where it may be among
-/// those that were dropped
-/// @throws NonFiniteVertex  that the query has to end with, whatever the tasks did in
-/// what order: the error of the first task that has an answer or an error; of a
-/// first-contact query the earliest error, unless the first contact is earlier than its
-/// triangles meet
+/// @brief Makes one answer of the answers of all tasks. It does not depend on the order
+/// in which the tasks ran. The crossing is that of the first task that has one. A kFirst
+/// query keeps the contacts that may be the first, a kAny query what the first task has
+/// found. A kAll query keeps the brackets as they were found, so that they do not depend
+/// on max_contacts.
+/// @param a, b  the meshes of the contacts
+/// @param firstContact  a query for the first contact alone; called if that may be among
+/// the contacts that were dropped
+/// @throws NonFiniteVertex  if an error decides the query. For kFirst this is the
+/// earliest error, unless the first contact is before it. For other queries it is the
+/// error of the first task that has an answer or an error.
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                   const QueryProgress& progress, const MeshInstance& a,
                   const MeshInstance& b,
