@@ -5,9 +5,9 @@
 #
 # The folders of src/ are the stages of the pipeline. This script fails and names the file when
 #  - a file includes one of a folder that comes later in the order below,
-#  - a file below api/ includes a public header, of which only stage_counts.h is plain data,
+#  - a file below api/ includes a public header, of which only stage_counts.h and bounded_motion.h are plain,
 #  - a public header includes an internal one,
-#  - there are more public headers than CONTRIBUTING.md allows,
+#  - there are more public headers than `max_headers`, which grows only with the API,
 #  - files include each other in a circle (x.h and x.cpp count as one file).
 set -euo pipefail
 cd "${1:-$(dirname "$0")/..}"
@@ -39,7 +39,8 @@ while read -r file included; do
   folder=${file#src/} folder=${folder%%/*}
   target=${included%%/*}
   if [[ $target == fcl ]]; then
-    [[ $folder == api || ! -e include/$included || $included == */stage_counts.h ]] ||
+    [[ $folder == api || ! -e include/$included || $included == */stage_counts.h ||
+      $included == */bounded_motion.h ]] ||
       complain "$file: includes $included, a public header, which only api/ may include"
   elif [[ -n ${rank[$target]+is} ]]; then
     [[ -e src/$included ]] || complain "$file: includes $included, which does not exist"
@@ -55,7 +56,7 @@ while read -r file included; do
     complain "$file: includes $included; a public header may include public headers only"
 done < <(includes include)
 
-max_headers=16
+max_headers=17
 num_headers=$(find include -name '*.h' | wc -l)
 ((num_headers <= max_headers)) ||
   complain "include/: $num_headers public headers, $max_headers are allowed"

@@ -96,7 +96,8 @@ bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& si
                                  {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}},
                                 PathKind::kStraight,
                                 {},
-                                {}};
+                                {},
+                                nullptr};
   const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesSelf(mesh.instance(), inner);

@@ -46,6 +46,8 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
   if (placed.goesStraight())
     return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
   switch (moving.path) {
+    case PathKind::kBounded:
+      return MotionPath::bounded(*moving.motion);
     case PathKind::kSpline:
       return MotionPath::spline(moving.control[0], moving.control[1]);
     case PathKind::kScrew:
@@ -104,7 +106,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
 
 void PreparedMotion::requireInRange(const VertexFrames& frames,
                                     const std::string& name) const {
-  if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).constant <
+  if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).of({0, 0, 0}, 0) <
       kMostSize)
     return;
   for (std::size_t i = 0; i < frames.size(); ++i) {

@@ -60,7 +60,8 @@ class PlacedGeometry {
     // A rotation that differs by a few roundings only is constant.
     if (kind_ == MeshKind::kRigid && is_constant)
       std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
-    const bool bends = moving.path == PathKind::kSpline || (isTurn() && !is_constant);
+    const bool bends = moving.path == PathKind::kSpline ||
+                       moving.path == PathKind::kBounded || (isTurn() && !is_constant);
     if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
     if (kind_ == MeshKind::kRigid)
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
@@ -96,7 +97,7 @@ class PlacedGeometry {
 enum class Answerer {
   kStraightPaths,  ///< all vertices of both meshes move on straight lines
   kCurvedPaths,    ///< two meshes, and at least one turns or follows a spline
-  kFcl             ///< FCL: one is no mesh, or follows a motion class of the program
+  kFcl             ///< FCL: one is no mesh, or follows a motion that is not known
 };
 
 /// Which method answers a pair.

@@ -57,7 +57,7 @@ struct SpannedPair {
     double most = 0;
     for (int i = 0; i < 3; ++i) {
       const Vec from = triangle.corner[0][i], to = triangle.corner[1][i], way = to - from;
-      most = std::max(most, std::max(bound.of(from, 0), bound.of(to, 0)) +
+      most = std::max(most, bound.between(from, to, 0) +
                                 bound.per_displacement * std::sqrt(dot(way, way)));
     }
     constexpr double kUpward = 1 + 0x1p-40;

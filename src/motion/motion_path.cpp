@@ -12,10 +12,14 @@
 // control point W, its length within 3 u of itself. Sine and cosine of half of it are
 // within 4 u; these make A w and B w^2 within 24 u. An entry of the rotation: 24 + 24 W
 // u.
+//
+// A motion of the program: an entry of the rotation within 64 u, the translation within
+// 16 u of its size, the velocity within 128 u. This is the contract of BoundedMotion.
 #include "motion/motion_path.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "fcl/common/exception.h"
 #include "motion/sine.h"
@@ -173,6 +177,23 @@ double largestDifference(const double (&points)[4][3]) {
   return most * kUpward;
 }
 
+/// A bound of the program, if it is one.
+double checked(double bound, const char* name) {
+  if (bound >= 0 && std::isfinite(bound)) return bound * kUpward;
+  throw Exception(std::string("BoundedMotion::") + name +
+                  " gives a number that is negative or not finite");
+}
+
+double checkedAcceleration(const BoundedMotion& motion, const Vec& center, double radius,
+                           double t0, double t1) {
+  const double point[3] = {center.x, center.y, center.z};
+  return checked(motion.accelerationBound(point, radius, t0, t1), "accelerationBound()");
+}
+
+double checkedAngularSpeed(const BoundedMotion& motion, double t0, double t1) {
+  return checked(motion.angularSpeedBound(t0, t1), "angularSpeedBound()");
+}
+
 /// sin(x) / x and cos(x).
 SineCosine cardinalSineCosine(double x) {
   const SineCosine at = sineCosine(x);
@@ -182,13 +203,22 @@ SineCosine cardinalSineCosine(double x) {
 }  // namespace
 
 double AccelerationBound::of(const Vec& center, double radius) const {
+  if (motion) return checkedAcceleration(*motion, center, radius, t0, t1);
   return (norm(times(turn, center) + vecOf(offset)) + per_radius * radius +
           per_distance * norm(center) + constant) *
          kUpward;
 }
 
+// The terms with the center are convex in it, so that the ends of its line are enough. Of
+// a bound of the program nothing is known but what it says of balls.
+double AccelerationBound::between(const Vec& begin, const Vec& end, double radius) const {
+  if (!motion) return std::max(of(begin, radius), of(end, radius));
+  const Vec half = 0.5 * (end - begin);
+  return of(begin + half, (radius + norm(half)) * kUpward);
+}
+
 bool AccelerationBound::isZero() const {
-  return per_radius == 0 && per_distance == 0 && constant == 0;
+  return !motion && per_radius == 0 && per_distance == 0 && constant == 0;
 }
 
 MotionPath MotionPath::still(const Pose& pose) {
@@ -289,7 +319,43 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
   return path;
 }
 
+MotionPath MotionPath::bounded(const BoundedMotion& motion) {
+  const auto require = [](const BoundedMotion::Placement& placement, const char* name) {
+    const auto is_finite = [](double x) { return std::isfinite(x); };
+    if (std::all_of(placement.rotation, placement.rotation + 9, is_finite) &&
+        std::all_of(placement.translation, placement.translation + 3, is_finite))
+      return;
+    throw Exception(std::string("BoundedMotion::") + name +
+                    " gives a number that is not finite");
+  };
+  const BoundedMotion::Placement rate = motion.rateAt(0);
+  require(motion.placementAt(0), "placementAt()");
+  require(motion.placementAt(1), "placementAt()");
+  require(rate, "rateAt()");
+  MotionPath path;
+  path.kind_ = Kind::kBounded;
+  path.motion_ = &motion;
+  path.stretch_ = 1 + 0x1p-39;
+  path.turn_speed_ = checkedAngularSpeed(motion, 0, 1);
+  path.translation_speed_ =
+      (norm(vecOf(rate.translation)) + checkedAcceleration(motion, {0, 0, 0}, 0, 0, 1)) *
+      kUpward;
+  path.rotation_error_ = 64;
+  path.setBoundedReach();
+  return path;
+}
+
+void MotionPath::setBoundedReach() {
+  translation_size_ = translation_reach_ =
+      (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + translation_speed_) *
+      kUpward;
+}
+
 void MotionPath::shift(const double (&origin)[3]) {
+  if (kind_ == Kind::kBounded) {
+    for (int k = 0; k < 3; ++k) origin_[k] += origin[k];
+    return setBoundedReach();
+  }
   for (int k = 0; k < 3; ++k) beginning_.translation[k] -= origin[k];
   if (kind_ == Kind::kTurn) return setTurnBounds();
   for (auto& point : translation_points_)
@@ -299,6 +365,13 @@ void MotionPath::shift(const double (&origin)[3]) {
 
 Pose MotionPath::pose(double t) const {
   if (kind_ == Kind::kSpline) return splinePose(t);
+  if (kind_ == Kind::kBounded) {
+    const BoundedMotion::Placement at = motion_->placementAt(t);
+    Pose out;
+    std::copy(at.rotation, at.rotation + 9, out.rotation);
+    for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k] - origin_[k];
+    return out;
+  }
   const SineCosine at =
       angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_ * t);
   Pose out;
@@ -315,6 +388,13 @@ Pose MotionPath::pose(double t) const {
 
 PoseRate MotionPath::rate(double t) const {
   if (kind_ == Kind::kSpline) return splineRate(t);
+  if (kind_ == Kind::kBounded) {
+    const BoundedMotion::Placement at = motion_->rateAt(t);
+    PoseRate out;
+    std::copy(at.rotation, at.rotation + 9, out.rotation);
+    std::copy(at.translation, at.translation + 3, out.translation);
+    return out;
+  }
   const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
   const double sine = angle_ * at.sine, cosine = angle_ * at.cosine;
   PoseRate out;
@@ -436,8 +516,25 @@ AccelerationBound MotionPath::splineAcceleration(double t0, double t1) const {
   return bound;
 }
 
+AccelerationBound MotionPath::boundedAcceleration(double t0, double t1) const {
+  AccelerationBound bound{};
+  bound.motion = motion_;
+  bound.t0 = t0;
+  bound.t1 = t1;
+  bound.per_displacement = 2 * checkedAngularSpeed(*motion_, t0, t1);
+  bound.jerk = HUGE_VAL;
+  return bound;
+}
+
 AccelerationBound MotionPath::acceleration(double t0, double t1) const {
-  return kind_ == Kind::kTurn ? turnAcceleration() : splineAcceleration(t0, t1);
+  switch (kind_) {
+    case Kind::kTurn:
+      return turnAcceleration();
+    case Kind::kSpline:
+      return splineAcceleration(t0, t1);
+    default:
+      return boundedAcceleration(t0, t1);
+  }
 }
 
 double MotionPath::positionError(double radius) const {

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_MOTION_MOTION_PATH_H
 #define FCL_CCD_MOTION_MOTION_PATH_H
 
+#include "fcl/math/motion/bounded_motion.h"
 #include "mesh/vertex_frames.h"
 #include "numerics/moving_vector.h"
 
@@ -17,9 +18,10 @@ struct PoseRate {
 
 /// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
 /// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
-/// per_distance |center| + constant. For points that move straight in the body frame from
-/// x0 to x1 during the step, add per_displacement |x1 - x0|. The terms with the center
-/// are convex in it. So for a center that moves straight, its two ends are enough.
+/// per_distance |center| + constant, or what a motion of the program says. For points
+/// that move straight in the body frame from x0 to x1 during the step, add
+/// per_displacement |x1
+/// - x0|.
 struct AccelerationBound {
   double turn[9];
   double offset[3];
@@ -30,8 +32,14 @@ struct AccelerationBound {
   /// |p'''(t)| of a point at rest in the body is at most this factor times the bound.
   /// Infinite: unknown.
   double jerk;
+  /// A motion of the program, and the span; null: the numbers above are the bound.
+  const BoundedMotion* motion;
+  double t0, t1;
 
   double of(const Vec& center, double radius) const;
+  /// @brief The bound for all points within `radius` of a center that is anywhere on the
+  /// line between two places.
+  double between(const Vec& begin, const Vec& end, double radius) const;
   /// @brief Whether all points at rest in the body frame go straight.
   bool isZero() const;
 };
@@ -48,7 +56,7 @@ struct AccelerationBound {
 /// Interpolation turns about a reference point that goes straight, a screw about a fixed
 /// axis. P and Q are zero if the reference point is the origin of the body. Without a
 /// turn w, C, D, P and Q are zero. Or it is a uniform cubic B-spline of translations and
-/// of rotation vectors, as FCL's SplineMotion.
+/// of rotation vectors, as FCL's SplineMotion. Or it is a motion of the program.
 class MotionPath {
  public:
   /// @brief At rest.
@@ -66,6 +74,10 @@ class MotionPath {
   static MotionPath spline(const double (&translation)[4][3],
                            const double (&rotation)[4][3]);
 
+  /// @brief A motion of the program. It must live as long as the path.
+  /// @throws fcl::Exception  when a placement or a bound is not finite
+  static MotionPath bounded(const BoundedMotion& motion);
+
   /// @brief Moves the path by -origin. Rounds by 2^-53 of the new coordinates.
   void shift(const double (&origin)[3]);
 
@@ -73,7 +85,7 @@ class MotionPath {
   Pose pose(double t) const;
   PoseRate rate(double t) const;
   /// @brief The second derivative of a turn, within 2^-46 of the bound on it. Not for
-  /// splines.
+  /// other paths.
   PoseRate turnAccelerationAt(double t) const;
 
   /// @brief Bound on the acceleration during [t0, t1].
@@ -99,13 +111,15 @@ class MotionPath {
   double rateError(double radius) const;
 
  private:
-  enum class Kind { kTurn, kSpline };
+  enum class Kind { kTurn, kSpline, kBounded };
 
   static MotionPath turnFrom(const Pose& beginning, const Pose& end);
   void reachEnd(const Pose& end);
   void setTurnBounds();
   AccelerationBound turnAcceleration() const;
   AccelerationBound splineAcceleration(double t0, double t1) const;
+  AccelerationBound boundedAcceleration(double t0, double t1) const;
+  void setBoundedReach();
   Pose splinePose(double t) const;
   PoseRate splineRate(double t) const;
 
@@ -125,6 +139,9 @@ class MotionPath {
   // Of a spline.
   double translation_points_[4][3]{};
   double rotation_points_[4][3]{};
+  // Of a motion of the program.
+  const BoundedMotion* motion_{nullptr};
+  double origin_[3]{};
 
   double stretch_{1};
   double translation_reach_{0};

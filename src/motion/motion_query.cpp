@@ -152,11 +152,12 @@ class MotionTraversal {
 
   static double accelerationOf(const AccelerationBound& bound, const MotionBox& begin,
                                const MotionBox& end) {
-    const auto at = [&bound](const MotionBox& box) {
-      return bound.of({box.center[0], box.center[1], box.center[2]}, box.radius);
+    const auto center = [](const MotionBox& box) -> Vec {
+      return {box.center[0], box.center[1], box.center[2]};
     };
     if (bound.isZero() && bound.per_displacement == 0) return 0;
-    return std::max(at(begin), at(end)) + bound.per_displacement * begin.displacement;
+    return bound.between(center(begin), center(end), std::max(begin.radius, end.radius)) +
+           bound.per_displacement * begin.displacement;
   }
 
   /// The largest deviation of points of a part from straight lines during a span.

@@ -168,8 +168,8 @@ TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTrian
     double most = 0;
     for (int k = 0; k < 3; ++k) {
       const Vec from = triangle_[body]->corner[0][k], to = triangle_[body]->corner[1][k];
-      most = std::max(most, std::max(bound.of(from, 0), bound.of(to, 0)) +
-                                bound.per_displacement * norm(to - from));
+      most = std::max(
+          most, bound.between(from, to, 0) + bound.per_displacement * norm(to - from));
       if (norm(to - from) > 0 || !(bound.jerk < HUGE_VAL)) jerk_ = HUGE_VAL;
     }
     acceleration_ += most * kUpward;

@@ -24,17 +24,17 @@ namespace fcl {
 /// mesh.
 ///
 /// Which pairs FCL answers: shapes, octrees, point clouds, and a rigid mesh that follows
-/// a motion class of the program. FCL takes a mesh as it is in its current frame and
-/// ignores the deformation. It samples the motion and may miss a contact. There are no
-/// contacts. The way out: give a mesh of a shape's surface; give the poses of another
-/// motion class as transforms, step by step. doc/choosing.md has the limits.
+/// a motion class of the program that is no BoundedMotion. FCL takes a mesh as it is in
+/// its current frame and ignores the deformation. It samples the motion and may miss a
+/// contact. There are no contacts. The way out: give a mesh of a shape's surface; derive
+/// the motion class from BoundedMotion too. doc/choosing.md has the limits.
 ///
 /// Paths are the real-number evaluation of the given numbers, in double. t runs from 0 to
 /// 1. A contact is a VF or EE pair of closed features without a common vertex that touch
 /// at some t in [0, 1].
 /// - Straight paths: meshes whose rotation is constant (up to a few roundings). Also
-///   meshes that deform between two transforms with CCDM_TRANS or CCDM_SPLINE, or by a
-///   motion class of the program beside another mesh (its poses at t = 0 and t = 1
+///   meshes that deform between two transforms with CCDM_TRANS or CCDM_SPLINE, or by
+///   another motion class of the program beside a mesh (its poses at t = 0 and t = 1
 ///   count). A vertex goes from tf_beg * (previous frame) to tf_end * (current frame). If
 ///   both meshes go straight the answer is exact.
 /// - Turning: a rigid mesh whose end transforms have different rotations. With
@@ -47,6 +47,7 @@ namespace fcl {
 /// - FCL's motion objects: TranslationMotion; InterpMotion between the transforms that it
 ///   was made from, about its reference point; ScrewMotion between its transforms;
 ///   SplineMotion by its control points.
+/// - Motion classes of the program that are a BoundedMotion.
 ///
 /// If a mesh turns or follows a spline, contact means to come within a tolerance tau of
 /// touching. tau is some hundred units in the last place of the coordinates, relative to

@@ -128,15 +128,33 @@ inline bool readMotion(const MotionBase<double>& motion, MovingGeometry<double>&
   return readFclMotion(motion, moving);
 }
 
-/// A geometry that follows a motion. A motion class of the program cannot be copied. Its
-/// poses are read only for a mesh that deforms, if the other object is a mesh; the motion
-/// is at its beginning afterwards. FCL answers all other geometries that follow it.
+/// The ends of a motion class of the program that is a BoundedMotion.
+template <typename S>
+void readBoundedMotion(const BoundedMotion& motion, MovingGeometry<S>& moving) {
+  moving.path = PathKind::kBounded;
+  moving.motion = &motion;
+  for (int end = 0; end < 2; ++end) {
+    const BoundedMotion::Placement at = motion.placementAt(end);
+    PoseNumbers<S>& pose = moving.pose[end];
+    for (int i = 0; i < 9; ++i) pose.rotation[i] = static_cast<S>(at.rotation[i]);
+    for (int k = 0; k < 3; ++k) pose.translation[k] = static_cast<S>(at.translation[k]);
+  }
+}
+
+/// A geometry that follows a motion. Another motion class of the program cannot be
+/// copied. Its poses are read only for a mesh that deforms, if the other object is a
+/// mesh; the motion is at its beginning afterwards. FCL answers all other geometries that
+/// follow it.
 template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
                                  const CollisionGeometry<S>* other) {
-  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}};
+  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr};
   if (readMotion(*motion, moving)) return moving;
+  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(motion)) {
+    readBoundedMotion(*bounded, moving);
+    return moving;
+  }
   Transform3<S> tf = Transform3<S>::Identity();
   moving.pose[0] = moving.pose[1] = toNumbers(tf);
   moving.path = PathKind::kUnknown;

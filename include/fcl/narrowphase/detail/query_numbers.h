@@ -20,6 +20,7 @@
 
 #include "fcl/common/types.h"
 #include "fcl/geometry/collision_geometry.h"
+#include "fcl/math/motion/bounded_motion.h"
 #include "fcl/math/motion/motion_base.h"
 #include "fcl/narrowphase/continuous_contact.h"
 
@@ -84,7 +85,8 @@ enum class PathKind {
   kScrew,      ///< turns about an axis and slides along it
   kSpline,     ///< as FCL's SplineMotion
   kUndefined,  ///< a spline between two transforms, which has no control points
-  kUnknown     ///< a motion class of the program
+  kBounded,    ///< a motion class of the program that is a BoundedMotion
+  kUnknown     ///< another motion class of the program
 };
 
 /// @brief A geometry and how it moves during the step.
@@ -98,6 +100,8 @@ struct MovingGeometry {
   double reference[3];
   /// kSpline: the control points of the translation and of the rotation vector.
   double control[2][4][3];
+  /// kBounded: the motion.
+  const BoundedMotion* motion;
 };
 
 /// @brief A geometry that goes from one transform to another. Compiled with the caller.
@@ -105,7 +109,7 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
                                  PathKind path = PathKind::kStraight) {
-  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}};
+  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}, nullptr};
 }
 
 /// @brief The request, as numbers.

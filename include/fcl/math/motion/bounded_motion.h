@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Motion classes of a program that continuous queries can follow.
+#ifndef FCL_MATH_MOTION_BOUNDED_MOTION_H
+#define FCL_MATH_MOTION_BOUNDED_MOTION_H
+
+namespace fcl {
+
+/// @brief What the queries of this library need to know about a motion class of a
+/// program. A class that derives from MotionBase<S> and from this one is followed by the
+/// @ref continuous_queries of two triangle meshes as FCL's own motions are: with
+/// contacts, never late, no contact missed. A motion class without it is answered by FCL,
+/// from samples.
+///
+/// t runs from 0 to 1. A point x of the body is at p(t) = R(t) x + T(t). The true path is
+/// a smooth one for which the bounds hold and from which placementAt() and rateAt()
+/// differ by rounding only: by at most 2^-47 in an entry of R, 2^-49 of the largest |T|
+/// in T, and 2^-46 of the speed of a point in its velocity. R is a rotation up to 2^-40.
+/// If a bound is too small, contacts may be missed. If it is too large, queries are
+/// slower.
+///
+/// Thread-safety: queries call the functions from their threads, possibly several at the
+/// same time. What a function throws reaches the caller of the query.
+class BoundedMotion {
+ public:
+  /// @brief R row by row, and T; or their derivatives by t.
+  struct Placement {
+    double rotation[9];
+    double translation[3];
+  };
+
+  virtual ~BoundedMotion() = default;
+
+  /// @brief R(t) and T(t).
+  virtual Placement placementAt(double t) const = 0;
+
+  /// @brief R'(t) and T'(t).
+  virtual Placement rateAt(double t) const = 0;
+
+  /// @brief Bound on the acceleration |p''(t)| during [t0, t1] of all points within
+  /// `radius` of `center`, in the frame of the body; at least 0, finite.
+  virtual double accelerationBound(const double (&center)[3], double radius, double t0,
+                                   double t1) const = 0;
+
+  /// @brief Bound on the angular velocity during [t0, t1], in radians a step: |R'(t) x|
+  /// is at most this times |x|. At least 0, finite.
+  virtual double angularSpeedBound(double t0, double t1) const = 0;
+};
+
+}  // namespace fcl
+
+#endif
