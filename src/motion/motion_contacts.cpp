@@ -211,7 +211,10 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
     if (!wanted.all) {
       wanted.all = true;
       wanted.last = touching.contacts.front().toc_hi;
-      touching = queryMotions(a, b, wanted);
+      MotionAnswer first = queryMotions(a, b, wanted);
+      // A graze has a bracket without width, at whose end another division of the step
+      // may see nothing yet. Then the first contact found stands alone.
+      if (!first.contacts.empty()) touching = std::move(first);
     }
     FeatureContacts unmoved(a, b, options);
     for (const MotionContact& contact : touching.contacts) {

@@ -332,6 +332,29 @@ TEST_F(MotionCollision, GoalsAndLimitsOfContacts) {
   EXPECT_EQ(two.contacts[1].vertices, all.contacts[1].vertices);
 }
 
+// The bar's side and the floor stay parallel, so that brackets may have no width.
+TEST_F(MotionCollision, FirstAndAnyContactOfFacesThatStayParallel) {
+  const auto floor =
+      makeModel<Rigid<double>>(moved(makeBox({4, 4, 0.25}, 1), 0, 0, -0.25));
+  for (int i = 1; i <= 60; ++i) {
+    const double h = 0.1 + 0.01 * (i % 37), d = -0.1 - 0.013 * (i % 23);
+    Pose beg = turned(0.17 * i), end = turned(0.17 * i + 0.4);
+    beg.translation() = Vector3<double>(0.1 * (i % 7), 0.07 * (i % 5), h);
+    end.translation() = Vector3<double>(0.05 * (i % 3), 0.03 * (i % 11), d);
+    const double time = (h - kHalfWidth) / (h - d);
+    for (auto query : {ContinuousQuery::kFirst, ContinuousQuery::kAny}) {
+      ContactRequest request = requestOf<ContactRequest>();
+      request.query = query;
+      ContactResult result;
+      continuousCollide(bar_.get(), beg, end, floor.get(), kStill, kStill, request,
+                        result);
+      EXPECT_FALSE(result.contacts.empty()) << i;
+      EXPECT_NEAR(result.time_of_contact, time, 1e-11) << i;
+      EXPECT_LE(result.time_of_contact, time + 1e-15) << i;
+    }
+  }
+}
+
 TEST_F(MotionCollision, CrossingAndTouchingAtTheBeginning) {
   ContactResult result;
   const auto crossing = makeModel<Rigid<double>>(makeSquare(0.02));
