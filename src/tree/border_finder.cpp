@@ -12,8 +12,8 @@ RegionBorder BorderFinder::find(const Region& region) {
   return cancelOpposites() && linkPaths() ? border() : RegionBorder();
 }
 
-/// Lists the edges that may be left. Those of a vertex whose triangles, all of them in
-/// the region, form a closed fan cancel.
+/// Lists the edges that may be left. The edges of some vertices cancel: all triangles
+/// around the vertex are in the region and form a closed fan.
 void BorderFinder::listEdges(const Region& region) {
   counts_.assign(region.last_place - region.first_place, 0);
   for (std::uint32_t i = region.first; i < region.last; ++i)
@@ -56,7 +56,7 @@ bool BorderFinder::cancelOpposites() {
   return !edges_.empty();
 }
 
-/// Puts the edges in the order of paths. As many edges leave a vertex as come to it.
+/// Puts the edges in the order of paths. At each vertex as many edges start as end.
 bool BorderFinder::linkPaths() {
   std::sort(edges_.begin(), edges_.end(), [](const Edge& a, const Edge& b) {
     return a.from != b.from ? a.from < b.from : a.to < b.to;
@@ -99,7 +99,7 @@ RegionBorder BorderFinder::border() const {
   border.points.reserve(edges_.size() + paths_.size());
   border.begins.reserve(edges_.size());
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    // Most edges begin where the one before ends.
+    // Most edges begin where the previous one ends.
     if (i == 0 || edges_[i].from != edges_[i - 1].to)
       border.points.push_back(edges_[i].from);
     border.begins.push_back(static_cast<std::uint32_t>(border.points.size() - 1));

@@ -13,14 +13,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Triangles [first, last) of a tree, and the vertices that they are the first to
-/// have, [first_place, last_place).
+/// @brief Triangles [first, last) of a tree, and the vertices [first_place, last_place)
+/// that no triangle before them has.
 struct Region {
   std::uint32_t first, last, first_place, last_place;
 };
 
-/// @param node  of the tree
-/// @param last  where the triangles below it end
+/// @param node  a node of the tree
+/// @param last  the end of the triangles below it
 inline Region regionOf(const MovingKdopTree& tree, std::int32_t node,
                        std::uint32_t last) {
   const std::uint32_t first = tree.firstTriangle(node);
@@ -46,14 +46,15 @@ class BorderFinder {
   RegionBorder border() const;
 
   const MovingKdopTree& tree_;
-  /// How many of the region's triangles have each of its vertices; then only whether
-  /// edges of it may be left.
+  /// For each vertex of the region, the number of the region's triangles that have it.
+  /// Then whether an edge of it may be left.
   std::vector<std::uint32_t> counts_;
-  /// Edges by their vertices, the lower place first, and whether it comes last.
+  /// Edges as sortable numbers: the lower place, the higher place, and one bit, which is
+  /// set if the edge starts at the higher place.
   std::vector<std::uint64_t> keys_;
   std::vector<Edge> unlinked_;
   std::vector<std::uint8_t> taken_;
-  /// Path after path, and where each begins.
+  /// The edges of all paths in order, and the first edge of each path.
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> paths_;
   bool is_one_loop_{false};

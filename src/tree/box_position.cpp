@@ -47,15 +47,15 @@ KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b) {
     const double(&origin_a)[3] = a.origin[frame], (&origin_b)[3] = b.origin[frame];
     const double(&move_a)[3] = a.translation[frame], (&move_b)[3] = b.translation[frame];
     double offset[3], d[8];
-    double size = 0;  // of every number that enters a moved coordinate
+    double size = 0;  // bounds all numbers that enter a moved coordinate
     for (int k = 0; k < 3; ++k) {
       offset[k] = (origin_a[k] - origin_b[k]) + (move_a[k] - move_b[k]);
       size = std::max(size, std::abs(origin_a[k]) + std::abs(origin_b[k]) +
                                 std::abs(move_a[k]) + std::abs(move_b[k]));
     }
     kdopCoordinates(offset, d);
-    // Three roundings of the offset, one of the diagonal, and one of each posed
-    // coordinate, each 2^-53 of a number below size: 2^-49 in all.
+    // Three roundings of the offset, one of the diagonal, and one for each posed
+    // coordinate. Each is 2^-53 of a number below size: less than 2^-49 in all.
     size = 2 * (size + a.reach + b.reach);
     const float pad = roundUp(size * 0x1p-49, 0.f);
     Kdop16& out = frame == 0 ? shift.t0 : shift.t1;

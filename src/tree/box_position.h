@@ -10,22 +10,23 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Box of a point relative to an origin, with `pad` for what was rounded before.
+/// @brief Box of a point relative to an origin. `pad` is a bound on earlier rounding.
 void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16& out);
 
 /// @brief Where the boxes of a tree are in space: [frame][axis].
 struct BoxPosition {
-  /// What they are relative to.
+  /// The point that the boxes are relative to.
   double origin[2][3];
-  /// By which the mesh is moved on top.
+  /// The translation of the mesh, in addition.
   double translation[2][3];
-  /// Of a RigidTree, as reach(); 0 of a MovingKdopTree, whose boxes have room for the
-  /// rounding of what is relative to the origin.
+  /// RigidTree::reach() of a RigidTree. 0 for a MovingKdopTree: its boxes contain the
+  /// rounding of coordinates relative to the origin.
   double reach;
 };
 
-/// @brief What to add to the sum of a box of one tree and one of another: outward by the
-/// rounding of the numbers that make it, and of the moved coordinates themselves.
+/// @brief The shift that is added to the sum of a box of tree a and a box of tree b. It
+/// is rounded outward: by the rounding of its own computation, and of the moved
+/// coordinates.
 KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b);
 
 }  // namespace deformable

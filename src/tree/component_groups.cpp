@@ -44,7 +44,7 @@ std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
   assert(component_of.size() == items.size());
   std::vector<std::uint32_t> size(num_components, 0);
   for (const std::uint32_t i : component_of) ++size[i];
-  // Group 0 is what is left of the mesh.
+  // Group 0 has all small components.
   std::vector<Group> groups(1);
   for (std::uint32_t& s : size) {
     const bool is_large = s >= least;

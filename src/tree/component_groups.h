@@ -17,11 +17,11 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief So many triangles make a component of a mesh a large one, see groupItems():
-/// eight of the lowest nodes.
+/// @brief A component with at least so many triangles is large, see groupItems(). These
+/// are eight of the lowest nodes.
 constexpr std::size_t kLeastComponent = 64;
 
-/// @brief For each vertex the first one of its component.
+/// @brief For each vertex, the first vertex of its component.
 /// @param verticesOf  verticesOf(i, v): sets v to the three vertices of triangle i
 template <typename VerticesOf>
 std::vector<std::uint32_t> findComponents(std::size_t num_vertices,
@@ -45,14 +45,14 @@ std::vector<std::uint32_t> findComponents(std::size_t num_vertices,
   return parent;
 }
 
-/// @brief Brings the items of each large component together. One that gets a tree of its
-/// own can prove to be embedded where layers lie on each other, and keeps its boxes small
-/// when components move apart. Small components stay together.
-/// @param component_of  of each item the component, a number below num_components
-/// @param least  so many items make a component large
+/// @brief Puts the items of each large component together. With a tree of its own a
+/// component can be proved to be embedded where layers lie on each other, and its boxes
+/// stay small when components move apart. Small components stay together in one group.
+/// @param component_of  the component of each item, a number below num_components
+/// @param least  a component with at least so many items is large
 /// @param items  in the order of their indices
-/// @return where each of the groups ends, near ones after each other; empty if there is
-/// but one
+/// @return the end of each group, with groups in an order in which neighbours are near
+/// each other; empty if there is only one group
 std::vector<std::size_t> groupItems(std::vector<std::uint32_t> component_of,
                                     std::size_t num_components, std::size_t least,
                                     UninitializedVector<TreeItem>& items);

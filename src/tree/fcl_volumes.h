@@ -21,15 +21,15 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// FCL fits a volume in S with rounding to nearest, so that a point can stand out of its
-/// volume by a few units in the last place of its coordinates; 2^12 units leave room for
-/// axes that are at right angles only nearly (isBox()). Too large a margin costs only a
-/// box test.
+/// FCL fits a volume in S with rounding to nearest. So a point can stand out of its
+/// volume by a few units in the last place of its coordinates. 2^12 units also cover axes
+/// that are only nearly at right angles (isBox()). A margin that is too large costs only
+/// a box test.
 template <typename S>
 constexpr double kFitSlack = 0x1p12 * std::numeric_limits<S>::epsilon();
 
-/// @brief Whether a volume has bounds along our directions ready. All others are boxes
-/// with axes of their own.
+/// @brief Whether a volume stores bounds along our directions. All other volumes are
+/// boxes with axes of their own.
 template <typename BV>
 inline constexpr bool kHasSlabs = false;
 template <typename S>
@@ -37,7 +37,7 @@ inline constexpr bool kHasSlabs<AABB<S>> = true;
 template <typename S, std::size_t N>
 inline constexpr bool kHasSlabs<KDOP<S, N>> = true;
 
-/// @brief The oriented box that a volume is, or has beside other volumes.
+/// @brief The oriented box that a volume is or has.
 template <typename S>
 OrientedBox orientedBoxOf(const OBB<S>& obb) {
   OrientedBox box;
@@ -58,8 +58,9 @@ OrientedBox orientedBoxOf(const kIOS<S>& bv) {
 }
 
 /// @brief The box around a rectangle swept by a sphere. FCL chooses the rectangle so that
-/// no point lies further than the radius beyond a side, and clips a length that would be
-/// negative: the box contains the points even where rounded corners leave one out.
+/// no point is farther than the radius outside of a side, and it sets a negative length
+/// to zero. So the box contains all points, even if a rounded corner of the volume does
+/// not.
 template <typename S>
 OrientedBox orientedBoxOf(const RSS<S>& rss) {
   OrientedBox box;
@@ -76,9 +77,10 @@ OrientedBox orientedBoxOf(const RSS<S>& rss) {
   return box;
 }
 
-/// @brief Whether axes are unit vectors at right angles but for an error that is a part
-/// of what points may stand out, which it multiplies as their coordinates do. FCL's are
-/// mere numbers where sums of squares of coordinates left the range of S. NaN: false.
+/// @brief Whether the axes are unit vectors at right angles, up to an error. The error is
+/// multiplied by coordinates, and so it has to be a small part of the slack by which
+/// points may stand out. FCL's axes are arbitrary numbers if sums of squares of
+/// coordinates have left the range of S. NaN: false.
 inline bool isBox(const OrientedBox& box, double slack) {
   bool is_box = true;
   for (int i = 0; i < 3; ++i) {

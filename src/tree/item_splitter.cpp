@@ -29,7 +29,7 @@ std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
       leaves[leaf] = splitter.index(parts[i].first);
       node.child[i] = ~static_cast<std::int32_t>(leaf++);
     }
-    // The first child is the first to go on with.
+    // The first child is the next one to be split.
     const std::size_t num_nodes = nodes.size();
     for (std::size_t i = 0; i < n; ++i) {
       if (parts[i].count == 1) continue;

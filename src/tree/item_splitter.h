@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Where ranges of items are cut.
+// How ranges of items are split into the nodes of a tree.
 #ifndef FCL_CCD_TREE_ITEM_SPLITTER_H
 #define FCL_CCD_TREE_ITEM_SPLITTER_H
 
@@ -24,12 +24,12 @@ inline Float4 vectorOf(const TreeItem& item) {
   return v;
 }
 
-/// At once: three parts of it take longer.
+/// In one store: three stores take longer.
 inline void setItem(const Float4& v, TreeItem& item) {
   __builtin_memcpy(&item, &v, sizeof(v));
 }
 
-/// Of points, whose last number does not count.
+/// Bounds of points. Their fourth number has no meaning.
 struct Bounds {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -47,13 +47,14 @@ struct Bounds {
   }
 };
 
-/// Cuts the longest extent of items, of which every stride-th is looked at, into slabs of
-/// one width.
+/// Divides the longest extent of items into slabs of equal width. Only every stride-th
+/// item is used to find the extent.
 class Slabs {
  public:
   Slabs(const TreeItem* items, std::size_t count, std::size_t stride, int num_slabs)
       : last_(num_slabs - 1) {
-    // Of every fourth item apart: one minimum would wait for the one before.
+    // Four bounds, each of every fourth item: with a single one each minimum would wait
+    // for the previous one.
     Bounds of[4];
     std::size_t i = 0;
     for (; i + 3 * stride < count; i += 4 * stride)
@@ -65,21 +66,22 @@ class Slabs {
     for (int k = 1; k < 3; ++k)
       if (width[k] > width[axis_]) axis_ = k;
     lo_ = all.lo[axis_];
-    // 64 / 2^-120 is still a float; what is less wide counts as one point.
+    // 64 / 2^-120 is still a float. A smaller extent counts as one point.
     if (width[axis_] >= 0x1p-120f) scale_ = static_cast<float>(num_slabs) / width[axis_];
   }
 
   int axis() const { return axis_; }
 
-  /// Whether all items that were looked at fall together.
+  /// Whether all items that were used count as one point.
   bool isOne() const { return scale_ == 0; }
 
-  /// The slab of an item that was looked at.
+  /// The slab of one of the items that were used.
   int operator()(const TreeItem& item) const {
     return std::min(static_cast<int>(coordinate(item)), last_);
   }
 
-  /// Whether an item lies before a slab, which is neither the first nor beyond the last.
+  /// Whether an item lies before a slab. The slab is not the first one, and not beyond
+  /// the last one.
   bool isBefore(const TreeItem& item, int slab) const {
     return coordinate(item) < static_cast<float>(slab);
   }
@@ -95,12 +97,12 @@ class Slabs {
   float scale_{0};
 };
 
-/// Splits ranges of items, which are brought into order; different ranges at the same
-/// time.
+/// Splits ranges of items and puts the items into order. Different threads may split
+/// different ranges at the same time.
 class Splitter {
  public:
-  /// @param ends  where each of the groups ends in which the items lie, if they do: a
-  /// range of several is split between them
+  /// @param ends  the end of each group of items, if there are groups: a range with
+  /// several groups is split between groups
   Splitter(UninitializedVector<TreeItem> items, std::vector<std::size_t> ends)
       : items_(std::move(items)), scratch_(items_.size()), ends_(std::move(ends)) {
     assert(std::is_sorted(ends_.begin(), ends_.end()));
@@ -116,8 +118,7 @@ class Splitter {
     return items_[i].index;
   }
 
-  /// Splits a range into at most `max_parts`, which are no more than eight. None is
-  /// empty.
+  /// Splits a range into at most `max_parts` parts, and at most eight. No part is empty.
   std::size_t split(ItemRange all, std::size_t max_parts, int depth,
                     ItemRange (&out)[MovingKdopNode::kWidth]) {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
@@ -131,7 +132,7 @@ class Splitter {
       return n;
     }
     const bool by_area = all.count > kMaxHalved && depth < kMaxAreaDepth;
-    // The lowest level that holds all: each child is one unit.
+    // The lowest level that has room for all items: each child is one unit.
     std::size_t unit = 1;
     while (unit * kWidth < all.count) unit *= kWidth;
     while (n < max_parts) {
@@ -144,14 +145,14 @@ class Splitter {
       *largest = {r.first, first};
       out[n++] = {r.first + first, r.count - first};
     }
-    // In the order of the items: neighbours in the tree are neighbours in memory.
+    // Sorted by the order of the items: neighbours in the tree are neighbours in memory.
     std::sort(out, out + n,
               [](const ItemRange& a, const ItemRange& b) { return a.first < b.first; });
     return n;
   }
 
  private:
-  /// As split(), between groups; a range within one of them stays.
+  /// As split(), but between groups. A range within one group is not split.
   std::size_t splitGroups(ItemRange all, std::size_t max_parts,
                           ItemRange (&out)[MovingKdopNode::kWidth]) const {
     out[0] = all;
@@ -160,7 +161,8 @@ class Splitter {
     if (first == ends_.end() || *first >= end_of_all) return 1;
     const auto last = std::lower_bound(first, ends_.end(), end_of_all);
     const auto groups = static_cast<std::size_t>(last - first) + 1;
-    // Groups in a part: where that can be, as many as make a tree of full nodes.
+    // Number of groups in a part: as many as make a tree of full nodes, if that is
+    // possible.
     std::size_t unit = 1;
     while (unit * max_parts < groups) unit *= MovingKdopNode::kWidth;
     if (unit >= groups) unit = (groups + max_parts - 1) / max_parts;
@@ -174,24 +176,25 @@ class Splitter {
     return n;
   }
 
-  /// Up to so many triangles are halved, which is faster than looking for the best place
-  /// and fills the nodes; above, area decides (objects of a scene come apart).
+  /// Ranges of at most so many triangles are halved. This is faster than a search for the
+  /// best cut, and fills the nodes. Larger ranges are split by area, which separates the
+  /// objects of a scene.
   static constexpr std::size_t kMaxHalved = 512;
 
-  /// Area is estimated from about so many triangles.
+  /// The area is estimated from about so many triangles.
   static constexpr std::size_t kMaxSample = 512;
 
-  /// From this depth on everything is halved: no input makes a deep tree.
+  /// From this depth on all ranges are halved, so that no input makes a deep tree.
   static constexpr int kMaxAreaDepth = 24;
 
-  /// Moves the items before a slab to the front, in the order that they have, and returns
-  /// how many there are.
+  /// Moves the items before a slab to the front, without a change of their order, and
+  /// returns their number.
   std::size_t partition(ItemRange r, const Slabs& slabs, int slab) {
     TreeItem* items = items_.data() + r.first;
     TreeItem* scratch = scratch_.data() + r.first;
     std::size_t before = 0, after = 0;
     for (std::size_t i = 0; i < r.count; ++i) {
-      // No branch: nobody could foretell it.
+      // No branch: it would be unpredictable.
       const bool is_before = slabs.isBefore(items[i], slab);
       const Float4 item = vectorOf(items[i]);
       setItem(item, items[before]);
@@ -203,14 +206,14 @@ class Splitter {
     return before;
   }
 
-  /// Moves the `first` items that lie lowest along the axis to the front.
+  /// Moves the `first` items with the lowest coordinates along the axis to the front.
   void splitAt(ItemRange r, std::size_t first) {
     constexpr int kSlabs = 64;
     const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
     if (slabs.isOne()) return;
     std::uint32_t count[kSlabs] = {};
     for (std::size_t i = r.first; i < r.first + r.count; ++i) ++count[slabs(items_[i])];
-    // The slab where the cut is.
+    // The slab that contains the cut.
     std::size_t before = 0;
     int slab = 0;
     for (; before + count[slab] <= first; ++slab) before += count[slab];
@@ -227,9 +230,10 @@ class Splitter {
                      });
   }
 
-  /// Splits a range where area times count of the parts' centroid boxes, along the
-  /// longest axis, is least; in the middle where all centroids fall together. Returns the
-  /// size of the first part; none is empty.
+  /// Splits a range along its longest axis at the lowest cost: the sum over both parts of
+  /// the area of the centroids' box times the number of items. If all centroids count as
+  /// one point, it splits in the middle. Returns the size of the first part. No part is
+  /// empty.
   std::size_t splitByArea(ItemRange r) {
     constexpr int kSlabs = 8;
     const std::size_t stride = 1 + r.count / kMaxSample;
@@ -267,8 +271,8 @@ class Splitter {
     return partition(r, slabs, best);
   }
 
-  /// Splits a range near the middle, the first part a multiple of `unit`, so that units
-  /// of the lower levels come out full.
+  /// Splits a range near the middle. The first part is a multiple of `unit`, so that the
+  /// nodes of lower levels are full.
   std::size_t splitInUnits(ItemRange r, std::size_t unit) {
     const std::size_t units = (r.count + unit - 1) / unit;
     const std::size_t first = units / 2 * unit;
@@ -281,28 +285,29 @@ class Splitter {
   std::vector<std::size_t> ends_;
 };
 
-/// @brief A range of items, the node that it becomes, and the first leaf of that.
+/// @brief A range of items, the node that it becomes, and the first leaf of this node.
 struct OpenItems {
   Splitter::ItemRange range;
   std::size_t node, first_leaf;
   int depth;
 };
 
-/// @brief Splits a range, down to parts of which none is larger than max_left.
-/// @param max_parts  of the range itself
-/// @param nodes  the range's own is there; those below are added
-/// @return the ranges that are left, in the order of a walk
+/// @brief Splits a range until no part is larger than max_left.
+/// @param max_parts  the largest number of children of the range's own node
+/// @param nodes  has the range's own node already; the nodes below it are added
+/// @return the ranges that are not split, in the order of a walk
 std::vector<OpenItems> splitRange(Splitter& splitter, const OpenItems& root,
                                   std::size_t max_left, std::size_t max_parts,
                                   std::vector<TreeChildren>& nodes,
                                   std::vector<std::uint32_t>& leaves);
 
-/// @brief Splits items into a tree, whose leaves are their indices: by surface area at
-/// the top, and into halves at the bottom, so that the lowest nodes are full.
-/// @param ends  as groupItems() returns it: a part of the tree has several groups, or
-/// lies within one
-/// @param max_parts  the root has at most so many children
-/// @param depth  of the root in the tree that it is for: deep down all is halved
+/// @brief Splits items into a tree. Its leaves are the indices of the items. At the top
+/// it splits by surface area, at the bottom into halves, so that the lowest nodes are
+/// full.
+/// @param ends  as groupItems() returns it: each part of the tree has several whole
+/// groups, or lies within one group
+/// @param max_parts  the largest number of children of the root
+/// @param depth  the depth of the root in the whole tree: deep down all ranges are halved
 TreeStructure splitItems(UninitializedVector<TreeItem> items,
                          std::vector<std::size_t> ends, std::size_t max_parts, int depth);
 

@@ -16,35 +16,37 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A mesh as one query sees it: a tree, vertex paths in the world, and, without a
-/// moving tree, the triangles. Owns nothing.
+/// @brief A mesh as one query uses it: a tree, the vertex paths in the world, and the
+/// triangles if there is no moving tree. Owns nothing.
 struct MeshInstance {
   VertexFrames frames;
 
-  /// The moving tree, whose boxes are still to be moved by `translation`; null: the mesh
-  /// only translates, FCL's tree is sound and `rigid` is used.
+  /// The moving tree. Its boxes are in the object's coordinates and have to be moved by
+  /// `translation`. Null: the mesh only translates, FCL's tree is sound, and `rigid` is
+  /// used.
   const MovingKdopTree* tree{nullptr};
   RigidTree rigid;
   double translation[2][3]{{0, 0, 0}, {0, 0, 0}};
 
   /// Without a moving tree: the triangles with the features that they own. Null: each
-  /// owns all its features, so that a pair of features can be met repeatedly.
+  /// triangle owns all its features, so that a feature pair can be met repeatedly.
   const MeshTriangle* owners{nullptr};
   const Triangle* triangles{nullptr};
 
-  /// @brief Whether the paths of the tree's vertices are those in the world.
+  /// @brief Whether the tree's vertices have the same paths as in the world.
   bool isInPlace() const {
     for (const auto& v : translation)
       if (v[0] != 0 || v[1] != 0 || v[2] != 0) return false;
     return tree;
   }
 
-  /// @brief Whether every feature is owned by one triangle, and a pair met once at most.
+  /// @brief Whether every feature is owned by one triangle, so that a feature pair is met
+  /// at most once.
   bool hasOwners() const { return tree || owners; }
 
-  /// @brief By how much more than in the tree a coordinate of a vertex changes in the
-  /// step: as the pose moves it, and rounds it at both ends, by less than 2^-49 of what
-  /// it is made of.
+  /// @brief The pose moves a vertex in addition to its motion in the tree. This is a
+  /// bound on that motion along each axis. The pose also rounds both ends, by less than
+  /// 2^-49 of the numbers that are added; the bound contains this.
   double poseDisplacement() const {
     if (isInPlace()) return 0;
     double moved = 0, size = tree ? tree->reach() : rigid.reach();

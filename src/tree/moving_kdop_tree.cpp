@@ -23,24 +23,26 @@ namespace {
 
 constexpr int kWidth = MovingKdopNode::kWidth;
 
-/// What is refit together, while its vertices are near: 80 KB of nodes.
+/// The largest number of nodes that are refit together, while their vertices are in the
+/// cache: 80 KB of nodes.
 constexpr std::uint32_t kMaxSubtree = 64;
 
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
-/// A task: so many vertices, or so many subtrees, which come in groups of 4 MB of nodes.
+/// The size of a task in vertices, and in subtrees. Subtrees come in groups of 4 MB of
+/// nodes.
 constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64;
 
-/// A task while the tree is made: so many triangles.
+/// The size of a task in triangles while the tree is made.
 constexpr std::size_t kTriangleBlock = 8192;
 
-/// Of so many triangles one knows the number of places before it.
+/// For one of so many triangles the number of places before it is stored.
 constexpr std::size_t kPlacesBlock = 8;
 
-/// What is read in any order is brought near so many steps before.
+/// Data in random order is prefetched so many steps before it is read.
 constexpr std::size_t kAhead = 8;
 
-/// Brings a node's boxes near, which are about to be written.
+/// Prefetches a node's boxes, which will be written soon.
 void prefetchRows(const MovingKdopNode& node) {
   const char* at = reinterpret_cast<const char*>(&node);
   for (std::size_t i = 0; i < sizeof(node); i += 64) __builtin_prefetch(at + i, 1);
@@ -70,7 +72,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
   arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, num_threads);
 }
 
-/// Takes a structure, and finds fans and owners.
+/// Takes over a structure, and finds fans and owners.
 void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* triangles,
                              std::size_t num_vertices, int num_threads) {
   place(structure, triangles, num_vertices, num_threads);
@@ -81,7 +83,7 @@ void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* tri
   assignOwners(corners, num_threads, triangles_);
 }
 
-/// Takes the triangles of a structure, and gives the vertices their places.
+/// Takes over the triangles of a structure, and gives the vertices their places.
 void MovingKdopTree::place(const TreeStructure& structure, const Triangle* triangles,
                            std::size_t num_vertices, int num_threads) {
   const std::vector<std::uint32_t>& leaves = structure.leaves;
@@ -99,21 +101,21 @@ void MovingKdopTree::place(const TreeStructure& structure, const Triangle* trian
   placeVertices(num_vertices);
 }
 
-/// Takes memory for nodes and vertices where that of another tree, which this one is to
-/// replace, does not suffice.
+/// Allocates memory for nodes and vertices, if the memory of the other tree, which this
+/// one will replace, is too small.
 void MovingKdopTree::takeMemory(const MovingKdopTree& other,
                                 const TreeStructure& structure) {
   const std::size_t num_nodes = structure.nodes.size(), num_vertices = vertex_ids_.size();
   sizes_.resize(num_nodes);
   region_borders_ = std::make_shared<RegionBorders>(num_nodes);
-  // Trees that change have a few more each time.
+  // A tree that changes has a few more nodes each time.
   if (other.nodes_.capacity() < num_nodes) nodes_.reserve(num_nodes + num_nodes / 16);
   if (other.vertices_.capacity() < num_vertices)
     vertices_.reserve(num_vertices + num_vertices / 16);
 }
 
-/// Becomes another tree, which has all but nodes and vertices, and memory for these. On
-/// one thread: a task would need more.
+/// Becomes another tree, which has all but nodes and vertices, and memory for them. It
+/// runs on one thread, because a task would need more memory.
 void MovingKdopTree::become(MovingKdopTree&& next,
                             const TreeStructure& structure) noexcept {
   if (next.nodes_.capacity() == 0) next.nodes_ = std::move(nodes_);
@@ -125,8 +127,8 @@ void MovingKdopTree::become(MovingKdopTree&& next,
   *this = std::move(next);
 }
 
-/// Finds where the triangles of each node begin, and the largest parts of the tree that
-/// are refit together.
+/// Finds the first triangle of each node, and the largest parts of the tree that are
+/// refit together.
 void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
   const auto& nodes = structure.nodes;
   const auto isNode = [](std::int32_t child) { return child > 0; };
@@ -136,7 +138,7 @@ void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
   for (std::size_t i = nodes.size(); i-- > 0;) {
     const std::int32_t* child = nodes[i].child;
     const std::int32_t* leaf = std::find_if_not(child, child + nodes[i].count, isNode);
-    // A node's own leaves come first.
+    // The node's own leaves come before those of its children.
     first_triangles_[i] = leaf != child + nodes[i].count
                               ? static_cast<std::uint32_t>(~*leaf)
                               : first_triangles_[static_cast<std::size_t>(*child)];
@@ -167,19 +169,19 @@ void MovingKdopTree::findSubtrees(const TreeStructure& structure) {
   }
 }
 
-/// Gives the vertices places in the order in which triangles have them, and each to the
-/// subtree that is the first to meet it.
+/// Gives the vertices places in the order in which triangles have them. Each vertex
+/// belongs to the first subtree that has it.
 void MovingKdopTree::placeVertices(std::size_t num_vertices) {
   constexpr std::uint32_t kNoPlace = MovingKdopNode::kNoPlace;
   std::vector<std::uint32_t> place_of(num_vertices, kNoPlace);
-  // One more, which is written and not counted.
+  // One more element, which is written but not counted.
   vertex_ids_.resize(num_vertices + 1);
   places_before_.resize((triangles_.size() + kPlacesBlock - 1) / kPlacesBlock);
   std::uint32_t num_places = 0;
   std::size_t i = 0;
   for (std::size_t s = 0; s < subtrees_.size(); ++s) {
     subtrees_[s].first_vertex = num_places;
-    // What nodes above have between two subtrees goes with the first of them.
+    // Triangles of nodes above that are between two subtrees belong to the first of them.
     const bool is_last = s + 1 == subtrees_.size();
     const std::size_t end = is_last ? triangles_.size() : subtrees_[s + 1].first_triangle;
     for (; i < end; ++i) {
@@ -187,7 +189,7 @@ void MovingKdopTree::placeVertices(std::size_t num_vertices) {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t id = triangles_[i].id[k];
         std::uint32_t& place = place_of[id];
-        // No branch: nobody could foretell it.
+        // No branch: it would be unpredictable.
         const bool is_new = place == kNoPlace;
         place = is_new ? num_places : place;
         vertex_ids_[num_places] = id;
@@ -210,11 +212,11 @@ std::uint32_t MovingKdopTree::placesBefore(std::size_t i) const {
   return count;
 }
 
-/// Sets all of the nodes but the boxes.
+/// Sets everything in the nodes except the boxes.
 void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
   constexpr std::size_t kBlock = 1024;
   const std::size_t count = structure.nodes.size();
-  // Restructured trees have a few more.
+  // Restructured trees have a few more nodes.
   UninitializedVector<MovingKdopNode> nodes;
   nodes.reserve(count + count / 16);
   nodes.resize(count);
@@ -228,7 +230,7 @@ void MovingKdopTree::setNodes(const TreeStructure& structure, int num_threads) {
   first_sizes_.assign(nodes_.size(), {});
 }
 
-/// Sets all of a node but the boxes.
+/// Sets everything in a node except the boxes.
 void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) const {
   node.count = from.count;
   std::copy(from.child, from.child + kWidth, node.child);
@@ -242,7 +244,7 @@ void MovingKdopTree::setNode(const TreeChildren& from, MovingKdopNode& node) con
   }
 }
 
-/// By frame and axis.
+/// Bounds for each frame and axis.
 struct MovingKdopTree::CoordinateBounds {
   double lo[2][3]{{kInf, kInf, kInf}, {kInf, kInf, kInf}};
   double hi[2][3]{{-kInf, -kInf, -kInf}, {-kInf, -kInf, -kInf}};
@@ -278,7 +280,8 @@ MovingKdopTree::CoordinateBounds MovingKdopTree::boundsOf(const VertexFrames& fr
   return all;
 }
 
-/// Of the vertices' coordinates in a frame, the same for any order of theirs.
+/// The median of the vertices' coordinates in a frame. It does not depend on the order of
+/// the vertices.
 double MovingKdopTree::medianOf(const VertexFrames& frames, int frame, int axis) const {
   std::vector<double> x;
   x.reserve(vertex_ids_.size());
@@ -301,7 +304,7 @@ void MovingKdopTree::setReach(const CoordinateBounds& bounds) {
                                          origin_[frame][k] - bounds.lo[frame][k]));
 }
 
-/// Sets the boxes of a node whose children have theirs.
+/// Sets the boxes of a node. Those of its children are set.
 void MovingKdopTree::refit(MovingKdopNode& node, bool is_still) {
   float extents[kWidth];
   kernels().fitNode(vertices_.data(), nodes_.data(), is_still, node, extents);
@@ -349,7 +352,7 @@ void MovingKdopTree::fitVertices(const Subtree& subtree, const VertexFrames& fra
   }
 }
 
-/// Sets the boxes of a subtree whose vertices have theirs.
+/// Sets the boxes of a subtree. Those of its vertices are set.
 void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
   for (std::size_t i = subtree.last_node; i-- > subtree.first_node;) {
     if (i > subtree.first_node + 1) prefetchRows(nodes_[i - 2]);
@@ -358,9 +361,9 @@ void MovingKdopTree::refit(const Subtree& subtree, bool is_still) {
   refit(nodes_[subtree.root], is_still);
 }
 
-/// The boxes are floats: relative to an origin that is far from most of a mesh, since
-/// some vertex flies off or all of it jumps, they are mere rounding. Then the origin goes
-/// to where most is.
+/// The boxes are floats relative to an origin. If the origin is far from most of a mesh,
+/// because a vertex flies off or the whole mesh jumps, these floats are mostly rounding.
+/// Then the origin moves to the median of the vertices.
 void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   assert(!nodes_.empty() && vertices_.size() == vertex_ids_.size());
   assert(*std::max_element(vertex_ids_.begin(), vertex_ids_.end()) < frames.size());
@@ -369,8 +372,9 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
     origin_[0][k] = origin_[1][k] = 0.5 * std::min(bounds.lo[0][k], bounds.lo[1][k]) +
                                     0.5 * std::max(bounds.hi[0][k], bounds.hi[1][k]);
   setReach(bounds);
-  // Extents along eight directions in two frames have up to 2^-17 of the reach from
-  // rounding: 32 half-axes of at most 2 reach each, outward by 2^-22 of themselves.
+  // Rounding can make extents along eight directions in two frames larger by up to 2^-17
+  // of the reach: 32 half-axes of at most 2 reach each, rounded outward by 2^-22 of
+  // themselves.
   blur_ = roundUp(reach_ * 0x1p-13, 0.f);
   fit(frames, num_threads);
   if (sizes_[0].blurred <= triangles_.size() / 2) return;
@@ -393,8 +397,8 @@ void MovingKdopTree::fit(const VertexFrames& frames, int num_threads) {
   for (std::size_t i = top_.size(); i-- > 0;) refit(nodes_[top_[i]], frames.isStill());
 }
 
-/// Refits the subtrees, which have vertices that those before them were the first to
-/// meet: of a group the vertices come first, which are still near for the nodes.
+/// Refits the subtrees. A subtree may need vertices of the subtrees before it. So the
+/// vertices of a group are fitted first, and are still in the cache for its nodes.
 void MovingKdopTree::refitGroups(const VertexFrames& frames, int num_threads) {
   for (std::size_t first = 0; first < subtrees_.size(); first += kSubtreeGroup) {
     const Subtree* subtrees = &subtrees_[first];

@@ -23,50 +23,53 @@ class TopologyDifference;
 struct TreeChildren;
 struct TreeStructure;
 
-/// @brief A tree of moving 16-DOPs over the triangles of a mesh, eight children a node.
-/// The structure is made by build() or from the links of another tree; refit() sets the
-/// boxes for a pair of frames; restructure() renews what has aged; changeTopology()
-/// follows a mesh that breaks. Triangles and vertices lie in the order in which the tree
-/// meets them, so that neighbours on the surface are neighbours in memory.
+/// @brief A tree of moving 16-DOPs over the triangles of a mesh, with eight children per
+/// node. build() makes the structure, from triangles or from the links of another tree.
+/// refit() sets the boxes for a pair of frames. restructure() rebuilds aged parts.
+/// changeTopology() follows a mesh that breaks. Triangles and vertices are kept in the
+/// order in which the tree meets them, so that neighbours on the surface are neighbours
+/// in memory.
 ///
-/// Nodes lie in one array in the order of a walk, children after their parents: what is
-/// below a node lies together and is refit in one backward pass.
+/// Nodes are in one array in the order of a walk, children after their parents. So all
+/// nodes below a node follow each other, and one pass from back to front refits them.
 class MovingKdopTree {
  public:
-  /// @brief Makes the structure: large components apart from each other, surface-area
-  /// splits of the triangles' centroids in frame 0, and halving at the bottom so that the
-  /// lowest nodes are full.
+  /// @brief Makes the structure. Large components have trees of their own. At the top the
+  /// triangles' centroids in frame 0 are split by surface area. At the bottom ranges are
+  /// halved, so that the lowest nodes are full.
   /// @param triangles  at least one, indices below frames.size() (not checked here)
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   void build(const Triangle* triangles, std::size_t num_triangles,
              const VertexFrames& frames, int num_threads = 1);
 
   /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
-  /// node i (the right one follows it), links[i] < 0 is leaf ~links[i].
+  /// node i (the right child follows it), links[i] < 0 is leaf ~links[i].
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   void build(const Triangle* triangles, std::size_t num_triangles,
              std::size_t num_vertices, const std::vector<std::int32_t>& links,
              int num_threads = 1);
 
-  /// @brief Sets every box: the box interpolated at t contains the subtree's triangles at
-  /// t, for every t in [0, 1], up to nothing: all rounding is outward.
+  /// @brief Sets all boxes. The box interpolated at t contains the subtree's triangles at
+  /// t, for every t in [0, 1]. There is no tolerance: all rounding is outward.
   /// @param num_threads  as in parallelFor(); the boxes do not depend on it
   void refit(const VertexFrames& frames, int num_threads = 1);
 
-  /// @brief Makes those parts of the structure anew that have aged, that is, whose boxes
-  /// motion has made larger beside their triangles' than they were when the part was
-  /// made; if all boxes together have become much larger. To be called before a refit,
-  /// since it looks at the boxes of the last one and leaves none behind.
-  /// @return whether the structure has changed; not if there is no memory for it
+  /// @brief Rebuilds the parts of the structure that have aged, if all boxes together
+  /// have become much larger. A part has aged if motion has made its boxes larger,
+  /// relative to those of its triangles, than they were when the part was made. Call it
+  /// before a refit: it uses the boxes of the last refit, and leaves none behind.
+  /// @return whether the structure has changed; false if there is not enough memory for
+  /// it
   bool restructure();
 
-  /// @brief Follows a mesh that tears, breaks, grows or loses parts: nodes stay as they
-  /// are unless triangles come to them or leave them. Leaves no boxes behind; an
-  /// exception leaves the tree as it was.
+  /// @brief Follows a mesh that tears, breaks, grows or loses parts. Nodes stay as they
+  /// are, unless triangles come to them or leave them. Leaves no boxes behind. An
+  /// exception leaves the tree unchanged.
   /// @param triangles  at least one, indices below frames.size() (not checked here)
-  /// @param origins  for each of them the number of the one before that it was or was cut
-  /// from, -1 for one that comes to where it lies in frame 0; empty: each was the one of
-  /// its number, as far as there was one; a hint: no answer depends on it
+  /// @param origins  for each triangle, the number of the previous triangle that it was
+  /// or was cut from. -1: the triangle is new, and is added next to its position in frame
+  /// 0. Empty: each triangle was the one of the same number, if there was one. It is a
+  /// hint: no answer depends on it
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   /// @pre refit() has set the boxes
   void changeTopology(const Triangle* triangles, std::size_t num_triangles,
@@ -79,12 +82,12 @@ class MovingKdopTree {
   }
   std::size_t numNodes() const { return nodes_.size(); }
 
-  /// @brief The first of the triangles below node i, which lie together.
+  /// @brief The first of the triangles below node i. They follow each other.
   std::uint32_t firstTriangle(int i) const {
     return first_triangles_[static_cast<std::size_t>(i)];
   }
 
-  /// @brief How many vertices the triangles before triangle i have.
+  /// @brief Number of vertices that the triangles before triangle i have.
   std::uint32_t placesBefore(std::size_t i) const;
 
   /// @brief Triangles and vertices in the tree's order.
@@ -94,11 +97,12 @@ class MovingKdopTree {
   /// @brief The fans of the vertices in the tree's order.
   const VertexFans& fans() const { return fans_; }
 
-  /// @brief The borders of nodes that queries have asked for; for any number of threads.
+  /// @brief The borders of nodes that queries have asked for. Any number of threads may
+  /// use them at the same time.
   RegionBorders& regionBorders() const { return *region_borders_; }
 
-  /// @brief World point that the boxes of a frame (0 or 1) are relative to; the same of
-  /// both, unless most of the mesh is far away from it.
+  /// @brief The world point that the boxes of a frame (0 or 1) are relative to. Both
+  /// frames have the same, unless most of the mesh is far away from it.
   const double (&origin(int frame) const)[3] { return origin_[frame]; }
 
   /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
@@ -108,12 +112,12 @@ class MovingKdopTree {
 
  private:
   /// A part of the tree: nodes [first_node, last_node) below its root, and the vertices
-  /// that are met there first.
+  /// that are first met there.
   struct Subtree {
     std::uint32_t root, first_node, last_node, first_triangle, first_vertex, last_vertex;
   };
-  /// Extents of a node's box, and of all triangles' boxes below together: along all eight
-  /// directions, in both frames; and how many of the triangles are blurred.
+  /// Extents of a node's box, and the sum of those of the triangles below it, along all
+  /// eight directions in both frames. The number of these triangles that are blurred.
   struct NodeSize {
     float box, triangles;
     std::uint32_t blurred;
@@ -123,7 +127,7 @@ class MovingKdopTree {
   class Restructuring;
   class TopologyUpdate;
 
-  /// The box as it would be had it only grown as its triangles have.
+  /// The size of a box that has grown as much as its triangles.
   static float expectedBox(const NodeSize& first, const NodeSize& now) {
     return first.box * (now.triangles / first.triangles);
   }
@@ -162,17 +166,18 @@ class MovingKdopTree {
   /// The user's id of each vertex.
   std::vector<std::uint32_t> vertex_ids_;
   VertexFans fans_;
-  /// Of the structure as it is, also of copies that have the same.
+  /// They belong to the structure. Copies of the tree with the same structure share them.
   std::shared_ptr<RegionBorders> region_borders_;
-  /// What is refit independently, and the nodes above, parents first.
+  /// The parts that are refit independently, and the nodes above them, parents first.
   std::vector<Subtree> subtrees_;
   std::vector<std::uint32_t> top_;
-  /// Of each node as it is, and as it was when it was made; 0 as long as unknown.
+  /// For each node the size now, and the size when it was made; 0 as long as unknown.
   std::vector<NodeSize> sizes_;
   std::vector<NodeSize> first_sizes_;
   double origin_[2][3]{};
   double reach_{0};
-  /// Triangles whose boxes have smaller extents are blurred.
+  /// Triangles whose boxes have smaller extents are blurred: their boxes are mostly
+  /// rounding.
   float blur_{0};
 };
 

@@ -10,10 +10,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Opens node i of a binary tree until there are eight nodes or only leaves.
+/// @brief Opens node i of a binary tree until there are eight nodes, or only leaves.
 /// @param link  link(i) >= 0: left child of i (the right one follows it); < 0: ~triangle
-/// @param nodes  the nodes
-/// @param children  the same, or ~triangle for leaves
+/// @param nodes  the nodes of the binary tree that were found
+/// @param children  the same nodes, but ~triangle for leaves
 /// @return number of entries
 template <typename Link>
 int openBinary(std::int32_t i, std::int32_t (&nodes)[MovingKdopNode::kWidth],

@@ -6,8 +6,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A box around one of FCL's bounding volumes; every point of it is center + sum
-/// of c_i axis_i with |c_i| <= extent_i.
+/// @brief A box around one of FCL's bounding volumes. Its points are center + sum of c_i
+/// axis_i with |c_i| <= extent_i.
 struct OrientedBox {
   double center[3];
   double axis[3][3];

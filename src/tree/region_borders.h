@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The borders of parts of a tree: what of them depends on the structure alone, and stays.
+// The borders of regions of a tree. They depend on the structure alone, and are kept with
+// it.
 #ifndef FCL_CCD_TREE_REGION_BORDERS_H
 #define FCL_CCD_TREE_REGION_BORDERS_H
 
@@ -15,13 +16,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The directed edges of a region's triangles that are left when opposite ones
-/// cancel. No edges: none are left, or one more than once, and the region is not proved.
+/// @brief The directed edges of a region's triangles that are left after opposite edges
+/// cancel. There are no edges in two cases: none are left, or one is left more than once.
+/// Then the region is not proved to be embedded.
 struct RegionBorder {
-  /// Places of the vertices, path after path: between vertices that the border passes
-  /// more than once, or closed.
+  /// Places of the vertices of all paths, one path after the other. A path leads from one
+  /// vertex that the border passes more than once to another one, or it is closed.
   std::vector<std::uint32_t> points;
-  /// Where each edge begins among the points; it ends at the next one.
+  /// The index of each edge's first point. The edge ends at the next point.
   std::vector<std::uint32_t> begins;
   /// The first edge of each path.
   std::vector<std::uint32_t> paths;
@@ -32,10 +34,11 @@ struct RegionBorder {
   std::uint32_t to(std::size_t edge) const { return points[begins[edge] + 1]; }
 };
 
-/// @brief The borders of a tree's nodes, each found when a query first asks for it: the
-/// next one asks for most of them again.
+/// @brief The borders of a tree's nodes. Each is found when a query first asks for it,
+/// and kept, since the next query asks for most of them again.
 ///
-/// For any number of threads at a time; two may find the same border, and one is kept.
+/// Any number of threads may use it at the same time. If two find the same border, one of
+/// the results is kept.
 class RegionBorders {
  public:
   explicit RegionBorders(std::size_t num_nodes) : borders_(num_nodes) {
@@ -47,7 +50,7 @@ class RegionBorders {
   RegionBorders(const RegionBorders&) = delete;
   RegionBorders& operator=(const RegionBorders&) = delete;
 
-  /// @param find  find() is the border of the node
+  /// @param find  find() returns the border of the node
   template <typename Find>
   const RegionBorder& of(std::int32_t node, Find&& find) {
     assert(node >= 0 && static_cast<std::size_t>(node) < borders_.size());

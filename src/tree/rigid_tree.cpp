@@ -36,8 +36,9 @@ Slabs slabsOf(const AABB<S>& bv) {
   return slabs;
 }
 
-/// The first 8 directions of every KDOP of FCL's are ours. Its bounds are private, and
-/// reading one a call; they are all that it consists of.
+/// The first 8 directions of all of FCL's KDOPs are ours. The bounds are private, and FCL
+/// needs a function call for each. So they are read from memory: a KDOP consists of its
+/// bounds only.
 template <typename S, std::size_t N>
 Slabs slabsOf(const KDOP<S, N>& bv) {
   static_assert(std::is_standard_layout_v<KDOP<S, N>> && sizeof(bv) == N * sizeof(S));
@@ -50,7 +51,7 @@ Slabs slabsOf(const KDOP<S, N>& bv) {
   return slabs;
 }
 
-/// Contains all that is in range.
+/// A box that contains all finite points.
 constexpr OrientedBox kUnbounded = {
     {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
 
@@ -68,20 +69,20 @@ Float4 abs(const Float4& v) {
 }
 Float4 larger(const Float4& x, const Float4& y) { return x > y ? x : y; }
 
-/// As roundUp() leaves a half-axis: infinite in place of a NaN, never below kLeastHalf.
+/// A half-axis as roundUp() returns it: infinity in place of NaN, at least kLeastHalf.
 Float4 bounded(const Float4& half) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const Float4 number = half == half ? half : Float4{kInf, kInf, kInf, kInf};
   return larger(number, Float4{kLeastHalf, kLeastHalf, kLeastHalf, kLeastHalf});
 }
 
-/// Eight boxes in lanes, rounded to float; centers relative to the tree's origin.
+/// Eight boxes in lanes, rounded to float. Centers are relative to the tree's origin.
 struct EightBoxes {
   float center[3][MovingKdopNode::kWidth];
   float half_axis[3][3][MovingKdopNode::kWidth];
 };
 
-/// How far a box reaches from its center along the axes.
+/// The largest distance of a point of the box from its center, along x, y or z.
 double spreadOf(const OrientedBox& box) {
   double most = 0;
   for (int k = 0; k < 3; ++k) {
@@ -92,8 +93,8 @@ double spreadOf(const OrientedBox& box) {
   return most;
 }
 
-/// Half-axes of 16-DOPs around the boxes, but for rounding: a direction d meets a box as
-/// far from its center as the sum of |d . half axis|.
+/// Half-axes of 16-DOPs around the boxes, without rounding outward. Along a direction d a
+/// box reaches from its center by the sum of |d . half axis|.
 void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
   for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
     const auto alongDirections = [q](const float(&v)[3][MovingKdopNode::kWidth],
@@ -128,9 +129,10 @@ RigidTree::Volumes RigidTree::volumesOf() {
           &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
 }
 
-/// The origin lies in the middle of the mesh; or of one of its halves, if that is a speck
-/// beside the whole: a vertex may be far away from all others, and floats relative to the
-/// middle would be mere rounding (as in MovingKdopTree::refit()).
+/// The origin is in the middle of the mesh. If one of its halves is tiny relative to the
+/// whole, the origin is in the middle of this half: a vertex may be far away from all
+/// others, and floats relative to the middle of the mesh would be rounding only (as in
+/// MovingKdopTree::refit()).
 template <typename BV>
 RigidTree::RigidTree(const BVHModel<BV>& model, const Pose& pose)
     : RigidTree(&model.getBV(0), volumesOf<BV>(), pose) {}
@@ -149,7 +151,8 @@ RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose
     least = spreadOf(part);
     std::copy(part.center, part.center + 3, origin_);
   }
-  // Twice, so that with a center relative to it it bounds the center itself too.
+  // Twice the size: together with a center relative to the origin it then bounds the
+  // center itself.
   origin_size_ = roundUp(
       2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
   for (int k = 0; k < 3; ++k)
@@ -167,7 +170,7 @@ void RigidTree::rotate(OrientedBox& box) const {
   for (auto& axis : box.axis) turn(axis);
 }
 
-// Of an AABB or a KDOP the box of the first three slabs.
+// For an AABB or a KDOP this is the box of the first three slabs.
 template <typename BV>
 void RigidTree::setBox(int node, OrientedBox& box) const {
   const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
@@ -198,8 +201,8 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
           out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
         }
       }
-      // The bounds along x, y, z are those of coordinates, without error; a sum of two
-      // was rounded to within the slack of its terms.
+      // The bounds along x, y, z are coordinates, without error. Bounds along other
+      // directions are sums of two coordinates; the slack contains their rounding.
       return roundOutward(0.f, out);
     }
   EightBoxes boxes;
@@ -213,19 +216,20 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
     }
   }
   fitBoxes(boxes, out);
-  // A half-axis is a sum of components of the center and of the half axes: rounding these
-  // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1, and 3
-  // more than cover the rounding of the padding itself. The fit's slack is far above the
-  // few 2^-53 of the rotation and of the center.
+  // A half-axis is a sum of components of the center and of the half axes. Rounding them
+  // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1. 3
+  // more cover the rounding of the padding itself. The slack of the fit is far larger
+  // than the few 2^-53 of the rotation and of the center.
   roundOutward(8 * kFloatUnit, out);
 }
 
-/// Completes rows whose half-axes at t = 0 are right but for `rounding`, relative to the
-/// sum of the components, and for the fit of the volumes.
+/// Completes rows whose half-axes at t = 0 are set. Pads them by `rounding`, relative to
+/// the sum of the components, and by the slack of the volumes' fit.
 void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
   const auto slack = static_cast<float>(volumes_.slack);
   for (int q = 0; q < kWidth; q += 4) {
-    // Along x, y and z: the center's distance from the origin and half the width.
+    // The sum over x, y and z of the center's distance from the origin and half the
+    // width.
     Float4 size{};
     for (int r = 0; r < 6; r += 2)
       size += larger(abs(load(out.t0[r] + q)), abs(load(out.t0[r + 1] + q)));
@@ -241,7 +245,8 @@ void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
 
 void RigidTree::open(int i, MovingKdopNode& out) const {
   assert(nodes_ && i >= 0);
-  // The boxes are needed of FCL's nodes, the links of what is below them.
+  // `nodes` has FCL's nodes, for their boxes. `out.child` has the links to what is below
+  // them.
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, i);
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });

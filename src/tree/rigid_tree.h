@@ -21,42 +21,42 @@ struct BVNodeBase;
 namespace detail {
 namespace deformable {
 
-/// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs: the
-/// box of a node is made from FCL's bounding volume when a traversal asks for it, so that
-/// a query costs nothing per vertex. Does not own the model.
+/// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs. The
+/// box of a node is made from FCL's bounding volume when a traversal asks for it. So a
+/// query needs no time per vertex. Does not own the model.
 class RigidTree {
  public:
   RigidTree() = default;
 
-  /// @tparam BV  any of FCL's
+  /// @tparam BV  any of FCL's bounding volumes
   /// @pre isTreeSound(model)
-  /// @param pose  its rotation turns the boxes; its translation is left to
+  /// @param pose  its rotation is applied to the boxes. Its translation is applied by
   /// relativeShift().
   template <typename BV>
   RigidTree(const BVHModel<BV>& model, const Pose& pose);
 
-  /// @brief Makes a node of up to eight of FCL's below node i.
+  /// @brief Makes a node with up to eight children from FCL's nodes below node i.
   void open(int i, MovingKdopNode& out) const;
 
   /// @brief The box of one of FCL's nodes, the same in both frames.
   MovingKdop box(int node) const;
 
-  /// @brief The box that the node's 16-DOP is made from, in the rotated frame, or around
-  /// what it is made from. Points of the mesh stand out by slack() times the size of
-  /// their coordinates at most.
+  /// @brief The oriented box of a node, in the rotated frame. The node's 16-DOP is made
+  /// from it, or from a volume inside of it. Points of the mesh stand out by at most
+  /// slack() times the size of their coordinates.
   void orientedBox(int node, OrientedBox& box) const {
     (this->*volumes_.set_box)(node, box);
   }
   double slack() const { return volumes_.slack; }
 
-  /// @brief The left child of one of FCL's nodes, whose sibling follows it; ~triangle of
-  /// a leaf.
+  /// @brief The left child of one of FCL's nodes (the right child follows it), or
+  /// ~triangle of a leaf.
   int link(int node) const;
 
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
   bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
 
-  /// @brief Point (rotated frame) that the boxes are relative to.
+  /// @brief The point (in the rotated frame) that the boxes are relative to.
   const double (&origin() const)[3] { return origin_; }
 
   /// @brief Bound on the distance of the mesh from the origin along an axis.
@@ -65,12 +65,12 @@ class RigidTree {
  private:
   static constexpr int kWidth = MovingKdopNode::kWidth;
 
-  /// How bounding volumes of one kind are read.
+  /// How to read bounding volumes of one kind.
   struct Volumes {
     std::size_t stride;
-    /// By how much points can stand out of them, relative to the coordinates.
+    /// How far points can stand out of a volume, relative to their coordinates.
     double slack;
-    /// Whether they have bounds along our directions ready.
+    /// Whether the volumes store bounds along our directions.
     bool has_slabs;
     void (RigidTree::*set_box)(int node, OrientedBox& box) const;
     /// Fills the rows with the 16-DOPs of FCL's nodes.
@@ -100,18 +100,19 @@ class RigidTree {
   double reach_{0};
 };
 
-/// @brief A RigidTree as one traversal reads it, eight children a node: what is made from
-/// FCL's nodes stays in a small table, since a node is met in many pairs. For one thread.
+/// @brief A RigidTree as one traversal reads it, with eight children per node. A small
+/// table keeps the nodes that were made, since a node is met in many pairs. For one
+/// thread.
 class RigidTreeReader {
  public:
-  /// @brief Nodes whose numbers differ by a multiple of it take each other's place.
+  /// @brief Two nodes have the same slot if their numbers differ by a multiple of this.
   static constexpr int kSlots = 64;  // 76 KiB of nodes
 
   explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
     std::fill(made_, made_ + kSlots, -1);
   }
 
-  /// @brief The node; valid until another is asked for.
+  /// @brief Node i. It is valid until the next call.
   const MovingKdopNode& node(int i) {
     assert(i >= 0);
     const int slot = i % kSlots;

@@ -8,28 +8,30 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Two rigid meshes that translate: proves boxes of theirs apart that 16-DOPs do
-/// not. A 16-DOP around an OBB is much wider than it, so that the DOPs alone overlap two
-/// to three times as often.
+/// @brief Proves boxes of two translating rigid meshes apart whose 16-DOPs overlap. A
+/// 16-DOP around an OBB is much wider than the OBB. So without this test two to three
+/// times as many boxes overlap.
 class SeparatingAxes {
  public:
-  /// @param a, b  must outlive this; areApart() is for meshes without moving trees.
+  /// @param a, b  meshes without moving trees; they must outlive this
   SeparatingAxes(const MeshInstance& a, const MeshInstance& b);
 
-  /// @brief Whether areApart() is worth its time for two boxes with this sum of extents:
-  /// not for boxes that are AABBs and for those that move far for their size.
+  /// @brief Whether areApart() is worth its time for two boxes with this sum of extents.
+  /// It is not for AABBs, and not for boxes that move far relative to their size.
   bool mayHelp(float extents) const { return least_extents_ <= extents; }
 
-  /// @brief Proves that what is below node i of a's tree and node j of b's does not meet
-  /// during the whole step: along one of the boxes' own axes (Gottschalk, Lin, Manocha
-  /// 1996; the nine cross products of axes leave out few more) one is always on the same
-  /// side of the other. NaN: not proved.
+  /// @brief Proves that the triangles below node i of a's tree and below node j of b's do
+  /// not meet during the whole step. The proof is an axis of one of the two boxes along
+  /// which one box is always on the same side of the other (Gottschalk, Lin, Manocha
+  /// 1996). The nine cross products of axes are not tested, since they would prove few
+  /// more. NaN: not proved.
   bool areApart(int i, int j) const;
 
  private:
   const RigidTree& a_;
   const RigidTree& b_;
-  /// Translation of b relative to a in both frames, and sum of the sizes of both.
+  /// Translation of b relative to a in both frames, and a bound on the coordinates of all
+  /// translations.
   double translation_[2][3];
   double size_{0};
   float least_extents_;

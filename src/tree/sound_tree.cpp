@@ -14,8 +14,8 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Axes that FCL computes from the same numbers differ by a few roundings, of a float at
-/// most 1e-5; such as differ by more come from another computation.
+/// Axes that FCL computes from the same numbers differ by a few roundings: at most 1e-5
+/// in float. Axes that differ by more come from another computation.
 constexpr double kOtherAxes = 0x1p-8;
 
 /// The columns of the matrix are the axes of a box.
@@ -26,16 +26,17 @@ Matrix3<double> axesOf(const OrientedBox& box) {
   return axes;
 }
 
-/// Whether a conversion to a quaternion, in float too, gives that of the rotation.
+/// Whether FCL's conversion to a quaternion, in float too, gives the quaternion of this
+/// rotation.
 bool isRotation(const Matrix3<double>& axes) {
   constexpr double kNearlyOne = 0x1p-16;
   const Matrix3<double> error = axes.transpose() * axes - Matrix3<double>::Identity();
   return error.cwiseAbs().maxCoeff() < kNearlyOne && axes.determinant() > 0;
 }
 
-/// Whether FCL's OBB<S>::operator+() is certain to take merge_smalldist(): the centers
-/// are nearer than twice the sum of the largest extents. The twentieth between 1.9 and 2
-/// is far above what S rounds; no square leaves the range of S.
+/// Whether FCL's OBB<S>::operator+() certainly calls merge_smalldist(): it does if the
+/// distance of the centers is below twice the sum of the largest extents. The margin
+/// between 1.9 and 2 is far above the rounding of S. No square leaves the range of S.
 template <typename S>
 bool areMergedAsNear(const OrientedBox& a, const OrientedBox& b) {
   const double extents = *std::max_element(a.extent, a.extent + 3) +
@@ -47,10 +48,10 @@ bool areMergedAsNear(const OrientedBox& a, const OrientedBox& b) {
          std::sqrt(square) < 1.9 * extents;
 }
 
-/// Whether a box is certainly not the sum that FCL makes of two others: of two near ones
-/// that has the axes of the mean of their quaternions, one of which is negated if their
-/// product is negative. Both signs are tried; the sum of the right two has a square of 2
-/// at least.
+/// Whether a box is certainly not FCL's sum of two others. The sum of two near boxes has
+/// the axes of the mean of their quaternions. FCL negates one of the quaternions if their
+/// product is negative. Both signs are tried. With the right sign, the square of the sum
+/// is at least 2.
 template <typename S>
 bool isNoSum(const OrientedBox& box, const OrientedBox& left, const OrientedBox& right) {
   const Matrix3<double> axes = axesOf(box), of_left = axesOf(left),
@@ -75,8 +76,8 @@ bool isNoSum(const BV& bv, const BV& left, const BV& right) {
                                  orientedBoxOf(right));
 }
 
-/// FCL's RSS<S>::operator+() makes the third axis of a sum from the first two of its left
-/// term.
+/// FCL's RSS<S>::operator+() makes the third axis of a sum from the first two axes of its
+/// left term.
 template <typename S>
 bool isNoSum(const RSS<S>& bv, const RSS<S>& left, const RSS<S>&) {
   const Matrix3<double> axes = bv.axis.template cast<double>(),
@@ -86,8 +87,7 @@ bool isNoSum(const RSS<S>& bv, const RSS<S>& left, const RSS<S>&) {
          (axes.col(2) - normal).cwiseAbs().maxCoeff() > kOtherAxes;
 }
 
-/// Whether there is a node with volumes that were certainly not fitted from the bottom
-/// up.
+/// Whether a node has volumes that were certainly not fitted from the bottom up.
 template <typename BV>
 bool isFittedFromTheTop(const BVHModel<BV>& model) {
   constexpr int kMostNodes = 64, kStride = 7919;
@@ -102,7 +102,7 @@ bool isFittedFromTheTop(const BVHModel<BV>& model) {
   return false;
 }
 
-/// Whether a box that is larger by a margin contains the corners of the triangles below a
+/// Whether a box, enlarged by a margin, contains the corners of the triangles below a
 /// node.
 template <typename BV>
 bool containsCorners(const BVHModel<BV>& model, const OrientedBox& box, double margin,
@@ -124,7 +124,8 @@ bool containsCorners(const BVHModel<BV>& model, const OrientedBox& box, double m
   return true;
 }
 
-/// Whether this can be seen, and is so, of all nodes.
+/// Whether the boxes of all nodes contain the corners below them. False if the tree is
+/// too large to test.
 template <typename BV>
 bool containAllCorners(const BVHModel<BV>& model) {
   constexpr int kMostNodes = 15;  // of eight triangles
@@ -132,11 +133,11 @@ bool containAllCorners(const BVHModel<BV>& model) {
   constexpr double kSlack = kFitSlack<typename BV::S>;
   for (int node = 0; node < model.getNumBVs(); ++node) {
     const OrientedBox box = orientedBoxOf(model.getBV(node).bv);
-    // The sum of these bounds the coordinates of all points of the box. RigidTree adds
-    // eight times as much; the axes' error takes less than half of that.
+    // `size` bounds the coordinates of all points of the box. RigidTree adds eight times
+    // as much. The error of the axes takes less than half of that.
     double size = 0;
     for (int k = 0; k < 3; ++k) size += std::abs(box.center[k]) + box.extent[k];
-    // What is no box is read as unbounded.
+    // RigidTree reads a volume without valid axes as unbounded.
     if (isBox(box, kSlack) && !containsCorners(model, box, kSlack / 8 * size, node))
       return false;
   }

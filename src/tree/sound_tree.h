@@ -10,23 +10,24 @@ class BVHModel;
 namespace detail {
 namespace deformable {
 
-/// @brief Proves that FCL's volumes bound the triangles below them, but for the rounding
-/// that RigidTree adds. False: not proved; nothing can then be said of the tree.
+/// @brief Proves that FCL's volumes bound the triangles below them, up to the rounding
+/// that RigidTree adds. False: not proved, and the tree must not be used.
 ///
-/// FCL fits the volumes of a tree in one of two ways, always all of them. From the top
-/// down (`endModel()`, `endReplaceModel(true, false)`) each is fitted to the vertices
-/// below it: sound for every BV. From the bottom up (`endReplaceModel()`) it is the sum
-/// of its two children: sound for AABBs and KDOPs only, since sums of the others can
-/// leave out what they are sums of. So
+/// FCL fits all volumes of a tree in one of two ways. From the top down (`endModel()`,
+/// `endReplaceModel(true, false)`) each volume is fitted to the vertices below it. This
+/// is sound for every BV. From the bottom up (`endReplaceModel()`) each volume is the sum
+/// of its two children. This is sound for AABBs and KDOPs only: sums of other volumes can
+/// leave out points of their terms. So
 ///
 /// (1) AABBs and KDOPs are sound;
-/// (2) so is a tree in which one volume is certainly not the sum of its children;
-/// (3) so is a small one whose boxes contain the corners of all triangles below them.
+/// (2) a tree is sound if one of its volumes is certainly not the sum of its children;
+/// (3) a small tree is sound if its boxes contain the corners of all triangles below
+/// them.
 ///
-/// Looks at 64 nodes at most, for (2) as a rule at the root alone. Reads the tree as it
-/// is at this moment; nothing is kept.
+/// Reads at most 64 nodes, and for (2) most often the root alone. Reads the tree as it is
+/// now, and keeps nothing.
 ///
-/// @tparam BV  any of FCL's
+/// @tparam BV  any of FCL's bounding volumes
 template <typename BV>
 bool isTreeSound(const BVHModel<BV>& model);
 

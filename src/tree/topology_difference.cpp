@@ -8,10 +8,10 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A vertex that was two, or becomes two.
+/// A vertex that was joined from several, or is split into several.
 constexpr std::uint32_t kSeveral = TopologyDifference::kNone - 1;
 
-/// Notes that x became, or was, y.
+/// Records that x became, or was, y.
 void match(std::uint32_t& x, std::uint32_t y) {
   x = x == TopologyDifference::kNone || x == y ? y : kSeveral;
 }
@@ -30,8 +30,8 @@ TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
   dropTriangles(before, triangles);
 }
 
-/// What comes from the same as one before, or from one of a lower number, is not the
-/// same.
+/// A triangle is not the same if a triangle of a lower number has the same origin, or one
+/// of a higher number.
 void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
                                      std::size_t num_triangles,
                                      const std::vector<int>& origins) {
@@ -52,7 +52,7 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
   }
 }
 
-/// Follows the vertices of the triangles that may be the same.
+/// Matches the vertices of the triangles that may be the same.
 void TopologyDifference::findVertices(const std::vector<TreeTriangle>& before,
                                       const Triangle* triangles) {
   for (std::size_t i = 0; i < is_same_.size(); ++i) {
@@ -67,8 +67,8 @@ void TopologyDifference::findVertices(const std::vector<TreeTriangle>& before,
   }
 }
 
-/// Triangles at vertices that were split or joined are not the same, and no vertex is
-/// around which one is not.
+/// Triangles at vertices that were split or joined are not the same. A vertex is not the
+/// same if one of the triangles around it is not.
 void TopologyDifference::dropTriangles(const std::vector<TreeTriangle>& before,
                                        const Triangle* triangles) {
   for (std::size_t i = 0; i < is_same_.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a moving tree follows a mesh whose triangles are not those of the step before.
+// How a moving tree follows a mesh whose triangles differ from those of the previous
+// step.
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -20,13 +21,13 @@ namespace {
 constexpr std::uint32_t kNone = TopologyDifference::kNone;
 constexpr std::size_t kWidth = MovingKdopNode::kWidth;
 
-/// What a node may have as a child, and four times its center.
+/// A possible child of a node, and four times its center.
 struct Entry {
   float point[3];
   std::int32_t child;
 };
 
-/// Extents of the points of entries that come one by one.
+/// Extents of the points of entries that are added one by one.
 class Extents {
  public:
   float add(const Entry& entry) {
@@ -45,9 +46,9 @@ class Extents {
   float lo_[3]{kInf, kInf, kInf}, hi_[3]{-kInf, -kInf, -kInf};
 };
 
-/// Splits entries along their longest axis where extents times numbers of both parts are
-/// least, and no part is less than a quarter.
-/// @return where the second part begins
+/// Splits entries along their longest axis at the lowest cost: the sum over both parts of
+/// extents times number. No part has less than a quarter of the entries.
+/// @return the begin of the second part
 Entry* splitEntries(Entry* first, Entry* last) {
   Extents all;
   for (const Entry* e = first; e != last; ++e) all.add(*e);
@@ -72,11 +73,11 @@ Entry* splitEntries(Entry* first, Entry* last) {
 
 }  // namespace
 
-/// A structure for new triangles, each hung on the lowest node that it comes from, or
-/// else that it lies next to. It is made from below, as in a B-tree: a node becomes one
-/// new node, or several if it has too many children, which its parent then has. So no
-/// branch becomes longer than others. What has no more triangles than fit into a node
-/// becomes one.
+/// A structure for new triangles. Each triangle hangs on the lowest node that has its
+/// origin, or that is nearest to it. The structure is made from below, as in a B-tree: a
+/// node becomes one new node, or several if it has too many children, and its parent then
+/// has all of them. So no branch becomes longer than others. If all triangles of a node
+/// fit into one node, they become one.
 class MovingKdopTree::TopologyUpdate {
  public:
   TopologyUpdate(const MovingKdopTree& tree, const TopologyDifference& difference,
@@ -96,8 +97,8 @@ class MovingKdopTree::TopologyUpdate {
     root_ = joined(parts_[0]);
   }
 
-  /// In the order of a walk.
-  /// @param first_sizes  of each node; of a new one not yet known
+  /// The structure in the order of a walk.
+  /// @param first_sizes  of each node; not yet known for a new node
   TreeStructure structure(std::size_t num_triangles,
                           std::vector<NodeSize>& first_sizes) const {
     return walk(root_, nodes_, first_sizes_, num_triangles, first_sizes);
@@ -106,7 +107,7 @@ class MovingKdopTree::TopologyUpdate {
  private:
   static constexpr std::int32_t kNoPart = -1;
 
-  /// The triangles that hang on a node itself.
+  /// The triangles that hang on a node, not on nodes below it.
   struct Hung {
     const std::uint32_t *first, *last;
     std::size_t size() const { return static_cast<std::size_t>(last - first); }
@@ -115,13 +116,13 @@ class MovingKdopTree::TopologyUpdate {
     const auto i = static_cast<std::size_t>(node);
     return {hung_.data() + first_[i], hung_.data() + first_[i + 1]};
   }
-  /// How many hang on a node and below.
+  /// Number of triangles that hang on a node or below it.
   std::uint32_t count(std::int32_t node) const {
     return counts_[static_cast<std::size_t>(node)];
   }
 
-  /// Four times the centroid of a triangle relative to the tree's origins, between them,
-  /// where it is when the step begins.
+  /// Four times the centroid of a triangle at t = 0, relative to the point between the
+  /// tree's two origins.
   void pointOf(std::uint32_t triangle, float (&point)[3]) const {
     std::uint32_t ids[3];
     vertexIds(triangles_[triangle], ids);
@@ -135,7 +136,7 @@ class MovingKdopTree::TopologyUpdate {
     for (int k = 0; k < 3; ++k) point[k] = clampedCoordinate(sum[k] * (4. / 3));
   }
 
-  /// The lowest node that a triangle lies next to: down the nearest boxes.
+  /// The lowest node near a triangle, found by going down to the nearest box.
   std::int32_t findNode(std::uint32_t triangle) const {
     float point[3];
     pointOf(triangle, point);
@@ -159,7 +160,8 @@ class MovingKdopTree::TopologyUpdate {
     }
   }
 
-  /// Hangs the triangles on nodes, there in the order of the tree, then by their numbers.
+  /// Hangs the triangles on nodes. On each node they have the order of the tree, then of
+  /// their numbers.
   void hang(const std::vector<std::uint32_t>& origins) {
     const std::size_t num_nodes = tree_.numNodes();
     std::vector<std::int32_t> parents(tree_.triangles_.size());
@@ -197,7 +199,7 @@ class MovingKdopTree::TopologyUpdate {
       std::sort(hung_.begin() + first_[i], hung_.begin() + first_[i + 1], before);
   }
 
-  /// Makes the new node, or nodes, of a node of the tree: its parts.
+  /// Makes the parts of a node of the tree: its new node, or several.
   void copy(std::int32_t i) {
     const MovingKdopNode& node = tree_.node(i);
     entries_.clear();
@@ -228,14 +230,15 @@ class MovingKdopTree::TopologyUpdate {
     part = group(entries_.data(), entries_.data() + entries_.size(), kNoPart, first_size);
   }
 
-  /// Their points are found where they matter.
+  /// Adds the triangles of a node, without their points, which are set where they are
+  /// needed.
   void addTriangles(std::int32_t i) {
     const Hung hung = hungOn(i);
     for (const std::uint32_t* t = hung.first; t != hung.last; ++t)
       entries_.push_back({{}, ~static_cast<std::int32_t>(*t)});
   }
 
-  /// Adds all triangles that hang on a node and below.
+  /// Adds all triangles that hang on a node or below it.
   void gather(std::int32_t root) {
     std::vector<std::int32_t> open{root};
     while (!open.empty()) {
@@ -249,7 +252,7 @@ class MovingKdopTree::TopologyUpdate {
     }
   }
 
-  /// Adds what has become of a child that is a node.
+  /// Adds the parts of a child that is a node.
   void addParts(const MovingKdopNode& node, int lane) {
     const std::int32_t child = node.child[lane];
     if (count(child) <= 1) {
@@ -267,8 +270,8 @@ class MovingKdopTree::TopologyUpdate {
   }
 
   /// Makes nodes of entries.
-  /// @param next  the part that comes after these
-  /// @param first_size  of a node that has all of them
+  /// @param next  the part that follows them
+  /// @param first_size  the size of the node if one node has all entries
   /// @return the first part
   std::int32_t group(Entry* first, Entry* last, std::int32_t next,
                      const NodeSize& first_size) {
@@ -292,7 +295,7 @@ class MovingKdopTree::TopologyUpdate {
     return number;
   }
 
-  /// The root of parts: themselves, if they are one.
+  /// The root of parts: the part itself, if there is only one.
   std::int32_t joined(std::int32_t part) {
     while (next_part_[static_cast<std::size_t>(part)] != kNoPart) {
       entries_.clear();
@@ -313,14 +316,14 @@ class MovingKdopTree::TopologyUpdate {
 
   /// The first part of each node of the tree.
   std::vector<std::int32_t> parts_;
-  /// Of each new node.
+  /// For each new node.
   std::vector<TreeChildren> nodes_;
   std::vector<NodeSize> first_sizes_;
-  /// Itself, with a point if it is one of several parts.
+  /// The node as an entry. It has a point if it is one of several parts.
   std::vector<Entry> entry_of_;
   std::vector<std::int32_t> next_part_;
   std::int32_t root_;
-  /// What the next node, or nodes, will have.
+  /// The children of the next new node, or nodes.
   std::vector<Entry> entries_;
 };
 
@@ -338,8 +341,8 @@ void MovingKdopTree::changeTopology(const Triangle* triangles, std::size_t num_t
   become(std::move(next), structure);
 }
 
-/// Takes over the fans and owners that are the same, and finds the others among the
-/// triangles around.
+/// Takes over the fans and owners that are the same. Finds the others among the triangles
+/// around them.
 void MovingKdopTree::inherit(const MovingKdopTree& before,
                              const TopologyDifference& difference, int num_threads) {
   const std::size_t num_places = vertex_ids_.size();
@@ -371,7 +374,7 @@ void MovingKdopTree::inherit(const MovingKdopTree& before,
   assignOwners(corners, num_threads, changed);
   for (std::size_t i = 0; i < places.size(); ++i) {
     TreeTriangle& t = triangles_[places[i]];
-    unsigned found = 0;  // vertices that are not the same, a bit each
+    unsigned found = 0;  // a bit for each vertex that is not the same
     for (unsigned k = 0; k < 3; ++k)
       found |= unsigned{old_places[t.place[k]] == kNone} << k;
     // Features that have only such vertices may have another owner.

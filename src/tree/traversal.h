@@ -19,20 +19,21 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Work still to be done: child `lane` of node `parent` of one tree against all
-/// children of node `node` of the other; or, with lane < 0, a node with itself.
+/// @brief A piece of work: child `lane` of node `parent` of one tree against all children
+/// of node `node` of the other tree. With lane < 0: a node with itself.
 struct NodePair {
   std::int32_t parent;
   std::int32_t node;
   std::int16_t lane;
-  /// The child is tree b's and the node tree a's.
+  /// The child is in tree b and the node in tree a.
   bool swapped;
-  /// Before this time they do not overlap.
+  /// The boxes do not overlap before this time.
   float earliest;
 };
 
-/// @brief Work in the order in which it was added. Entries are written where they lie: a
-/// processor waits for what was stored in parts and is loaded as a whole.
+/// @brief Pieces of work in the order in which they were added. Members are written
+/// directly into the list: a processor has to wait when it loads a struct as a whole just
+/// after it was stored in parts.
 class WorkList {
  public:
   std::size_t size() const { return size_; }
@@ -52,7 +53,7 @@ class WorkList {
     work.swapped = swapped;
     work.earliest = earliest;
   }
-  /// @brief Forgets all but the first so many.
+  /// @brief Keeps the first `size` pieces only.
   void cut(std::size_t size) {
     assert(size <= size_);
     size_ = size;
@@ -63,35 +64,37 @@ class WorkList {
   std::size_t size_{0};
 };
 
-/// @brief Size of a child, by which the larger of two is opened: the extents along the
-/// axes at t = 0.
+/// @brief Size of a child: the sum of its extents along x, y and z at t = 0. The larger
+/// of two children is opened.
 inline float extentOf(const MovingKdopNode& node, int lane) {
   float sum = node.t0[0][lane];
   for (int r = 1; r < 6; ++r) sum += node.t0[r][lane];
   return sum;
 }
 
-/// @brief What a traversal of a tree with itself leaves out; null: nothing.
+/// @brief The pairs that a traversal of a tree with itself leaves out. Null: none.
 struct SelfCulling {
-  /// For each vertex of the tree, whether its fan is embedded (findEmbeddedFans()): pairs
-  /// of triangles in one.
+  /// For each vertex of the tree, whether its fan is embedded (findEmbeddedFans()). Pairs
+  /// of triangles in one such fan are left out.
   const std::uint8_t* fans{nullptr};
-  /// For each node, the vertex in whose embedded fan it lies (findNodesInFans()): pairs
-  /// below two nodes in the same one.
+  /// For each node, the vertex whose embedded fan contains it (findNodesInFans()). Pairs
+  /// below two nodes in the same fan are left out.
   const std::uint32_t* nodes_in_fans{nullptr};
-  /// For each node, whether it is a region (EmbeddedRegions::nodes): pairs below it.
+  /// For each node, whether it is an embedded region (EmbeddedRegions::nodes). Pairs
+  /// below it are left out.
   const std::uint8_t* regions{nullptr};
 };
 
 /// @brief Visits every pair of triangles whose boxes overlap at some time.
 ///
 /// @tparam TreeA, TreeB  const MovingKdopTree or RigidTreeReader
-/// @tparam kSelf  tree_b is tree_a: each unordered pair of different triangles once
+/// @tparam kSelf  tree_b is tree_a, and each unordered pair of different triangles is
+/// visited once
 template <bool kSelf, typename TreeA, typename TreeB>
 class Traversal {
  public:
   /// @param shift  between the two trees' origins and translations; null for kSelf
-  /// @param axes  two rigid trees: leaves out more pairs of nodes; null: none
+  /// @param axes  for two rigid trees: leaves out more pairs of nodes; null: not used
   /// @param timed  as in OverlapRequest
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
             const SelfCulling& culling, const SeparatingAxes* axes,
@@ -104,7 +107,7 @@ class Traversal {
         request_{timed} {
     assert(kSelf == !shift);
     if (!shift) return;
-    // What is added to a box of tree b is the same with the half-axes exchanged.
+    // The shift of a box of tree b is the same, with opposite half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
       const int j = MovingKdopNode::halfAxis(r);
       shift_[0][0][r] = shift_[1][0][r ^ 1] = shift->t0.half[j];
@@ -112,7 +115,7 @@ class Traversal {
     }
   }
 
-  /// @brief The whole of both trees, as the first work.
+  /// @brief Adds the first work: the whole of both trees.
   void start(WorkList& open) {
     if (kSelf)
       addSelf(0, open);
@@ -121,9 +124,9 @@ class Traversal {
         open.add(0, lane, 0, false, 0.f);
   }
 
-  /// @brief Does one piece of work: visit(triangle_a, triangle_b, earliest) for each pair
-  /// of triangles, and what remains to be done is put on `open`.
-  /// @param work  may lie in `open`, behind its end
+  /// @brief Does one piece of work: calls visit(triangle_a, triangle_b, earliest) for
+  /// each pair of triangles, and adds the remaining work to `open`.
+  /// @param work  may be in `open`, behind its end
   template <typename Visit>
   void step(const NodePair& work, WorkList& open, Visit&& visit) {
     const std::int32_t parent = work.parent, node = work.node;
@@ -138,16 +141,16 @@ class Traversal {
                      kAllLanes, open, visit);
   }
 
-  /// @brief From here on boxes that do not meet until `latest` may be left out.
-  /// @param pose_displacement  MeshInstance::poseDisplacement() of both
+  /// @brief After this call, boxes that do not meet until `latest` may be left out.
+  /// @param pose_displacement  the sum of MeshInstance::poseDisplacement() of both meshes
   void leaveOutAfter(double latest, double pose_displacement) {
     request_.leaveOutAfter(latest, pose_displacement);
   }
 
-  /// @brief A step visits at most so many pairs. Those of two nodes have as many as these
-  /// have lanes; more are found where a node is opened with itself: each two of its
-  /// triangles, and each of them with those of every child that has only triangles, 134
-  /// if four of its children are triangles.
+  /// @brief The largest number of pairs that a step visits. Two nodes have at most one
+  /// pair for each two lanes. A node with itself has more: each two of its triangles, and
+  /// each of them with those of every child that has only triangles. These are 134 if
+  /// four of its children are triangles.
   static constexpr std::size_t maxPairs() {
     constexpr std::size_t kWidth = MovingKdopNode::kWidth;
     std::size_t most = kWidth * kWidth;
@@ -156,10 +159,10 @@ class Traversal {
     return most;
   }
 
-  /// @brief Number of boxes that were compared.
+  /// @brief Number of boxes that have been compared.
   std::uint64_t compared() const { return pairs_.compared; }
 
-  /// @brief Pairs of triangles that overlap and lie in an embedded fan.
+  /// @brief Number of triangle pairs whose boxes overlap and that lie in an embedded fan.
   std::uint64_t fanCulled() const { return pairs_.fan_culled; }
 
   void clearCounts() { pairs_.compared = pairs_.fan_culled = 0; }
@@ -167,13 +170,13 @@ class Traversal {
  private:
   static constexpr unsigned kAllLanes = (1U << MovingKdopNode::kWidth) - 1;
 
-  /// A node with itself.
+  /// Adds a node with itself.
   void addSelf(std::int32_t i, WorkList& open) const {
     if (culling_.regions && culling_.regions[i]) return;
     if (!areInFan(i, i)) open.add(0, -1, i, false, 0.f);
   }
 
-  /// Two nodes in the same fan.
+  /// Whether two nodes lie in the same fan.
   bool areInFan(std::int32_t i, std::int32_t j) const {
     const std::uint32_t* centers = culling_.nodes_in_fans;
     return kSelf && centers && centers[i] != MovingKdopNode::kNoPlace &&
@@ -182,8 +185,8 @@ class Traversal {
 
   template <typename Visit>
   void openSelf(std::int32_t i, WorkList& open, Visit& visit) {
-    // A node of a reader is valid until another is asked for, which compare() does: there
-    // it is asked for anew, and as both trees' node.
+    // A reader's node is valid until the next call of node(), and compare() makes such
+    // calls. So it is asked for again after compare(), also as the node of both trees.
     const unsigned lanes = tree_a_.node(i).lanes(), triangles = tree_a_.node(i).triangles;
     if (triangles)
       visitTriangles<false>(tree_a_.node(i), triangles, tree_a_.node(i), visit);
@@ -198,8 +201,8 @@ class Traversal {
     }
   }
 
-  /// Child `lane` of `parent`, node number i, against the children `lanes` of `node`,
-  /// number j.
+  /// Compares child `lane` of `parent`, node number i, with the children `lanes` of
+  /// `node`, number j.
   template <bool kSwapped, typename Visit>
   void compare(const MovingKdopNode& parent, std::int32_t i, int lane,
                const MovingKdopNode& node, std::int32_t j, unsigned lanes, WorkList& open,
@@ -225,7 +228,7 @@ class Traversal {
     float earliest[MovingKdopNode::kWidth];
     unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;
     if (left == 0) return;
-    // The parent is not looked at again: its child may take its place.
+    // `parent` is not used after this, so a reader may replace it by its child.
     const std::int32_t mine = parent.child[lane];
     const float size = is_triangle ? 0.f : extentOf(parent, lane);
     if (!is_triangle && (left & triangles)) {
@@ -251,8 +254,8 @@ class Traversal {
     }
   }
 
-  /// Triangles `lanes` of a node of tree a (kSwapped: b) against those of a node of the
-  /// other tree, or of the same node.
+  /// Compares the triangles `lanes` of a node of tree a (kSwapped: b) with those of a
+  /// node of the other tree, or of the same node.
   template <bool kSwapped, typename Visit>
   void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
                       const MovingKdopNode& theirs, Visit& visit) {

@@ -14,7 +14,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Where most of a mesh is: the median of a few vertices' coordinates.
+/// A point near most of the mesh: the median of the coordinates of a few vertices.
 void findMiddle(const Triangle* triangles, std::size_t num_triangles,
                 const VertexFrames& frames, double (&middle)[3]) {
   constexpr std::size_t kSample = 31;
@@ -32,7 +32,8 @@ void findMiddle(const Triangle* triangles, std::size_t num_triangles,
   }
 }
 
-/// Centroids relative to the middle, so that far from the origin nothing is lost.
+/// Three times the centroids, relative to the middle, so that no digits are lost far from
+/// the origin.
 UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
                                       std::size_t num_triangles,
                                       const VertexFrames& frames, int num_threads) {
@@ -64,7 +65,7 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
   return items;
 }
 
-/// Of each triangle, by a vertex.
+/// The component of each triangle, named by a vertex.
 std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
                                         std::size_t num_triangles,
                                         std::size_t num_vertices) {
@@ -84,7 +85,7 @@ std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
 
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads) {
-  // A task: so many triangles at most.
+  // The largest number of triangles in a task.
   constexpr std::size_t kMaxTask = 8192;
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
   TreeStructure tree;
@@ -107,7 +108,7 @@ TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangle
     splitRange(splitter, root, 0, kWidth, subtrees[i], tree.leaves);
   });
 
-  // The nodes of a subtree below its root go where the walk comes to it.
+  // The nodes below the root of a subtree get the numbers at which the walk reaches it.
   std::size_t num_nodes = top.size() - roots.size();
   for (const std::vector<TreeChildren>& subtree : subtrees) num_nodes += subtree.size();
   tree.nodes.resize(num_nodes);

@@ -13,7 +13,7 @@ namespace detail {
 namespace deformable {
 
 /// @brief Splits the triangles into a tree by their centroids in frame 0, as splitItems()
-/// does, their components into groups.
+/// does. The components are its groups.
 /// @param num_threads  as in parallelFor(); the tree does not depend on it
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads);

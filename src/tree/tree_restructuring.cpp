@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which parts of a moving tree have aged, and how they are made anew.
+// Which parts of a moving tree have aged, and how they are rebuilt.
 #include <algorithm>
 #include <cstddef>
 #include <limits>
@@ -16,20 +16,21 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A tree has aged when its nodes' boxes are together so much larger than expected. The
-/// boxes that a query compares then grow in number by about as much, the time of the
-/// query by half of it. Waves and folds stay below 1.03, any rotation below 1.1.
+/// A tree has aged if its nodes' boxes together are so many times as large as expected.
+/// The number of boxes that a query compares then grows by about the same factor, and the
+/// time of the query by half of that. Waves and folds stay below 1.03, any rotation below
+/// 1.1.
 constexpr double kAgedTree = 1.3;
 
-/// What makes an aged tree a good one again are the nodes with more than this. With 1.1
-/// or 1.2 the trees of the measured sequences are worse by up to 3%.
+/// Nodes that have grown by more than this are rebuilt. With 1.1 or 1.2 the trees of the
+/// measured sequences are worse by up to 3%.
 constexpr float kAgedNode = 1.15f;
 
 }  // namespace
 
-/// A structure in which the aged parts are new. A part is what lies below those children
-/// of a node that have aged. It is split anew from its lowest nodes, and from single
-/// triangles where these have aged too.
+/// A structure in which the aged parts are new. A part is everything below the aged
+/// children of one node. It is split anew from its lowest nodes, and from single
+/// triangles where the lowest nodes have aged too.
 class MovingKdopTree::Restructuring {
  public:
   explicit Restructuring(const MovingKdopTree& tree)
@@ -48,8 +49,8 @@ class MovingKdopTree::Restructuring {
     }
   }
 
-  /// In the order of a walk; leaves are triangles of the tree.
-  /// @param first_sizes  of each node; of a new one not yet known
+  /// The structure in the order of a walk. Its leaves are triangles of the tree.
+  /// @param first_sizes  of each node; not yet known for a new node
   TreeStructure structure(std::vector<NodeSize>& first_sizes) const {
     return walk(0, nodes_, first_sizes_, tree_.triangles_.size(), first_sizes);
   }
@@ -72,7 +73,7 @@ class MovingKdopTree::Restructuring {
                        [](std::int32_t child) { return child < 0; });
   }
 
-  /// That of the first triangle of a child.
+  /// The component of the first triangle of a child.
   std::uint32_t componentOf(std::int32_t child) const {
     const std::uint32_t first =
         child < 0 ? static_cast<std::uint32_t>(~child) : tree_.firstTriangle(child);
@@ -84,7 +85,7 @@ class MovingKdopTree::Restructuring {
     first_sizes_.push_back(first_size);
     return nodes_.size() - 1;
   }
-  /// A child in the tree as one of the new structure.
+  /// The number in the new structure of a child in the tree.
   std::int32_t take(std::int32_t child, int depth) {
     if (child < 0) return child;
     const std::size_t to = add(tree_.first_sizes_[static_cast<std::size_t>(child)]);
@@ -119,7 +120,7 @@ class MovingKdopTree::Restructuring {
     }
   }
 
-  /// Makes items of what is below a node.
+  /// Makes items of the lowest nodes and triangles below a node.
   void dissolve(std::int32_t root) {
     std::vector<std::int32_t> open{root};
     while (!open.empty()) {
@@ -139,13 +140,13 @@ class MovingKdopTree::Restructuring {
     }
   }
 
-  /// Appends the items to a node, in so many parts.
+  /// Appends the items to a node, in at most `max_parts` parts.
   void split(std::size_t to, std::size_t max_parts, int depth) {
     std::vector<std::uint32_t> components(names_.size());
     std::transform(names_.begin(), names_.end(), components.begin(),
                    [this](std::int32_t name) { return componentOf(name); });
-    // Numbered one after the other: the mesh may have far more of them than there are
-    // here.
+    // Components are numbered from 0: the mesh may have far more components than these
+    // items.
     std::vector<std::uint32_t> numbers = components;
     std::sort(numbers.begin(), numbers.end());
     numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
@@ -174,20 +175,20 @@ class MovingKdopTree::Restructuring {
   }
 
   const MovingKdopTree& tree_;
-  /// By the place of a vertex.
+  /// The component of each vertex, by its place.
   std::vector<std::uint32_t> component_of_;
   std::vector<TreeChildren> nodes_;
   std::vector<NodeSize> first_sizes_;
-  /// What is still to be copied.
+  /// Nodes that are still to be copied.
   std::vector<CopiedNode> open_;
-  /// What aged children are dissolved into, and what this is in the tree.
+  /// The items of the aged children, and the child of the tree that each item stands for.
   UninitializedVector<TreeItem> items_;
   std::vector<std::int32_t> names_;
 };
 
-/// The nodes that are met in a walk from one, in its order.
+/// The structure of the nodes below a root, in the order of a walk.
 /// @param sizes  of each node when it was made
-/// @param first_sizes  the same in the order of the walk
+/// @param first_sizes  the same, in the order of the walk
 TreeStructure MovingKdopTree::walk(std::int32_t root,
                                    const std::vector<TreeChildren>& nodes,
                                    const std::vector<NodeSize>& sizes,
@@ -222,7 +223,7 @@ bool MovingKdopTree::restructure() {
   }
 }
 
-/// Memory is taken before anything changes.
+/// Takes over a structure. Memory is allocated before anything changes.
 void MovingKdopTree::adopt(const Restructuring& restructuring) {
   MovingKdopTree next;
   const TreeStructure structure = restructuring.structure(next.first_sizes_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A tree before it has boxes, and what it is made from.
+// A tree without boxes, and the items that it is made from.
 #ifndef FCL_CCD_TREE_TREE_STRUCTURE_H
 #define FCL_CCD_TREE_TREE_STRUCTURE_H
 
@@ -23,9 +23,9 @@ struct TreeChildren {
   std::int32_t count;
 };
 
-/// @brief A tree without boxes. Nodes and leaves lie in the order of a walk from the
-/// root, node 0: the nodes of a node's children follow each other, its leaves come before
-/// those of its children.
+/// @brief A tree without boxes. Nodes and leaves are numbered in the order of a walk from
+/// the root, node 0. The nodes among a node's children follow each other. The leaves
+/// among them come before the leaves of its child nodes.
 struct TreeStructure {
   UninitializedVector<TreeChildren> nodes;
   /// The user's number of each leaf's triangle.
@@ -33,8 +33,8 @@ struct TreeStructure {
 };
 
 /// @brief Numbers the nodes and leaves of a tree in the order of a walk from node 0.
-/// @param children  children(node, number): the children, by their old numbers, of a node
-/// that gets this number
+/// @param children  children(node, number) returns the children, by their old numbers, of
+/// the node that gets this number
 template <typename Children>
 TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
   struct Numbered {
@@ -50,7 +50,7 @@ TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
     open.pop_back();
     TreeChildren node = children(o.node, o.number);
     assert(node.count > 0 && node.count <= MovingKdopNode::kWidth);
-    // The first child is the first to go on with.
+    // The first child is the next one to be visited.
     const std::size_t num_open = open.size();
     for (int i = 0; i < node.count; ++i) {
       std::int32_t& child = node.child[i];
@@ -69,15 +69,15 @@ TreeStructure inWalkOrder(std::size_t num_leaves, Children&& children) {
   return tree;
 }
 
-/// @brief What is put into a tree: a name and a point. Of the point as a vector of four
-/// numbers the last one means nothing.
+/// @brief An item of a tree: an index and a point. Seen as a vector of four numbers, only
+/// the first three are the point.
 struct alignas(16) TreeItem {
   float point[3];
   std::uint32_t index;
 };
 
-/// @brief A coordinate from which widths, sums and products of a few can be taken without
-/// overflow; what is no number lies in the middle.
+/// @brief A coordinate whose widths, sums, and products of a few cannot overflow. NaN
+/// becomes 0, in the middle.
 inline float clampedCoordinate(double coordinate) {
   constexpr double kFarthest = 1e37;
   return coordinate == coordinate
