@@ -15,21 +15,22 @@ namespace deformable {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// More than all underflows in one of the numbers below.
+/// More than the sum of all underflows in one of the numbers below.
 constexpr double kUnderflow = 0x1p-1060;
 
-/// What underflows is far below error bounds relative to such a size.
+/// In this range underflows are far below error bounds relative to the size.
 bool isInAccurateRange(double size) { return size > 0x1p-600 && size < 0x1p600; }
 
 using Vector = AccurateVector;
 
 Vec rounded(const Vector& a) { return {a[0].hi, a[1].hi, a[2].hi}; }
 
-// A step of a blossom: rounded three times (weight, products, sum), relative to p and q.
+// One step of a blossom. It is rounded three times (weight, products, sum), relative to p
+// and q.
 double mean(double t, double p, double q) { return (1 - t) * p + t * q; }
 Vec mean(double t, const Vec& p, const Vec& q) { return (1 - t) * p + t * q; }
 
-/// Two steps, 6 units, after one for the rounding of the coefficients.
+/// Two steps of a blossom are 6 units, and the rounding of the coefficients is one more.
 MovingCross restrict(const MovingCross& f, double lo, double hi) {
   const Vec mid = 0.5 * f.c1;
   const Vec lo_0 = mean(lo, f.c0, mid), lo_1 = mean(lo, mid, f.c2);
@@ -54,7 +55,8 @@ void AccurateDifference::at(const DoubleDouble& t, Vector& out) const {
   for (int k = 0; k < 3; ++k) out[k] = rest * t0[k] + t * t1[k];
 }
 
-/// A cross product before and after it is rounded to doubles; the error is that before.
+/// A cross product before and after it is rounded to doubles. The error is that before
+/// the rounding.
 struct AccuratePair::Cross {
   Vector c0, c1, c2;
   MovingCross rounded;
@@ -74,10 +76,10 @@ struct AccuratePair::Cross {
     r.c1 = deformable::rounded(c1);
     r.c2 = deformable::rounded(c2);
     r.size = std::max(std::max(maxNorm(r.c0), 0.5 * maxNorm(r.c1)), maxNorm(r.c2));
-    // A component has two products of size AB (c1 four, and counts by its half), which
-    // are exact for plain doubles: of vectors that are parallel but for rounding, whose
-    // products cancel, all digits are right. Then there are sums, of size largest or, in
-    // half of c1, twice that.
+    // A component has two products of size AB. (c1 has four, and counts by its half.)
+    // Products of plain doubles are exact. So if two vectors are parallel except for
+    // rounding and their products cancel, all digits of the rest are right. Then there
+    // are sums, of size `largest` or, in half of c1, twice that.
     const double norm = a.norm * b.norm;
     const double product_error =
         a.is_double && b.is_double ? 0 : 2 * kProductBound * norm;
@@ -88,8 +90,8 @@ struct AccuratePair::Cross {
 };
 
 // N is the size of n, E its error. A coefficient of the volume is u0.n0 or u1.n0 + u0.n1,
-// where n1 counts twice: the errors of n, 9 UE; products, 9 UN; sums of 2, 3, 4, 6 and 9
-// UN: (9 * 2 + 24) 2^-104 UN < 2^-98 UN.
+// where n1 counts twice. It has the errors of n, 9 UE; products, 9 UN; sums of 2, 3, 4, 6
+// and 9 UN: (9 * 2 + 24) 2^-104 UN < 2^-98 UN.
 AccuratePair::AccuratePair(ContinuousContactKind kind, const FeaturePoints& x)
     : table_(pairTable(kind)), x_(x) {
   u_ = difference(kU);
@@ -123,8 +125,8 @@ bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) c
   assert(0 <= lo && lo <= hi && hi <= 1);
   const double v[4] = {volume_[0].hi, volume_[1].hi / 3, volume_[2].hi / 3,
                        volume_[3].hi};
-  // Three steps, 9 units, after two for the rounding of the coefficients and with two for
-  // factors of 3 to come.
+  // Three steps of a blossom are 9 units. The rounding of the coefficients is two more,
+  // and later factors of 3 are another two.
   error = volume_error_ + 16 * kUnit * volume_size_;
   const auto blossom = [&](double r, double s, double t) {
     const double c[3] = {mean(r, v[0], v[1]), mean(r, v[1], v[2]), mean(r, v[2], v[3])};
@@ -171,9 +173,9 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
   if (!volume(lo, hi, b, error)) return unsure;
   if (!((b[0] > error && b[3] < -error) || (b[0] < -error && b[3] > error)))
     return unsure;
-  // The volume's derivative has three times the differences of the coefficients: all of
-  // one sign, there is one root, and they bound the slope. Half a unit of error for the
-  // rounding of a difference.
+  // The Bernstein coefficients of the volume's derivative are three times the differences
+  // of the coefficients. If all differences have one sign, there is one root, and they
+  // bound the slope. Half a unit of error covers the rounding of a difference.
   const double sign = b[3] > b[0] ? 1 : -1, width = hi - lo;
   const double least = std::min(std::min(sign * (b[1] - b[0]), sign * (b[2] - b[1])),
                                 sign * (b[3] - b[2])) -
@@ -198,21 +200,22 @@ AccuratePair::RootContact AccuratePair::contactAtRoot(double lo, double hi) cons
     value = volumeAt(t);
   }
   if (!(t.hi > lo && t.hi < hi)) return unsure;
-  // Each of the four terms, whose weights sum up to less than 1, is rounded at most 12
+  // The weights of the four terms sum up to less than 1. Each term is rounded at most 12
   // times by 2^-103 of its size.
   const double value_error = volume_error_ + 0x1p-97 * volume_size_;
   const double t_error = (std::abs(value.hi) + value_error) / slope;
-  // t.lo and the rounding of the bracket itself: a unit each.
+  // One unit for t.lo, and one for the rounding of the bracket.
   const double margin =
       2 * t_error + 4 * kUnit * t.hi + std::numeric_limits<double>::min();
   return {touchAt(t, t_error), std::max(lo, t.hi - margin), std::min(hi, t.hi + margin)};
 }
 
 Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
-  // A difference at t: weight, product and sum, less than 4 products' errors together;
-  // and it moves by less than 2 norms in the step. A component of a cross product: four
-  // factors with such errors, their squares, 3 products' errors of its own. What
-  // underflows in a difference is multiplied by the other factor.
+  // The error of a difference at t: weight, product and sum, together less than 4
+  // products' errors. The difference also moves by less than 2 norms in the step. A
+  // component of a cross product has four factors with such errors, their squares, and 3
+  // products' errors of its own. An underflow in a difference is multiplied by the other
+  // factor.
   const double difference_error = 4 * kProductBound + 2 * t_error;
   if (!(difference_error < 0x1p-10)) return Answer::kUnsure;
   const auto crossError = [difference_error](double a_norm, double b_norm) {
@@ -232,8 +235,8 @@ Answer AccuratePair::touchAt(const DoubleDouble& t, double t_error) const {
     cross(a, b, c);
     const Vec q = rounded(c);
     const double q_size = maxNorm(q), q_error = crossError(x.norm, y.norm);
-    // Three products of factors with errors; three units for rounding each factor and the
-    // product, and sums of size 2 and 3: 14 units.
+    // Three products of factors with errors. Three units for the rounding of each factor
+    // and of the product, and sums of size 2 and 3: 14 units.
     const double bound = 3 * (q_size * n_error + q_error * (n_size + n_error)) +
                          16 * kUnit * (q_size * n_size) + kUnderflow;
     const double value = deformable::dot(q, n);

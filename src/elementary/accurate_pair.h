@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The second precision of solveCoplanarity(), for features that lie nearly in one plane
-// or along one line: to doubles their volume, or the normal of their plane, is mere
-// rounding.
+// The second precision of solveCoplanarity(): double-double. It is for features that lie
+// nearly in one plane or along one line. In doubles their volume, or the normal of their
+// plane, is rounding only.
 #ifndef FCL_CCD_ELEMENTARY_ACCURATE_PAIR_H
 #define FCL_CCD_ELEMENTARY_ACCURATE_PAIR_H
 
@@ -21,32 +21,34 @@ namespace deformable {
 struct AccurateDifference {
   DoubleDouble t0[3], t1[3];
   double norm{0};
-  bool is_double{true};  // all lo are 0
+  bool is_double{true};  // whether all lo are 0
 
   AccurateDifference() = default;
   AccurateDifference(const VertexPath& p, const VertexPath& q);
   void at(const DoubleDouble& t, DoubleDouble (&out)[3]) const;
 };
 
-/// @brief Volume and cross products of a pair, named as in solveCoplanarity(): computed
-/// for the whole step in twice the digits of a double, rounded, and restricted to parts
-/// of the step in doubles.
+/// @brief Volume and cross products of a pair, with the names of solveCoplanarity(). They
+/// are computed in double-double for the whole step, rounded, and restricted to parts of
+/// the step in doubles.
 class AccuratePair {
  public:
   AccuratePair(ContinuousContactKind kind, const FeaturePoints& x);
 
   /// @brief Bernstein coefficients of the volume u . (v x w) over [lo, hi], and a bound
-  /// on their error; false where the coordinates leave the range in which there is one.
+  /// on their error. False: the coordinates are outside of the range in which there is a
+  /// bound.
   bool volume(double lo, double hi, double (&b)[4], double& error) const;
 
-  /// @brief Whether all these coefficients have one sign beyond doubt; over the whole
-  /// step they are not even rounded.
+  /// @brief Whether all these coefficients certainly have one sign. For the whole step
+  /// the coefficients are not even rounded.
   bool hasNoRoot(double lo, double hi) const;
 
-  /// @brief v x w over [lo, hi]; its error is infinite where there is no bound.
+  /// @brief v x w over [lo, hi]. Its error is infinite if there is no bound.
   MovingCross normal(double lo, double hi) const;
 
-  /// @brief The cross product of inside condition i, likewise; made at the first call.
+  /// @brief The cross product of inside condition i over [lo, hi], also with its error.
+  /// The first call computes it.
   MovingCross side(int i, double lo, double hi);
 
   /// Whether the features touch at a root of the volume, and a bracket of that root.
@@ -55,10 +57,12 @@ class AccuratePair {
     double lo, hi;
   };
 
-  /// @brief What happens at the only root of the volume in (lo, hi), which is found in
-  /// twice the digits too: edges that are parallel but for rounding touch while they are
-  /// in one line, for less time than doubles can tell.
-  /// @return kUnsure if there may be no root or several, or nearly a contact.
+  /// @brief Decides whether the features touch at the only root of the volume in (lo,
+  /// hi). The root is found in double-double, too. Two edges that are parallel except for
+  /// rounding touch while they are in one line, for a shorter time than doubles can
+  /// resolve.
+  /// @return kUnsure if there may be no root or several roots, or if the features nearly
+  /// touch
   RootContact contactAtRoot(double lo, double hi) const;
 
  private:
@@ -80,7 +84,7 @@ class AccuratePair {
   AccurateDifference u_, v_, w_;
   DoubleDouble volume_[4];  // Bernstein coefficients, the inner ones times 3
   double volume_size_{0};
-  double volume_error_;  // infinite where there is no bound
+  double volume_error_;  // infinite if there is no bound
   MovingCross normal_;
   std::optional<MovingCross> side_[4];
 };

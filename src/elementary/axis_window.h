@@ -30,15 +30,15 @@ struct AxisRanges {
   }
 };
 
-/// Windows are widened by this much, far more than their rounding (3 * 2^-53): a contact
-/// at the very start of a window would leave the solver no room to see the sign before
-/// it.
+/// Windows are widened by this much, which is far more than their rounding (3 * 2^-53).
+/// Without it a contact at the very start of a window would leave the solver no room to
+/// see the sign before the contact.
 constexpr double kWindowMargin = 0x1p-18;
 
-/// @brief Narrows [lo, hi] to the times at which two features' ranges, interpolated
-/// between the frames, overlap along x, y and z (they contain the features, whose paths
-/// are straight). Never cuts a time of contact: a difference of doubles has the right
-/// sign.
+/// @brief Narrows [lo, hi] to the times at which the ranges of two features overlap along
+/// x, y and z. The ranges are interpolated between the frames; they contain the features,
+/// since paths are straight. Never cuts off a time of contact: a difference of doubles
+/// has the right sign.
 /// @return false if nothing is left: the features never touch in [lo, hi].
 inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
                          double& hi) {
@@ -56,7 +56,7 @@ inline bool narrowWindow(const AxisRanges& a, const AxisRanges& b, double& lo,
   if (!cut) return true;
   for (const FramePair& s : depth) {
     const double change = s[0] - s[1];
-    if (!(std::abs(change) <= DBL_MAX)) continue;  // the quotient would mean nothing
+    if (!(std::abs(change) <= DBL_MAX)) continue;  // overflow: no quotient
     if (s[0] < 0) {
       const double enter = s[0] / change - kWindowMargin;
       if (enter > lo) lo = enter;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The filter before the root solve. After Tang, Manocha, Tong 2010, section 3.3; there,
-// signs of coefficients are taken as they come.
+// The filter before the root solve, after Tang, Manocha, Tong 2010, section 3.3. The
+// paper uses the signs of coefficients without regard to rounding.
 #include "elementary/coplanarity_filter.h"
 
 #include <cstdint>
@@ -61,10 +61,9 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
           __builtin_shufflevector(b, c, 0, 3)};
 }
 
-/// coplanarityInDoubles(), as this file can inline it. Both frames are computed side by
-/// side: the coefficients of the volume u . (v x w) go over into each other when time is
-/// reversed. coplanarityOfFeatures() in kernels/ has the same operations, over eight
-/// pairs.
+/// coplanarityInDoubles() in a form that this file can inline. Both frames are computed
+/// side by side: reversed time turns the coefficients of the volume u . (v x w) into each
+/// other. coplanarityOfFeatures() in kernels/ has the same operations for eight pairs.
 Coplanarity inDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                       double window_lo, double window_hi) {
   const PairTable& table = pairTable(kind);
@@ -81,8 +80,8 @@ Coplanarity inDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                                  half.z + swapped(half.z)};
   const FramePair outer = dot(u, n), inner = dot(swapped(u), n) + dot(u, middle);
 
-  // A coordinate that is NaN makes both inner ones NaN, and a comparison with a NaN picks
-  // what is on the right here: least and most are NaN then, and nothing is proved.
+  // A NaN coordinate makes both inner coefficients NaN. A comparison with NaN selects the
+  // right operand here, so that least and most are NaN, and nothing is proved.
   const FramePair scaled = kInnerScale * inner;
   const double least = smaller(outer < scaled ? outer : scaled),
                most = larger(outer > scaled ? outer : scaled);
@@ -100,7 +99,7 @@ Coplanarity coplanarityInDoubles(ContinuousContactKind kind, const FeaturePoints
   return inDoubles(kind, x, window_lo, window_hi);
 }
 
-// Not inlined, to stay out of the way of the filter in doubles.
+// Not inlined, so that it does not slow down the filter in doubles.
 __attribute__((noinline)) bool mayBecomeCoplanarAccurately(ContinuousContactKind kind,
                                                            const FeaturePoints& x,
                                                            double window_lo,

@@ -15,7 +15,7 @@ namespace deformable {
 enum class Coplanarity {
   kNever,
   kPossible,
-  kUnclear  ///< the signs say never, but may be mere rounding
+  kUnclear  ///< the signs say never, but may be rounding only
 };
 
 /// @brief The coplanarity filter over [window_lo, window_hi] in doubles. kNever proves
@@ -25,12 +25,12 @@ enum class Coplanarity {
 Coplanarity coplanarityInDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                                  double window_lo, double window_hi);
 
-/// @brief The same question in twice the digits, for pairs that are kUnclear: false is a
-/// proof as kNever is.
+/// @brief The same question in double-double, for pairs that are kUnclear. False is a
+/// proof, as kNever is.
 bool mayBecomeCoplanarAccurately(ContinuousContactKind kind, const FeaturePoints& x,
                                  double window_lo, double window_hi);
 
-/// @brief The whole filter: in doubles, and again where they leave it unclear.
+/// @brief The whole filter: in doubles, and in double-double if doubles are unclear.
 bool mayBecomeCoplanar(ContinuousContactKind kind, const FeaturePoints& x,
                        double window_lo, double window_hi);
 

@@ -63,20 +63,20 @@ MovingCross cross(const Segment& a, const Segment& b) {
 /// by u, v, w: Bernstein coefficients, the inner ones times 3.
 struct Cubic {
   double b[4];
-  // Error bounds of the outer and inner coefficients; infinite where there are none.
+  // Error bounds of the outer and inner coefficients; infinite if there is no bound.
   double outer, inner;
 
   bool hasBounds() const { return std::isfinite(outer); }
-  /// All coefficients have one sign beyond doubt: no root.
+  /// All coefficients certainly have one sign, so there is no root.
   bool hasNoRoot() const {
     return (b[0] > outer && b[1] > inner && b[2] > inner && b[3] > outer) ||
            (b[0] < -outer && b[1] < -inner && b[2] < -inner && b[3] < -outer);
   }
-  /// The ends have opposite signs beyond doubt: a root.
+  /// The ends certainly have opposite signs, so there is a root.
   bool changesSign() const {
     return (b[0] > outer && b[3] < -outer) || (b[0] < -outer && b[3] > outer);
   }
-  /// Nothing but rounding: subdividing will not show a sign.
+  /// The coefficients are rounding only: a subdivision will not show a sign.
   bool isLost() const {
     return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
            std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
@@ -110,7 +110,7 @@ Cubic restrict(const AccuratePair& pair, double lo, double hi) {
 
 enum class Side { kNegative, kPositive, kMixed, kLost };
 
-/// Sign of the quartic q . n over the whole segment; kLost if it is nothing but rounding.
+/// Sign of the quartic q . n over the whole segment; kLost if it is rounding only.
 Side sideOf(const MovingCross& q, const MovingCross& n) {
   const double size = q.size * n.size;
   if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
@@ -145,8 +145,8 @@ struct Pair {
   }
 };
 
-/// Whether, at the times at which the four points of the pair are coplanar, the features
-/// touch: kPositive, always; kNegative, never.
+/// Whether the features touch at the times at which the four points of the pair are
+/// coplanar. kPositive: always; kNegative: never.
 ///
 /// @param accurate  null, or the pair that n comes from; it finds signs that doubles lose
 Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
@@ -165,9 +165,9 @@ Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
   return side;
 }
 
-/// Whether the direction from one feature to the other's nearest point in the middle of
-/// [lo, hi] keeps them apart at both ends, hence in between: the differences of their
-/// vertices stay on one side of a plane through the origin. The only test that decides
+/// Whether a plane through the origin keeps all differences of the features' vertices on
+/// one side at lo and hi, and so in between. Its normal is the direction from one feature
+/// to the nearest point of the other in the middle of [lo, hi]. No other test decides
 /// pairs without a normal (parallel edges, triangles without area).
 bool areSeparated(const Pair& pair, double lo, double hi) {
   const double mid = lo + 0.5 * (hi - lo);
@@ -197,7 +197,7 @@ bool isFinite(const FeaturePoints& x) {
   return sum == 0;
 }
 
-/// Whether the features touch at t = 0, whatever comes later.
+/// Whether the features touch at t = 0.
 bool touchAtStart(ContinuousContactKind kind, const FeaturePoints& x) {
   return isFinite(x) && doTouchAtStart(kind, x);
 }
@@ -209,8 +209,8 @@ bool isStill(const FeaturePoints& x) {
   return isFinite(x);
 }
 
-/// Whether the points pass each other so close that twice the digits of a double will not
-/// tell how: the volume there is a 2^-78th of what it is elsewhere.
+/// Whether the points pass each other so closely that double-double cannot decide the
+/// pair: there the volume is 2^-78 of the volume elsewhere.
 bool nearlyMeet(const Pair& pair) {
   const Difference &u = pair.difference[kU], &v = pair.difference[kV],
                    &w = pair.difference[kW];
@@ -218,8 +218,9 @@ bool nearlyMeet(const Pair& pair) {
   return closest.s > 0 && closest.s < 1 && closest.duration < 0x1p-26;
 }
 
-/// Intervals still to be looked at, the earliest on top. Each look replaces one by at
-/// most three and the number of looks is limited, so that the stack is never full.
+/// Intervals that are still to be examined, the earliest on top. Each look replaces one
+/// interval by at most three, and the number of looks is limited, so the stack is never
+/// full.
 class IntervalStack {
  public:
   static constexpr int kMaxLooks = 128;
@@ -250,7 +251,7 @@ class IntervalStack {
   int size_{0};
 };
 
-/// The times that are neither proved free of contact nor to have one.
+/// The times that are not proved free of contact and not proved to have one.
 struct Undecided {
   bool unsure{false};
   double unsure_lo{1};
@@ -266,7 +267,8 @@ struct Undecided {
     if (unsure) return {Answer::kUnsure, unsure_lo, unsure_hi, DecidedBy::kSolver};
     return {Answer::kNo, 0, 0, DecidedBy::kSolver};
   }
-  /// A contact is proved in [lo, hi]; the first one may be in what is unsure before.
+  /// A contact is proved in [lo, hi]. The first contact may be earlier, in an undecided
+  /// interval.
   ElementaryResult withContactIn(double lo, double hi, double toc_err) const {
     if (unsure) lo = unsure_lo;
     return {hi - lo <= toc_err ? Answer::kYes : Answer::kUnsure, lo, hi,
@@ -282,11 +284,11 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
   assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1 && toc_err > 0);
   // An interval this short is not cut further.
   const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
-  // A flat interval (no sign in sight) is cut only while the inside conditions may
-  // decide.
+  // A flat interval (no coefficient has a certain sign) is cut only while the inside
+  // conditions may decide.
   constexpr double kMinFlatWidth = 0x1p-2;
 
-  // What touches at rest touches at the start.
+  // Features at rest that touch do so at the start.
   if (isStill(x))
     return {touchAtStart(kind, x) ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kSolver};
   if (const int axis = axisOfCommonPlane(x); axis >= 0) {
@@ -297,7 +299,7 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
     if (result.answer != Answer::kUnsure) return result;
   }
 
-  // Looks after which doubles alone are not expected to find out.
+  // After so many looks doubles alone are not expected to decide.
   constexpr int kAccurateLook = 6;
   std::optional<AccuratePair> accurate;
   const Pair pair(kind, x);
@@ -306,7 +308,7 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
   Undecided found;
   for (int look = 0; !open.isEmpty(); ++look) {
     const auto [lo, hi] = open.pop();
-    // What is unsure so far may end in a contact that begins after t_stop.
+    // An undecided interval may end in a contact that begins after t_stop.
     if (lo > t_stop && !found.unsure) break;
     if (look == IntervalStack::kMaxLooks) {
       found.addUnsure(lo, open.isEmpty() ? hi : std::max(hi, open.latest()));
@@ -332,12 +334,12 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
       if (contact.answer == Answer::kYes)
         return found.withContactIn(contact.lo, contact.hi, toc_err);
     }
-    // A wide interval with a root is first cut close around it.
+    // A wide interval with a root is cut close around the root, before other tests.
     if (!(crosses && width > toc_err)) {
       if (areSeparated(pair, lo, hi)) continue;
       if (look == 0 && lo == 0 && touchAtStart(kind, x))
         return {Answer::kYes, 0, 0, DecidedBy::kSolver};
-      // Norms out of range are so in all intervals, and for the accurate pair.
+      // Norms that are out of range are so in all intervals, and for the accurate pair.
       if (!f.hasBounds() && !accurate) {
         found.addUnsure(lo, open.isEmpty() ? hi : open.latest());
         break;
@@ -421,7 +423,7 @@ ElementaryResult elementaryTest(ContinuousContactKind kind, const FeaturePoints&
 
 namespace {
 
-/// A factor for a vector of which the fourth power would leave the range of double.
+/// A factor for a vector whose fourth power would leave the range of double.
 double scaleOf(const Vec& v) {
   const double norm = maxNorm(v);
   if (norm > 0x1p-100 && norm < 0x1p100) return 1;
@@ -431,10 +433,10 @@ double scaleOf(const Vec& v) {
 
 double clamped(double value) { return std::max(0., std::min(1., value)); }
 
-/// Where parallel edges meet that begin at a distance u from each other and go along v
-/// and w: the place of the second's beginning or of its end on the first, whichever is
-/// nearer to the middle of it.
-/// @return weights of the ends of both
+/// Where two parallel edges meet. They begin at a distance u from each other and go along
+/// v and w. The result is the position of the second edge's begin or of its end on the
+/// first edge, whichever is nearer to the middle of the first.
+/// @return the positions on both edges, from 0 to 1
 std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const Vec& w) {
   const double along = dot(v, v), other = dot(w, w);
   const auto onSecond = [&](double s) {
@@ -451,7 +453,7 @@ std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const V
 
 void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                      double (&position)[3], double (&normal)[3]) {
-  // Rounding is what two edges span whose cross product is smaller.
+  // If the cross product of two edges is smaller, it is rounding only.
   constexpr double kParallel = 0x1p-48;
   assert(0 <= t && t <= 1);
   const bool vf = kind == ContinuousContactKind::kVertexFace;
@@ -464,7 +466,7 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
   // Weights of the four vertices in the two points that meet (feature 2 minus feature 1).
   double weight[4];
   const double area = dot(n, n);
-  // u x w and v x u on the scale of v x w.
+  // u x w and v x u, with the scale of v x w.
   const double along_w = dot(cross(v_scale * u, w), n),
                along_v = dot(cross(v, w_scale * u), n);
   if (vf) {

@@ -66,8 +66,8 @@ inline ElementaryResult elementaryTest(ContinuousContactKind kind,
                         window_hi, toc_err, t_stop);
 }
 
-/// @brief Point and unit normal of a contact at time t (see ContinuousContact::normal for
-/// the sign, with feature 1 the vertex or edge a).
+/// @brief Point and unit normal of a contact at time t. ContinuousContact::normal defines
+/// the sign; feature 1 is the vertex or edge a.
 void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                      double (&position)[3], double (&normal)[3]);
 

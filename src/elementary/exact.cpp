@@ -15,7 +15,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// The time t_max on a clock of FrameDigits, a fraction.
+/// The time t_max as a fraction, on the clock of FrameDigits.
 struct LatestTime {
   Integer numerator, denominator;
 
@@ -54,7 +54,8 @@ ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double
   return {Answer::kYes, lo, hi, DecidedBy::kExact};
 }
 
-/// Touching at t = 0, and the answer if this or t_max leaves nothing to decide.
+/// Tests whether the features touch at t = 0. Returns whether this, or t_max = 0, decides
+/// the answer.
 bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& result) {
   const bool touch = query.touchInFrame(0);
   result = {touch ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kExact};

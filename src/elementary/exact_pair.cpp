@@ -74,7 +74,7 @@ std::vector<Root> ExactPair::candidates() const {
     addRootsOf(volume_);
     return times;
   }
-  // Always coplanar: contacts begin where a weight changes its sign.
+  // The points are always coplanar: contacts begin where a weight changes its sign.
   for (std::size_t k = 0; k < 3; ++k)
     if (!n_[k].isZero()) {
       addRootsOf(n_[k]);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The definition of a contact, evaluated with integers. Coordinates are doubles, hence
-// integers times a common power of two; everything here is a polynomial in t with integer
-// coefficients, and times of contact are its roots.
+// The definition of a contact, evaluated with integers. Coordinates are doubles, and so
+// they are integers times a common power of two. All conditions are polynomials in t with
+// integer coefficients, and times of contact are roots of these.
 #ifndef FCL_CCD_ELEMENTARY_EXACT_PAIR_H
 #define FCL_CCD_ELEMENTARY_EXACT_PAIR_H
 
@@ -34,7 +34,8 @@ class ExactPair {
   /// @brief The volume u . (v x w) of the four points.
   const Polynomial& volume() const { return volume_; }
 
-  /// @brief Times one of which is the first contact after 0, if there is any.
+  /// @brief A set of times. If there is a contact after 0, the first one is at one of
+  /// them.
   std::vector<Root> candidates() const;
 
   /// @brief Whether the features touch at one of the candidates().
@@ -58,8 +59,8 @@ class ExactPair {
   Polynomial volume_;
 };
 
-/// @brief A pair for the exact stages, whose polynomials are made when they are asked
-/// for.
+/// @brief A pair for the exact stages. Its polynomials are computed when they are first
+/// needed.
 class ExactQuery {
  public:
   ExactQuery(ContinuousContactKind kind, const FeaturePoints& x)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the stages of the elementary test are given and what they answer.
+// Input and answer of the stages of the elementary test.
 #ifndef FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 #define FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 
@@ -27,8 +27,8 @@ enum class DecidedBy { kBox, kFilter, kSolver, kExact };
 
 struct ElementaryResult {
   Answer answer;
-  /// Bracket of the first time of contact; for kUnsure, of that time if there is one.
-  /// Without meaning for kNo.
+  /// Bracket of the first time of contact. For kUnsure: of this time, if there is a
+  /// contact. No meaning for kNo.
   double toc_lo;
   double toc_hi;
   DecidedBy decided_by;

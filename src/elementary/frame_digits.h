@@ -13,21 +13,22 @@ namespace detail {
 namespace deformable {
 
 /// @brief The powers of two by which a pair's coordinates become integers, and the clock
-/// that these run by.
+/// of these integers.
 ///
 /// All coordinates of a frame share a power of two. Frames of very different size have
-/// one each: (1 - t) 2^p a + t 2^q b is, up to its length, which decides nothing, (1 - s)
-/// a + s b for s / (1 - s) = 2^(q - p) t / (1 - t), and s runs from 0 to 1 as t does.
+/// different powers, p and q. The vector (1 - t) 2^p a + t 2^q b is a positive multiple
+/// of (1 - s) a + s b with s / (1 - s) = 2^(q - p) t / (1 - t). The factor decides
+/// nothing, and s runs from 0 to 1 as t does.
 struct FrameDigits {
   /// p and q.
   int lowest[2];
-  /// q - p; 0 where s = t.
+  /// q - p; 0 if s = t.
   int clock_exponent{0};
-  /// No integer has more digits.
+  /// The largest number of digits of an integer.
   int num_digits{0};
 
   explicit FrameDigits(const FeaturePoints& x) {
-    // The larger numbers of one power for both cost less than fractions for t.
+    // Up to this spread larger integers with one power cost less than fractions for t.
     constexpr int kMaxCommonSpread = 64;
     DigitRange range[2];
     for (int i = 0; i < 4; ++i)

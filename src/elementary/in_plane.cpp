@@ -15,7 +15,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// The difference of two points, seen along the axis, at t = 0 and t = 1.
+/// The difference of two points, projected along the axis, at t = 0 and t = 1.
 struct PlanarDifference {
   double x[2], y[2];
 
@@ -34,9 +34,9 @@ struct Bounded {
   double error;
 };
 
-/// A quadratic in t: a product of two differences. Bernstein coefficients with error
-/// bounds relative to the products they are made of, so that factors of zero leave a zero
-/// that is known to be one.
+/// A quadratic in t: a product of two differences, as Bernstein coefficients. Error
+/// bounds are relative to the products that make a coefficient. So a coefficient with a
+/// zero factor in each product is known to be zero.
 class PlanarQuadratic {
  public:
   static PlanarQuadratic cross(const PlanarDifference& a, const PlanarDifference& b) {
@@ -60,7 +60,7 @@ class PlanarQuadratic {
 
   double at(double t) const { return blossom(t, t).value; }
 
-  /// Signs over [lo, hi], whose Bernstein coefficients are the blossom's values at (lo,
+  /// Signs over [lo, hi]. The Bernstein coefficients are the blossom's values at (lo,
   /// lo), (lo, hi), (hi, hi).
   bool isNegative(double lo, double hi) const {
     return forEachCoefficient(lo, hi, [](Bounded b) { return b.value < -b.error; });
@@ -81,7 +81,7 @@ class PlanarQuadratic {
   }
 
  private:
-  /// Which frames' products make coefficient k.
+  /// The frames i and j whose product is a term of coefficient k.
   struct Term {
     int k, i, j;
   };
@@ -93,18 +93,19 @@ class PlanarQuadratic {
            test(blossom(lo, hi));
   }
 
-  /// The terms of a coefficient have been rounded three times (two differences, a
-  /// product), their sum at most three times: 6 units of 2^-53 of their size. The weights
-  /// are rounded up to four times, the products with them and the sum three times more:
-  /// 13 units, and 16 with room for the rounding of the size and of the bound itself. An
-  /// underflow of weights and terms is below the smallest normal number, times size.
+  /// The terms of a coefficient are rounded three times (two differences, a product),
+  /// their sum at most three times: 6 units of 2^-53 of their size. The weights are
+  /// rounded up to four times, the products with them and the sum three times more: 13
+  /// units. 16 units leave room for the rounding of the size and of the bound itself.
+  /// Underflows of weights and terms are below the smallest normal number times the size.
   Bounded blossom(double s, double t) const {
     const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
     return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
             16 * 0x1p-53 * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
   }
 
-  /// No underflow hides in a product that is not zero, and no overflow is near.
+  /// Adds a product. The result is reliable if no product that is not zero can underflow,
+  /// and none is near an overflow.
   void add(int k, double product, bool is_not_zero) {
     c_[k] += product;
     size_[k] += std::abs(product);
@@ -127,8 +128,8 @@ class PlanarQuadratic {
 
 constexpr PlanarQuadratic::Term PlanarQuadratic::kTerms[4];
 
-/// What is known of the first contact: it is not later than hi, if there is a proof of
-/// one, and not earlier than lo.
+/// What is known about the first contact: it is not earlier than lo. If there is a proof
+/// of a contact, it is not later than hi.
 struct FirstContact {
   double lo{2};
   double hi{2};
@@ -141,8 +142,8 @@ struct FirstContact {
   }
 };
 
-/// Looks for times in [lo, hi] at which point p meets segment qr: where it changes sides
-/// between the segment's ends, or comes along the line from beyond one of them.
+/// Finds times in [lo, hi] at which point p meets segment qr: either p changes sides
+/// between the segment's ends, or it comes along the line from beyond one of them.
 void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPath& r,
                         int axis, double lo, double hi, double toc_err,
                         FirstContact& found) {
@@ -155,7 +156,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
                         length = PlanarQuadratic::dot(qr, qr);
   const bool on_line = area.isZero();
   const auto isProved = [&](double a, double b) {
-    if (on_line) a = b;  // being there at b is enough
+    if (on_line) a = b;  // touching at b is enough
     return (on_line || area.changesSign(a, b)) && length.isPositive(a, b) &&
            from_q.isNotNegative(a, b) && from_r.isNotNegative(a, b);
   };
@@ -164,7 +165,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
            from_r.isNegative(a, b);
   };
 
-  // The ends of the intervals still to be looked at, the earliest on top.
+  // The ends of the intervals that are still to be examined, the earliest on top.
   constexpr int kMaxLooks = 32;
   double end[2 * kMaxLooks + 1];
   int open = 0;
@@ -185,7 +186,7 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
       --open;
       continue;
     }
-    // A wide interval is cut close around a change of sign, or in two.
+    // A wide interval is cut close around a change of sign, or in the middle.
     double cut[2] = {lo + 0.5 * width, hi};
     if (width > toc_err)
       for (const PlanarQuadratic* f : {&area, &from_q, &from_r})
@@ -217,7 +218,7 @@ bool areApartAt(double t, bool vf, const FeaturePoints& x, int axis) {
     for (int j = vf ? 1 : 2; j < 4; ++j) {
       const PlanarDifference d(x[i], x[j], axis);
       const double s = 1 - t, a = s * d.x[0] + t * d.x[1], b = s * d.y[0] + t * d.y[1];
-      // Four roundings of each term, one more of the sums; what underflows is below the
+      // Four roundings of each term, and one more of the sums. Underflows are below the
       // smallest normal number.
       const double error = 8 * 0x1p-53 *
                                (s * (std::abs(d.x[0]) + std::abs(d.y[0])) +

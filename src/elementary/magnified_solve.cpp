@@ -21,21 +21,22 @@ namespace deformable {
 namespace {
 
 // Error analysis, in units u = 2^-53 as in error_bounds.h. Each difference has been
-// rounded once at each end of the interval. Its bounds there are its norms there: where
-// everything shrinks towards one end, so do they. U0 is the norm of u at the beginning,
-// U1 at the end, and so on.
+// rounded once at each end of the interval. Bounds at an end are relative to the norms at
+// this end. So if all differences shrink towards one end, the bounds shrink too. U0 is
+// the norm of u at the beginning, U1 at the end, and so on.
 //
-// Volume. Outer coefficients: kVolumeBound. v0 x w1 + v1 x w0: each term is of size 2 VW
-// and 8 u VW off, the sum rounds by 2 u of V0 W1 + V1 W0 =: S. Its product with u0: three
-// products (2 + 10 + 2) u U0 S, sums of sizes 4 and 6: 52 u U0 S. The sum with u1 . (v0 x
-// w0), 46 u off, is below 6 (U1 V0 W0 + U0 S) in size: 58 u.
+// Volume. Outer coefficients: kVolumeBound. v0 x w1 + v1 x w0: each term has size 2 VW
+// and an error of 8 u VW. The sum rounds by 2 u of V0 W1 + V1 W0 =: S. Its product with
+// u0: three products (2 + 10 + 2) u U0 S, sums of sizes 4 and 6: 52 u U0 S. The sum with
+// u1 . (v0 x w0), which has an error of 46 u, is below 6 (U1 V0 W0 + U0 S) in size: 58 u.
 constexpr double kEndsVolumeBound = 64 * kUnit;
-// Inside conditions. Components of a cross product are of size 2 Q and 10 u Q off at
-// most, Q = X0 Y0, X0 Y1 + X1 Y0 or X1 Y1. A dot product of two such: three products (20
-// + 20 + 4) u Q N, sums of sizes 8 and 12: 152 u Q N. Sums of three of these: 12 + 12 u.
+// Inside conditions. Components of a cross product have at most size 2 Q and an error of
+// 10 u Q, with Q = X0 Y0, X0 Y1 + X1 Y0 or X1 Y1. A dot product of two such vectors:
+// three products (20 + 20 + 4) u Q N, sums of sizes 8 and 12: 152 u Q N. Sums of three of
+// these: 12 + 12 u.
 constexpr double kEndsInsideBound = 192 * kUnit;
 
-/// A vector that moves linearly over an interval, at both ends of it.
+/// The values of a linearly moving vector at both ends of an interval.
 struct Segment {
   Vec l, h;
   double l_norm, h_norm;
@@ -73,7 +74,7 @@ struct Cubic {
     return first != 0 && sign(1) == first && sign(2) == first && sign(3) == first;
   }
   bool changesSign() const { return sign(0) * sign(3) < 0; }
-  /// Whether the derivative has one sign beyond doubt.
+  /// Whether the derivative certainly has one sign.
   bool isMonotone() const {
     const double d[3] = {b[1] - 3 * b[0], b[2] - b[1], 3 * b[3] - b[2]};
     // The half is for the rounding of the differences.
@@ -94,9 +95,10 @@ struct Cubic {
     return r * r * (c[0] * r + c[1] * s) + s * s * (c[2] * r + c[3] * s);
   }
   double operator()(double s) const { return mix(b, s); }
-  /// Whether the sign at s seems to be beyond doubt.
+  /// Whether the sign at s seems to be certain.
   bool seemsKnownAt(double s) const { return std::abs(mix(b, s)) > 2 * mix(error, s); }
-  /// f times (1 - x + ratio x)^3 in x with s / (1 - s) = ratio x / (1 - x).
+  /// f times (1 - x + ratio x)^3, as a function of x with s / (1 - s) = ratio x / (1 -
+  /// x).
   Cubic withRatio(double ratio) const {
     Cubic f = *this;
     double factor = 1;
@@ -107,11 +109,11 @@ struct Cubic {
     }
     return f;
   }
-  /// Nothing but rounding.
+  /// Whether all coefficients are rounding only.
   bool isLost() const {
     return sign(0) == 0 && sign(1) == 0 && sign(2) == 0 && sign(3) == 0;
   }
-  /// Where the volume turns, if it does so once.
+  /// The place of the volume's extremum, if it has exactly one.
   void findTurn(double& s) const {
     const double d[3] = {b[1] - 3 * b[0], b[2] - b[1], 3 * b[3] - b[2]};
     if (d[0] == 0 || d[2] == 0 || (d[0] < 0) == (d[2] < 0)) return;
@@ -124,7 +126,7 @@ struct Cubic {
   }
 };
 
-/// Ends are lo / 2^m and hi / 2^m.
+/// An interval from lo / 2^m to hi / 2^m.
 struct Interval {
   DoubleWord lo, hi;
   unsigned m;
@@ -136,7 +138,7 @@ template <std::size_t kWords>
 class MagnifiedPair {
  public:
   using Integer = FixedInteger<kWords>;
-  /// What times of 2^-m need.
+  /// The largest m of times with denominator 2^m.
   static constexpr int kMaxTimeBits = 124;
 
   MagnifiedPair(ContinuousContactKind kind, const FeaturePoints& x,
@@ -161,7 +163,7 @@ class MagnifiedPair {
       }
   }
 
-  /// Whether the integers are long enough for anything.
+  /// Whether the integers are long enough for a useful interval.
   bool fits() const { return time_bits_ >= kLeastTimeBits; }
   unsigned timeBits() const { return static_cast<unsigned>(time_bits_); }
   bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
@@ -178,7 +180,7 @@ class MagnifiedPair {
       uvw_[j] = rounded(at_lo_[j], at_hi_[j]);
       largest = std::max(largest, std::max(uvw_[j].l_norm, uvw_[j].h_norm));
     }
-    // A power of two: nothing is rounded by it, and products of four stay in range.
+    // A power of two rounds nothing. It keeps products of four in range.
     if (largest == 0) return;
     scale_ = Integer::powerOfTwo(-std::ilogb(largest));
     for (Segment& s : uvw_) {
@@ -210,7 +212,8 @@ class MagnifiedPair {
     };
     return segment(vec(lo), vec(hi));
   }
-  /// The sum (sign 1) or difference (-1) of two differences, without a third.
+  /// The sum (sign 1) or difference (sign -1) of two differences, minus a third one if
+  /// `without` is given.
   Segment combined(std::size_t a, int sign, std::size_t b, int without = -1) const {
     Point lo, hi;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -231,8 +234,7 @@ class MagnifiedPair {
   Segment uvw_[3];
 };
 
-/// Sign of a condition q . n over the whole interval: 0 if it has not one sign beyond
-/// doubt.
+/// Sign of a condition q . n over the whole interval; 0 if it has no certain sign.
 int signOver(const Cross& q, const Cross& n) {
   const double c[5] = {dot(q.c[0], n.c[0]), dot(q.c[0], n.c[1]) + dot(q.c[1], n.c[0]),
                        dot(q.c[0], n.c[2]) + dot(q.c[1], n.c[1]) + dot(q.c[2], n.c[0]),
@@ -243,7 +245,7 @@ int signOver(const Cross& q, const Cross& n) {
       q.size[1] * n.size[2] + q.size[2] * n.size[1], q.size[2] * n.size[2]};
   bool positive = true, negative = true;
   for (int i = 0; i < 5; ++i) {
-    // What underflows is far below the bounds of such sizes.
+    // For larger sizes underflows are far below the bounds.
     if (size[i] < kTiny) return 0;
     positive &= c[i] > kEndsInsideBound * size[i];
     negative &= c[i] < -kEndsInsideBound * size[i];
@@ -251,8 +253,8 @@ int signOver(const Cross& q, const Cross& n) {
   return positive ? 1 : negative ? -1 : 0;
 }
 
-/// Whether the features touch where the points of the pair are coplanar: 1 always, -1
-/// never in the interval. See insideness() in elementary.cpp.
+/// Whether the features touch when the points of the pair are coplanar: 1 always, -1
+/// never in the interval, 0 not known. See insideness() in elementary.cpp.
 template <typename Pair>
 int insideness(const Pair& pair, const Cross& n) {
   int all = 1;
@@ -293,21 +295,21 @@ bool areSeparated(const Pair& pair) {
   return true;
 }
 
-/// A part of the interval to look at closely, 0 <= a <= b <= 1; a place to cut it if a =
-/// b.
+/// A part [a, b] of the interval that is to be examined next, 0 <= a <= b <= 1. If a = b,
+/// a place at which to cut the interval.
 struct Place {
   double a, b;
   bool isUseful() const { return a > 0 || b < 1; }
 };
 
-/// Somewhat more than the rounding of a place in the interval.
+/// A little more than the rounding of a place in the interval.
 constexpr double kLeastPart = 0x1p-48;
 
-/// Where u, v and w together are shortest, if they nearly vanish there.
+/// The place where u, v and w together are shortest, if they nearly vanish there.
 template <typename Pair>
 std::optional<Place> meetingPlace(const Pair& pair) {
-  // Seen from further away than this many times the distance at which the points pass
-  // each other, they seem to meet.
+  // From farther away than so many times the distance at which the points pass each
+  // other, the points seem to meet.
   constexpr double kFar = 8;
   const Segment &u = pair.u(), &v = pair.v(), &w = pair.w();
   const auto [s, duration] = ClosestApproach({u.l, v.l, w.l}, {u.h, v.h, w.h});
@@ -317,7 +319,7 @@ std::optional<Place> meetingPlace(const Pair& pair) {
   return Place{std::max(0., s - half), std::min(1., s + half)};
 }
 
-/// How much shorter u, v and w are at the beginning than at the end.
+/// The length of u, v and w at the beginning divided by that at the end.
 template <typename Pair>
 double ratioOfEnds(const Pair& pair) {
   double l = 0, h = 0;
@@ -328,10 +330,10 @@ double ratioOfEnds(const Pair& pair) {
   return l > 0 && h > 0 ? l / h : 1;
 }
 
-/// Around a root of f, or where f turns; where the signs of f are known on both sides, it
-/// seems.
+/// A part around a root or an extremum of f that seems to have certain signs on both
+/// sides.
 Place placeOfRoot(const Cubic& f) {
-  // So much wider that derivatives are known as well.
+  // The part is so much wider, so that signs of derivatives are certain as well.
   constexpr double kWider = 8, kMostPart = 0x1p-7;
   double s = 0.5;
   if (f.sign(0) == 0)
@@ -354,17 +356,18 @@ template <typename Pair>
 Place placeToLook(const Pair& pair, const Cubic& f) {
   if (const std::optional<Place> place = meetingPlace(pair)) return *place;
   if (f.isLost()) return {0, 1};
-  // In x with s / (1 - s) = ratio x / (1 - x), the volume looks alike near both ends.
+  // As a function of x with s / (1 - s) = ratio x / (1 - x), the volume has the same
+  // scale near both ends.
   const double ratio = ratioOfEnds(pair);
   const auto back = [ratio](double x) { return ratio * x / (1 - x + ratio * x); };
   const Place place = placeOfRoot(f.withRatio(ratio));
   return {back(place.a), back(place.b)};
 }
 
-/// Intervals still to be looked at, the earliest on top.
+/// Intervals that are still to be examined, the earliest on top.
 class Agenda {
  public:
-  /// Some eight are usual. Each look adds at most two intervals.
+  /// About eight looks are usual. Each look adds at most two intervals.
   static constexpr int kMaxLooks = 48;
 
   explicit Agenda(const Interval& all) { items_[size_++] = all; }
@@ -372,7 +375,7 @@ class Agenda {
   Interval pop() { return items_[--size_]; }
 
   /// Cuts an interval at both ends of the place.
-  /// @return false if times have too few bits for it
+  /// @return false if times have too few bits for this
   bool push(const Interval& i, const Place& place, unsigned time_bits) {
     constexpr unsigned kCutBits = 52;
     DoubleWord width = i.hi - i.lo;
@@ -415,7 +418,7 @@ Root rootBetween(const Polynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) 
   }
 }
 
-/// What is known of the times in an interval.
+/// What is known about contacts in an interval.
 enum class Finding { kNoContact, kContact, kOpen };
 
 template <std::size_t kWords>
@@ -443,7 +446,7 @@ class Solver {
   ElementaryResult contact_{};
 };
 
-/// What doubles tell.
+/// The decision by doubles.
 template <std::size_t kWords>
 Finding Solver<kWords>::look(const Interval& interval, const Cross& n, const Cubic& f) {
   if (f.hasNoRoot()) return Finding::kNoContact;
@@ -453,7 +456,7 @@ Finding Solver<kWords>::look(const Interval& interval, const Cross& n, const Cub
   return areSeparated(pair_) ? Finding::kNoContact : Finding::kOpen;
 }
 
-/// A contact that is somewhere in the interval, if this is short enough.
+/// Records a contact that is somewhere in the interval, if the interval is short enough.
 template <std::size_t kWords>
 Finding Solver<kWords>::contactIn(const Interval& interval) {
   const double lo = timeOf(interval.lo, interval.m, clockExponent(), -1),
@@ -464,7 +467,8 @@ Finding Solver<kWords>::contactIn(const Interval& interval) {
   return Finding::kContact;
 }
 
-/// Features that are coplanar in a frame and at no other time of the interval.
+/// Decides features that are coplanar at t = 0 or t = 1, and at no other time of the
+/// interval.
 template <std::size_t kWords>
 Finding Solver<kWords>::lookAtEnds(const Interval& interval, const Cubic& f) {
   const bool zero_at_lo = f.sign(0) == 0 && interval.lo == 0,
@@ -478,7 +482,7 @@ Finding Solver<kWords>::lookAtEnds(const Interval& interval, const Cubic& f) {
   return query_.touchInFrame(1) ? Finding::kContact : Finding::kNoContact;
 }
 
-/// A single root at which a weight of the contact is nearly zero, or zero.
+/// Decides a single root at which a weight of the contact is zero or nearly zero.
 template <std::size_t kWords>
 Finding Solver<kWords>::lookAtRoot(const Interval& interval) {
   const ExactPair& pair = query_.pair();
@@ -523,7 +527,7 @@ ElementaryResult Solver<kWords>::solve(double t_end) {
 ElementaryResult solveMagnified(ExactQuery& query, double toc_err, double t_stop,
                                 double t_max) {
   const int clock_exponent = query.digits().clock_exponent;
-  // On another clock t_max is a fraction.
+  // On another clock t_max is a fraction, which intervals cannot represent.
   if (t_max < 1 && clock_exponent != 0)
     return {Answer::kUnsure, 0, t_max, DecidedBy::kExact};
   Solver<4> solver(query, toc_err);

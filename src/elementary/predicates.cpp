@@ -18,8 +18,8 @@ namespace {
 
 namespace mp = boost::multiprecision;
 
-/// What an orientation of coordinates of n digits needs: a difference has one more, a
-/// product of three of them three times as many, the sum of six such three more.
+/// Digits of an orientation whose coordinates have n digits: a difference has one more, a
+/// product of three differences three times as many, a sum of six products three more.
 constexpr int orientationDigits(int n) { return 3 * (n + 1) + 3; }
 constexpr int kFewDigits = 40, kManyDigits = 168;
 static_assert(orientationDigits(kFewDigits) <= 128, "digits of FewDigits");
@@ -30,8 +30,9 @@ using ManyDigits =
     mp::number<mp::cpp_int_backend<512, 512, mp::signed_magnitude, mp::unchecked, void>,
                mp::et_off>;
 
-/// compute(zero) for a zero of integers that are long enough for an orientation.
-/// @param digits  of a coordinate
+/// Calls compute(zero) with a zero of an integer type that is long enough for an
+/// orientation.
+/// @param digits  the number of digits of a coordinate
 template <typename Compute>
 int withIntegers(int digits, Compute&& compute) {
   if (digits <= kFewDigits) return compute(FewDigits{0});
@@ -53,8 +54,8 @@ int orientationOfIntegers(const double* const (&points)[4], int lowest) {
   return volume.sign();
 }
 
-/// Sign of the volume in twice the digits of a double; 0 if that does not tell. norms: of
-/// the differences, in a range in which nothing that matters underflows or overflows.
+/// Sign of the volume in double-double; 0 if this does not decide. norms: those of the
+/// differences, in a range in which no underflow or overflow matters.
 int accurateOrientation(const double (&p)[3], const double (&a)[3], const double (&b)[3],
                         const double (&c)[3], const double (&norms)[3]) {
   AccurateVector u, v, w, n;
@@ -68,9 +69,9 @@ int accurateOrientation(const double (&p)[3], const double (&a)[3], const double
   cross(v, w, n);
   double size = 0;
   for (const DoubleDouble& component : n) size = std::max(size, std::abs(component.hi));
-  // A component of n has two products, exact for plain doubles, and their difference; the
-  // volume has three products of size UN and sums of 2 and 3 UN: 11 * 2^-104 UN. More
-  // than all that underflows: 2^-1060 each.
+  // A component of n has two products, which are exact for plain doubles, and their
+  // difference. The volume has three products of size UN and sums of 2 and 3 UN: 11 *
+  // 2^-104 UN. Underflows are less than 2^-1060 for each.
   const double n_error = (is_double ? 0 : 2 * kProductBound * (norms[1] * norms[2])) +
                          kSumBound * size + 0x1p-1060;
   const double bound =
@@ -111,7 +112,7 @@ int exactCrossSign(const double (&x)[8]) {
   return sign < 0 ? -1 : sign > 0 ? 1 : 0;
 }
 
-/// Whether difference = p - q without rounding.
+/// Whether difference is p - q without rounding.
 bool isExactDifference(double p, double q, double difference) {
   // Knuth's TwoSum; the rounding error of a difference is a double.
   const double q_virtual = p - difference;
@@ -155,9 +156,9 @@ int orientation(const double (&p)[3], const double (&a)[3], const double (&b)[3]
   const double volume = u[0] * (v[1] * w[2] - v[2] * w[1]) +
                         u[1] * (v[2] * w[0] - v[0] * w[2]) +
                         u[2] * (v[0] * w[1] - v[1] * w[0]);
-  // Nothing underflows or overflows while VW and UVW are in this range.
+  // No underflow or overflow happens if VW and UVW are in this range.
   const double size = u_max * (v_max * w_max);
-  // Layers in a plane of constant x, y or z.
+  // Fast answer for layers in a plane of constant x, y or z.
   for (int k = 0; k < 3; ++k)
     if (u[k] == 0 && v[k] == 0 && w[k] == 0) return 0;
   if (isInRange(v_max * w_max) && isInRange(size)) {
@@ -174,12 +175,13 @@ int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   const double s = b[i] - a[i], t = d[j] - c[j], u = b[j] - a[j], v = d[i] - c[i];
   if ((s == 0 || t == 0) && (u == 0 || v == 0)) return 0;
-  // Differences and products rounded once, and their difference: within 4 units of 2^-53
-  // of |st| + |uv|. Nothing that matters underflows in this range.
+  // Differences and products are rounded once, and so is the difference of the products:
+  // the error is within 4 units of 2^-53 of |st| + |uv|. In this range no underflow
+  // matters.
   const double size = std::abs(s * t) + std::abs(u * v), value = s * t - u * v;
   const bool in_range = isInRange(size);
   if (in_range && std::abs(value) > 5 * 0x1p-53 * size) return value > 0 ? 1 : -1;
-  // Both products are near size / 2 then, if they cancel.
+  // If the products cancel, both are near size / 2.
   if (in_range && isExactDifference(b[i], a[i], s) && isExactDifference(d[j], c[j], t) &&
       isExactDifference(b[j], a[j], u) && isExactDifference(d[i], c[i], v))
     return compareProducts(s, t, u, v);
@@ -201,7 +203,8 @@ bool isOnTriangle(const double (&p)[3], const double (&a)[3], const double (&b)[
                   const double (&c)[3]) {
   if (orientation(p, a, b, c) != 0) return false;
   for (int axis = 0; axis < 3; ++axis) {
-    // Along an axis in which the triangle shows its area, its plane is seen one to one.
+    // Along an axis in which the triangle has a projected area, the projection of its
+    // plane is one to one.
     const int side = turn(a, b, c, axis);
     if (side != 0)
       return side * turn(a, b, p, axis) >= 0 && side * turn(b, c, p, axis) >= 0 &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Tests of points at one instant, exact for all finite inputs: a bounded evaluation in
-// double first, then whatever it takes.
+// Tests of points at one time, exact for all finite inputs. First an evaluation in double
+// with a bound; if this does not decide, in more digits.
 #ifndef FCL_CCD_ELEMENTARY_PREDICATES_H
 #define FCL_CCD_ELEMENTARY_PREDICATES_H
 
@@ -24,12 +24,13 @@ int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
 bool isCrossing(const double (&p)[3], const double (&q)[3], const double (&a)[3],
                 const double (&b)[3], const double (&c)[3]);
 
-/// @brief Whether a point lies on a closed triangle; one without area is the union of its
-/// edges.
+/// @brief Whether a point lies on a closed triangle. A triangle without area is the union
+/// of its edges.
 bool isOnTriangle(const double (&p)[3], const double (&a)[3], const double (&b)[3],
                   const double (&c)[3]);
 
-/// @brief Whether the closed segments ab and cd touch; one without length is a point.
+/// @brief Whether the closed segments ab and cd touch. A segment without length is a
+/// point.
 bool doSegmentsTouch(const double (&a)[3], const double (&b)[3], const double (&c)[3],
                      const double (&d)[3]);
 

@@ -33,8 +33,8 @@ inline Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
 
 /// @brief The direction from one feature to the nearest point of the other. The
 /// differences of their points form a triangle (VF) or a parallelogram (EE).
-/// @param corner  the three corners of the triangle; or u, -r, q, z as solveCoplanarity()
-/// names them
+/// @param corner  the three corners of the triangle; or u, -r, q, z with the names of
+/// solveCoplanarity()
 inline Vec separatingDirection(const Vec* corner, bool is_triangle) {
   if (is_triangle) return nearestOnTriangle(corner[0], corner[1], corner[2]);
   // The parallelogram's corners in order are u, -r, z, q.

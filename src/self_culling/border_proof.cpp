@@ -14,15 +14,15 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Direction `bit` of a set.
+/// The direction of bit `bit` in a set of directions.
 void directionOf(int bit, int (&d)[3]) {
   const int axis = bit % static_cast<int>(kNumAxes);
   for (int k = 0; k < 3; ++k) d[k] = bit == axis ? kAxes[axis][k] : -kAxes[axis][k];
 }
 
-/// Two vectors of 1, 0 and -1 that are perpendicular to d and whose cross product points
-/// along it: the unit vectors along which d has nothing, and one for each two entries
-/// that follow each other.
+/// Two vectors with entries 1, 0 and -1 that are perpendicular to d, and whose cross
+/// product points along d. They are the unit vectors of the zero entries of d, and one
+/// vector for each two nonzero entries that follow each other.
 struct PlaneAxes {
   int axes[2][3]{};
 
@@ -58,8 +58,8 @@ bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t direction
   return isSimple() && windsOnce();
 }
 
-/// The direction along which most of the region is seen: the area vector of a surface is
-/// that of its border.
+/// The direction in which the projection of the region is largest. The area vector of a
+/// surface is that of its border.
 int BorderProof::widest(std::uint32_t directions) const {
   const TreeVertex& origin = tree_.vertices()[border_->from(0)];
   double area[3] = {0, 0, 0};
@@ -112,10 +112,10 @@ void BorderProof::project(int direction) {
   }
 }
 
-/// Sets the boxes of the points, whose third coordinate is the same for all: the pad of
-/// Kernels::fitPoints is of the largest one, here twice the reach. That makes it reach *
-/// 2^-48. Coordinates are 2^-51 of the reach off, those of a box four times that, and
-/// less than 2^-50 more where two are added.
+/// Sets the boxes of the points. The third coordinate is the same for all points, twice
+/// the reach. The pad of Kernels::fitPoints is relative to the largest coordinate, which
+/// makes it reach * 2^-48. The error of coordinates is 2^-51 of the reach. That of a
+/// box's numbers is four times as large, and less than 2^-50 more where two are added.
 void BorderProof::fitPoints() {
   boxes_.points.resize(points_.size());
   for (std::size_t first = 0; first < points_.size(); first += 8) {
@@ -128,7 +128,7 @@ void BorderProof::fitPoints() {
         offsets[frame][1][i] = p.y;
         offsets[frame][2][i] = 2 * tree_.reach();
       }
-      // Nobody asks how far an edge goes.
+      // The displacement of an edge is not used.
       boxes_.points[first + i].t0[3] = std::numeric_limits<double>::infinity();
     }
     for (int frame = 0; frame < 2; ++frame)
@@ -136,12 +136,13 @@ void BorderProof::fitPoints() {
   }
 }
 
-/// Makes the tree of the edges: eight that follow each other in each of its lowest nodes,
-/// eight of these in each of the next ones, the root first.
+/// Makes the tree of the edges. Each of its lowest nodes has eight consecutive edges,
+/// each of the next nodes eight of the lowest ones, and so on. The root is the first
+/// node.
 void BorderProof::fitTree() {
   fitPoints();
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
-  // How many nodes each level has, the lowest first.
+  // The number of nodes of each level, the lowest level first.
   std::vector<std::size_t> levels;
   std::size_t num_nodes = 0;
   for (std::size_t count = border_->size(); levels.empty() || count > 1;) {
@@ -191,7 +192,7 @@ bool BorderProof::isSimple() {
   return simple;
 }
 
-/// Whether two edges provably meet at no time but in a vertex that they share.
+/// Whether it is proved that two edges never meet, except in a vertex that they share.
 bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   const std::uint32_t from_i = border_->from(i), to_i = border_->to(i),
                       from_j = border_->from(j), to_j = border_->to(j);
@@ -200,7 +201,8 @@ bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
              tt = to_i == to_j;
   if (ff + ft + tf + tt == 0) return areApart(x, y);
   if (ff + ft + tf + tt > 1) return false;
-  // Away from the common vertex; they must never point the same way.
+  // Vectors along both edges, away from the common vertex. They must never point the same
+  // way.
   Point p[2], q[2];
   double length = 0;
   for (int k = 0; k < 2; ++k) {
@@ -221,7 +223,7 @@ bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   return all_below(turn, 1) || all_below(turn, -1) || all_below(same, 1);
 }
 
-/// Whether a line separates two edges at all times. It turns as they do.
+/// Whether a line separates two edges at all times. The line turns as the edges do.
 bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
   Point across_e[2], across_f[2], between[2];
   for (int k = 0; k < 2; ++k) {
@@ -233,8 +235,8 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
   return areApart(e, f, across_e) || areApart(e, f, across_f) || areApart(e, f, between);
 }
 
-/// Whether e stays on one side and f on the other along a direction that is w[0] at t = 0
-/// and w[1] at t = 1.
+/// Whether e stays on one side and f on the other along a direction. The direction is
+/// w[0] at t = 0 and w[1] at t = 1.
 bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
                            const Point (&w)[2]) const {
   double size = 0;
@@ -256,20 +258,20 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
   return above || below;
 }
 
-/// A simple loop winds once round what is inside, and the triangles' areas are positive.
-/// Else the winding number is looked at on the left of each path, along which it does not
-/// change.
+/// A simple loop winds once around its inside, and the triangles' areas are positive. For
+/// other borders the winding number on the left of each path is computed: along a path it
+/// does not change.
 bool BorderProof::windsOnce() const {
   if (border_->is_one_loop) return true;
   return std::all_of(border_->paths.begin(), border_->paths.end(),
                      [this](std::size_t i) { return windsOnceLeftOf(i); });
 }
 
-/// Whether the border provably winds once round a point just left of the middle of edge i
-/// at t = 0: counts what crosses a ray from there.
+/// Whether it is proved that the border winds once around a point just left of the middle
+/// of edge i at t = 0. It counts the edges that cross a ray from this point.
 bool BorderProof::windsOnceLeftOf(std::size_t i) const {
   const Point a = planarEdge(i).from.at[0], b = planarEdge(i).to.at[0], e = b - a;
-  // To the left, and in no direction that edges of a regular mesh have.
+  // A ray to the left, in a direction that edges of a regular mesh do not have.
   constexpr double kTilt = 0.2360679774997897;
   const Point ray = {kTilt * e.x - e.y, kTilt * e.y + e.x};
   const double reach = tree_.reach();
@@ -277,7 +279,7 @@ bool BorderProof::windsOnceLeftOf(std::size_t i) const {
   if (!(size >= kTiny)) return false;
   const double ray_bound = kBorderRayBound * size,
                half_bound = kBorderHalfBound * (reach * reach);
-  // On which side of the ray's line a point lies; 0: unknown.
+  // The side of the ray's line on which a point lies; 0: unknown.
   const auto side = [&](const Point& p) {
     const double s = cross(ray, (p - a) + (p - b));
     return s > ray_bound ? 1 : s < -ray_bound ? -1 : 0;
@@ -290,7 +292,8 @@ bool BorderProof::windsOnceLeftOf(std::size_t i) const {
     const int from = side(p), to = side(q);
     if (from == 0 || to == 0) return false;
     if (from == to) continue;
-    // The middle lies on the left of what crosses the ray itself from right to left.
+    // The middle is on the left of an edge that crosses the ray itself from right to
+    // left.
     const double left = cross(q - p, (a - p) + (b - p)) * to;
     if (!(std::abs(left) > half_bound)) return false;
     if (left > 0) winding += to;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof that what has a border covers the plane once at most.
+// The proof that a region with a given border covers the plane at most once.
 #ifndef FCL_CCD_SELF_CULLING_BORDER_PROOF_H
 #define FCL_CCD_SELF_CULLING_BORDER_PROOF_H
 
@@ -17,8 +17,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Moving boxes of the edges of a border, as Traversal takes them: triangles
-/// between two points.
+/// @brief Moving boxes of the edges of a border, in the form that Traversal takes: an
+/// edge is a triangle with two points.
 struct BorderTree {
   UninitializedVector<TreeVertex> points;
   UninitializedVector<MovingKdopNode> nodes;
@@ -26,24 +26,24 @@ struct BorderTree {
   const MovingKdopNode& node(int i) const { return nodes[static_cast<std::size_t>(i)]; }
 };
 
-/// @brief Looks at one border after another.
+/// @brief Tests one border after another.
 class BorderProof {
  public:
   BorderProof(const MovingKdopTree& tree, const Kernels& kernels)
       : tree_(tree), kernels_(kernels) {}
 
-  /// @brief Proves for one of the directions, which all triangles of the region face
-  /// during the whole step, that seen along it the border never meets itself but where
-  /// edges share a vertex, and that at t = 0 it winds once round what lies on the left of
-  /// its edges.
-  /// @param border  has edges
+  /// @brief All triangles of the region face the given directions during the whole step.
+  /// Proves two things for the projection along one of these directions. The border never
+  /// meets itself, except where edges share a vertex. At t = 0 it winds once around what
+  /// is on the left of its edges.
+  /// @param border  has at least one edge
   bool isEmbedded(const RegionBorder& border, std::uint32_t directions);
 
  private:
   struct Point {
     double x, y;
   };
-  /// At t = 0 and at t = 1.
+  /// A point of the plane at t = 0 and at t = 1.
   struct MovingPoint {
     Point at[2];
   };
@@ -76,7 +76,7 @@ class BorderProof {
 
   const MovingKdopTree& tree_;
   const Kernels& kernels_;
-  /// What is looked at, and its points in the plane.
+  /// The border that is tested, and its points in the plane.
   const RegionBorder* border_{nullptr};
   std::vector<MovingPoint> points_;
   BorderTree boxes_;

@@ -11,7 +11,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Vertices whose fans are alike, until there are eight of them.
+/// Collects vertices whose fans have the same form, until there are eight of them.
 class FanQueue {
  public:
   FanQueue(const MovingKdopTree& tree, const Kernels& kernels,
@@ -45,7 +45,7 @@ class FanQueue {
 
   void prove(Alike& alike) {
     EightFans eight;
-    // The last one fills up the eight.
+    // If there are fewer than eight, the last one is repeated.
     for (std::uint32_t i = 0; i < 8; ++i) {
       const std::uint32_t vertex = alike.vertices[std::min(i, alike.size - 1)];
       const VertexFan fan = tree_.fans()[vertex];
@@ -63,9 +63,9 @@ class FanQueue {
   const MovingKdopTree& tree_;
   const Kernels& kernels_;
   std::vector<std::uint8_t>& embedded_;
-  /// By kind, open and closed, and number of spokes.
+  /// Short fans by kind (open, closed) and number of spokes.
   Alike short_[2][VertexFans::kShort + 1];
-  /// Those that follow each other.
+  /// Long fans of the same form that follow each other.
   Alike long_;
 };
 
@@ -92,7 +92,7 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
 
 std::vector<std::uint32_t> findNodesInFans(const MovingKdopTree& tree,
                                            const std::vector<std::uint8_t>& embedded) {
-  // Pairs in smaller ones are not worth a look at all nodes.
+  // For smaller fans a pass over all nodes costs more than it saves.
   constexpr std::uint32_t kLeastSpokes = 64, kNoPlace = MovingKdopNode::kNoPlace;
   assert(embedded.size() == tree.vertices().size());
   if (tree.fans().longest() < kLeastSpokes) return {};

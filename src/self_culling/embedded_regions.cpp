@@ -14,7 +14,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// The directions that ranges of triangles face, from blocks of eight.
+/// The directions that ranges of triangles face, computed from blocks of eight triangles.
 class FacedDirections {
  public:
   FacedDirections(const MovingKdopTree& tree, const Kernels& kernels)
@@ -22,13 +22,14 @@ class FacedDirections {
         kernels_(kernels),
         blocks_((tree.triangles().size() + kLength - 1) / kLength, kUnknown) {}
 
-  /// Those of triangles [first, last). Not for ranges with common triangles at a time.
+  /// The directions of triangles [first, last). Threads must not use ranges with common
+  /// triangles at the same time.
   std::uint32_t of(std::size_t first, std::size_t last) {
     assert(first < last && last <= tree_.triangles().size());
     const std::size_t from = (first + kLength - 1) / kLength, to = last / kLength;
     if (from > to) return ofEight(first, last);
     std::uint32_t faced = kUnknown;
-    // Where a surface is not smooth, some of the blocks say so.
+    // If a surface is not smooth, a few blocks are enough to show it.
     for (const std::size_t step : {std::size_t{16}, std::size_t{4}, std::size_t{1}})
       for (std::size_t i = from; i < to && faced != 0; i += step) {
         if (blocks_[i] == kUnknown) blocks_[i] = ofEight(i * kLength, (i + 1) * kLength);
@@ -53,20 +54,21 @@ class FacedDirections {
   std::vector<std::uint32_t> blocks_;
 };
 
-/// A node that may be the root of a region, and where its triangles end.
+/// A node that may be the root of a region, and the end of its triangles.
 struct OpenNode {
   std::int32_t node;
   std::uint32_t last;
 };
 
-/// What is left to be searched, and the triangles of the regions that were found, and of
-/// those whose borders were looked at in vain: not even a part was a region.
+/// The nodes that are still to be searched; the number of triangles of the regions that
+/// were found; and the number of triangles whose borders were tested in vain, because not
+/// even a part was a region.
 struct Searched {
   std::vector<OpenNode> rest;
   std::size_t embedded{0}, in_vain{0};
 };
 
-/// Finds borders and looks at them; one for each thread.
+/// Finds borders and tests them; one for each thread.
 struct BorderSearch {
   BorderFinder finder;
   BorderProof proof;
@@ -77,7 +79,7 @@ struct BorderSearch {
 
 class RegionSearch {
  public:
-  /// @param found  of the tree's size, all 0
+  /// @param found  has the tree's size, all entries 0
   RegionSearch(const MovingKdopTree& tree, const Kernels& kernels,
                std::uint32_t least_triangles, EmbeddedRegions& found)
       : tree_(tree),
@@ -90,10 +92,11 @@ class RegionSearch {
   }
 
   /// Finds the largest region among a node, its first part, the first part of that and so
-  /// on. A part of an embedded region is embedded, too: hence from the smallest one
-  /// upwards, as far as they are, so that no large border is looked at in vain where
-  /// layers lie on each other. Different nodes at the same time, none below another.
-  /// @return with the other parts of those that are not embedded
+  /// on. A part of an embedded region is embedded, too. So the search begins with the
+  /// smallest part and goes up as long as the parts are embedded. In this way no large
+  /// border is tested in vain where layers lie on each other. Threads may search
+  /// different nodes at the same time if none is below another.
+  /// @return also has the other parts of the nodes that are not embedded
   Searched search(const OpenNode& open, BorderSearch& borders) {
     std::vector<OpenNode> chain{open};
     for (std::vector<OpenNode> parts = partsOf(open); !parts.empty();
@@ -116,7 +119,7 @@ class RegionSearch {
   }
 
  private:
-  /// The nodes below that have enough triangles.
+  /// The children that have enough triangles.
   std::vector<OpenNode> partsOf(const OpenNode& open) const {
     std::vector<OpenNode> parts;
     const MovingKdopNode& node = tree_.node(open.node);
@@ -149,8 +152,8 @@ class RegionSearch {
     return false;
   }
 
-  /// Takes a node as a region, and the vertices inside: those that the region is the
-  /// first to have, with a closed fan that no border passes.
+  /// Records a node as a region, and its inside vertices: those that the region is the
+  /// first to have, that have a closed fan, and that no border passes.
   void take(const OpenNode& open, BorderSearch& borders) {
     found_.nodes[static_cast<std::size_t>(open.node)] = 1;
     const Region region = regionOf(open);
@@ -174,9 +177,10 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
                         std::vector<std::uint8_t>(tree.vertices().size(), 0)};
   assert(tree.numNodes() > 0 && least_triangles > 0);
   RegionSearch regions(tree, kernels, least_triangles, found);
-  // No two that are open have a triangle in common, nor are the same vertices written to.
+  // Two open nodes have no common triangle, and no vertex is written for both.
   constexpr std::size_t kTasks = 64;
-  // Parts from all over the mesh: where most of them are in vain, so will the rest be.
+  // The open nodes are from all parts of the mesh. If most of them are tested in vain,
+  // the search stops.
   const std::size_t spare = 16 * std::size_t{least_triangles};
   std::size_t embedded = 0, in_vain = 0;
   std::vector<OpenNode> open{regions.root()};
