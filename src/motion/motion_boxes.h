@@ -24,7 +24,7 @@ struct MotionBox {
   double displacement;
 };
 
-/// @brief Up to eight boxes, number by number.
+/// @brief Up to eight boxes, stored by member: each array has one member of all boxes.
 struct alignas(64) MotionBoxes {
   static constexpr int kWidth = 8;
   double center[3][kWidth];
@@ -66,7 +66,7 @@ struct SpanPoses {
 /// @brief The windows in which eight boxes may overlap another one, as fractions of a
 /// span.
 struct MeetingWindows {
-  /// The boxes that may overlap it at all, a bit each.
+  /// A bit for each box that may overlap the other one.
   unsigned mask;
   double lo[MotionBoxes::kWidth];
   double hi[MotionBoxes::kWidth];

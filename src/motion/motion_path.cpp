@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rounding (u = 2^-53). A turn: the angle w t < 3.2 is rounded once, hence its sine and
-// cosine are within 4 + 3.2 u, 1 - cos(w t) within 8.2 u (from half of the angle, where
-// w t < 1: within 11 u of itself). An entry of C and D is at most 1 in size (times what
-// R1 stretches): 7.2 + 8.2 u, and 3 products and sums of sizes up to 4, 13 u: below 32 u
-// an entry, 96 u for the matrix (Frobenius norm). A product of three and a sum of four
-// add 4 u of their size an entry, 13 u in all. A coordinate of the translation: below 16
-// u of the size of its terms, 28 u for the vector, and 7 u in that sum.
+// Rounding (u = 2^-53). A turn: the angle w t < 3.2 is rounded once. So its sine and
+// cosine are within 4 + 3.2 u, and 1 - cos(w t) within 8.2 u (for w t < 1 it is computed
+// from half of the angle: within 11 u of itself). An entry of C and D is at most 1 in
+// size (times what R1 stretches): 7.2 + 8.2 u, and 3 products and sums of sizes up to 4,
+// 13 u: below 32 u an entry, 96 u for the matrix (Frobenius norm). A product of three and
+// a sum of four add 4 u of their size an entry, 13 u in all. A coordinate of the
+// translation: below 16 u of the size of its terms, 28 u for the vector, and 7 u in that
+// sum.
 //
 // A spline: the weights are within 4 u, the rotation vector within 20 u of the largest
 // control point W, its length within 3 u of itself. Sine and cosine of half of it are
@@ -86,8 +87,7 @@ double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
       m[i][j] = to.rotation[3 * i] * from.rotation[3 * j] +
                 to.rotation[3 * i + 1] * from.rotation[3 * j + 1] +
                 to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
-  // Four times a component of the quaternion times all of it, for the largest one
-  // (Shepperd 1978).
+  // Four times the quaternion, times its largest component (Shepperd 1978).
   double q[4];
   const double trace = m[0][0] + m[1][1] + m[2][2];
   if (trace > 0) {
@@ -160,7 +160,7 @@ Vec splineAccelerationAt(const double (&points)[4][3], double t) {
   return vecOf(v);
 }
 
-/// The result is NaN if a number is.
+/// The largest length of a point; NaN if one of them is NaN.
 double largestPoint(const double (&points)[4][3]) {
   double most = 0;
   for (const auto& point : points) {
@@ -490,8 +490,8 @@ AccelerationBound MotionPath::turnAcceleration() const {
 
 // |R''| <= |v'| + |v|^2, |v| <= |w'|, |v'| <= |w''| + |w'|^2 / 2: the left Jacobian of
 // the rotation vector is the mean of exp(s [w]) for s in [0, 1]. w'' is between its ends,
-// w' between three control points. What is computed of them is within 2^-46 of the
-// control points of the spline.
+// w' between three control points. Their computed values are within 2^-46 of the control
+// points of the spline.
 AccelerationBound MotionPath::splineAcceleration(double t0, double t1) const {
   const auto largest = [](const Vec& x, const Vec& y) {
     return std::max(norm(x), norm(y));

@@ -107,7 +107,7 @@ class MotionPath {
   /// @brief Bound on the velocity of a point with |x| <= radius that rests in the body.
   double speed(double radius) const { return turn_speed_ * radius + translation_speed_; }
 
-  /// @brief As positionError(), for rate(t).
+  /// @brief The same as positionError(), but for rate(t).
   double rateError(double radius) const;
 
  private:
@@ -124,7 +124,7 @@ class MotionPath {
   PoseRate splineRate(double t) const;
 
   Kind kind_{Kind::kTurn};
-  // Of a turn.
+  // Members of a turn.
   double angle_{0};
   Vec axis_{1, 0, 0};
   Pose beginning_;
@@ -136,7 +136,7 @@ class MotionPath {
   double linear_translation_[3]{};
   /// Distance of the reference point from the origin of the body.
   double reference_size_{0};
-  // Of a spline.
+  // Members of a spline.
   double translation_points_[4][3]{};
   double rotation_points_[4][3]{};
   // Of a motion of the program.

@@ -60,8 +60,9 @@ struct Work {
   std::int32_t steps;
 };
 
-/// Works that start at the same time, for example at t = 0: those further down in the
-/// trees come first. The other comparisons make the order depend on the works alone.
+/// Works are sorted by start time. If the times are equal, for example t = 0, works
+/// deeper in the trees come first. The other comparisons make the order depend on the
+/// works alone.
 bool isLater(const Work& x, const Work& y) {
   if (x.start != y.start) return x.start > y.start;
   const std::int64_t x_depth = std::int64_t{x.a.box} + x.b.box,

@@ -25,7 +25,7 @@ struct MotionQueryOptions {
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
   int max_steps{10000};
-  /// Pairs of triangles that count; null: all do.
+  /// Selects the triangle pairs that count; null: all of them.
   const PairRules* rules{nullptr};
 };
 

@@ -78,11 +78,11 @@ void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
 Vec edge(const Vec (&x)[3], int k) { return x[(k + 1) % 3] - x[k]; }
 Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
 
-/// The part of a vector across another one.
+/// The part of a vector that is perpendicular to another one.
 Vec across(const Vec& edge, const Vec& v) { return cross(edge, cross(v, edge)); }
 
-/// The direction along which nearest features are apart. It rounds less than the line
-/// between their nearest points.
+/// The direction along which nearest features are apart. It has less rounding than the
+/// line between their nearest points.
 Vec directionOf(const NearestFeatures& near, const Vec (&a)[3], const Vec (&b)[3]) {
   switch (near.kind) {
     case NearestFeatures::Kind::kVertexOfA:

@@ -23,7 +23,7 @@ struct MotionTolerance {
 
   /// Bound on the error of a distance between computed points along a unit direction.
   double position;
-  /// The same of a relative velocity.
+  /// The same for a relative velocity.
   double rate;
   /// Features that come within distance + touching count as contact.
   double touching;
@@ -40,18 +40,18 @@ enum class MotionCertainty {
 /// @brief The features of two triangles that are nearest to each other.
 struct NearestFeatures {
   enum class Kind { kVertexOfA, kVertexOfB, kEdges };
-  double square;  ///< of the distance
+  double square;  ///< square of the distance
   Vec between;    ///< from a's point to b's
-  Vec point;      ///< a's
+  Vec point;      ///< the point of a
   Kind kind;
   int a, b;                 ///< numbers of the vertex or edge (edge k starts at vertex k)
-  bool inside_a, inside_b;  ///< of edges: whether the point is no end
+  bool inside_a, inside_b;  ///< edges: whether the point is not an end
 };
 
 /// @brief A contact of two triangles.
 struct MotionContact {
   std::int32_t triangle[2];
-  /// Where the trees have them.
+  /// The places of the triangles in the trees.
   std::int32_t place[2];
   double toc_lo, toc_hi;
   MotionCertainty certainty;
@@ -82,7 +82,7 @@ class TrianglePairMotion {
 
   /// @brief Advances from t to the first time at which the triangles are within the
   /// tolerance. Unless t is 0, they are apart or just touch at t.
-  /// @param[in,out] t  the time from which on
+  /// @param[in,out] t  in: the time at which to start; out: the time that was reached
   /// @param last  stops after the first step that reaches this time
   /// @param[in,out] steps  the number of steps left
   Answer advance(double& t, double last, int& steps, MotionCounts& counts);
@@ -118,7 +118,7 @@ class TrianglePairMotion {
   const MotionTolerance& tolerance_;
   /// Bound on the relative acceleration of two vertices.
   double acceleration_;
-  /// The same of the third derivative; infinite: unknown.
+  /// The same for the third derivative; infinite: unknown.
   double jerk_;
   NearestFeatures nearest_;
 };
