@@ -23,7 +23,8 @@ bool hostIsBigEndian() {
 std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
 std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 
-/// @brief A value whose bytes are in the host's order, or (kSwap) in the other.
+/// @brief Reads a value whose bytes are in the host's order, or (kSwap) in the opposite
+/// order.
 template <bool kSwap, typename Value, typename Bits>
 Value load(const char* at) {
   Bits bits;
@@ -50,7 +51,7 @@ void decode(const char* at, const PlyVertexBlock& block, Vertices& vertices) {
   }
 }
 
-/// @brief The size of an item, or 0 if it has lists or is nothing.
+/// @brief The size of an item; 0 if it has lists or no properties.
 std::size_t itemSize(const PlyElement& element) {
   std::size_t size = 0;
   for (const PlyProperty& property : element.properties) {
@@ -60,7 +61,7 @@ std::size_t itemSize(const PlyElement& element) {
   return size;
 }
 
-/// @brief Whether the element, without lists, is as long as it says.
+/// @brief Whether an element without lists has the length that its header promises.
 bool fits(const PlyElement& element, std::string_view body) {
   const std::size_t size = itemSize(element);
   return size > 0 && element.count <= body.size() / size;
@@ -84,8 +85,8 @@ PlyVertexBlock blockOf(const PlyElement& element, bool big_endian, std::size_t b
   return block;
 }
 
-/// @brief Walks over elements with lists; each function returns whether the file has what
-/// it is asked for.
+/// @brief Walks over elements with lists. Each function returns whether the file has the
+/// requested data.
 template <bool kSwap>
 class ListReader {
  public:
@@ -94,7 +95,7 @@ class ListReader {
 
   bool readFaces(const PlyElement& element, Faces& faces) {
     const PlyProperty* const ids = vertexIds(element);
-    // The count is not trusted: each face takes at least a byte.
+    // The count may be wrong: each face takes at least a byte.
     faces.corners.reserve(3 * static_cast<std::size_t>(std::min<unsigned long long>(
                                   element.count, body_.size() / 4)));
     for (unsigned long long i = 0; i < element.count; ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Binary PLY is the format of long sequences; CGAL's reader takes 35 MB/s of it.
+// Binary PLY is the format of long sequences, for which CGAL's reader is too slow (35
+// MB/s).
 #ifndef FCL_CCD_BINARY_PLY_H
 #define FCL_CCD_BINARY_PLY_H
 
@@ -13,29 +14,30 @@
 
 namespace fcl_ccd {
 
-/// @brief Where the vertices of a binary PLY are. All offsets are in bytes.
+/// @brief The position of the vertices in a binary PLY. All offsets are in bytes.
 struct PlyVertexBlock {
-  std::size_t begin{0};  ///< in the file
+  std::size_t begin{0};  ///< offset in the file
   std::size_t count{0};
   std::size_t stride{0};
-  std::size_t offsets[3]{};  ///< of x, y, z in a vertex
+  std::size_t offsets[3]{};  ///< offsets of x, y, z in a vertex
   PlyType types[3]{};
   bool big_endian{false};
   std::size_t end() const { return begin + count * stride; }
 };
 
-/// @brief The vertices of a file that begins with them: a binary PLY whose vertex element
-/// is the first and has no lists. Nothing for any other file.
+/// @brief The vertex block of a file that begins with it: a binary PLY whose vertex
+/// element is the first one and has no lists. Nothing for any other file.
 std::optional<PlyVertexBlock> findVertexBlock(std::string_view file);
 
-/// @brief The vertices of the block, exactly.
+/// @brief The vertices of the block, without rounding.
 Vertices decodeVertices(std::string_view file, const PlyVertexBlock& block);
 
-/// @brief Throws std::runtime_error that names the first vertex that is not finite.
+/// @brief Throws std::runtime_error that names the first vertex that is not finite, if
+/// there is one.
 void requireFinite(const Vertices& vertices);
 
-/// @brief Reads a binary PLY that is whole and whose vertices have no lists.
-/// @return false for any other file; `mesh` is then in no particular state.
+/// @brief Reads a binary PLY that is complete and whose vertices have no lists.
+/// @return false for any other file; the content of `mesh` is then undefined
 bool parseBinaryPly(std::string_view file, PolygonMesh& mesh);
 
 }  // namespace fcl_ccd

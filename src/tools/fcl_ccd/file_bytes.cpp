@@ -13,7 +13,7 @@
 namespace fcl_ccd {
 namespace {
 
-/// @brief What the file's size says that it has; nothing of a pipe.
+/// @brief The number of bytes by the file's size; nothing for a pipe.
 std::string readAtOnce(std::FILE* file) {
   struct stat status {};
   if (fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) return {};
@@ -34,7 +34,7 @@ std::string readBytes(const std::string& path) {
   while (const std::size_t n = std::fread(block, 1, sizeof block, file.get()))
     bytes.append(block, n);
   if (std::ferror(file.get())) throw std::runtime_error("cannot read: " + reason());
-  // The mark that some editors put before text.
+  // The byte order mark that some editors put before text.
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (bytes.compare(0, kByteOrderMark.size(), kByteOrderMark) == 0)
     bytes.erase(0, kByteOrderMark.size());

@@ -6,7 +6,7 @@
 
 namespace fcl_ccd {
 
-/// @brief The contents of a file, which is not empty.
+/// @brief The contents of a file. An empty file is an error.
 /// @throws std::runtime_error with the cause (but not the file's name).
 std::string readBytes(const std::string& path);
 

@@ -176,7 +176,7 @@ bool isBeforeNaturally(const std::string& a, const std::string& b) {
     if (m != n) return m < n;
   }
   if ((i < a.size()) != (j < b.size())) return j < b.size();
-  return a < b;  // f1 and f01
+  return a < b;  // equal numbers, as in f1 and f01
 }
 
 std::vector<std::string> listFrames(const std::vector<std::string>& words,
@@ -195,7 +195,7 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
     } else if (!is_there && name.find_first_of("*?[") != std::string::npos) {
       found = select(word, matchesOf(word), range);
     } else {
-      // A file. If it does not exist, opening it fails with a message.
+      // The word is a file. If it does not exist, opening it fails with a message.
       frames.push_back(word);
       continue;
     }

@@ -8,10 +8,10 @@
 
 namespace fcl_ccd {
 
-/// @brief Which frames of a folder or of a pattern are taken.
+/// @brief The selection of frames of a folder or of a pattern.
 struct FrameRange {
-  std::optional<long long> start;  ///< the first of all, unless given
-  std::optional<long long> end;    ///< the last of all, unless given; inclusive
+  std::optional<long long> start;  ///< default: the first frame
+  std::optional<long long> end;    ///< inclusive; default: the last frame
   long long stride{1};             ///< at least 1
 
   bool isWhole() const { return !start && !end && stride == 1; }
@@ -19,12 +19,14 @@ struct FrameRange {
 
 /// @brief The files that the words name, in their order. A word is
 /// (1) a file;
-/// (2) a folder: its meshes, which are of one format, in natural order (f9 before f10);
-/// (3) a shell pattern with *, ? or [...] in its last part: what matches, in natural
-/// order; (4) a name with a number, frame_%04d.ply: the numbers from start to end. In (2)
-/// and (3) start and end count the files from 0; (1) is not subject to a range.
-/// @throws std::runtime_error that names the word and what is wrong: nothing matches, a
-/// number of (4) is missing, start, end or stride is given but no word is (2), (3) or
+/// (2) a folder: its meshes, which must have one format, in natural order (f9 before
+/// f10);
+/// (3) a shell pattern with *, ? or [...] in its last part: the files that match, in
+/// natural order;
+/// (4) a name with a number, frame_%04d.ply: the numbers from start to end.
+/// In (2) and (3) start and end count the files from 0. (1) has no range.
+/// @throws std::runtime_error that names the word and the cause: nothing matches, a
+/// number of (4) is missing, or start, end or stride is given but no word is (2), (3) or
 /// (4).
 std::vector<std::string> listFrames(const std::vector<std::string>& words,
                                     const FrameRange& range);

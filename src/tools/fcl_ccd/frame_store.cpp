@@ -8,12 +8,12 @@ namespace fcl_ccd {
 
 FrameStore::Pair FrameStore::take(std::size_t step) {
   if (meshes_.size() == 1) {
-    // Not owned: the sequence holds it.
+    // Not owned: the sequence has it.
     const Frame still(Frame(), &meshes_.firstVertices());
     return {still, still};
   }
-  // The later frame first: the earlier one is in work, if another thread has the step
-  // before this one.
+  // The later frame first: if another thread has the step before this one, it is reading
+  // the earlier frame already.
   Frame to = get(step + 1);
   return {get(step), std::move(to)};
 }

@@ -12,9 +12,9 @@
 
 namespace fcl_ccd {
 
-/// @brief The frames of a mesh that the steps [begin, end) take, step i from frame i to
-/// frame i + 1. Each is read once, by the thread that asks for it first, and forgotten
-/// when its two steps have it. A mesh of one frame stands still.
+/// @brief The frames of a mesh for the steps [begin, end). Step i goes from frame i to
+/// frame i + 1. Each frame is read once, by the thread that asks for it first, and is
+/// dropped when both of its steps have it. A mesh with one frame stands still.
 class FrameStore {
  public:
   using Frame = std::shared_ptr<const Vertices>;
@@ -26,7 +26,7 @@ class FrameStore {
     Frame from, to;
   };
 
-  /// @brief Both frames of a step, to be called once for each step, by any thread.
+  /// @brief Both frames of a step. Call it once for each step, on any thread.
   /// @throws std::runtime_error as MeshSequence::read().
   Pair take(std::size_t step);
 

@@ -15,7 +15,7 @@ namespace fcl_ccd {
 GrowingFile::GrowingFile(const std::string& path, std::uint64_t kept_size)
     : path_(path), size_(kept_size), committed_(kept_size) {
   const int stream = standardStreamOf(path);
-  constexpr mode_t kReadWriteForAll = 0666;  // less the umask
+  constexpr mode_t kReadWriteForAll = 0666;  // minus the umask
   file_ = stream >= 0
               ? dup(stream)
               : open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, kReadWriteForAll);
@@ -51,7 +51,7 @@ void GrowingFile::rollBack() noexcept {
 }
 
 void GrowingFile::finish() {
-  // A network's file system may tell only now that its disk is full.
+  // A network file system may report only now that its disk is full.
   const bool accepted = !is_regular_ || fsync(file_) == 0;
   const int error = errno;
   const bool closed = close(file_) == 0;

@@ -8,12 +8,13 @@
 
 namespace fcl_ccd {
 
-/// @brief A file that others may read while it grows: what is appended goes to the file
-/// at once. All functions but rollBack() throw WriteError.
+/// @brief A file that other programs may read while it grows: appended text goes to the
+/// file at once. All functions but rollBack() throw WriteError.
 class GrowingFile {
  public:
-  /// @brief Opens or makes the file and cuts it to `kept_size` bytes. What is no regular
-  /// file (a device, a pipe, /dev/stdout wherever it leads) is appended to.
+  /// @brief Opens or makes the file and cuts it to `kept_size` bytes. If it is not a
+  /// regular file (a device, a pipe, /dev/stdout wherever it leads), text is appended to
+  /// it.
   GrowingFile(const std::string& path, std::uint64_t kept_size);
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
@@ -21,13 +22,13 @@ class GrowingFile {
 
   void append(std::string_view bytes);
 
-  /// @brief What was appended so far stays.
+  /// @brief Keeps the text that has been appended.
   void commit() { committed_ = size_; }
 
-  /// @brief Takes away what was appended after commit(), if it can be taken away.
+  /// @brief Removes the text that was appended after commit(), if this is possible.
   void rollBack() noexcept;
 
-  /// @brief Closes the file; returns only if every byte was accepted.
+  /// @brief Closes the file. Returns only if every byte was accepted.
   void finish();
 
   const std::string& path() const { return path_; }

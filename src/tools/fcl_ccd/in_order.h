@@ -15,14 +15,15 @@
 
 namespace fcl_ccd {
 
-/// @brief Makes the results of [begin, end) on several threads, and hands them to one in
-/// their order.
+/// @brief Makes the results of [begin, end) on several threads, and passes them to one
+/// thread in their order.
 ///
 /// `make(i, worker)` runs on the threads 0, 1, ... of `num_workers`; `take(i, result)`
-/// and `pause()` on the caller's. Nothing is begun after pause() has returned false; what
-/// was begun is finished and taken. An exception of make(i) is thrown when i's turn
-/// comes, when all before it were taken; one of take() at once. At most 2 * num_workers
-/// results are held. With one worker there is no other thread.
+/// and `pause()` run on the caller's thread. After pause() has returned false no new item
+/// is begun; items that were begun are finished and taken. An exception of make(i) is
+/// thrown after all items before i have been taken. An exception of take() is thrown at
+/// once. At most 2 * num_workers results are kept. With one worker there is no other
+/// thread.
 template <typename Result, typename Make, typename Take, typename Pause>
 class InOrder {
  public:
@@ -71,7 +72,7 @@ class InOrder {
     std::exception_ptr error;
   };
 
-  /// The threads; they are joined whatever happens.
+  /// The threads. They are always joined, also after an exception.
   class Workers {
    public:
     explicit Workers(InOrder& all) : all_(all) {
@@ -119,8 +120,8 @@ class InOrder {
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<std::size_t, Outcome> results_;
-  std::size_t next_;   ///< to be begun
-  std::size_t taken_;  ///< those before were taken
+  std::size_t next_;   ///< the next item to begin
+  std::size_t taken_;  ///< all items before it have been taken
   std::size_t end_;
   std::size_t num_workers_;
   Make make_;

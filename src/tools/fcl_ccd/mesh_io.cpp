@@ -101,7 +101,7 @@ void requireFewEnough(std::size_t count, const char* what) {
 PolygonMesh parse(const std::string& extension, std::string bytes) {
   PolygonMesh mesh;
   if (extension == "stl") return parseStl(bytes);
-  // A binary PLY that is unusual or wrong goes to the careful reader below.
+  // An unusual or wrong binary PLY goes to the careful reader below.
   if (extension == "ply" && parseBinaryPly(bytes, mesh)) return mesh;
   const PolygonSoup soup = readSoup(extension, std::move(bytes));
   requireFewEnough(soup.points.size(), "vertices");

@@ -19,14 +19,15 @@ struct Mesh {
   Triangles triangles;
 };
 
-/// @brief The faces of a mesh as a file has them.
+/// @brief The faces of a mesh as they are in a file.
 struct Faces {
   /// @brief Vertex ids of all faces, one face after the other.
   std::vector<int> corners;
-  /// @brief For each face where its corners end; empty when all faces are triangles.
+  /// @brief For each face the end of its corners; empty if all faces are triangles.
   std::vector<std::size_t> ends;
 
-  /// @brief Whether the face ends where the corners end now, with at least three of them.
+  /// @brief Ends a face at the current end of the corners. Returns whether it has at
+  /// least three corners.
   bool endFace();
   std::size_t size() const { return ends.empty() ? corners.size() / 3 : ends.size(); }
   bool operator==(const Faces& other) const {
@@ -38,7 +39,7 @@ struct Faces {
   std::size_t last_end_{0};
 };
 
-/// @brief A mesh as a file has it.
+/// @brief A mesh as it is in a file.
 struct PolygonMesh {
   Vertices vertices;
   Faces faces;
@@ -46,7 +47,7 @@ struct PolygonMesh {
 
 using Colour = std::array<std::uint8_t, 3>;
 
-/// @brief What follows the last point of a file's name, in lower case.
+/// @brief The part of a file's name after the last point, in lower case.
 std::string extensionOf(const std::string& path);
 
 /// @brief Whether readPolygonMesh() reads files with this extension.
@@ -54,22 +55,22 @@ bool isMeshFormat(const std::string& extension);
 
 /// @brief Reads a mesh; the extension names the format: .obj, .ply (ascii, binary of
 /// either byte order, coordinates float or double), .off (text) or .stl (ascii, binary).
-/// (1) Vertices keep their order and their full double precision. Those of STL are the
-/// corners of its facets, three each, in their order.
-/// (2) A mesh that is returned has a face, each face three vertices or more, finite
-/// coordinates and no vertex id out of range.
-/// @throws std::runtime_error that names the file and what is wrong with it.
+/// (1) Vertices keep their order and their full double precision. The vertices of an STL
+/// are the corners of its facets, three for each, in their order.
+/// (2) A returned mesh has at least one face, each face has at least three vertices,
+/// coordinates are finite and vertex ids in range.
+/// @throws std::runtime_error that names the file and the error.
 PolygonMesh readPolygonMesh(const std::string& path);
 
-/// @brief readPolygonMesh(), its faces divided by triangulate().
+/// @brief readPolygonMesh() with faces divided by triangulate().
 Mesh readMesh(const std::string& path);
 
-/// @brief The bytes of a binary little-endian PLY of the mesh, coordinates in double, one
-/// colour a vertex.
-/// @throws std::invalid_argument unless there are as many colours as vertices.
+/// @brief The bytes of a binary little-endian PLY of the mesh, with coordinates in double
+/// and one colour per vertex.
+/// @throws std::invalid_argument if the number of colours is not the number of vertices.
 std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours);
 
-/// @brief Writes encodePaintedPly() to a file, which is left whole or as it was.
+/// @brief Writes encodePaintedPly() to a file. If it fails, the file stays as it was.
 /// @throws std::runtime_error that names the file and the cause.
 void writePaintedPly(const std::string& path, const Mesh& mesh,
                      const std::vector<Colour>& colours);

@@ -20,7 +20,7 @@
 namespace fcl_ccd {
 namespace {
 
-/// @brief A file that is open for reading, or not.
+/// @brief A file that is opened for reading; opening may have failed.
 class InputFile {
  public:
   explicit InputFile(const std::string& path)
@@ -39,7 +39,7 @@ class InputFile {
            static_cast<std::size_t>(status.st_size) == size;
   }
 
-  /// Whether the file has these bytes at the offset.
+  /// Whether the file has these bytes at an offset.
   bool has(std::string_view bytes, std::size_t offset) const {
     char block[1 << 16];
     while (!bytes.empty()) {

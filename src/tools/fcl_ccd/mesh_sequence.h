@@ -10,12 +10,12 @@
 
 namespace fcl_ccd {
 
-/// @brief The frames of one mesh: files whose faces are the same, and that differ in the
-/// positions of the vertices. Only the first frame is held.
+/// @brief The frames of one mesh: files with the same faces and different positions of
+/// the vertices. Only the first frame is kept in memory.
 ///
-/// Faces are divided into triangles as they are in the first frame, and the same way in
-/// all others. All functions throw std::runtime_error that names the file and the cause;
-/// those that are const may be called by several threads at once.
+/// Faces are divided into triangles by their shape in the first frame, and in the same
+/// way in all others. All functions throw std::runtime_error that names the file and the
+/// cause. Several threads may call const functions at the same time.
 class MeshSequence {
  public:
   /// @brief Reads the first frame.
@@ -27,17 +27,17 @@ class MeshSequence {
   const Triangles& triangles() const { return triangles_; }
   const Vertices& firstVertices() const { return vertices_; }
 
-  /// @brief The vertices of a frame, which fits the first one.
+  /// @brief The vertices of a frame. It must fit the first one.
   Vertices read(std::size_t frame) const;
 
-  /// @brief Throws unless the frame fits the first one. Of a binary PLY that is laid out
-  /// as the first frame the vertices are not looked at, all else is read.
+  /// @brief Throws if the frame does not fit the first one. If a binary PLY has the
+  /// layout of the first frame, its vertices are not read, only the rest.
   void check(std::size_t frame) const;
 
-  /// @brief Tells the system that the frame is read soon.
+  /// @brief Tells the operating system that the frame will be read soon.
   void announce(std::size_t frame) const;
 
-  /// @brief Joins vertices: from here on the triangles have other ids.
+  /// @brief Joins vertices: after this call the triangles have other ids.
   void join(const std::vector<int>& map);
 
  private:
@@ -45,7 +45,7 @@ class MeshSequence {
   Faces faces_;
   Triangles triangles_;
   Vertices vertices_;
-  /// Of a binary PLY that begins with its vertices: the bytes before and behind them.
+  /// For a binary PLY that begins with its vertices: the bytes before and behind them.
   std::string head_, tail_;
   std::size_t tail_begin_{0};
 };

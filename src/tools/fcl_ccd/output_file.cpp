@@ -20,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names of the temporary files that exist, where a signal handler may read them: a slot
-/// is in use while its first character is not 0, and that one is written last.
+/// Names of the existing temporary files, for the signal handler. A slot is in use if its
+/// first character is not 0. The first character is written last.
 struct TemporaryList {
   static constexpr std::size_t kSlots = 8;
   static constexpr std::size_t kLongest = 4096;
@@ -56,7 +56,8 @@ int standardStream(const struct stat& file) {
   return -1;
 }
 
-/// @brief Where a link leads that leads to no file yet; any other path itself.
+/// @brief The target of a link to a file that does not exist yet; for any other path, the
+/// path itself.
 std::string targetOf(const std::string& path) {
   std::error_code error;
   const fs::path link = fs::read_symlink(path, error);
@@ -89,7 +90,7 @@ OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
     file_ = std::fopen(path.c_str(), "wb");
     if (file_ == nullptr) fail("cannot write", errno);
   } else {
-    // Renaming would replace a file that its owner protected against writing.
+    // Renaming would replace a file that its owner has protected against writing.
     if (access(path.c_str(), W_OK) != 0) fail("cannot write", errno);
     std::error_code error;
     const fs::path resolved = fs::canonical(path, error);
@@ -117,11 +118,11 @@ void OutputFile::openTemporary() {
 bool OutputFile::openNameless() {
 #ifdef O_TMPFILE
   const fs::path folder = fs::path(target_).parent_path();
-  constexpr mode_t kReadWriteForAll = 0666;  // less the umask
+  constexpr mode_t kReadWriteForAll = 0666;  // minus the umask
   const int file = open(folder.empty() ? "." : folder.c_str(),
                         O_TMPFILE | O_RDWR | O_CLOEXEC, kReadWriteForAll);
   if (file < 0) return false;
-  // Without /proc it could not be named.
+  // Without /proc it cannot get a name later.
   is_nameless_ = access(("/proc/self/fd/" + std::to_string(file)).c_str(), F_OK) == 0;
   if (is_nameless_) file_ = fdopen(file, "wb");
   if (file_ == nullptr) close(file);
@@ -140,9 +141,9 @@ void OutputFile::nameTemporary() {
 template <typename Make>
 void OutputFile::makeTemporary(Make make) {
   const fs::path target(target_);
-  constexpr int kAttempts = 100;  // left-overs of processes that had the same id
+  constexpr int kAttempts = 100;  // files may be left from processes that had the same id
   for (int i = 0; i < kAttempts; ++i) {
-    // Room for the rest in the 255 characters that a name may have.
+    // A name has at most 255 characters: leaves room for the rest of it.
     const std::string name = "." + target.filename().string().substr(0, 200) + "." +
                              std::to_string(getpid()) + "." + std::to_string(i) + ".tmp";
     const std::string candidate = (target.parent_path() / name).string();
@@ -202,7 +203,7 @@ int standardStreamOf(const std::string& path) {
 }
 
 void removeTemporariesOnSignal() {
-  // A file that grows too large is an error of writing.
+  // A file that grows too large becomes an error of writing.
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal_number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
     const auto previous = std::signal(signal_number, removeTemporariesAndRaise);

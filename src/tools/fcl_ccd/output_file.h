@@ -8,26 +8,26 @@
 
 namespace fcl_ccd {
 
-/// @brief A file that is seen whole or not at all: what is written goes to a temporary
-/// file in the same folder, which publish() renames. Whoever writes several files
-/// finishes all of them before publishing the first. On Linux the temporary file has no
-/// name before finish(), so that nothing is left of it when the program is killed.
+/// @brief A file that other programs see complete or not at all. The text goes to a
+/// temporary file in the same folder, which publish() renames. To write several files,
+/// finish all of them before the first is published. On Linux the temporary file has no
+/// name before finish(), so that nothing is left of it if the program is killed.
 ///
-/// What cannot be renamed over (a device, a pipe, /dev/stdout wherever it leads) is
+/// A file that cannot be replaced (a device, a pipe, /dev/stdout wherever it leads) is
 /// written in place. All functions throw WriteError.
 class OutputFile {
  public:
-  /// @brief Opens the temporary file, so that a path that cannot be written is refused
-  /// before the work is done.
+  /// @brief Opens the temporary file. So an error in the path is found before the work is
+  /// done.
   explicit OutputFile(const std::string& path);
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  /// @brief Removes the temporary file unless it was published.
+  /// @brief Removes the temporary file if it was not published.
   ~OutputFile();
 
   void write(std::string_view bytes);
 
-  /// @brief Closes the file; returns only if every byte was accepted.
+  /// @brief Closes the file. Returns only if every byte was accepted.
   void finish();
 
   /// @brief Gives the file its name, after finish().
@@ -44,21 +44,22 @@ class OutputFile {
   [[noreturn]] void fail(const std::string& what, int error) const;
 
   std::string path_;       ///< as given
-  std::string target_;     ///< where it leads
-  std::string temporary_;  ///< empty when written in place, or still nameless
+  std::string target_;     ///< where the path leads, without links
+  std::string temporary_;  ///< empty if written in place, or still without a name
   bool is_nameless_{false};
   std::FILE* file_{nullptr};
 };
 
-/// @brief Throws WriteError unless the file can be written, as far as can be seen without
-/// changing anything.
+/// @brief Throws WriteError if the file cannot be written, as far as this is known
+/// without changing anything.
 void requireWritable(const std::string& path);
 
-/// @brief The standard stream (its descriptor) that writes to this file, or -1. It has a
-/// position of its own there, which a second opening of the file would not follow.
+/// @brief The descriptor of the standard stream that writes to this file, or -1. The
+/// stream has its own position in the file. If the file were opened a second time, it
+/// would not follow that position.
 int standardStreamOf(const std::string& path);
 
-/// @brief From here on SIGINT, SIGTERM, SIGHUP and SIGPIPE remove the temporary files
+/// @brief After this call SIGINT, SIGTERM, SIGHUP and SIGPIPE remove the temporary files
 /// before they end the program.
 void removeTemporariesOnSignal();
 

@@ -11,26 +11,27 @@
 
 namespace fcl_ccd {
 
-/// @brief Prints to stdout and sees to it that it arrives.
-/// @throws WriteError when it does not.
+/// @brief Prints to stdout and flushes it.
+/// @throws WriteError if the text was not written.
 void print(std::string_view text);
 
-/// @brief The files of one run of the program, none of them named twice: those that it
-/// opens appear all of them, or none.
+/// @brief The output files of one run of the program. Each file has one name. Either all
+/// files that it opens appear, or none.
 class OutputSet {
  public:
   /// @param inputs  files that must not be overwritten.
   explicit OutputSet(std::vector<std::string> inputs) : taken_(std::move(inputs)) {}
 
-  /// @brief Takes a name for an output that is opened later; nothing for an empty path.
-  /// @throws std::runtime_error as open(); no file is made or changed.
+  /// @brief Reserves the name of an output that is opened later; does nothing for an
+  /// empty path.
+  /// @throws std::runtime_error for the same reasons as open(); makes or changes no file.
   void reserve(const std::string& path);
 
-  /// @brief Opens a file to write to; null for an empty path.
+  /// @brief Opens a file for writing; null for an empty path.
   /// @throws std::runtime_error when it cannot be written, or is an input or an output.
   OutputFile* open(const std::string& path);
 
-  /// @brief Completes every file, then lets them all appear.
+  /// @brief Completes all files, then makes all of them appear.
   void publish();
 
  private:

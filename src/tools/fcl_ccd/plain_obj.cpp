@@ -14,7 +14,7 @@ namespace {
 
 using Tokens = std::vector<std::string_view>;
 
-/// Statements of the format that say nothing about vertices and faces.
+/// Statements of the format that do not concern vertices and faces.
 constexpr std::string_view kIgnored[] = {
     "vn",       "vt",       "vp",   "g",     "o",      "s",          "usemtl",
     "mtllib",   "l",        "p",    "mg",    "usemap", "maplib",     "bevel",
@@ -28,8 +28,8 @@ bool isIgnored(std::string_view keyword) {
          std::end(kIgnored);
 }
 
-/// Takes one statement without its comments, joining lines that end in a backslash
-/// outside of one.
+/// Takes one statement without its comments. Joins lines that end in a backslash outside
+/// of a comment.
 bool takeStatement(std::string_view& text, std::string& statement, std::size_t& line_no) {
   statement.clear();
   for (std::string_view line; takeLine(text, line);) {
@@ -91,8 +91,8 @@ class PlainObj {
     text_ += '\n';
   }
 
-  /// A corner is `v`, `v/vt`, `v//vn` or `v/vt/vn`; ids start at 1, negative ones count
-  /// back from the last vertex so far.
+  /// A corner is `v`, `v/vt`, `v//vn` or `v/vt/vn`; ids start at 1, negative ids count
+  /// back from the latest vertex.
   long long vertexId(std::string_view corner) const {
     const std::string_view word = corner.substr(0, corner.find('/'));
     long long id = 0;

@@ -10,7 +10,7 @@ namespace {
 
 using Tokens = std::vector<std::string_view>;
 
-/// Lines of the file without comments and blank lines.
+/// The lines of a file without comments and blank lines.
 class LineReader {
  public:
   explicit LineReader(std::string_view text) : text_(text) {}
@@ -36,14 +36,14 @@ struct Sizes {
   long long faces{0};
 };
 
-/// OFF, after the optional prefixes for texture, colour and normal.
+/// The word OFF, after optional prefixes for texture, colour and normal.
 bool isOffKeyword(std::string_view word) {
   for (const std::string_view prefix : {"ST", "C", "N"})
     if (word.substr(0, prefix.size()) == prefix) word.remove_prefix(prefix.size());
   return word == "OFF";
 }
 
-/// `OFF` and the numbers of vertices, faces and edges, on one line or on two.
+/// Reads `OFF` and the numbers of vertices, faces and edges, on one line or on two.
 Sizes readHeader(LineReader& lines) {
   Tokens tokens;
   if (!lines.next(tokens)) throw std::runtime_error("the file is empty");

@@ -22,7 +22,7 @@ class AsciiBody {
     return static_cast<unsigned long long>(count);
   }
 
-  /// Ends at the latest with the file: each value takes a byte or throws.
+  /// The loop ends at the latest with the file: each value takes a byte or throws.
   void skip(PlyType type, unsigned long long count) {
     for (unsigned long long i = 0; i < count; ++i) skipValue(type);
   }

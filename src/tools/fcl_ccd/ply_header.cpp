@@ -16,7 +16,7 @@ struct TypeName {
   std::size_t size;
 };
 
-/// In the order of PlyType.
+/// Names of the types, in the order of PlyType.
 constexpr TypeName kTypes[] = {{"char", "int8", 1},     {"uchar", "uint8", 1},
                                {"short", "int16", 2},   {"ushort", "uint16", 2},
                                {"int", "int32", 4},     {"uint", "uint32", 4},

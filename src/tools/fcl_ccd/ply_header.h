@@ -21,7 +21,7 @@ struct PlyProperty {
   std::string name;
   PlyType type{PlyType::kFloat};
   bool is_list{false};
-  PlyType count_type{PlyType::kUint8};  ///< of a list
+  PlyType count_type{PlyType::kUint8};  ///< type of a list's length
 };
 
 struct PlyElement {
@@ -39,17 +39,16 @@ struct PlyHeader {
   std::vector<PlyElement> elements;
 };
 
-/// @brief Takes the header off the front of a PLY file. It has one vertex element with
-/// scalar x, y, z and one face element with a list of vertex ids.
+/// @brief Removes the header from the front of a PLY file and returns it. It has one
+/// vertex element with scalar x, y, z, and one face element with a list of vertex ids.
 /// @throws std::runtime_error with the line and the cause.
 PlyHeader takePlyHeader(std::string_view& file);
 
 /// @brief The list of vertex ids of a face element, or null.
 const PlyProperty* vertexIds(const PlyElement& face);
 
-/// @brief The header as text, without comments and elements that have no property; only
-/// the coordinates and the vertex ids keep their names, so that a reader ignores the
-/// rest.
+/// @brief The header as text, without comments and elements that have no property. Only
+/// coordinates and vertex ids keep their names, so that a reader ignores the rest.
 std::string plainPlyHeader(const PlyHeader& header);
 
 }  // namespace fcl_ccd

@@ -10,13 +10,14 @@
 namespace fcl_ccd {
 namespace {
 
-// "Erase to the end of the line", so that a shorter text leaves nothing behind.
+// "Erase to the end of the line", so that a shorter text does not leave characters
+// behind.
 constexpr const char* kEraseRest = "\x1b[K";
 
 constexpr std::chrono::milliseconds kTerminalPeriod{100};
 constexpr std::chrono::seconds kLogPeriod{30};
 
-/// 1:02:03
+/// A time in the form 1:02:03.
 std::string clockText(double seconds) {
   const long long whole = std::llround(seconds);
   char text[64];

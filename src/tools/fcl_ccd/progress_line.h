@@ -8,8 +8,8 @@
 
 namespace fcl_ccd {
 
-/// @brief How far the work is, on stderr. On a terminal a line that is overwritten; else
-/// a line every half minute, so that a log tells it too.
+/// @brief Shows the progress of the work on stderr: on a terminal a line that is
+/// overwritten; otherwise a new line every half minute, for a log.
 class ProgressLine {
  public:
   ProgressLine();
@@ -20,13 +20,14 @@ class ProgressLine {
   /// @brief Shows a text on a terminal.
   void show(const std::string& text);
 
-  /// @brief From here on steps are counted; so many were done at another time.
+  /// @brief Starts to count steps, and tells how many were done by an earlier run.
   void begin(std::size_t num_steps, std::size_t num_done);
 
-  /// @brief Shows a bar, contacts, time a step and time left, unless that was just done.
+  /// @brief Shows a bar, the number of contacts, time per step and time left, unless it
+  /// did so a moment ago.
   void step(std::size_t num_done, std::size_t num_contacts);
 
-  /// @brief Wipes the line, before something else is printed.
+  /// @brief Clears the line, before other text is printed.
   void clear();
 
  private:

@@ -18,7 +18,7 @@ struct QueriesOptions {
   std::string json_path;  ///< empty: not written
 };
 
-/// @brief `fcl-ccd queries`: the elementary test on every query of the files.
+/// @brief `fcl-ccd queries`: runs the elementary test on every query of the files.
 /// @throws std::runtime_error that names the file and the cause.
 void queriesCommand(const QueriesOptions& options);
 

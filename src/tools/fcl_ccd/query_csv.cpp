@@ -56,7 +56,7 @@ Row parseRow(const std::vector<std::string_view>& fields, std::size_t& num_round
   return row;
 }
 
-/// @brief Gathers the rows of one file into queries.
+/// @brief Makes queries from the rows of one file.
 class QueryBuilder {
  public:
   explicit QueryBuilder(QueryList& list) : list_(list) {}

@@ -11,7 +11,7 @@
 
 namespace fcl_ccd {
 
-/// @brief Four points on their straight paths: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
+/// @brief Four points with straight paths: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
 struct ElementaryQuery {
   std::array<fcl::detail::deformable::VertexPath, 4> x;
   bool truth{false};
@@ -19,7 +19,7 @@ struct ElementaryQuery {
 
 struct QueryList {
   std::vector<ElementaryQuery> queries;
-  bool has_truth{false};       ///< every query says whether its features touch
+  bool has_truth{false};       ///< whether every query tells if its features touch
   std::size_t num_rounded{0};  ///< coordinates that are not exactly a double
 };
 

@@ -29,9 +29,9 @@ cpp_int parseBigInteger(std::string_view text) {
   return negative ? cpp_int(-magnitude) : magnitude;
 }
 
-/// @brief Quotient of positive integers to 55 bits or more, of which the last is set when
-/// the division leaves a rest ("sticky"): rounding it once to 53 bits or fewer rounds the
-/// exact quotient.
+/// @brief Quotient of positive integers, with 55 bits or more. The last bit is set if the
+/// division leaves a rest ("sticky"). So to round it once to 53 bits or fewer is to round
+/// the exact quotient.
 struct ScaledQuotient {
   cpp_int mantissa;
   int exponent;  ///< quotient = mantissa * 2^exponent
@@ -56,7 +56,7 @@ ScaledQuotient divide(const cpp_int& numerator, const cpp_int& denominator) {
 
 /// @brief mantissa * 2^exponent, rounded once, also where the result is subnormal.
 NearestDouble round(const ScaledQuotient& quotient) {
-  constexpr int kLowestExponent = -1074;  // of double's smallest subnormal
+  constexpr int kLowestExponent = -1074;  // that of double's smallest subnormal
   constexpr int kDigits = std::numeric_limits<double>::digits;
   const int size = static_cast<int>(msb(quotient.mantissa)) + 1;
   const int drop = std::max(size - kDigits, kLowestExponent - quotient.exponent);

@@ -12,7 +12,7 @@ struct NearestDouble {
 };
 
 /// @brief The double nearest to a fraction of two decimal integers (ties to even).
-/// @throws std::runtime_error when a text is not an integer, the denominator is 0, or the
+/// @throws std::runtime_error if a text is not an integer, the denominator is 0, or the
 /// fraction is beyond double's range.
 NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator);
 

@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// @brief Whole lines of a file, with where they end.
+/// @brief Reads complete lines of a file, and tells where they end.
 class LineFile {
  public:
   explicit LineFile(const std::string& path) : in_(path, std::ios::binary) {}
@@ -35,7 +35,8 @@ class LineFile {
   std::uint64_t end_{0};
 };
 
-/// @brief Reads the head of a file. Returns false if there is no file or no whole head.
+/// @brief Reads the head of a file. Returns false if there is no file or no complete
+/// head.
 bool takeHead(LineFile& file, const std::string& path, const std::string& head,
               const char* other) {
   std::error_code error;
@@ -51,11 +52,11 @@ bool takeHead(LineFile& file, const std::string& path, const std::string& head,
 }
 
 struct ContactRows {
-  std::uint64_t begin{0};  ///< where the step's rows begin
+  std::uint64_t begin{0};  ///< offset of the step's first row
   std::size_t count{0};
 };
 
-/// @brief The rows of each step that has some, and where the last whole row ends.
+/// @brief The rows of each step that has any, and the end of the last complete row.
 struct ContactList {
   std::map<std::size_t, ContactRows> steps;
   std::uint64_t end{0};
@@ -65,7 +66,7 @@ struct ContactList {
     return found == steps.end() ? 0 : found->second.count;
   }
 
-  /// Where the rows of a step and all after it begin.
+  /// The offset of the first row of this step or of a later one.
   std::uint64_t beginOf(std::size_t step) const {
     const auto found = steps.lower_bound(step);
     return found == steps.end() ? end : found->second.begin;

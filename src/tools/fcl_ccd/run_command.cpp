@@ -143,7 +143,7 @@ class StepMaker {
   std::size_t look_ahead_;
   FrameStore frames_a_;
   std::optional<FrameStore> frames_b_;
-  std::vector<std::unique_ptr<Scene>> scenes_;  ///< of each worker
+  std::vector<std::unique_ptr<Scene>> scenes_;  ///< one for each worker
 };
 
 /// @brief The first line of the list of steps: the options on which answers depend.
@@ -202,7 +202,7 @@ class RunOutputs {
     for (OutputFile* file : wholeFiles()) file->publish();
   }
 
-  /// @brief Removes the part of a step that is not whole from the growing files.
+  /// @brief Removes an incomplete step from the growing files.
   void rollBack() noexcept {
     for (auto* file : {&contacts_, &steps_})
       if (*file) (*file)->rollBack();

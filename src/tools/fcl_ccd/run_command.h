@@ -13,14 +13,14 @@
 namespace fcl_ccd {
 
 struct RunOptions {
-  std::vector<std::string> frames;   ///< of mesh A, as listFrames() takes them
+  std::vector<std::string> frames;   ///< frames of mesh A, in the form of listFrames()
   std::vector<std::string> against;  ///< of mesh B: none, one frame, or as many as of A
   FrameRange range;
-  QuerySettings settings;      ///< but for num_threads
-  std::optional<int> jobs;     ///< steps side by side; 0: as many as there are cores
-  std::optional<int> threads;  ///< of a step; 0: as many as there are cores
+  QuerySettings settings;      ///< num_threads is not used
+  std::optional<int> jobs;     ///< steps at the same time; 0: as many as cores
+  std::optional<int> threads;  ///< threads of a step; 0: as many as cores
   std::optional<double> weld;  ///< distance at which vertices are joined
-  std::string contacts_path;   ///< empty: not written, as for the others
+  std::string contacts_path;   ///< empty: not written; also for the others
   ContactColumns columns;
   std::string steps_path;
   std::string json_path;
@@ -29,15 +29,15 @@ struct RunOptions {
 };
 
 // Exit codes of the program.
-constexpr int kRefused = 2;     ///< nothing was begun, no file written or changed
-constexpr int kBadFrame = 3;    ///< stopped on the way by a frame
-constexpr int kNotWritten = 4;  ///< stopped on the way by an output
-constexpr int kSignalled =
-    128;  ///< stopped on the way by a signal, whose number is added
+constexpr int kRefused = 2;      ///< nothing was begun, no file was changed
+constexpr int kBadFrame = 3;     ///< a frame stopped the run
+constexpr int kNotWritten = 4;   ///< an output stopped the run
+constexpr int kSignalled = 128;  ///< a signal stopped the run; its number is added
 
-/// @brief `fcl-ccd run`: every consecutive pair of frames, a table on stdout, files.
-/// @return the exit code; a run that was stopped on the way has said so on stderr.
-/// @throws std::runtime_error that names the file and the cause, when nothing was begun.
+/// @brief `fcl-ccd run`: tests every pair of consecutive frames, prints a table to
+/// stdout, and writes files.
+/// @return the exit code. If the run was stopped after its begin, stderr has the cause.
+/// @throws std::runtime_error that names the file and the cause, if nothing was begun.
 int runCommand(const RunOptions& options);
 
 }  // namespace fcl_ccd

@@ -16,7 +16,7 @@ void requireNoSignal() {
         "stopped by a signal before the first step. No file was written");
 }
 
-/// 86,400
+/// A number in the form 86,400.
 std::string withCommas(std::size_t number) {
   std::string text = std::to_string(number);
   for (std::size_t i = text.size(); i > 3; i -= 3) text.insert(i - 3, 1, ',');
@@ -34,7 +34,7 @@ void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
   requireNoSignal();
 }
 
-/// Reads every frame, which checks it as well.
+/// Reads every frame. This also checks it.
 void weldFrames(MeshSequence& meshes, double eps, std::vector<std::string>& notes) {
   Weld weld(meshes.firstVertices(), eps);
   for (std::size_t frame = 1; frame < meshes.size(); ++frame) {

@@ -13,7 +13,7 @@
 
 namespace fcl_ccd {
 
-/// @brief A signal asked to stop before anything was begun.
+/// @brief A signal asked the program to stop before anything was begun.
 struct StoppedBySignal : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -24,12 +24,12 @@ struct FramePaths {
 
   std::size_t numSteps() const { return a.size() - 1; }
 
-  /// @brief The files of a step: both frames of A, then those of B, or the one of a body
-  /// that stands still.
+  /// @brief The files of a step: both frames of A, then both of B, or the only one of B
+  /// if it stands still.
   std::vector<std::string> filesOf(std::size_t step) const;
 };
 
-/// @throws std::runtime_error when a frame has no counterpart.
+/// @throws std::runtime_error if a frame has no counterpart.
 FramePaths listFrames(const RunOptions& options);
 
 /// @brief The meshes of a run.
@@ -42,8 +42,8 @@ struct RunInputs {
   }
 };
 
-/// @brief Reads the first frames, checks all others, on `num_workers` threads, and joins
-/// vertices if that is asked for.
+/// @brief Reads the first frames, checks all others on `num_workers` threads, and joins
+/// vertices if this is requested.
 /// @param[out] notes  lines for the user.
 /// @throws std::runtime_error that names the first file that does not fit;
 /// StoppedBySignal.

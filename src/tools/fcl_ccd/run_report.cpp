@@ -19,7 +19,7 @@ constexpr Colour kOrange{255, 140, 0};
 constexpr Colour kRed{220, 20, 20};
 constexpr Colour kViolet{150, 0, 200};
 
-/// The library decides every contact exactly; a reader of the table is told so.
+/// The library decides every contact exactly. The table tells this to its reader.
 constexpr int kNumUncertain = 0;
 
 const char* nameOf(Kind kind) {
@@ -131,7 +131,7 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
     lines.append(1, ',').append(numberText(contact.toc_lo));
     lines.append(1, ',').append(numberText(contact.toc_hi));
     if (columns.triangles)
-      // A feature is of the mesh that its first and its last vertex are of.
+      // The first and the last vertex tell the mesh of each feature.
       for (const std::size_t i : {0u, 1u})
         lines.append(contact.vertices[3 * i].of_b ? ",b" : ",")
             .append(std::to_string(contact.triangles[i]));
@@ -145,7 +145,8 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
 std::string stepLine(const StepReport& report) {
   const StepResult& result = report.result;
   Json first = nullptr;
-  // Which of several crossings is found is not told: it depends on the steps before.
+  // The report does not tell which of several crossings was found: this depends on the
+  // previous steps.
   if (result.crossing)
     first = {{"kind", "crossing"}, {"toc_lo", 0.0}, {"toc_hi", 0.0}};
   else if (result.first() != nullptr)
@@ -240,7 +241,7 @@ PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
       painted.colours[offset + static_cast<std::size_t>(vertex.id)] = value;
     }
   };
-  // What is rarer comes last and stays visible.
+  // Rare kinds are painted last, so that they stay visible.
   for (const SceneContact& contact : result.contacts)
     if (contact.kind == Kind::kEdgeEdge) colour(contact, kOrange);
   for (const SceneContact& contact : result.contacts)

@@ -13,23 +13,23 @@
 
 namespace fcl_ccd {
 
-/// @brief What is reported about the step `index`.
+/// @brief The report of step `index`.
 struct StepReport {
   std::size_t index{0};
   std::size_t vertices{0};         ///< of all meshes
   std::size_t triangles{0};        ///< of all meshes
-  std::vector<std::string> files;  ///< of the two frames of A, then of those of B
+  std::vector<std::string> files;  ///< of both frames of A, then of those of B
   StepResult result;
 };
 
-/// @brief Columns of the contact list that are there when they are asked for.
+/// @brief Optional columns of the contact list.
 struct ContactColumns {
   bool triangles{false};
   bool position{false};
   bool normal{false};
 };
 
-/// @brief What is told at the end, added up from steps.
+/// @brief The summary of a run, added up from its steps.
 struct RunSummary {
   std::size_t steps{0};
   std::size_t vf{0};
@@ -39,11 +39,11 @@ struct RunSummary {
     std::size_t step;
     double toc_lo;
   };
-  std::optional<First> first;  ///< of the first step with a contact or crossing
+  std::optional<First> first;  ///< the first step with a contact or crossing
   std::size_t slowest_step{0};
-  double slowest_ms{-1};  ///< of steps with a time; negative without one
+  double slowest_ms{-1};  ///< of steps that have a time; negative: none has
 
-  /// @brief Adds a step that comes after all others.
+  /// @brief Adds a step that is after all others.
   void add(const RunSummary& step);
 };
 RunSummary summaryOf(const StepReport& report);
@@ -59,21 +59,21 @@ std::string summaryLines(const RunSummary& summary);
 std::string contactsHead(const ContactColumns& columns);
 std::string contactLines(const StepReport& report, const ContactColumns& columns);
 
-/// @brief A line of the list of steps: what does not depend on the machine, the number of
-/// threads, or the steps before.
+/// @brief A line of the list of steps. It has only values that do not depend on the
+/// machine, the number of threads, or the previous steps.
 std::string stepLine(const StepReport& report);
 
-/// @brief What a line of the list of steps says.
+/// @brief The content of a line of the list of steps.
 RunSummary summaryOf(const nlohmann::ordered_json& step_line);
 
-/// @brief The summary without times: what the list of steps ends with.
+/// @brief The summary without times: the end of the list of steps.
 nlohmann::ordered_json toJson(const RunSummary& summary);
 
-/// @brief One entry of "steps".
+/// @brief One entry of "steps" in the JSON report.
 nlohmann::ordered_json toJson(const StepReport& report);
 
-/// @brief A frame of the scene as one mesh, B's vertices after A's, with the vertices of
-/// the contacts in colour: vertex-face red, edge-edge orange, initial crossing violet.
+/// @brief A frame of the scene as one mesh, with B's vertices after A's. Vertices of
+/// contacts have a colour: vertex-face red, edge-edge orange, crossing at t = 0 violet.
 struct PaintedMesh {
   Mesh mesh;
   std::vector<Colour> colours;

@@ -104,7 +104,7 @@ void sortContacts(std::vector<SceneContact>& contacts) {
                    [](const auto& a, const auto& b) { return a.toc_lo < b.toc_lo; });
 }
 
-/// Keeps, of the first contacts of two queries, those that may be the first of both.
+/// Keeps the contacts of two first-contact queries that may be the first one of both.
 void keepFirst(std::vector<SceneContact>& contacts) {
   double first_hi = std::numeric_limits<double>::infinity();
   for (const SceneContact& c : contacts) first_hi = std::min(first_hi, c.toc_hi);

@@ -19,7 +19,7 @@ struct QuerySettings {
   fcl::ContinuousQuery query{fcl::ContinuousQuery::kAll};
   double toc_err{1e-4};
   bool self{true};     ///< whether A is tested against itself
-  bool points{false};  ///< whether position and normal of contacts are told
+  bool points{false};  ///< whether contacts have a position and a normal
   int repeat{1};
   int num_threads{1};
 };
@@ -30,18 +30,18 @@ struct SceneVertex {
   bool of_b{false};
 };
 
-/// @brief A contact of the scene, without what the program does not report.
+/// @brief A contact of the scene, with the data that the program reports.
 struct SceneContact {
   fcl::ContinuousContactKind kind{fcl::ContinuousContactKind::kVertexFace};
   std::array<SceneVertex, 5> vertices;
   int num_vertices{4};
   double toc_lo{0};
   double toc_hi{0};
-  /// The triangles that hold the first feature (vertex, or edge a) and the second one.
+  /// The triangles of the first feature (vertex, or edge a) and of the second one.
   std::array<std::intptr_t, 2> triangles{{-1, -1}};
-  /// At toc_lo; only with QuerySettings::points.
+  /// Position at toc_lo; only with QuerySettings::points.
   std::array<double, 3> position{};
-  std::array<double, 3> normal{};  ///< from A to B; within A from the first feature
+  std::array<double, 3> normal{};  ///< from A to B; within A to feature 2
 };
 
 /// @brief Seconds of each part of a step.
@@ -58,9 +58,9 @@ struct StepResult {
   bool initially_crossing{false};
   std::optional<SceneContact> crossing;
   fcl::StageCounts counts;
-  StepTimes times;  ///< build is left 0
+  StepTimes times;  ///< `build` is 0
 
-  /// @brief The earliest contact; where there is none, the crossing at t = 0, if any.
+  /// @brief The earliest contact. If there is none, the crossing at t = 0, if any.
   const SceneContact* first() const;
 };
 
@@ -80,16 +80,17 @@ struct SceneFrame {
 class Scene {
  public:
   /// @brief Builds the models, settings.repeat times.
-  /// @throws std::runtime_error naming the mesh ("A", "B") that the library refuses.
+  /// @throws std::runtime_error with the name of the mesh ("A", "B") that the library
+  /// refuses.
   Scene(const SceneTriangles& triangles, const SceneFrame& frame,
         const QuerySettings& settings);
 
-  /// @brief Least time that building the models took, in seconds.
+  /// @brief The shortest time of building the models, in seconds.
   double buildTime() const { return build_time_; }
 
   /// @brief Moves the models from one frame to the next and runs the queries,
-  /// settings.repeat times; the times are those of the run with the least total. A mesh
-  /// whose two frames are the same object stands still.
+  /// settings.repeat times. The times are those of the run with the smallest total. A
+  /// mesh whose two frames are the same object stands still.
   StepResult step(const SceneFrame& from, const SceneFrame& to);
 
  private:

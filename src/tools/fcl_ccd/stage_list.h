@@ -14,7 +14,7 @@ struct StageField {
   std::uint64_t fcl::StageCounts::*count;
 };
 
-/// @brief Every count, in pipeline order.
+/// @brief All counts, in the order of the pipeline.
 constexpr StageField kStages[] = {{"node_pairs", &fcl::StageCounts::node_pairs},
                                   {"triangle_pairs", &fcl::StageCounts::triangle_pairs},
                                   {"adjacent_pairs", &fcl::StageCounts::adjacent_pairs},

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kTitleSize = 80;
 constexpr std::size_t kBodyBegin = kTitleSize + 4;
-/// Normal and three corners in float, two bytes of attributes.
+/// The size of a facet: a normal and three corners in float, two bytes of attributes.
 constexpr std::size_t kFacetSize = 50;
 constexpr std::size_t kNormalSize = 12;
 

@@ -9,8 +9,9 @@
 namespace fcl_ccd {
 
 /// @brief Reads an STL file, binary or ascii. Each facet has three vertices of its own;
-/// its normal is ignored. A binary file has the length that its number of facets says;
-/// any other file is taken for ascii (binary files that begin with "solid" exist).
+/// its normal is ignored. A file is binary if its length is the one that its number of
+/// facets promises. Any other file is read as ascii (some binary files begin with
+/// "solid").
 /// @throws std::runtime_error with the place and the cause (but not the file's name).
 PolygonMesh parseStl(std::string_view file);
 

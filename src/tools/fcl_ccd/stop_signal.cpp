@@ -23,7 +23,7 @@ void catchStopSignals() {
     if (previous.sa_handler == SIG_IGN) continue;
     struct sigaction action {};
     action.sa_handler = requestStop;
-    // SA_RESETHAND: the second one is not caught.
+    // SA_RESETHAND: a second signal is not caught.
     action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
     sigaction(signal_number, &action, nullptr);
   }

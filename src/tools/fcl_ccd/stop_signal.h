@@ -4,8 +4,8 @@
 
 namespace fcl_ccd {
 
-/// @brief From here on the first SIGINT, SIGTERM or SIGHUP asks the program to stop; a
-/// second one ends it. A signal that was ignored stays ignored. SIGPIPE and SIGXFSZ
+/// @brief After this call the first SIGINT, SIGTERM or SIGHUP asks the program to stop,
+/// and a second one ends it. A signal that was ignored stays ignored. SIGPIPE and SIGXFSZ
 /// become errors of writing.
 void catchStopSignals();
 

@@ -10,18 +10,20 @@
 
 namespace fcl_ccd {
 
-/// @brief Takes the next line, without its end, off the front of the text.
+/// @brief Removes the next line from the front of the text and returns it without its
+/// end.
 /// @return false at the end of the text.
 bool takeLine(std::string_view& text, std::string_view& line);
 
-/// @brief Takes the next run of non-blank characters off the front of the text.
-/// @return false when only blanks are left.
+/// @brief Removes the next token, a run of non-blank characters, from the front of the
+/// text.
+/// @return false if only blanks are left.
 bool takeToken(std::string_view& text, std::string_view& token);
 
 /// @brief All tokens of a line.
 void splitTokens(std::string_view line, std::vector<std::string_view>& tokens);
 
-/// @brief What a token says when it is read as a decimal number.
+/// @brief The result of reading a token as a decimal number.
 enum class NumberToken {
   kFinite,
   kNotFinite,  ///< nan, inf, or beyond double's range
@@ -33,11 +35,11 @@ NumberToken classifyNumber(std::string_view token);
 /// @brief Whether the token is a decimal integer, with its value.
 bool parseInteger(std::string_view token, long long& value);
 
-/// @brief Throws std::runtime_error unless the token is a finite number.
+/// @brief Throws std::runtime_error if the token is not a finite number.
 void requireFinite(std::string_view token);
 
-/// @brief Runs `read` and puts "PLACE: " before the message of a std::runtime_error that
-/// it throws; `place` makes that text.
+/// @brief Runs `read`. If it throws a std::runtime_error, puts "PLACE: " before its
+/// message; `place` makes this text.
 template <typename Read, typename Place>
 auto namingPlace(Place place, Read read) {
   try {
@@ -47,8 +49,7 @@ auto namingPlace(Place place, Read read) {
   }
 }
 
-/// @brief A token as it can be shown in a message: quoted, cut, without control
-/// characters.
+/// @brief A token for a message: quoted, cut, without control characters.
 std::string quoted(std::string_view token);
 
 }  // namespace fcl_ccd

@@ -32,8 +32,8 @@ std::array<double, 3> newellNormal(const Vertices& vertices,
   return normal;
 }
 
-/// @brief The polygon in the coordinate plane in which it is largest, turning to the
-/// left.
+/// @brief The polygon projected to the coordinate plane in which it is largest, turning
+/// to the left.
 std::vector<Point2> project(const Vertices& vertices, const std::vector<int>& corners) {
   const std::array<double, 3> normal = newellNormal(vertices, corners);
   std::size_t axis = 0;
@@ -56,7 +56,7 @@ bool isConvex(const std::vector<Point2>& points) {
   return true;
 }
 
-/// @brief A ring of corners that loses one at a time.
+/// @brief A ring of corners from which ears are cut, one at a time.
 class Ring {
  public:
   Ring(std::vector<int> corners, std::vector<Point2> points)
@@ -64,7 +64,7 @@ class Ring {
 
   std::size_t size() const { return corners_.size(); }
 
-  /// Whether the triangle at corner i turns to the left and has no other corner in it.
+  /// Whether the triangle at corner i turns to the left and contains no other corner.
   bool isEar(std::size_t i) const {
     const std::size_t before = (i + size() - 1) % size(), after = (i + 1) % size();
     const Point2 &a = points_[before], &b = points_[i], &c = points_[after];

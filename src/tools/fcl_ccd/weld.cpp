@@ -17,8 +17,8 @@ bool coincide(const Position& p, const Position& q, double eps) {
   return true;
 }
 
-/// @brief The cell of a grid in which a position is; with distance 0 the position itself.
-/// Beyond 2^53 cells from the origin neighbours are further apart than a cell.
+/// @brief The grid cell of a position; with distance 0 the position itself. Beyond 2^53
+/// cells from the origin the distance of neighbouring doubles is larger than a cell.
 Position cellOf(const Position& p, double eps) {
   Position cell;
   for (std::size_t k = 0; k < 3; ++k)
@@ -60,7 +60,7 @@ bool isSoup(const Vertices& vertices, const Triangles& triangles) {
 
 Weld::Weld(const Vertices& first_frame, double eps)
     : eps_(eps), map_(first_frame.size()) {
-  // The vertices that others are joined to, by cells as wide as the distance.
+  // The vertices that others are joined to, by cell. Cells are as wide as the distance.
   std::unordered_map<Position, std::vector<int>, CellHash> lowest;
   const int reach = eps > 0 ? 1 : 0;
   for (std::size_t i = 0; i < map_.size(); ++i) {
@@ -80,8 +80,8 @@ Weld::Weld(const Vertices& first_frame, double eps)
 }
 
 void Weld::refine(const Vertices& frame) {
-  // Those that leave a vertex, with the lowest ids that they coincide with among
-  // themselves: few, where there are any.
+  // The vertices that are separated from a vertex, reduced to the lowest ids that others
+  // of them coincide with. They are few, if there are any.
   std::vector<std::vector<int>> parted(map_.size());
   for (std::size_t i = 0; i < map_.size(); ++i) {
     const std::size_t lowest = static_cast<std::size_t>(map_[i]);

@@ -8,7 +8,7 @@
 
 namespace fcl_ccd {
 
-/// @brief An output cannot be written: the message names the file and the cause.
+/// @brief An output cannot be written. The message names the file and the cause.
 struct WriteError : std::runtime_error {
   /// @param error  an errno.
   WriteError(const std::string& name, const std::string& what, int error)
