@@ -200,6 +200,45 @@ TEST_F(BoundedMotions, MeetAtTheTimeOfTheClosedForm) {
   }
 }
 
+/// The pendulum in a frame that turns, as does what it hits: the time stays the same.
+class TurningPendulum : public Pendulum {
+ public:
+  TurningPendulum(double amplitude, double frequency, double frame)
+      : Pendulum(amplitude, frequency, 0), frame_(frame) {}
+
+  double accelerationBound(const double (&center)[3], double radius, double t0,
+                           double t1) const override {
+    const double rate = angularSpeedBound(t0, t1), swing = rate - frame_;
+    return Pendulum::accelerationBound(center, radius, t0, t1) +
+           (rate * rate - swing * swing) * (norm(center) + radius);
+  }
+  double angularSpeedBound(double t0, double t1) const override {
+    return Pendulum::angularSpeedBound(t0, t1) + frame_;
+  }
+
+ protected:
+  double angle(double t) const override { return Pendulum::angle(t) + frame_ * t; }
+  double angleRate(double t) const override { return Pendulum::angleRate(t) + frame_; }
+
+ private:
+  double frame_;
+};
+
+TEST_F(BoundedMotions, MeetAtTheSameTimeInAFrameThatTurns) {
+  const double angle = 0.6;
+  const auto plate = makeModel<Rigid>(makePlate(angle));
+  for (const double frame : {0., 1e-9, 0.5, 2.9}) {
+    const TurningPendulum bar(1.5, 1.1, frame);
+    const SteadyTurn turn(frame, Vector::Zero());
+    ContinuousCollisionRequest<double> request;
+    request.toc_err = 1e-6;
+    ContinuousCollisionResult<double> result;
+    const double found =
+        continuousCollide(bar_.get(), &bar, plate.get(), &turn, request, result);
+    EXPECT_NEAR(found, bar.timeOf(angle - std::asin(kHalfWidth / kNear)), 1e-11);
+  }
+}
+
 TEST_F(BoundedMotions, MissWhatTheyDoNotReach) {
   const Pendulum pendulum(0.5, 3, 1);
   const auto plate = makeModel<Rigid>(makePlate(0.5 + 0.07));

@@ -295,6 +295,39 @@ TEST(FCL_MOTION_QUERY, screwAgainstAFloor) {
   }
 }
 
+// A ball of triangles rolls along x towards a wall. A vertex at the angle v is at x(t) =
+// way t + r cos(v - turn t); the first root of all vertices is the time.
+TEST(FCL_MOTION_QUERY, rollingBallAgainstAWall) {
+  constexpr double kRadius = 0.5, kWall = 2;
+  const Body ball(makeIcosphere(2, kRadius));
+  const Body wall(oneTriangle({kWall, -9, -9}, {kWall, 9, -9}, {kWall, 0, 9}));
+  for (const double turn : {0.1, 1., 2., 3.1}) {
+    ReferenceMotion roll;
+    roll.turn(Vector3<double>::UnitY(), turn);
+    // The wheel's edge goes as far as it turns, and then slips to the wall.
+    const double way = kRadius * turn + 1.6;
+    roll.end.translation() = Vector3<double>(way, 0, 0);
+    double first = 2;
+    for (const auto& p : ball.mesh.vertices) {
+      const auto gap = [&](double t) {
+        return kWall - way * t - p[0] * std::cos(turn * t) - p[2] * std::sin(turn * t);
+      };
+      // The gap shrinks all the time, since the ball goes faster than its edge turns.
+      double lo = 0, hi = 1;
+      if (gap(hi) > 0) continue;
+      for (int i = 0; i < 80; ++i) {
+        const double middle = 0.5 * (lo + hi);
+        (gap(middle) > 0 ? lo : hi) = middle;
+      }
+      first = std::min(first, hi);
+    }
+    ASSERT_LE(first, 1);
+    const MotionAnswer answer = ask(ball, roll.path(), wall, MotionPath::still(Pose()));
+    EXPECT_NEAR(timeOf(answer), first, 1e-12);
+    EXPECT_LE(timeOf(answer), first + 1e-15);
+  }
+}
+
 TEST(FCL_MOTION_QUERY, touchesAtTheBeginning) {
   const Body a(oneTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   ReferenceMotion turn;
