@@ -38,7 +38,8 @@ Vector3<double> AffineBody::setMasses(const std::vector<Vector3<double>>& rest,
 
 void AffineBody::predict(double dt, const Vector3<double>& gravity, double kept,
                          double deforming_kept) {
-  // Turning is what the skew part of the velocity's gradient does, deforming the rest.
+  // The skew part of the velocity's gradient is the rotation, the rest is the
+  // deformation.
   const Matrix3<double> gradient = velocity.shape * begin.shape.inverse();
   const Matrix3<double> turning = 0.5 * (gradient - gradient.transpose());
   const Matrix3<double> deforming = gradient - turning;

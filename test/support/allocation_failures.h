@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Memory that runs out when a test says so. Only for programs that are made with
+// Lets a test choose when memory runs out. Only for programs that are linked with
 // allocation_failures.cpp, which replaces operator new.
 #ifndef FCL_TEST_SUPPORT_ALLOCATION_FAILURES_H
 #define FCL_TEST_SUPPORT_ALLOCATION_FAILURES_H
@@ -8,8 +8,8 @@
 namespace fcl {
 namespace test {
 
-/// @brief So many allocations of this thread succeed before all fail; none does if
-/// negative.
+/// @brief This number of allocations of this thread succeed, then all fail. Negative:
+/// none fails.
 extern thread_local int allocations_left;
 
 }  // namespace test

@@ -13,8 +13,9 @@ namespace test {
 /// @brief The library's exact decision of one pair.
 bool doTouch(fcl::ContinuousContactKind kind, const detail::deformable::FeaturePoints& x);
 
-/// @brief Every VF and EE pair of a mesh without a common vertex that touches during the
-/// step, tested one by one; sorted. A vertex without a triangle is no feature.
+/// @brief All VF and EE pairs of a mesh, without a common vertex, that touch during the
+/// step. Each pair is tested separately; the result is sorted. A vertex without a
+/// triangle is not a feature.
 std::vector<PairName> bruteForceSelfContacts(const FramePairMesh& mesh);
 
 }  // namespace test

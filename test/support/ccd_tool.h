@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What tests of the program fcl-ccd share: meshes as text, and a folder to run it in.
+// Shared by the tests of the program fcl-ccd: meshes as text, and a folder to run it in.
 #ifndef FCL_CCD_TEST_CCD_TOOL_H
 #define FCL_CCD_TEST_CCD_TOOL_H
 
@@ -43,7 +43,7 @@ inline std::vector<std::string> linesOf(const std::string& text) {
   return lines;
 }
 
-/// @brief 17 digits, which identify a double.
+/// @brief A number with 17 digits, which identify a double.
 inline std::string exactText(double value) {
   std::ostringstream out;
   out.precision(17);
@@ -61,7 +61,7 @@ inline std::string toObj(const Mesh& mesh) {
   return text;
 }
 
-/// @brief Vertices and faces as OFF and ascii PLY have them.
+/// @brief Vertices and faces in the form of OFF and ascii PLY.
 inline std::string asciiBody(const Mesh& mesh) {
   std::string text;
   for (const auto& p : mesh.vertices)
@@ -160,8 +160,8 @@ class CcdToolTest : public ::testing::Test {
 
   fs::path path(const std::string& name) const { return folder_ / name; }
 
-  /// @brief Runs the program in the test's folder; `arguments` in the shell's syntax,
-  /// `out_name` where its stdout goes.
+  /// @brief Runs the program in the test's folder. `arguments` has the shell's syntax.
+  /// `out_name` is the file for its stdout.
   Outcome run(const std::string& arguments,
               const std::string& out_name = "out.txt") const {
     const fs::path out = path(out_name), err = path("err.txt");
@@ -176,13 +176,14 @@ class CcdToolTest : public ::testing::Test {
     return outcome;
   }
 
-  /// @brief Frames tip0.obj and tip1.obj: the tip falls through the floor.
+  /// @brief Writes the frames tip0.obj and tip1.obj: the tip falls through the floor.
   void writeTip() const {
     writeText(path("tip0.obj"), toObj(floorAndTip(0)));
     writeText(path("tip1.obj"), toObj(floorAndTip(2)));
   }
 
-  /// @brief Frames x0.off, x1.off (at rest) and y0.ply, y1.ply (falling onto it).
+  /// @brief Writes the frames x0.off, x1.off (at rest) and y0.ply, y1.ply (falling onto
+  /// it).
   void writeEdges() const {
     writeText(path("x0.off"), toOff(edgeAlongX()));
     writeText(path("x1.off"), toOff(edgeAlongX()));
@@ -197,8 +198,8 @@ class CcdToolTest : public ::testing::Test {
     return names;
   }
 
-  /// @brief The program fails with this exit code, names `cause`, and leaves the folder's
-  /// files as they were.
+  /// @brief Expects that the program fails with this exit code, names `cause`, and leaves
+  /// the folder's files as they were.
   void expectFailure(const std::string& arguments, const std::string& cause,
                      int exit_code = 2) const {
     SCOPED_TRACE(arguments);

@@ -166,7 +166,7 @@ FrameReport ClothSimulator::advanceFrame() {
   return report;
 }
 
-/// One step as long as the frame, without contacts, after which all is as before.
+/// Does one step as long as the frame, without contacts, and restores the state.
 void ClothSimulator::findFreeMotion() {
   const std::vector<Vector3<double>> velocities = velocities_;
   const std::vector<Solid> solids = solids_;
@@ -182,7 +182,7 @@ void ClothSimulator::findFreeMotion() {
   solids_ = solids;
 }
 
-/// Keeps one entry a pair of features, ordered by kind and vertices, and counts them.
+/// Keeps one entry for each feature pair, ordered by kind and vertices, and counts them.
 void ClothSimulator::finishContacts(FrameReport& report) const {
   auto& contacts = report.contacts;
   std::stable_sort(contacts.begin(), contacts.end(), [](const auto& a, const auto& b) {
@@ -212,7 +212,7 @@ void ClothSimulator::advanceStep(int step_of_frame, FrameReport& report) {
   finishStep();
 }
 
-/// Where everything would go if nothing were in the way.
+/// Moves everything to where it would go if nothing were in the way.
 void ClothSimulator::predict() {
   const double dt = stepTime();
   const double kept = std::exp(-options_.damping * dt);
@@ -248,7 +248,7 @@ void ClothSimulator::predict() {
   placeSolids();
 }
 
-/// Takes the vertices of solids along.
+/// Moves the vertices of solids with their bodies.
 void ClothSimulator::placeSolids() {
   for (const Solid& s : solids_)
     for (const int v : s.body.vertices)
@@ -291,8 +291,8 @@ void ClothSimulator::finishStep() {
   ++step_;
 }
 
-/// Friction inside the cloth: takes away a part of how fast neighbours move against each
-/// other; momentum is kept.
+/// Friction inside the cloth: reduces the relative velocity of neighbours. Momentum is
+/// kept.
 void ClothSimulator::dampNeighbours() {
   const double lost = 1 - std::exp(-options_.internal_damping * stepTime());
   for (const Spring& s : edge_springs_) {

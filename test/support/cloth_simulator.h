@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Position based dynamics for scenes of cloth, solids and moving obstacles, after Mueller
-// et al. 2007 "Position Based Dynamics" and Macklin et al. 2016 "XPBD". A contact is
-// found by the library's continuous query on the motion of the step; it becomes a
-// constraint that keeps its two features apart. Departures that keep every state free of
-// crossings:
+// et al. 2007 "Position Based Dynamics" and Macklin et al. 2016 "XPBD". The library's
+// continuous query finds the contacts in the motion of the step. A contact becomes a
+// constraint that keeps its two features apart. Some rules differ, to keep every state
+// free of crossings:
 // - the query is repeated on the corrected motion until it finds nothing;
-// - what is still in contact after that moves with the obstacle it touches, or not at all
-//   (the rigid impact zones of Provot 1997, with the simplest rigid motion);
-// - if that does not help, because obstacles crush what is between them, these stop for
-//   the step, what is around a contact is held with it, and in the end everything.
+// - features that are still in contact after that move with the obstacle they touch, or
+//   not at all (the rigid impact zones of Provot 1997, with the simplest rigid motion);
+// - if that does not help, because obstacles crush what is between them, the obstacles
+//   stop for the step, the surroundings of a contact are held with it, and in the end
+//   everything is held.
 #ifndef FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 #define FCL_TEST_SUPPORT_CLOTH_SIMULATOR_H
 
@@ -31,113 +32,118 @@ namespace test {
 
 /// @brief Units are metres, seconds and kilograms.
 struct SimulatorOptions {
-  /// seconds a frame lasts
+  /// length of a frame in seconds
   double frame_time{1.0 / 30};
-  /// steps a frame is divided into; each has its own continuous queries
+  /// number of steps in a frame; each has its own continuous queries
   int steps_per_frame{8};
-  /// passes over all constraints in a step
+  /// number of passes over all constraints in a step
   int iterations{25};
   Vector3<double> gravity{0, 0, -9.81};
-  /// distance that surfaces keep, metres
+  /// distance that surfaces keep, in metres
   double thickness{0.002};
-  /// speed at which surfaces closer than `thickness` are pushed apart, metres a second
+  /// speed at which surfaces closer than `thickness` are pushed apart, in metres per
+  /// second
   double push_speed{0.05};
-  /// part of their distance by which surfaces in contact may approach each other in a
-  /// step, down to a tenth of `thickness`: what is wedged in between others has a motion
-  /// that satisfies all of them then, and is not held
+  /// fraction of their distance by which surfaces in contact may approach each other in a
+  /// step, down to a tenth of `thickness`. Bodies that are wedged between others then
+  /// have a motion that satisfies all of their constraints, and are not held
   double approach{0};
   /// Coulomb coefficient
   double friction{0.3};
-  /// part of the velocity lost in a second (exponential), 1 / s
+  /// fraction of the velocity that is lost per second (exponential), 1 / s
   double damping{0.5};
-  /// part of the velocity of two neighbours against each other lost in a second
-  /// (exponential), 1 / s; calms what contacts and springs do to each other
+  /// fraction of the relative velocity of two neighbours that is lost per second
+  /// (exponential), 1 / s; it damps the effect of contacts and springs
   double internal_damping{100};
   /// the same for the deformation of solids, 1 / s
   double solid_damping{4};
-  /// kilograms a square metre of cloth
+  /// mass of cloth in kilograms per square metre
   double cloth_density{0.2};
-  /// XPBD compliance of the bending springs, metres a newton
+  /// XPBD compliance of the bending springs, in metres per newton
   double bend_compliance{0.5};
-  /// rounds of query and correction in a step before what is in contact is slowed down
+  /// rounds of query and correction in a step, before features that are still in contact
+  /// are slowed down
   int response_rounds{4};
-  /// rounds after those in which it goes half as far, before it is held
+  /// rounds after those in which they go half as far, before they are held
   int slowing_rounds{3};
-  /// most contacts of the same two solids in a query that become constraints, spread over
-  /// all. The motions of two solids have no more than 24 unknowns, but where they overlap
-  /// many thousands of contacts
+  /// largest number of contacts of the same two solids in a query that become
+  /// constraints; they are spread over all contacts. The motions of two solids have no
+  /// more than 24 unknowns, but they may overlap in many thousands of contacts
   int contacts_per_pair{std::numeric_limits<int>::max()};
   /// whether surfaces that are near each other are pushed apart (see `thickness`) before
-  /// they touch; without, only contacts are answered, which is cheaper
+  /// they touch; if not, only contacts get a response, which costs less
   bool push_apart{true};
-  /// whether a report lists the contacts of all queries, of which there can be millions
+  /// whether a report lists the contacts of all queries; there can be millions
   bool keep_contacts{true};
-  /// whether freeMotion() is wanted
+  /// whether freeMotion() is needed
   bool find_free_motion{false};
-  /// of the queries; what results does not depend on it
+  /// threads of the queries; the result does not depend on it
   int num_threads{1};
-  /// shakes the start positions by 1e-4 of an edge and orders the constraints
+  /// seed of the shaking of start positions, by 1e-4 of an edge, and of the order of
+  /// constraints
   std::uint64_t seed{1};
 };
 
-/// @brief What a solid is made of.
+/// @brief The material of a solid.
 struct SolidOptions {
-  /// kilograms a square metre of its surface
+  /// mass in kilograms per square metre of its surface
   double density{5};
-  /// radians a second in which a deformed solid swings back to its shape; infinite: rigid
+  /// angular frequency with which a deformed solid swings back to its shape, in radians
+  /// per second; infinite: rigid
   double frequency{std::numeric_limits<double>::infinity()};
-  /// metres a second, at the start
+  /// velocity at the start, in metres per second
   Vector3<double> velocity{Vector3<double>::Zero()};
 };
 
 /// @brief When a fragile solid breaks.
 struct FragileOptions {
-  /// mean of the impulses that a bond endures in a step, N s; each bond's own is between
+  /// mean of the impulses that bonds endure in a step, N s; each bond's own is between
   /// half and one and a half of it
   double strength{1};
-  /// distance from a blow at which it loads a bond with 1 / e of itself, metres
+  /// distance from a blow at which it loads a bond with 1 / e of itself, in metres
   double reach{0.1};
-  /// how far borders of parted pieces draw back, in lengths of their edges
+  /// distance by which the borders of separated pieces move back, in lengths of their
+  /// edges
   double gap{0.02};
-  /// speed at which parts leave the middle of the shell, metres a second; a random part
-  /// of it is missing
+  /// speed at which parts leave the middle of the shell, in metres per second; it is
+  /// reduced by a random fraction
   double burst{0};
 };
 
-/// @brief Where two features touched, as weights on their four vertices: positive ones
-/// add up to 1 on the first feature, negative ones to -1 on the second.
+/// @brief The place where two features touched, as weights on their four vertices.
+/// Positive weights add up to 1 on the first feature, negative ones to -1 on the second.
 struct ContactWeights {
   std::array<int, 4> vertices;
   std::array<double, 4> weights;
 };
 
-/// @brief A distinct pair of features that a query of the frame found.
+/// @brief A feature pair that a query of the frame found, listed once.
 struct FrameContact {
   ContinuousContactKind kind;
   std::array<int, 2> triangles;
   ContactWeights where;
 };
 
-/// @brief What happened in one frame.
+/// @brief The report of one frame.
 struct FrameReport {
   std::vector<FrameContact> contacts;
   std::size_t vertex_face{0};
   std::size_t edge_edge{0};
-  /// those of both kinds between two features of one body
+  /// contacts of both kinds between two features of one body
   std::size_t self{0};
   /// the first contact, as a fraction of the frame in [0, 1); 1 without contact
   double first_contact{1};
-  /// number of continuous queries, and the seconds they and the whole frame took
+  /// number of continuous queries, and the seconds that they and the whole frame took
   int queries{0};
   double query_seconds{0};
   double total_seconds{0};
   /// sum over the queries
   StageCounts counts;
-  /// vertices that had to be held, summed over the steps
+  /// number of held vertices, summed over the steps
   std::size_t held_vertices{0};
-  /// contacts still there when a step was accepted
+  /// number of contacts that were left when a step was accepted
   std::size_t unresolved{0};
-  /// steps in which obstacles had to stop
+  /// number of steps in which obstacles had to stop
   int stopped_steps{0};
   /// whether a step began with surfaces that cross
   bool crossing{false};
@@ -146,9 +152,9 @@ struct FrameReport {
 /// @brief Rigid motion of an obstacle: its pose at a time in seconds.
 using ObstacleMotion = std::function<Transform3<double>(double time)>;
 
-/// @brief Cloths and obstacles as one mesh, so that one self-collision query sees
-/// cloth-cloth and cloth-obstacle contacts alike. A run is a function of what was added
-/// and of the options: same seed, same bits.
+/// @brief Cloths and obstacles as one mesh, so that one self-collision query finds
+/// cloth-cloth and cloth-obstacle contacts. A run depends only on the added bodies and on
+/// the options: the same seed gives the same bits.
 class ClothSimulator {
  public:
   explicit ClothSimulator(const SimulatorOptions& options)
@@ -158,22 +164,23 @@ class ClothSimulator {
   /// `start` (same topology). @return its first vertex
   int addCloth(const TestMesh& rest, const std::vector<Vector3<double>>& start);
 
-  /// @brief Adds an obstacle, given in its own frame. Without motion it stands still.
+  /// @brief Adds an obstacle, given in its own coordinates. Without motion it stands
+  /// still. @return its first vertex
   /// @return its first vertex
   int addObstacle(const TestMesh& mesh, ObstacleMotion motion = {});
 
-  /// @brief Lets a vertex of a cloth move with an obstacle.
+  /// @brief Makes a vertex of a cloth move with an obstacle.
   void pin(int vertex, int obstacle);
 
-  /// @brief Adds a solid where the mesh is. @return its first vertex
+  /// @brief Adds a solid at the position of the mesh. @return its first vertex
   int addSolid(const TestMesh& mesh, const SolidOptions& options);
 
   /// @brief Adds a solid that breaks into its pieces. @return its first vertex
   int addFragile(const ShellDesign& design, const SolidOptions& options,
                  const FragileOptions& fragile);
 
-  /// @brief Breaks what the frame before loaded too much, then simulates one frame. The
-  /// first call ends the construction.
+  /// @brief Breaks bonds that the previous frame overloaded, then simulates one frame.
+  /// The first call ends the construction.
   /// @throws fcl::Exception if the library refuses the mesh, for example because a
   /// coordinate is not finite.
   FrameReport advanceFrame();
@@ -181,14 +188,14 @@ class ClothSimulator {
   /// @brief All bodies in the order in which they were added, at the current time.
   const TestMesh& mesh() const { return mesh_; }
 
-  /// @brief Where the last frame's motion began, vertices as in mesh().
+  /// @brief The positions where the last frame's motion began, vertices as in mesh().
   const std::vector<Vector3<double>>& frameBegin() const { return frame_begin_; }
 
-  /// @brief Where the last frame would have led if nothing were in the way: what a
-  /// simulator with one step a frame asks collision detection about.
+  /// @brief The positions to which the last frame would have led if nothing were in the
+  /// way. A simulator with one step a frame asks collision detection about this motion.
   const std::vector<Vector3<double>>& freeMotion() const { return free_motion_; }
 
-  /// @brief How the mesh changed at the beginning of the last frame.
+  /// @brief The change of the mesh at the beginning of the last frame.
   const TopologyChange& topologyChange() const { return change_; }
 
   /// @brief The body of a vertex: 0, 1, ... in the order in which they were added.
@@ -200,12 +207,12 @@ class ClothSimulator {
   /// @brief The options given.
   const SimulatorOptions& options() const { return options_; }
 
-  /// @brief Seconds simulated.
+  /// @brief The simulated time in seconds.
   double time() const {
     return static_cast<double>(step_) * options_.frame_time / options_.steps_per_frame;
   }
 
-  /// @brief Largest current length of a cloth edge over its length at rest.
+  /// @brief The largest ratio of a cloth edge's current length to its length at rest.
   double maxStretch() const;
 
  private:
@@ -215,7 +222,7 @@ class ClothSimulator {
     double compliance;   // metres a newton
     double multiplier;   // of the current step
   };
-  /// The part of a separation that a solid has: weight * centre + shape * rest.
+  /// The part of a separation that comes from a solid: weight * centre + shape * rest.
   struct SolidShare {
     int solid{-1};
     double weight{0};
@@ -241,7 +248,7 @@ class ClothSimulator {
     double vertex_mass;      // kg
     Vector3<double> middle;  // of the design
     std::vector<int> solid_of_piece;
-    bool is_loaded;  // bonds broke since its surface was parted
+    bool is_loaded;  // bonds broke since its surface was split
   };
   enum class Kind { kCloth, kObstacle, kSolid };
   struct Body {
@@ -328,8 +335,9 @@ class ClothSimulator {
   TopologyChange change_;
   double mean_edge_{0};
   double step_time_{0};
-  /// Speed of the fastest thing when the step begins, and what gravity adds. Contacts
-  /// pass motion on and make none: pushes, each of them right, may not add up to more.
+  /// Speed of the fastest object at the begin of the step, plus that of gravity. Contacts
+  /// pass motion on and create none. But many pushes, each of them right, could add up to
+  /// more.
   double fastest_{0};
   std::int64_t step_{0};
   std::int64_t stopped_steps_{0};

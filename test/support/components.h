@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Connected components of a mesh, found apart from the library.
+// Connected components of a mesh, computed without the library.
 #ifndef FCL_TEST_SUPPORT_COMPONENTS_H
 #define FCL_TEST_SUPPORT_COMPONENTS_H
 
@@ -13,7 +13,7 @@
 namespace fcl {
 namespace test {
 
-/// @brief For each vertex the number of its component; these are numbered from 0.
+/// @brief For each vertex the number of its component, counted from 0.
 inline std::vector<std::size_t> componentsOf(const std::vector<Triangle>& triangles,
                                              std::size_t num_vertices) {
   std::vector<std::size_t> parent(num_vertices);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The part of the simulator that finds contacts and answers them.
+// The part of the simulator that finds contacts and responds to them.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -20,14 +20,13 @@ double secondsSince(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
-/// Rounds of holding before obstacles stop for the step, and before everything does. Held
-/// vertices meet new ones, layer by layer: dense cloth has been seen to need more than
-/// ten.
+/// Rounds of holding before obstacles stop for the step, and before everything stops.
+/// Held vertices meet new ones, layer by layer. Dense cloth can need more than ten
+/// rounds.
 const int kRoundsWithMotion = 20;
 const int kRoundsWithCloth = 50;
 
-/// Weights of the points of lines a0 a1 and b0 b1 closest to each other, kept on the
-/// segments.
+/// Weights of the closest points of the lines a0 a1 and b0 b1, moved into the segments.
 std::array<double, 4> edgeWeights(const Vector3<double>& a0, const Vector3<double>& a1,
                                   const Vector3<double>& b0, const Vector3<double>& b1) {
   const Vector3<double> v = a1 - a0;
@@ -54,8 +53,8 @@ Vector3<double> separation(const ContactWeights& where,
 
 }  // namespace
 
-/// Surfaces that are close at the start of the step, hence on known sides of each other,
-/// keep their distance during the step.
+/// Keeps the distance of surfaces that are close at the start of the step: there the side
+/// on which each lies is known.
 void ClothSimulator::pushApart() {
   if (!options_.push_apart) return;
   for (const NearPair& pair :
@@ -142,7 +141,7 @@ void ClothSimulator::addConstraint(ContinuousContactKind kind, ContactWeights wh
   contacts_.push_back(contact);
 }
 
-/// @param contacts  of a query on the step's motion
+/// @param contacts  those of a query on the step's motion
 void ClothSimulator::addConstraints(
     const std::vector<ContinuousContact<double>>& contacts) {
   const auto pairOf = [&](const ContinuousContact<double>& c) {
@@ -172,8 +171,7 @@ Vector3<double> ClothSimulator::separationNow(const ContactConstraint& contact) 
   return sum;
 }
 
-/// Inelastic: takes away what is missing to the gap, and of the sliding as much as
-/// friction allows.
+/// Inelastic response: restores the gap, and reduces sliding as far as friction allows.
 void ClothSimulator::projectContact(ContactConstraint& contact) {
   const auto& ids = contact.where.vertices;
   const auto& weights = contact.where.weights;
@@ -206,7 +204,7 @@ void ClothSimulator::projectContacts() {
   for (Solid& s : solids_) s.body.restoreShape();
 }
 
-/// Queries and corrects until the motion of the step has no contact left.
+/// Repeats query and correction until the motion of the step has no contact.
 void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
   for (Solid& s : solids_) s.body.is_slowed = false;
   for (int round = 0; round < options_.response_rounds; ++round) {
@@ -220,8 +218,8 @@ void ClothSimulator::respond(int step_of_frame, FrameReport& report) {
   holdInContact(step_of_frame, report);
 }
 
-/// What is still in contact goes half as far beside what carries it: the correction has
-/// left little of the contacts, and that late in the step.
+/// Halves the motion of features that are still in contact, relative to their carrier. At
+/// this point few contacts are left, late in the step.
 void ClothSimulator::slowDown(const std::vector<ContinuousContact<double>>& contacts) {
   std::vector<std::array<int, 2>> slowed;  // vertex, carrier
   std::vector<int> solids;
@@ -247,10 +245,10 @@ void ClothSimulator::slowDown(const std::vector<ContinuousContact<double>>& cont
   }
 }
 
-/// Lets what is still in contact move with the obstacle that it touches, directly or
-/// through what is held, or not at all. The step in which everything stands still ends
-/// the loop: it began without contact. But the next one would be the same again, so that
-/// much is done to have something move.
+/// Makes features that are still in contact move with the obstacle that they touch,
+/// directly or through other held features, or not at all. The loop ends at the latest
+/// when everything stands still, since the step began without contact. But the next step
+/// would then be the same again, so the code tries hard to keep something moving.
 void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
   std::fill(held_with_.begin(), held_with_.end(), -1);
   for (Solid& s : solids_) s.body.held_with = -1;
@@ -275,10 +273,10 @@ void ClothSimulator::holdInContact(int step_of_frame, FrameReport& report) {
   }
 }
 
-/// @param with_neighbours  whether what is around a vertex of cloth is held with it:
-/// layer by layer, vertex by vertex, dense cloth has been seen to come to rest as a whole
-/// first
-/// @return how many vertices were not held before
+/// @param with_neighbours  whether the surroundings of a vertex of cloth are held with
+/// it. Without it, layer by layer and vertex by vertex, all of a dense cloth can come to
+/// rest first
+/// @return the number of newly held vertices
 std::size_t ClothSimulator::holdContacts(
     const std::vector<ContinuousContact<double>>& contacts, bool with_neighbours) {
   std::size_t held = 0;
@@ -300,8 +298,8 @@ std::size_t ClothSimulator::holdContacts(
   return held;
 }
 
-/// The obstacle that a contact is with, directly or through what is held, or the body of
-/// its first vertex.
+/// The obstacle of a contact, directly or through held features, or the body of its first
+/// vertex.
 int ClothSimulator::carrierOf(const ContinuousContact<double>& contact) const {
   int carrier = body_of_[contact.vertices[0]];
   for (int k = 0; k < 4; ++k) {
@@ -311,14 +309,15 @@ int ClothSimulator::carrierOf(const ContinuousContact<double>& contact) const {
   return carrier;
 }
 
-/// The body that a vertex moves with already, or -1.
+/// The body with which a vertex moves already, or -1.
 int ClothSimulator::carrierOf(int vertex) const {
   if (solid_of_[vertex] >= 0) return solids_[solid_of_[vertex]].body.held_with;
   if (pinned_to_[vertex] >= 0) return pinned_to_[vertex];
   return is_movable_[vertex] ? held_with_[vertex] : body_of_[vertex];
 }
 
-/// A vertex of a solid holds the whole solid. @return whether it was not held before
+/// Holds a vertex; a vertex of a solid holds the whole solid. @return whether it was not
+/// held before
 bool ClothSimulator::hold(int vertex, int carrier) {
   if (!is_movable_[vertex]) return false;
   const Transform3<double>& motion = bodies_[carrier].step_motion;

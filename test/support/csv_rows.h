@@ -12,7 +12,7 @@
 namespace fcl {
 namespace test {
 
-/// @brief A row of a table by the names of its columns.
+/// @brief A row of a table, with values by the names of columns.
 using CsvRow = std::map<std::string, std::string>;
 
 inline std::vector<std::string> csvFields(const std::string& line) {

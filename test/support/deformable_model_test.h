@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What the tests of DeformableBVHModel share: the models, on every BV type and both
-// scalars, and what is expected of them.
+// Shared by the tests of DeformableBVHModel: the models, on every BV type and both
+// scalars, and checks of their state.
 #ifndef FCL_TEST_DEFORMABLE_MODEL_TEST_H
 #define FCL_TEST_DEFORMABLE_MODEL_TEST_H
 
@@ -18,7 +18,7 @@ namespace fcl {
 namespace test {
 
 inline const TestMesh kSheet = bentSheet(8);
-/// The n-th frame of the sheet; crumpled enough for self-contacts.
+/// The n-th frame of the sheet, which is crumpled enough for self-contacts.
 inline TestMesh frame(std::uint64_t n) { return shaken(kSheet, 0.15, 100 + n); }
 
 template <typename BV>
@@ -44,8 +44,8 @@ class DeformableModel : public ::testing::Test {
                               tree);
   }
 
-  /// The frames are these, the boxes contain both, and a query answers as a plain model
-  /// that went the same way.
+  /// Expects that the frames are these, that the boxes contain both, and that a query
+  /// answers as a plain model with the same frames.
   static void expectFrames(const Model& model, const TestMesh& previous,
                            const TestMesh& current) {
     EXPECT_TRUE(previousOf(model) == points(previous));
@@ -64,7 +64,7 @@ class DeformableModel : public ::testing::Test {
     }
   }
 
-  /// A refused call changes nothing, prints nothing, and says why.
+  /// Expects that a refused call changes nothing, prints nothing, and names the reason.
   template <typename Call>
   static void expectRefusal(Model& model, int code, const std::string& word,
                             Call&& call) {
@@ -85,8 +85,8 @@ class DeformableModel : public ::testing::Test {
   }
 };
 
-// Each of FCL's types once, in one scalar or the other; with sanitizers, where each takes
-// the compiler minutes, one of each scalar.
+// Each of FCL's types once, in one of the two scalars. With sanitizers, which take the
+// compiler minutes for each, one type for each scalar.
 #ifdef NDEBUG
 using BVs = ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
                              KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;

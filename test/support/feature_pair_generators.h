@@ -15,7 +15,7 @@
 namespace fcl {
 namespace test {
 
-/// @brief A VF or EE pair with its own points.
+/// @brief A VF or EE pair that owns its points.
 struct MovingPair {
   fcl::ContinuousContactKind kind;
   std::array<detail::deformable::VertexPath, 4> x;
@@ -36,13 +36,13 @@ inline detail::deformable::VertexPath falling(double x, double y, double z0, dou
 inline detail::deformable::VertexPath path(const double (&a)[3], const double (&b)[3]) {
   return {{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
 }
-/// @brief A vertex and the still triangle (0, 0, 0), (4, 0, 0), (0, 4, 0).
+/// @brief A vertex and a triangle at rest, (0, 0, 0), (4, 0, 0), (0, 4, 0).
 inline MovingPair onTriangle(const detail::deformable::VertexPath& v) {
   return {fcl::ContinuousContactKind::kVertexFace,
           {v, at(0, 0, 0), at(4, 0, 0), at(0, 4, 0)}};
 }
 
-/// @brief Every bit of the coordinates, to repeat a failure.
+/// @brief The coordinates with every bit, to repeat a failure.
 inline std::ostream& operator<<(std::ostream& out, const MovingPair& pair) {
   out << (pair.kind == fcl::ContinuousContactKind::kVertexFace ? "VF" : "EE")
       << std::hexfloat;
@@ -79,7 +79,7 @@ inline MovingPair gridPair(Random& random, int half) {
 }
 
 /// @brief Two features that touch, up to rounding and `gap`, at a time that the function
-/// chooses; often at a border of a feature.
+/// chooses. They often touch at a border of a feature.
 inline MovingPair nearContactPair(Random& random, double gap) {
   using fcl::ContinuousContactKind;
   MovingPair pair{randomKind(random), {}};
@@ -118,13 +118,13 @@ inline MovingPair nearContactPair(Random& random, double gap) {
   return pair;
 }
 
-/// @brief nearContactPair() with gaps from nothing to far.
+/// @brief nearContactPair() with gaps from zero to large.
 inline MovingPair randomPair(Random& random) {
   const double gaps[] = {0, 1e-17, 1e-15, 1e-12, 1e-8, 1e-4, 0.1, 1};
   return nearContactPair(random, gaps[random.index(8)]);
 }
 
-/// @brief The pair with every coordinate put through f.
+/// @brief The pair with f applied to every coordinate.
 template <typename F>
 MovingPair mapped(const MovingPair& pair, F&& f) {
   MovingPair out = pair;

@@ -13,7 +13,7 @@ namespace fcl {
 namespace test {
 namespace {
 
-/// Sets of items that are united pair by pair; the name of a set is its lowest item.
+/// Sets of items that are united pair by pair. The lowest item of a set is its name.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parent_(count) {
@@ -124,7 +124,7 @@ TestMesh FragileShell::mesh() const {
   return mesh;
 }
 
-/// Writes the triangles of both layers and of all walls, and notes those that change.
+/// Writes the triangles of both layers and of all walls, and records those that change.
 void FragileShell::setTriangles(std::vector<Triangle>& triangles,
                                 TopologyChange& change) const {
   const auto set = [&](std::size_t id, const Triangle& t) {
@@ -176,7 +176,7 @@ std::vector<std::vector<int>> FragileShell::verticesOf(
   return vertices;
 }
 
-/// Corners at one vertex that triangles of one part connect.
+/// The corners at one vertex that are connected by triangles of one part.
 std::vector<int> FragileShell::groupCorners(const std::vector<int>& part_of_piece) const {
   const auto part = [&](int corner) {
     return part_of_piece[index(piece_of_[index(triangleOf(corner))])];
@@ -195,15 +195,16 @@ std::vector<int> FragileShell::groupCorners(const std::vector<int>& part_of_piec
   return group_of;
 }
 
-/// Along the bisector of the group's angle, seen along the wall's edge at the vertex:
-/// that leads away from both borders of the group. The vertex stays on the surface, in
-/// the triangle that the bisector crosses, so that it comes no closer to what lies there.
+/// A direction along the bisector of the group's angle, projected along the wall's edge
+/// at the vertex. It leads away from both borders of the group. The vertex stays on the
+/// surface, in the triangle that the bisector crosses, and so does not come closer to
+/// other surfaces.
 void FragileShell::drawBack(const std::vector<int>& group_of,
                             const std::vector<char>& is_split, double gap,
                             std::vector<Vector3<double>>& positions) const {
   struct Side {
     int corner;
-    Vector3<double> a, b;  // its edges, seen along the wall
+    Vector3<double> a, b;  // its edges, projected along the wall
   };
   std::map<int, std::vector<Side>> groups;
   for (int corner = 0; corner < static_cast<int>(group_of.size()); ++corner) {

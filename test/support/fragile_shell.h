@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The surface of something brittle: a wall between two layers, made of pieces that are
-// bonded along their borders. When bonds break, pieces part: vertices on the crack become
-// two or more, and the crack gets walls of its own, so that each part is closed.
+// The surface of a brittle body: a wall between two layers, made of pieces that are
+// bonded along their borders. When bonds break, pieces separate: a vertex on the crack
+// becomes two or more, and the crack gets walls of its own, so that each part is closed.
 #ifndef FCL_TEST_SUPPORT_FRAGILE_SHELL_H
 #define FCL_TEST_SUPPORT_FRAGILE_SHELL_H
 
@@ -16,28 +16,29 @@
 namespace fcl {
 namespace test {
 
-/// @brief A sheet with a position of each vertex on either side of the wall. Its pieces
-/// are numbered from 0; triangles are wound around the outer side's normal.
+/// @brief A sheet with positions of each vertex on both sides of the wall. Its pieces are
+/// numbered from 0. Triangles are wound around the normal of the outer side.
 struct ShellDesign {
   std::vector<Triangle> sheet;
   std::vector<Vector3<double>> outer, inner;  // metres
   std::vector<int> piece_of;                  // one a triangle of the sheet
 };
 
-/// @brief How the triangles of a mesh became others. Ids of what was there stay.
+/// @brief The change of a mesh's triangles. Ids of triangles and vertices that existed
+/// stay.
 struct TopologyChange {
-  /// those that have another vertex than before, ascending; new ones come after
+  /// triangles with changed vertices, in ascending order; new triangles come after them
   std::vector<int> changed_triangles;
   std::size_t first_new_triangle{0};
   std::size_t first_new_vertex{0};
-  /// for each new vertex the one that it was split from
+  /// for each new vertex, the vertex that it was split from
   std::vector<int> split_from;
 
   bool isEmpty() const { return changed_triangles.empty() && split_from.empty(); }
 };
 
-/// @brief The topology of a shell inside a larger mesh; where its vertices are is the
-/// caller's.
+/// @brief The topology of a shell inside a larger mesh. The caller has the positions of
+/// its vertices.
 class FragileShell {
  public:
   /// @brief Two pieces with a common border.
@@ -51,26 +52,28 @@ class FragileShell {
 
   explicit FragileShell(ShellDesign design);
 
-  /// @brief The whole shell as a closed mesh: the outer layer's vertices, the inner ones.
+  /// @brief The whole shell as a closed mesh: first the vertices of the outer layer, then
+  /// those of the inner one.
   TestMesh mesh() const;
 
-  /// @brief Says where in a larger mesh mesh() was put.
+  /// @brief Sets where mesh() is in a larger mesh.
   void place(int first_vertex, int first_triangle);
 
   int numPieces() const { return num_pieces_; }
   std::vector<Bond>& bonds() { return bonds_; }
 
-  /// @brief The part, 0, 1, ..., that each piece belongs to by the unbroken bonds.
+  /// @brief For each piece the number (0, 1, ...) of its part. Unbroken bonds connect the
+  /// pieces of a part.
   std::vector<int> findParts() const;
 
   /// @brief The vertices of each part.
   std::vector<std::vector<int>> verticesOf(const std::vector<int>& part_of_piece) const;
 
-  /// @brief Parts the surface where pieces belong to different parts. Vertices on a crack
-  /// draw back from it by `gap` of the length of their edges, so that nothing touches.
-  /// @param part_of_piece  as findParts() has it
-  /// @param mesh, positions  changed and extended; positions are those of the mesh in a
-  /// frame in which the parts still fit together
+  /// @brief Splits the surface between pieces of different parts. Vertices on a crack
+  /// move back from it by `gap` of the length of their edges, so that nothing touches.
+  /// @param part_of_piece  the result of findParts()
+  /// @param mesh, positions  are changed and extended. The positions are those of the
+  /// mesh in a frame in which the parts still fit together
   void split(const std::vector<int>& part_of_piece, double gap,
              std::vector<Triangle>& triangles, std::vector<Vector3<double>>& positions,
              TopologyChange& change);

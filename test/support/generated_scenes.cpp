@@ -27,8 +27,8 @@ double smoothStep(double x) {
   return x * x * (3 - 2 * x);
 }
 
-/// A height over the plane that two layers share: where they lie over each other, their
-/// distance is that of the flat layers.
+/// A height over the plane that two layers have in common: where one lies over the other,
+/// their distance is that of the flat layers.
 class Waves {
  public:
   explicit Waves(Random& random) {
@@ -43,8 +43,8 @@ class Waves {
   double phases_[3];
 };
 
-/// A sheet of nx x ny quads over the unit square whose inner vertices are shaken a
-/// little: edges of two layers are not parallel, as on a real mesh.
+/// A sheet of nx x ny quads over the unit square. Its inner vertices are moved a little
+/// at random, so that edges of two layers are not parallel, as on a real mesh.
 TestMesh makeIrregularSheet(int nx, int ny, Random& random) {
   TestMesh sheet = makeSheet(nx, ny);
   for (auto& p : sheet.vertices) {
@@ -69,7 +69,7 @@ class SmoothCloth {
 
   const std::vector<Triangle>& triangles() const { return sheet_.triangles; }
 
-  /// @param t  moves the waves and the whole
+  /// @param t  moves the waves and the whole sheet
   /// @param sunk  0: the lip is above the layer below; 1: a little under it
   std::vector<Vector3<double>> frame(double t, double sunk) const {
     constexpr double kRadius = 0.05, kGap = 0.02, kPenetration = 0.01;
@@ -133,7 +133,7 @@ FramePairMesh makeTiles(int triangles, std::uint64_t seed) {
     const double yaw = random.uniform(0, 2 * kPi);
     const double spot[2] = {random.uniform(0.3, 0.7), random.uniform(0.3, 0.7)};
     const auto position = [&](double u, double v, bool upper, double t) {
-      // The upper layer hangs half a quad aside and sinks below the lower one.
+      // The upper layer is shifted by half a quad and sinks below the lower one.
       const double x = upper ? u + 0.5 / kQuads : u, y = upper ? v + 0.3 / kQuads : v;
       const double over =
           upper ? kGap * (1 - (0.6 + 0.6 * t) * bump(x - spot[0], y - spot[1], 0.15)) : 0;
@@ -208,8 +208,8 @@ void move(FramePairMesh& mesh, const Vector3<double>& by) {
 
 FrameSequence makeCrumplingSheet(int frames) {
   constexpr int kAlong = 160, kAcross = 64, kPleats = 8, kSubsteps = 8;
-  // Where the direction of a sine-generated curve swings by 2.2 radians, neighbouring
-  // loops touch.
+  // If the direction of a sine-generated curve swings by 2.2 radians, neighbouring loops
+  // touch.
   constexpr double kTightest = 2.12, kVariation = 0.06;
   FrameSequence sequence{makeSheet(kAlong, kAcross).triangles, {}};
   for (int frame = 0; frame < frames; ++frame) {
@@ -232,7 +232,7 @@ FrameSequence makeCrumplingSheet(int frames) {
       }
       const double middle = curve[kAlong / 2][0];
       for (const auto& c : curve) {
-        // Twisted about the x axis: what was apart stays apart.
+        // Twisted about the x axis. Points that are apart stay apart.
         const double along = c[0] - middle, turn = 2 * s * (along + 0.5);
         const double y = v - 0.5;
         points.push_back(snapped({along, std::cos(turn) * y - std::sin(turn) * c[1],

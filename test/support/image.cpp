@@ -108,7 +108,7 @@ std::string encodePng(const Image& image) {
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  // The first call measures, the second writes.
+  // The first call computes the size, the second one writes.
   png_alloc_size_t size = 0;
   std::string encoded;
   for (int pass = 0; pass < 2; ++pass) {

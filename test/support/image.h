@@ -14,7 +14,7 @@ namespace test {
 /// @brief Red, green, blue in [0, 1], proportional to light (not sRGB).
 using Colour = Vector3<float>;
 
-/// @brief A picture, row by row from the top left.
+/// @brief A picture, stored row by row from the top left.
 struct Image {
   int width{0};
   int height{0};
@@ -33,13 +33,14 @@ struct Image {
   }
 };
 
-/// @brief From the usual 0xRRGGBB notation (sRGB).
+/// @brief A colour from the usual 0xRRGGBB notation (sRGB).
 Colour colourFromHex(std::uint32_t rgb);
 
-/// @brief The picture at 1 / factor of its size, each pixel the mean of factor^2.
+/// @brief The picture at 1 / factor of its size. Each pixel is the mean of factor^2
+/// pixels.
 Image shrunk(const Image& image, int factor);
 
-/// @brief Copies `part` to (x, y); what lies outside is cut off.
+/// @brief Copies `part` to (x, y). Pixels outside are cut off.
 void paste(Image& image, const Image& part, int x, int y);
 
 /// @brief Writes capital letters, digits and .,:-/ from (x, y), the top left corner, in

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every instruction set of the machine, and the same to the bit.
+// Checks that kernels give the same bits on every instruction set of the machine.
 #ifndef FCL_TEST_SUPPORT_KERNEL_CHECKS_H
 #define FCL_TEST_SUPPORT_KERNEL_CHECKS_H
 
@@ -22,7 +22,7 @@ inline const std::vector<const detail::deformable::Kernels*>& allSets() {
   return all;
 }
 
-/// @brief The same to the bit, where bits of the mask are set.
+/// @brief The same bits, in the lanes whose bits are set in the mask.
 template <typename T, std::size_t kCount>
 void expectSameBits(unsigned mask, const T (&x)[kCount], const T (&y)[kCount]) {
   for (std::size_t i = 0; i < kCount; ++i)

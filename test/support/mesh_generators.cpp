@@ -151,7 +151,7 @@ TestMesh makeIcosphere(int subdivisions, double radius) {
 TestMesh makeGeodesicSphere(int frequency, double radius) {
   const TestMesh coarse = icosahedron();
   TestMesh mesh;
-  // A point is known by the corners that it lies between and its weights on them.
+  // The corners between which a point lies, and its weights on them, identify it.
   std::map<std::array<std::size_t, 6>, int> id_of;
   const auto vertex = [&](const Triangle& t, int i, int j) {
     const int weights[3] = {frequency - i - j, i, j};

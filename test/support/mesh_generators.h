@@ -13,14 +13,14 @@
 namespace fcl {
 namespace test {
 
-/// @brief A triangle mesh in metres; triangles are wound so that their normal points out
-/// of a closed surface, and along +z for a flat sheet.
+/// @brief A triangle mesh in metres. Triangles are wound so that normals of a closed
+/// surface point outward, and those of a flat sheet along +z.
 struct TestMesh {
   std::vector<Vector3<double>> vertices;
   std::vector<Triangle> triangles;
 };
 
-/// @brief Small random number generator (splitmix64): unlike the distributions of
+/// @brief A small random number generator (splitmix64). Unlike the distributions of
 /// <random>, it gives the same numbers with every standard library.
 class Random {
  public:
@@ -42,7 +42,7 @@ class Random {
   std::uint64_t state_;
 };
 
-/// @brief Where the vertex at (u, v) in [0, 1]^2 of a sheet stands.
+/// @brief The position of the vertex at (u, v) in [0, 1]^2 of a sheet.
 using SheetPosition = std::function<Vector3<double>(double u, double v)>;
 
 /// @brief A sheet of nx x ny quads, 2 nx ny triangles, (nx + 1)(ny + 1) vertices with x
@@ -69,12 +69,12 @@ TestMesh makeGeodesicSphere(int frequency, double radius);
 /// @brief A closed surface of revolution around the z axis, of 2 slices (points - 2)
 /// triangles.
 /// @param profile  radius and height, from the highest point of the axis to the lowest
-/// one; radii of the first and the last are not looked at.
+/// one. The radii of the first and the last point are not used.
 TestMesh makeLathe(int slices, const std::vector<std::array<double, 2>>& profile);
 
-/// @brief A capsule from (0, 0, 0) to (0, 0, length), of 4 slices (rings + 1) triangles
-/// or so.
-/// @param rings  along the straight part and along each of its ends
+/// @brief A capsule from (0, 0, 0) to (0, 0, length), of about 4 slices (rings + 1)
+/// triangles.
+/// @param rings  number along the straight part, and along each end
 TestMesh makeCapsule(int slices, int rings, double radius, double length);
 
 /// @brief A box around the origin, each side split into `divisions`^2 quads; closed.
@@ -94,7 +94,7 @@ void append(TestMesh& mesh, const TestMesh& part);
 /// @brief The mesh with every vertex moved by `transform`.
 TestMesh transformed(const TestMesh& mesh, const Transform3<double>& transform);
 
-/// @brief Every edge of the triangles once, lower index first, sorted.
+/// @brief Every edge of the triangles once, the lower index first, sorted.
 std::vector<std::array<int, 2>> uniqueEdges(const std::vector<Triangle>& triangles);
 
 }  // namespace test

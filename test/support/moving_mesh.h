@@ -11,19 +11,19 @@
 namespace fcl {
 namespace test {
 
-/// @brief Triangles whose vertices move from one place to another, without a tree.
+/// @brief Triangles whose vertices move from one position to another, without a tree.
 struct MovingMesh {
   std::vector<Vector3<double>> t0, t1;
   std::vector<Triangle> triangles;
 
   const double* previous() const { return t0[0].data(); }
   const double* current() const { return t1[0].data(); }
-  /// The corner k of triangle i.
+  /// Corner k of triangle i.
   std::size_t id(std::size_t i, int k) const { return triangles[i][k]; }
 };
 
-/// @brief What a query needs of a mesh, by the stages' own functions. The mesh must stay
-/// where it is.
+/// @brief The data of a mesh that a query needs, made by the functions of the stages. The
+/// mesh must stay at its address.
 class PreparedMovingMesh {
  public:
   explicit PreparedMovingMesh(
@@ -59,9 +59,9 @@ class PreparedMovingMesh {
   detail::deformable::MeshInstance instance_;
 };
 
-/// @brief `count` triangles between `vertices` random points in [-half, half]^3, each of
-/// which moves by up to `step` along an axis. Many triangles share vertices; some have
-/// repeated ones.
+/// @brief `count` triangles between `vertices` random points in [-half, half]^3. Each
+/// point moves by up to `step` along an axis. Many triangles share vertices, and some
+/// have repeated ones.
 inline MovingMesh randomSoup(Random& random, std::size_t count, std::size_t vertices,
                              double half, double step) {
   MovingMesh mesh;
@@ -76,7 +76,7 @@ inline MovingMesh randomSoup(Random& random, std::size_t count, std::size_t vert
   return mesh;
 }
 
-/// @brief A sheet whose vertices start near z = 0 and are thrown about.
+/// @brief A sheet whose vertices start near z = 0 and are moved at random.
 inline MovingMesh crumpledSheet(Random& random, int n, double step) {
   const TestMesh sheet = makeSheet(n, n);
   MovingMesh mesh;

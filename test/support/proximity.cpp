@@ -12,8 +12,9 @@ namespace {
 
 using Cell = std::array<std::int64_t, 3>;
 
-/// Vertices sorted by the hash of their grid cell (a counting sort, hence in a fixed
-/// order); cells that share a hash are told apart by the distance test that follows.
+/// Vertices sorted by the hash of their grid cell, by a counting sort, so that the order
+/// is fixed. Different cells may have the same hash; the distance test that follows
+/// separates them.
 class VertexGrid {
  public:
   VertexGrid(const std::vector<Vector3<double>>& vertices, double cell_size)
@@ -35,8 +36,8 @@ class VertexGrid {
     return cell;
   }
 
-  /// Calls visit(id) for every vertex in the cells from lo to hi, some more, and those
-  /// whose bucket serves several of the cells more than once.
+  /// Calls visit(id) for every vertex in the cells from lo to hi, and for some others. A
+  /// vertex may come more than once, if its bucket belongs to several of the cells.
   template <typename Visit>
   void forEach(const Cell& lo, const Cell& hi, Visit visit) const {
     for (std::int64_t z = lo[2]; z <= hi[2]; ++z)

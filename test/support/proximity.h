@@ -10,13 +10,13 @@
 namespace fcl {
 namespace test {
 
-/// @brief A vertex close to a triangle that it is no corner of.
+/// @brief A vertex close to a triangle of which it is not a corner.
 struct NearPair {
   int vertex;
   int triangle;
   /// Barycentric weights of the triangle's point closest to the vertex.
   Vector3<double> weights;
-  /// Distance to that point, metres.
+  /// Distance to that point in metres.
   double distance;
 };
 
@@ -24,10 +24,10 @@ struct NearPair {
 Vector3<double> closestWeights(const Vector3<double>& p, const Vector3<double>& a,
                                const Vector3<double>& b, const Vector3<double>& c);
 
-/// @brief All vertex-triangle pairs closer than `distance` metres, ordered by triangle,
-/// of which the vertex or the triangle is movable.
-/// @param is_movable  one entry a vertex; a triangle is movable when its first corner is.
-/// @param cell_size  edge of the hash grid's cells in metres; any value is right, about
+/// @brief All pairs of a vertex and a triangle that are closer than `distance` metres and
+/// of which at least one is movable, ordered by triangle.
+/// @param is_movable  one entry per vertex; a triangle is movable if its first corner is.
+/// @param cell_size  edge of the hash grid's cells in metres. Any value is right; about
 /// the length of an edge is fast.
 std::vector<NearPair> findNearPairs(const std::vector<Vector3<double>>& vertices,
                                     const std::vector<Triangle>& triangles,

@@ -36,15 +36,15 @@ void setPath(MovingPair& pair, std::size_t i, const Vec& t0, const Vec& t1) {
   }
 }
 
-/// How the point of one feature that comes to lie on the other passes it.
+/// How the touching point of one feature passes the other feature.
 enum class Passage {
-  kAcross,  // a simple root of the coplanarity cubic, mostly
+  kAcross,  // most often a simple root of the coplanarity cubic
   kTangent,
   kTriple,
   kResting  // stays on the same point
 };
 
-/// What the features look like when they touch.
+/// The form of the features when they touch.
 enum class Shape {
   kProper,
   kFlat,      // a triangle without area, parallel edges; always
@@ -61,7 +61,7 @@ struct TouchOptions {
   int denominator{1};
 };
 
-/// A time strictly between the frames, often no double.
+/// A time strictly between the frames. Often it is not a double.
 void setInnerTime(Random& random, TouchOptions& options) {
   constexpr int kDenominators[] = {2, 3, 4, 5, 7, 8};
   options.denominator = oneOf(random, kDenominators);
@@ -70,8 +70,8 @@ void setInnerTime(Random& random, TouchOptions& options) {
       static_cast<int>(random.index(static_cast<std::size_t>(options.denominator) - 1));
 }
 
-/// Makes b, the second of two directions, or both, degenerate together with the
-/// velocities.
+/// Makes b, the second of two directions, or both directions degenerate, together with
+/// their velocities.
 void flatten(Random& random, Shape shape, Vec& a, Vec& b, Vec& a_velocity,
              Vec& b_velocity) {
   if (shape == Shape::kProper) return;
@@ -85,10 +85,10 @@ void flatten(Random& random, Shape shape, Vec& a, Vec& b, Vec& a_velocity,
 /// Features that touch by construction. All coordinates are small multiples of 1/4, so
 /// that nothing is rounded.
 ///
-/// With p a point of fixed weights on each feature and r the velocity of one relative to
-/// the other, the volume of the four points is s r.n(s), s the time since the touch and
-/// n(s) = n0 + s n1 + s^2 n2 the cross product of the two directions: its root at s = 0
-/// is double if r.n0 = 0 and triple if r.n1 = 0 as well.
+/// Let p be a point of fixed weights on each feature and r the velocity of one relative
+/// to the other. The volume of the four points is s r.n(s), where s is the time since the
+/// touch and n(s) = n0 + s n1 + s^2 n2 the cross product of the two directions. Its root
+/// at s = 0 is double if r.n0 = 0, and triple if r.n1 = 0 as well.
 MovingPair touchingPair(Random& random, const TouchOptions& options) {
   MovingPair pair{randomKind(random), {}};
   const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
@@ -157,7 +157,8 @@ MovingPair uniform(Random& random) {
   return pair;
 }
 
-/// As two neighbouring triangles of a scene: small features, smaller steps, floats.
+/// Queries as of two neighbouring triangles of a scene: small features, smaller steps,
+/// floats.
 MovingPair sceneLike(Random& random) {
   const double size = 0.02;
   const MovingPair near = nearContactPair(random, random.uniform(0, 0.5));
@@ -165,7 +166,7 @@ MovingPair sceneLike(Random& random) {
   MovingPair pair = near;
   for (auto& p : pair.x)
     for (int k = 0; k < 3; ++k) {
-      // volatile: the rounding to float must not be optimised away.
+      // volatile: the compiler must not remove the rounding to float.
       const volatile float t0 = static_cast<float>(place[k] + size * p.t0[k]);
       const volatile float t1 = static_cast<float>(place[k] + size * p.t1[k]);
       p.t0[k] = t0;
@@ -174,7 +175,7 @@ MovingPair sceneLike(Random& random) {
   return pair;
 }
 
-/// Differences lose digits.
+/// Differences of coordinates lose digits.
 MovingPair farFromOrigin(Random& random) {
   const double distance = std::ldexp(1, 10 + static_cast<int>(random.index(45)));
   const Vec place = random.point(distance);
@@ -203,7 +204,7 @@ struct GridPlane {
   }
 };
 
-/// Coplanar in one frame, or in each frame in a plane of its own.
+/// Features that are coplanar in one frame, or in each frame in a plane of its own.
 MovingPair sharedPlane(Random& random) {
   MovingPair pair{randomKind(random), {}};
   const GridPlane start(random), end(random);
@@ -215,7 +216,7 @@ MovingPair sharedPlane(Random& random) {
   return pair;
 }
 
-/// All in one plane, which may move as a whole: the coplanarity cubic vanishes.
+/// All points in one plane, which may move as a whole: the coplanarity cubic vanishes.
 MovingPair inPlaneMotion(Random& random) {
   MovingPair pair{randomKind(random), {}};
   const GridPlane plane(random);
@@ -285,7 +286,7 @@ std::size_t splitOf(const MovingPair& pair) {
   return pair.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
 }
 
-/// One feature, or both, do not move, or only keep their shape.
+/// One or both features do not move, or move without a change of shape.
 MovingPair still(Random& random) {
   MovingPair pair = random.index(2) ? grid(random) : touchAtStart(random);
   const std::size_t which = random.index(4), split = splitOf(pair);
@@ -314,7 +315,7 @@ MovingPair pointFeatures(Random& random) {
   return touchingPair(random, options);
 }
 
-/// Degenerate features that need not meet: parallel edges, an area of zero, equal points,
+/// Degenerate features that may or may not meet: parallel edges, zero area, equal points,
 /// each in one frame or in both.
 MovingPair flatGrid(Random& random) {
   MovingPair pair = gridPair(random, 2);
@@ -337,7 +338,7 @@ MovingPair flatGrid(Random& random) {
   return pair;
 }
 
-/// Everything on one line, which may move as a whole.
+/// All points on one line, which may move as a whole.
 MovingPair onOneLine(Random& random) {
   MovingPair pair{randomKind(random), {}};
   const Vec origin = gridPoint(random, 2), direction = gridPoint(random, 2);
@@ -372,8 +373,8 @@ MovingPair anyDegenerate(Random& random) {
   return oneOf(random, kAll)(random);
 }
 
-/// Axes exchanged and mirrored, points renamed within their features, times a power of
-/// two.
+/// The query with axes exchanged and mirrored, points renamed within their features, and
+/// coordinates times a power of two.
 MovingPair permutedAndScaled(Random& random) {
   MovingPair pair = anyDegenerate(random);
   const std::size_t split = splitOf(pair);
@@ -407,7 +408,8 @@ MovingPair oneUlpAway(Random& random) {
   for (std::size_t count = 1 + random.index(3); count > 0; --count) {
     auto& p = pair.x[random.index(4)];
     double& c = (random.index(2) ? p.t0 : p.t1)[random.index(3)];
-    // The neighbours of 0 are subnormal and make the rest look infinite: the ulp of 1.
+    // The neighbours of 0 are subnormal, and the other coordinates are huge relative to
+    // them. So the ulp of 1 is used.
     if (c == 0)
       c = random.index(2) ? 0x1p-52 : -0x1p-52;
     else
@@ -437,7 +439,7 @@ MovingPair rotated(Random& random) {
 }
 
 /// A degenerate query at the ends of the range of doubles: as a whole, or each point or
-/// frame at a scale of its own.
+/// frame with a scale of its own.
 MovingPair extremeExponents(Random& random) {
   MovingPair pair = anyDegenerate(random);
   double largest = 1;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Families of random elementary queries: what scenes are made of, and every kind of
-// degenerate case that could be thought of. All are made of doubles as they stand: what
-// is said to touch touches exactly.
+// Families of random elementary queries: queries as in scenes, and all kinds of
+// degenerate cases that we know. Their doubles are exact: features that touch by
+// construction touch exactly.
 #ifndef FCL_TEST_SUPPORT_QUERY_GENERATORS_H
 #define FCL_TEST_SUPPORT_QUERY_GENERATORS_H
 
@@ -16,7 +16,8 @@ namespace test {
 
 struct QueryFamily {
   const char* name;
-  /// Touching, flat or zero by construction, or one rounding away from it.
+  /// Features that are touching, flat or zero by construction, or one rounding away from
+  /// that.
   bool is_degenerate;
   MovingPair (*generate)(Random&);
 };
@@ -24,7 +25,7 @@ struct QueryFamily {
 /// @brief All families, in a fixed order.
 const std::vector<QueryFamily>& queryFamilies();
 
-/// @throws std::invalid_argument if there is no such family
+/// @throws std::invalid_argument if the family does not exist
 const QueryFamily& queryFamily(const std::string& name);
 
 }  // namespace test

@@ -36,7 +36,7 @@ float randomHalf(Random& random, Halves halves) {
     case Halves::kSmooth:
       return static_cast<float>(random.uniform(-0.15, 1));
     case Halves::kSpecial:
-      // Mostly positive ones, else no pair of boxes would ever overlap.
+      // Most are positive; otherwise no pair of boxes would overlap.
       return kSpecials[random.index(4) ? 4 + random.index(3) : random.index(13)];
     case Halves::kAnyBits:
       break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Random moving boxes for tests of the kernels, and what is true of two of them.
+// Random moving boxes for tests of the kernels, and properties of two of them.
 #ifndef FCL_TEST_SUPPORT_RANDOM_BOXES_H
 #define FCL_TEST_SUPPORT_RANDOM_BOXES_H
 
@@ -10,24 +10,24 @@
 namespace fcl {
 namespace test {
 
-/// @brief What the half-axes of a box are like.
+/// @brief Kinds of half-axes of a box.
 enum class Halves { kOnGrid, kSmooth, kSpecial, kAnyBits };
 
 Halves randomHalves(Random& random);
 float randomScale(Random& random);
 
-/// @brief Boxes of one kind, or of several; many move by little. Half-axes may be
-/// anything.
+/// @brief A box of one kind, or of several. Many boxes move by little. Half-axes may have
+/// any value.
 MovingKdop randomBox(Random& random, Halves halves, float scale);
 
-/// @brief Makes half-axes what roundUp() gives: never a NaN, minus infinity or minus
-/// zero.
+/// @brief Changes half-axes to values that roundUp() can return: not NaN, minus infinity
+/// or minus zero.
 void makeBounds(MovingKdop& box);
 
 /// @brief randomBox() with makeBounds().
 MovingKdop randomBounds(Random& random, Halves halves, float scale);
 
-/// @brief The box, moved by a shift that is not null.
+/// @brief The box moved by a shift; null: not moved.
 MovingKdop shifted(const MovingKdop& original,
                    const detail::deformable::KdopShift* shift);
 
@@ -37,10 +37,11 @@ float depthAtStart(const MovingKdop& a, const MovingKdop& b);
 /// @brief Whether no half-axis separates the boxes at t = 0.
 bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b);
 
-/// @brief A gap that leaves out nothing or, of boxes of that depth, some or none.
+/// @brief A gap that leaves out no boxes, or some or none of the boxes of that depth.
 float randomGap(Random& random, float depth);
 
-/// @brief How many pairs of boxes overlap, in all of the step or in a part of it.
+/// @brief Counts the pairs of boxes that overlap, during the whole step or in a part of
+/// it.
 struct OverlapTally {
   int overlaps{0}, apart{0}, cut{0};
 

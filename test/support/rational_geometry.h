@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The definition of a contact at one time, written a second time and in another way than
-// the library's: projected to a coordinate plane and decided by orientations there. For
-// exact numbers only: boost's cpp_rational, or integers that cannot overflow.
+// The definition of a contact at one time, in a form that differs from the library's:
+// points are projected to a coordinate plane, and orientations decide there. For exact
+// numbers only: boost's cpp_rational, or integers that cannot overflow.
 #ifndef FCL_TEST_SUPPORT_RATIONAL_GEOMETRY_H
 #define FCL_TEST_SUPPORT_RATIONAL_GEOMETRY_H
 
@@ -55,7 +55,7 @@ int turn(const ExactPoint<N>& a, const ExactPoint<N>& b, const ExactPoint<N>& c,
   return signOf(cross(minus(b, a), minus(c, a))[dropped]);
 }
 
-/// @brief A coordinate in which n is not zero; 3 if there is none.
+/// @brief The index of a coordinate in which n is not zero; 3 if there is none.
 template <typename N>
 std::size_t nonzeroAxis(const ExactPoint<N>& n) {
   std::size_t k = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Motions by their textbook formulas in long double, to compare the library's with.
+// Motions by textbook formulas in long double, for comparison with the library's.
 #ifndef FCL_TEST_SUPPORT_REFERENCE_MOTION_H
 #define FCL_TEST_SUPPORT_REFERENCE_MOTION_H
 
@@ -39,7 +39,7 @@ inline detail::deformable::Pose toPose(const Transform3<double>& tf) {
   return pose;
 }
 
-/// @brief A motion whose axis and angle are known, not found from its end poses.
+/// @brief A motion whose axis and angle are given, not computed from its end poses.
 struct ReferenceMotion {
   enum class Kind { kInterpolation, kScrew, kSpline };
   Kind kind{Kind::kInterpolation};
@@ -50,7 +50,7 @@ struct ReferenceMotion {
   Vector3<double> reference{Vector3<double>::Zero()};
   Vector3<double> translation_points[4];
   Vector3<double> rotation_points[4];
-  /// The world is shown relative to it.
+  /// Points of the world are relative to it.
   Vector3<double> origin{Vector3<double>::Zero()};
 
   /// @brief Sets the rotation at the end.
@@ -70,7 +70,7 @@ struct ReferenceMotion {
 
   RealPose at(Real t) const { return kind == Kind::kSpline ? splineAt(t) : turnAt(t); }
 
-  /// @brief The same motion as the library has it.
+  /// @brief The same motion in the library's form.
   detail::deformable::MotionPath path() const {
     using detail::deformable::MotionPath;
     if (kind == Kind::kScrew) return MotionPath::screw(toPose(beginning), toPose(end));
@@ -86,7 +86,7 @@ struct ReferenceMotion {
     return MotionPath::spline(translation, rotation);
   }
 
-  /// @brief The motion backwards; none of a spline's is needed here but by its points.
+  /// @brief The reversed motion. A spline's motion is reversed by its points only.
   ReferenceMotion reversed() const {
     ReferenceMotion out = *this;
     std::swap(out.beginning, out.end);

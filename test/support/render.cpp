@@ -12,10 +12,11 @@ namespace {
 
 using Vec = Vector3<double>;
 
-/// A point on the screen: x to the right, y down (pixels), z grows away from the viewer.
+/// A point on the screen: x to the right, y down (in pixels). z grows away from the
+/// viewer.
 using ScreenPoint = Vec;
 
-/// Calls visit(x, y, weights) for each pixel centre inside the triangle; the weights are
+/// Calls visit(x, y, weights) for each pixel centre inside the triangle. The weights are
 /// barycentric on the screen.
 template <typename Visit>
 void rasterise(const std::array<ScreenPoint, 3>& p, int width, int height, Visit visit) {
@@ -44,7 +45,7 @@ void rasterise(const std::array<ScreenPoint, 3>& p, int width, int height, Visit
     }
 }
 
-/// Depths seen from far away in direction `to_light`.
+/// A depth map seen from far away in direction `to_light`.
 class ShadowMap {
  public:
   ShadowMap(const TestMesh& mesh, const Vec& to_light, int size)
@@ -212,7 +213,7 @@ class Renderer {
   }
 
  private:
-  /// What a pixel shows: a triangle, where on it, and how far away.
+  /// The content of a pixel: a triangle, a point on it, and its distance.
   struct Hit {
     int triangle{-1};
     float depth{std::numeric_limits<float>::max()};
@@ -272,7 +273,7 @@ class Renderer {
     return shown * lit + (1 - shown) * options_.background;
   }
 
-  /// How much of a ground is left at a point.
+  /// The opacity of the ground at a point.
   float shownAt(const Vec& point) const {
     const Vec away = point - camera_.target;
     const double faded = (std::hypot(away[0], away[1]) - options_.fade_begin) /
@@ -284,7 +285,7 @@ class Renderer {
     const ScreenPoint p = projection_(marker.position);
     if (!(p[2] > 0)) return;
     const double radius = options_.marker_radius * options_.supersampling;
-    // Markers lie on surfaces: they have to win against the surface they lie on.
+    // Markers lie on surfaces, and have to be drawn in front of them.
     const double depth = p[2] * (1 - 0.004);
     const int reach = static_cast<int>(std::ceil(radius));
     const int cx = static_cast<int>(p[0]);

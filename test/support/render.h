@@ -12,20 +12,20 @@ namespace test {
 
 /// @brief How a triangle looks.
 struct Paint {
-  /// the side to which the normal points, and the other one
+  /// colours of the side to which the normal points, and of the other side
   Colour front;
   Colour back;
-  /// whether it is a ground, which fades into the background
+  /// whether it is the ground, which fades into the background
   bool fades{false};
 };
 
-/// @brief A mesh with a paint a triangle.
+/// @brief A mesh with one paint per triangle.
 struct PaintedMesh {
   TestMesh mesh;
   std::vector<Paint> paints;
 };
 
-/// @brief A small disc that faces the camera; hidden by what is in front of it.
+/// @brief A small disc that faces the camera. Objects in front of it hide it.
 struct Marker {
   Vector3<double> position;  // metres
   Colour colour;
@@ -42,11 +42,11 @@ struct Camera {
 struct RenderOptions {
   int width{800};   // pixels
   int height{600};  // pixels
-  /// samples a pixel along each axis
+  /// samples per pixel along each axis
   int supersampling{2};
-  /// lights spread over the sky besides the sun; each casts shadows
+  /// number of lights in the sky, in addition to the sun; each casts shadows
   int sky_lights{40};
-  /// direction to the sun, any length
+  /// direction to the sun, of any length
   Vector3<double> sun{0.5, -0.35, 1};
   Colour background{colourFromHex(0xf4f5f7)};
   /// horizontal distances from the camera's target, in metres, between which a ground
@@ -58,7 +58,7 @@ struct RenderOptions {
 };
 
 /// @brief Draws the scene with a z-buffer: smooth normals, both sides lit, shadows of the
-/// sun and of the sky. Triangles that reach behind the camera are left out.
+/// sun and of the sky. Leaves out triangles that reach behind the camera.
 Image render(const PaintedMesh& scene, const std::vector<Marker>& markers,
              const Camera& camera, const RenderOptions& options);
 

@@ -15,7 +15,7 @@ namespace fcl {
 namespace test {
 
 /// @brief A VF or EE pair in a form that does not depend on the order of ids: 0 for VF or
-/// 1 for EE, then v and the sorted face, or two sorted edges in ascending order.
+/// 1 for EE, then the vertex and the sorted face, or two sorted edges in ascending order.
 using PairName = std::array<int, 5>;
 
 PairName pairName(ContinuousContactKind kind, std::array<int, 4> vertices);

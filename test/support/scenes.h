@@ -10,9 +10,9 @@ namespace test {
 /// @brief Bodies of the scene below, as ClothSimulator::bodyOf names them.
 enum ClothOverBall { kCloth = 0, kBall = 1, kGround = 2 };
 
-/// @brief A square cloth of 1.5 m falls over a ball of 0.25 m radius that stands on a
-/// ground; from 0.3 s on the ball spins faster and faster, and the cloth winds itself
-/// around it, slides over the ground, and folds.
+/// @brief A square cloth of 1.5 m falls over a ball of 0.25 m radius that stands on the
+/// ground. From 0.3 s on the ball spins faster and faster. The cloth winds itself around
+/// it, slides over the ground, and folds.
 /// @param resolution  the cloth has 2 resolution^2 triangles
 /// @param seed  see SimulatorOptions
 ClothSimulator makeClothOverBall(int resolution, std::uint64_t seed = 1);

@@ -14,14 +14,14 @@
 namespace fcl {
 namespace test {
 
-/// @brief What a test says that is skipped without these data.
+/// @brief The message of a test that is skipped because these data are missing.
 constexpr const char* kNoSharedData =
     "the public data are not here; doc/data.md says where they come from, and "
     "FCL_CCD_TEST_DATA=FOLDER tells the tests where they are";
 
-/// @brief Path of a file or folder of the data that lies outside the project: under
-/// $FCL_CCD_TEST_DATA, or beside the project. Nothing if it is not there; that is said,
-/// and where CI=true, it fails the test.
+/// @brief The path of a file or folder of the public data, which are outside of the
+/// project: in $FCL_CCD_TEST_DATA, or next to the project. If it does not exist, prints
+/// this and returns nothing; with CI=true the test fails.
 inline std::optional<std::string> sharedData(const std::string& relative) {
   const char* root = std::getenv("FCL_CCD_TEST_DATA");
   const std::string path =

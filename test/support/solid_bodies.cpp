@@ -23,7 +23,7 @@ double areaOf(const TestMesh& mesh) {
 
 }  // namespace
 
-/// A body of vertices that weigh the same and are at rest at `places`; fills rest_.
+/// A body of vertices with equal masses and rest positions `places`. Fills rest_.
 ClothSimulator::Solid ClothSimulator::makeSolid(
     const std::vector<int>& vertices, const std::vector<Vector3<double>>& places,
     double vertex_mass, const SolidOptions& options) {
@@ -71,7 +71,7 @@ int ClothSimulator::addFragile(const ShellDesign& design, const SolidOptions& op
   return first;
 }
 
-/// Breaks the bonds near blows that are too strong for them.
+/// Breaks the bonds that are near blows too strong for them.
 void ClothSimulator::loadBonds() {
   struct Blow {
     Vector3<double> place;  // in the shell's design
@@ -102,7 +102,7 @@ void ClothSimulator::loadBonds() {
   }
 }
 
-/// Parts the surfaces whose bonds broke during the frame before.
+/// Splits the surfaces whose bonds broke during the previous frame.
 void ClothSimulator::breakShells() {
   change_ = {};
   change_.first_new_triangle = mesh_.triangles.size();
@@ -128,7 +128,7 @@ void ClothSimulator::breakShells() {
     throw Exception("ClothSimulator: " + model_.lastError());
 }
 
-/// Gives each part a body of its own, which goes on as the part moved in the whole.
+/// Gives each part a body of its own, with the motion that the part had in the whole.
 void ClothSimulator::divideSolids(int shell_id, const std::vector<int>& part_of_piece,
                                   const std::vector<Vector3<double>>& design) {
   Shell& shell = shells_[shell_id];
@@ -160,7 +160,7 @@ void ClothSimulator::divideSolids(int shell_id, const std::vector<int>& part_of_
         old = shell.solid_of_piece[piece];
       }
     const Solid& whole = solids_[old];
-    if (whole.pieces == pieces) continue;  // nothing came off
+    if (whole.pieces == pieces) continue;  // no piece was separated
     SolidOptions options;
     options.frequency = whole.body.frequency;
     Solid solid = makeSolid(vertices_of[part], design, shell.vertex_mass, options);
@@ -180,7 +180,7 @@ void ClothSimulator::divideSolids(int shell_id, const std::vector<int>& part_of_
     parts.push_back({old, std::move(solid)});
   }
 
-  // The first part of a body takes its place, the others come after all.
+  // The first part of a body replaces it, the others are added at the end.
   std::vector<int> id_of_part;
   std::vector<char> is_taken(solids_.size(), 0);
   for (Part& part : parts) {

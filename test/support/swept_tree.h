@@ -11,13 +11,13 @@
 namespace fcl {
 namespace test {
 
-/// @brief A model's moving tree with each pair of boxes replaced by one box around both,
-/// which is what the paper and FCL use.
+/// @brief A model's moving tree in which each moving box is replaced by one box around
+/// both frames, as in the paper and in FCL.
 class SweptTree {
  public:
   explicit SweptTree(const detail::deformable::MovingKdopTree& tree) { assign(tree); }
 
-  /// @brief Takes the tree's boxes as they are now.
+  /// @brief Copies the current boxes of the tree.
   void assign(const detail::deformable::MovingKdopTree& tree) {
     nodes_.clear();
     nodes_.reserve(tree.numNodes());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Models from generated meshes, and comparison of what two queries answer.
+// Models from generated meshes, and comparison of the answers of two queries.
 #ifndef FCL_TEST_SUPPORT_TEST_MODELS_H
 #define FCL_TEST_SUPPORT_TEST_MODELS_H
 
@@ -12,7 +12,7 @@
 #include <tuple>
 #include <vector>
 
-// What the library has of FCL's templates is not compiled again.
+// FCL's templates that are in the library are not compiled again.
 #include "api/fcl_in_float.h"
 #include "api/model_instances.h"
 #include "fcl/common/exception.h"
@@ -75,7 +75,8 @@ std::shared_ptr<Model> makeModel(const TestMesh& mesh) {
   return model;
 }
 
-/// @brief Gives the next frame; not through a base reference unless Model is the base.
+/// @brief Gives the next frame to a model. Its functions are not virtual: pass it by its
+/// own type, not as a base class.
 template <typename Model>
 int update(Model& model, const TestMesh& frame) {
   using S = typename std::decay_t<decltype(*Model::vertices)>::Scalar;
@@ -119,7 +120,7 @@ ContinuousContactResult<S> pairContacts(
   return pairContacts(o1, identity, o2, identity, request);
 }
 
-/// @brief What names a contact, whatever method found it.
+/// @brief Identifies a contact, independent of the method that found it.
 using ContactName = std::tuple<int, bool, std::array<int, 5>>;
 
 template <typename S>
@@ -135,7 +136,8 @@ std::vector<ContactName> namesOf(const std::vector<ContinuousContact<S>>& contac
   return names;
 }
 
-/// @brief Bit for bit, but for the geometries' addresses and the times of the stages.
+/// @brief Expects equal bits, except for the geometries' addresses and the times of the
+/// stages.
 template <typename S, typename T>
 void expectIdentical(const ContinuousContactResult<S>& x,
                      const ContinuousContactResult<T>& y, bool with_geometry = true) {
@@ -160,7 +162,7 @@ void expectIdentical(const ContinuousContactResult<S>& x,
   }
 }
 
-/// @brief The same contacts, with brackets that overlap.
+/// @brief Expects the same contacts, with brackets that overlap.
 template <typename S, typename T>
 void expectSameContacts(const ContinuousContactResult<S>& x,
                         const ContinuousContactResult<T>& y) {

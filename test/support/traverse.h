@@ -12,11 +12,11 @@
 namespace fcl {
 namespace test {
 
-/// @brief All steps of a traversal, without a query around them: visit(i, j, earliest)
-/// for triangles i and j as the trees count them.
-/// @param latest  what starts later is left out
-/// @param culling, axes  as Traversal takes them
-/// @return number of boxes that were compared
+/// @brief Does all steps of a traversal, without a query: visit(i, j, earliest) for
+/// triangles i and j, which are places in the trees.
+/// @param latest  pairs that start later are left out
+/// @param culling, axes  those of Traversal
+/// @return the number of compared boxes
 template <bool kSelf, typename TreeA, typename TreeB, typename Visit>
 std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* shift,
                        Visit&& visit, double latest = 1,
@@ -38,14 +38,15 @@ std::uint64_t traverse(TreeA& a, TreeB& b, const detail::deformable::KdopShift* 
   return traversal.compared();
 }
 
-/// @brief For each vertex of the tree, whether its fan is embedded, as queries find out.
+/// @brief For each vertex of the tree, whether its fan is embedded, as queries compute
+/// it.
 inline std::vector<std::uint8_t> embeddedFans(
     const detail::deformable::MovingKdopTree& tree) {
   const std::vector<std::uint8_t> left_out(tree.vertices().size(), 0);
   return findEmbeddedFans(tree, left_out, detail::deformable::kernels(), 1);
 }
 
-/// @brief The user's ids and the features of triangle i as the tree counts them.
+/// @brief The user's ids and the features of the triangle at place i of the tree.
 inline detail::deformable::MeshTriangle triangleOf(
     const detail::deformable::MovingKdopTree& tree, int i) {
   const detail::deformable::TreeTriangle& t =

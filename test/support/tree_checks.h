@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What holds of every moving tree: its structure, and that its boxes contain what is
+// Properties of every moving tree: its structure, and that its boxes contain everything
 // below them.
 #ifndef FCL_TEST_SUPPORT_TREE_CHECKS_H
 #define FCL_TEST_SUPPORT_TREE_CHECKS_H
@@ -54,7 +54,7 @@ inline void coordinatesAt(const VertexPath& p, double t, const double (&origin0)
   std::copy(all, all + 8, d);
 }
 
-/// Bound of half-axis j at t; infinity at one end is no bound at all.
+/// The bound of half-axis j at t; infinity at one end means no bound.
 inline long double halfAt(const MovingKdop& box, int j, double t) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float half0 = box.t0.half[j], half1 = box.t1.half[j];
@@ -62,15 +62,15 @@ inline long double halfAt(const MovingKdop& box, int j, double t) {
   return (1 - static_cast<long double>(t)) * half0 + static_cast<long double>(t) * half1;
 }
 
-/// Where a node hangs.
+/// The parent of a node, and the node's lane there.
 struct Place {
   int node{-1};
   int lane{0};
 };
 
-/// Every triangle is met once, children come after their parents, triangles and vertices
-/// lie in the order in which the tree meets them and say what the user's say, and lanes
-/// that are not in use overlap nothing.
+/// Every triangle is met once. Children come after their parents. Triangles and vertices
+/// have the order in which the tree meets them, and the data of the user's. Unused lanes
+/// overlap nothing.
 /// @return the place of each node
 inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
                                           const std::vector<MeshTriangle>& triangles) {
@@ -102,7 +102,7 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
   }
   for (const int times : met) EXPECT_EQ(times, 1);
 
-  // The order of a walk, a node's own triangles before its subtrees.
+  // The order of a walk, with a node's own triangles before its subtrees.
   int next = 0;
   std::vector<int> open{0};
   while (!open.empty()) {
@@ -146,8 +146,8 @@ inline void expectContained(const VertexPath& path, double t, const MovingKdopTr
   }
 }
 
-/// A bound on the change of each coordinate, and not much more as long as a float holds
-/// that.
+/// The displacement is a bound on the change of each coordinate. It is not much larger,
+/// as long as a float can represent it.
 inline void expectBounded(const VertexPath& path, double displacement, bool is_least) {
   long double moved = 0;
   for (int k = 0; k < 3; ++k)
@@ -158,8 +158,8 @@ inline void expectBounded(const VertexPath& path, double displacement, bool is_l
   }
 }
 
-/// Every box of the tree contains the triangles below it, and the vertices' own contain
-/// these; no vertex below moves further than is said.
+/// Every box of the tree contains the triangles below it, and the boxes of vertices
+/// contain these. No vertex below moves farther than the node's displacement.
 inline void expectContainment(const MovingKdopTree& tree,
                               const std::vector<MeshTriangle>& triangles,
                               const VertexFrames& frames) {
@@ -193,7 +193,7 @@ inline void expectContainment(const MovingKdopTree& tree,
     }
 }
 
-/// Each vertex has the fan that its triangles form, wherever a closed one begins.
+/// Each vertex has the fan of its triangles. A closed fan may begin at any spoke.
 inline void expectFans(const MovingKdopTree& tree) {
   const VertexFans expected(tree.triangles(), tree.vertices().size());
   ASSERT_EQ(tree.fans().size(), expected.size());
@@ -209,8 +209,8 @@ inline void expectFans(const MovingKdopTree& tree) {
   }
 }
 
-/// The border is what is left of the triangles' edges: each as often as its vertices
-/// follow each other in that order, less how often the other way.
+/// The border has the edges of the triangles that are left: each counts as often as its
+/// vertices follow each other in that order, less as often as they do in the other order.
 inline void expectBorder(const RegionBorder& border, const MovingKdopTree& tree,
                          std::uint32_t first, std::uint32_t last) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
@@ -236,8 +236,8 @@ inline void expectBorder(const RegionBorder& border, const MovingKdopTree& tree,
   ASSERT_EQ(edges, left);
   if (left.empty()) return;
 
-  // Paths begin where the border passes more than once, and pass no other such vertex;
-  // where there is none they are closed.
+  // Paths begin at vertices that the border passes more than once, and pass no other such
+  // vertex. If there is no such vertex, they are closed.
   std::map<std::uint32_t, int> passes;
   for (const Edge& edge : edges) ++passes[edge.first];
   ASSERT_FALSE(border.paths.empty());
@@ -260,8 +260,8 @@ inline void expectBorder(const RegionBorder& border, const MovingKdopTree& tree,
   ASSERT_EQ(border.is_one_loop, border.paths.size() == 1 && is_passed_once);
 }
 
-/// The borders that the tree keeps are those of its nodes; all of them are kept from then
-/// on, as if queries had asked for them.
+/// The borders that the tree keeps are those of its nodes. After the call all of them are
+/// kept, as if queries had asked for them.
 inline void expectBorders(const MovingKdopTree& tree) {
   std::vector<std::uint32_t> last(tree.numNodes(), 0);
   BorderFinder finder(tree);
@@ -281,7 +281,7 @@ inline void expectBorders(const MovingKdopTree& tree) {
   }
 }
 
-/// The triangles of the nodes that have only triangles, by the user's numbers.
+/// The triangles of the nodes that have only triangles, by the user's ids.
 inline std::set<std::vector<std::uint32_t>> lowestNodes(const MovingKdopTree& tree) {
   std::set<std::vector<std::uint32_t>> nodes;
   for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
@@ -295,7 +295,7 @@ inline std::set<std::vector<std::uint32_t>> lowestNodes(const MovingKdopTree& tr
   return nodes;
 }
 
-/// The same boxes to the bit.
+/// Both trees have the same boxes, to the bit.
 inline void expectSameBoxes(const MovingKdopTree& x, const MovingKdopTree& y) {
   ASSERT_EQ(x.numNodes(), y.numNodes());
   for (int i = 0; i < static_cast<int>(x.numNodes()); ++i) {

@@ -11,13 +11,13 @@
 namespace fcl {
 namespace test {
 
-/// @brief A pair and the window in which it is looked at.
+/// @brief A pair and the window in which it is tested.
 struct WindowedPair {
   MovingPair pair;
   double lo, hi;
 };
 
-/// @brief All of the step, a part of it, or one time.
+/// @brief The whole step, a part of it, or one time.
 inline void randomWindow(Random& random, double& lo, double& hi) {
   switch (random.index(6)) {
     case 0:
@@ -44,7 +44,7 @@ inline void randomWindow(Random& random, double& lo, double& hi) {
   }
 }
 
-/// @brief Points here and there; many of the pairs stay on one side of each other.
+/// @brief A pair with random points. Many of the pairs stay on one side of each other.
 inline MovingPair scatteredPair(Random& random, ContinuousContactKind kind) {
   MovingPair pair{kind, {}};
   const double step = random.index(2) ? 0.2 : 1;
