@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The methods of earlier papers, which the benchmark of speed compares with, in all their
-// variants: the same contacts as every pair of features tested one by one.
+// The methods of earlier papers, with which the benchmark of speed compares, in all their
+// variants. They find the same contacts as a test of every feature pair one by one.
 #include <gtest/gtest.h>
 
 #include <algorithm>

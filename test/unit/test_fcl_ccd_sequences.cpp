@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Drives the program fcl-ccd on sequences of frames: how they are named, stopped and gone
-// on with, and what is done to their faces and vertices on the way.
+// Runs the program fcl-ccd on sequences of frames: how frames are named, how runs are
+// stopped and continued, and how faces and vertices are changed on the way.
 #include <gtest/gtest.h>
 #include <signal.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Drives the program fcl-ccd as a user does, on meshes small enough to know the answer,
-// and its mesh reader on files of every format, whole and broken.
+// Runs the program fcl-ccd as a user does, on meshes that are small enough to know the
+// answer. Runs its mesh reader on files of every format, complete and broken.
 #include <gtest/gtest.h>
 
 #include <algorithm>

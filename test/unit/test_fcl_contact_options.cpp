@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a request for contacts can leave out or ask for, against all contacts; and the
-// bracket of the first contact, by which a simulation advances.
+// The options of a request that leave out contacts or add data, compared with all
+// contacts. The bracket of the first contact, by which a simulation advances.
 #include <gtest/gtest.h>
 
 #include <algorithm>

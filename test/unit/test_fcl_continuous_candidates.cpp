@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Candidates of whole scenes: tested one by one they are the contacts of the query.
+// Candidates of whole scenes: an elementary test of each gives the contacts of the query.
 #include "fcl/narrowphase/continuous_candidates.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The calls that FCL has: every signature, BV type and scalar, what is answered here and
-// what reaches FCL. Contacts: test_fcl_continuous_contact.cpp.
+// The calls that FCL has: every signature, BV type and scalar, and which calls are
+// answered here and which reach FCL. Contacts: test_fcl_continuous_contact.cpp.
 #include "fcl/narrowphase/continuous_collision.h"
 
 #include <cmath>

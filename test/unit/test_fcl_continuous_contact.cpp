@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Queries that ask for contacts, of pairs and of one mesh with itself: what they list,
-// what they refuse, and that they can run side by side.
+// what they refuse, and that threads can run them at the same time.
 #include "fcl/narrowphase/continuous_contact.h"
 
 #include <limits>

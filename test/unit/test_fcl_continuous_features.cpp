@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The public elementary tests: the stages behind them have tests of their own.
+// The public elementary tests. The stages behind them have tests of their own.
 #include "fcl/narrowphase/continuous_features.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The life of a DeformableBVHModel on every BV type and both scalars. What it refuses,
-// and what it is without memory: test_fcl_deformable_bvh_model_errors.cpp; discrete
+// The states of a DeformableBVHModel on every BV type and both scalars. What it refuses,
+// and its state when memory runs out: test_fcl_deformable_bvh_model_errors.cpp. Discrete
 // queries: test_fcl_deformable_discrete.cpp.
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a DeformableBVHModel refuses, and what it is when there is no memory, on every BV
-// type and both scalars.
+// What a DeformableBVHModel refuses, and its state when memory runs out, on every BV type
+// and both scalars.
 #include <algorithm>
 #include <functional>
 #include <limits>

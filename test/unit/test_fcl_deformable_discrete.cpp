@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// FCL's discrete queries on a DeformableBVHModel: right in every state, under any
-// transform, or refused.
+// FCL's discrete queries on a DeformableBVHModel. In every state and under any transform
+// they are right, or they are refused.
 #include <cmath>
 #include <memory>
 #include <utility>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Whole queries against brute force: every feature pair of the scene by the exact test.
+// Whole queries against brute force, which is the exact test of every feature pair of the
+// scene.
 #include "query/deformable_query.h"
 
 #include <gtest/gtest.h>

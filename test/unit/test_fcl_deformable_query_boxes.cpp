@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a query reads of the trees of rigid meshes: boxes around all that is below them,
-// and axes that separate what is apart.
+// The boxes that a query reads from the trees of rigid meshes. They contain everything
+// below them, and their axes separate boxes that are apart.
 #include <gtest/gtest.h>
 
 #include <algorithm>

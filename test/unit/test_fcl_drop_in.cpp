@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What programs written for stock FCL rely on.
+// The behaviour on which programs written for stock FCL rely.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What is called an embedded region has no contact, whatever the mesh is like; smooth
-// surfaces are proved; and queries answer the same with and without.
+// An embedded region has no contact with itself, whatever the mesh is. Regions of smooth
+// surfaces are proved. Queries give the same answers with regions and without.
 #include "self_culling/embedded_regions.h"
 
 #include <gtest/gtest.h>

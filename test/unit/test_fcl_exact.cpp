@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The exact stages against the definition, evaluated a second time with other formulas.
+// The exact stages against the definition of a contact, evaluated a second time with
+// other formulas.
 #include <gtest/gtest.h>
 
 #include <algorithm>

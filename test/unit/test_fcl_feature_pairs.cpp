@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Every VF and EE pair of a scene is met exactly once, whatever the mesh looks like.
+// Every VF and EE pair of a scene is met exactly once, for any mesh.
 #include "mesh/feature_pairs.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The generated scenes are what their declarations promise, by the library's own queries.
+// The generated scenes have the properties that their declarations promise. The library's
+// own queries check it.
 #include <gtest/gtest.h>
 
 #include <algorithm>

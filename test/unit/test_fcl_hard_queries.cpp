@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// 4,120 elementary queries from the literature, made to break floating-point tests, with
-// the truth by rational arithmetic.
+// 4,120 elementary queries from the literature. They were made to break floating-point
+// tests, and have the truth by rational arithmetic.
 #include <gtest/gtest.h>
 
 #include <algorithm>

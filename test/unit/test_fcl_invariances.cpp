@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What must not change an answer: names, order, sides, direction of time, units, axes,
-// place, and the type of numbers that hold the coordinates exactly.
+// Changes of the input that must not change the answer: names, order, sides, direction of
+// time, units, axes, place, and number types that hold the coordinates exactly.
 #include <gtest/gtest.h>
 
 #include <algorithm>

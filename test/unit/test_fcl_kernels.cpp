@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernels decide as the scalar functions do, on every instruction set of the machine
-// and with the same bits: here, which instruction sets there are; each kernel has a file
-// of its own.
+// The kernels decide as the scalar functions do, with the same bits on every instruction
+// set of the machine. This file checks the list of instruction sets. Each kernel has a
+// file of its own.
 #include "kernels/kernels.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernel of fans: what it calls embedded touches itself nowhere.
+// The kernel of fans: an embedded fan touches itself nowhere.
 #include <gtest/gtest.h>
 
 #include <algorithm>

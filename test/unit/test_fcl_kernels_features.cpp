@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernels of features: lists of those that masks name, and those whose boxes overlap.
+// The kernels of features: the list of the features in masks, and the feature pairs whose
+// boxes overlap.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernels of nodes: boxes of points and of what is below a node, children that
+// The kernels of nodes: boxes of points and of everything below a node, and children that
 // overlap.
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernel of regions: the directions that triangles face all the time.
+// The kernel of regions: the directions that triangles face during the whole step.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Public queries of meshes that turn: every way to give the motion, times in closed form.
+// Public queries of meshes that turn: every way to give the motion, and times against
+// closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>

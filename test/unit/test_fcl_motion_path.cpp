@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Paths of motions against their formulas, and the bounds that queries rely on.
+// Paths of motions against their formulas, and the bounds on which queries rely.
 #include "motion/motion_path.h"
 
 #include <gtest/gtest.h>

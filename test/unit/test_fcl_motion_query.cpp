@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// First contacts of meshes that turn: against dense samples, closed forms, and themselves
-// in other words.
+// First contacts of meshes that turn: against dense samples, against closed forms, and
+// against the same query in another form.
 #include "motion/motion_query.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The moving box: a shift makes it no smaller, and no overlap is missed.
+// The moving box: a shift does not make it smaller, and no overlap is missed.
 #include <gtest/gtest.h>
 
 #include <algorithm>

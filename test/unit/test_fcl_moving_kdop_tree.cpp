@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The moving tree: its structure, and that its boxes contain what they should at every
-// time.
+// The moving tree: its structure, and that its boxes contain everything below them at
+// every time.
 #include "tree/moving_kdop_tree.h"
 
 #include <gtest/gtest.h>

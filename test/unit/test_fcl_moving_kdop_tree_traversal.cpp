@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Traversals: every pair of triangles that meets is visited, none twice.
+// Traversals: every triangle pair whose boxes meet is visited, and none twice.
 #include <gtest/gtest.h>
 
 #include <algorithm>

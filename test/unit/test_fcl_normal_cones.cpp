@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Continuous normal cones and the contour test: what they leave out touches nowhere, by
-// brute force, and what they must not leave out they do not.
+// Continuous normal cones and the contour test, against brute force. Regions that they
+// cull touch themselves nowhere. Regions that they must not cull are not culled.
 #include "baselines/normal_cones.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The oracle against cases worked out by hand, and the library against the oracle: the
-// short version of fcl_ccd_oracle_check.
+// The oracle against cases that were worked out by hand, and the library against the
+// oracle. This is the short version of fcl_ccd_oracle_check.
 #include <gtest/gtest.h>
 
 #include <filesystem>

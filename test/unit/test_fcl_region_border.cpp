@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Borders of a tree's nodes are what is left of their triangles' edges, are found once,
-// and are kept for as long as the structure stays; nobody sees whether they were.
+// The borders of a tree's nodes have the edges of their triangles that are left. They are
+// found once, and kept as long as the structure stays. No answer depends on whether they
+// were kept.
 #include "tree/border_finder.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Rigid models whose trees FCL made badly: their contacts are the others'.
+// Rigid models whose trees FCL made badly: they have the same contacts as the others.
 #include <gtest/gtest.h>
 
 #include <cmath>

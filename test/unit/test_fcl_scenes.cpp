@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Real scenes with exact truth (they lie outside the project; see shared_data.h): every
-// contact found, none invented, by every way to ask.
+// Real scenes with exact truth (they are outside of the project; see shared_data.h). Each
+// kind of query finds every contact and invents none.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which of FCL's trees bound their triangles, and that those which are read do so.
+// The library tells which of FCL's trees bound their triangles. The trees that it reads
+// do so.
 #include "tree/sound_tree.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs the benchmark of speed on small scenes: its tables must be complete, its figures
-// of errors those that are promised.
+// Runs the benchmark of speed on small scenes. Its tables must be complete, and its error
+// figures must be those that are promised.
 #include <gtest/gtest.h>
 
 #include <cstdlib>

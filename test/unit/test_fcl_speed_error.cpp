@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs the report of speed against error on a tiny set: its figures of errors must be
-// those that are promised, and outside solvers must be read right.
+// Runs the report of speed against error on a tiny set. Its error figures must be those
+// that are promised, and it must read outside solvers correctly.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The scenes and pictures that other tests, the demo and the benchmarks rest on.
+// The scenes and pictures on which other tests, the demo and the benchmarks rely.
 #include <gtest/gtest.h>
 
 #include <cmath>

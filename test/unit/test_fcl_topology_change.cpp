@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A mesh that tears, breaks, grows or loses parts: the tree that follows it is sound, and
-// every answer is that of a model that is built anew.
+// A mesh that tears, breaks, grows or loses parts. The tree that follows it is sound, and
+// every answer is that of a newly built model.
 #include <gtest/gtest.h>
 
 #include <algorithm>

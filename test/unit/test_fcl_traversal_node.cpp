@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The traversal node under FCL's own drivers against the public calls.
+// The traversal node in FCL's own drivers, against the public calls.
 #include "fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A tree that has aged is made anew in part, and in nothing but the time of a query can
-// this be seen.
+// A part of a tree that has aged is rebuilt. This changes the time of a query and nothing
+// else.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Which vertices have a fan, and that leaving out the pairs in an embedded one never
-// changes what a query answers.
+// Which vertices have a fan. Pairs in an embedded fan are culled, and this never changes
+// the answer of a query.
 #include "mesh/vertex_fans.h"
 
 #include <gtest/gtest.h>
