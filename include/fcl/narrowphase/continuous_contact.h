@@ -52,10 +52,11 @@ struct ContinuousContact {
   /// wider than an eighth of toc_hi either: toc_lo is 0 only for features that touch at t
   /// = 0 (or before 2^-1074, the first double above 0). With kAll that holds for the
   /// time_of_contact of the result; the brackets in the list may begin before it.
-  /// If a mesh turns: the features do not touch before toc_lo, and
-  /// are within the query's tolerance of each other then (continuous_collision.h). At
-  /// toc_hi the two triangles provably cross. If no such time is found within toc_err
-  /// and until t_max (they may only graze), toc_hi equals toc_lo.
+  ///
+  /// If a mesh turns: the features do not touch before toc_lo, and are within the query's
+  /// tolerance of each other then (continuous_collision.h). At toc_hi the two triangles
+  /// provably cross. If no such time is found within toc_err and until t_max (they may
+  /// only graze), toc_hi equals toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 

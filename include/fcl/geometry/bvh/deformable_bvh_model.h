@@ -244,9 +244,8 @@ enum class FclTree {
 ///   endModel(FclTree::kSkip) it is BVH_BUILD_STATE_BEGUN, since FCL's tree is not built;
 /// - prev_vertices is never null in a built model;
 /// - getNodeType() throws fcl::Exception while FCL's tree is missing or out of date:
-/// after
-///   FclTree::kSkip, after an update that failed, and before the model is built. Every
-///   query of FCL calls it first;
+///   after FclTree::kSkip, after an update that failed, and before the model is built.
+///   Every query of FCL calls it first;
 /// - the local AABB contains both frames and is up to date after every build and update.
 ///
 /// No update function of BVHModel is virtual. The model notices an update through a
