@@ -27,7 +27,7 @@ bool touchExactly(ContinuousContactKind kind, const FeaturePoints& x,
   return doTouch(kind, x);
 }
 
-/// Of a resolution at which it finds exactly what touches in general position.
+/// The resolution at which it finds exactly the contacts in general position.
 bool touchFinely(ContinuousContactKind, const FeaturePoints&,
                  const RelativePair<double>& pair,
                  const CoplanarityCubic<double>& cubic) {
@@ -43,7 +43,7 @@ std::vector<PairName> contacts(const FramePairMesh& mesh, const BaselineMethod& 
   return found;
 }
 
-/// Calls compare(name, contacts) for every method there is.
+/// Calls compare(name, contacts) for every method.
 template <typename Compare>
 void forEachMethod(const FramePairMesh& mesh, TouchTest touches, Compare&& compare) {
   const struct {
@@ -86,7 +86,7 @@ void expectFromAllMethods(const FramePairMesh& mesh, const std::vector<PairName>
                 });
 }
 
-/// A sheet thrown about: general position, many contacts.
+/// A sheet that moves at random: general position, many contacts.
 FramePairMesh thrownSheet(std::uint64_t seed) {
   Random random(seed);
   const TestMesh sheet = makeSheet(8, 8);
@@ -98,7 +98,7 @@ FramePairMesh thrownSheet(std::uint64_t seed) {
   return mesh;
 }
 
-/// A sheet that lies on another, moved aside by a vector of small integers, and leaves
+/// A sheet that lies on another one, shifted by a vector of small integers, and leaves
 /// it: all contacts are at t = 0, and exact.
 FramePairMesh liftedSheet() {
   const TestMesh sheet = makeSheet(
@@ -174,8 +174,8 @@ FramePairMesh closingBook() {
   return mesh;
 }
 
-/// Shapes of so few triangles that most of them are adjacent, and all pairs of features
-/// of a tetrahedron are orphans.
+/// Shapes with so few triangles that most of them are adjacent. All feature pairs of a
+/// tetrahedron are orphans.
 FramePairMesh thrownTetrahedra(std::uint64_t seed) {
   Random random(seed);
   return moving(
@@ -224,8 +224,8 @@ TEST(FCL_BASELINES, normalConesLeaveOutWhatIsSmooth) {
   }
 }
 
-/// Which stage culls what: owners and representatives meet the same pairs of features,
-/// boxes of features alone meet them again and again, the filter leaves fewer.
+/// The work of each stage: owners and representatives meet the same feature pairs, boxes
+/// of features alone meet them repeatedly, the filter leaves fewer.
 TEST(FCL_BASELINES, countsAreThoseOfTheStages) {
   for (const KernelSet kernels : {KernelSet::kScalar, KernelSet::kVector}) {
     const FramePairMesh mesh = thrownSheet(6);
@@ -293,7 +293,7 @@ TEST(FCL_BASELINES, sharedAndRepeatedFeaturesAreOneFeature) {
   expectFromAllMethods(mesh, truth);
 }
 
-/// Where no number is rounded, zero has no sign, and no filter culls a touch.
+/// If no number is rounded, zero has no sign, and no filter culls a touch.
 TEST(FCL_BASELINES, exactTouchesAtTheStartAreFound) {
   const FramePairMesh mesh = liftedSheet();
   const auto truth = bruteForceSelfContacts(mesh);
@@ -301,8 +301,8 @@ TEST(FCL_BASELINES, exactTouchesAtTheStartAreFound) {
   expectFromAllMethods(mesh, truth);
 }
 
-/// Turned out of the coordinate planes, which rounds it, the same is not for the plain
-/// filter: it takes the sign of a rounding for a proof, and no solver brings back what it
+/// The same scene rotated out of the coordinate planes, which rounds it. The plain filter
+/// takes the sign of a rounding for a proof, and no solver brings back the pairs that it
 /// culls.
 TEST(FCL_BASELINES, thePlainFilterCullsRoundedTouchesAtTheStart) {
   FramePairMesh mesh = liftedSheet();

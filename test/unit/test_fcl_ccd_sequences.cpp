@@ -29,14 +29,14 @@ using namespace fcl::test;
 using fcl_ccd::Triangles;
 using fcl_ccd::Vertices;
 
-/// @brief How far the tip is down in a frame: it goes through the floor and back, so that
-/// some steps have a contact, some begin crossing, and some neither.
+/// @brief The drop of the tip in a frame. It goes through the floor and back, so that
+/// some steps have a contact, some begin crossing, and some have neither.
 double dropOf(std::size_t frame) {
   constexpr std::array<double, 5> kDrops{0, 0.5, 2, 1.5, 0.25};
   return kDrops[frame % kDrops.size()];
 }
 
-/// @brief All that grows with each step.
+/// @brief The files that grow with each step.
 const std::string kOutputs =
     " --contacts c.csv --steps s.jsonl --columns triangles,position,normal";
 
@@ -57,7 +57,8 @@ class CcdSequence : public CcdToolTest {
     for (std::size_t frame = 0; frame < count; ++frame) writeFrame(frame);
   }
 
-  /// @brief Runs and hands out what is in c.csv and s.jsonl, which are removed.
+  /// @brief Runs the program, returns the contents of c.csv and s.jsonl, and removes
+  /// them.
   std::pair<std::string, std::string> outputsOf(const std::string& arguments) const {
     const Outcome outcome = run(arguments + kOutputs);
     EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
@@ -114,7 +115,7 @@ TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
                 "A has 2 frames and B 3");
 }
 
-// All of it is checked before the first step.
+// All frames are checked before the first step.
 TEST_F(CcdSequence, NamesTheFileThatDiffers) {
   writeFrames(8);
   const auto expectNamed = [&](const std::string& bytes, const std::string& cause) {
@@ -130,7 +131,7 @@ TEST_F(CcdSequence, NamesTheFileThatDiffers) {
   expectNamed(whole.substr(0, whole.size() - 1), "face 1 of 2");
   expectNamed(toBinaryPly<double>(edgeAlongX(), false), "has 3 vertices, but");
   expectNamed("ply\n", "the file ends before 'end_header'");
-  // The same mesh in another form is none that differs.
+  // The same mesh in another form is accepted as the same mesh.
   writeText(path(frameName(6)), toAsciiPly(floorAndTip(dropOf(6))));
   EXPECT_EQ(run("run f").exit_code, 0);
 }
@@ -160,7 +161,7 @@ TEST_F(CcdSequence, JobsAndThreadsGiveTheSameBytes) {
   EXPECT_EQ(outputsOf("run f --jobs 3 --query any"), any);
 }
 
-// The tip meets the floor in the origin.
+// The tip meets the floor at the origin.
 TEST_F(CcdSequence, ColumnsTellTrianglesPositionAndNormal) {
   writeTip();
   ASSERT_EQ(run("run tip0.obj tip1.obj --toc-err 1e-9" + kOutputs).exit_code, 0);
@@ -176,7 +177,7 @@ TEST_F(CcdSequence, ColumnsTellTrianglesPositionAndNormal) {
   EXPECT_NEAR(std::abs(std::stod(fields[15])), 1, 1e-8);
 }
 
-// Wherever a run was ended: what is left of its files is the beginning of them.
+// A run may end at any point: its files are then the beginning of the complete ones.
 TEST_F(CcdSequence, ResumeEqualsARunThatWasNotStopped) {
   writeFrames(12);
   const auto whole = outputsOf("run f");
@@ -190,7 +191,7 @@ TEST_F(CcdSequence, ResumeEqualsARunThatWasNotStopped) {
   };
   for (std::size_t i = 0; i <= 16; ++i)
     expectResumed(contacts.size() * i / 16, steps.size() * i / 16);
-  expectResumed(0, steps.size());  // a disk that has lost what was written first
+  expectResumed(0, steps.size());  // a disk that lost the first bytes
   expectResumed(contacts.size() / 2, steps.size());
   expectResumed(contacts.size(), 0);
 }
@@ -208,7 +209,8 @@ TEST_F(CcdSequence, ResumesEitherFileAlone) {
     EXPECT_EQ(readText(path("s.jsonl")), steps);
   }
   takeOutputs();
-  // Without a file from the start; with more frames than then, on with these.
+  // Without a file, the run begins at the start. With more frames than before, it
+  // continues with these.
   ASSERT_EQ(run("run f --end 6 --resume" + kOutputs).exit_code, 0);
   ASSERT_EQ(run("run f --resume" + kOutputs).exit_code, 0);
   EXPECT_EQ(takeOutputs(), std::make_pair(contacts, steps));
@@ -253,7 +255,7 @@ TEST_F(CcdSequence, ABadFrameLeavesTheStepsBefore) {
   EXPECT_EQ(outputsOf("run f --resume"), whole);
 }
 
-// A file that may not grow further is a disk that is full.
+// A file that may not grow simulates a full disk.
 TEST_F(CcdSequence, AFullDiskLeavesWholeSteps) {
   writeFrames(40);
   const auto whole = outputsOf("run f");
@@ -293,7 +295,7 @@ TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
   const auto whole = outputsOf("run f");
   for (const int signal_number : {SIGINT, SIGTERM, SIGKILL}) {
     SCOPED_TRACE(signal_number);
-    // All of it would take seconds.
+    // The whole run would take seconds.
     const pid_t child =
         start(path(""), {"fcl-ccd", "run", "f", "--repeat", "5000", "--contacts", "c.csv",
                          "--steps", "s.jsonl", "--columns", "triangles,position,normal",
@@ -360,8 +362,7 @@ std::string toBinaryStl(const Mesh& mesh) {
   return bytes;
 }
 
-/// @brief A strip of squares along x, and over its middle a spike that is lowered by
-/// `drop`.
+/// @brief A strip of squares along x. Over its middle a spike is lowered by `drop`.
 Mesh stripAndSpike(double drop) {
   Mesh mesh;
   for (int i = 0; i <= 4; ++i)
@@ -446,7 +447,8 @@ TEST(CcdWeld, JoinsToOneThatIsNear) {
   const Vertices chain{
       {0, 0, 0}, {0.75, 0, 0}, {1.5, 0, 0}, {1.5, 1, -1}, {1.5, 1.25, 0}};
   EXPECT_EQ(fcl_ccd::Weld(chain, 1).map(), (std::vector<int>{0, 0, 2, 2, 4}));
-  // Grids must not matter: neighbouring cells, far from the origin and near to it.
+  // The grid must not change the answer: neighbouring cells, far from the origin and near
+  // it.
   for (const double at : {-1e9, -1.0, 0.0, 1.0, 1e9}) {
     const Vertices pair{{at, at, at}, {at + 0.5, at - 0.5, at}};
     EXPECT_EQ(fcl_ccd::Weld(pair, 0.5).map(), (std::vector<int>{0, 0})) << at;
@@ -504,7 +506,7 @@ TEST(CcdTriangulate, ConcavePolygonsAreCoveredOnce) {
 TEST(CcdTriangulate, ConvexPolygonsBecomeFans) {
   const Vertices square{{0, 0, 1}, {1, 0, 2}, {1, 1, 3}, {0, 1, 2}};
   EXPECT_EQ(fcl_ccd::triangulate(square, polygon(4)), (Triangles{{0, 1, 2}, {0, 2, 3}}));
-  // What has no ear ends as a fan, too.
+  // A face without an ear becomes a fan, too.
   const Vertices point(5, {1, 1, 1});
   EXPECT_EQ(fcl_ccd::triangulate(point, polygon(5)).size(), 3u);
 }
@@ -526,7 +528,7 @@ TEST_F(CcdSequence, FacesAreDividedAsInTheFirstFrame) {
 }
 
 TEST_F(CcdSequence, BinaryPlyIsReadWithWhatElseItHas) {
-  // Vertices with more properties, a list beside the corners, polygons, another element.
+  // Vertices with more properties, a second list in faces, polygons, another element.
   std::string ply =
       "ply\nformat binary_big_endian 1.0\nelement note 1\nproperty list uchar uchar "
       "text\n"
@@ -557,7 +559,7 @@ TEST_F(CcdSequence, BinaryPlyIsReadWithWhatElseItHas) {
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {3, 2, 4}}));
 }
 
-// The page's commands, in its order, in a folder that has what it speaks of.
+// The commands of the page, in its order, in a folder with the files that it names.
 TEST_F(CcdSequence, TheManualsCommandsWork) {
   writeFrames(12);
   fs::create_directory(path("frames"));

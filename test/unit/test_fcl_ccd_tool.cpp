@@ -301,7 +301,7 @@ TEST_F(CcdTool, CrossingAtRestIsFirst) {
   EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
 }
 
-// Whatever is asked for, and whatever touches later.
+// For every query, and for every later contact.
 TEST_F(CcdTool, CrossingComesBeforeContacts) {
   Mesh from = floorAndTip(0), to = floorAndTip(2);
   const Mesh crossing = floorAndTip(2);
@@ -464,7 +464,7 @@ TEST_F(CcdTool, BadInputsExitWithTwoAndWriteNothing) {
   expectFailure("run tip0.obj smaller.obj" + outputs, "smaller.obj: has 5 vertices");
   expectFailure("run tip0.obj cut.off" + outputs, "cut.off: ");
   expectFailure("run tip0.obj nan.obj" + outputs, "nan.obj: line ");
-  // Found before the first step, which would succeed.
+  // The error is found before the first step, which would succeed.
   expectFailure("run tip0.obj tip1.obj turned.obj" + outputs, "turned.obj: ");
 }
 
@@ -595,7 +595,7 @@ std::string queryRows(const std::vector<std::array<int, 3>>& points, const char*
   return rows;
 }
 
-/// @brief A vertex falls through a triangle (at t = 1/2), or beside it.
+/// @brief A vertex falls through a triangle (at t = 1/2), or past it.
 std::string vertexFaceRows(bool hit, const char* den, const std::string& truth) {
   const int x = hit ? 0 : 50;
   return queryRows({{x, 0, 2},
@@ -610,7 +610,7 @@ std::string vertexFaceRows(bool hit, const char* den, const std::string& truth) 
 }
 
 TEST_F(CcdTool, CountsWrongAnswersOfQueries) {
-  // The second and the third lie about the truth.
+  // The second and the third query have a wrong truth.
   writeText(path("q.csv"),
             vertexFaceRows(true, "4", "1") + vertexFaceRows(false, "4", "1"));
   writeText(path("r.csv"), vertexFaceRows(true, "18014398509481984", "0"));

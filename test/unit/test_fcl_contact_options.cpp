@@ -43,7 +43,7 @@ TestMesh triangleOver(double height) {
           {Triangle(0, 1, 2)}};
 }
 
-/// Without FCL's own tree, as a simulation updates.
+/// An update without FCL's own tree, as in a simulation.
 std::shared_ptr<Model> modelOf(const MovingMesh& mesh) {
   auto model = makeModel<Model>(TestMesh{mesh.t0, mesh.triangles});
   EXPECT_EQ(model->updateFrames(mesh.previous(), mesh.current(), mesh.t0.size(),
@@ -60,7 +60,7 @@ void expectTight(double lo, double hi, double toc_err) {
   EXPECT_GT(lo, 0);
 }
 
-/// A triangle that falls on a plate: the gap, and how far it goes.
+/// A triangle that falls on a plate, with the gap and the length of the fall.
 TEST(FCL_LEADING_CONTACT, staysClearOfZero) {
   const auto plate = makeModel<Model>(makeSheet(2, 2));
   for (const auto& [gap, way] : {std::array<double, 2>{1, 2},
@@ -88,7 +88,7 @@ TEST(FCL_LEADING_CONTACT, staysClearOfZero) {
       EXPECT_EQ(result.time_of_contact, first.toc_lo);
       expectTight(first.toc_lo, first.toc_hi, request.toc_err);
     }
-    // As FCL's programs ask, of a mesh that deforms and of one that is moved.
+    // The calls of FCL's programs, for a mesh that deforms and for one that is moved.
     const Transform3<double> still = Transform3<double>::Identity();
     ContinuousCollisionResult<double> plain;
     continuousCollide(cloth.get(), still, still, plate.get(), still, still,
@@ -116,7 +116,7 @@ TEST(FCL_LEADING_CONTACT, isZeroForWhatTouchesAtTheStart) {
   }
 }
 
-/// Advancing by the time of contact leaves at most an eighth of the way, each time.
+/// Each advance by the time of contact leaves at most an eighth of the distance.
 TEST(FCL_LEADING_CONTACT, letsASimulationAdvance) {
   const auto plate = makeModel<Model>(makeSheet(4, 4));
   TestMesh ball = moved(makeIcosphere(1, 0.2), 0.5, 0.5, 0.7);
@@ -138,8 +138,8 @@ TEST(FCL_LEADING_CONTACT, letsASimulationAdvance) {
   EXPECT_LE(steps, 14);
 }
 
-/// Contacts of sheets with the brackets that a coarse tolerance leaves, and the earliest
-/// few of them: whatever is dropped, the time is that of the first of all.
+/// Contacts of sheets with the brackets of a coarse tolerance, and the earliest few of
+/// them. Whatever is dropped, the time is that of the first contact of all.
 TEST(FCL_LEADING_CONTACT, isTheFirstOfAllWithACoarseTolerance) {
   int collisions = 0;
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
@@ -179,7 +179,8 @@ TEST(FCL_LEADING_CONTACT, isTheFirstOfAllWithACoarseTolerance) {
   EXPECT_GE(collisions, 20);
 }
 
-/// Whatever else begins in the bracket [0, toc_err]: only what touches at t = 0 has 0.
+/// Only contacts that touch at t = 0 have the time 0, whatever else begins in [0,
+/// toc_err].
 TEST(FCL_LEADING_CONTACT, onlyWhatTouchesAtTheStartBeginsThere) {
   int at_start = 0, later = 0;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
@@ -248,7 +249,7 @@ TEST(FCL_CONTACT_OPTIONS, tMaxCountsATouchAtItself) {
   }
 }
 
-/// The contacts until t_max are those of the whole step that begin no later.
+/// The contacts until t_max are those contacts of the whole step that begin no later.
 TEST(FCL_CONTACT_OPTIONS, tMaxLeavesTheEarlierContacts) {
   std::size_t some = 0, all = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -446,7 +447,7 @@ TEST(FCL_CONTACT_OPTIONS, filtersInASelfCollision) {
                    });
     kept += both.contacts.size();
     left_out += whole.contacts.size() - both.contacts.size();
-    // The first of those that are left.
+    // The first of the remaining contacts.
     request.query = ContinuousQuery::kFirst;
     const Result first = selfContacts(*model, request);
     EXPECT_EQ(first.is_collide, both.is_collide);
@@ -546,7 +547,7 @@ std::set<Crossing> crossingsOf(const MovingMesh& x, const MovingMesh& y, bool is
   return out;
 }
 
-/// The crossings in an answer of edges of o1 (or o2); each must be there once.
+/// The crossings of edges of o1 (or o2) in an answer. Each must be there once.
 std::set<Crossing> crossingsIn(const Result& result, bool first_on_o1) {
   std::set<Crossing> out;
   for (const Contact& c : result.crossings) {

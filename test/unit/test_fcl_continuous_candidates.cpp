@@ -36,8 +36,8 @@ using Ours = DeformableBVHModel<KDOP<S, 16>>;
 template <typename S>
 using Plain = BVHModel<OBBRSS<S>>;
 
-/// Kind, side and vertex ids; a face by its ids in ascending order, since which of
-/// several equal faces stands for them all is open.
+/// Kind, side and vertex ids. A face has its ids in ascending order: it is not defined
+/// which of several equal faces stands for all of them.
 using Name = std::tuple<Kind, bool, std::array<int, 4>>;
 
 template <typename Pair>
@@ -48,7 +48,7 @@ Name nameOf(const Pair& pair) {
   return {pair.kind, pair.first_on_o1, v};
 }
 
-/// One model of a scene and where its vertices go.
+/// One model of a scene and the motion of its vertices.
 template <typename S>
 struct Body {
   std::shared_ptr<CollisionGeometry<S>> model;
@@ -148,7 +148,7 @@ bool holds(const MovingMesh& mesh, std::intptr_t triangle, const int* begin,
   });
 }
 
-/// What the documentation of the candidates promises; returns the number of contacts.
+/// Checks the promises of the candidates' documentation. Returns the number of contacts.
 /// @param kept_owners  no mesh is rigid without owners: the query sees the same pairs
 template <typename S>
 std::size_t expectContactsAmongCandidates(const Body<S>& a, const Body<S>* b,
@@ -353,7 +353,7 @@ TEST(ContinuousCandidatesSink, RunsInTheCallersModeAndMayQuery) {
 
 TEST(ContinuousCandidatesSink, ThrowsToTheCaller) {
   const Body<double> body = largeScene();
-  // Not taken for what the query itself finds wrong.
+  // An exception of the sink is not mistaken for an error of the query.
   EXPECT_THROW(handOut<double>(body, nullptr,
                                [](const ContinuousCandidate*, std::size_t) -> bool {
                                  throw std::domain_error("the caller's own");
@@ -405,7 +405,7 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   const auto plain = makeModel<Plain<double>>(t0, t1);
   plain->vertices[7][0] = nan;
   refused(o, plain.get(), here, "o2, current frame: vertex 7");
-  // What is noticed on the way.
+  // Errors that are found during the query.
   rigid->vertices[5][2] = nan;
   expectRefused([&] { continuousSelfCandidates(rigid.get(), sink); },
                 "vertex 5 is not finite");

@@ -39,7 +39,7 @@ Matrix3<double> rotation(double angle) {
       .toRotationMatrix();
 }
 
-/// FCL's other constructors leave the reference point or the velocities without a value.
+/// FCL's other constructors do not set the reference point or the velocities.
 InterpMotion<double> interpolation(const Transform3<double>& beg,
                                    const Transform3<double>& end) {
   return {beg.linear(), beg.translation(), end.linear(), end.translation(),
@@ -54,7 +54,7 @@ struct Actor {
   Transform3<S> end{Transform3<S>::Identity()};
 };
 
-/// The answers of all signatures, which must be one.
+/// The answers of all signatures, which must be equal.
 template <typename S>
 ContinuousCollisionResult<S> collideEveryWay(
     const Actor<S>& a, const Actor<S>& b,
@@ -102,7 +102,7 @@ class ContinuousCollide : public ::testing::Test {
                            -std::abs(u - 0.5) - std::abs(v - 0.5));
   });
 
-  /// The sheet from height z0 to z1, in every way there is to say it.
+  /// The sheet from height z0 to z1, with every way to give this motion.
   std::vector<Actor<S>> actors(const TestMesh& sheet, double z0, double z1) const {
     const TestMesh first = moved(sheet, 0, 0, z0), last = moved(sheet, 0, 0, z1);
     const Transform3<S> beg = shift<S>(0, 0, z0), end = shift<S>(0, 0, z1);
@@ -127,8 +127,8 @@ class ContinuousCollide : public ::testing::Test {
   }
 };
 
-// Each of FCL's types once, in one scalar or the other; with sanitizers, where each takes
-// the compiler minutes, one of each scalar.
+// Each of FCL's types once, in one of the two scalars. With sanitizers, which take the
+// compiler minutes for each, one type for each scalar.
 #ifdef NDEBUG
 using BVs = ::testing::Types<KDOP<double, 16>, OBBRSS<double>, AABB<double>, kIOS<double>,
                              KDOP<double, 24>, RSS<float>, OBB<float>, KDOP<float, 18>>;
@@ -144,7 +144,7 @@ TYPED_TEST(ContinuousCollide, SheetsMeetOnTime) {
       this->expectTime(collideEveryWay(moving, still), 0.25);
       const auto result = collideEveryWay(still, moving);
       this->expectTime(result, 0.25);
-      // Somewhere on the way from the time of contact to the end of its bracket.
+      // At some time between the time of contact and the end of its bracket.
       const Vector3<S> way = moving.end.translation() - moving.beginning.translation(),
                        gone = result.contact_tf2.translation() -
                               (moving.beginning.translation() +
@@ -199,7 +199,7 @@ TYPED_TEST(ContinuousCollide, ModelsAndMotionsStayAsTheyAre) {
   }
 }
 
-// A rigid model's own boxes are used, whatever FCL did to make them.
+// A rigid model's own boxes are used, no matter how FCL made them.
 TYPED_TEST(ContinuousCollide, RigidModelsWithRefittedTrees) {
   using S = typename TestFixture::S;
   using Plain = typename TestFixture::Plain;
@@ -330,13 +330,13 @@ void expectAsInFcl(const Geometry<double>& o1, const Geometry<double>& o2, bool 
   EXPECT_EQ(ours.is_collide, stock.is_collide);
 }
 
-/// A motion that only its caller knows.
+/// A motion class of the program.
 class OwnMotion : public TranslationMotion<double> {
  public:
   using TranslationMotion<double>::TranslationMotion;
 };
 
-/// Meshes that turn are answered here; such that follow a motion of the program's own
+/// Meshes that turn are answered here. Meshes that follow a motion class of the program
 /// reach FCL.
 void expectOwnMotionAsInFcl(const Geometry<double>& o1, const Geometry<double>& o2) {
   const OwnMotion moving(shift<double>(2, 0, 0), shift<double>(-2, 0, 0)),
@@ -381,7 +381,7 @@ TEST(ContinuousCollideMotion, InterpMotionWithoutRotationIsAnsweredHere) {
               0.25, 1e-4);
 }
 
-// FCL's quaternions round: a rotation that stays the same may end beside itself.
+// FCL's quaternions round: the end of a constant rotation may differ by rounding.
 TEST(ContinuousCollideMotion, InterpMotionWithConstantRotationIsAnsweredHere) {
   const auto ball = makeModel<BVHModel<OBBRSS<double>>>(makeIcosphere(1, 0.5));
   const auto sheet = makeModel<BVHModel<OBBRSS<double>>>(makeSheet(4, 4));
@@ -412,7 +412,7 @@ TEST(ContinuousCollideMotion, InterpMotionWithConstantRotationIsAnsweredHere) {
   EXPECT_GT(num_rounded, 0);
 }
 
-// FCL's conservative advancement starts where it finds a motion.
+// FCL's conservative advancement starts at the current pose of a motion.
 TEST(ContinuousCollideMotion, OwnMotionsReachFclWhereTheyAre) {
   const auto model = makeModel<BVHModel<OBBRSS<double>>>(makeSheet(4, 4));
   for (const double height : {0., 2.}) {
@@ -433,13 +433,13 @@ TEST(ContinuousCollideMotion, OwnMotionsReachFclWhereTheyAre) {
       }
       EXPECT_EQ(times[0], times[1]) << solver;
       EXPECT_EQ(ours.is_collide, stock.is_collide) << solver;
-      // FCL's conservative advancement misses what it meets here.
+      // FCL's conservative advancement misses this contact.
       EXPECT_EQ(ours.is_collide, height == 0 && solver == CCDC_NAIVE);
     }
   }
 }
 
-// A mesh that deforms goes from where such a motion begins to where it ends.
+// The vertices of a deforming mesh go from the begin of such a motion to its end.
 TEST(ContinuousCollideMotion, OwnMotionsOfDeformingMeshes) {
   const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
       makeSheet(4, 4), moved(makeSheet(4, 4), 0, 0, 0.5));
@@ -455,8 +455,8 @@ TEST(ContinuousCollideMotion, OwnMotionsOfDeformingMeshes) {
   EXPECT_EQ(after.translation().z(), 1);
 }
 
-// A deforming mesh's vertices go straight from one pose to the other, unless a motion is
-// given that turns: then the frame does in which they go straight.
+// The vertices of a deforming mesh go straight from one pose to the other, unless the
+// given motion turns. Then the frame in which they go straight turns.
 TEST(ContinuousCollideMotion, DeformingMeshMayRotate) {
   const auto a = makeModel<DeformableBVHModel<OBBRSS<double>>>(
       makeSheet(4, 4), moved(makeSheet(4, 4), 0, 0, 0.5));

@@ -69,10 +69,10 @@ std::vector<double> weightsOf(const Vector3<double>& p, const Vector3<double>& a
   return {1 - v - w, v, w};
 }
 
-/// A feature by ids: how far p is from it, and the velocity of its point at p.
+/// A feature by ids: the distance of p from it, and the velocity of its point at p.
 struct FeatureAt {
   double distance;
-  double outside;  // how far the weights leave [0, 1]
+  double outside;  // distance of the weights from [0, 1]
   Vector3<double> velocity;
 };
 
@@ -103,7 +103,7 @@ bool holds(const TestMesh& mesh, std::intptr_t triangle, const std::vector<int>&
   });
 }
 
-/// Everything that the documentation of ContinuousContact promises.
+/// Checks the promises of ContinuousContact's documentation.
 void expectSound(const ContinuousContact<double>& c, const Step& mesh1,
                  const Step& mesh2) {
   const bool vf = c.kind == Kind::kVertexFace;
@@ -164,7 +164,7 @@ TEST(ContinuousContacts, ArePairsAsDocumented) {
   EXPECT_EQ(result.counts.contacts, result.contacts.size());
   EXPECT_EQ(result.time_of_contact,
             result.initially_crossing ? 0 : result.contacts.front().toc_lo);
-  // The other way round: the same features, the normals turned.
+  // With the objects exchanged: the same features, with opposite normals.
   const Result back = pairContacts<double>(*b, *a, preciseRequest());
   EXPECT_EQ(back.contacts.size(), result.contacts.size());
   for (const auto& c : back.contacts) expectSound(c, {&kB0, &kB1}, {&kA0, &kA1});
@@ -301,7 +301,7 @@ std::shared_ptr<Model> deformableOf(const TestMesh& mesh) {
   return model;
 }
 
-// Two objects that share a geometry are answered as two with one each.
+// Two objects that share a geometry have the same answer as two with a geometry each.
 TEST(ContinuousContacts, OneModelInTwoPoses) {
   TestMesh one;
   one.vertices = {{-1, -1, -0.1}, {1, -1, 0.1}, {0, 1, 0}};
@@ -365,7 +365,7 @@ TEST(ContinuousContacts, RotationsThatDifferByRounding) {
                         .toRotationMatrix();
     to.linear() = Quaternion<double>(from.linear()).toRotationMatrix();
     differing += from.linear() != to.linear();
-    // So fast that ten samples see nothing.
+    // So fast that ten samples do not find it.
     from.translation() = Vector3<double>(0, 0, 50);
     to.translation() = Vector3<double>(0, 0, -71);
     BaseResult base;
@@ -388,8 +388,8 @@ TEST(ContinuousContacts, RotationsThatDifferByRounding) {
   EXPECT_GT(differing, 20);
 }
 
-// Where an edge passes through a face, in meshes of all sizes and of faces that the edge
-// hardly leaves.
+// The place where an edge passes through a face, in meshes of all sizes, also if the edge
+// hardly leaves the face.
 TEST(ContinuousContacts, CrossingsLieOnTheirEdge) {
   Random random(32);
   int crossings = 0;
@@ -491,7 +491,7 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
     expectRefused(
         [&] { continuousCollide(o, here, broken, o, here, here, request, result); },
         "o1: the transform");
-    // Also where a rotation may be one that turns.
+    // Also if the rotation may change.
     const auto rigid = makeModel<Plain>(kSheet);
     Pose twisted = here;
     twisted.linear()(1, 2) = value;
@@ -525,7 +525,7 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   expectRefused([&] { pairContacts<double>(*mesh, Plain()); }, "o2");
 }
 
-// Finite coordinates and a finite pose, and yet what the pose makes of them is not.
+// Finite coordinates and a finite pose whose product is not finite.
 TEST(ContinuousContacts, VerticesPosedOutOfRangeAreRefused) {
   constexpr double kLarge = 1.6e308;
   TestMesh large = kA0;
@@ -555,7 +555,7 @@ TEST(ContinuousContacts, VerticesPosedOutOfRangeAreRefused) {
   check(*makeModel<BVHModel<AABB<double>>>(large, next), *makeModel<Model>(kA0, kA1));
 }
 
-// Nothing is made anew for a translation, and yet it is noticed before the query.
+// A translation computes nothing anew, but the error is found before the query.
 TEST(ContinuousContacts, VerticesMovedOutOfRangeAreRefused) {
   constexpr double kLarge = 1.6e308;
   const Pose here = Pose::Identity();
@@ -609,7 +609,7 @@ static_assert(Compiles<OwnRequest, Result>::value, "one of them");
 static_assert(!Compiles<OwnRequest, BaseResult>::value, "would lose the contacts");
 static_assert(!Compiles<BaseRequest, OwnResult>::value, "would leave the contacts empty");
 
-// The result says which request is meant.
+// The type of the result selects the request.
 TEST(ContinuousContacts, RequestsInBraces) {
   const auto a = makeModel<Model>(kA0, kA1), b = makeModel<Model>(kB0, kB1);
   const Pose pose = Pose::Identity();

@@ -57,7 +57,7 @@ TYPED_TEST(DeformableModel, PartsAddUpToTheWhole) {
   ASSERT_EQ(model.beginModel(), BVH_OK);
   for (const Vector3<S>& p : this->points(kSheet)) ASSERT_EQ(model.addVertex(p), BVH_OK);
   ASSERT_EQ(model.addSubModel({}, kSheet.triangles), BVH_OK);
-  // FCL's addSubModel counts indices from the vertices that are there already.
+  // FCL's addSubModel adds the number of existing vertices to the indices.
   for (int i = 0; i < model.num_tris; ++i) {
     Triangle& t = model.tri_indices[i];
     t = kSheet.triangles[static_cast<std::size_t>(i)];
@@ -177,7 +177,7 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   Plain& base = *changed;
   const auto expectLikePlain = [&](const Plain& plain) {
     expectIdentical(selfContacts<S>(*changed), selfContacts<S>(plain));
-    // Which of a rigid mesh's triangles stands for a shared feature depends on the tree.
+    // The tree decides which triangle of a rigid mesh stands for a shared feature.
     expectSameContacts(pairContacts<S>(*changed, *other), pairContacts<S>(plain, *other));
     expectSameContacts(pairContacts<S>(*other, *changed), pairContacts<S>(*other, plain));
   };
@@ -197,7 +197,7 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   ASSERT_EQ(update(*changed, frame(7)), BVH_OK);
   this->expectFrames(*changed, frame(6), frame(7));
 
-  // FCL clears the model, refuses, and leaks the arrays at the next call.
+  // FCL clears the model, refuses the call, and leaks the arrays at the next call.
   ::testing::internal::CaptureStderr();
   ASSERT_EQ(base.beginModel(), BVH_ERR_BUILD_OUT_OF_SEQUENCE);
   EXPECT_NE(::testing::internal::GetCapturedStderr(), "");
@@ -213,7 +213,7 @@ TYPED_TEST(DeformableModel, NoticesChangesThroughTheBase) {
   this->expectFrames(*changed, larger, larger_next);
 }
 
-// While FCL's tree is not built, FCL takes more triangles, as far as it has room.
+// While FCL's tree is not built, FCL accepts more triangles, as far as it has room.
 TYPED_TEST(DeformableModel, GrowsAfterSteps) {
   USING_FIXTURE;
   const TestMesh soup = floatMesh(makeTriangleSoup(60, 0.4, 0.6, 5)),
@@ -236,7 +236,7 @@ TYPED_TEST(DeformableModel, GrowsAfterSteps) {
                                90, FclTree::kSkip),
             BVH_OK);
   add(model, 30, 60);
-  // In between it is a model that is being built, and can be looked at and copied.
+  // Between the calls it is a model under construction, which can be read and copied.
   model.computeLocalAABB();
   for (const auto& p : points) EXPECT_LE(p[0], model.aabb_local.max_[0]);
   Model copy(model);
@@ -255,7 +255,8 @@ TYPED_TEST(DeformableModel, GrowsAfterSteps) {
   EXPECT_GT(selfContacts<S>(whole).contacts.size(), 0U);
 }
 
-// FCL's copy of a model without vertices has no room for any, and does not know it.
+// FCL's copy of a model without vertices has no room for vertices, and does not check
+// this.
 TYPED_TEST(DeformableModel, CopiesGrowFromNothing) {
   USING_FIXTURE;
   const auto points = this->points(kSheet);
@@ -280,7 +281,7 @@ TYPED_TEST(DeformableModel, CopiesGrowFromNothing) {
   }
 }
 
-// What a rigid model has in its previous frame is nobody's concern, nor how much.
+// The content and the size of a rigid model's previous frame do not matter.
 TYPED_TEST(DeformableModel, GrowsThroughTheBase) {
   USING_FIXTURE;
   Model model;
@@ -325,7 +326,7 @@ TYPED_TEST(DeformableModel, CopiesAreDeep) {
   }
   *assigned = Model();
   expectRefused([&] { selfContacts<S>(*assigned); }, "not built");
-  // A copy of a model that was changed through its base knows it, too.
+  // A copy of a model that was changed through its base class has this state, too.
   Plain& base = *copy;
   ASSERT_EQ(update(base, frame(5)), BVH_OK);
   const Model late(*copy);

@@ -146,7 +146,7 @@ TYPED_TEST(DeformableModel, RefusesToBuildNonsense) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-// The base knows nothing of an update that is open.
+// The base class does not know that an update is open.
 TYPED_TEST(DeformableModel, RefusesToEndWhatTheBaseHasChanged) {
   USING_FIXTURE;
   const auto expectChanged = [](Model& model, int code) {
@@ -163,7 +163,7 @@ TYPED_TEST(DeformableModel, RefusesToEndWhatTheBaseHasChanged) {
   ASSERT_EQ(update(*model, frame(5)), BVH_OK);
   this->expectFrames(*model, frame(4), frame(5));
 
-  // A model of as many vertices that is not built yet.
+  // A model with the same number of vertices that is not built yet.
   ASSERT_EQ(model->beginReplaceModel(), BVH_OK);
   const Model copy(*model);
   ::testing::internal::CaptureStderr();
@@ -179,7 +179,7 @@ TYPED_TEST(DeformableModel, RefusesToEndWhatTheBaseHasChanged) {
   ASSERT_EQ(update(*model, frame(7)), BVH_OK);
   this->expectFrames(*model, kSheet, frame(7));
 
-  // The copy's update is open, and its own.
+  // The copy has an open update of its own.
   Model assigned;
   assigned = copy;
   ASSERT_EQ(assigned.replaceSubModel(this->points(frame(6))), BVH_OK);
@@ -214,12 +214,12 @@ TYPED_TEST(DeformableModel, RefusesToAddWhereNothingHasBegun) {
     refuse([&] { return model->addTriangle(p[0], p[1], p[2]); });
     refuse([&] { return model->addSubModel(p); });
     refuse([&] { return model->addSubModel(p, triangles); });
-    // And again, where FCL's state is that of an update.
+    // The same in FCL's state of an update.
     ASSERT_EQ(update(base, frame(3)), BVH_OK);
   }
 }
 
-// Its motion would be lost.
+// The motion of the model would be lost.
 TYPED_TEST(DeformableModel, EndsOnceUnlessItGrows) {
   USING_FIXTURE;
   Model model;
@@ -237,7 +237,7 @@ TYPED_TEST(DeformableModel, EndsOnceUnlessItGrows) {
   EXPECT_TRUE(model.isFclTreeUpToDate());
 }
 
-// FCL's queries would read a tree that is not there.
+// FCL's queries would read a tree that does not exist.
 TYPED_TEST(DeformableModel, DiscreteQueriesRefuseWhatIsNotBuilt) {
   USING_FIXTURE;
   const auto built = makeModel<Model>(kSheet);
@@ -280,7 +280,7 @@ TYPED_TEST(DeformableModel, QueriesRefuseTooManyTriangles) {
   EXPECT_NO_THROW(selfContacts<S>(*model));
 }
 
-/// Whether the call runs out of memory, if so many allocations succeed.
+/// Whether the call runs out of memory after this number of allocations.
 template <typename Call>
 bool failsAfter(int allocations, Call&& call) {
   allocations_left = allocations;
@@ -294,10 +294,11 @@ bool failsAfter(int allocations, Call&& call) {
   return fails;
 }
 
-/// What comes after an allocation that fails: many are tried, but not all.
+/// The state after an allocation that fails. Many allocations are tried, but not all.
 int nextAllocation(int i) { return i + 1 + i / 8; }
 
-// A model is as before, or, if an update was half done, refused until it has both frames.
+// A model is unchanged. Or, if an update was half done, it is refused until it has both
+// frames.
 TYPED_TEST(DeformableModel, UpdateWithoutMemory) {
   USING_FIXTURE;
   const auto p = this->points(frame(3)), q = this->points(frame(4));
@@ -358,7 +359,7 @@ TYPED_TEST(DeformableModel, UpdateWithoutMemory) {
           EXPECT_NE(model->lastError().find("failed"), std::string::npos);
         } else if (!model->isUpdateOpen()) {
           ++num_unchanged;
-          // Frames are there before FCL's tree is built for them.
+          // The frames are set before FCL's tree is built for them.
           const bool is_old = this->previousOf(*model) == this->previousOf(*before) &&
                               this->currentOf(*model) == this->currentOf(*before);
           expectIdentical(selfContacts<S>(*model), is_old ? answer_before : answer_after);
@@ -400,7 +401,7 @@ TYPED_TEST(DeformableModel, BuildWithoutMemory) {
       expectRefused([&] { selfContacts<S>(model); }, "not built");
       EXPECT_EQ(this->updateFrames(model, this->points(frame(1)), this->points(frame(2))),
                 BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
-      // FCL does not give back what it had for its own tree.
+      // FCL does not free the memory of its own tree.
       if (tree == FclTree::kUpdate) continue;
       ASSERT_EQ(model.endModel(tree), BVH_OK);
       ASSERT_EQ(update(model, frame(2)), BVH_OK);
@@ -445,7 +446,7 @@ TYPED_TEST(DeformableModel, AddsWithoutMemory) {
       model.setNumThreads(1);  // clears the error
       this->expectFrames(model, frame(1), frame(2));
     }
-  // Of vertices, and of triangles where there are any.
+  // For vertices, and for triangles if there are any.
   EXPECT_GE(num_failures, 6);
 }
 

@@ -65,7 +65,7 @@ class DiscreteQuery : public ::testing::Test {
   const std::shared_ptr<Plain> other_ =
       makeModel<Plain>(floatMesh(makeIcosphere(2, 0.4)));
 
-  /// As the plain model that was built from the current frame.
+  /// Expects the answers of a plain model that was built from the current frame.
   void expectCollidesRight(const Model& model) {
     Random random(5);
     std::size_t pairs = 0;
@@ -83,7 +83,7 @@ class DiscreteQuery : public ::testing::Test {
     EXPECT_GT(pairs, 20u);
   }
 
-  /// Collide and distance, by geometry, by object, and from a broadphase.
+  /// Collide and distance, for geometries, for objects, and in a broadphase.
   void expectRefusals(const std::shared_ptr<Model>& model) {
     const Pose identity = Pose::Identity();
     const char* word = "updateFclTree";
@@ -158,7 +158,7 @@ TYPED_TEST(DiscreteQuery, SkippedTreeIsRefusedUntilUpdated) {
   this->expectCollidesRight(*model);
   ASSERT_EQ(assigned.updateFclTree(), BVH_OK);
   this->expectCollidesRight(assigned);
-  // An update that may not skip the tree brings it up to date as well.
+  // An update that must not skip the tree brings it up to date as well.
   ASSERT_EQ(model->updateFrames(next, sheet, count), BVH_OK);
   ASSERT_EQ(update(*model, this->next_), BVH_OK);
   this->expectCollidesRight(*model);
@@ -177,8 +177,8 @@ TYPED_TEST(DiscreteQuery, SkippedAtBuildThenUpdateFramesBuilds) {
   this->expectCollidesRight(model);
 }
 
-// FCL's oriented boxes of single thin triangles are not around them, and bottom-up they
-// are what the tree is made of.
+// FCL's oriented boxes of single thin triangles do not contain them. Bottom-up the tree
+// is made of these boxes.
 TEST(DiscreteQueryBoxes, ContainThinTriangles) {
   using Model = DeformableBVHModel<OBB<double>>;
   const TestMesh soup = makeTriangleSoup(40, 0.5, 0.8, 9);
@@ -237,7 +237,7 @@ TYPED_TEST(DiscreteDistanceOn, MeshMeshIsRight) {
   }
 }
 
-/// No distance between two of these; and nothing printed.
+/// Two of these have no distance function, and nothing is printed.
 template <typename BV>
 void expectNoMeshDistance() {
   const TestMesh sheet = bentSheet(4);

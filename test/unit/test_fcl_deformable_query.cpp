@@ -40,7 +40,7 @@ using test::Random;
 using test::TestMesh;
 
 using Ids = std::vector<std::uint32_t>;
-/// Kind, whether the vertex of a VF pair is mesh b's, ids of both features.
+/// Kind, whether the vertex of a VF pair is in mesh b, ids of both features.
 using PairName = std::tuple<ContinuousContactKind, bool, Ids, Ids>;
 using Contacts = std::map<PairName, ElementaryResult>;
 
@@ -65,7 +65,7 @@ Ids sorted(Ids ids) {
   return ids;
 }
 
-/// A mesh as a query sees it, with its triangles as the user counts them.
+/// A mesh as a query uses it, with its triangles by the user's ids.
 struct Body {
   const MeshInstance& instance;
   const std::vector<Triangle>& triangles;
@@ -145,8 +145,8 @@ class BruteForce {
     for (const std::uint32_t id : ids) p.push_back(body.instance.frames[id]);
     return p;
   }
-  /// Whether one axis parts all of the first n points from all of the others at both
-  /// ends of the step, the same way: comparisons only, so that it is exact too.
+  /// Whether one axis separates the first n points from all others at both ends of the
+  /// step, in the same direction. It uses comparisons only, so that it is exact.
   static bool areApart(const std::vector<VertexPath>& p, std::size_t n) {
     for (int k = 0; k < 3; ++k) {
       bool below = true, above = true;
@@ -182,8 +182,8 @@ bool hasAll(const Ids& triangle, const Ids& ids) {
   });
 }
 
-/// Every contact is a true one, named once, with a bracket of its time and the triangles
-/// that it is on; earliest first.
+/// Every contact exists and is listed once, with a bracket of its time and the triangles
+/// that have it, the earliest first.
 void expectTrueContacts(const QueryAnswer& answer, const Truth& truth, const Body& a,
                         const Body& b, double toc_err) {
   const bool self = &a == &b;
@@ -262,7 +262,7 @@ void expectKEarliest(const Body& a, const Body& b, const Truth& truth, std::size
     }
 }
 
-/// All goals against brute force; returns the number of contacts.
+/// All kinds of queries against brute force; returns the number of contacts.
 std::size_t expectRightAnswers(const Body& a, const Body& b) {
   const Truth truth = BruteForce(a, b).truth();
   expectAll(a, b, truth);
@@ -283,9 +283,9 @@ std::size_t expectRightAnswers(const Body& a, const Body& b) {
   return total;
 }
 
-/// Small triangles here and there, some of which share vertices; coordinates on a coarse
-/// grid in every third. With defects: some repeat a vertex or are the same as another in
-/// another order, and a vertex has no triangle.
+/// Small triangles at random places, some of which share vertices. In every third mesh
+/// coordinates are on a coarse grid. With defects: some triangles repeat a vertex, some
+/// are equal to others with another order of vertices, and one vertex has no triangle.
 MovingMesh smallSoup(Random& random, std::size_t count, double step,
                      bool with_defects = true) {
   MovingMesh mesh;
@@ -340,7 +340,7 @@ TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
   EXPECT_GT(contacts, 1000U);
 }
 
-/// Takes some vertices away, in one frame or in both.
+/// Moves some vertices far away, in one frame or in both.
 void letFly(Random& random, double far, std::size_t count, MovingMesh& mesh) {
   const std::size_t frames = 1 + random.index(3);
   for (std::size_t i = 0; i < count; ++i) {
@@ -375,8 +375,8 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesAgainstBruteForce) {
   EXPECT_GT(contacts, 500U);
 }
 
-// A simulation that loses a vertex costs little more than one that does not: the boxes of
-// everything else still tell it apart.
+// If a simulation loses a vertex, a query takes only little longer: the boxes of all
+// other triangles still separate them.
 TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
   constexpr std::uint64_t kSeed = 5000;
   Random random(kSeed);
@@ -384,7 +384,7 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
   MovingMesh b = test::crumpledSheet(random, 40, 0.02);
   for (auto* points : {&b.t0, &b.t1})
     for (auto& p : *points) p[2] += 0.01;
-  // In no order that a tree could live on, but for the first.
+  // In random order, except for the first.
   for (MovingMesh* mesh : {&a, &b})
     for (std::size_t i = mesh->triangles.size() - 1; i > 1; --i)
       std::swap(mesh->triangles[i], mesh->triangles[1 + random.index(i)]);
@@ -404,7 +404,8 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
     MovingMesh flying_a = a, flying_b = b;
     letFly(random, far, 2, flying_a);
     letFly(random, far, 1, flying_b);
-    // Already where the tree is built, in the first triangle: below all others and above.
+    // The vertex is far away when the tree is built, in the first triangle: below all
+    // others and above.
     for (int k = 0; k < 3; ++k) {
       flying_a.t0[a.triangles[0][0]][k] -= far;
       flying_b.t0[b.triangles[0][0]][k] += far;
@@ -412,7 +413,7 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
     const auto counts = boxesOf(flying_a, flying_b);
     for (std::size_t i = 0; i < counts.size(); ++i)
       EXPECT_LT(counts[i], 2 * usual[i]) << "seed " << kSeed << ", " << far << ", " << i;
-    // All of it jumps; a box at t = 1 still has the size that rounds there.
+    // The whole mesh jumps. A box at t = 1 still has the size that rounds there.
     MovingMesh jumping = a;
     const double size = std::min(far, 1e9);
     for (auto& p : jumping.t1) p += Vector3<double>(size, -size, size);
@@ -420,7 +421,7 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesCostLittle) {
   }
 }
 
-// The same of a mesh that FCL's own tree holds.
+// The same for a mesh with FCL's own tree.
 TEST(FCL_DEFORMABLE_QUERY, farVerticesOfARigidMeshCostLittle) {
   const TestMesh near = test::bentSheet(24);
   const auto sheet = test::makeModel<BVHModel<KDOP<double, 16>>>(near);
@@ -450,7 +451,7 @@ TEST(FCL_DEFORMABLE_QUERY, farVerticesOfARigidMeshCostLittle) {
   }
 }
 
-// What eight pairs at a time leave unclear is decided before the solver.
+// Pairs that the kernel for eight pairs leaves unclear are decided before the solver.
 TEST(FCL_DEFORMABLE_QUERY, filterDecidesJustAboveASlope) {
   // A tip 2^-50 above a slope: the volume, 2^-46, is a twentieth of what doubles may
   // lose.
@@ -493,8 +494,8 @@ TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
   EXPECT_GT(contacts, 1000U);
 }
 
-/// Tips of triangles on their way to faces that come towards them, both as fast as they
-/// can be for what their boxes say; each two far from all others.
+/// Tips of triangles that move to faces that come towards them, both as fast as their
+/// boxes allow. Each two are far from all others.
 struct HeadOn {
   MovingMesh tips, faces;
 
@@ -546,9 +547,9 @@ void expectFirstOfAll(const Body& a, const Body& b, std::size_t count,
   left_out += all.counts.feature_pairs - first.counts.feature_pairs;
 }
 
-// What was found bounds how far away anything that matters can still be: not by less than
-// what moves fastest covers, along an axis or a diagonal, by its own motion or its
-// pose's.
+// The first contact bounds the distance of pairs that can still matter. The bound is not
+// too small: it includes the fastest motion, along an axis or a diagonal, of the mesh or
+// of its pose.
 TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
   constexpr std::size_t kCount = 600;  // several blocks
   std::uint64_t left_out = 0;
@@ -598,7 +599,7 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
   EXPECT_GT(left_out, 10000U);
 }
 
-// A query of a large mesh begins with a look at all parts of it.
+// A query of a large mesh begins with a few steps in all parts of it.
 TEST(FCL_DEFORMABLE_QUERY, firstContactOfALargeMesh) {
   constexpr std::size_t kCount = 33000;  // pairs of triangles
   std::uint64_t left_out = 0;
@@ -705,7 +706,7 @@ std::size_t expectRightAnswersOfRigidMesh(const std::vector<Triangle>& triangles
                             {pb.instance(), needles.triangles});
 }
 
-// Lists of any length, some empty; times at both ends, all alike, and in crowds.
+// Lists of any length, some empty. Times at both ends, all equal, or in groups.
 TEST(FCL_DEFORMABLE_QUERY, contactsOfAllTasksInOrder) {
   const auto keyOf = [](const FeatureContact& c) {
     return std::make_tuple(c.toc_lo, c.kind, !c.first_on_a,
@@ -749,8 +750,8 @@ MovingMesh movingTriangles(Random& random, int count, double size, double step) 
   return mesh;
 }
 
-// How much of the traversal is left out depends on when the first contact is found, and
-// on how sharp its bracket is; which crossing is met first does not.
+// The part of the traversal that is left out depends on when the first contact is found,
+// and on the width of its bracket. The first crossing that is met does not depend on it.
 TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Random random(seed);
@@ -777,8 +778,8 @@ TEST(FCL_DEFORMABLE_QUERY, namesTheSameCrossingWhateverIsLeftOut) {
   }
 }
 
-/// Each triangle is cut into nine, and gets two others like it, one close above the
-/// other. What most of the nine own is less than all of their edges.
+/// Each triangle is cut into nine, and gets two others like it, one closely above the
+/// other. Most of the nine own less than all of their edges.
 MovingMesh withLayers(const MovingMesh& mesh) {
   MovingMesh out;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -818,8 +819,8 @@ void addTriangle(const Vector3<double> (&corners)[3], const Vector3<double>& mot
   mesh.triangles.emplace_back(first, first + 1, first + 2);
 }
 
-// A contact that was found leaves out pairs that do not meet before it, but nothing that
-// crosses: wherever that is, and though it is all that does.
+// A contact that was found leaves out pairs that do not meet before it, but no crossing,
+// wherever it is, even if nothing else is left.
 TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
   int scenes = 0;
   for (std::uint64_t seed = 1; seed <= 30; ++seed) {
@@ -835,7 +836,7 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
     addTriangle({contact + 1e-3 * z, contact + x + z, contact + y + z}, -0.1 * z, mesh);
     addTriangle({crossing + 2 * x, crossing + 2 * y, crossing}, rest, mesh);
     const Vector3<double> inside = crossing + 0.5 * (x + y);
-    // What crosses are the first edges of both.
+    // The crossing is between the first edges of both.
     addTriangle({inside - z, inside + z, inside + 3 * x + z}, rest, mesh);
     const PreparedMovingMesh prepared(mesh);
     QueryOptions options;
@@ -848,13 +849,14 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
   EXPECT_GE(scenes, 10);
 }
 
-// What a prepared mesh owns once, a rigid one meets repeatedly: one face for each set of
-// ids all the same.
+// A prepared mesh owns each feature once; a rigid one meets it repeatedly. In both there
+// is one face for each set of ids.
 TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithDuplicateFaces) {
   EXPECT_GT(expectRightAnswersOfRigidMesh({{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}), 0U);
 }
 
-// "An edge" from a vertex to itself is none; the needle's edge meets vertex 3 at t = 0.5.
+// An "edge" from a vertex to itself is not an edge. The needle's edge meets vertex 3 at t
+// = 0.5.
 TEST(FCL_DEFORMABLE_QUERY, rigidMeshWithRepeatedIds) {
   EXPECT_GT(expectRightAnswersOfRigidMesh({{0, 1, 2}, {0, 0, 3}, {3, 3, 3}}), 0U);
 }

@@ -109,8 +109,8 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeContainTheirTriangles) {
   }
 }
 
-// A box of a rigid tree is not wider than the volume that it is made from by more than a
-// few units of float.
+// A box of a rigid tree is at most a few units of float wider than the volume that it is
+// made from.
 TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
   const auto model = test::makeModel<BVHModel<OBB<double>>>(test::bentSheet(12));
   const RigidTree tree(*model, Pose());
@@ -124,15 +124,15 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
   }
 }
 
-// A node of a rigid tree holds up to eight of FCL's that lie below it, together all of
-// it, each with the box that the tree makes; in whatever order nodes are asked for, what
-// the reader keeps is right.
+// A node of a rigid tree has up to eight of FCL's nodes below it, together all triangles
+// below it, each with the box that the tree makes. In whatever order nodes are asked for,
+// the table of the reader is right.
 TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
   using Model = BVHModel<OBBRSS<double>>;
   const auto model = test::makeModel<Model>(test::bentSheet(20));
   const RigidTree tree(*model, Pose());
   const int count = model->getNumBVs();
-  ASSERT_GT(count, 1000);  // far more than the reader keeps
+  ASSERT_GT(count, 1000);  // far more than the table of the reader has
   std::vector<int> links, leaf_of(static_cast<std::size_t>(model->num_tris), -1);
   for (int i = 0; i < count; ++i) {
     links.push_back(model->getBV(i).first_child);
@@ -151,7 +151,7 @@ TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
         ASSERT_EQ(box.t1.half[k], made.t1.half[k]) << i;
       }
       for (const int t : trianglesBelow(links, bv)) below.push_back(t);
-      // Full, unless there is nothing left to open.
+      // The node is full, unless there is nothing left to open.
       if (!leaf) {
         ASSERT_EQ(node.count, MovingKdopNode::kWidth);
       }
@@ -167,7 +167,7 @@ TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
   RigidTreeReader reader(tree);
   test::Random random(31);
   for (int i = 0; i < 5000; ++i) {
-    // Now and then back to a few nodes, as traversals do.
+    // Sometimes back to a few nodes, as traversals do.
     const auto node = static_cast<int>(random.uniform(0, i % 3 ? count : 40));
     expectRight(reader.node(node), node);
     ASSERT_FALSE(HasFailure());
@@ -222,8 +222,8 @@ Matrix3<S> someRotation() {
   return AngleAxis<S>(S(0.9), Vector3<S>(2, -1, 3).normalized()).toRotationMatrix();
 }
 
-/// Where a vertex of one copy meets a vertex of the other at some time, no boxes above
-/// the two are apart.
+/// If a vertex of one copy meets a vertex of the other at some time, no boxes above the
+/// two are apart.
 template <typename BV>
 void expectTouchingBoxesAreNotApart(std::uint64_t seed) {
   using S = typename BV::S;
@@ -266,8 +266,8 @@ TEST(FCL_DEFORMABLE_QUERY, touchingBoxesAreNotApart) {
   expectTouchingBoxesAreNotApart<KDOP<float, 18>>(75);
 }
 
-// Boxes side by side with hardly a gap are apart, those that overlap by as little are
-// not, nor those that pass through each other, nor what is not a number.
+// Boxes with a tiny gap between them are apart. Boxes that overlap by as little are not,
+// boxes that pass through each other are not, and NaN is not.
 TEST(FCL_DEFORMABLE_QUERY, boxesSideBySide) {
   using Vec = Vector3<double>;
   const auto model = test::makeModel<BVHModel<OBBRSS<double>>>(test::bentSheet(12));
