@@ -213,8 +213,8 @@ const std::vector<Case>& cases() {
   return list;
 }
 
-/// The time in the bracket, which is as narrow as it should be; the long doubles are
-/// exact for these fractions.
+/// The bracket contains the time and is as narrow as promised. The long doubles are exact
+/// for these fractions.
 void expectTime(const Case& c, const ElementaryResult& r, double toc_err) {
   ASSERT_EQ(r.answer, c.denominator ? Answer::kYes : Answer::kNo);
   if (!c.denominator) return;
@@ -245,7 +245,8 @@ TEST(FCL_ELEMENTARY_TEST, constructedCases) {
   }
 }
 
-/// The answer for the whole step is the exact one; for parts of it, no contact is denied.
+/// For the whole step the answer is the exact one. For parts of the step, no contact is
+/// denied.
 /// @return whether the exact stage was not needed
 bool expectExactAnswer(const MovingPair& pair, Random& random) {
   const ElementaryResult truth = exact(pair, 1e-12), r = test(pair);
@@ -352,8 +353,8 @@ MovingPair slidingFeatures(Random& random, double spacing) {
   return pair;
 }
 
-// In a tilted plane parallel edges are so but for rounding, and touch while they are in
-// one line, for less time than doubles can tell.
+// In a tilted plane, edges are parallel except for rounding, and touch while they are in
+// one line, for a shorter time than doubles can resolve.
 TEST(FCL_ELEMENTARY_TEST, sheetsSlidingInATiltedPlane) {
   constexpr std::uint64_t kSeed = 36;
   Random random(kSeed);
@@ -379,7 +380,7 @@ TEST(FCL_ELEMENTARY_TEST, sheetsSlidingInATiltedPlane) {
   EXPECT_GT(cheap, kCount * 90 / 100);
 }
 
-// What the stages before the integers are sure of is so.
+// What the stages before the exact stage prove is true.
 TEST(FCL_ELEMENTARY_TEST, everyFamilyAgreesWithTheExactTest) {
   constexpr std::uint64_t kSeed = 37;
   for (const test::QueryFamily& family : test::queryFamilies()) {
@@ -455,7 +456,8 @@ bool haveOneSign(const MovingPair& pair, double lo, double hi) {
          std::all_of(b, b + 4, [](const Number& c) { return c < 0; });
 }
 
-// Signs below the bound on rounding are found out, and none is taken for granted.
+// Signs below the bound on rounding are decided in double-double; none is used without
+// proof.
 TEST(FCL_ELEMENTARY_TEST, filterSeesTheSignsThatThereAre) {
   constexpr std::uint64_t kSeed = 38;
   int all = 0, seen = 0;
@@ -482,7 +484,7 @@ TEST(FCL_ELEMENTARY_TEST, filterSeesTheSignsThatThereAre) {
 }
 
 TEST(FCL_ELEMENTARY_TEST, filterDecidesJustAboveASlope) {
-  // The volume, 2^-46, is a twentieth of what doubles may lose of it.
+  // The volume, 2^-46, is a twentieth of the bound on its rounding in doubles.
   constexpr double kGap = 0x1p-50;
   const MovingPair pair{kVf,
                         {path({1, 1, 2 + kGap}, {1, 1, 2 + 2 * kGap}), at(0, 0, 0),
@@ -647,8 +649,8 @@ void expectAsExact(const MovingPair& pair, Answer answer) {
   EXPECT_EQ(test(pair).answer, answer) << pair;
 }
 
-// A tiny vertex that passes beside or through the edge of a large face: what underflows
-// in its coordinates is multiplied by the size of the face.
+// A tiny vertex that passes the edge of a large face or goes through it. Underflows in
+// its coordinates are multiplied by the size of the face.
 TEST(FCL_ELEMENTARY_TEST, tinyPathsAtLargeFaces) {
   for (int exponent = 20; exponent <= 480; exponent += 10) {
     const double size = std::ldexp(1, exponent);
@@ -676,7 +678,7 @@ TEST(FCL_ELEMENTARY_TEST, tinyPathsAtLargeFaces) {
   }
 }
 
-/// Where and along what two features touch at t.
+/// The place and the normal of two features that touch at t.
 struct Geometry {
   double position[3], normal[3];
 
@@ -757,8 +759,8 @@ TEST(FCL_ELEMENTARY_TEST, windowOfCoordinatesNearTheLargestDouble) {
   expectAgreement(pair, test(pair), exact(pair));
 }
 
-// The vertex enters the face's side of an edge at t = 2.5e-601 and its plane at 1e-600:
-// both are told apart only far below the smallest double.
+// The vertex comes to the face's side of an edge at t = 2.5e-601, and to its plane at
+// 1e-600. The difference of the two is far below the smallest double.
 TEST(FCL_ELEMENTARY_TEST, bracketOfATimeBelowTheSmallestDouble) {
   const MovingPair pair{kVf,
                         {VertexPath{{-0.25e-300, 0, 1e-300}, {1e300, 0, -1e300}},
@@ -781,7 +783,8 @@ TEST(FCL_ELEMENTARY_TEST, bracketOfASubnormalTimeIsRoundedOutward) {
                            at(0, -1, 0), at(0, 1, 0), at(1, 0, 0)}};
     const ElementaryResult r = exact(pair);
     ASSERT_EQ(r.answer, Answer::kYes);
-    // z(t) as seen at the ends, up to factors: z0 + t (z1 - z0), z0 negligible beside z1.
+    // z(t) from its values at the ends, up to factors: z0 + t (z1 - z0), with z0
+    // negligible in comparison with z1.
     const long double root = static_cast<long double>(z0) / -static_cast<long double>(z1);
     ASSERT_LE(r.toc_lo, root) << pair;
     ASSERT_GE(r.toc_hi, root) << pair;

@@ -40,7 +40,7 @@ EmbeddedRegions regionsOf(const MovingKdopTree& tree, std::uint32_t least = 1) {
   return findEmbeddedRegions(tree, kernels(), 1, least);
 }
 
-/// Triangles below a node, as the tree counts them.
+/// The triangles below a node, by their places in the tree.
 std::vector<std::size_t> trianglesBelow(const MovingKdopTree& tree, int node) {
   std::vector<std::size_t> found;
   std::vector<int> open{node};
@@ -57,7 +57,7 @@ std::vector<std::size_t> trianglesBelow(const MovingKdopTree& tree, int node) {
 }
 
 struct Found {
-  /// The triangles of each region, by the user's numbers.
+  /// The triangles of each region, by the user's ids.
   std::vector<std::vector<std::size_t>> regions;
   std::size_t interior{0};
 
@@ -66,8 +66,9 @@ struct Found {
   }
 };
 
-/// The regions of a mesh, and that they are consistent: none lies in another, and a
-/// vertex is inside of one when all of its triangles are in it and form a closed fan.
+/// The regions of a mesh. Expects that they are consistent: no region lies in another
+/// one. A vertex is inside of a region if all of its triangles are in it and form a
+/// closed fan.
 Found find(const MovingMesh& mesh) {
   const PreparedMovingMesh prepared(mesh);
   const MovingKdopTree& tree = prepared.tree();
@@ -139,7 +140,7 @@ MovingMesh still(const test::TestMesh& mesh) {
   return {mesh.vertices, mesh.vertices, mesh.triangles};
 }
 
-/// Adds a mesh, whose vertices are new ones.
+/// Adds a mesh with vertices of its own.
 void append(MovingMesh& mesh, const MovingMesh& other) {
   const std::size_t first = mesh.t0.size();
   mesh.t0.insert(mesh.t0.end(), other.t0.begin(), other.t0.end());
@@ -171,7 +172,7 @@ test::TestMesh square(int n, double size, double height) {
   });
 }
 
-/// Turned about and moved away.
+/// The mesh rotated and moved away.
 MovingMesh turned(MovingMesh mesh, Random& random) {
   const AngleAxis<double> turn(random.uniform(0, 2 * kPi), random.point(1).normalized());
   const Vector3<double> away = random.point(3);
@@ -180,7 +181,7 @@ MovingMesh turned(MovingMesh mesh, Random& random) {
   return mesh;
 }
 
-// Layers nearer to each other than the vertices of one.
+// Layers that are nearer to each other than the vertices of one layer.
 TEST(FCL_EMBEDDED_REGIONS, layersAreProvedOneByOne) {
   constexpr std::uint64_t kSeed = 100;
   Random random(kSeed);
@@ -192,7 +193,7 @@ TEST(FCL_EMBEDDED_REGIONS, layersAreProvedOneByOne) {
   for (const auto& region : found.regions) EXPECT_EQ(region.size(), 2U * 30 * 30);
 }
 
-// Along every direction of a surface, flat or waving, from a few triangles on.
+// A surface in every direction, flat or waving, from a few triangles on.
 TEST(FCL_EMBEDDED_REGIONS, smoothSheetsAreProvedWhole) {
   constexpr std::uint64_t kSeed = 101;
   Random random(kSeed);
@@ -232,7 +233,7 @@ TEST(FCL_EMBEDDED_REGIONS, turningComb) {
     for (const auto& p : mesh.t0)
       mesh.t1.push_back(AngleAxis<double>(angle, Vector3<double>::UnitZ()) * p);
     EXPECT_TRUE(find(mesh).isWhole(mesh)) << angle;
-    // One that leans over touches the next.
+    // A tooth that leans over touches the next one.
     mesh.t1[32] += 0.04 * (mesh.t1[31] - mesh.t1[30]).normalized();
     const Found found = find(mesh);
     EXPECT_FALSE(found.isWhole(mesh)) << angle;
@@ -240,7 +241,8 @@ TEST(FCL_EMBEDDED_REGIONS, turningComb) {
   }
 }
 
-// All that is above a plane of two triangles is one with it until the mesh is divided.
+// Everything above a plane of two triangles is one region with it, until the mesh is
+// divided.
 TEST(FCL_EMBEDDED_REGIONS, aSheetOverAPlane) {
   MovingMesh mesh = still(square(60, 1, 0));
   append(mesh, still(square(1, 20, -0.5)));
@@ -250,7 +252,7 @@ TEST(FCL_EMBEDDED_REGIONS, aSheetOverAPlane) {
   EXPECT_GT(inside, 60 * 60 / 2);
 }
 
-// Two layers of a folded sheet are proved each.
+// Each of the two layers of a folded sheet is proved.
 TEST(FCL_EMBEDDED_REGIONS, aFoldHasTwoSides) {
   constexpr double kRadius = 0.2;
   const MovingMesh mesh = still(test::makeSheet(120, 40, [](double u, double v) {
@@ -291,7 +293,7 @@ TEST(FCL_EMBEDDED_REGIONS, severalLoops) {
   EXPECT_TRUE(find(pinched).isWhole(pinched));
 }
 
-// What overlaps itself in the plane, with borders that do not meet there or do.
+// Regions that overlap themselves in the plane, with borders that meet there or do not.
 TEST(FCL_EMBEDDED_REGIONS, whatOverlapsIsNot) {
   for (const double height : {0.5, 0.01, 0., -0.3}) {
     SCOPED_TRACE(height);
@@ -314,7 +316,7 @@ TEST(FCL_EMBEDDED_REGIONS, whatOverlapsIsNot) {
       EXPECT_FALSE(found.isWhole(mesh));
       expectNoContact(mesh, found);
     }
-    // Less than once round, or apart.
+    // The strip goes less than once around, or its turns are apart.
     MovingMesh mesh = still(spiral(60, 0.9, rise));
     EXPECT_TRUE(find(mesh).isWhole(mesh));
     mesh = still(spiral(90, 1.7, rise, 0.7));
@@ -322,7 +324,7 @@ TEST(FCL_EMBEDDED_REGIONS, whatOverlapsIsNot) {
   }
 }
 
-// Borders that meet at some time only; in between nothing of it is seen.
+// Borders that meet at some time only, between the frames.
 TEST(FCL_EMBEDDED_REGIONS, whatMeetsInBetweenIsNot) {
   // Two sheets side by side that change places.
   MovingMesh mesh = still(square(3, 1, 0));
@@ -333,7 +335,7 @@ TEST(FCL_EMBEDDED_REGIONS, whatMeetsInBetweenIsNot) {
   Found found = find(mesh);
   EXPECT_FALSE(found.isWhole(mesh));
   expectNoContact(mesh, found);
-  // A spiral that is opened further than once round.
+  // A spiral that is opened by more than one turn.
   mesh = still(spiral(60, 0.9, 0));
   mesh.t1 = spiral(60, 1.1, 0).vertices;
   found = find(mesh);
@@ -370,7 +372,7 @@ TEST(FCL_EMBEDDED_REGIONS, holesOfOneTriangle) {
 }
 
 TEST(FCL_EMBEDDED_REGIONS, whatTouchesIsNot) {
-  // A seam of vertices that are there twice.
+  // A seam of vertices that exist twice.
   MovingMesh seam = still(square(4, 1, 0));
   MovingMesh other = still(square(4, 1, 0));
   for (auto* frame : {&other.t0, &other.t1})
@@ -379,7 +381,7 @@ TEST(FCL_EMBEDDED_REGIONS, whatTouchesIsNot) {
   Found found = find(seam);
   EXPECT_FALSE(found.isWhole(seam));
   expectNoContact(seam, found);
-  // The same apart by a little, or turned about so that it is not seen exactly.
+  // The same vertices at a small distance, or rotated, so that the seam is not exact.
   Random random(103);
   for (int i = 0; i < 20; ++i)
     expectNoContact(turned(seam, random), find(turned(seam, random)));
@@ -485,7 +487,7 @@ MovingMesh randomSheet(Random& random) {
   }
 }
 
-/// Takes away, turns over, adds and doubles triangles, and splits vertices.
+/// Removes, turns over, adds and doubles triangles, and splits vertices.
 void spoil(MovingMesh& mesh, Random& random) {
   auto& triangles = mesh.triangles;
   for (std::size_t times = random.index(5); times-- > 0;) {
@@ -509,7 +511,7 @@ void spoil(MovingMesh& mesh, Random& random) {
         t.set(mesh.t0.size() - 1, t[1], t[2]);
         break;
       default: {
-        // A hole, at times a large one.
+        // A hole, sometimes a large one.
         const std::size_t count = 1 + random.index(random.index(2) ? 2 : 12);
         for (std::size_t k = 0; k < count && triangles.size() > 2; ++k)
           triangles.erase(triangles.begin() +
@@ -538,8 +540,8 @@ void moveAtRandom(MovingMesh& mesh, Random& random) {
   }
 }
 
-// Regions of all sizes, in meshes that are spoiled and move in all ways, against all
-// pairs of features.
+// Regions of all sizes, in meshes with all kinds of defects and motions, against all
+// feature pairs.
 TEST(FCL_EMBEDDED_REGIONS, haveNoContact) {
   constexpr std::uint64_t kSeed = 106;
   Random random(kSeed);
@@ -587,7 +589,7 @@ QueryAnswer answerOf(const MeshInstance& mesh, ContinuousQuery query, bool with_
   return querySelf(mesh, options);
 }
 
-// The same contacts to the bit; less work.
+// The same contacts to the bit, with less work.
 TEST(FCL_EMBEDDED_REGIONS, queriesAnswerTheSame) {
   std::vector<test::FramePairMesh> scenes{test::makeSmoothCloth(3000),
                                           test::makeSmoothCloth(12000, 7),
@@ -655,9 +657,9 @@ TEST(FCL_EMBEDDED_REGIONS, doNotDependOnThreadsOrKernels) {
   EXPECT_EQ(bitsOf(one), bitsOf(four));
 }
 
-// Sheets that lie on each other, joined into one component, face one direction, all of
-// them, but no border of theirs is simple: a few are looked at, which are enough to give
-// up.
+// Sheets that lie on each other, joined into one component. All of them face one
+// direction, but no border of theirs is simple. A few borders are tested, and then the
+// search stops.
 TEST(FCL_EMBEDDED_REGIONS, layersAreNotSearchedInVain) {
   static std::size_t triangles_asked, boxes_compared;
   Kernels counting = kernels();
@@ -692,8 +694,8 @@ TEST(FCL_EMBEDDED_REGIONS, layersAreNotSearchedInVain) {
   EXPECT_LE(triangles_asked, cloth.triangles.size());
 }
 
-// What the traversal leaves out is exactly the pairs below one of the nodes, whatever
-// these are.
+// The traversal leaves out exactly the pairs below one of the marked nodes, whichever are
+// marked.
 TEST(FCL_EMBEDDED_REGIONS, traversalLeavesOutRegionsOnly) {
   constexpr std::uint64_t kSeed = 108;
   Random random(kSeed);

@@ -40,8 +40,7 @@ bool doTouchAt(const MovingPair& pair, std::int64_t k, std::int64_t n) {
   return test::doTouch(pair.kind, test::pointsAt<std::int64_t>(pair.x.data(), k, n));
 }
 
-/// Where the answer names a time, the features touch then and at no earlier time that
-/// is looked at.
+/// At the time of the answer the features touch, and at no earlier tested time.
 void expectDefinition(const MovingPair& pair, const ElementaryResult& r) {
   constexpr std::int64_t kSteps = 24;  // halves, thirds, eighths
   for (std::int64_t k = 0; k <= kSteps; ++k) {
@@ -77,7 +76,7 @@ TEST(FCL_EXACT_TEST, gridPairs) {
   EXPECT_GT(instants, 1000);
 }
 
-// Features that touch by construction at a time that is no double: k / 7.
+// Features that touch by construction at a time that is not a double: k / 7.
 TEST(FCL_EXACT_TEST, contactsAtRationalTimes) {
   constexpr std::uint64_t kSeed = 22;
   Random random(kSeed);
@@ -127,8 +126,8 @@ TEST(FCL_EXACT_TEST, bracketsContainKnownTimes) {
   }
 }
 
-/// Pairs for which doubles do not tell: all families of degenerate ones, points that
-/// nearly meet in one point, and coordinates far apart in size.
+/// Pairs that doubles do not decide: all families of degenerate pairs, points that nearly
+/// meet in one point, and coordinates of very different size.
 MovingPair hardPair(Random& random, int i) {
   const auto& families = test::queryFamilies();
   MovingPair pair =
@@ -152,7 +151,7 @@ bool isNarrow(const ElementaryResult& r, double toc_err) {
   return r.toc_hi - r.toc_lo <= std::max(toc_err, 0x1p-50 * r.toc_hi);
 }
 
-/// solveMagnified() of a pair that need not be worth it.
+/// solveMagnified() of any pair, also if it is not worth magnifying.
 ElementaryResult solve(const MovingPair& pair, double toc_err, double t_stop,
                        double t_max) {
   ExactQuery query(pair.kind, pair.points());
@@ -314,8 +313,8 @@ TEST(FCL_CROSSING_TEST, orientationIsExact) {
   EXPECT_GT(flat, 1000);
 }
 
-// The integers are as long as the coordinates have digits: around each length up to which
-// shorter ones do, differences of opposite corners are the largest that there are.
+// The length of the integers depends on the digits of the coordinates. Around each length
+// at which longer ones are needed, the differences of opposite corners are the largest.
 TEST(FCL_CROSSING_TEST, orientationOfIntegersOfAnyLength) {
   constexpr std::uint64_t kSeed = 25;
   Random random(kSeed);
@@ -325,8 +324,8 @@ TEST(FCL_CROSSING_TEST, orientationOfIntegersOfAnyLength) {
       const auto sign = [&random] { return random.index(2) ? 1. : -1.; };
       const int cut = std::min(digits, 53);
       const double largest = std::ldexp(std::ldexp(1., cut) - 1, digits - cut);
-      // Two opposite corners, another one and what is in the middle, or at a corner; or
-      // one unit beside.
+      // Two opposite corners, another one, and a point in the middle or at a corner; or
+      // one unit away from it.
       Tetrahedron t;
       const bool at_corner = random.index(2);
       for (int k = 0; k < 3; ++k) {
@@ -363,7 +362,7 @@ Tetrahedron degeneratePoints(Random& random, int i) {
   const std::size_t axis = random.index(3);
   if (i % 3 == 0)
     for (auto& point : t.p) point[axis] = t.p[0][axis];
-  // A point between two others, up to rounding, or one step beside.
+  // A point between two others, up to rounding, or one step away.
   if (i % 4 == 0) {
     const std::size_t a = random.index(4), b = random.index(4), c = random.index(4);
     const double s = random.index(2) ? 0.5 : random.uniform(0, 1);
@@ -400,7 +399,7 @@ TEST(FCL_INSTANT_TEST, touchingIsExact) {
   EXPECT_GT(touch, 900);
 }
 
-// The normal overflows while the volume is an ordinary number.
+// The normal overflows, but the volume is an ordinary number.
 TEST(FCL_INSTANT_TEST, hugeTriangleTinyDistance) {
   constexpr double kSide = 0x1.ap511, kWeight = 0x1p-712;
   const double a[3] = {0, 0, 0}, b[3] = {kSide / 2, kSide, -kSide},
@@ -435,7 +434,7 @@ TEST(FCL_CROSSING_TEST, onlyTheInsideCounts) {
   EXPECT_FALSE(isCrossing(up, down, a, b, b)) << "no area";
 }
 
-// Crossing properly: the closed segment and triangle meet, and no end or border is
+// A proper crossing: the closed segment and triangle meet, and no end or border is
 // involved.
 TEST(FCL_CROSSING_TEST, gridTriangles) {
   constexpr std::uint64_t kSeed = 25;
@@ -453,7 +452,8 @@ TEST(FCL_CROSSING_TEST, gridTriangles) {
                        side_q = test::volumeSign(e[1], e[2], e[3], e[4]);
     bool truth = side_p * side_q < 0;
     if (truth) {
-      // Where pq meets the plane, times the sum of the distances of p and q from it.
+      // The point where pq meets the plane, times the sum of the distances of p and q
+      // from it.
       const auto n = test::cross(test::minus(e[3], e[2]), test::minus(e[4], e[2]));
       const std::int64_t dp = std::abs(test::dot(test::minus(e[0], e[2]), n)),
                          dq = std::abs(test::dot(test::minus(e[1], e[2]), n));

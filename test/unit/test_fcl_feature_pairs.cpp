@@ -70,7 +70,7 @@ bool doShare(const Ids& a, const Ids& b) {
   });
 }
 
-/// Each pair once, by definition.
+/// All feature pairs once, by definition.
 Tally expectedPairs(const Features& a, const Features& b, bool self) {
   Tally tally;
   const auto add = [&](int kind, const std::set<Ids>& xs, const std::set<Ids>& ys) {
@@ -217,7 +217,7 @@ TEST(FCL_FEATURE_PAIRS, ownedPairsByDefinition) {
     }
 }
 
-// What two triangles share that have common vertices, each two of them or none.
+// The common features of two triangles with common vertices.
 TEST(FCL_FEATURE_PAIRS, pairsAndEdgesAtSharedVertices) {
   for (unsigned shared = 0; shared < 1U << 9; ++shared) {
     const auto isShared = [shared](unsigned i, unsigned j) {
@@ -258,7 +258,7 @@ TEST(FCL_FEATURE_PAIRS, pointsOfPairs) {
   }
 }
 
-// Triangles in which every number but the vertices' is the same, or none is.
+// Triangles in which all numbers but those of the vertices are equal, or none.
 TEST(FCL_FEATURE_PAIRS, sharedVerticesByDefinition) {
   constexpr std::uint64_t kSeed = 4;
   test::Random random(kSeed);
@@ -288,14 +288,14 @@ TEST(FCL_FEATURE_PAIRS, theLowestTriangleOwns) {
   const std::vector<Triangle> triangles = {{0, 1, 2}, {2, 1, 3}, {1, 0, 2}};
   const auto mesh = assignFeatures(triangles.data(), triangles.size(), 4);
   EXPECT_EQ(mesh[0].owned, kOwnsAll);
-  // Of the second, vertex 3, its two new edges and the face.
+  // The second triangle owns vertex 3, its two new edges and the face.
   EXPECT_FALSE(ownsVertex(mesh[1], 0) || ownsVertex(mesh[1], 1) || ownsEdge(mesh[1], 0));
   EXPECT_TRUE(ownsVertex(mesh[1], 2) && ownsEdge(mesh[1], 1) && ownsEdge(mesh[1], 2));
   EXPECT_TRUE(ownsFace(mesh[1]));
   EXPECT_EQ(mesh[2].owned, 0U);
 }
 
-/// What each triangle owns, by definition: the features that none before it has.
+/// The features of each triangle by definition: those that no previous triangle has.
 std::vector<std::uint32_t> expectedOwned(const std::vector<Triangle>& triangles) {
   std::set<Ids> taken;
   std::vector<std::uint32_t> owned;
@@ -340,7 +340,7 @@ TEST(FCL_FEATURE_PAIRS, ownersByDefinition) {
   }
 }
 
-// All around one vertex or one edge, and one face again and again.
+// All triangles around one vertex or one edge, and one face repeatedly.
 TEST(FCL_FEATURE_PAIRS, ownersOfCrowdedFeatures) {
   constexpr std::size_t kCount = 50000;
   std::vector<Triangle> wheel, book, same;
@@ -352,7 +352,7 @@ TEST(FCL_FEATURE_PAIRS, ownersOfCrowdedFeatures) {
   expectOwners(wheel, kCount);
   expectOwners(book, kCount);
   expectOwners(same, 3);
-  // The crowded vertex last.
+  // The vertex with most triangles is last.
   for (Triangle& t : wheel)
     t.set(kCount - 1 - t[0], kCount - 1 - t[1], kCount - 1 - t[2]);
   expectOwners(wheel, kCount);
@@ -375,7 +375,7 @@ TEST(FCL_FEATURE_PAIRS, findsWhatIsTooMany) {
       "536870913 triangles are more than 536870912, the most that a model can have");
   EXPECT_EQ(findTooMany(1, kMaxMeshSize + 1),
             "536870913 vertices are more than 536870912, the most that a model can have");
-  // What is numbered up to there.
+  // The features that are numbered up to here.
   EXPECT_LE(4 * (kMaxMeshSize - 1) + 2, std::numeric_limits<std::uint32_t>::max());
   EXPECT_LE(6 * kMaxMeshSize, std::numeric_limits<std::uint32_t>::max());
 }

@@ -42,8 +42,8 @@ constexpr double kTocErr = 1e-7;
 
 Result test(const MovingPair& pair) { return featureTest<double>(pair, kTocErr); }
 
-/// One axis is flat, or all motion is along one axis, or some points are the same: on a
-/// coarse grid, so that a good part of the pairs touch.
+/// One axis is flat, or all motion is along one axis, or some points are equal.
+/// Coordinates are on a coarse grid, so that many of the pairs touch.
 MovingPair degeneratePair(Random& random) {
   MovingPair pair = gridPair(random, 2);
   const std::size_t axis = random.index(3), i = random.index(4), j = random.index(4);
@@ -69,8 +69,8 @@ MovingPair degeneratePair(Random& random) {
   return pair;
 }
 
-/// Calls visit(pair, its answer, random) for thousands of pairs of each family, and sees
-/// to it that many touch and many do not.
+/// Calls visit(pair, its answer, random) for thousands of pairs of each family. Expects
+/// that many touch and many do not.
 void forEachPair(
     std::uint64_t seed,
     const std::function<void(const MovingPair&, const Result&, Random&)>& visit) {
@@ -101,7 +101,7 @@ void forEachPair(
   }
 }
 
-/// The same decision, and brackets of one time.
+/// Expects the same decision, and brackets of the same time.
 void expectSame(const Result& x, const Result& y) {
   EXPECT_EQ(x.is_contact, y.is_contact);
   EXPECT_LE(x.toc_lo, y.toc_hi);
@@ -144,7 +144,7 @@ TEST(FeatureTestInvariances, PowersOfTwo) {
   });
 }
 
-/// The point with axes in another order and some of them turned round.
+/// The point with axes in another order and some of them reversed.
 template <typename Point>
 Point seen(const Point& p, std::size_t order, unsigned negated) {
   Point out = p;
@@ -175,7 +175,7 @@ TEST(FeatureTestInvariances, Place) {
   int moved_pairs = 0;
   forEachPair(55, [&](const MovingPair& pair, const Result& expected, Random& random) {
     const double shift[3] = {std::ldexp(1, static_cast<int>(random.index(20))), -17, 0.5};
-    // Only where nothing is rounded away.
+    // Only if nothing is lost by rounding.
     MovingPair other = pair;
     for (std::size_t i = 0; i < 4; ++i)
       for (int k = 0; k < 3; ++k)
@@ -317,7 +317,7 @@ void expectSamePairs(const Answer& x, const Answer& y) {
   for (const auto& [name, bracket] : x.contacts) EXPECT_TRUE(y.contacts.count(name));
 }
 
-/// The same pairs with brackets of one time, and the same crossing at t = 0.
+/// Expects the same pairs with brackets of the same time, and the same crossing at t = 0.
 void expectSame(const Answer& x, const Answer& y) {
   expectSamePairs(x, y);
   EXPECT_EQ(x.crossing, y.crossing);
@@ -345,7 +345,7 @@ void forEachScene(
   EXPECT_GT(contacts, 5000U);
 }
 
-/// The scene with visit(mesh) done to each mesh.
+/// The scene after visit(mesh) for each mesh.
 template <typename Visit>
 GridScene changed(GridScene scene, Visit&& visit) {
   visit(scene.a);
@@ -353,7 +353,7 @@ GridScene changed(GridScene scene, Visit&& visit) {
   return scene;
 }
 
-/// The scene with every position put through f.
+/// The scene with f applied to every position.
 template <typename F>
 GridScene mappedScene(const GridScene& scene, F&& f) {
   return changed(scene, [&f](MovingMesh& mesh) {

@@ -21,8 +21,7 @@ TEST(FCL_KERNELS, everyInstructionSetOnceTheBestFirst) {
   EXPECT_EQ(all.front(), &kernels());
   std::set<std::string> names;
   for (const Kernels* k : all) EXPECT_TRUE(names.insert(k->name).second) << k->name;
-    // The last one needs nothing of the machine, where the compiler may not take anything
-    // for granted.
+    // The last set needs no special instructions, if the compiler may not assume any.
 #if defined(__x86_64__) && !defined(__SSSE3__)
   const std::string last = all.back()->name;
   EXPECT_TRUE(last == "EMU128" || last == "SCALAR" || last == "plain") << last;

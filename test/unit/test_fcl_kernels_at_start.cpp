@@ -23,15 +23,16 @@ namespace {
 using test::allSets;
 using test::Random;
 
-/// Five points of few values, so that many lie in a plane or are the same, or of any: the
-/// ends of an edge and the corners of a face. Returns whether they are nothing special.
+/// The ends of an edge and the corners of a face. Their coordinates have few different
+/// values, so that many points are in a plane or equal, or they have any values. Returns
+/// whether they are not special.
 bool setCrossing(Random& random, double scale, TreeVertex (&x)[5]) {
   const bool few = random.index(2) == 0;
   for (TreeVertex& vertex : x)
     for (double& c : vertex.t0)
       c = scale * (few ? static_cast<double>(random.index(4)) : random.uniform(-1, 1));
   if (random.index(4) > 0) return !few;
-  // The edge ends next to the plane of the face, or passes next to an edge of it.
+  // The edge ends near the plane of the face, or passes near an edge of it.
   const double s = random.uniform(0, 1), tilt = random.uniform(-1, 1) * 0x1p-50 * scale;
   for (int k = 0; k < 3; ++k)
     x[1].t0[k] = s * x[2].t0[k] + (1 - s) * x[3].t0[k] + (k == 2 ? tilt : 0);
@@ -43,7 +44,7 @@ class CrossingPair {
  public:
   TreeVertex x[5];
 
-  /// @param bit  of the edge, as in Kernels::cullCrossings()
+  /// @param bit  the bit of the edge, as in Kernels::cullCrossings()
   TrianglePair pair(std::uint32_t bit) const {
     TrianglePair pair{};
     const std::uint32_t edge = bit / 3 * 3, face = 3 - edge, k = bit % 3;
@@ -55,12 +56,12 @@ class CrossingPair {
   }
 
  private:
-  /// The third corner, which does not count.
+  /// The third corner, which is not used.
   TreeVertex far_{};
 };
 
-// What is left out does not cross, on every instruction set; nearly all of what does not
-// is, unless it is special.
+// Pairs that are left out do not cross, on every instruction set. Nearly all pairs that
+// do not cross are left out, unless they are special.
 TEST(FCL_KERNELS, whatMayCross) {
   constexpr std::uint64_t kSeed = 74;
   Random random(kSeed);
@@ -102,9 +103,9 @@ TEST(FCL_KERNELS, whatMayCross) {
   EXPECT_LT(1000 * left, apart);
 }
 
-/// Two triangles whose coordinates are whole numbers, so that sums of them are exact, but
-/// not always products; the second one has a vertex, or the middle of an edge, where the
-/// first one has.
+/// Two triangles whose coordinates are whole numbers. So sums of them are exact, but
+/// products are not always. The second one touches the first one: a vertex, or the middle
+/// of an edge, is at the same point in both.
 struct TouchingTriangles {
   TreeVertex a[3], b[3];
 
@@ -118,7 +119,7 @@ struct TouchingTriangles {
     for (TreeVertex* x : {a, b})
       for (int i = 0; i < 3; ++i)
         for (int k = 0; k < 3; ++k) x[i].t0[k] = whole();
-    // A layer beside a layer, as cloth has it.
+    // Two layers that lie on each other, as in cloth.
     const bool parallel = random.index(2) == 0;
     if (parallel)
       for (int i = 0; i < 3; ++i)
@@ -131,12 +132,12 @@ struct TouchingTriangles {
 
   TouchingTriangles(const TouchingTriangles&) = default;
 
-  /// Of vertex i, or of the middle of edge i - 3.
+  /// Coordinate k of vertex i, or of the middle of edge i - 3.
   static double place(const TreeVertex (&x)[3], std::size_t i, int k) {
     return i < 3 ? x[i].t0[k] : 0.5 * (x[i - 3].t0[k] + x[(i - 2) % 3].t0[k]);
   }
 
-  /// Moves the second one.
+  /// Moves the second triangle.
   void move(const double (&by)[3]) {
     for (TreeVertex& x : b)
       for (int k = 0; k < 3; ++k) x.t0[k] += by[k];
@@ -148,8 +149,8 @@ struct TouchingTriangles {
         for (int k = 0; k < 3; ++k) x[i].t0[k] = by * (x[i].t0[k] + offset);
   }
 
-  /// Lets the two come closer by as much in the step, along an axis: some of it by a
-  /// vertex of the one, the rest by one of the other.
+  /// Allows the two to approach each other by this amount in the step, along an axis: a
+  /// vertex of one moves by a part of it, a vertex of the other by the rest.
   void setApproach(Random& random, double approach) {
     for (TreeVertex* x : {a, b})
       for (int i = 0; i < 3; ++i) x[i].t0[3] = 0;
@@ -164,7 +165,7 @@ struct TouchingTriangles {
 };
 
 // Triangles that touch when one is moved by as much as they can approach each other are
-// never called apart.
+// never apart.
 TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
   constexpr std::uint64_t kSeed = 75;
   Random random(kSeed);
@@ -174,7 +175,7 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
     double approach[8];
     for (double& x : approach)
       x = random.index(4) ? static_cast<double>(random.index(40)) : 0;
-    // Of what they approach in the whole step.
+    // The part of the step.
     const double share = std::ldexp(1, -static_cast<int>(random.index(20)));
     const double scale =
         std::ldexp(1, i % 3 > 0 ? 0 : 60 * static_cast<int>(random.index(32)) - 960);
@@ -184,7 +185,8 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
     const std::size_t count = 1 + random.index(8);
     for (std::size_t n = 0; n < 2 * count; ++n) {
       triangles.emplace_back(random);
-      // The first ones so far that they can come together, the others, further.
+      // The first ones are moved so far that they can still come together, the others
+      // farther.
       const double size = n < count ? approach[n] : 40 * (approach[n - count] + 1);
       double away[3];
       for (double& w : away) w = size * (static_cast<double>(random.index(3)) - 1);
@@ -211,12 +213,12 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
   EXPECT_GT(3 * apart, total);
 }
 
-// Layers are called apart where three times the approach does not bridge what is between
-// them, wherever they are and whichever is on top; by the plane of either.
+// Layers are apart if three times the approach is less than their distance, wherever they
+// are and whichever is on top. The plane of either one may prove it.
 TEST(FCL_KERNELS, layersAreApart) {
   for (const double offset : {0., 0x1p30})
     for (const double height : {1., -1.})
-      // Which of them stands upright, so that its plane cuts the other one.
+      // The layer that stands upright, so that its plane cuts the other one.
       for (const int upright : {-1, 0, 1}) {
         TreeVertex x[2][3] = {};
         for (int t = 0; t < 2; ++t) {

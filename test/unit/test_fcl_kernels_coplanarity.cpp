@@ -29,13 +29,13 @@ using test::randomWindow;
 using test::scatteredPair;
 using test::WindowedPair;
 
-/// How many of eight pairs the filter finds what about.
+/// The numbers of pairs, out of eight, with each answer of the filter.
 struct FilterCounts {
-  int may{0};      // become coplanar, in the end
-  int unclear{0};  // in doubles
+  int may{0};      // may become coplanar, final answer
+  int unclear{0};  // unclear in doubles
 };
 
-/// Pairs as features of triangle pairs that have other vertices besides, with windows.
+/// Pairs as features of triangle pairs that also have other vertices, with windows.
 struct FilterBlock {
   std::vector<TreeVertex> vertices;
   TrianglePair pairs[8];
@@ -43,7 +43,7 @@ struct FilterBlock {
   TimeWindow windows[8];
 
   explicit FilterBlock(const WindowedPair (&queries)[8]) : vertices(33) {
-    // Not of any feature.
+    // A vertex that belongs to no feature.
     for (double* x : {vertices[32].t0, vertices[32].t1})
       std::fill(x, x + 4, std::numeric_limits<double>::quiet_NaN());
     for (std::uint32_t lane = 0; lane < 8; ++lane) {
@@ -64,8 +64,8 @@ struct FilterBlock {
   }
 };
 
-/// Every instruction set finds what the scalar filter finds, lane by lane, and comes to
-/// the same decision where both go on in twice the digits.
+/// Expects that every instruction set gives the answers of the scalar filter, lane by
+/// lane, and the same decision where both continue in double-double.
 FilterCounts expectRightFilter(const WindowedPair (&queries)[8], double latest = 1) {
   const FilterBlock block(queries);
   const ContinuousContactKind kind = queries[0].pair.kind;
@@ -140,7 +140,7 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
       for (WindowedPair& q : queries) {
         q.pair = scatteredPair(random, kind);
         scale(q.pair, std::ldexp(1, exponent));
-        // One point alone of another size.
+        // Only one point has another size.
         if (random.index(3) == 0)
           for (int k = 0; k < 3; ++k)
             q.pair.x[random.index(4)].t1[k] *= std::ldexp(1, exponent / 2);
@@ -155,7 +155,7 @@ TEST(FCL_KERNELS, filterOfAllSizes) {
   EXPECT_GT(never, 1000);
 }
 
-// Signs that agree, by much less than what doubles may lose or by nearly that: around the
+// Signs that agree, with values far below the bound on rounding or near it. Around the
 // bound every instruction set is on the same side of it.
 TEST(FCL_KERNELS, filterOfNarrowSigns) {
   constexpr int kBlocks = 5000;
@@ -179,8 +179,8 @@ TEST(FCL_KERNELS, filterOfNarrowSigns) {
   EXPECT_GT(n.unclear, kBlocks);
 }
 
-// Pairs that are flat, still, or touch all the time: what is nearly or exactly coplanar
-// "may" be so.
+// Pairs that are flat, at rest, or touch all the time. What is nearly or exactly coplanar
+// "may" become coplanar.
 TEST(FCL_KERNELS, filterOfDegeneratePairs) {
   expectRightFilter(76, 5000, [](Random& random, ContinuousContactKind kind) {
     MovingPair pair = scatteredPair(random, kind);
@@ -213,8 +213,8 @@ TEST(FCL_KERNELS, filterOfDegeneratePairs) {
   });
 }
 
-// What is not finite proves nothing, even where the window ends before it counts, and
-// leaves the other lanes alone.
+// Coordinates that are not finite prove nothing, even if the window ends before they
+// matter, and do not change the other lanes.
 TEST(FCL_KERNELS, filterKeepsWhatIsNotFinite) {
   constexpr std::uint64_t kSeed = 77;
   Random random(kSeed);

@@ -36,7 +36,7 @@ struct RandomFan {
   std::vector<std::uint32_t> spokes;
   bool is_closed;
 
-  /// Spokes around a center, `turns` times round, more or less in a plane.
+  /// Spokes around a center that go `turns` times around it, more or less in a plane.
   RandomFan(Random& random, std::size_t count, bool closed, double turns, double noise)
       : is_closed(closed) {
     const Vector3<double> tilt = random.point(1), at = random.point(5);
@@ -46,7 +46,7 @@ struct RandomFan {
                             b = a + motion * random.point(noise);
       TreeVertex x{};
       for (int k = 0; k < 3; ++k) {
-        // A shear, so that the plane is not one of the axes'.
+        // A shear, so that the plane is not a coordinate plane.
         x.t0[k] = a[k] + tilt[k] * a[(k + 1) % 3] + at[k];
         x.t1[k] = b[k] + tilt[k] * b[(k + 1) % 3] + at[k];
       }
@@ -93,9 +93,10 @@ struct RandomFan {
   }
 };
 
-/// The answers of every instruction set for up to eight fans that are alike, a bit each.
+/// The answers for up to eight fans of the same form, a bit each, equal on every
+/// instruction set.
 unsigned areEmbedded(const std::vector<RandomFan>& fans) {
-  // Their vertices one behind the other, the first fan's last.
+  // The vertices of all fans follow each other, those of the first fan last.
   std::vector<TreeVertex> vertices;
   std::vector<std::uint32_t> spokes[8];
   std::size_t centers[8];
@@ -143,7 +144,7 @@ TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
       const bool touch = fans[n].doTouch();
       touching += touch;
       EXPECT_FALSE(proved && touch) << n << ", " << count << (closed ? ", closed" : "");
-      // Nor does an answer depend on what lies beside it.
+      // The answer of a fan does not depend on the other lanes.
       EXPECT_EQ(isEmbedded(fans[n]), proved) << n;
     }
   }
@@ -154,7 +155,8 @@ TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
   EXPECT_GT(touching, 200);
 }
 
-// A flat fan is embedded, one that goes round twice is not; every number of spokes.
+// A flat fan is embedded. A fan that goes around twice is not. For every number of
+// spokes.
 TEST(FCL_KERNELS, flatFans) {
   Random random(79);
   for (std::size_t count = 2; count <= 3 * VertexFans::kShort; ++count) {
@@ -179,8 +181,8 @@ RandomFan flatFan(const std::vector<std::array<double, 2>>& spokes, bool closed)
   return fan;
 }
 
-// The ray goes through the middle of the first sector. A spoke that lies on it hides that
-// the fan goes round twice.
+// The ray goes through the middle of the first sector. If a spoke lies on the ray, the
+// test must not miss that the fan goes around twice.
 TEST(FCL_KERNELS, spokeOnTheRay) {
   const RandomFan twice = flatFan(
       {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}, true);
@@ -204,7 +206,7 @@ TEST(FCL_KERNELS, fansThatTurnInsideOut) {
   }
 }
 
-// What is not finite, or has no size, proves nothing.
+// Coordinates that are not finite, and fans without size, prove nothing.
 TEST(FCL_KERNELS, fansOfAllSizes) {
   constexpr std::uint64_t kSeed = 80;
   Random random(kSeed);

@@ -66,7 +66,7 @@ struct ScalarBoxes {
   }
 };
 
-/// The boxes of the pair of features that a bit stands for, a's first.
+/// The boxes of the feature pair of a bit, a's first.
 std::pair<MovingKdop, MovingKdop> boxesOf(int bit, const ScalarBoxes& a,
                                           const ScalarBoxes& b) {
   const FeaturePair pair = featurePair(bit);
@@ -89,7 +89,8 @@ struct TrianglePairBoxes {
       a[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
       b[k].box = randomBox(random, one_kind ? halves : randomHalves(random), scale);
     }
-    // Many come apart along an axis, at the start, at the end or all the time.
+    // Many boxes are moved apart along an axis, at the start, at the end or for the whole
+    // step.
     if (random.index(3)) {
       const std::size_t j = random.index(16);
       const double start = random.uniform(-2, 6), end = random.uniform(-2, 6);
@@ -141,7 +142,7 @@ TEST(FCL_KERNELS, featuresOfMasks) {
         if (masks[k] & kept & 1U << bit)
           expected.push_back(featureCode(static_cast<std::uint32_t>(k), bit));
     for (const Kernels* k : allSets()) {
-      // The room that it asks for, and no more.
+      // Exactly the room that the kernel asks for.
       std::vector<std::uint32_t> codes(expected.size() + 16);
       codes.resize(k->listFeatures(masks.data(), masks.size(), kept, codes.data()));
       ASSERT_EQ(codes, expected) << k->name << ", seed " << kSeed << ", " << i;
@@ -159,7 +160,8 @@ std::vector<TrianglePairBoxes> boxesWithOneShift(Random& random, std::size_t cou
   return boxes;
 }
 
-// Several triangle pairs at a time; codes and windows of what is left, in order.
+// Several triangle pairs at a time. Codes and windows of the pairs that are left, in
+// order.
 TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 72;
   constexpr std::uint32_t kPairs = 9;

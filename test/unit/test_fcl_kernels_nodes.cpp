@@ -55,7 +55,7 @@ struct Rows {
   BoxView view(float displacement = 0) const { return {t0, t1, 1, displacement}; }
 };
 
-/// The same as a request, of boxes whose displacements are `moved` together.
+/// The same as a request, for boxes whose displacements add up to `moved`.
 OverlapRequest randomRequest(Random& random, float depth, float moved) {
   OverlapRequest request{random.index(2) == 0};
   const float gap = randomGap(random, depth);
@@ -86,7 +86,7 @@ float randomDisplacement(Random& random, float scale) {
   return random.index(3) ? scale * static_cast<float>(random.uniform(0, 2)) : 0.f;
 }
 
-/// What is said without times of boxes that overlap from `lo` on.
+/// The answer about boxes that overlap from `lo` on, if times are not asked for.
 void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, float lo) {
   if (doOverlapAtStart(a, b))
     EXPECT_EQ(earliest, 0);
@@ -122,8 +122,8 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
   }
 }
 
-/// A request leaves out the children that are too far away at t = 0, and changes nothing
-/// of the others. Counts those that it leaves out.
+/// A request leaves out the children that are too far away at t = 0, and does not change
+/// the others. Counts those that it leaves out.
 void expectRightRequest(const BoxView& view, const MovingKdop& box,
                         const MovingKdopNode& node, const OverlapRequest& request,
                         int& left_out) {
@@ -148,8 +148,9 @@ void expectRightRequest(const BoxView& view, const MovingKdop& box,
   }
 }
 
-// Boxes of points, as fitPoint() makes them: near and far, on the axes, beyond the range
-// of a float, and not finite; of so many vertices in one frame, and of no others.
+// Boxes of points are those of fitPoint(): near and far, on the axes, beyond the range of
+// a float, and not finite. For a given number of vertices in one frame, and for no
+// others.
 TEST(FCL_KERNELS, pointsAsFitPoint) {
   constexpr std::uint64_t kSeed = 76;
   constexpr double kInf = std::numeric_limits<double>::infinity();
@@ -202,11 +203,11 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
   EXPECT_GT(unbounded, 100000);
 }
 
-/// A node with triangles of few vertices and, here and there, a node among them.
+/// A node with triangles of few vertices, and sometimes a node among them.
 MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
   MovingKdopNode node;
   node.count = 1 + static_cast<int>(random.index(kWidth));
-  // Few vertices, or places that differ in a high bit alone.
+  // Few vertices, or places that differ only in a high bit.
   const unsigned high = random.index(2) ? 0 : 31;
   const auto place = [&] {
     return static_cast<std::uint32_t>(random.index(high ? 2 : 20)) << high |
@@ -224,9 +225,9 @@ MovingKdopNode randomLeaf(Random& random, Halves halves, float scale) {
   return node;
 }
 
-// A node's children hold what is below them, no more: triangles their vertices, nodes
-// their children, and lanes that are not in use nothing; in one frame, too, if nothing
-// moves.
+// The boxes of a node's children contain what is below them, and no more: those of
+// triangles their vertices, those of nodes their children, those of unused lanes nothing.
+// In one frame, too, if nothing moves.
 TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
   constexpr std::uint64_t kSeed = 80;
   Random random(kSeed);
@@ -324,11 +325,11 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
       parent.displacement[lane] = randomDisplacement(random, scale);
       node.displacement[lane] = randomDisplacement(random, scale);
     }
-    // Whatever lies in lanes that are not in use.
+    // Unused lanes have any content.
     if (random.index(2)) node.clearRest();
     const auto lane = static_cast<int>(random.index(kWidth));
     const MovingKdop box = parent.box(lane);
-    // A box by itself, and one of eight.
+    // A single box, and one of eight.
     const Rows rows(box);
     const float moved = parent.displacement[lane];
     const OverlapRequest request = randomRequest(random, depthAtStart(box, node.box(0)),
@@ -347,7 +348,7 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
   EXPECT_GT(left_out, 5000);
 }
 
-// Boxes that nothing bounds overlap all that is there, and nothing else.
+// Unbounded boxes overlap all boxes that are in use, and nothing else.
 TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
   for (const float half : {std::numeric_limits<float>::infinity(), FLT_MAX}) {
     MovingKdop box;
@@ -390,7 +391,7 @@ struct ExpectedPair {
   float lo;
 };
 
-// Two leaves or one with itself, moved against each other or not, with and without fans.
+// Two lowest nodes, or one with itself, with or without a shift, with and without fans.
 TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
@@ -411,7 +412,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
       rows[0][r] = shift.t0.half[MovingKdopNode::halfAxis(r)];
       rows[1][r] = shift.t1.half[MovingKdopNode::halfAxis(r)];
     }
-    // A table of what is embedded reaches as far as the places.
+    // The table of embedded fans has an entry for each place.
     const bool has_fans = !has_shift && random.index(2);
     std::set<std::uint32_t> embedded;
     std::vector<std::uint8_t> table(20);
@@ -463,7 +464,7 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
       EXPECT_EQ(pairs.compared, static_cast<std::uint64_t>(b.count) *
                                     static_cast<std::size_t>(__builtin_popcount(lanes)))
           << k->name;
-      // Another call leaves nothing of the pairs and adds to the counts.
+      // Another call replaces the pairs and adds to the counts.
       LanePairs twice = pairs;
       k->overlapTriangles(leaves, twice);
       EXPECT_EQ(twice.pairs, pairs.pairs) << k->name;

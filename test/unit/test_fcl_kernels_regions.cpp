@@ -24,7 +24,7 @@ namespace {
 using test::allSets;
 using test::Random;
 
-/// facedDirections() by plain numbers.
+/// facedDirections() computed with plain numbers.
 std::uint32_t facedDirectionsOf(const std::vector<TreeVertex>& vertices,
                                 const std::vector<TreeTriangle>& triangles) {
   using Vector = std::array<double, 3>;
@@ -86,7 +86,7 @@ TEST(FCL_KERNELS, directionsThatTrianglesFace) {
       Vector3<double> p = corners[k % 3] + random.point(noise),
                       q = corners[k % 3] + random.point(noise);
       for (int c = 0; c < 3; ++c) {
-        // Triangles on a grid face some directions from the side.
+        // The planes of triangles on a grid contain some of the directions.
         if (i % 8 == 0) p[c] = std::round(p[c]), q[c] = std::round(q[c]);
         vertices[k].t0[c] = std::ldexp(p[c], exponent);
         vertices[k].t1[c] = std::ldexp(q[c], exponent);
@@ -100,13 +100,13 @@ TEST(FCL_KERNELS, directionsThatTrianglesFace) {
     for (const Kernels* k : allSets())
       EXPECT_EQ(k->facedDirections(vertices.data(), triangles.data(), count), expected)
           << k->name;
-    // What is not finite faces nothing.
+    // Triangles that are not finite face no direction.
     const double kBad[] = {std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::infinity(),
                            -std::numeric_limits<double>::infinity()};
     TreeVertex& x = vertices[random.index(vertices.size())];
     (random.index(2) ? x.t0 : x.t1)[random.index(3)] = kBad[random.index(3)];
-    if (&x == &vertices[1]) continue;  // perhaps of no triangle
+    if (&x == &vertices[1]) continue;  // it may belong to no triangle
     for (const Kernels* k : allSets())
       EXPECT_EQ(k->facedDirections(vertices.data(), triangles.data(), count), 0U)
           << k->name;

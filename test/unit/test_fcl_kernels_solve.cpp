@@ -27,7 +27,7 @@ using test::randomWindow;
 using test::scatteredPair;
 using test::WindowedPair;
 
-/// Eight pairs as the kernels take them; keeps the vertices.
+/// Eight pairs in the form of the kernels; owns the vertices.
 class EightPoints {
  public:
   explicit EightPoints(const WindowedPair (&queries)[8]) {
@@ -37,7 +37,7 @@ class EightPoints {
         TreeVertex& x = x_[lane][i];
         std::copy(path.t0, path.t0 + 3, x.t0);
         std::copy(path.t1, path.t1 + 3, x.t1);
-        // The fourth number is nobody's.
+        // The fourth number has no meaning.
         x.t0[3] = x.t1[3] = std::numeric_limits<double>::quiet_NaN();
       }
   }
@@ -90,10 +90,10 @@ EightDivisions divideAll(const EightPairs& eight) {
   return first;
 }
 
-/// What the kernel proves of a pair is so, by the exact test.
+/// What the kernel proves about a pair is true, by the exact test.
 void expectRightAnswer(const WindowedPair& q, const ElementaryResult& exact, bool yes,
                        bool no, double lo, double hi, double toc_err) {
-  // The first contact of the window is the first of all, or one that came later.
+  // The first contact of the window is the first of all, or a later one.
   const bool in_window =
       exact.answer == Answer::kYes && exact.toc_lo >= q.lo && exact.toc_hi <= q.hi;
   bool right = true;
@@ -108,7 +108,8 @@ void expectRightAnswer(const WindowedPair& q, const ElementaryResult& exact, boo
                      << "], exactly [" << exact.toc_lo << ", " << exact.toc_hi << "]";
 }
 
-/// Eight pairs in their windows, and those that are left in both parts of them.
+/// Eight pairs in their windows, and the pairs that are left in both parts of the
+/// windows.
 void expectRightAnswers(const WindowedPair (&queries)[8], double toc_err,
                         SolveTally& tally) {
   const EightPoints points(queries);
@@ -167,7 +168,7 @@ TEST(FCL_KERNELS, solvedPairsAreSo) {
   EXPECT_GT(tally.divided, 300);
 }
 
-/// Volume of the four points at t, by the vectors that the kernels take.
+/// The volume of the four points at t, from the vectors that the kernels take.
 long double volumeAt(const MovingPair& pair, double t) {
   long double p[4][3];
   for (int i = 0; i < 4; ++i)
@@ -198,8 +199,8 @@ void randomLongWindows(Random& random, WindowedPair (&queries)[8]) {
   }
 }
 
-// Where a volume goes through zero once, beyond doubt, the root is found and the pair
-// decided; but for few whose features meet at their borders.
+// If a volume certainly goes through zero once, the root is found and the pair decided,
+// except for a few whose features meet at their borders.
 TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
   constexpr std::uint64_t kSeed = 84;
   Random random(kSeed);
@@ -232,8 +233,9 @@ TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
   EXPECT_LT(open, decided / 50);
 }
 
-// Where a volume goes through zero and back, the window is divided at the farthest point
-// beyond, so that each part has one root; and not where it begins or ends at zero.
+// If a volume goes through zero and back, the window is divided at the farthest point
+// beyond zero, so that each part has one root. It is not divided if the volume is zero at
+// an end.
 TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
@@ -251,7 +253,7 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
         EXPECT_FALSE(divided.divisible >> lane & 1U) << q.pair;
         continue;
       }
-      // Clear of zero on both sides.
+      // Far from zero on both sides.
       long double farthest = 0, size = 0;
       for (int k = 0; k <= 64; ++k) {
         const long double volume = volumeAt(q.pair, q.lo + (q.hi - q.lo) * k / 64);
@@ -273,7 +275,8 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
   EXPECT_GT(touching, 100);
 }
 
-// Touches at the end of a window, at rest, all the time, of flat pairs and of points.
+// Touches at the end of a window, at rest, during all of the step, of flat pairs and of
+// points.
 TEST(FCL_KERNELS, solvedDegeneratePairsAreSo) {
   constexpr std::uint64_t kSeed = 82;
   Random random(kSeed);
