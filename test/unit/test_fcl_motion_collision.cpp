@@ -39,10 +39,10 @@ constexpr double kTurn = kPi / 2;
 constexpr double kHalfWidth = 0.0625;
 constexpr double kTocErr = 1e-6;
 
-/// A bar along x from the axis to 2; divided, so that its tree has levels.
+/// A bar along x from the axis to 2. It is divided, so that its tree has levels.
 TestMesh makeBar() { return moved(makeBox({1, kHalfWidth, kHalfWidth}, 4), 1, 0, 0); }
 
-/// A square in a plane through the z axis, under an angle, beyond a distance of kNear.
+/// A square in a plane through the z axis, at an angle, beyond a distance of kNear.
 constexpr double kNear = 1.05;
 TestMesh makeSquare(double angle) {
   const Vector3<double> out(std::cos(angle), std::sin(angle), 0), up(0, 0, 1);
@@ -53,7 +53,8 @@ TestMesh makeSquare(double angle) {
   return mesh;
 }
 
-/// When the bar's side, turning about z by kTurn, meets a point (x, y) inside its reach.
+/// The time at which the bar's side, turning about z by kTurn, meets a point (x, y)
+/// inside its reach.
 double meets(double x, double y) {
   return (std::atan2(y, x) - std::asin(kHalfWidth / std::hypot(x, y))) / kTurn;
 }
@@ -130,14 +131,14 @@ TEST_F(MotionCollision, MotionObjects) {
   const auto interpolation = std::make_shared<InterpMotion<double>>(
       kStill.linear(), zero, end.linear(), zero, zero);
   const auto screw = std::make_shared<ScrewMotion<double>>(kStill, end);
-  // Control points at equal distances: at constant speed.
+  // Control points at equal distances give constant speed.
   const auto spline = std::make_shared<SplineMotion<double>>(
       zero, zero, zero, zero, -kTurn * z, zero, kTurn * z, 2 * kTurn * z);
   for (const std::shared_ptr<MotionBase<double>>& motion :
        {std::shared_ptr<MotionBase<double>>(interpolation),
         std::shared_ptr<MotionBase<double>>(screw),
         std::shared_ptr<MotionBase<double>>(spline)}) {
-    // Where it was left does not matter, and it is left there.
+    // The current pose of the motion does not matter, and it does not change.
     motion->integrate(0.7);
     Pose before, after;
     motion->getCurrentTransform(before);
@@ -155,16 +156,16 @@ TEST_F(MotionCollision, MotionObjects) {
 }
 
 // An interpolation about another point, and a screw, are other paths between the same
-// poses: both move the bar's origin along x meanwhile, on a line and on an arc.
+// poses. Both move the bar's origin along x, the one on a line and the other on an arc.
 TEST_F(MotionCollision, ReferencePointAndAxisCount) {
   const Vector3<double> reference(2, 0, 0), zero = Vector3<double>::Zero();
   Pose end = turned(kTurn);
-  // The tip stays where it is.
+  // The tip does not move.
   end.translation() = reference - end.linear() * reference;
   const InterpMotion<double> about_tip(kStill.linear(), zero, end.linear(),
                                        end.translation(), reference);
   const TranslationMotion<double> still(kStill, kStill);
-  // Beyond the tip, where the bar does not come; then where it has to.
+  // First beyond the tip, where the bar does not come, then where it has to come.
   TestMesh wall = makeSquare(0);
   const auto behind = makeModel<Rigid<double>>(moved(wall, 1.25, 0, 0));
   Result result;
@@ -227,13 +228,13 @@ TEST(MotionCollisionFloat, EndTransformsAndSplines) {
   EXPECT_FALSE(result.contacts.empty());
 }
 
-/// Where a vertex is, by the formula of the motion: a turn about z by kTurn.
+/// The position of a vertex by the formula of the motion: a turn about z by kTurn.
 Vector3<double> at(const TestMesh& mesh, int vertex, double t, bool turns) {
   const Vector3<double>& p = mesh.vertices[static_cast<std::size_t>(vertex)];
   return turns ? Vector3<double>(turned(kTurn * t) * p) : p;
 }
 
-/// Distance of a point from a segment, and from a triangle that it is above of.
+/// Distance of a point from a segment, and from a triangle below it.
 double distanceOfEdges(const Vector3<double>& p, const Vector3<double>& q,
                        const Vector3<double>& r, const Vector3<double>& s) {
   const Vector3<double> n = (q - p).cross(s - r);
@@ -378,7 +379,7 @@ TEST_F(MotionCollision, CrossingAndTouchingAtTheBeginning) {
   EXPECT_FALSE(result.contacts.empty());
 }
 
-/// A small sheet that sinks, and is as high as the bar only when this comes by.
+/// A small sheet that sinks, and has the height of the bar only when the bar comes by.
 class SinkingSheet {
  public:
   SinkingSheet() {
@@ -404,7 +405,7 @@ TEST_F(MotionCollision, ClothBesideATurningBody) {
                     requestOf<ContactRequest>(), contacts);
   EXPECT_NEAR(contacts.time_of_contact, sheet.time, 1e-12);
   EXPECT_FALSE(contacts.contacts.empty());
-  // FCL takes the sheet as it is in the end, below.
+  // FCL takes the sheet in its current frame, where it is below.
   Result stock;
   continuousCollide<double>(bar_.get(), kStill, turned(kTurn), sheet.model.get(), kStill,
                             kStill, requestOf<Request>(CCDM_SCREW), stock);
@@ -421,7 +422,7 @@ TEST_F(MotionCollision, ClothInATurningFrame) {
                       requestOf<Request>(type), result);
     EXPECT_NEAR(result.time_of_contact, sheet.time, 1e-12);
   }
-  // Of FCL's default its vertices go straight, as those of a model in both poses.
+  // With FCL's default its vertices go straight, like those of a model in both poses.
   TestMesh last = sheet.to;
   for (auto& p : last.vertices) p = (end * p).eval();
   const auto straight = makeModel<Model>(sheet.from, last);
@@ -432,7 +433,7 @@ TEST_F(MotionCollision, ClothInATurningFrame) {
                     requestOf<Request>(), expected);
   EXPECT_EQ(posed.is_collide, expected.is_collide);
   EXPECT_NEAR(posed.time_of_contact, expected.time_of_contact, 1e-9);
-  // Also beside a body that turns: it is posed, and stays so.
+  // The same if the other body turns.
   Result beside, beside_expected;
   continuousCollide(bar_.get(), kStill, turned(kTurn), sheet.model.get(), kStill, end,
                     requestOf<Request>(), beside);
@@ -502,7 +503,7 @@ TEST_F(MotionCollision, WhatIsRefused) {
                       requestOf<Request>(type), result);
   };
   expectRefused([&] { ask(*bar_, end, CCDM_SPLINE); }, "SplineMotion");
-  // Without a turn there is one path.
+  // Without a turn there is only one path.
   Pose translated = kStill;
   translated.translation()[0] = 1;
   EXPECT_NO_THROW(ask(*bar_, translated, CCDM_SPLINE));

@@ -47,7 +47,7 @@ TEST(FCL_MOTION_PATH, sineAndCosine) {
     worst = std::max({worst, std::abs(at.sine - s), std::abs(at.cosine - c)});
     if (std::abs(x) < 0.785)
       worst_relative = std::max(worst_relative, std::abs((at.sine - s) / s));
-    // Of an angle in the first quarter.
+    // An angle in the first quarter.
     const double angle = std::abs(std::remainder(x, 1.5));
     const SineCosine of = sineCosine(angle);
     ASSERT_NEAR(angleOf(of.cosine, of.sine), angle, 8 * kUnitRounding);
@@ -56,7 +56,7 @@ TEST(FCL_MOTION_PATH, sineAndCosine) {
   EXPECT_LE(worst_relative, 4 * kUnitRounding);
 }
 
-// Positions and velocities within the bounds of what is the formula's.
+// Expects that positions and velocities are those of the formula within the bounds.
 TEST(FCL_MOTION_PATH, staysNearItsFormula) {
   Random random(2);
   double worst = 0, worst_rate = 0;
@@ -69,7 +69,7 @@ TEST(FCL_MOTION_PATH, staysNearItsFormula) {
     const double error =
         static_cast<double>((applied(path.pose(t), x).cast<Real>() - expected).norm());
     worst = std::max(worst, error / path.positionError(x.norm()));
-    // Long double leaves 1e-9 of a difference quotient of third order.
+    // In long double a difference quotient of third order has an error of 1e-9.
     const Real h = 1e-5L;
     const RealVector rate = (8 * (motion.at(t + h) * x - motion.at(t - h) * x) -
                              (motion.at(t + 2 * h) * x - motion.at(t - 2 * h) * x)) /
@@ -99,9 +99,9 @@ TEST(FCL_MOTION_PATH, reachesItsEnds) {
   }
 }
 
-/// Samples spans of a path: how far a point is from the straight line between its ends,
-/// as part of M s (1 - s) dt^2 / 2.
-/// @param x0, x1  where it is in the body
+/// Samples spans of a path: the distance of a point from the straight line between its
+/// ends, as a fraction of M s (1 - s) dt^2 / 2.
+/// @param x0, x1  the positions of the point in the body
 double worstDeviation(Random& random, const MotionPath& path, const Vector3<double>& x0,
                       const Vector3<double>& x1, double acceleration, double t0,
                       double t1) {

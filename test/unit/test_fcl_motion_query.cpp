@@ -85,8 +85,8 @@ double distanceAt(const Body& a, const ReferenceMotion& motion_a, int triangle_a
   return std::sqrt(nearestFeatures(p[0], p[1]).square);
 }
 
-/// The first time at which FCL's discrete query finds a collision: a sample, then halved
-/// between it and the one before; 2 without.
+/// The first time at which FCL's discrete query finds a collision: a sample, then
+/// bisection between it and the previous one; 2 without collision.
 double sampledTime(const Body& a, const ReferenceMotion& motion_a, const Body& b,
                    const ReferenceMotion& motion_b, int samples) {
   const auto collides = [&](double t) {
@@ -119,7 +119,7 @@ std::vector<Body> makeBodies() {
   return bodies;
 }
 
-/// Moves b to where it passes a at a distance, or hits it as deep, of 1e-2 to 1e-6.
+/// Moves b so that it passes a at a distance, or hits it with a depth, of 1e-2 to 1e-6.
 void makeGrazing(Random& random, const Body& a, const ReferenceMotion& motion_a,
                  const Body& b, ReferenceMotion& motion_b) {
   constexpr double kDepths[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
@@ -140,8 +140,8 @@ void makeGrazing(Random& random, const Body& a, const ReferenceMotion& motion_a,
   motion_b.move((random.index(2) ? lo - depth : hi + depth) * direction);
 }
 
-// Half of the scenes graze by construction. Never late, and never missed; what is
-// reported is as near as promised by the formulas of the motions.
+// Half of the scenes graze by construction. No contact is late, and none is missed.
+// Reported contacts are as near as promised, by the formulas of the motions.
 TEST(FCL_MOTION_QUERY, againstDenseSamples) {
   const std::vector<Body> bodies = makeBodies();
   int contacts = 0, hits = 0, crossing = 0;
@@ -168,7 +168,7 @@ TEST(FCL_MOTION_QUERY, againstDenseSamples) {
       EXPECT_LE(distanceAt(a, motion_a, contact.triangle[0], b, motion_b,
                            contact.triangle[1], toc),
                 answer.touching);
-      // It is the earliest by more than one method where both find it.
+      // If both methods find the contact, they agree on the earliest one.
       if (sampled <= 1) {
         EXPECT_NEAR(toc, sampled, 1e-4);
       }
@@ -181,7 +181,7 @@ TEST(FCL_MOTION_QUERY, againstDenseSamples) {
   EXPECT_GE(crossing, contacts - 3);
 }
 
-// Backwards there is a contact as well.
+// The reversed motion has a contact as well.
 TEST(FCL_MOTION_QUERY, timeReversed) {
   const std::vector<Body> bodies = makeBodies();
   int contacts = 0;
@@ -212,7 +212,7 @@ TEST(FCL_MOTION_QUERY, farFromTheOrigin) {
     const Body &a = bodies[random.index(4)], &b = bodies[random.index(4)];
     ReferenceMotion motion_a = randomMotion(random, 1),
                     motion_b = randomMotion(random, 1);
-    // Rounded as far away, so that both places have the same motion.
+    // Rounded as at the far place, so that both places have the same motion.
     motion_a.move(origin);
     motion_b.move(origin);
     const double there = timeOf(ask(a, motion_a.path(), b, motion_b.path()));
@@ -230,8 +230,8 @@ TestMesh oneTriangle(const Vector3<double>& p, const Vector3<double>& q,
   return mesh;
 }
 
-// A thin rod along x turns about z by 90 degrees; it meets a point at the angle of the
-// point, less the angle under which half of its width is seen.
+// A thin rod along x turns about z by 90 degrees. It meets a point at the angle of the
+// point, minus the angle of half of its width.
 TEST(FCL_MOTION_QUERY, spinningRodAndPoint) {
   for (const double angle : {0.3, 0.8, 1.5})
     for (const double width : {0., 1e-3}) {
@@ -262,7 +262,8 @@ TEST(FCL_MOTION_QUERY, tipsOntoAPlane) {
         AngleAxis<double>(-angle, Vector3<double>::UnitY()).toRotationMatrix();
     turn.turn(Vector3<double>::UnitY(), 2.9);
     turn.beginning.translation() = turn.end.translation() = Vector3<double>(0, 0, 0.6);
-    // The height of the corners: 0.6 + 0.1 cos(v) - sin(v), v the angle turned.
+    // The height of the corners is 0.6 + 0.1 cos(v) - sin(v), where v is the angle so
+    // far.
     const auto height = [](double v) { return 0.6 + 0.1 * std::cos(v) - std::sin(v); };
     double lo = -angle, hi = std::min(2.9 - angle, M_PI / 2);
     const MotionAnswer answer = ask(flap, turn.path(), plane, MotionPath::still(Pose()));
@@ -279,7 +280,7 @@ TEST(FCL_MOTION_QUERY, tipsOntoAPlane) {
   }
 }
 
-// A point on a screw of pitch h meets a floor at the height it starts above it.
+// A point on a screw meets a floor when it has slid by its height above the floor.
 TEST(FCL_MOTION_QUERY, screwAgainstAFloor) {
   const Body needle(oneTriangle({1, 0, 0}, {1, 0, 1}, {1.2, 0, 1}));
   const Body floor(oneTriangle({-5, -9, -0.25}, {9, 0, -0.25}, {-5, 9, -0.25}));
@@ -335,7 +336,8 @@ TEST(FCL_MOTION_QUERY, touchesAtTheBeginning) {
   const auto timeWith = [&](const TestMesh& mesh) {
     return timeOf(ask(a, MotionPath::still(Pose()), Body(mesh), turn.path()));
   };
-  // A vertex, an edge, all of it, an edge through it; near as rounding; apart.
+  // Features: a vertex, an edge, the whole triangle, an edge through it; near by rounding
+  // only; apart.
   EXPECT_EQ(timeWith(oneTriangle({0.2, 0.2, 0}, {0, 0, 1}, {1, 0, 1})), 0);
   EXPECT_EQ(timeWith(oneTriangle({0.2, -1, 0}, {0.2, 1, 0}, {0, 0, 1})), 0);
   EXPECT_EQ(timeWith(a.mesh), 0);
@@ -344,7 +346,7 @@ TEST(FCL_MOTION_QUERY, touchesAtTheBeginning) {
   EXPECT_EQ(timeWith(oneTriangle({0.2, 0.2, 1e-9}, {0, 0, 1}, {1, 0, 1})), 2);
 }
 
-// Of all contacts the first is the first contact, and each pair has its own first time.
+// The first of all contacts is the first contact, and each pair has its own first time.
 TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
   MotionQueryOptions all;
@@ -359,7 +361,7 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
     EXPECT_NEAR(timeOf(answer), timeOf(ask(a, motion_a.path(), b, motion_b.path())),
                 1e-6);
     contacts += answer.contacts.size();
-    // One by one.
+    // Each pair separately.
     std::size_t expected = 0, found = 0;
     for (std::size_t j = 0; j < a.mesh.triangles.size(); j += 7)
       for (std::size_t k = 0; k < b.mesh.triangles.size(); k += 5) {
@@ -411,7 +413,7 @@ std::vector<std::uint32_t> nearestName(const Body& a, const Body& b,
                 {id(x, near.a), id(x, near.a + 1), id(y, near.b), id(y, near.b + 1)});
 }
 
-/// Distance of the features of a contact when it begins, by the formulas of the motions.
+/// The distance of a contact's features at its begin, by the formulas of the motions.
 double distanceOf(const FeatureContact& contact, const Body& a,
                   const ReferenceMotion& motion_a, const Body& b,
                   const ReferenceMotion& motion_b) {
@@ -433,8 +435,8 @@ double distanceOf(const FeatureContact& contact, const Body& a,
   return std::sqrt(nearestFeatures(first, other).square);
 }
 
-// Each pair of features once; those that are nearest when their triangles come together
-// are among them, and all are as near as promised.
+// Each feature pair is listed once. The pairs that are nearest when their triangles come
+// together are among them. All are as near as promised.
 TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
   MotionQueryOptions all;
@@ -516,7 +518,7 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
     const MotionAnswer answer = queryMotions(moving_a, moving_b, {});
     const double toc = timeOf(answer);
     EXPECT_NEAR(timeOf(queryMotions(moving_b, moving_a, {})), toc, 1e-6);
-    // Without a deformation it is the rigid mesh.
+    // Without a deformation the answers are those of the rigid mesh.
     if (i % 4 == 0) {
       EXPECT_NEAR(timeOf(ask(Body(ball), motion_a.path(), b, motion_b.path())), toc,
                   1e-6);
@@ -534,7 +536,8 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
     if (answer.contacts.empty()) continue;
     ++contacts;
     EXPECT_NE(answer.contacts[0].certainty, MotionCertainty::kGivenUp);
-    // Shortly after the end of the bracket FCL finds it too, but for thin crossings.
+    // Shortly after the end of the bracket FCL finds the contact too, except for thin
+    // crossings.
     if (sampled <= 1) {
       EXPECT_GE(toc, sampled - 0.017);
     }

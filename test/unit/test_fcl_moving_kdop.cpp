@@ -21,7 +21,7 @@ namespace {
 using test::halfAt;
 using test::Random;
 
-// A moved half-axis is not below the sum, nor above it by more than a few units of float.
+// A moved half-axis is not below the sum, and at most a few units of float above it.
 TEST(FCL_MOVING_KDOP, shiftedHalvesAreNotBelowTheSum) {
   constexpr std::uint64_t kSeed = 65;
   Random random(kSeed);
@@ -46,8 +46,8 @@ TEST(FCL_MOVING_KDOP, shiftedHalvesAreNotBelowTheSum) {
   EXPECT_EQ(shifted(kLeastHalf, kLeastHalf), kLeastHalf);
 }
 
-/// A box whose bounds are multiples of a power of two, so that the exact overlap below
-/// is exact.
+/// A box whose bounds are multiples of a power of two, so that the test computes the
+/// overlap below exactly.
 MovingKdop gridBox(Random& random, int exponent) {
   MovingKdop box;
   for (Kdop16* frame : {&box.t0, &box.t1})
@@ -80,14 +80,14 @@ TEST(FCL_MOVING_KDOP, windowNeverMisses) {
   for (int i = 0; i < 20000; ++i) {
     const int exponent = static_cast<int>(random.index(200)) - 100;
     MovingKdop a = gridBox(random, exponent), b = gridBox(random, exponent);
-    // Most directions overlap all the time, else nearly no box would.
+    // Most directions overlap during the whole step; otherwise nearly no boxes would.
     for (int j = 0; j < 16; ++j)
       if (random.index(4)) {
         a.t0.half[j] = std::abs(a.t0.half[j]) + std::abs(b.t0.half[(j + 8) % 16]);
         a.t1.half[j] = std::abs(a.t1.half[j]) + std::abs(b.t1.half[(j + 8) % 16]);
       }
     ASSERT_NO_FATAL_FAILURE(expectNoMiss(a, b)) << "seed " << kSeed << ", " << i;
-    // The window is no wider than rounding makes it.
+    // The window is wider than the exact one by rounding only.
     const TimeWindow w = overlapWindow<false>(a, b, nullptr);
     if (w.isEmpty()) continue;
     ++windows;
@@ -115,7 +115,8 @@ MovingKdop cube(float x0, float x1, float half) {
   return box;
 }
 
-// Unbounded at one end of the step, far apart at the other: they may meet in between.
+// Boxes that are unbounded at one end of the step and far apart at the other: they may
+// meet in between.
 TEST(FCL_MOVING_KDOP, unboundedNeverSeparates) {
   const MovingKdop rest = cube(0, 0, 1);
   for (int j = 0; j < 16; ++j)

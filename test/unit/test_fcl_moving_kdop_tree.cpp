@@ -81,13 +81,13 @@ void testContainment(std::uint64_t seed) {
       posed.setPoses(turn, move);
       tree.refit(posed);
       expectContainment(tree, triangles, posed);
-      // Frames the other way round, and then the first ones again.
+      // The frames exchanged, and then the first ones again.
       const VertexFrames back(t1.data(), t0.data(), mesh.t0.size());
       tree.refit(back);
       expectContainment(tree, triangles, back);
       tree.refit(frames);
       expectSameBoxes(tree, before);
-      // One array as both frames is no different from two equal ones.
+      // One array for both frames gives the same as two equal ones.
       tree.refit({t0.data(), t0.data(), mesh.t0.size()});
       const MovingKdopTree still = tree;
       const std::vector<S> again = t0;
@@ -100,8 +100,9 @@ void testContainment(std::uint64_t seed) {
 TEST(FCL_MOVING_KDOP_TREE, boxesContainDoubleFrames) { testContainment<double>(41); }
 TEST(FCL_MOVING_KDOP_TREE, boxesContainFloatFrames) { testContainment<float>(42); }
 
-/// Links of a binary tree over so many leaves, in the order of `leaves`.
-/// @param balance  which part of a range goes to the left: 0, one leaf; 1, half; 2, any
+/// Links of a binary tree over a number of leaves, in the order of `leaves`.
+/// @param balance  the part of a range that goes to the left: 0, one leaf; 1, half; 2,
+/// any
 std::vector<std::int32_t> binaryLinks(Random& random,
                                       const std::vector<std::int32_t>& leaves,
                                       int balance) {
@@ -151,7 +152,7 @@ TEST(FCL_MOVING_KDOP_TREE, structureOfABinaryTree) {
   }
 }
 
-// Nothing of a tree remains in one that is built in its place.
+// A tree that is built in place of another one has nothing of it.
 TEST(FCL_MOVING_KDOP_TREE, builtTwice) {
   Random random(50);
   MovingKdopTree tree;
@@ -172,7 +173,7 @@ TEST(FCL_MOVING_KDOP_TREE, builtTwice) {
   }
 }
 
-// Most lanes are in use: eight boxes are compared for the price of one.
+// Most lanes are in use, since a comparison with eight boxes costs as much as with one.
 TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
   Random random(51);
   for (const std::size_t count : {64U, 100U, 513U, 3000U, 20000U}) {
@@ -181,7 +182,7 @@ TEST(FCL_MOVING_KDOP_TREE, nodesAreWellFilled) {
   }
 }
 
-/// Sheets in each other's way, and loose triangles, in any order.
+/// Sheets that overlap each other, and loose triangles, in any order.
 MovingMesh scatteredSheets(Random& random, std::size_t count) {
   MovingMesh mesh;
   for (std::size_t i = 0; i < count; ++i) {
@@ -212,8 +213,8 @@ MovingMesh scatteredSheets(Random& random, std::size_t count) {
   return mesh;
 }
 
-// A component of 64 triangles is what a node has below, and nothing else; all that are
-// smaller are together.
+// A component of 64 or more triangles has a node of its own, with nothing else below it.
+// All smaller components are together.
 TEST(FCL_MOVING_KDOP_TREE, largeComponentsHaveTreesOfTheirOwn) {
   constexpr std::uint64_t kSeed = 52;
   constexpr std::size_t kLarge = 64;
@@ -231,12 +232,13 @@ TEST(FCL_MOVING_KDOP_TREE, largeComponentsHaveTreesOfTheirOwn) {
     std::vector<std::size_t> component_of;
     for (const Triangle& t : mesh.triangles) component_of.push_back(of_vertex[t[0]]);
     for (const std::size_t c : component_of) ++sizes[c];
-    // kSmall: one for all.
+    // kSmall is one group for all small components.
     const std::size_t kSmall = mesh.t0.size();
     for (std::size_t& c : component_of)
       if (sizes[c] < kLarge) c = kSmall;
     const std::set<std::size_t> groups(component_of.begin(), component_of.end());
-    // In the tree's order each group is one run, and a node begins and ends with it.
+    // In the tree's order the triangles of each group follow each other, and a node
+    // begins and ends with them.
     std::set<std::size_t> begun;
     const auto& triangles = tree.triangles();
     const auto groupAt = [&](std::size_t k) { return component_of[triangles[k].index]; };
@@ -267,8 +269,9 @@ TEST(FCL_MOVING_KDOP_TREE, largeComponentsHaveTreesOfTheirOwn) {
   }
 }
 
-// No box is larger than what it bounds needs: a vertex's is its rounded coordinates, a
-// triangle's the largest of its vertices', a subtree's the largest of its children's.
+// No box is larger than necessary: the box of a vertex is its rounded coordinates, that
+// of a triangle the largest of its vertices', that of a subtree the largest of its
+// children's.
 TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
   constexpr std::uint64_t kSeed = 60;
   Random random(kSeed);
@@ -327,7 +330,7 @@ TEST(FCL_MOVING_KDOP_TREE, boxOfWhatIsNotANumber) {
   for (const int half : {0, 2, 4, 8, 10, 12}) EXPECT_LT(box.half[half], 3) << half;
 }
 
-/// Triangles at places of the x axis, each a point.
+/// Triangles at positions on the x axis. Each triangle is a point.
 MovingMesh pointsAt(const std::vector<double>& places) {
   MovingMesh mesh;
   for (const double x : places) {
@@ -339,8 +342,8 @@ MovingMesh pointsAt(const std::vector<double>& places) {
   return mesh;
 }
 
-// A few hundred triangles are halved exactly, however unevenly they lie: each node has
-// all that lie between its ends, and the lowest nodes but the last are full.
+// A few hundred triangles are halved exactly, for any distribution. Each node has all
+// triangles between its ends, and the lowest nodes but the last are full.
 TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
   constexpr std::uint64_t kSeed = 61;
   Random random(kSeed);
@@ -366,7 +369,7 @@ TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
       std::vector<double> sample;
       for (std::size_t i = 0; i < 31; ++i) sample.push_back(places[i * count / 31]);
       std::sort(sample.begin(), sample.end());
-      // Lowest nodes, by their places on the axis.
+      // The lowest nodes by their positions on the axis.
       std::vector<std::pair<float, float>> ranges;
       std::size_t full = 0;
       for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i) {
@@ -377,7 +380,8 @@ TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
         for (int lane = 0; lane < node.count; ++lane) {
           const std::uint32_t t =
               tree.triangles()[static_cast<std::size_t>(node.triangle(lane))].index;
-          // As the tree sees it: relative to a median, three vertices together.
+          // The number that the tree uses: relative to a median, the sum of three
+          // vertices.
           const auto x = static_cast<float>(places[t] - sample[15]);
           range.first = std::min(range.first, x + x + x);
           range.second = std::max(range.second, x + x + x);
@@ -391,7 +395,7 @@ TEST(FCL_MOVING_KDOP_TREE, halvesAreExact) {
     }
 }
 
-// The same tree wherever the mesh is.
+// The tree is the same wherever the mesh is.
 TEST(FCL_MOVING_KDOP_TREE, structureFarFromTheOrigin) {
   constexpr std::uint64_t kSeed = 62;
   Random random(kSeed);
@@ -408,9 +412,9 @@ TEST(FCL_MOVING_KDOP_TREE, structureFarFromTheOrigin) {
     ASSERT_EQ(here.tree().triangles()[i].index, there.tree().triangles()[i].index);
 }
 
-/// Widths of the triangles' boxes along all directions in both frames, and how much of
-/// them comes from rounding; without those of triangles with vertices that are
-/// `left_out`.
+/// The sum of the widths of the triangles' boxes along all directions in both frames, and
+/// the part of it that comes from rounding. Triangles with vertices that are `left_out`
+/// do not count.
 struct Widths {
   double all{0}, rounded{0};
 
@@ -449,8 +453,8 @@ struct Widths {
   }
 };
 
-// However far some vertices fly, and wherever the whole jumps, the boxes of what stays
-// are no wider by more than an eighth, whichever vertices these are; nor do they depend
+// Some vertices fly away, however far, or the whole mesh jumps. The boxes of the other
+// triangles become wider by at most an eighth, whichever vertices fly. They do not depend
 // on the order of the vertices.
 TEST(FCL_MOVING_KDOP_TREE, whatFliesOffBlursNothingElse) {
   constexpr std::uint64_t kSeed = 64;
@@ -462,7 +466,8 @@ TEST(FCL_MOVING_KDOP_TREE, whatFliesOffBlursNothingElse) {
       SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(far) + ", " +
                    std::to_string(i));
       MovingMesh mesh = sheet;
-      // The first one, one, or several that fly apart; in one frame, or in both.
+      // The first vertex, another one, or several that fly apart, in one frame or in
+      // both.
       std::vector<std::uint32_t> flying(i % 3 == 2 ? 5 : 1);
       for (auto& id : flying)
         id = i % 3 == 0 ? 0 : static_cast<std::uint32_t>(random.index(count));
@@ -531,7 +536,8 @@ TEST(FCL_MOVING_KDOP_TREE, depthIsBounded) {
   }
 }
 
-/// Runs a self-query in the mode set by the caller, whose control word must survive.
+/// Runs a self-query in the floating-point mode of the caller, whose control word must
+/// not change.
 QueryAnswer answerOf(const MeshInstance& mesh) {
   QueryOptions options;
   options.toc_err = 1e-7;

@@ -38,7 +38,7 @@ using test::MovingMesh;
 using test::PreparedMovingMesh;
 using test::Random;
 
-/// A mesh as a query sees it, with its triangles as the user counts them.
+/// A mesh as a query uses it, with its triangles by the user's ids.
 struct Body {
   const MeshInstance& instance;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -49,7 +49,7 @@ struct Body {
                            static_cast<std::uint32_t>(t[1]),
                            static_cast<std::uint32_t>(t[2])});
   }
-  /// The user's number of a triangle as the tree counts.
+  /// The user's id of the triangle at a place of the tree.
   int index(int i) const {
     if (!instance.tree) return i;
     return static_cast<int>(
@@ -115,7 +115,8 @@ Visits visitsOf(const Body& a, const Body& b, double latest = 1) {
   return visits;
 }
 
-/// Every pair that overlaps at a time up to latest is visited, none twice.
+/// Expects that every pair that overlaps at a time up to latest is visited, and none
+/// twice.
 /// @return number of pairs that had to be visited
 int expectVisits(const Body& a, const Body& b, double latest = 1) {
   const Visits visits = visitsOf(a, b, latest);
@@ -166,7 +167,7 @@ TEST(FCL_MOVING_KDOP_TREE, traversalVisitsEveryOverlap) {
   EXPECT_GT(needed, 10000);
 }
 
-/// A binary tree, as MovingKdopTree::build() takes it, that makes a root of eight
+/// A binary tree, in the form of MovingKdopTree::build(), that makes a root of eight
 /// children: nodes of eight triangles, then single triangles.
 std::vector<std::int32_t> rootOfNodesAndTriangles(unsigned num_nodes) {
   std::vector<std::int32_t> links(1);
@@ -181,7 +182,7 @@ std::vector<std::int32_t> rootOfNodesAndTriangles(unsigned num_nodes) {
         const std::size_t left = links.size();
         links.resize(left + 2);
         links[node] = static_cast<std::int32_t>(left);
-        // Lanes are filled level by level: the first turn is the lowest bit.
+        // Lanes are filled level by level: the first decision is the lowest bit.
         fill(left, depth + 1, lane);
         fill(left + 1, depth + 1, lane | 1U << depth);
       };
@@ -189,7 +190,7 @@ std::vector<std::int32_t> rootOfNodesAndTriangles(unsigned num_nodes) {
   return links;
 }
 
-// No step finds more pairs than a query has room for, and one finds as many.
+// No step finds more pairs than a query has room for, and one step finds as many.
 TEST(FCL_MOVING_KDOP_TREE, pairsOfAStep) {
   using SelfTraversal =
       deformable::Traversal<true, const MovingKdopTree, const MovingKdopTree>;
@@ -246,7 +247,7 @@ TEST(FCL_MOVING_KDOP_TREE, traversalOfSmallTrees) {
   }
 }
 
-/// FCL's own tree, read as one of eight children a node.
+/// FCL's own tree, read as a tree with eight children per node.
 template <typename BV>
 void expectVisitsOfRigidTrees(std::uint64_t seed) {
   using S = typename BV::S;
@@ -323,7 +324,7 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
       MovingMesh b = test::crumpledSheet(random, 5, 0.4);
       Pose pose_a[2], pose_b[2];
       for (int k = 0; k < 3; ++k) {
-        // a is there by its pose, b by half its pose and half its coordinates.
+        // a is at its place by its pose, b half by its pose and half by its coordinates.
         for (int frame = 0; frame < 2; ++frame) {
           pose_a[frame].translation[k] = far * (k + 1);
           pose_b[frame].translation[k] = 0.5 * far * (k + 1) + (frame ? 0.1 * size : 0);
@@ -336,7 +337,8 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
       const MovingBody pa(a, pose_a[0], pose_a[1]), pb(b, pose_b[0], pose_b[1]);
       EXPECT_GT(expectVisits(pa.body, pb.body), 100);
       EXPECT_GT(expectVisits(pb.body, pa.body), 100);
-      // Not by giving up: most pairs are still culled where floats can tell them apart.
+      // The traversal does not give up: most pairs are still culled if floats can
+      // separate them.
       if (far <= 1e6 * size) {
         EXPECT_LT(visitsOf(pa.body, pb.body).size(),
                   a.triangles.size() * b.triangles.size() * 3 / 4);
@@ -344,7 +346,7 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
     }
 }
 
-// Beyond float's range a box is unbounded, and everything has to be visited.
+// Beyond float's range boxes are unbounded, and all pairs have to be visited.
 TEST(FCL_MOVING_KDOP_TREE, coordinatesBeyondFloat) {
   constexpr std::uint64_t kSeed = 47;
   Random random(kSeed);

@@ -41,7 +41,7 @@ MeshConnectivity connectivityOf(const FramePairMesh& mesh) {
   return {triangles, mesh.previous.size()};
 }
 
-/// Each a set of triangles, by their numbers.
+/// Regions: each is a set of triangles, by their ids.
 Regions regionsOf(const std::vector<std::vector<int>>& sets) {
   Regions regions;
   for (const auto& set : sets) {
@@ -91,7 +91,7 @@ std::size_t contactsWithin(const FramePairMesh& mesh, const std::vector<int>& tr
   return count;
 }
 
-/// Triangles around a random one, as many as asked for, if it is connected.
+/// A given number of triangles around a random one, if they are connected.
 std::vector<int> randomPatch(const FramePairMesh& mesh, std::size_t size,
                              Random& random) {
   std::vector<int> patch{static_cast<int>(random.index(mesh.triangles.size()))};
@@ -123,8 +123,7 @@ struct Tally {
   int touching{0};
 };
 
-/// Random regions of a mesh, in one piece and in two: none that is left out touches
-/// itself.
+/// Random regions of a mesh, in one piece and in two: none that is culled touches itself.
 void checkRandomRegions(const FramePairMesh& mesh, Random& random, Tally& tally) {
   const auto contacts = bruteForceSelfContacts(mesh);
   std::vector<std::vector<int>> sets;
@@ -149,7 +148,7 @@ void checkRandomRegions(const FramePairMesh& mesh, Random& random, Tally& tally)
   }
 }
 
-/// A sheet of cells of size 1 that is shaken, mostly in its plane: triangles turn over,
+/// A sheet of cells of size 1 that is shaken, mainly in its plane: triangles turn over,
 /// borders cross.
 FramePairMesh shakenSheet(double in_plane, double out_of_plane, Random& random) {
   const TestMesh sheet = makeSheet(
@@ -215,7 +214,8 @@ TEST(FCL_NORMAL_CONES, aRegionThatIsLeftOutTouchesNowhere) {
   EXPECT_GT(tally.touching, 300);
 }
 
-/// Vertices made one, triangles repeated and turned over, sheets on top of each other.
+/// Vertices that are joined, triangles that are repeated and turned over, sheets on top
+/// of each other.
 TEST(FCL_NORMAL_CONES, norDoesOneThatIsNoManifold) {
   Tally tally;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {
@@ -256,8 +256,8 @@ TEST(FCL_NORMAL_CONES, aSmoothSheetIsLeftOutWhole) {
   EXPECT_TRUE(isWholeLeftOut(mesh));
 }
 
-/// As published, the test asks whether the contour crosses itself. Those of a sheet and a
-/// smaller one above it do not, wherever the sheets go.
+/// As published, the test asks whether the contour crosses itself. The contours of a
+/// sheet and of a smaller one above it do not, wherever the sheets go.
 TEST(FCL_NORMAL_CONES, layersWhoseContoursDoNotCrossAreNotLeftOut) {
   TestMesh sheets = makeSheet(6, 6);
   const TestMesh smaller = makeSheet(4, 4, [](double u, double v) {
@@ -271,7 +271,7 @@ TEST(FCL_NORMAL_CONES, layersWhoseContoursDoNotCrossAreNotLeftOut) {
   EXPECT_FALSE(isWholeLeftOut(mesh));
 }
 
-/// A flat ring with a gap that closes during the step: all normals are one.
+/// A flat ring with a gap that closes during the step. All normals are equal.
 TEST(FCL_NORMAL_CONES, aContourThatMeetsItselfIsNotLeftOut) {
   const auto ring = [](double angle) {
     return makeSheet(24, 2, [angle](double u, double v) {
@@ -288,8 +288,8 @@ TEST(FCL_NORMAL_CONES, aContourThatMeetsItselfIsNotLeftOut) {
   EXPECT_FALSE(bruteForceSelfContacts(mesh).empty());
 }
 
-/// More than one turn of a ramp: in one piece, its normals within a narrow cone, and its
-/// turns far apart at t = 0; they meet later.
+/// More than one turn of a ramp. It is connected, its normals are within a narrow cone,
+/// and its turns are far apart at t = 0. They meet later.
 TEST(FCL_NORMAL_CONES, aRampOfTwoTurnsIsNotLeftOut) {
   const auto ramp = [](double height) {
     return makeSheet(48, 2, [height](double u, double v) {
@@ -304,7 +304,7 @@ TEST(FCL_NORMAL_CONES, aRampOfTwoTurnsIsNotLeftOut) {
 }
 
 /// A sheet that is wound around the cut from its middle to its border, so that its two
-/// sides overlap: the contour crosses itself nowhere but where the cut begins.
+/// sides overlap. The contour crosses itself only where the cut begins.
 TEST(FCL_NORMAL_CONES, aFanThatOverlapsItselfIsNotLeftOut) {
   constexpr std::size_t kSpokes = 15;
   FramePairMesh mesh;

@@ -58,7 +58,7 @@ const HandCase kHandCases[] = {
        path({0, 4, 3}, {0, 4, -1})}},
      3,
      4},
-    // Where the moving edge crosses y = 0 it has the height (1 - 2t)^2.
+    // The moving edge crosses y = 0 at the height (1 - 2t)^2.
     {"double root",
      {kEe,
       {at(-1, 0, 0), at(1, 0, 0), path({0, 0, 1}, {0, -2, -1}),
@@ -171,8 +171,8 @@ TEST(FCL_ORACLE, irrationalTime) {
   EXPECT_LT(2 * late * late, 1);
 }
 
-// Its own instants, by arithmetic on rationals: wherever features touch at one of the
-// times looked at, the first contact is not later.
+// The oracle's decision at single times, by rational arithmetic: if features touch at one
+// of the tested times, the first contact is not later.
 TEST(FCL_ORACLE, noContactIsBeforeTheFirst) {
   constexpr std::uint64_t kSteps = 840;  // divided by 2 ... 8
   std::size_t contacts = 0;
@@ -202,9 +202,9 @@ TEST(FCL_ORACLE, generatedQueries) {
   for (const std::size_t decided : tally.decided_by) EXPECT_GT(decided, kCount / 50);
 }
 
-// Differences near the smallest double times ones near the largest: products in range,
-// made of factors that have lost their digits. The solver's bracket missed the first of
-// these contacts, and the second was lost.
+// Differences near the smallest double times differences near the largest. Products are
+// in range, but their factors have lost digits. The solver must not miss these two
+// contacts.
 TEST(FCL_ORACLE, differencesThatUnderflow) {
   const MovingPair pairs[] = {
       {kEe,
@@ -257,7 +257,7 @@ void expectNoContactCulled(const char* name, const char* previous, const char* c
       readFramePair(*folder + "/" + previous, *folder + "/" + current), {});
   for (const CulledByStage& stage : report.stages) {
     EXPECT_EQ(stage.contacts, 0U) << stage.name << "\n" << report.example;
-    // Integers are for hard cases, of which a scene may have none.
+    // The exact stage is for hard cases, which a scene may not have.
     if (&stage != &report.stages.back()) {
       EXPECT_GT(stage.asked, 0U) << stage.name;
     }

@@ -93,7 +93,7 @@ TEST(FCL_REGION_BORDER, isFoundOnce) {
   EXPECT_GE(borders.memUsage(), before + 1000 * sizeof(std::uint32_t));
   EXPECT_NE(&borders.of(2, find), &first);
   EXPECT_EQ(count, 2);
-  // One without edges is kept, too.
+  // A border without edges is kept, too.
   EXPECT_EQ(borders.of(0, [] { return RegionBorder(); }).size(), 0U);
   EXPECT_EQ(&borders.of(0, find), &borders.of(0, find));
   EXPECT_EQ(count, 2);
@@ -111,7 +111,7 @@ TEST(FCL_REGION_BORDER, whatFailsLeavesNone) {
   EXPECT_EQ(borders.of(0, found).size(), 4U);
 }
 
-// Each of two threads finds the border before the other one has it: both get the same.
+// Two threads find the same border at the same time: both get the same one.
 TEST(FCL_REGION_BORDER, threadsAtATime) {
   RegionBorders borders(1);
   std::atomic<int> inside{0};
@@ -148,11 +148,11 @@ TEST(FCL_REGION_BORDER, isCountedAsMemory) {
   const MovingKdopTree tree = treeOf(test::makeSheet(20, 20));
   const std::size_t before = tree.memUsage();
   expectBorders(tree);
-  // Each triangle has an edge or more in the border of its lowest node.
+  // Each triangle has at least one edge in the border of its lowest node.
   EXPECT_GE(tree.memUsage(), before + tree.triangles().size() * sizeof(std::uint32_t));
 }
 
-// A tree that was asked in all steps before has the regions of one that was never asked.
+// A tree with queries in all previous steps has the regions of one without.
 TEST(FCL_REGION_BORDER, regionsAreTheSameThroughout) {
   for (const test::FrameSequence& sequence :
        {test::makeCrumplingSheet(9), test::makeWavingCloth(4)}) {

@@ -22,8 +22,9 @@ namespace fcl {
 namespace test {
 namespace {
 
-/// The contacts of two rigid models, one of which moves, are those of models with AABBs.
-/// @return how many
+/// Expects that the contacts of two rigid models, one of which moves, are those of models
+/// with AABBs.
+/// @return their number
 template <typename BV>
 std::size_t expectContactsAsOfBoxes(const BVHModel<BV>& a, const BVHModel<BV>& b,
                                     const Vector3<double>& way) {
@@ -57,8 +58,8 @@ using Volumes = testing::Types<OBB<double>, OBBRSS<double>, kIOS<double>, RSS<do
                                RSS<float>, KDOP<float, 16>>;
 TYPED_TEST_SUITE(FCL_RIGID_TREE_QUERY, Volumes, );
 
-// FCL's oriented boxes of thin triangles are not around them once vertices were replaced,
-// and those of triangles without area are anywhere.
+// FCL's oriented boxes of thin triangles do not contain them after vertices were
+// replaced. Those of triangles without area are at any place.
 TYPED_TEST(FCL_RIGID_TREE_QUERY, replacedThinTriangles) {
   using Plain = BVHModel<TypeParam>;
   using S = typename TypeParam::S;
@@ -67,7 +68,7 @@ TYPED_TEST(FCL_RIGID_TREE_QUERY, replacedThinTriangles) {
   std::size_t contacts = 0;
   for (int exponent = 0; exponent < 60; ++exponent) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", 2^-" + std::to_string(exponent));
-    // The last ones have no area, as wires made of triangles.
+    // The last ones have no area, like wires made of triangles.
     const double width = exponent < 56 ? std::ldexp(1, -exponent) : 0;
     TestMesh thin = makeTriangleSoup(3, 0.3, 0.5, kSeed);
     const Vector3<double> far = random.point(8);
@@ -90,13 +91,13 @@ TYPED_TEST(FCL_RIGID_TREE_QUERY, replacedThinTriangles) {
   EXPECT_GT(contacts, 100U);
 }
 
-// Sums of squares that leave the range of float, or of double: FCL's boxes have axes that
-// are none.
+// Sums of squares that leave the range of float, or of double: the axes of FCL's boxes
+// are then not valid.
 TYPED_TEST(FCL_RIGID_TREE_QUERY, coordinatesOfAllSizes) {
   using Plain = BVHModel<TypeParam>;
   using S = typename TypeParam::S;
   constexpr int kMost = std::numeric_limits<S>::max_exponent;
-  // In double such coordinates take the exact test, a hundred times as long.
+  // In double such coordinates need the exact test, which takes a hundred times as long.
   constexpr int kStep = sizeof(S) == 8 ? 5 : 1, kTriangles = sizeof(S) == 8 ? 15 : 50;
   std::size_t contacts = 0;
   for (int exponent = kMost / 2 - 12; exponent < kMost / 2 + 8; exponent += kStep)
@@ -130,8 +131,8 @@ ContinuousContactResult<S> contactsAlong(const CollisionGeometry<S>& a,
   return result;
 }
 
-/// How many pairs of features of two meshes touch, each tested by itself; of one mesh
-/// without contacts within, whose second part is that which moves.
+/// The number of feature pairs of two meshes that touch, each tested separately; or of
+/// one mesh without contacts of its own, whose second part moves.
 std::size_t bruteForceCount(const TestMesh& a, const TestMesh& b,
                             const Vector3<double>& way) {
   FramePairMesh both;
@@ -146,9 +147,9 @@ std::size_t bruteForceCount(const TestMesh& a, const TestMesh& b,
   return bruteForceSelfContacts(both).size();
 }
 
-// A model that is replaced and refit again and again answers as a model that was made of
-// its vertices: with every refit, after each replacement. Coordinates are multiples of
-// 2^-10, so that all that is added here is exact.
+// A model that is replaced and refit repeatedly answers like a model that was built from
+// its vertices: with each kind of refit, after each replacement. Coordinates are
+// multiples of 2^-10, so that all sums here are exact.
 TYPED_TEST(FCL_RIGID_TREE_QUERY, replacedAgainAndAgain) {
   using Plain = BVHModel<TypeParam>;
   using Deformable = DeformableBVHModel<TypeParam>;

@@ -36,7 +36,8 @@ std::vector<PairName> pairsOf(const ContinuousContactResult<S>& result) {
   return pairs;
 }
 
-/// Equal both ways; a difference is counted, with one example, not listed.
+/// Expects that both lists are equal. Differences are counted, with one example, not
+/// listed.
 void expectPairs(const std::vector<PairName>& got,
                  const std::vector<PairName>& expected) {
   const auto report = [](const char* what, const std::vector<PairName>& x,
@@ -66,7 +67,7 @@ void PrintTo(const SceneFiles& files, std::ostream* out) { *out << files.folder;
 
 class Scenes : public ::testing::TestWithParam<SceneFiles> {
  protected:
-  /// @return whether the scene is there.
+  /// @return whether the scene exists.
   bool load() {
     const SceneFiles& files = GetParam();
     const auto folder = sharedData(std::string("scenes/") + files.folder);
@@ -172,9 +173,9 @@ TEST_P(Scenes, TraversalNodeFindsTheSame) {
   EXPECT_EQ(node.time_of_contact, all.time_of_contact);
 }
 
-// Rounded by a shift, the scene is another one, on which two trees with boxes of their
-// own must agree. On a grid that the shift keeps exactly, it has the same contacts there
-// as here.
+// After a shift that rounds it, the scene is another one, on which two trees with
+// different boxes must agree. On a grid that the shift keeps exactly, the contacts are
+// the same as without the shift.
 TEST_P(Scenes, FarFromTheOrigin) {
   if (!load()) GTEST_SKIP() << kNoSharedData;
   const TestMesh far0 = moved(t0_, 1e6, -1e6, 1e6), far1 = moved(t1_, 1e6, -1e6, 1e6);

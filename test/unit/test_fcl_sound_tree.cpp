@@ -39,7 +39,7 @@ using detail::deformable::RigidTree;
 struct NamedMesh {
   std::string name;
   TestMesh mesh;
-  /// Whether a tree that FCL makes from the top down can be told from another.
+  /// Whether a tree that FCL makes from the top down can be distinguished from others.
   bool can_be_told;
 };
 std::vector<NamedMesh> hardMeshes() {
@@ -58,7 +58,7 @@ std::vector<NamedMesh> hardMeshes() {
   out.push_back({"wire", makeSheet(30, 1, wire), false});
   const auto point = [](double, double) { return Vector3<double>(1, 2, 3); };
   out.push_back({"point", makeSheet(5, 5, point), false});
-  // A turned copy: no axis of these boxes is one of the coordinates.
+  // A rotated copy: no axis of these boxes is a coordinate axis.
   const Matrix3<double> turn =
       AngleAxis<double>(0.7, Vector3<double>(1, 2, -1).normalized()).toRotationMatrix();
   for (std::size_t i = 0, n = out.size(); i < n; ++i) {
@@ -95,13 +95,13 @@ void expectBounds(const BVHModel<BV>& model, const Pose& pose) {
     const MovingKdop box = tree.box(node);
     OrientedBox oriented;
     tree.orientedBox(node, oriented);
-    // What RigidTree promises of an oriented box: no coordinate below it is larger.
+    // The promise of RigidTree about an oriented box: no coordinate below it is larger.
     double slack = 0;
     for (int k = 0; k < 3; ++k)
       slack += tree.slack() * (std::abs(oriented.center[k]) + oriented.extent[k]);
     forEachCorner(model, node, [&](const Vector3<double>& p) {
       const Vector3<double> turned = rotation * p;
-      // What rounds in this test.
+      // The rounding of this test.
       const double rounding = 0x1p-48 * p.norm();
       const double q[3] = {turned[0] - origin[0], turned[1] - origin[1],
                            turned[2] - origin[2]};
@@ -149,7 +149,7 @@ using Volumes =
                    KDOP<float, 18>, KDOP<float, 24>>;
 TYPED_TEST_SUITE(FCL_SOUND_TREE, Volumes, );
 
-// Trees as FCL builds them are read, however square the triangles are.
+// Trees that FCL builds are read, also if their triangles have right angles.
 TYPED_TEST(FCL_SOUND_TREE, builtTrees) {
   for (const NamedMesh& named : hardMeshes()) {
     SCOPED_TRACE(named.name);
@@ -162,7 +162,7 @@ TYPED_TEST(FCL_SOUND_TREE, builtTrees) {
   }
 }
 
-// Trees that FCL refit, of vertices that went far: what is said to be sound is.
+// Trees that FCL refit after vertices went far: those that are called sound are sound.
 TYPED_TEST(FCL_SOUND_TREE, replacedVertices) {
   constexpr int kTold = 15;  // nodes of which all can be measured
   std::uint64_t seed = 1;
@@ -200,7 +200,7 @@ TYPED_TEST(FCL_SOUND_TREE, replacedVertices) {
   }
 }
 
-// Coordinates of all sizes, and far from the origin. Floats have few digits left there.
+// Coordinates of all sizes, and far from the origin, where floats have few digits left.
 TYPED_TEST(FCL_SOUND_TREE, scalesAndOffsets) {
   using S = typename TypeParam::S;
   for (const NamedMesh& named : hardMeshes())
@@ -228,8 +228,8 @@ TYPED_TEST(FCL_SOUND_TREE, scalesAndOffsets) {
       }
 }
 
-/// The most that a corner stands out of the oriented box of a node above it, relative to
-/// the extents of the box.
+/// The largest distance by which a corner stands out of the oriented box of a node above
+/// it, relative to the extents of the box.
 template <typename BV>
 double mostOutside(const BVHModel<BV>& model) {
   double most = 0;
@@ -247,8 +247,8 @@ double mostOutside(const BVHModel<BV>& model) {
   return most;
 }
 
-// Why trees that were refit from the bottom up are not read: in plain meshes, without any
-// thin triangle, FCL 0.7 makes sums of boxes that triangles stand out of.
+// The reason why trees that were refit from the bottom up are not read: in plain meshes,
+// without any thin triangle, triangles stand out of FCL 0.7's sums of boxes.
 TEST(FCL_SOUND_TREE, sumsOfBoxesLeaveTrianglesOut) {
   const auto model = makeModel<BVHModel<OBB<double>>>(makeIcosphere(3, 1));
   EXPECT_LT(mostOutside(*model), 1e-12);
@@ -259,7 +259,7 @@ TEST(FCL_SOUND_TREE, sumsOfBoxesLeaveTrianglesOut) {
   EXPECT_LT(mostOutside(*model), 1e-12);
 }
 
-// A volume that cannot be a sum is enough; numbers that are none prove nothing.
+// One volume that cannot be a sum is enough. Numbers that are NaN prove nothing.
 TEST(FCL_SOUND_TREE, whatIsNoNumber) {
   using Model = BVHModel<OBB<double>>;
   const auto model = makeModel<Model>(makeIcosphere(2, 1));
@@ -270,7 +270,7 @@ TEST(FCL_SOUND_TREE, whatIsNoNumber) {
   EXPECT_TRUE(isTreeSound(*single));
   single->vertices[1][2] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(isTreeSound(*single));
-  single->vertices[1][2] = 1;  // written past FCL: outside of the boxes
+  single->vertices[1][2] = 1;  // written without FCL: outside of the boxes
   EXPECT_FALSE(isTreeSound(*single));
 }
 

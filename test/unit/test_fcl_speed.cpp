@@ -46,13 +46,14 @@ TEST(FCL_SPEED, figuresAreConsistent) {
                 std::stod(row["ms_total"]), 0.01);
     EXPECT_EQ(row["hash"].size(), 16u);
     EXPECT_FALSE(row["machine"].empty());
-    // The generated scenes do not have the one weakness of the paper's method.
+    // The generated scenes avoid the weakness of the paper's method.
     for (const char* errors : {"missed", "extra"})
       if (row["kernels"] == kPaper || row[errors] != "-") {
         EXPECT_EQ(row[errors], "0");
       }
   }
-  // Where there is more than one thread, or choice of kernels, there are more rows.
+  // If there is more than one thread, or more than one set of kernels, there are more
+  // rows.
   const int n = threads == "1" ? 1 : 2, again = kernels == "scalar" ? 0 : 2;
   const std::map<std::string, int> expected{{"smooth cloth 1K", 3 * n + 13 + again},
                                             {"smooth cloth 2K", 3 * n + 13 + again},

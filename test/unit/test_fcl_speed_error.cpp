@@ -26,7 +26,7 @@ const std::string kAnswerNo =
 
 class FCL_SPEED_ERROR : public ::testing::Test {
  protected:
-  /// @return the program's exit code; what it says goes to errors().
+  /// @return the program's exit code; its messages go to errors().
   int run(const std::string& options) const {
     const std::string command = "'" FCL_CCD_SPEED_ERROR "' '" + folder_.string() +
                                 "' --short " + options + " 2>'" + path("errors.txt") +
@@ -152,7 +152,7 @@ TEST_F(FCL_SPEED_ERROR, figuresAreConsistent) {
 }
 
 TEST_F(FCL_SPEED_ERROR, querySetsAreGivenInFull) {
-  // Answers yes at t = 1 to the queries that it can read in full, all of them.
+  // Answers yes at t = 1 to the queries that it can read completely, which are all.
   const std::string yes =
       "awk -F, '!/^#/ && NF == 26 && ($2 == \"vf\" || $2 == \"ee\") "
       "{ print $1 \",1,1\" }' \"$1\"";

@@ -173,8 +173,9 @@ TEST(FCL_THREADS, sameAnswerWithAnyNumber) {
         }
 }
 
-/// The contacts are some of all, with brackets inside of theirs (of a pair that is met
-/// repeatedly, another bracket may be kept), and the time is the same to the bit.
+/// Expects that the contacts are some of all, with brackets inside of theirs (for a pair
+/// that is met repeatedly, another bracket may be kept), and that the time is the same to
+/// the bit.
 void expectFirstOf(const Result& first, const Result& all, bool may_repeat) {
   EXPECT_EQ(first.time_of_contact, all.time_of_contact);
   ASSERT_EQ(first.contacts.empty(), all.contacts.empty());
@@ -189,8 +190,8 @@ void expectFirstOf(const Result& first, const Result& all, bool may_repeat) {
   }
 }
 
-// A first-contact query returns some of all contacts, whatever the number that is kept
-// and that of threads.
+// A first-contact query returns some of all contacts, for any number of kept contacts and
+// of threads.
 TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
   for (const NamedScene& scene : scenes())
     for (const double toc_err : {0.3, 1e-2, 1e-4, 1e-9}) {
@@ -205,7 +206,8 @@ TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
           Result expected = whole;
           expected.contacts_cut = whole.contacts.size() > max_contacts;
           if (expected.contacts_cut) expected.contacts.resize(max_contacts);
-          // Another crossing may be told, and other triangles of an unprepared mesh.
+          // The answer may have another crossing, and other triangles of an unprepared
+          // mesh.
           expectIdentical(scene.run(requestOf(ContinuousQuery::kFirst, max_contacts,
                                               toc_err, threads)),
                           expected, !scene.may_repeat);
@@ -214,7 +216,7 @@ TEST(FCL_THREADS, firstIsTheBeginningOfAll) {
     }
 }
 
-// The earliest so many are the beginning of all.
+// The earliest contacts, up to the limit, are the beginning of all.
 TEST(FCL_THREADS, fewAreTheBeginningOfAll) {
   for (const NamedScene& scene : scenes())
     for (const double toc_err : {0.3, 1e-4}) {
@@ -265,8 +267,8 @@ TEST(FCL_THREADS, manyCallersOnTheSameModels) {
   }
 }
 
-// What a query notices on the way: the first of the vertices that are not finite, the
-// same one whatever threads there are.
+// The error of a query: the first vertex that is not finite, the same one for any number
+// of threads.
 TEST(FCL_THREADS, exceptionsComeThrough) {
   const TestMesh flat = makeSheet(24, 24);
   const auto rigid = makeModel<Plain>(moved(flat, 0, 0, 1));
@@ -289,7 +291,7 @@ TEST(FCL_THREADS, exceptionsComeThrough) {
   EXPECT_EQ(messageOf(0), "nothing thrown");
 }
 
-/// What a query ends with: an answer, or an error.
+/// The end of a query: an answer or an error.
 struct Outcome {
   Result result;
   std::string error;
@@ -305,10 +307,10 @@ struct Outcome {
 
 /// A wavy sheet that comes down on another, with boxes that meet long before they touch.
 struct Approach {
-  /// The gap between them at one end, and how much wider it is at the other.
+  /// The gap between them at one end, and the amount by which it is wider at the other.
   double gap, slope;
   double way;
-  /// Height of two vertices of the lower sheet.
+  /// The height of two vertices of the lower sheet.
   double spike;
 
   TestMesh upper() const { return sheet(gap, slope); }
@@ -330,9 +332,9 @@ struct Approach {
   }
 };
 
-// Whether a query comes to a vertex that is not finite before it has its answer: in the
-// first scene few tasks have an answer to kAny, in the second one errors come earlier and
-// later than the first contact.
+// Whether a query meets a vertex that is not finite before it has its answer. In the
+// first scene few tasks have an answer to kAny. In the second scene errors come earlier
+// and later than the first contact.
 TEST(FCL_THREADS, errorsWithAnyNumber) {
   for (const Approach& approach : {Approach{0.05, 0, 0.03, 0.05}, {0.2, 0.4, 1, 0}}) {
     const TestMesh upper = approach.upper();
@@ -364,8 +366,8 @@ TEST(FCL_THREADS, errorsWithAnyNumber) {
   }
 }
 
-// A first-contact query fails where a vertex may be in the first contact, and not where
-// its triangles come near only later.
+// A first-contact query fails if a vertex may be in the first contact, but not if its
+// triangles come near only later.
 TEST(FCL_THREADS, firstContactBeforeAnError) {
   const TestMesh upper = moved(bentSheet(16), 0, 0, 1);
   const auto lower = makeModel<Plain>(makeSheet(16, 16));
@@ -392,8 +394,8 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
   }
 }
 
-// The caller's floating-point mode changes no answer, and is the same afterwards. Even
-// where a pose is smaller than what it keeps.
+// The caller's floating-point mode does not change the answer, and is the same after the
+// call, even if a pose is smaller than the mode can represent.
 TEST(FCL_THREADS, callersFloatingPointMode) {
   std::vector<NamedScene> all = scenes();
   TestMesh face, tip;
@@ -409,7 +411,7 @@ TEST(FCL_THREADS, callersFloatingPointMode) {
       SCOPED_TRACE(scene.name + ", " + std::to_string(threads) + " threads");
       const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, threads);
       const Result normal = scene.run(request);
-      // Geometry at a contact is not part of it.
+      // This does not include the geometry of a contact.
       std::fesetround(FE_UPWARD);
       const Result up = scene.run(request);
       const int after = std::fegetround();
@@ -479,7 +481,7 @@ bool areSame(const T& x, const T& y) {
   return std::memcmp(&x, &y, sizeof(T)) == 0;
 }
 
-/// To the bit, structure and boxes.
+/// Expects the same structure and boxes, to the bit.
 void expectSameModel(const Model& x, const Model& y) {
   const auto &a = x.movingTree(), &b = y.movingTree();
   EXPECT_TRUE(areSame(a.origin(0), b.origin(0)));
@@ -546,7 +548,7 @@ TEST(FCL_THREADS, modelRefusesANegativeNumber) {
   EXPECT_EQ(model->lastError(), "");
 }
 
-// The first of several vertices is told, whichever thread finds one.
+// The error names the first of several vertices, whichever thread finds one.
 TEST(FCL_THREADS, firstVertexThatIsNotFinite) {
   Step step = steps().front();
   for (const int threads : {1, 2, 4, 0}) {
@@ -613,7 +615,7 @@ class Watcher : public tbb::task_scheduler_observer {
     const std::lock_guard<std::mutex> lock(mutex_);
     --now_;
   }
-  /// All that ever worked there, and how many at the same time.
+  /// All threads that worked there, and the largest number at the same time.
   std::set<std::thread::id> threads() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return threads_;
@@ -629,7 +631,7 @@ class Watcher : public tbb::task_scheduler_observer {
   int now_{0}, most_{0};
 };
 
-/// Every scene and query, in an arena.
+/// Runs every scene and query in an arena.
 void runAll(tbb::task_arena& arena, int num_threads) {
   for (const NamedScene& scene : scenes())
     for (const ContinuousQuery query : kQueries) {
@@ -640,7 +642,7 @@ void runAll(tbb::task_arena& arena, int num_threads) {
     }
 }
 
-/// The threads that enter an arena of so many meanwhile.
+/// The threads that enter an arena of this size during the queries.
 std::set<std::thread::id> threadsOfQuery(int arena_threads, int num_threads) {
   tbb::task_arena arena(arena_threads);
   Watcher watcher(arena);
@@ -684,7 +686,7 @@ TEST(FCL_THREADS, modelsUseThreads) {
   EXPECT_EQ(most, 2U);
 }
 
-// Of so few vertices all but the tree is one task.
+// With so few vertices, everything but the tree is one task.
 TEST(FCL_THREADS, updatesOfTreesUseThreads) {
   if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
   const TestMesh sheet = bentSheet(80);
@@ -710,8 +712,8 @@ TEST(FCL_THREADS, arenaOfTwoIsRespected) {
   }
 }
 
-// A caller's other tasks are not done while it waits in a query, where it may hold what
-// they want.
+// A thread that waits in a query does not run other tasks of the caller, which may need
+// what the caller holds.
 TEST(FCL_THREADS, callersOtherTasksWait) {
   const NamedScene& scene = scenes().front();
   const Request request = requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 0);
@@ -740,8 +742,8 @@ TEST(FCL_THREADS, callersOtherTasksWait) {
   EXPECT_EQ(done, 24);
 }
 
-// The last one: after many arenas within an arena oneTBB 2021.8 may send no worker to
-// others for a while, which other tests wait for.
+// This test is the last one: after many arenas within an arena, oneTBB 2021.8 may send no
+// worker to others for a while, and other tests wait for workers.
 TEST(FCL_THREADS, twoThreadsInAnArenaOfFour) {
   tbb::task_arena arena(4);
   Watcher watcher(arena);

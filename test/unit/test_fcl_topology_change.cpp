@@ -34,7 +34,7 @@ VertexFrames framesOf(const Points& t0, const Points& t1) {
   return {t0[0].data(), t1[0].data(), t0.size()};
 }
 
-/// A mesh in its current frame; what comes next is said in terms of what is here.
+/// A mesh in its current frame. The next mesh is described relative to it.
 struct ChangingMesh {
   Triangles triangles;
   Points points;
@@ -45,7 +45,7 @@ struct ChangingMesh {
     triangles.emplace_back(a, b, c);
     origins.push_back(origin);
   }
-  /// Before a change: each triangle is itself.
+  /// The state before a change: the origin of each triangle is itself.
   void settle() {
     origins.resize(triangles.size());
     for (std::size_t i = 0; i < origins.size(); ++i) origins[i] = static_cast<int>(i);
@@ -92,7 +92,7 @@ void refine(ChangingMesh& mesh, int count, Random& random) {
   }
 }
 
-/// Takes triangles out; numbers of all others stay in order.
+/// Removes triangles. The numbers of all others stay in order.
 void lose(ChangingMesh& mesh, std::size_t first, std::size_t count) {
   const auto from = static_cast<std::ptrdiff_t>(first),
              to = static_cast<std::ptrdiff_t>(first + count);
@@ -100,7 +100,7 @@ void lose(ChangingMesh& mesh, std::size_t first, std::size_t count) {
   mesh.origins.erase(mesh.origins.begin() + from, mesh.origins.begin() + to);
 }
 
-/// Adds a piece that knows of nothing.
+/// Adds a piece without origins.
 void grow(ChangingMesh& mesh, const TestMesh& part, const Vector3<double>& by) {
   const std::size_t first = mesh.points.size();
   for (const Vector3<double>& p : part.vertices) mesh.points.push_back(p + by);
@@ -146,7 +146,7 @@ void shuffleTriangles(ChangingMesh& mesh, Random& random) {
   }
 }
 
-/// The corners of some triangles in another order: turned, or turned over.
+/// Changes the order of some triangles' corners: rotated, or turned over.
 void turn(ChangingMesh& mesh, int count, Random& random) {
   for (int n = 0; n < count; ++n) {
     Triangle& t = mesh.triangles[random.index(mesh.triangles.size())];
@@ -184,7 +184,7 @@ void change(ChangingMesh& mesh, Random& random) {
         turn(mesh, 5, random);
         break;
       default:
-        // A hint that is wrong.
+        // A wrong hint.
         mesh.origins[random.index(mesh.origins.size())] = -1;
     }
   }
@@ -206,7 +206,7 @@ struct MovingTree {
   MovingKdopTree tree;
 };
 
-/// What holds of every tree, owners, fans and borders too.
+/// Expects the properties of every tree, also of owners, fans and borders.
 void expectSound(const MovingKdopTree& tree, const ChangingMesh& mesh, const Points& t1) {
   const auto owners =
       assignFeatures(mesh.triangles.data(), mesh.triangles.size(), mesh.points.size());
@@ -262,14 +262,14 @@ TEST(FCL_TOPOLOGY_CHANGE, downToOneTriangle) {
     lose(mesh, mesh.triangles.size() / 3, (mesh.triangles.size() + 1) / 2);
     moving.step(mesh, mesh.points);
     ASSERT_NO_FATAL_FAILURE(expectSound(moving.tree, mesh, mesh.points));
-    // What is left is drawn together.
+    // The remaining triangles are in few nodes.
     const std::size_t fewest = (mesh.triangles.size() + 7) / 8;
     EXPECT_LE(moving.tree.numNodes(), 4 * fewest);
   }
   EXPECT_EQ(moving.tree.numNodes(), 1u);
 }
 
-// Of what is left scattered, nodes are made that are not nearly empty.
+// Nodes that are made from scattered remains are not nearly empty.
 TEST(FCL_TOPOLOGY_CHANGE, whatIsLeftIsDrawnTogether) {
   ChangingMesh mesh = changing(bentSheet(40));
   MovingTree moving(mesh);
@@ -281,7 +281,7 @@ TEST(FCL_TOPOLOGY_CHANGE, whatIsLeftIsDrawnTogether) {
   EXPECT_LE(3 * moving.tree.numNodes(), mesh.triangles.size());
 }
 
-// A crack, and a part that goes: elsewhere nodes are what they were.
+// A crack, and a part that is lost: all other nodes are unchanged.
 TEST(FCL_TOPOLOGY_CHANGE, whatIsUntouchedStays) {
   constexpr int kSide = 64;
   ChangingMesh mesh = changing(makeSheet(kSide, kSide));
@@ -312,8 +312,8 @@ TEST(FCL_TOPOLOGY_CHANGE, whatIsUntouchedStays) {
   EXPECT_GT(before.size(), 8 * num_changed);
 }
 
-// Parts that topology does not touch go on ageing: a tree that becomes poor is made anew,
-// however often a triangle is torn off in between.
+// Parts whose topology does not change continue to age. A tree that becomes poor is
+// rebuilt, however often a triangle is torn off in between.
 TEST(FCL_TOPOLOGY_CHANGE, whatStaysKeepsItsAge) {
   const FrameSequence balls = makeMixingBalls(30);
   ChangingMesh mesh{balls.triangles, balls.frames[0], {}};
@@ -343,7 +343,7 @@ int depthOf(const MovingKdopTree& tree) {
   return *std::max_element(depth.begin(), depth.end());
 }
 
-// Pieces that come one by one, each farther out than all others, and of any size.
+// Pieces that are added one by one, each farther out than all others, and of any size.
 TEST(FCL_TOPOLOGY_CHANGE, depthStaysBounded) {
   for (const double growth : {1.0, 1.1}) {
     ChangingMesh mesh = changing(bentSheet(2));
@@ -360,7 +360,7 @@ TEST(FCL_TOPOLOGY_CHANGE, depthStaysBounded) {
   }
 }
 
-// Tree and fans of what came bit by bit serve a query about as well as new ones.
+// A tree and fans that grew in small steps serve a query about as well as new ones.
 TEST(FCL_TOPOLOGY_CHANGE, queriesStayCheap) {
   Random random(4);
   ChangingMesh mesh = changing(bentSheet(40));
@@ -488,7 +488,7 @@ TYPED_TEST(TopologyOfModel, answersAreThoseOfANewModel) {
   EXPECT_GT(num_between, 1000u);
 }
 
-// Where no origins are given, numbers say what a triangle was.
+// Without origins, the number of a triangle tells which one it was.
 TYPED_TEST(TopologyOfModel, originsMayBeLeftOut) {
   using S = typename TestFixture::S;
   using Model = typename TestFixture::Model;
@@ -523,7 +523,7 @@ TYPED_TEST(TopologyOfModel, itsOwnArrays) {
   expectIdentical(selfContacts<S>(*model), selfContacts<S>(copy));
 }
 
-// After a change through the base class no tree is there that could follow.
+// After a change through the base class there is no tree that could follow.
 TYPED_TEST(TopologyOfModel, outOfStep) {
   using S = typename TestFixture::S;
   using Model = typename TestFixture::Model;
@@ -603,7 +603,7 @@ TYPED_TEST(TopologyOfModel, withoutMemory) {
   const auto p = pointsAs<S>(after.points), q = pointsAs<S>(t1);
   int num_unchanged = 0, num_refused = 0;
   for (const FclTree tree : {FclTree::kSkip, FclTree::kUpdate}) {
-    // FCL's own tree takes memory more often than can be tried.
+    // FCL's own tree allocates memory more often than the test can try.
     for (int i = 0;; i += tree == FclTree::kSkip ? 1 : 1 + i / 16) {
       const auto model = this->fresh(mesh, t0);
       const auto before = selfContacts<S>(*model);

@@ -27,7 +27,7 @@ namespace {
 template <typename S>
 using Node = detail::DeformableContinuousCollisionTraversalNode<S>;
 
-/// A contact as FCL's type has it.
+/// A contact in FCL's type.
 using Row = std::array<double, 8>;
 
 template <typename S>
@@ -167,7 +167,7 @@ TEST(TraversalNode, AgreesWithThePublicCalls) { expectAgreement<double>(); }
 
 TEST(TraversalNode, AgreesWithThePublicCallsInFloat) { expectAgreement<float>(); }
 
-// Which triangle of a rigid mesh stands for a feature depends on the order of traversal.
+// The order of traversal decides which triangle of a rigid mesh stands for a feature.
 TEST(TraversalNode, AgreesOnRigidMeshes) {
   using Plain = BVHModel<OBBRSS<double>>;
   PosedScene<double> scene{makeModel<Plain>(bentSheet(8, 0.5)),
@@ -187,8 +187,9 @@ TEST(TraversalNode, AgreesOnRigidMeshes) {
   EXPECT_EQ(points(rowsOf(result)), points(rowsOf(expected)));
 }
 
-/// How many nodes of a rigid tree, from node i on, hold triangles and a child of nothing
-/// but triangles that takes the node's place where a traversal reads them.
+/// The number of nodes of a rigid tree, from node i on, with this property: they have
+/// triangles, and a child with triangles only that takes the node's place when a
+/// traversal reads both.
 int countDisplaced(const detail::deformable::RigidTree& tree, int i) {
   detail::deformable::MovingKdopNode node, child;
   tree.open(i, node);
@@ -205,8 +206,8 @@ int countDisplaced(const detail::deformable::RigidTree& tree, int i) {
   return count + is_displaced;
 }
 
-/// Separate triangles with corners on a grid, where many touch, and so uneven that nodes
-/// of FCL's tree hold single triangles beside large subtrees.
+/// Separate triangles with corners on a grid. Many touch, and they are so uneven that
+/// nodes of FCL's tree have both single triangles and large subtrees.
 TestMesh unevenSoup(int count, std::uint64_t seed) {
   TestMesh mesh = makeTriangleSoup(count, 1, 0.5, seed);
   for (Vector3<double>& p : mesh.vertices)
@@ -214,8 +215,8 @@ TestMesh unevenSoup(int count, std::uint64_t seed) {
   return mesh;
 }
 
-// A node that is compared with its children keeps what it holds, whichever nodes are read
-// meanwhile.
+// A node that is compared with its children stays valid, whichever nodes are read in
+// between.
 TEST(TraversalNode, AgreesOnRigidMeshesWithThemselves) {
   using Plain = BVHModel<OBBRSS<double>>;
   using Model = DeformableBVHModel<OBBRSS<double>>;
@@ -315,7 +316,7 @@ TEST(TraversalNode, UnusableInputIsRefused) {
       "model");
 }
 
-// What a refused call leaves is what was there before it.
+// A refused call changes nothing.
 TEST(TraversalNode, StaysReadyWhenRefused) {
   const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
       bentSheet(6), shaken(bentSheet(6), 0.2, 1));
@@ -335,7 +336,7 @@ TEST(TraversalNode, StaysReadyWhenRefused) {
   EXPECT_EQ(other.numContacts(), 0u);
 }
 
-// The result keeps what it held, also when contacts had to be dropped.
+// The result keeps its old contacts, also when new ones had to be dropped.
 TEST(TraversalNode, KeepsWhatTheResultHeld) {
   const auto model = makeModel<DeformableBVHModel<OBBRSS<double>>>(
       bentSheet(6), shaken(bentSheet(6), 0.2, 1));

@@ -35,7 +35,7 @@ FrameSequence reversed(FrameSequence sequence) {
   return sequence;
 }
 
-/// A tree and what it is made for.
+/// A tree and the mesh that it is made for.
 struct MovingTree {
   explicit MovingTree(const FrameSequence& sequence)
       : triangles(assignFeatures(sequence.triangles.data(), sequence.triangles.size(),
@@ -59,7 +59,7 @@ struct MovingTree {
 };
 
 /// Goes through a sequence.
-/// @return how many steps restructured the tree
+/// @return the number of steps that restructured the tree
 int countRestructurings(const FrameSequence& sequence) {
   MovingTree moving(sequence);
   int count = 0;
@@ -87,7 +87,7 @@ void update(const FrameSequence& sequence, std::size_t i, Model& model) {
       BVH_OK);
 }
 
-/// All that a user sees of the contacts, to the bit and in order.
+/// All data of the contacts that a user gets, to the bit and in order.
 void expectSameContacts(const Model& x, const Model& y) {
   expectIdentical(selfContacts<double>(x), selfContacts<double>(y));
 }
@@ -105,7 +105,7 @@ TEST(FCL_TREE_RESTRUCTURING, onlyWhereBoxesGrow) {
   EXPECT_EQ(countRestructurings(makeCrumplingSheet(61)), 0);
 }
 
-// A whole turn about three axes, far away and back, and to another size.
+// A whole turn about three axes, a motion far away and back, and a change of size.
 TEST(FCL_TREE_RESTRUCTURING, notByRigidMotionOrSize) {
   const FramePairMesh cloth = makeSmoothCloth(5000);
   for (const TestMesh& mesh :
@@ -144,8 +144,8 @@ TEST(FCL_TREE_RESTRUCTURING, structureAndBoxes) {
   }
 }
 
-// Everything may have moved anywhere; a scene that was scattered without end is not
-// restructured without end.
+// Everything may move to any place. A scene that was scattered completely is not
+// restructured again and again.
 TEST(FCL_TREE_RESTRUCTURING, randomJumps) {
   constexpr std::uint64_t kSeed = 70;
   Random random(kSeed);
@@ -188,7 +188,7 @@ TEST(FCL_TREE_RESTRUCTURING, boxesWithoutBounds) {
   }
 }
 
-// A calm cloth beside balls that mix: its part of the tree stays.
+// A calm cloth next to balls that mix: its part of the tree stays.
 TEST(FCL_TREE_RESTRUCTURING, onlyTheAgedPart) {
   const FrameSequence balls = makeMixingBalls(12), cloth = makeWavingCloth(12);
   FrameSequence both = balls;
@@ -249,9 +249,9 @@ TEST(FCL_TREE_RESTRUCTURING, componentsStayApart) {
   EXPECT_GE(count, 1);
 }
 
-// Sheets that are too small for trees of their own when the mesh is built, and lie in
-// each other's nodes, come apart in the tree once they slide apart in space: what is made
-// anew are the children of a node, of which there are fewer than sheets.
+// Sheets that are too small for trees of their own when the mesh is built, and that are
+// in each other's nodes, separate in the tree when they slide apart in space. The
+// children of a node are rebuilt, and they are fewer than the sheets.
 TEST(FCL_TREE_RESTRUCTURING, componentsComeApart) {
   constexpr std::size_t kSheets = 6;
   const TestMesh sheet = makeSheet(5, 4);
@@ -281,7 +281,8 @@ TEST(FCL_TREE_RESTRUCTURING, componentsComeApart) {
   EXPECT_EQ(countChanges(moving.tree), kSheets - 1);
 }
 
-// Balls that mix keep their shape: what is split anew are their patches.
+// Balls that mix keep their shape: their patches, the lowest nodes, are split anew as a
+// whole.
 TEST(FCL_TREE_RESTRUCTURING, lowestNodesStay) {
   const FrameSequence sequence = makeMixingBalls(16);
   MovingTree moving(sequence);
@@ -298,8 +299,8 @@ TEST(FCL_TREE_RESTRUCTURING, lowestNodesStay) {
   EXPECT_GE(count, 1);
 }
 
-// What is made anew in every other step lets nothing else look new: balls mix meanwhile,
-// little by little.
+// The rebuilding of some parts in every other step does not make other parts look new: at
+// the same time balls mix, little by little.
 TEST(FCL_TREE_RESTRUCTURING, whatStaysKeepsItsAge) {
   constexpr std::uint64_t kSeed = 72;
   constexpr std::size_t kPerFrame = 8;
@@ -311,7 +312,7 @@ TEST(FCL_TREE_RESTRUCTURING, whatStaysKeepsItsAge) {
   for (const Triangle& t : soup.triangles)
     step.triangles.emplace_back(t[0] + num_ball_vertices, t[1] + num_ball_vertices,
                                 t[2] + num_ball_vertices);
-  /// Where the triangles beside the balls jump to, far from each other.
+  /// The places to which the other triangles jump, far from each other.
   const auto scattered = [&] {
     Points points = soup.vertices;
     for (std::size_t i = 0; i < points.size(); i += 3) {
@@ -362,7 +363,7 @@ TEST(FCL_TREE_RESTRUCTURING, contactsStayTheSame) {
       ASSERT_EQ(kept.updateSubModel(sequence.frames[i + 1]), BVH_OK);
       ASSERT_EQ(kept.endUpdateModel(), BVH_OK);
     }
-    // Wherever the tree has changed, and now and then where it has not.
+    // After each change of the tree, and sometimes without one.
     if (kept.numRestructurings() == before && i % 4 != 0) continue;
     Model fresh;
     build(sequence, i, fresh);
@@ -402,7 +403,7 @@ TEST(FCL_TREE_RESTRUCTURING, copiesAreIndependent) {
   expectSameContacts(copy, model);
 }
 
-// Wherever memory ends, the tree is what it was.
+// Wherever memory runs out, the tree is unchanged.
 TEST(FCL_TREE_RESTRUCTURING, withoutMemory) {
   const FrameSequence sequence = reversed(makeCrumplingSheet(3));
   MovingTree moving(sequence);

@@ -65,7 +65,7 @@ std::vector<Face> wheel(std::uint32_t count, bool closed) {
   return faces;
 }
 
-/// Turns corners and order about, which changes nothing of a mesh.
+/// Changes the order of corners and of triangles, which does not change a mesh.
 void mix(std::vector<Face>& faces, Random& random) {
   for (std::size_t i = faces.size(); i > 1; --i)
     std::swap(faces[i - 1], faces[random.index(i)]);
@@ -73,7 +73,7 @@ void mix(std::vector<Face>& faces, Random& random) {
     std::rotate(f.begin(), f.begin() + static_cast<int>(random.index(3)), f.end());
 }
 
-// Short and long ones.
+// Short and long fans.
 TEST(FCL_VERTEX_FANS, openAndClosed) {
   Random random(91);
   std::vector<std::uint32_t> counts;
@@ -90,7 +90,7 @@ TEST(FCL_VERTEX_FANS, openAndClosed) {
         Fan fan = fanOf(faces, 0, count + 1);
         EXPECT_EQ(fan.is_closed, closed);
         ASSERT_EQ(fan.spokes.size(), count);
-        // A closed one may begin anywhere.
+        // A closed fan may begin at any spoke.
         if (closed)
           std::rotate(fan.spokes.begin(),
                       std::find(fan.spokes.begin(), fan.spokes.end(), 1U),
@@ -120,7 +120,7 @@ TEST(FCL_VERTEX_FANS, oneTriangle) {
   EXPECT_EQ(fan.spokes, (std::vector<std::uint32_t>{1, 2}));
 }
 
-// What is no fan, in every order.
+// Triangles that are not a fan, in every order.
 TEST(FCL_VERTEX_FANS, noFan) {
   struct Case {
     const char* name;
@@ -146,7 +146,7 @@ TEST(FCL_VERTEX_FANS, noFan) {
       {"a face and its back", {{0, 1, 2}, {0, 2, 1}}},
       {"a repeated vertex", {{0, 0, 1}, {0, 1, 2}}},
   };
-  // Each alone, and with a wheel that makes it long.
+  // Each alone, and with a wheel that makes the fan long.
   Random random(92);
   for (const Case& c : kCases) {
     SCOPED_TRACE(c.name);
@@ -163,7 +163,7 @@ TEST(FCL_VERTEX_FANS, noFan) {
       EXPECT_TRUE(fanOf(faces, 0, 30).spokes.empty());
     }
   }
-  // Long ones that only one triangle spoils.
+  // Long fans that are spoiled by only one triangle.
   for (const Face& last : {Face{0, 1, 20}, Face{0, 5, 6}, Face{0, 6, 5}, Face{0, 5, 7},
                            Face{0, 7, 5}, Face{0, 0, 21}, Face{0, 21, 22}})
     for (const bool closed : {false, true}) {
@@ -174,8 +174,8 @@ TEST(FCL_VERTEX_FANS, noFan) {
     }
 }
 
-// The other vertices of a wheel have fans of their own; one without does not disturb its
-// neighbours.
+// The other vertices of a wheel have fans of their own. A vertex without a fan does not
+// disturb its neighbours.
 TEST(FCL_VERTEX_FANS, neighbours) {
   std::vector<Face> faces = wheel(6, true);
   faces.push_back({0, 7, 8});
@@ -254,7 +254,7 @@ Name nameOf(const FeatureContact& c) {
   return {c.kind, x, y};
 }
 
-/// How a mesh moves.
+/// The motions of a mesh.
 enum class Motion { kNone, kSmall, kLarge, kFold, kFlatten, kToGrid };
 constexpr std::size_t kMotions = 6;
 
@@ -289,7 +289,7 @@ void move(MovingMesh& mesh, Motion motion, Random& random) {
   }
 }
 
-/// A cone of `count` triangles that goes round its axis `turns` times.
+/// A cone of `count` triangles that goes `turns` times around its axis.
 MovingMesh cone(Random& random, std::size_t count, double turns, bool closed,
                 double height, double noise) {
   MovingMesh mesh;
@@ -307,7 +307,7 @@ MovingMesh cone(Random& random, std::size_t count, double turns, bool closed,
   return mesh;
 }
 
-/// Adds where a mesh begins.
+/// Adds the first frame of a mesh.
 void append(MovingMesh& mesh, const MovingMesh& other, const Vector3<double>& at) {
   const std::size_t first = mesh.t0.size();
   for (const auto& p : other.t0) mesh.t0.push_back(p + at);
@@ -339,7 +339,7 @@ MovingMesh randomMesh(Random& random) {
     default:
       break;
   }
-  // Steep cones, flat ones, and such that go round less or more than once.
+  // Steep cones, flat ones, and cones that go around less or more than once.
   const double kTurns[] = {1, 1, 1, 2, 0.3, 0.9, 1.1, 1.5};
   const double turns = kTurns[random.index(8)];
   const bool closed = turns == 1 || turns == 2;
@@ -349,7 +349,7 @@ MovingMesh randomMesh(Random& random) {
               kNoise[random.index(4)]);
 }
 
-/// The contacts of a mesh with itself are those of all pairs of features.
+/// Expects that the contacts of a mesh with itself are those of all pairs of features.
 struct CullingCheck {
   std::uint64_t culled{0}, contacts{0};
   int crossing{0}, culled_by[kMotions] = {};
@@ -372,7 +372,7 @@ struct CullingCheck {
 };
 
 // Closed and open meshes that move a little or a lot, fold, become flat and cross, and
-// the same back in time.
+// the same in reversed time.
 TEST(FCL_VERTEX_FANS, cullingChangesNoAnswer) {
   constexpr std::uint64_t kSeed = 93;
   Random random(kSeed);
@@ -394,7 +394,8 @@ TEST(FCL_VERTEX_FANS, cullingChangesNoAnswer) {
   for (const int n : all.culled_by) EXPECT_GT(n, 5);
 }
 
-/// How many nodes lie in a fan, each of which has that vertex in all of its triangles.
+/// The number of nodes that lie in a fan. All triangles of such a node have the fan's
+/// vertex.
 std::size_t countNodesInFans(const MovingKdopTree& tree,
                              const std::vector<std::uint8_t>& embedded) {
   const std::vector<std::uint32_t> centers = findNodesInFans(tree, embedded);
@@ -426,7 +427,7 @@ std::size_t countNodesInFans(const MovingKdopTree& tree,
   return count;
 }
 
-// Fans that fill whole nodes, which are left out as such.
+// Fans that fill whole nodes, which are left out as a whole.
 TEST(FCL_VERTEX_FANS, longFansChangeNoAnswer) {
   constexpr std::uint64_t kSeed = 96;
   Random random(kSeed);
@@ -439,7 +440,7 @@ TEST(FCL_VERTEX_FANS, longFansChangeNoAnswer) {
     MovingMesh mesh =
         cone(random, 64 + random.index(16), closed ? 1 : 0.9, closed, 0.3, 0);
     const std::size_t first = mesh.t0.size();
-    // Two, of which one goes through the other.
+    // Two fans, of which one goes through the other.
     const bool are_two = i % 3 == 0;
     if (are_two) append(mesh, cone(random, 64, 1, true, 0.3, 0), random.point(0.3));
     move(mesh, i % 2 || are_two ? Motion::kNone : motion, random);
@@ -455,7 +456,8 @@ TEST(FCL_VERTEX_FANS, longFansChangeNoAnswer) {
   EXPECT_GT(all.contacts, 200U);
 }
 
-// A pole of a thousand triangles: each two of them overlap, and hardly any are met.
+// A pole of a thousand triangles. The boxes of all of them overlap, but hardly any pair
+// is met.
 TEST(FCL_VERTEX_FANS, polesAreNotMetTwoByTwo) {
   MovingMesh mesh = solid(test::makeUvSphere(1000, 4, 1));
   mesh.t1 = mesh.t0;
@@ -470,7 +472,7 @@ TEST(FCL_VERTEX_FANS, polesAreNotMetTwoByTwo) {
   EXPECT_LT(answer.counts.fan_culled, 100000U);
 }
 
-/// Whether the fan of a vertex is embedded, asked for alone.
+/// Whether the fan of a vertex is embedded, tested alone.
 bool isEmbedded(const MovingKdopTree& tree, std::size_t vertex) {
   const VertexFan fan = tree.fans()[vertex];
   if (fan.count == 0) return false;
@@ -482,7 +484,8 @@ bool isEmbedded(const MovingKdopTree& tree, std::size_t vertex) {
   return kernels().areFansEmbedded(tree.vertices().data(), eight) & 1U;
 }
 
-// Fans of all kinds, eight together in blocks of vertices, are as each alone.
+// Fans of all kinds, tested eight at a time in blocks of vertices, have the same answers
+// as each alone.
 TEST(FCL_VERTEX_FANS, fansTogetherAreAsAlone) {
   constexpr std::uint64_t kSeed = 95;
   Random random(kSeed);
@@ -490,10 +493,10 @@ TEST(FCL_VERTEX_FANS, fansTogetherAreAsAlone) {
   std::size_t embedded = 0, folded = 0;
   for (int i = 0; i < 12; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
-    // With holes: fans of all lengths. More vertices than a block has.
+    // A mesh with holes has fans of all lengths. It has more vertices than a block.
     const int n = i % 2 ? 80 : 3;
     MovingMesh mesh = test::crumpledSheet(random, n, 0.5 / n);
-    // And long ones, of which some follow each other that are alike.
+    // And long fans, of which some with the same form follow each other.
     for (int k = 0; k < 30; ++k) {
       const std::size_t first = mesh.t0.size();
       append(mesh,
@@ -524,8 +527,8 @@ TEST(FCL_VERTEX_FANS, fansTogetherAreAsAlone) {
   EXPECT_GT(folded, 1000U);
 }
 
-// What the traversal leaves out is exactly the pairs that share a vertex whose fan is
-// embedded, whatever is said to be.
+// The traversal leaves out exactly the pairs that share a vertex whose fan is marked as
+// embedded, whichever are marked.
 TEST(FCL_VERTEX_FANS, traversalLeavesOutFansOnly) {
   constexpr std::uint64_t kSeed = 94;
   Random random(kSeed);
