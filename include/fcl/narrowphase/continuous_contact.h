@@ -48,10 +48,11 @@ struct ContinuousContact {
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
   /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
-  /// 0] if the features touch at t = 0. With ContinuousQuery::kFirst and kAny it is no
-  /// wider than an eighth of toc_hi either: toc_lo is 0 only for features that touch at t
-  /// = 0 (or before 2^-1074, the first double above 0). With kAll that holds for the
-  /// time_of_contact of the result; the brackets in the list may begin before it.
+  /// 0] if the features touch at t = 0. On straight paths, with ContinuousQuery::kFirst
+  /// and kAny, it is no wider than an eighth of toc_hi either: toc_lo is 0 only for
+  /// features that touch at t = 0 (or before 2^-1074, the first double above 0). With kAll
+  /// that holds for the time_of_contact of the result; the brackets in the list may begin
+  /// before it.
   ///
   /// If a mesh turns: the features do not touch before toc_lo, and are within the query's
   /// tolerance of each other then (continuous_collision.h). At toc_hi the two triangles
@@ -71,7 +72,8 @@ struct ContinuousContact {
   ///   edge a (EE).
   /// - If the relative velocity along the normal is zero: to the side of o2's feature at
   ///   t = 0.
-  /// - If that is zero too: along the winding of the face (VF), or edge a x edge b (EE).
+  /// - If that is zero too: along the winding of the face (VF with the vertex on o1),
+  ///   against it (VF with the vertex on o2), or edge a x edge b (EE).
   /// - Crossing: along the winding of the face.
   /// It is the zero vector if the face has no area or the edges are parallel at toc_lo.
   Vector3<S> normal{Vector3<S>::Zero()};
@@ -141,7 +143,7 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
   /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
-  /// a mesh turns, the query uses one thread. The answer does not depend on this number.
+  /// a mesh turns, only the trees that the query makes use threads. The answer does not depend on this number.
   /// The StageCounts of a first-contact query may depend on it.
   int num_threads{1};
 };
@@ -152,7 +154,7 @@ using ContinuousContactRequestd = ContinuousContactRequest<double>;
 /// @brief The fields that a query for contacts adds to FCL's result.
 template <typename S>
 struct ContinuousContacts {
-  /// @brief The VF and EE contacts, sorted by (toc_lo, kind, vertex ids). With
+  /// @brief The VF and EE contacts, sorted by (toc_lo, kind, side, vertex ids). With
   /// ContinuousQuery::kFirst: the contacts that may be the first, whose bracket begins no
   /// later than the earliest bracket ends. (A contact of a rigid mesh may be found
   /// several times with different brackets; the shortest one decides.) With kAny: at most
@@ -174,7 +176,8 @@ struct ContinuousContacts {
   /// side and ascending vertex ids. Only with enable_crossings.
   std::vector<ContinuousContact<S>> crossings;
 
-  /// @brief What each stage of the query saw and removed.
+  /// @brief What each stage of the query saw and removed. If a mesh turns: only
+  /// node_pairs, triangle_pairs and contacts.
   StageCounts counts;
 
   /// @brief The wall time of the parts of the query, in seconds.
@@ -183,9 +186,9 @@ struct ContinuousContacts {
 
 /// @brief FCL's continuous result (is_collide, time_of_contact, contact_tf1, contact_tf2)
 /// together with the contacts. time_of_contact is never later than the true first time:
-/// it is the beginning of the first contact's bracket, made no wider than an eighth of
-/// its end (rounded down if S is float), 0 if the surfaces cross at t = 0, 1 without
-/// collision. contact_tf1 and contact_tf2 are the poses at its end; see @ref
+/// it is the beginning of the first contact's bracket, on straight paths made no wider
+/// than an eighth of its end (rounded down if S is float), 0 if the surfaces cross at t =
+/// 0, 1 without collision. contact_tf1 and contact_tf2 are the poses at its end; see @ref
 /// continuous_queries.
 template <typename S>
 struct ContinuousContactResult : ContinuousCollisionResult<S>, ContinuousContacts<S> {};

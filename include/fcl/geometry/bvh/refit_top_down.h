@@ -23,8 +23,8 @@ namespace fcl {
 /// The vertices, the triangles and the shape of the tree stay. The cost is that of FCL's
 /// refit from the top down, O(n log n) for n triangles: about 1.5 times that of its refit
 /// from the bottom up for 100,000 triangles. Nothing is needed for AABBs and KDOPs, whose
-/// sums are sound. The volumes are as old as the vertices: a later change of these by
-/// FCL's calls makes new volumes.
+/// sums are sound. If FCL's calls change the vertices later, they also replace these
+/// volumes: call this function again.
 ///
 /// Not at the same time as another call with the model.
 ///
