@@ -75,9 +75,9 @@ using ContinuousCandidateSink =
 /// @return true when all candidates were handed out, false when the sink ended the query
 /// @throws fcl::Exception when an argument or the sink is null, a geometry is not a
 /// triangle mesh, a motion is not one of FCL's classes, a mesh is not built or is in the
-/// middle of an update, a coordinate or a transform is not finite, or a triangle index is out of range.
-/// The exception
-/// of a vertex that is not finite may come after candidates were handed out.
+/// middle of an update, a coordinate or a transform is not finite, or a triangle index is
+/// out of range. The exception of a vertex that is not finite may come after candidates
+/// were handed out.
 /// @{
 
 /// @brief The candidates of a mesh with itself.

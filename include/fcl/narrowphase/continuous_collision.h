@@ -61,9 +61,10 @@ namespace fcl {
 /// the step. 0: as narrow as doubles allow.
 ///
 /// Result: time_of_contact is the lower end of the first contact's bracket. contact_tf1
-/// and contact_tf2 are the poses at its upper end; without collision, at t = 1. As a rule the objects overlap there,
-/// so that collide() finds contacts. They may only touch if the bracket is as narrow as
-/// rounding, or if the objects touch without passing into each other.
+/// and contact_tf2 are the poses at its upper end; without collision, at t = 1. As a rule
+/// the objects overlap there, so that collide() finds contacts. They may only touch if
+/// the bracket is as narrow as rounding, or if the objects touch without passing into
+/// each other.
 ///
 /// Models are not changed. The same call gives the same answer.
 ///

@@ -50,9 +50,9 @@ struct ContinuousContact {
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
   /// 0] if the features touch at t = 0. On straight paths, with ContinuousQuery::kFirst
   /// and kAny, it is no wider than an eighth of toc_hi either: toc_lo is 0 only for
-  /// features that touch at t = 0 (or before 2^-1074, the first double above 0). With kAll
-  /// that holds for the time_of_contact of the result; the brackets in the list may begin
-  /// before it.
+  /// features that touch at t = 0 (or before 2^-1074, the first double above 0). With
+  /// kAll that holds for the time_of_contact of the result; the brackets in the list may
+  /// begin before it.
   ///
   /// If a mesh turns: the features do not touch before toc_lo, and are within the query's
   /// tolerance of each other then (continuous_collision.h). At toc_hi the two triangles
@@ -143,8 +143,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
   /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
-  /// a mesh turns, only the trees that the query makes use threads. The answer does not depend on this number.
-  /// The StageCounts of a first-contact query may depend on it.
+  /// a mesh turns, only the trees that the query makes use threads. The answer does not
+  /// depend on this number. The StageCounts of a first-contact query may depend on it.
   int num_threads{1};
 };
 
