@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "api/contact_conversion.h"
+#include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
 
 #include <algorithm>
@@ -34,15 +35,14 @@ ContinuousContact<S> toNumbers(const FeatureContact& contact) {
 /// @param t  the time of contact on these paths
 template <typename S, typename PathOf>
 void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,
-                 ContinuousContact<S>& out) {
-  const std::size_t num_first =
-      contact.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
-  VertexPath x[4];
-  for (std::size_t i = 0; i < 4; ++i)
+                 bool at_distance, ContinuousContact<S>& out) {
+  const std::size_t num_first = contact.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+  VertexPath x[4]{};
+  for (std::size_t i = 0; i < static_cast<std::size_t>(out.numVertices()); ++i)
     x[i] = path_of((i < num_first) == contact.first_on_a, contact.vertices[i]);
   double position[3], normal[3];
-  contactGeometry(contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, t, position,
-                  normal);
+  (at_distance ? distanceGeometry : contactGeometry)(
+      contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, t, position, normal);
   out.pos = toVector<S>(position);
   out.normal = toVector<S>(normal);
   if (!contact.first_on_a) out.normal = -out.normal;
@@ -53,12 +53,14 @@ void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const MeshInstance& a, const MeshInstance& b,
-                                         bool with_geometry) {
+                                         bool with_geometry, bool at_distance) {
   ContinuousContact<S> out = toNumbers<S>(contact);
   const auto path_of = [&](bool on_a, std::uint32_t id) {
     return (on_a ? a : b).frames[id];
   };
-  if (with_geometry) addGeometry(contact, path_of, contact.toc_lo, out);
+  out.within_tolerance =
+      at_distance && contact.toc_lo > 0 && contact.toc_hi == contact.toc_lo;
+  if (with_geometry) addGeometry(contact, path_of, contact.toc_lo, at_distance, out);
   return out;
 }
 
@@ -71,7 +73,7 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
     return (on_a ? a : b).tangentAt(id, contact.toc_lo);
   };
   out.within_tolerance = contact.toc_hi == contact.toc_lo;
-  if (with_geometry) addGeometry(contact, path_of, 0, out);
+  if (with_geometry) addGeometry(contact, path_of, 0, false, out);
   return out;
 }
 
@@ -138,15 +140,15 @@ S roundTimeUp(double t) {
   return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                    \
-  template ContinuousContact<S> toContinuousContact(                              \
-      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool);     \
-  template ContinuousContact<S> toContinuousContact(                              \
-      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool); \
-  template ContinuousContact<S> toContinuousContact(                              \
-      const Crossing&, const MeshInstance&, const MeshInstance&, bool);           \
-  template Contact<S> toContact(const ContinuousContact<S>&);                     \
-  template S roundTimeDown<S>(double);                                            \
+#define FCL_CCD_INSTANTIATE(S)                                                      \
+  template ContinuousContact<S> toContinuousContact(                                \
+      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool, bool); \
+  template ContinuousContact<S> toContinuousContact(                                \
+      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool);   \
+  template ContinuousContact<S> toContinuousContact(                                \
+      const Crossing&, const MeshInstance&, const MeshInstance&, bool);             \
+  template Contact<S> toContact(const ContinuousContact<S>&);                       \
+  template S roundTimeDown<S>(double);                                              \
   template S roundTimeUp<S>(double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

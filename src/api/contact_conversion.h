@@ -15,10 +15,11 @@ namespace deformable {
 
 /// @brief A contact between meshes a and b (the same object twice for a self-collision)
 /// as the public type, without o1 and o2.
+/// @param at_distance  whether features that only come near are in contact
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const MeshInstance& a, const MeshInstance& b,
-                                         bool with_geometry);
+                                         bool with_geometry, bool at_distance = false);
 
 /// @overload
 /// Position and normal are computed from positions and velocities of the vertices at

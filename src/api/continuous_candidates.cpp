@@ -87,9 +87,11 @@ bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
 }  // namespace
 
 template <typename S>
-bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& sink) {
+bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& sink,
+                          double min_distance) {
   require(o, "o");
   require(sink);
+  requireDistance(min_distance, "min_distance");
   requireMesh(*o, "continuousSelfCandidates");
   const MovingGeometry<S> still{o,
                                 {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
@@ -100,16 +102,17 @@ bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& si
                                 nullptr};
   const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
   return handOut(sink, [&](const auto& inner) {
-    return deformable::candidatesSelf(mesh.instance(), inner);
+    return deformable::candidatesSelf(mesh.instance(), inner, min_distance);
   });
 }
 
 template <typename S>
 bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
-                      const CandidateSink& sink) {
+                      const CandidateSink& sink, double min_distance) {
   require(o1.geometry, "o1");
   require(o2.geometry, "o2");
   require(sink);
+  requireDistance(min_distance, "min_distance");
   const auto placed = [](const MovingGeometry<S>& o) {
     const deformable::DefaultFloatingPoint mode;
     return PlacedGeometry<S>(o);
@@ -125,17 +128,22 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                         : " is not a triangle mesh, and candidates need two triangle "
                           "meshes. Give a mesh of its surface"));
   }
-  if (answerer == Answerer::kCurvedPaths) return motionCandidates(placed1, placed2, sink);
+  if (answerer == Answerer::kCurvedPaths) {
+    requireNoDistance(min_distance, "min_distance", placed1, placed2);
+    return motionCandidates(placed1, placed2, sink);
+  }
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
-    return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner);
+    return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner,
+                                      min_distance);
   });
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                           \
-  template bool answerSelfCandidates(const CollisionGeometry<S>*, const CandidateSink&); \
-  template bool answerCandidates(const MovingGeometry<S>&, const MovingGeometry<S>&,     \
-                                 const CandidateSink&);
+#define FCL_CCD_INSTANTIATE(S)                                                          \
+  template bool answerSelfCandidates(const CollisionGeometry<S>*, const CandidateSink&, \
+                                     double);                                           \
+  template bool answerCandidates(const MovingGeometry<S>&, const MovingGeometry<S>&,    \
+                                 const CandidateSink&, double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

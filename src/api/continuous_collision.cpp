@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "api/contact_conversion.h"
 #include "api/prepared_mesh.h"
@@ -56,6 +57,13 @@ QueryOptions makeOptions(const QuerySettings& settings) {
         "request.enable_crossings lists all crossings, which ContinuousQuery::kAny does "
         "not look for: use kFirst or kAll");
   options.all_crossings = settings.enable_crossings;
+  requireDistance(settings.min_distance, "request.min_distance");
+  options.min_distance = settings.min_distance;
+  if (settings.ignore_initially_closer && !(settings.min_distance > 0))
+    throw Exception(
+        "request.ignore_initially_closer is about pairs that are nearer than "
+        "request.min_distance, which is 0. Give a distance");
+  options.ignores_initially_closer = settings.ignore_initially_closer;
   return options;
 }
 
@@ -138,9 +146,13 @@ template <typename S>
 void fillContacts(const QueryAnswer& answer, const QueriedMeshes<S>& meshes,
                   const QuerySettings& settings, ContinuousContacts<S>& result) {
   const auto convert = [&](const auto& contact) {
-    auto out = deformable::toContinuousContact<S>(contact, meshes.mesh1.instance(),
-                                                  meshes.mesh2.instance(),
-                                                  settings.enable_contact);
+    const auto &a = meshes.mesh1.instance(), &b = meshes.mesh2.instance();
+    ContinuousContact<S> out;
+    if constexpr (std::is_same_v<decltype(contact), const deformable::Crossing&>)
+      out = deformable::toContinuousContact<S>(contact, a, b, settings.enable_contact);
+    else
+      out = deformable::toContinuousContact<S>(contact, a, b, settings.enable_contact,
+                                               settings.min_distance > 0);
     out.o1 = &meshes.o1;
     out.o2 = &meshes.o2;
     return out;
@@ -183,6 +195,7 @@ template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                    QueryOptions options, const QuerySettings& settings,
                    QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+  requireNoDistance(options.min_distance, "request.min_distance", o1, o2);
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);

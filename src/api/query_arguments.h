@@ -38,6 +38,13 @@ inline double requireTocErr(double toc_err, const char* name) {
   return std::max(toc_err, std::numeric_limits<double>::min());
 }
 
+inline void requireDistance(double distance, const char* name) {
+  if (!(distance >= 0) || !std::isfinite(distance))
+    throw Exception(std::string(name) +
+                    " is negative or not finite. Give 0 or more, in the unit of the "
+                    "coordinates");
+}
+
 template <typename S>
 deformable::Pose toPose(const PoseNumbers<S>& numbers) {
   deformable::Pose pose;
@@ -112,6 +119,17 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
   }
   return o1.isKnown() && o2.isKnown() ? Answerer::kCurvedPaths : Answerer::kFcl;
+}
+
+/// A distance is only for straight paths.
+template <typename S>
+void requireNoDistance(double distance, const char* name, const PlacedGeometry<S>& o1,
+                       const PlacedGeometry<S>&) {
+  if (!(distance > 0)) return;
+  throw Exception(std::string(name) + " needs straight paths, and " +
+                  (o1.goesStraight() ? "o2" : "o1") +
+                  " turns. Give parts of its path one after the other, as the two frames "
+                  "of a DeformableBVHModel");
 }
 
 /// Runs a query. A vertex that is not finite becomes FCL's exception.

@@ -253,9 +253,9 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
     unsigned left = b.triangles;
-    // Without a shift it is one tree, and each pair is compared once. With a shift the
-    // two may be one node of a tree in two poses, and all pairs are compared.
-    if (!kShifted && &a == &b) left &= ~((2U << lane) - 1);
+    // If a tree is compared with itself, each pair is compared once. Otherwise the two
+    // may be one node of a tree in two poses, and all pairs are compared.
+    if ((!kShifted || leaves.is_self) && &a == &b) left &= ~((2U << lane) - 1);
     if (left == 0) continue;
     if constexpr (kShifted) {
       float moved[2][16];

@@ -23,12 +23,22 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {
-    targetName(),           &fitPoints,          &fitNodeOf,
-    &overlapChildrenOf,     &overlapTrianglesOf, &listFeatures,
-    &cullFeaturesOf,        &cullCrossings,      &areApart,
-    &mayCrossOfEight,       &areFansEmbedded,    &facedDirections,
-    &coplanarityOfFeatures, &solveEight,         &divideEight};
+extern const Kernels kKernels = {targetName(),
+                                 &fitPoints,
+                                 &fitNodeOf,
+                                 &overlapChildrenOf,
+                                 &overlapTrianglesOf,
+                                 &listFeatures,
+                                 &cullFeaturesOf,
+                                 &cullCrossings,
+                                 &areApart,
+                                 &mayCrossOfEight,
+                                 &areFansEmbedded,
+                                 &facedDirections,
+                                 &coplanarityOfFeatures,
+                                 &mayComeWithinOfFeatures,
+                                 &solveEight,
+                                 &divideEight};
 
 const Kernels* table() { return &kKernels; }
 

@@ -11,6 +11,7 @@
 #endif
 
 #include "elementary/pair_table.h"
+#include "kernels/eight_features.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
@@ -28,62 +29,6 @@ struct Segments {
   Vectors l, h;
   Doubles norm;
 };
-
-/// Eight pairs of features, given by codes (featureCode()).
-class EightFeatures {
- public:
-  HWY_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
-    for (std::size_t lane = 0; lane < kEight; ++lane) {
-      vertices_[lane] = pairs[codes[lane] / 16].x;
-      corners_[lane] = kFeaturePoints[codes[lane] % 16];
-    }
-  }
-  HWY_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {
-    return *vertices_[lane][corners_[lane][i]];
-  }
-
- private:
-  /// For each pair, the six vertices of both triangles, and the indices of the four
-  /// points among them.
-  const TreeVertex* const* vertices_[kEight];
-  const unsigned char* corners_[kEight];
-};
-
-/// The points of eight pairs at t = 0 and at t = 1.
-struct Points {
-  Vectors t0[4], t1[4];
-
-  HWY_INLINE explicit Points(const EightPairs& pairs)
-      : Points([&pairs](std::size_t i, std::size_t lane)
-                   HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; }) {}
-
-  HWY_INLINE explicit Points(const EightFeatures& features)
-      : Points([&features](std::size_t i, std::size_t lane)
-                   HWY_ATTR -> const TreeVertex& { return features.point(i, lane); }) {}
-
- private:
-  /// @param vertex  vertex(i, lane) is point i of the pair in a lane
-  template <typename Vertex>
-  HWY_INLINE explicit Points(const Vertex& vertex) {
-    for (std::size_t i = 0; i < 4; ++i) {
-      const TreeVertex* x[kEight];
-      for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);
-      // The columns are loaded into their final place. With loadPaths() tests take 2%
-      // longer.
-      loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t0; }, t0[i].x,
-                  t0[i].y, t0[i].z);
-      loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, t1[i].x,
-                  t1[i].y, t1[i].z);
-    }
-  }
-};
-
-/// As Difference::at() in elementary.cpp. There is no special case for 0 and 1. So if a
-/// number is not finite in one frame, the result is not finite at any time.
-HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
-  const Doubles s = broadcast<kEight>(1.) - t;
-  return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
-}
 
 /// Eight differences of points over the whole step, and their norms.
 struct Differences {

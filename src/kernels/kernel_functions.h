@@ -41,6 +41,9 @@ unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   float (&gaps)[8]);
 unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
+unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
+                                 const std::uint32_t* codes, const TimeWindow* windows,
+                                 std::size_t count, double latest, double distance);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);

@@ -64,7 +64,7 @@ struct OverlapRequest {
 };
 
 /// @brief Two nodes whose triangles are compared. If both are the same node and there is
-/// no shift, each pair of different triangles is compared once.
+/// no shift, or is_self, each pair of different triangles is compared once.
 struct LeafPairing {
   const MovingKdopNode& a;
   const MovingKdopNode& b;
@@ -76,6 +76,8 @@ struct LeafPairing {
   /// same embedded fan are left out. Null: no fan is known to be embedded.
   const std::uint8_t* embedded;
   OverlapRequest request;
+  /// Whether the nodes are of one tree in one pose, to which a shift adds a distance.
+  bool is_self{false};
 };
 
 /// @brief Pairs of children of two nodes, and the times from which on they overlap.
@@ -268,6 +270,15 @@ struct Kernels {
   EightCoplanarities (*coplanarity)(ContinuousContactKind kind, const TrianglePair* pairs,
                                     const std::uint32_t* codes, const TimeWindow* windows,
                                     std::size_t count, double latest);
+
+  /// Finds which of up to eight pairs of features that cullFeatures() kept may come
+  /// within a distance in [windowLo(), min(windowHi(), latest)], a bit each. All others
+  /// stay further apart than advanceToDistance() calls a contact: a direction that proves
+  /// it at both ends of the window proves it in between.
+  /// @param count  1 to 8
+  unsigned (*mayComeWithin)(ContinuousContactKind kind, const TrianglePair* pairs,
+                            const std::uint32_t* codes, const TimeWindow* windows,
+                            std::size_t count, double latest, double distance);
 
   /// Solves the plain cases of solveCoplanarity(): a pair whose volume has one sign or
   /// changes it once, clearly inside or outside. Proved lanes have the properties (1) and

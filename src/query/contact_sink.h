@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <deque>
 #include <iterator>
-#include <map>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -28,6 +28,13 @@ struct FeatureContact : FeatureIds {
 /// @brief The order of contacts: by toc_lo, then by kind, side and vertex ids. No two
 /// contacts of a query are equal in it.
 bool isEarlier(const FeatureContact& x, const FeatureContact& y);
+
+/// @brief Whether the features are the nearest parts of those that were tested, with a
+/// distance: then others may have the same part.
+inline bool isPart(ContinuousContactKind kind) {
+  return kind == ContinuousContactKind::kVertexEdge ||
+         kind == ContinuousContactKind::kVertexVertex;
+}
 
 /// @brief Keeps the earliest contacts, up to a capacity.
 class ContactSink {
@@ -57,6 +64,10 @@ class ContactSink {
   /// it, and it has dropped others before.
   double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
 
+  /// @brief Whether a contact of the pair, or of parts of it, could be kept; it cannot if
+  /// more than enough at t = 0 come before it.
+  bool mayKeepAtStart(const FeatureIds& pair) const;
+
   /// @brief Moves the contacts out, in no order. Call clear() before the next add().
   std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 
@@ -66,12 +77,10 @@ class ContactSink {
  private:
   using PairKey = std::array<std::uint32_t, 5>;
   static PairKey keyOf(const FeatureContact& contact);
-  struct Seen {
-    FeatureContact contact;
-    /// Its index in contacts_, as long as cut_ is false.
-    std::size_t index;
-  };
-  bool addAgain(const FeatureContact& contact, Seen& seen);
+  FeatureContact* findKept(const FeatureContact& contact);
+  void note(std::size_t index);
+  void cut();
+  bool mayRepeat(const FeatureContact& contact) const;
 
   std::size_t capacity_;
   bool may_repeat_;
@@ -79,8 +88,12 @@ class ContactSink {
   double first_hi_{1};
   /// If cut_, a heap with the latest contact in front.
   std::deque<FeatureContact> contacts_;
-  /// The pairs that are kept. Only used if may_repeat_.
-  std::map<PairKey, Seen> seen_;
+  /// Until cut_, a table of the kept pairs that may repeat: 0, or 1 and where one is. A
+  /// pair is looked for from its hash on.
+  std::vector<std::uint32_t> places_;
+  std::size_t num_places_{0};
+  /// From then on, their names.
+  std::set<PairKey> seen_;
 };
 
 /// @brief The contacts of several lists, earliest first. Only pointers are sorted, since

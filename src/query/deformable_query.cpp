@@ -10,6 +10,7 @@
 
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
+#include "query/distance_contact.h"
 #include "self_culling/embedded_fans.h"
 #include "self_culling/embedded_regions.h"
 #include "tree/box_position.h"
@@ -207,6 +208,7 @@ struct MeshPair {
   const MeshInstance& b;
   const KdopShift* shift;
   SelfProofs proofs;
+  double min_distance;
 
   bool isSelf() const { return &a == &b; }
 
@@ -243,9 +245,10 @@ struct MeshPair {
             return visit(part);
           }
         const SeparatingAxes axes(a, b);
-        Part<false, A, B, Leaves> part(tree_a, tree_b, shift, culling,
-                                       a.tree || b.tree ? nullptr : &axes,
-                                       pose_displacement, schedule, leaves);
+        Part<false, A, B, Leaves> part(
+            tree_a, tree_b, shift, culling,
+            a.tree || b.tree || min_distance > 0 ? nullptr : &axes, pose_displacement,
+            schedule, leaves);
         visit(part);
       });
     });
@@ -254,8 +257,11 @@ struct MeshPair {
 
 /// Finds what a query of a mesh with itself leaves out. Finds nothing for two meshes.
 SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
-                     bool with_regions, int num_threads, StageTimes& times) {
+                     bool with_regions, double min_distance, int num_threads,
+                     StageTimes& times) {
   SelfProofs proofs;
+  // What is proved not to touch may come near.
+  if (min_distance > 0) return proofs;
   if (&mesh != &other || !mesh.tree || !mesh.isInPlace()) return proofs;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
@@ -295,8 +301,9 @@ class ContactQuery {
         task_options_(options),
         schedule_(options.query == ContinuousQuery::kAll ? kAllSchedule : kFirstSchedule),
         meshes_{a, b, shift,
-                proveSelf(a, b, options.leaves_out_regions, options.num_threads,
-                          proof_times_)} {
+                proveSelf(a, b, options.leaves_out_regions, options.min_distance,
+                          options.num_threads, proof_times_),
+                options.min_distance} {
     // One contact more than wanted tells whether there are more.
     if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
       ++task_options_.max_contacts;
@@ -397,10 +404,11 @@ class ContactQuery {
 };
 
 bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                const CandidateSink& sink) {
+                const CandidateSink& sink, double min_distance) {
   CandidateCollector leaves(a, b, shift, sink);
   StageTimes times;
-  const MeshPair meshes{a, b, shift, proveSelf(a, b, true, 1, times)};
+  const MeshPair meshes{a, b, shift, proveSelf(a, b, true, min_distance, 1, times),
+                        min_distance};
   meshes.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
     part.divide(works);
@@ -421,30 +429,53 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
   return position;
 }
 
+KdopShift shiftOf(const MeshInstance& a, const MeshInstance& b, double min_distance) {
+  KdopShift shift = relativeShift(a, b);
+  if (min_distance > 0) enlarge(reachOf(a, b, min_distance), shift);
+  return shift;
+}
+
+/// What is added to boxes of a mesh that are compared with its own: nothing without a
+/// distance.
+class SelfShift {
+ public:
+  SelfShift(const MeshInstance& mesh, double min_distance) : is_used_(min_distance > 0) {
+    if (is_used_) enlarge(reachOf(mesh, mesh, min_distance), shift_);
+  }
+  const KdopShift* get() const { return is_used_ ? &shift_ : nullptr; }
+
+ private:
+  bool is_used_;
+  KdopShift shift_{};
+};
+
 }  // namespace
 
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  return ContactQuery(a, a, nullptr, options).answer();
+  const SelfShift shift(a, options.min_distance);
+  return ContactQuery(a, a, shift.get(), options).answer();
 }
 
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  const KdopShift shift = relativeShift(a, b);
+  const KdopShift shift = shiftOf(a, b, options.min_distance);
   return ContactQuery(a, b, &shift, options).answer();
 }
 
-bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink) {
+bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
+                    double min_distance) {
   const DefaultFloatingPoint mode;
-  return candidates(a, a, nullptr, sink);
+  const SelfShift shift(a, min_distance);
+  return candidates(a, a, shift.get(), sink, min_distance);
 }
 
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
-                    const CandidateSink& sink) {
+                    const CandidateSink& sink, double min_distance) {
   const DefaultFloatingPoint mode;
-  const KdopShift shift = relativeShift(a, b);
-  return candidates(a, b, &shift, sink);
+  const KdopShift shift = shiftOf(a, b, min_distance);
+  return candidates(a, b, &shift, sink, min_distance);
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

@@ -25,15 +25,17 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options);
 
 /// @brief Hands the candidates of mesh a with itself to the sink.
+/// @param min_distance  candidates are pairs that may come so near; 0: that may touch
 /// @pre a has owners
 /// @return whether the sink took them all
-bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink);
+bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
+                    double min_distance = 0);
 
 /// @brief Hands the candidates of meshes a and b to the sink.
 /// @pre a and b have owners
 /// @return whether the sink took them all
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
-                    const CandidateSink& sink);
+                    const CandidateSink& sink, double min_distance = 0);
 
 /// @brief The shift between the boxes of two meshes, which may have different origins and
 /// translations. overlapWindow() adds it.

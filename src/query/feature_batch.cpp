@@ -99,10 +99,12 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
 }
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
-                           const KdopShift* shift, const Kernels& kernels)
+                           const KdopShift* shift, const Kernels& kernels,
+                           bool at_distance)
     : reader_a_(a),
       reader_b_(b),
       self_(&a == &b),
+      at_distance_(at_distance),
       shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
@@ -186,7 +188,7 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
 /// If `latest` is early, leaves out the triangle pairs that are apart until then. If not,
 /// it only leaves out their edges that might cross at t = 0.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
-  const bool is_early = isEarly(latest);
+  const bool is_early = leavesOutApart(latest);
   if (!is_early && !has_edges_) return;
   // The kernel needs more than the rounding of a sum and a product, 2^-53 each.
   const double share = is_early ? latest * (1 + 0x1p-50) : 0;
@@ -220,10 +222,10 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : ~kVfPairs,
       list.codes.get());
-  list.size =
-      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
-                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
-                            list.codes.get(), size, list.windows.get());
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                                    roundUp(latest, 0.f),
+                                    leavesOutApart(latest) ? gaps_.get() : nullptr,
+                                    list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

@@ -119,9 +119,11 @@ class FeatureBatch {
   static constexpr std::size_t kMaxPairs = TriangleReader::kStored;
 
   /// @param a, b  kept by reference; the same object for a self-collision
-  /// @param shift  relativeShift(a, b); null for a self-collision
+  /// @param shift  added to boxes of a: between their trees, and the distance; null: none
+  /// @param at_distance  whether features that come near are wanted, not only those that
+  /// touch
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-               const Kernels& kernels);
+               const Kernels& kernels, bool at_distance = false);
 
   bool isSelf() const { return self_; }
 
@@ -201,10 +203,14 @@ class FeatureBatch {
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
+  /// Whether triangles that a plane separates until `latest` are left out. With a
+  /// distance the proof does not hold.
+  bool leavesOutApart(double latest) const { return !at_distance_ && isEarly(latest); }
   void leaveOutApart(double latest, StageCounts& counts);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
+  bool at_distance_;
   const KdopShift* shift_;
   KdopShift turned_shift_;
   const Kernels& kernels_;

@@ -7,6 +7,7 @@
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
 #include "elementary/predicates.h"
+#include "query/distance_contact.h"
 
 namespace fcl {
 namespace detail {
@@ -41,7 +42,7 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
                          QueryProgress* progress, std::size_t task)
     : options_(options),
       kernels_(kernels()),
-      batch_(a, b, shift, kernels_),
+      batch_(a, b, shift, kernels_, options.min_distance > 0),
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             !a.hasOwners() || !b.hasOwners()),
       progress_(progress),
@@ -88,8 +89,15 @@ void NarrowPhase::flush() {
   batch_.cullTriangles(latest, counts_);
   testCrossings();
   for (const ContinuousContactKind kind :
-       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
-    runStages(BlockPairs{*this, kind, latest});
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+    BlockPairs pairs{*this, kind, latest};
+    if (options_.min_distance > 0) {
+      pairs.cullByBoxes();
+      testDistances(kind);
+    } else {
+      runStages(pairs);
+    }
+  }
   batch_.clear();
 }
 
@@ -225,10 +233,58 @@ void NarrowPhase::add(const FeatureCandidate& candidate, TimeBracket bracket) {
     first_.add(tightened(candidate.kind, CandidatePoints(candidate).get(), bracket));
   FeatureContact contact{candidate, bracket.lo, bracket.hi};
   if (options_.filter) options_.filter->find(candidate, contact.triangles);
+  add(contact);
+}
+
+void NarrowPhase::add(const FeatureContact& contact) {
   sink_.add(contact);
   if (!progress_) return;
-  QueryProgress::lower(progress_->first_hi, bracket.hi);
+  QueryProgress::lower(progress_->first_hi, contact.toc_hi);
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+}
+
+/// In place of filter() and solve(), with a distance.
+void NarrowPhase::testDistances(ContinuousContactKind kind) {
+  const std::uint32_t* codes = batch_.codes(kind);
+  const TimeWindow* windows = batch_.windows(kind);
+  const std::size_t size = batch_.size(kind);
+  const double latest = this->latest();
+  for (std::size_t first = 0; first < size && !isDone(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, size - first);
+    unsigned left =
+        kernels_.mayComeWithin(kind, batch_.pairs(), codes + first, windows + first,
+                               count, latest, options_.min_distance);
+    counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
+    for (; left != 0 && !isDone(); left &= left - 1) {
+      const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));
+      FeatureCandidate candidate;
+      batch_.setCandidate(codes[i], windows[i], candidate);
+      // Many pairs may be near at t = 0, of which a few are wanted.
+      if (sink_.mayKeepAtStart(candidate))
+        testDistance(candidate);
+      else
+        ++counts_.box_culled;
+    }
+  }
+}
+
+void NarrowPhase::testDistance(const FeatureCandidate& candidate) {
+  DistanceRequest request;
+  request.distance = options_.min_distance;
+  request.toc_err = options_.toc_err;
+  request.t_max = options_.t_max;
+  request.t_stop = latest();
+  request.ignores_initially_closer = options_.ignores_initially_closer;
+  const DistanceContact found =
+      advanceToDistance(candidate.kind, CandidatePoints(candidate).get(), request);
+  if (!found.is_contact) {
+    ++counts_.solver_culled;
+    return;
+  }
+  ++counts_.contacts;
+  FeatureIds pair = candidate;
+  if (options_.filter) options_.filter->find(pair, pair.triangles);
+  add(contactOf(pair, found, batch_.isSelf()));
 }
 
 void NarrowPhase::solve(const FeatureCandidate& candidate) {

@@ -38,6 +38,10 @@ struct QueryOptions {
   bool all_crossings{false};
   /// The pairs that count; null: all.
   const PairFilter* filter{nullptr};
+  /// Features that come so near are in contact; 0: that touch.
+  double min_distance{0};
+  /// See DistanceRequest.
+  bool ignores_initially_closer{false};
 };
 
 /// @brief What the tasks of a query tell each other, so that none does work that cannot
@@ -72,7 +76,8 @@ struct QueryError {
 class NarrowPhase {
  public:
   /// @param a, b  kept by reference; the same object for a self-collision
-  /// @param shift  relativeShift(a, b); null for a self-collision
+  /// @param shift  added to boxes of a: relativeShift(a, b) and options.min_distance;
+  /// null: none
   /// @param progress  of the query; null if the query has no other tasks
   /// @param task  the number of this task
   NarrowPhase(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
@@ -185,6 +190,9 @@ class NarrowPhase {
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);
+  void testDistances(ContinuousContactKind kind);
+  void testDistance(const FeatureCandidate& candidate);
+  void add(const FeatureContact& contact);
   bool isLeading(const TimeBracket& bracket) const;
 
   QueryOptions options_;

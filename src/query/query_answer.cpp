@@ -86,14 +86,14 @@ ContactLists takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
 
 /// Takes the earliest max_contacts of all contacts.
 ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
-                     bool may_repeat, QueryAnswer& answer) {
+                     bool may_repeat, bool has_parts, QueryAnswer& answer) {
   std::size_t count = 0;
   for (const TaskAnswer& task : tasks) {
     answer.cut |= task.cut;
     if (task.contacts) count += task.contacts->size();
   }
   // A sink is needed only if it may have to leave out contacts.
-  if (may_repeat || count > max_contacts)
+  if (may_repeat || has_parts || count > max_contacts)
     return takeUntil(kInfinity, tasks, max_contacts, may_repeat, answer);
   ContactLists lists;
   for (TaskAnswer& task : tasks)
@@ -144,23 +144,27 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
     return answer;
   }
   takeCrossings(tasks, options.all_crossings, answer);
+  const bool at_distance = options.min_distance > 0;
   const bool may_repeat = !a.hasOwners() || !b.hasOwners();
   const double first_hi = progress.first_hi.load();
   ContactLists contacts;
   if (options.query == ContinuousQuery::kFirst) {
     contacts = takeUntil(first_hi, tasks, options.max_contacts, may_repeat, answer);
   } else {
-    contacts = takeAll(tasks, options.max_contacts, may_repeat, answer);
-    if (answer.cut && !isFirstKept(first_hi, contacts)) {
+    contacts = takeAll(tasks, options.max_contacts, may_repeat, at_distance, answer);
+    if (answer.cut && !at_distance && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
       answer.first = {first.toc_lo, first.toc_hi};
     } else if (std::any_of(contacts.begin(), contacts.end(),
-                           [](const auto& list) { return !list.empty(); })) {
+                           [](const auto& list) { return !list.empty(); }) &&
+               !at_distance) {
       answer.first = bracketOfFirst(a, b, first_hi, contacts);
     }
   }
   answer.contacts = SortedContacts(std::move(contacts));
-  if (options.query == ContinuousQuery::kFirst) answer.first = firstListed(answer);
+  // With a distance all brackets are tight.
+  if (options.query == ContinuousQuery::kFirst || at_distance)
+    answer.first = firstListed(answer);
   return answer;
 }
 

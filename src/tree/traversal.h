@@ -93,7 +93,8 @@ struct SelfCulling {
 template <bool kSelf, typename TreeA, typename TreeB>
 class Traversal {
  public:
-  /// @param shift  between the two trees' origins and translations; null for kSelf
+  /// @param shift  added to boxes of tree a: between the two trees' origins and
+  /// translations, and a distance; null for kSelf without a distance
   /// @param axes  for two rigid trees: leaves out more pairs of nodes; null: not used
   /// @param timed  as in OverlapRequest
   Traversal(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift,
@@ -104,8 +105,9 @@ class Traversal {
         culling_(culling),
         axes_(axes),
         kernels_(kernels),
-        request_{timed} {
-    assert(kSelf == !shift);
+        request_{timed},
+        is_shifted_(shift != nullptr) {
+    assert(kSelf || shift);
     if (!shift) return;
     // The shift of a box of tree b is the same, with opposite half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
@@ -217,7 +219,7 @@ class Traversal {
     BoxView box{&parent.t0[0][lane], &parent.t1[0][lane], BoxView::kInNode,
                 parent.displacement[lane]};
     float moved[2][16];
-    if (!kSelf) {
+    if (!kSelf || is_shifted_) {
       for (std::size_t r = 0; r < 16; ++r) {
         moved[0][r] = shifted(box.t0[r * box.stride], shift_[kSwapped][0][r]);
         moved[1][r] = shifted(box.t1[r * box.stride], shift_[kSwapped][1][r]);
@@ -259,9 +261,11 @@ class Traversal {
   template <bool kSwapped, typename Visit>
   void visitTriangles(const MovingKdopNode& mine, unsigned lanes,
                       const MovingKdopNode& theirs, Visit& visit) {
-    kernels_.overlapTriangles({mine, theirs, lanes, kSelf ? nullptr : shift_[kSwapped],
-                               culling_.fans, request_},
-                              pairs_);
+    const bool is_shifted = !kSelf || is_shifted_;
+    kernels_.overlapTriangles(
+        {mine, theirs, lanes, is_shifted ? shift_[kSwapped] : nullptr, culling_.fans,
+         request_, kSelf},
+        pairs_);
     for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
       const int pair = __builtin_ctzll(left);
       const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
@@ -277,6 +281,7 @@ class Traversal {
   const SeparatingAxes* axes_;
   const Kernels& kernels_;
   OverlapRequest request_;
+  bool is_shifted_;
   float shift_[2][2][16];
   LanePairs pairs_;
 };

@@ -35,28 +35,42 @@ Integer coefficient(const Polynomial& p, int i) {
   return i <= degreeOf(p) ? p[i] : Integer(0);
 }
 
+/// The sign of p on an interval if all its Bernstein coefficients there have it, else 0.
+int commonSign(const Polynomial& p, const Fraction& lo, const Fraction& hi) {
+  const int degree = degreeOf(p);
+  // The coefficients by repeated evaluation in two arguments (blossoming).
+  int sign = 0;
+  for (int j = 0; j <= degree; ++j) {
+    // Coefficient j: the mean of the products of i of the arguments, j times hi, the rest
+    // lo, is e_i / (degree choose i), with e_i the elementary symmetric function.
+    std::vector<Fraction> e(static_cast<std::size_t>(degree) + 1, Fraction(0));
+    e[0] = Fraction(1);
+    for (int k = 0; k < degree; ++k)
+      for (int i = k + 1; i > 0; --i)
+        e[static_cast<std::size_t>(i)] +=
+            e[static_cast<std::size_t>(i) - 1] * (k < j ? hi : lo);
+    Fraction value(0), choose(1);
+    for (int i = 0; i <= degree; ++i) {
+      value += Fraction(p[i]) * e[static_cast<std::size_t>(i)] / choose;
+      choose = choose * Fraction(degree - i) / Fraction(i + 1);
+    }
+    const int now = static_cast<int>(CGAL::sign(value));
+    if (now == 0 || (sign != 0 && now != sign)) return 0;
+    sign = now;
+  }
+  return sign;
+}
+
 /// Sign at a time. Without a verdict from the isolating interval the kernel takes a
 /// greatest common divisor, which is slow.
 int signAt(const Polynomial& p, const Algebraic& t) {
   constexpr int kRounds = 6, kHalvings = 8;
   const int degree = degreeOf(p);
   if (degree <= 0) return degree < 0 ? 0 : static_cast<int>(CGAL::sign(p[0]));
-  for (int round = 0; round < kRounds && degree <= 2; ++round) {
+  for (int round = 0; round < kRounds; ++round) {
     if (t.is_rational()) break;
-    // Bernstein coefficients over the interval: of one sign, they enclose the value.
-    const Fraction lo = t.low(), hi = t.high();
-    const Fraction c0 = p[0], c1 = p[1];
-    Fraction first = c0 + c1 * lo, last = c0 + c1 * hi;
-    int middle = static_cast<int>(CGAL::sign(first));
-    if (degree == 2) {
-      const Fraction c2 = p[2];
-      middle = static_cast<int>(CGAL::sign(c0 + c1 * (lo + hi) / 2 + c2 * lo * hi));
-      first += c2 * lo * lo;
-      last += c2 * hi * hi;
-    }
-    const int sign = static_cast<int>(CGAL::sign(first));
-    if (sign != 0 && sign == middle && sign == static_cast<int>(CGAL::sign(last)))
-      return sign;
+    const int sign = commonSign(p, t.low(), t.high());
+    if (sign != 0) return sign;
     for (int i = 0; i < kHalvings; ++i) t.bisect();
   }
   if (t.is_rational()) return static_cast<int>(p.sign_at(t.rational()));
@@ -284,6 +298,127 @@ OracleAnswer::Rational toRational(const Fraction& value) {
   return {static_cast<BoostInteger>(numerator), static_cast<BoostInteger>(denominator)};
 }
 
+/// A point as polynomials in t.
+using MovingVector = std::array<Polynomial, 3>;
+
+Polynomial dot(const MovingVector& a, const MovingVector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+MovingVector cross(const MovingVector& a, const MovingVector& b) {
+  return {Polynomial(a[1] * b[2] - a[2] * b[1]), Polynomial(a[2] * b[0] - a[0] * b[2]),
+          Polynomial(a[0] * b[1] - a[1] * b[0])};
+}
+
+MovingVector operator-(const MovingVector& a, const MovingVector& b) {
+  return {Polynomial(a[0] - b[0]), Polynomial(a[1] - b[1]), Polynomial(a[2] - b[2])};
+}
+
+/// Two vertices, a vertex and an edge, or the insides of two features. While all sides
+/// are >= 0 and `extent` is not 0, points of the two are at a distance whose square less
+/// d^2 has the sign of `excess`.
+struct FeatureParts {
+  Polynomial excess, extent;
+  std::vector<Polynomial> sides;
+};
+
+/// What the distance of two features depends on: it is that of the nearest of the parts.
+std::vector<FeatureParts> partsOf(ContinuousContactKind kind, const FeaturePoints& x,
+                                  double d) {
+  const int count = kind == ContinuousContactKind::kVertexVertex ? 2
+                    : kind == ContinuousContactKind::kVertexEdge ? 3
+                                                                 : 4;
+  int unit = BinaryNumber(d).exponent;
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k)
+      unit = std::min(
+          {unit, BinaryNumber(x[i].t0[k]).exponent, BinaryNumber(x[i].t1[k]).exponent});
+  MovingVector p[4];
+  for (int i = 0; i < count; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Integer from = BinaryNumber(x[i].t0[k]).inUnitsOf(unit);
+      p[i][k] =
+          Polynomial(from, Integer(BinaryNumber(x[i].t1[k]).inUnitsOf(unit) - from));
+    }
+  const Integer distance = BinaryNumber(d).inUnitsOf(unit);
+  const Polynomial square(Integer(distance * distance));
+  std::vector<FeatureParts> parts;
+  const auto addPoints = [&](int i, int j) {
+    const MovingVector way = p[j] - p[i];
+    parts.push_back({Polynomial(dot(way, way) - square), Polynomial(Integer(1)), {}});
+  };
+  const auto addPointAndEdge = [&](int i, int j, int l) {
+    const MovingVector edge = p[l] - p[j], from = p[i] - p[j], off = cross(from, edge);
+    const Polynomial length = dot(edge, edge), along = dot(from, edge);
+    parts.push_back({Polynomial(dot(off, off) - square * length),
+                     length,
+                     {along, Polynomial(length - along)}});
+  };
+  if (kind == ContinuousContactKind::kVertexVertex) {
+    addPoints(0, 1);
+  } else if (kind == ContinuousContactKind::kVertexEdge) {
+    addPoints(0, 1);
+    addPoints(0, 2);
+    addPointAndEdge(0, 1, 2);
+  } else {
+    const bool vf = kind == ContinuousContactKind::kVertexFace;
+    for (int i = 0; i < (vf ? 1 : 2); ++i)
+      for (int j = vf ? 1 : 2; j < 4; ++j) addPoints(i, j);
+    const MovingVector u = p[0] - p[vf ? 1 : 2], v = vf ? p[2] - p[1] : p[1] - p[0],
+                       w = vf ? p[3] - p[1] : p[3] - p[2], n = cross(v, w);
+    const Polynomial area = dot(n, n), volume = dot(u, n);
+    FeatureParts inside{Polynomial(volume * volume - square * area), area, {}};
+    if (vf) {
+      addPointAndEdge(0, 1, 2);
+      addPointAndEdge(0, 2, 3);
+      addPointAndEdge(0, 3, 1);
+      const Polynomial second = dot(cross(u, w), n), third = dot(cross(v, u), n);
+      inside.sides = {second, third, Polynomial(area - second - third)};
+    } else {
+      addPointAndEdge(0, 2, 3);
+      addPointAndEdge(1, 2, 3);
+      addPointAndEdge(2, 0, 1);
+      addPointAndEdge(3, 0, 1);
+      // a0 + s v nearest to b0 + r w: s n^2 = (w x u) . n, r n^2 = (v x u) . n.
+      const Polynomial s = dot(cross(w, u), n), r = dot(cross(v, u), n);
+      inside.sides = {s, Polynomial(area - s), r, Polynomial(area - r)};
+    }
+    parts.push_back(inside);
+  }
+  return parts;
+}
+
+bool areSidesMet(const FeatureParts& part, const Algebraic& t) {
+  return signAt(part.extent, t) != 0 &&
+         std::all_of(part.sides.begin(), part.sides.end(),
+                     [&t](const Polynomial& side) { return signAt(side, t) >= 0; });
+}
+
+bool isWithinAt(const std::vector<FeatureParts>& parts, const Algebraic& t) {
+  return std::any_of(parts.begin(), parts.end(), [&t](const FeatureParts& part) {
+    return signAt(part.excess, t) <= 0 && areSidesMet(part, t);
+  });
+}
+
+/// Whether all Bernstein coefficients on [0, 1] are positive, or all negative.
+bool hasOneSignInUnitInterval(const Polynomial& p) {
+  const int degree = degreeOf(p);
+  int sign = 0;
+  for (int j = 0; j <= degree; ++j) {
+    // Times (degree choose j): sum of p_i (degree - i choose j - i).
+    Integer b(0);
+    for (int i = 0; i <= j; ++i) {
+      Integer choose(1);
+      for (int k = 1; k <= j - i; ++k) choose = choose * (degree - i - (j - i) + k) / k;
+      b += choose * coefficient(p, i);
+    }
+    const int now = static_cast<int>(CGAL::sign(b));
+    if (now == 0 || (sign != 0 && now != sign)) return false;
+    sign = now;
+  }
+  return true;
+}
+
 }  // namespace
 
 struct OracleAnswer::FirstTime {
@@ -340,6 +475,35 @@ OracleAnswer askOracle(ContinuousContactKind kind, const FeaturePoints& x) {
     previous = t;
   }
   return {};
+}
+
+bool isWithinAt(ContinuousContactKind kind, const FeaturePoints& x, double d, double t) {
+  return isWithinAt(partsOf(kind, x, d), Algebraic(Fraction(t)));
+}
+
+OracleAnswer askDistanceOracle(ContinuousContactKind kind, const FeaturePoints& x,
+                               double d) {
+  const std::vector<FeatureParts> parts = partsOf(kind, x, d);
+  const auto answer = [](const Algebraic& t) {
+    return OracleAnswer(
+        std::make_shared<OracleAnswer::FirstTime>(OracleAnswer::FirstTime{t}));
+  };
+  const Algebraic start(Fraction(0));
+  if (isWithinAt(parts, start)) return answer(start);
+  // Then the first time at which the distance is d is a root of the excess of the parts
+  // that are nearest. Parts whose excess is always 0 begin or cease to be nearest where
+  // others are as near.
+  std::vector<Algebraic> first;
+  for (const FeatureParts& part : parts) {
+    if (degreeOf(part.excess) < 1 || hasOneSignInUnitInterval(part.excess)) continue;
+    for (const Algebraic& t : rootsAfterStart(part.excess)) {
+      if (!first.empty() && !(t < first.front())) break;
+      if (!areSidesMet(part, t)) continue;
+      first.assign(1, t);
+      break;
+    }
+  }
+  return first.empty() ? OracleAnswer() : answer(first.front());
 }
 
 }  // namespace test

@@ -48,6 +48,16 @@ class OracleAnswer {
 OracleAnswer askOracle(fcl::ContinuousContactKind kind,
                        const detail::deformable::FeaturePoints& x);
 
+/// @brief The first time at which the distance of two features is at most d; touch() says
+/// whether there is one. VE: vertex, edge. VV: two vertices. Unused points may be null.
+/// @pre d >= 0
+OracleAnswer askDistanceOracle(fcl::ContinuousContactKind kind,
+                               const detail::deformable::FeaturePoints& x, double d);
+
+/// @brief Whether the distance of two features is at most d at the time t, exact.
+bool isWithinAt(fcl::ContinuousContactKind kind,
+                const detail::deformable::FeaturePoints& x, double d, double t);
+
 }  // namespace test
 }  // namespace fcl
 

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "distance_check.h"
 #include "query_check.h"
 #include "query_csv.h"
 #include "scene_check.h"
@@ -55,6 +56,24 @@ std::size_t checkGenerated(std::uint64_t first, std::uint64_t count) {
   return complaints.count();
 }
 
+std::size_t checkDistances(std::uint64_t first, std::uint64_t count) {
+  fcl::test::DistanceTally tally;
+  Complaints complaints;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    const std::string text =
+        distanceDisagreement(fcl::test::distanceQuery(number), tally);
+    if (!text.empty()) complaints.add("query " + std::to_string(number), text);
+  }
+  std::printf(
+      "%zu queries, %zu contacts (%zu at t = 0, %zu without a proved upper end, %zu "
+      "given "
+      "up), %zu steps, %zu at most: %zu disagreements\n",
+      tally.queries, tally.contacts, tally.contacts_at_start, tally.grazes,
+      tally.given_up, tally.steps, tally.most_steps, complaints.count());
+  if (tally.queries == 0) throw std::runtime_error("no queries to check");
+  return complaints.count();
+}
+
 std::size_t checkFiles(const std::string& data) {
   CheckTally tally;
   Complaints complaints;
@@ -93,10 +112,11 @@ std::size_t checkScene(const std::string& folder, const std::string& previous,
 int usage(const char* program) {
   std::fprintf(stderr,
                "usage: %s generated FIRST COUNT\n"
+               "       %s distances FIRST COUNT\n"
                "       %s queries DATA_FOLDER\n"
                "       %s scene FOLDER PREVIOUS.ply CURRENT.ply\n"
                "Returns 1 if the library and the oracle disagree.\n",
-               program, program, program);
+               program, program, program, program);
   return 2;
 }
 
@@ -107,6 +127,8 @@ int main(int argc, char** argv) {
   try {
     if (what == "generated" && argc == 4)
       return checkGenerated(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
+    if (what == "distances" && argc == 4)
+      return checkDistances(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
     if (what == "queries" && argc == 3) return checkFiles(argv[2]) != 0;
     if (what == "scene" && argc == 5) return checkScene(argv[2], argv[3], argv[4]) != 0;
   } catch (const std::exception& error) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "oracle/distance_check.h"
 #include "oracle/exact_oracle.h"
 #include "oracle/query_check.h"
 #include "oracle/scene_check.h"
@@ -200,6 +201,51 @@ TEST(FCL_ORACLE, generatedQueries) {
   EXPECT_GT(tally.contacts, kCount / 4);
   EXPECT_GT(tally.contacts_at_start, kCount / 20);
   for (const std::size_t decided : tally.decided_by) EXPECT_GT(decided, kCount / 50);
+}
+
+// Distances by hand: a vertex that falls on the inside, beside an edge and beside a
+// corner of a face, and two edges.
+TEST(FCL_ORACLE, distancesByHand) {
+  struct DistanceCase {
+    MovingPair pair;
+    double distance;
+    /// Denominator 0: none.
+    int numerator, denominator;
+  };
+  const DistanceCase cases[] = {
+      {onTriangle(falling(1, 1, 4, 0)), 1, 3, 4},
+      {onTriangle(falling(1, 1, 4, 1)), 1, 1, 1},
+      {onTriangle(falling(1, 1, 4, 1 + 0x1p-52)), 1, 0, 0},
+      {onTriangle(falling(1, -3, 8, 0)), 5, 1, 2},
+      {onTriangle(falling(-2, -1, 8, 0)), 3, 3, 4},
+      {onTriangle(falling(1, 1, 0.5, 4)), 1, 0, 1},
+      {onTriangle(path({-4, 1, 1}, {4, 1, 1})), 1, 1, 2},
+      {onTriangle(path({-4, 1, 1}, {4, 1, 1})), 1 - 0x1p-53, 0, 0},
+      {onUnitEdge(path({0, -1, 5}, {0, -1, 1}), path({0, 1, 5}, {0, 1, 1})), 3, 1, 2},
+      {onUnitEdge(path({4, -1, 8}, {4, -1, 0}), path({4, 1, 8}, {4, 1, 0})), 5, 1, 2},
+      {onUnitEdge(at(0, 3, 4), at(5, 3, 4)), 5, 0, 1},
+      {onUnitEdge(at(0, 3, 4), at(5, 3, 4)), 5 - 0x1p-50, 0, 0}};
+  for (const DistanceCase& c : cases) {
+    const OracleAnswer answer =
+        askDistanceOracle(c.pair.kind, c.pair.points(), c.distance);
+    ASSERT_EQ(answer.touch(), c.denominator != 0) << c.pair << c.distance;
+    if (!answer.touch()) continue;
+    EXPECT_EQ(answer.compareTime(static_cast<double>(c.numerator) / c.denominator), 0)
+        << c.pair << c.distance;
+  }
+}
+
+TEST(FCL_ORACLE, generatedDistances) {
+  constexpr std::uint64_t kCount = 6000;
+  DistanceTally tally;
+  for (std::uint64_t number = 0; number < kCount; ++number)
+    ASSERT_EQ(distanceDisagreement(distanceQuery(number), tally), "")
+        << "query " << number;
+  EXPECT_GT(tally.contacts, kCount / 4);
+  EXPECT_LT(tally.contacts, kCount * 9 / 10);
+  EXPECT_GT(tally.contacts - tally.contacts_at_start, kCount / 5);
+  EXPECT_GT(tally.grazes, kCount / 100);
+  EXPECT_EQ(tally.given_up, 0U);
 }
 
 // Differences near the smallest double times differences near the largest. Products are

@@ -71,21 +71,30 @@ using ContinuousCandidateSink =
 /// After Tang, Manocha, Tong 2010, section 4 and, for (2), Curtis, Tamstorf, Manocha
 /// 2008.
 ///
+/// With min_distance = d > 0 the candidates are the pairs whose distance may fall to d
+/// during the step, and (1) reads: every pair that comes within d is among them. If both
+/// frames are equal (updateFrames(x, x)), these are the pairs that may be within d. The
+/// distance of features that share a vertex is 0: they are no candidates.
+///
 /// @param sink  takes the candidates, see ContinuousCandidateSink
+/// @param min_distance  d, not negative, finite, in the unit of the coordinates
 /// @return true when all candidates were handed out, false when the sink ended the query
-/// @throws fcl::Exception when an argument or the sink is null, a geometry is not a
-/// triangle mesh, a motion is not one of FCL's classes, a mesh is not built or is in the
-/// middle of an update, a coordinate or a transform is not finite, or a triangle index is
-/// out of range. The exception of a vertex that is not finite may come after candidates
-/// were handed out.
+/// @throws fcl::Exception when an argument or the sink is null, min_distance is negative
+/// or not finite, a geometry is not a triangle mesh, a motion class is neither FCL's nor
+/// a BoundedMotion, a mesh is not built or is in the middle of an update, a coordinate or
+/// a transform is not finite, or a triangle index is out of range; when min_distance is
+/// above 0 and a mesh turns. The exception of a vertex that is not finite may come after
+/// candidates were handed out.
 /// @{
 
 /// @brief The candidates of a mesh with itself.
 bool continuousSelfCandidates(const CollisionGeometry<double>* o,
-                              const ContinuousCandidateSink& sink);
+                              const ContinuousCandidateSink& sink,
+                              double min_distance = 0);
 /// @overload
 bool continuousSelfCandidates(const CollisionGeometry<float>* o,
-                              const ContinuousCandidateSink& sink);
+                              const ContinuousCandidateSink& sink,
+                              double min_distance = 0);
 
 /// @brief The candidates of two meshes that go from one transform to another.
 bool continuousCandidates(const CollisionGeometry<double>* o1,
@@ -94,7 +103,7 @@ bool continuousCandidates(const CollisionGeometry<double>* o1,
                           const CollisionGeometry<double>* o2,
                           const Transform3<double>& tf2_beg,
                           const Transform3<double>& tf2_end,
-                          const ContinuousCandidateSink& sink);
+                          const ContinuousCandidateSink& sink, double min_distance = 0);
 /// @overload
 bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const Transform3<float>& tf1_beg,
@@ -102,52 +111,52 @@ bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const CollisionGeometry<float>* o2,
                           const Transform3<float>& tf2_beg,
                           const Transform3<float>& tf2_end,
-                          const ContinuousCandidateSink& sink);
+                          const ContinuousCandidateSink& sink, double min_distance = 0);
 
 /// @brief The candidates of two meshes that follow FCL's motions.
 bool continuousCandidates(const CollisionGeometry<double>* o1,
                           const MotionBase<double>* motion1,
                           const CollisionGeometry<double>* o2,
                           const MotionBase<double>* motion2,
-                          const ContinuousCandidateSink& sink);
+                          const ContinuousCandidateSink& sink, double min_distance = 0);
 /// @overload
 bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const MotionBase<float>* motion1,
                           const CollisionGeometry<float>* o2,
                           const MotionBase<float>* motion2,
-                          const ContinuousCandidateSink& sink);
+                          const ContinuousCandidateSink& sink, double min_distance = 0);
 /// @}
 
 inline bool continuousSelfCandidates(const CollisionGeometry<double>* o,
-                                     const ContinuousCandidateSink& sink) {
-  return detail::answerSelfCandidates(o, sink);
+                                     const ContinuousCandidateSink& sink,
+                                     double min_distance) {
+  return detail::answerSelfCandidates(o, sink, min_distance);
 }
 
 inline bool continuousSelfCandidates(const CollisionGeometry<float>* o,
-                                     const ContinuousCandidateSink& sink) {
-  return detail::answerSelfCandidates(o, sink);
+                                     const ContinuousCandidateSink& sink,
+                                     double min_distance) {
+  return detail::answerSelfCandidates(o, sink, min_distance);
 }
 
-inline bool continuousCandidates(const CollisionGeometry<double>* o1,
-                                 const Transform3<double>& tf1_beg,
-                                 const Transform3<double>& tf1_end,
-                                 const CollisionGeometry<double>* o2,
-                                 const Transform3<double>& tf2_beg,
-                                 const Transform3<double>& tf2_end,
-                                 const ContinuousCandidateSink& sink) {
+inline bool continuousCandidates(
+    const CollisionGeometry<double>* o1, const Transform3<double>& tf1_beg,
+    const Transform3<double>& tf1_end, const CollisionGeometry<double>* o2,
+    const Transform3<double>& tf2_beg, const Transform3<double>& tf2_end,
+    const ContinuousCandidateSink& sink, double min_distance) {
   return detail::answerCandidates(detail::movingGeometry(o1, tf1_beg, tf1_end),
-                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink);
+                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink,
+                                  min_distance);
 }
 
-inline bool continuousCandidates(const CollisionGeometry<float>* o1,
-                                 const Transform3<float>& tf1_beg,
-                                 const Transform3<float>& tf1_end,
-                                 const CollisionGeometry<float>* o2,
-                                 const Transform3<float>& tf2_beg,
-                                 const Transform3<float>& tf2_end,
-                                 const ContinuousCandidateSink& sink) {
+inline bool continuousCandidates(
+    const CollisionGeometry<float>* o1, const Transform3<float>& tf1_beg,
+    const Transform3<float>& tf1_end, const CollisionGeometry<float>* o2,
+    const Transform3<float>& tf2_beg, const Transform3<float>& tf2_end,
+    const ContinuousCandidateSink& sink, double min_distance) {
   return detail::answerCandidates(detail::movingGeometry(o1, tf1_beg, tf1_end),
-                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink);
+                                  detail::movingGeometry(o2, tf2_beg, tf2_end), sink,
+                                  min_distance);
 }
 
 namespace detail {
@@ -155,13 +164,13 @@ namespace detail {
 template <typename S>
 bool motionCandidates(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
                       const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
-                      const ContinuousCandidateSink& sink) {
+                      const ContinuousCandidateSink& sink, double min_distance) {
   requireNotNull(o1, "o1");
   requireNotNull(o2, "o2");
   requireNotNull(motion1, "motion1");
   requireNotNull(motion2, "motion2");
   return answerCandidates(movingGeometry(o1, motion1, o2),
-                          movingGeometry(o2, motion2, o1), sink);
+                          movingGeometry(o2, motion2, o1), sink, min_distance);
 }
 
 }  // namespace detail
@@ -170,16 +179,18 @@ inline bool continuousCandidates(const CollisionGeometry<double>* o1,
                                  const MotionBase<double>* motion1,
                                  const CollisionGeometry<double>* o2,
                                  const MotionBase<double>* motion2,
-                                 const ContinuousCandidateSink& sink) {
-  return detail::motionCandidates(o1, motion1, o2, motion2, sink);
+                                 const ContinuousCandidateSink& sink,
+                                 double min_distance) {
+  return detail::motionCandidates(o1, motion1, o2, motion2, sink, min_distance);
 }
 
 inline bool continuousCandidates(const CollisionGeometry<float>* o1,
                                  const MotionBase<float>* motion1,
                                  const CollisionGeometry<float>* o2,
                                  const MotionBase<float>* motion2,
-                                 const ContinuousCandidateSink& sink) {
-  return detail::motionCandidates(o1, motion1, o2, motion2, sink);
+                                 const ContinuousCandidateSink& sink,
+                                 double min_distance) {
+  return detail::motionCandidates(o1, motion1, o2, motion2, sink, min_distance);
 }
 
 }  // namespace fcl

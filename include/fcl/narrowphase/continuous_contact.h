@@ -33,16 +33,20 @@ struct ContinuousContact {
   std::intptr_t b2{-1};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
-  /// f1, f2. Unused entries are -1.
+  /// f1, f2. VE: v, e0, e1. VV: v of o1, v of o2; in a self-collision the lower id first.
+  /// Unused entries are -1.
   std::array<int, 5> vertices{{-1, -1, -1, -1, -1}};
 
-  /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2.
-  /// False: the reverse. EE: edge a always belongs to o1.
+  /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2;
+  /// the vertex (VE) to o1, the edge to o2. False: the reverse. EE: edge a always belongs
+  /// to o1.
   bool first_on_o1{true};
 
   /// @brief True: it is not proved that the surfaces cross in the bracket, only that the
   /// features are within the query's tolerance of each other at toc_lo. Only if a mesh
-  /// turns. On straight paths contacts are exact, and this is false.
+  /// turns, or with min_distance: then no time was found in the bracket at which the
+  /// features provably are within that distance. Otherwise contacts on straight paths are
+  /// exact, and this is false.
   bool within_tolerance{false};
 
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
@@ -61,8 +65,8 @@ struct ContinuousContact {
   double toc_lo{0};
   double toc_hi{0};
 
-  /// @brief The point where they touch at toc_lo, in the world frame. Set only with
-  /// enable_contact.
+  /// @brief The point where they touch at toc_lo, in the world frame. With min_distance:
+  /// the middle between their nearest points. Set only with enable_contact.
   Vector3<S> pos{Vector3<S>::Zero()};
 
   /// @brief Unit normal at toc_lo in the world frame: of the face (VF, crossing), or
@@ -76,10 +80,25 @@ struct ContinuousContact {
   ///   against it (VF with the vertex on o2), or edge a x edge b (EE).
   /// - Crossing: along the winding of the face.
   /// It is the zero vector if the face has no area or the edges are parallel at toc_lo.
+  ///
+  /// With min_distance it points from the nearest point of o1 to that of o2, in a
+  /// self-collision from the first feature to the second. It is the zero vector if they
+  /// touch.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief The number of entries of `vertices` that are used.
-  int numVertices() const { return kind == ContinuousContactKind::kCrossing ? 5 : 4; }
+  int numVertices() const {
+    switch (kind) {
+      case ContinuousContactKind::kCrossing:
+        return 5;
+      case ContinuousContactKind::kVertexEdge:
+        return 3;
+      case ContinuousContactKind::kVertexVertex:
+        return 2;
+      default:
+        return 4;
+    }
+  }
 };
 
 using ContinuousContactf = ContinuousContact<float>;
@@ -125,6 +144,20 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// query does no work for later contacts. If the first contact is later, there is no
   /// collision and time_of_contact is 1.
   S t_max{1};
+
+  /// @brief The distance d at which features are in contact, in the unit of the
+  /// coordinates; not negative, finite. 0: features that touch, exactly. Above 0: @ref
+  /// continuous_distance_tests says how exactly. A pair of features whose nearest points
+  /// at the time of contact lie on an edge or at a vertex is a contact of these parts (VE
+  /// or VV), which is listed once, at the earliest of such times. Features that share a
+  /// vertex are no contact. A discrete collide() finds nothing at the poses of a contact.
+  /// All paths must be straight: the query throws if a mesh turns.
+  S min_distance{0};
+
+  /// @brief Whether pairs that are nearer than min_distance at t = 0 are in contact only
+  /// when they come nearer than they are then. If false, they are contacts at t = 0. A
+  /// crossing at t = 0 is told in both cases.
+  bool ignore_initially_closer{false};
 
   /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be
   /// combined with ContinuousQuery::kAny.

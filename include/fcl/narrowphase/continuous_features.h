@@ -68,6 +68,64 @@ FCL_EXPORT ContinuousFeatureTestResult<S> edgeEdge(
 
 /// @}
 
+/// @defgroup continuous_distance_tests Elementary tests at a distance
+///
+/// They decide whether two features come within min_distance of each other at some t in
+/// [0, 1], and bound the first such time. Paths and features are those of the @ref
+/// continuous_feature_tests. With min_distance = 0 they are these exact tests.
+///
+/// With min_distance = d > 0, u = 2^-53, and L the largest distance between a vertex of
+/// one feature and a vertex of the other at t = 0 or 1:
+/// (1) A pair that comes within d is never missed, and toc_lo is never later than the
+/// first time at which it does. (2) A pair that stays further apart than d (1 + 1e-9) +
+/// 512 u (d + L) is never reported. (Pairs whose distance is lost to rounding may be: 9
+/// of 1.2 million queries, nearly all of them degenerate, with d down to 1e-9 L.)
+/// Between these two distances either answer is right. (3) If toc_hi > toc_lo, the
+/// features are within d at toc_hi. The bracket is no wider than toc_err and an eighth of
+/// toc_hi. toc_hi = toc_lo means that no such time was found: the features only graze
+/// this distance, or come nearer very slowly. (4) The bracket is [0, 0] if the features
+/// are within d at t = 0. (5) The answer does not depend on the order of the features or
+/// of their vertices. (6) The same arguments give the same bits, in any floating-point
+/// mode, from any number of threads.
+///
+/// Directional advancement, see doc/thickness.md.
+///
+/// @param min_distance  d, in the unit of the coordinates
+/// @throws fcl::Exception as the exact tests, and when min_distance is negative, infinite
+/// or NaN
+/// @{
+
+/// @brief Vertex v against triangle f0 f1 f2.
+template <typename S>
+FCL_EXPORT ContinuousFeatureTestResult<S> vertexFaceWithin(
+    const Vector3<S>& v_t0, const Vector3<S>& f0_t0, const Vector3<S>& f1_t0,
+    const Vector3<S>& f2_t0, const Vector3<S>& v_t1, const Vector3<S>& f0_t1,
+    const Vector3<S>& f1_t1, const Vector3<S>& f2_t1, double toc_err,
+    double min_distance);
+
+/// @brief Edge ea0 ea1 against edge eb0 eb1.
+template <typename S>
+FCL_EXPORT ContinuousFeatureTestResult<S> edgeEdgeWithin(
+    const Vector3<S>& ea0_t0, const Vector3<S>& ea1_t0, const Vector3<S>& eb0_t0,
+    const Vector3<S>& eb1_t0, const Vector3<S>& ea0_t1, const Vector3<S>& ea1_t1,
+    const Vector3<S>& eb0_t1, const Vector3<S>& eb1_t1, double toc_err,
+    double min_distance);
+
+/// @brief Vertex v against edge e0 e1.
+template <typename S>
+FCL_EXPORT ContinuousFeatureTestResult<S> vertexEdgeWithin(
+    const Vector3<S>& v_t0, const Vector3<S>& e0_t0, const Vector3<S>& e1_t0,
+    const Vector3<S>& v_t1, const Vector3<S>& e0_t1, const Vector3<S>& e1_t1,
+    double toc_err, double min_distance);
+
+/// @brief Vertex v against vertex w.
+template <typename S>
+FCL_EXPORT ContinuousFeatureTestResult<S> vertexVertexWithin(
+    const Vector3<S>& v_t0, const Vector3<S>& w_t0, const Vector3<S>& v_t1,
+    const Vector3<S>& w_t1, double toc_err, double min_distance);
+
+/// @}
+
 }  // namespace fcl
 
 #endif

@@ -12,9 +12,11 @@ namespace fcl {
 
 /// @brief Which features meet in a continuous contact.
 enum class ContinuousContactKind {
-  kVertexFace,  ///< a vertex meets a triangle
-  kEdgeEdge,    ///< two edges meet
-  kCrossing     ///< an edge already passes through a triangle at t = 0
+  kVertexFace,   ///< a vertex meets a triangle
+  kEdgeEdge,     ///< two edges meet
+  kCrossing,     ///< an edge already passes through a triangle at t = 0
+  kVertexEdge,   ///< a vertex comes near an edge; only with min_distance
+  kVertexVertex  ///< two vertices come near each other; only with min_distance
 };
 
 /// @brief What a continuous query looks for.

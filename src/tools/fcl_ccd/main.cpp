@@ -55,18 +55,20 @@ Tests:
 Output:
   A contact is vf (vertex-face) or ee (edge-edge). Each contact is proved, so that
   'uncertain' in the table is 0. 'vertices' and 'triangles' count those of all meshes.
+  With --thickness, features are in contact when their distance reaches D. Then ve (a vertex
+  and an edge) and vv (two vertices) are contacts too.
   '--query first' reports the contacts that may be the first. '--query any' reports at most
   one contact, not always the earliest.
   --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi. kind is vf (i0 is
-  the vertex, i1 to i3 the face) or ee (i0 and i1 are edge a, i2 and i3 edge b). Ids count
-  from 0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in
+  the vertex, i1 to i3 the face) or ee (i0 and i1 are edge a, i2 and i3 edge b); ve has no
+  i3, vv no i2 and i3. Ids count from 0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in
   fractions of the step. --columns adds t0,t1 (the triangles of both features), x,y,z (the
   point where they touch) and nx,ny,nz (unit normal, from A to B).
   --steps: JSON lines: the options, one object for each step, and a summary at the end.
   --json: JSON with all steps and their times in milliseconds. build: making the tree, in
   the first step of each job. total = update + traverse + test.
-  --paint: PLY of the last frame. Vertices of vf contacts are red, those of ee contacts
-  orange, those of an edge and a face that cross at t = 0 violet. B's vertices come after
+  --paint: PLY of the last frame. Vertices of vf, ve and vv contacts are red, those of ee
+  contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come after
   A's.
   --contacts and --steps grow with each step. --json and --paint are written at the end.
 
@@ -87,6 +89,7 @@ Cores:
 Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply cloth_2.ply --json times.json --repeat 5
   fcl-ccd run cloth_0.ply cloth_1.ply --query first
+  fcl-ccd run cloth_0.ply cloth_1.ply --thickness 0.001 --ignore-initially-closer
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl --resume
   fcl-ccd run frame_%04d.ply --start 100 --end 199 --contacts contacts.csv
@@ -218,6 +221,14 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   run->add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(oneOf(kQueries, "all, first or any"));
+  run->add_option(
+         "--thickness", options.settings.min_distance,
+         "Contact at this distance, in the unit of the files (default: touching)")
+      ->type_name("D")
+      ->check(positive<double>("a positive number"));
+  run->add_flag("--ignore-initially-closer", options.settings.ignore_initially_closer,
+                "Pairs that begin nearer than D are contacts only when they come nearer")
+      ->needs("--thickness");
   run->add_option(
          "--jobs", options.jobs,
          "Steps at the same time, one thread each; 0: as many as there are cores")

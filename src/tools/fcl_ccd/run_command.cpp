@@ -149,11 +149,15 @@ class StepMaker {
 /// @brief The first line of the list of steps: the options on which answers depend.
 std::string stepsHead(const RunOptions& options) {
   constexpr const char* kQueries[] = {"all", "first", "any"};
-  const Json head = {{"fcl_ccd", FCL_CCD_VERSION},
-                     {"query", kQueries[static_cast<int>(options.settings.query)]},
-                     {"toc_err", options.settings.toc_err},
-                     {"self", options.settings.self},
-                     {"weld", options.weld ? Json(*options.weld) : Json(nullptr)}};
+  Json head = {{"fcl_ccd", FCL_CCD_VERSION},
+               {"query", kQueries[static_cast<int>(options.settings.query)]},
+               {"toc_err", options.settings.toc_err},
+               {"self", options.settings.self},
+               {"weld", options.weld ? Json(*options.weld) : Json(nullptr)}};
+  if (options.settings.min_distance > 0) {
+    head["thickness"] = options.settings.min_distance;
+    head["ignore_initially_closer"] = options.settings.ignore_initially_closer;
+  }
   return head.dump() + '\n';
 }
 
@@ -162,7 +166,7 @@ class RunOutputs {
  public:
   /// @brief Prints the head of the table; changes no file.
   RunOutputs(const RunOptions& options, const RunSummary& summary) : summary_(summary) {
-    print(tableHead());
+    print(tableHead(options.settings.min_distance > 0));
     if (!options.json_path.empty()) json_.emplace(options.json_path);
     if (!options.paint_path.empty()) paint_.emplace(options.paint_path);
   }

@@ -28,6 +28,10 @@ const char* nameOf(Kind kind) {
       return "vf";
     case Kind::kEdgeEdge:
       return "ee";
+    case Kind::kVertexEdge:
+      return "ve";
+    case Kind::kVertexVertex:
+      return "vv";
     case Kind::kCrossing:
       break;
   }
@@ -42,6 +46,17 @@ std::size_t countOf(Kind kind, const StepResult& result) {
   return static_cast<std::size_t>(std::count_if(
       result.contacts.begin(), result.contacts.end(),
       [kind](const SceneContact& contact) { return contact.kind == kind; }));
+}
+
+/// VE and VV are kinds of contacts at a distance only.
+Json countsOf(const StepResult& result) {
+  Json counts = {{"vf", countOf(Kind::kVertexFace, result)},
+                 {"ee", countOf(Kind::kEdgeEdge, result)}};
+  if (result.at_distance) {
+    counts["ve"] = countOf(Kind::kVertexEdge, result);
+    counts["vv"] = countOf(Kind::kVertexVertex, result);
+  }
+  return counts;
 }
 
 double milliseconds(double seconds) { return 1e3 * seconds; }
@@ -78,29 +93,41 @@ void append(const Vertices& vertices, const Triangles& triangles, Mesh& whole) {
 
 }  // namespace
 
-std::string tableHead() {
-  return "step  triangles        vf        ee    first time          ms  uncertain  "
-         "initially crossing\n";
+std::string tableHead(bool at_distance) {
+  return std::string("step  triangles        vf        ee") +
+         (at_distance ? "        ve        vv" : "") +
+         "    first time          ms  uncertain  initially crossing\n";
 }
 
 std::string tableRow(const StepReport& report) {
   const StepResult& result = report.result;
   const SceneContact* first = result.first();
   const std::string first_time = first == nullptr ? "-" : numberText(first->toc_lo, 9);
-  char row[256];  // eight fields of at most 20 characters
-  std::snprintf(row, sizeof row, "%4zu  %9zu  %8zu  %8zu  %12s  %10.3f  %9d  %s\n",
-                report.index, report.triangles, countOf(Kind::kVertexFace, result),
-                countOf(Kind::kEdgeEdge, result), first_time.c_str(),
+  char counts[128], rest[128];  // each of at most four fields of at most 20 characters
+  std::snprintf(counts, sizeof counts, "%4zu  %9zu  %8zu  %8zu", report.index,
+                report.triangles, countOf(Kind::kVertexFace, result),
+                countOf(Kind::kEdgeEdge, result));
+  std::string row = counts;
+  if (result.at_distance) {
+    std::snprintf(counts, sizeof counts, "  %8zu  %8zu",
+                  countOf(Kind::kVertexEdge, result),
+                  countOf(Kind::kVertexVertex, result));
+    row += counts;
+  }
+  std::snprintf(rest, sizeof rest, "  %12s  %10.3f  %9d  %s\n", first_time.c_str(),
                 milliseconds(result.times.total()), kNumUncertain,
                 result.initially_crossing ? "yes" : "no");
-  return row;
+  return row + rest;
 }
 
 std::string summaryLines(const RunSummary& summary) {
-  std::string lines = std::to_string(summary.steps) + " steps, " +
-                      std::to_string(summary.vf) + " vf and " +
-                      std::to_string(summary.ee) + " ee contacts; " +
-                      std::to_string(summary.crossing_steps) + " steps began crossing\n";
+  std::string lines =
+      std::to_string(summary.steps) + " steps, " + std::to_string(summary.vf) +
+      (summary.at_distance ? " vf, " : " vf and ") + std::to_string(summary.ee) +
+      (summary.at_distance ? " ee, " + std::to_string(summary.ve) + " ve and " +
+                                 std::to_string(summary.vv) + " vv contacts; "
+                           : " ee contacts; ") +
+      std::to_string(summary.crossing_steps) + " steps began crossing\n";
   if (summary.first)
     lines += "first contact: step " + std::to_string(summary.first->step) + " at " +
              numberText(summary.first->toc_lo, 9) + '\n';
@@ -126,14 +153,15 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
   };
   for (const SceneContact& contact : report.result.contacts) {
     lines.append(step).append(1, ',').append(nameOf(contact.kind));
+    const auto num_vertices = static_cast<std::size_t>(contact.num_vertices);
     for (std::size_t i = 0; i < 4; ++i)
-      lines.append(1, ',').append(nameOf(contact.vertices[i]));
+      lines.append(1, ',').append(i < num_vertices ? nameOf(contact.vertices[i]) : "");
     lines.append(1, ',').append(numberText(contact.toc_lo));
     lines.append(1, ',').append(numberText(contact.toc_hi));
     if (columns.triangles)
       // The first and the last vertex tell the mesh of each feature.
       for (const std::size_t i : {0u, 1u})
-        lines.append(contact.vertices[3 * i].of_b ? ",b" : ",")
+        lines.append(contact.vertices[i * (num_vertices - 1)].of_b ? ",b" : ",")
             .append(std::to_string(contact.triangles[i]));
     if (columns.position) addNumbers(contact.position);
     if (columns.normal) addNumbers(contact.normal);
@@ -153,9 +181,7 @@ std::string stepLine(const StepReport& report) {
     first = toJson(*result.first());
   const Json line = {{"step", report.index},
                      {"files", report.files},
-                     {"contacts",
-                      {{"vf", countOf(Kind::kVertexFace, result)},
-                       {"ee", countOf(Kind::kEdgeEdge, result)}}},
+                     {"contacts", countsOf(result)},
                      {"initially_crossing", result.initially_crossing},
                      {"first", first}};
   return line.dump() + '\n';
@@ -167,6 +193,9 @@ RunSummary summaryOf(const StepReport& report) {
   summary.steps = 1;
   summary.vf = countOf(Kind::kVertexFace, result);
   summary.ee = countOf(Kind::kEdgeEdge, result);
+  summary.at_distance = result.at_distance;
+  summary.ve = countOf(Kind::kVertexEdge, result);
+  summary.vv = countOf(Kind::kVertexVertex, result);
   summary.crossing_steps = result.initially_crossing ? 1 : 0;
   if (const SceneContact* first = result.first())
     summary.first = RunSummary::First{report.index, first->toc_lo};
@@ -179,7 +208,11 @@ RunSummary summaryOf(const Json& step_line) {
   RunSummary summary;
   summary.steps = 1;
   summary.vf = step_line.at("contacts").at("vf");
-  summary.ee = step_line.at("contacts").at("ee");
+  const Json& counts = step_line.at("contacts");
+  summary.ee = counts.at("ee");
+  summary.at_distance = counts.contains("ve");
+  summary.ve = counts.value("ve", std::size_t{0});
+  summary.vv = counts.value("vv", std::size_t{0});
   summary.crossing_steps = step_line.at("initially_crossing").get<bool>() ? 1 : 0;
   const Json& first = step_line.at("first");
   if (!first.is_null())
@@ -191,6 +224,9 @@ void RunSummary::add(const RunSummary& step) {
   steps += step.steps;
   vf += step.vf;
   ee += step.ee;
+  at_distance |= step.at_distance;
+  ve += step.ve;
+  vv += step.vv;
   crossing_steps += step.crossing_steps;
   if (!first) first = step.first;
   if (step.slowest_ms > slowest_ms) {
@@ -203,8 +239,13 @@ Json toJson(const RunSummary& summary) {
   Json first = nullptr;
   if (summary.first)
     first = {{"step", summary.first->step}, {"toc_lo", summary.first->toc_lo}};
+  Json counts = {{"vf", summary.vf}, {"ee", summary.ee}};
+  if (summary.at_distance) {
+    counts["ve"] = summary.ve;
+    counts["vv"] = summary.vv;
+  }
   return {{"steps", summary.steps},
-          {"contacts", {{"vf", summary.vf}, {"ee", summary.ee}}},
+          {"contacts", std::move(counts)},
           {"initially_crossing", summary.crossing_steps},
           {"first", first}};
 }
@@ -218,9 +259,7 @@ Json toJson(const StepReport& report) {
           {"files", report.files},
           {"vertices", report.vertices},
           {"triangles", report.triangles},
-          {"contacts",
-           {{"vf", countOf(Kind::kVertexFace, result)},
-            {"ee", countOf(Kind::kEdgeEdge, result)}}},
+          {"contacts", countsOf(result)},
           {"initially_crossing", result.initially_crossing},
           {"first", first == nullptr ? Json(nullptr) : toJson(*first)},
           {"ms", toJson(result.times)},
@@ -245,7 +284,7 @@ PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
   for (const SceneContact& contact : result.contacts)
     if (contact.kind == Kind::kEdgeEdge) colour(contact, kOrange);
   for (const SceneContact& contact : result.contacts)
-    if (contact.kind == Kind::kVertexFace) colour(contact, kRed);
+    if (contact.kind != Kind::kEdgeEdge) colour(contact, kRed);
   if (result.crossing) colour(*result.crossing, kViolet);
   return painted;
 }

@@ -34,6 +34,9 @@ struct RunSummary {
   std::size_t steps{0};
   std::size_t vf{0};
   std::size_t ee{0};
+  bool at_distance{false};  ///< whether the next two mean something
+  std::size_t ve{0};
+  std::size_t vv{0};
   std::size_t crossing_steps{0};  ///< steps that began crossing
   struct First {
     std::size_t step;
@@ -49,7 +52,9 @@ struct RunSummary {
 RunSummary summaryOf(const StepReport& report);
 
 /// @brief Head and rows of the table for the terminal, each with its line end.
-std::string tableHead();
+/// @param at_distance  whether there are contacts of a vertex and an edge, and of two
+/// vertices
+std::string tableHead(bool at_distance);
 std::string tableRow(const StepReport& report);
 
 /// @brief The summary as lines for the terminal.

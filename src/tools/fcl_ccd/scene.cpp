@@ -75,7 +75,9 @@ void updateModel(Model& model, const Vertices& from, const Vertices& to,
 }
 
 /// The number of vertices of the contact's first feature.
-std::size_t firstFeatureSize(Kind kind) { return kind == Kind::kVertexFace ? 1 : 2; }
+std::size_t firstFeatureSize(Kind kind) {
+  return kind == Kind::kEdgeEdge || kind == Kind::kCrossing ? 2 : 1;
+}
 
 SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) {
   SceneContact out;
@@ -141,6 +143,8 @@ void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
   request.toc_err = settings_.toc_err;
   request.enable_contact = settings_.points;
   request.num_threads = settings_.num_threads;
+  request.min_distance = settings_.min_distance;
+  request.ignore_initially_closer = settings_.ignore_initially_closer;
   fcl::ContinuousContactResultd result;
   const fcl::Transform3d identity = fcl::Transform3d::Identity();
   if (&o1 == &o2)
@@ -165,6 +169,7 @@ void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
 
 StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
   StepResult step;
+  step.at_distance = settings_.min_distance > 0;
   const Stopwatch watch;
   updateModel(*a_, *from.a, *to.a, "A");
   if (b_ != nullptr) updateModel(*b_, *from.b, *to.b, "B");

@@ -20,6 +20,8 @@ struct QuerySettings {
   double toc_err{1e-4};
   bool self{true};     ///< whether A is tested against itself
   bool points{false};  ///< whether contacts have a position and a normal
+  double min_distance{0};
+  bool ignore_initially_closer{false};
   int repeat{1};
   int num_threads{1};
 };
@@ -55,6 +57,7 @@ struct StepTimes {
 
 struct StepResult {
   std::vector<SceneContact> contacts;  ///< earliest first
+  bool at_distance{false};             ///< whether features that come near are contacts
   bool initially_crossing{false};
   std::optional<SceneContact> crossing;
   fcl::StageCounts counts;

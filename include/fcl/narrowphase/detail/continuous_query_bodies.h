@@ -32,7 +32,9 @@ QuerySettings settingsOf(const ContinuousCollisionRequest<S>& request) {
           false,
           nullptr,
           nullptr,
-          nullptr};
+          nullptr,
+          0.,
+          false};
 }
 
 template <typename S>
@@ -47,7 +49,9 @@ QuerySettings settingsOf(const ContinuousContactRequest<S>& request) {
           request.enable_crossings,
           &request.filter1,
           &request.filter2,
-          request.accepts_triangles ? &request.accepts_triangles : nullptr};
+          request.accepts_triangles ? &request.accepts_triangles : nullptr,
+          static_cast<double>(request.min_distance),
+          request.ignore_initially_closer};
 }
 
 template <typename S>

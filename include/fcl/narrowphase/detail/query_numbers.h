@@ -127,6 +127,8 @@ struct QuerySettings {
   const ContinuousFilter* filter1;
   const ContinuousFilter* filter2;
   const std::function<bool(std::intptr_t, std::intptr_t)>* accepts_triangles;
+  double min_distance;
+  bool ignore_initially_closer;
 };
 
 /// @brief The answer: the fields of FCL's own result, with the time bracket of the first
@@ -165,12 +167,12 @@ FCL_EXPORT PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t);
 /// @brief The candidates of a pair.
 template <typename S>
 FCL_EXPORT bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
-                                 const CandidateSink& sink);
+                                 const CandidateSink& sink, double min_distance);
 
 /// @brief The candidates of a mesh with itself.
 template <typename S>
 FCL_EXPORT bool answerSelfCandidates(const CollisionGeometry<S>* o,
-                                     const CandidateSink& sink);
+                                     const CandidateSink& sink, double min_distance);
 
 /// @brief Whether a geometry is a mesh whose two frames differ.
 template <typename S>

@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/distance_advance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool isBefore(const VertexPath& p, const VertexPath& q) {
+  for (int k = 0; k < 3; ++k)
+    if (p.t0[k] != q.t0[k]) return p.t0[k] < q.t0[k];
+  for (int k = 0; k < 3; ++k)
+    if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k];
+  return false;
+}
+
+/// A pair whose points are in an order that depends on the points only.
+struct OrderedPair {
+  FeaturePoints x;
+  int number[4]{0, 1, 2, 3};
+
+  OrderedPair(ContinuousContactKind kind, const FeaturePoints& points) : x(points) {
+    switch (kind) {
+      case ContinuousContactKind::kVertexFace:
+        sort(1, 2);
+        sort(2, 3);
+        sort(1, 2);
+        return;
+      case ContinuousContactKind::kEdgeEdge:
+        sort(0, 1);
+        sort(2, 3);
+        if (isBefore(x[2], x[0]) || (!isBefore(x[0], x[2]) && isBefore(x[3], x[1]))) {
+          swap(0, 2);
+          swap(1, 3);
+        }
+        return;
+      case ContinuousContactKind::kVertexEdge:
+        sort(1, 2);
+        return;
+      default:
+        sort(0, 1);
+        return;
+    }
+  }
+
+ private:
+  void sort(int i, int j) {
+    if (isBefore(x[j], x[i])) swap(i, j);
+  }
+  void swap(int i, int j) {
+    std::swap(x.point[i], x.point[j]);
+    std::swap(number[i], number[j]);
+  }
+};
+
+/// n, of length 1 or less, without its parts along v and w, and with length 1; the zero
+/// vector if nothing is left.
+Vec perpendicular(Vec n, Vec v, Vec w) {
+  const auto without = [](const Vec& x, const Vec& y) {
+    const double square = dot(y, y);
+    return square > 0 ? x - (dot(x, y) / square) * y : x;
+  };
+  if (dot(v, v) < dot(w, w)) std::swap(v, w);
+  // In a sliver v and w have nearly one direction. Twice is enough: what the first time
+  // leaves is rounding, relative to the part that is taken away.
+  const Vec across = without(without(w, v), v);
+  for (int i = 0; i < 2; ++i) {
+    const double length = std::sqrt(dot(n, n));
+    if (!(length > 0)) return {0, 0, 0};
+    n = without(without(without((1 / length) * n, v), across), v);
+  }
+  const double length = std::sqrt(dot(n, n));
+  return length > 0 ? (1 / length) * n : Vec{0, 0, 0};
+}
+
+/// n, of length 1 or less, without its part along v, and with length 1.
+Vec perpendicular(Vec n, const Vec& v) {
+  const double square = dot(v, v);
+  if (square > 0) n = n - (dot(n, v) / square) * v;
+  const double length = std::sqrt(dot(n, n));
+  return length > 0 ? (1 / length) * n : Vec{0, 0, 0};
+}
+
+/// Until when a direction provably separates a pair.
+struct Step {
+  /// Not after the time of the step: the direction proves nothing.
+  double until;
+  /// How fast the gap along the direction closes.
+  double rate;
+};
+
+/// A direction that turns: n + tau * turn at the time t + tau.
+struct TurningDirection {
+  Vec n, turn;
+};
+
+/// A time is a quotient of two differences, or of a product and a sum with a root, then
+/// a product: 8 units in the last place.
+constexpr double kDown = 1 - 0x1p-50, kUp = 1 + 0x1p-50;
+
+/// The first time at which gap + rate tau + bend tau^2 is 0, for gap > 0; infinity
+/// without one. It is the root of a polynomial whose coefficients differ by less than 8
+/// units in the last place.
+double firstRoot(double gap, double rate, double bend) {
+  const double discriminant = rate * rate - 4 * gap * bend;
+  if (!(discriminant >= 0)) return kInfinity;
+  const double divisor = std::sqrt(discriminant) - rate;
+  return divisor > 0 ? 2 * gap / divisor : kInfinity;
+}
+
+/// The features of one query, as a polygon, and proofs that they are apart.
+///
+/// A fixed direction n: the corners are linear functions of t along n. A product with a
+/// corner is off by 5 u L, and n is below 1 + 5 u: the margin needs 16 u (d + L).
+///
+/// A direction that turns, while it turns by less than its length: (n + tau m) . (c + tau
+/// c') for each corner, at most d |n + tau m| <= d (1 + tau^2 m^2 / 2) (1 + 8 u) + rest.
+/// With c 8 u L off and c', below 2 L, 4 u L off, the three coefficients are off by 11 u
+/// L, 24 u L and 12 u L + 4 u d, if times tau. The root adds 8 u of each, 48 u L + 8 u d,
+/// the length of the direction 12 u d, the time 4 u L: below 100 u (d + L).
+class AdvancingPair {
+ public:
+  AdvancingPair(ContinuousContactKind kind, const FeaturePoints& x) : polygon_(kind, x) {}
+
+  double size() const { return polygon_.size(); }
+
+  NearestPoint nearestAt(double t) {
+    for (int k = 0; k < polygon_.count(); ++k) corners_[k] = polygon_.at(k, t);
+    return nearestPoint(polygon_, corners_);
+  }
+
+  /// A unit direction from one feature to the other, at the time of nearestAt(). The
+  /// first attempt is the plain one. Pairs of nearly parallel edges, slivers and
+  /// distances far below the size of the features may need others: rounding hides which
+  /// corners are at the height of the nearest point.
+  Vec direction(const NearestPoint& near, int attempt) const {
+    const bool is_corner = near.corner >= 0, is_inside = !is_corner && near.side < 0;
+    Vec n = near.point;
+    if (is_inside && attempt == 0)
+      n = (dot(near.normal, near.point) < 0 ? -1. : 1.) * near.normal;
+    const double length =
+        is_inside && attempt == 0 ? std::sqrt(dot(n, n)) : near.distance;
+    if (!(length > 0)) return {0, 0, 0};
+    n = (1 / length) * n;
+    const int last = polygon_.count() - 1;
+    if (last > 1 && (attempt == 4 || (is_inside && attempt > 0)))
+      return perpendicular(n, corners_[1] - corners_[0], corners_[last] - corners_[0]);
+    if (is_inside || (is_corner && attempt < 2)) return n;
+    const Vec& base = corners_[is_corner ? near.corner : near.side];
+    const Vec side = is_corner ? Vec{0, 0, 0} : corners_[polygon_.next(near.side)] - base;
+    if (!is_corner) n = perpendicular(n, side);
+    if (attempt == 0) return n;
+    if (!is_corner) n = perpendicular(n, side);
+    if (attempt == 1) return n;
+    int lowest = 0;
+    for (int k = 1; k <= last; ++k)
+      if (dot(n, corners_[k]) < dot(n, corners_[lowest])) lowest = k;
+    const Vec other = corners_[lowest] - base;
+    if (attempt == 2) return perpendicular(n, side, other);
+    // The side from the end of this one to the lowest corner.
+    return perpendicular(perpendicular(n, near.along < 0.5 ? other : other - side),
+                         near.along < 0.5 ? other : other - side);
+  }
+
+  /// The longest step that a direction of the nearest points proves.
+  /// @param least  d and the margin
+  Step longestStep(const NearestPoint& near, double d, double least, double t,
+                   double t_max) const {
+    Step best{t, 0};
+    for (int attempt = 0; attempt < kAttempts; ++attempt) {
+      const Vec n = direction(near, attempt);
+      best = fixedStep(n, least, t);
+      if (best.until > t_max) return best;
+      const Step turned = turningStep(turning(near, n), d, least, t);
+      if (turned.until > best.until) best = turned;
+      if (best.until > t) return best;
+    }
+    return best;
+  }
+
+ private:
+  static constexpr int kAttempts = 5;
+
+  Vec velocity(int corner) const { return polygon_.t1(corner) - polygon_.t0(corner); }
+
+  /// The direction as it turns with the features. Any turn would be right.
+  TurningDirection turning(const NearestPoint& near, const Vec& n) const {
+    const auto across = [&n](const Vec& v) { return v - dot(v, n) * n; };
+    if (near.corner >= 0) return {n, (1 / near.distance) * across(velocity(near.corner))};
+    if (near.side >= 0) {
+      const int next = polygon_.next(near.side);
+      const Vec side = corners_[next] - corners_[near.side], from = velocity(near.side),
+                change = velocity(next) - from;
+      const Vec beside = cross(side, n), moved = from + near.along * change;
+      const double square = dot(side, side);
+      return {n, (-dot(n, change) / square) * side +
+                     (dot(beside, moved) / (square * near.distance)) * beside};
+    }
+    const int last = polygon_.count() - 1;
+    const Vec v = corners_[1] - corners_[0], w = corners_[last] - corners_[0],
+              dv = velocity(1) - velocity(0), dw = velocity(last) - velocity(0);
+    const double length = dot(near.normal, n);
+    return {n, (1 / length) * across(cross(dv, w) + cross(v, dw))};
+  }
+
+  Step fixedStep(const Vec& n, double least, double t) const {
+    Step step{kInfinity, 0};
+    for (int k = 0; k < polygon_.count(); ++k) {
+      const double a = dot(n, polygon_.t0(k)) - least, b = dot(n, polygon_.t1(k)) - least;
+      if (a > 0 && b > 0) continue;
+      if (!(a > 0) && !(b > 0)) return {-kInfinity, 0};
+      const double at = a / (a - b);
+      if (!(a > 0)) {
+        if (!(at * kUp <= t)) return {-kInfinity, 0};
+      } else if (at * kDown < step.until) {
+        step = {at * kDown, a - b};
+      }
+    }
+    return step;
+  }
+
+  /// The same of a direction that turns, at the time of nearestAt().
+  Step turningStep(const TurningDirection& direction, double d, double least,
+                   double t) const {
+    const auto& [n, turn] = direction;
+    const double square = dot(turn, turn);
+    // While it turns by less than its length.
+    double longest = 1 / std::sqrt(square), rate = 0;
+    if (!(longest > 0)) return {-kInfinity, 0};
+    for (int k = 0; k < polygon_.count(); ++k) {
+      const Vec c = corners_[k], change = velocity(k);
+      const double gap = dot(n, c) - least, closing = dot(n, change) + dot(turn, c),
+                   bend = dot(turn, change) - 0.5 * d * square;
+      if (!(gap > 0)) return {-kInfinity, 0};
+      const double root = firstRoot(gap, closing, bend);
+      if (root < longest) {
+        longest = root;
+        rate = -closing;
+      }
+    }
+    return {t + longest * kDown, rate};
+  }
+
+  DifferencePolygon polygon_;
+  Vec corners_[DifferencePolygon::kMaxCorners];
+};
+
+/// The features that the nearest point of a polygon belongs to.
+void setNearest(ContinuousContactKind kind, const NearestPoint& near,
+                const int (&number)[4], DistanceContact& out) {
+  const auto set = [&](ContinuousContactKind part, int i, int j, int k) {
+    out.kind = part;
+    const int points[] = {i, j, k};
+    for (int m = 0; m < 3; ++m) out.points[m] = points[m] < 0 ? -1 : number[points[m]];
+    out.points[3] = -1;
+  };
+  if (near.corner >= 0) {
+    const CornerPoints p = DifferencePolygon::pointsOf(kind, near.corner);
+    return set(ContinuousContactKind::kVertexVertex, p.first, p.second, -1);
+  }
+  if (near.side < 0 || kind == ContinuousContactKind::kVertexEdge) {
+    out.kind = kind;
+    for (int m = 0; m < 4; ++m) out.points[m] = number[m];
+    if (kind == ContinuousContactKind::kVertexEdge) out.points[3] = -1;
+    return;
+  }
+  if (kind == ContinuousContactKind::kVertexFace)
+    return set(ContinuousContactKind::kVertexEdge, 0, 1 + near.side,
+               1 + (near.side + 1) % 3);
+  // A side of the parallelogram belongs to an end of one edge and to the other edge.
+  constexpr int kVertex[] = {0, 3, 1, 2};
+  const int other = near.side % 2 == 0 ? 2 : 0;
+  set(ContinuousContactKind::kVertexEdge, kVertex[near.side], other, other + 1);
+}
+
+/// Ascending numbers, and of two edges or vertices the first pair's first.
+void order(ContinuousContactKind kind, DistanceContact& out) {
+  int* p = out.points;
+  if (out.kind == ContinuousContactKind::kVertexEdge && p[2] < p[1])
+    std::swap(p[1], p[2]);
+  if (out.kind == ContinuousContactKind::kVertexVertex && p[1] < p[0])
+    std::swap(p[0], p[1]);
+  if (out.kind == kind)
+    for (int m = 0; m < 4; ++m)
+      if (p[m] >= 0) p[m] = m;
+}
+
+/// A time in (t, t + width] at which the features provably are within d; t if none is
+/// found.
+/// @param gap  above d, at t
+double proveWithin(AdvancingPair& pair, const DistanceTolerance& tolerance, double d,
+                   double t, double width, double gap, double rate) {
+  if (!(width > 0) || !(rate > 0)) return t;
+  constexpr double kFirst = 1.5, kFactor = 4;
+  for (double h = kFirst * gap / rate;; h *= kFactor) {
+    double time = t + std::min(h, width);
+    if (time - t > width) time = std::nextafter(time, t);
+    if (time > t && pair.nearestAt(time).distance + tolerance.distance_error <= d)
+      return time;
+    if (!(h < width)) return t;
+  }
+}
+
+/// Steps after which a pair that is still apart by more than rounding probably moves
+/// along another at nearly this distance. A graze takes a quarter of the gap in a step:
+/// 24 steps from 1 to 2^-46.
+constexpr int kPlainSteps = 64;
+/// Steps after which a pair is given up.
+constexpr int kMaxSteps = 10000;
+
+/// Takes the bracket from what is known at the time t.
+void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
+                const DistanceRequest& request, double d, double t, double reached,
+                double rate, DistanceContact& out) {
+  // A bracket is narrow beside its end, so that simulations can step by it.
+  constexpr double kShareOfTime = 0.125;
+  out.is_contact = true;
+  out.toc_lo = out.toc_hi = t;
+  if (t == 0 || reached <= d) return;
+  const double width =
+      std::min(std::min(request.toc_err, kShareOfTime * t), request.t_max - t);
+  out.toc_hi = proveWithin(pair, tolerance, d, t, width, reached - d, rate);
+}
+
+DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
+                        const int (&number)[4], const DistanceRequest& request) {
+  DistanceContact out;
+  double d = request.distance, t = 0, rate = 0;
+  DistanceTolerance tolerance(d, pair.size());
+  const double last = std::min(request.t_max, request.t_stop);
+  for (;; ++out.steps) {
+    const NearestPoint near = pair.nearestAt(t);
+    const double reached = near.distance + tolerance.distance_error;
+    if (out.steps == 0 && request.ignores_initially_closer &&
+        reached <= d * (1 + DistanceTolerance::kShare) + tolerance.touching) {
+      // Half of the tolerance more than what would be a contact at t = 0.
+      d = reached * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance.touching;
+      if (!(d > 0)) return out;
+      tolerance = DistanceTolerance(d, pair.size());
+    }
+    const double share = out.steps < kPlainSteps ? 0 : DistanceTolerance::kShare;
+    bool is_contact = reached <= d + (share * d + tolerance.touching);
+    Step step{t, 0};
+    if (!is_contact) {
+      step = pair.longestStep(near, d, d + tolerance.margin, t, last);
+      if (!(step.until > t) || out.steps == kMaxSteps) {
+        is_contact = true;
+        out.is_given_up =
+            reached > d + (DistanceTolerance::kShare * d + tolerance.touching);
+      }
+    }
+    if (is_contact) {
+      setNearest(kind, near, number, out);
+      order(kind, out);
+      setBracket(pair, tolerance, request, d, t, reached, rate, out);
+      return out;
+    }
+    if (step.until > last) return out;
+    t = step.until;
+    rate = step.rate;
+  }
+}
+
+/// Between these sizes no square and no product overflows or underflows.
+constexpr double kLeastSize = 0x1p-200, kMostSize = 0x1p200;
+
+double sizeOf(ContinuousContactKind kind, const FeaturePoints& x, double distance) {
+  const DifferencePolygon polygon(kind, x);
+  double size = distance;
+  for (int k = 0; k < polygon.count(); ++k)
+    size = std::max(size, std::max(maxNorm(polygon.t0(k)), maxNorm(polygon.t1(k))));
+  return size;
+}
+
+/// The same of a pair of extreme size.
+DistanceContact advanceScaled(ContinuousContactKind kind, const OrderedPair& ordered,
+                              const DistanceRequest& request) {
+  // All coordinates times a power of two. Where the size is not finite, the coordinates
+  // are near the largest number; where it is tiny, so are they, since differences of
+  // doubles are multiples of their units. What underflows is below 2^-850 of the size.
+  const double size = sizeOf(kind, ordered.x, request.distance);
+  constexpr int kMostShift = 1000;
+  const int shift = std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
+  const double scale = std::ldexp(1, std::max(-kMostShift, std::min(kMostShift, shift)));
+  VertexPath scaled[4];
+  FeaturePoints points = ordered.x;
+  DistanceRequest scaled_request = request;
+  scaled_request.distance *= scale;
+  for (int i = 0; i < 4; ++i) {
+    if (!points.point[i]) continue;
+    for (int k = 0; k < 3; ++k) {
+      scaled[i].t0[k] = ordered.x[i].t0[k] * scale;
+      scaled[i].t1[k] = ordered.x[i].t1[k] * scale;
+    }
+    points.point[i] = &scaled[i];
+  }
+  AdvancingPair pair(kind, points);
+  return advance(kind, pair, ordered.number, scaled_request);
+}
+
+/// Where the nearest point of a pair of edges is on the first one, as a fraction.
+double placeOnFirstEdge(const NearestPoint& near) {
+  if (near.corner >= 0) return near.corner < 2 ? 0 : 1;
+  switch (near.side) {
+    case 0:
+      return 0;
+    case 1:
+      return near.along;
+    case 2:
+      return 1;
+    case 3:
+      return 1 - near.along;
+    default:
+      return near.across;
+  }
+}
+
+}  // namespace
+
+DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoints& x,
+                                  const DistanceRequest& request) {
+  const OrderedPair ordered(kind, x);
+  AdvancingPair pair(kind, ordered.x);
+  const double size = std::max(pair.size(), request.distance);
+  if (size >= kLeastSize && size <= kMostSize)
+    return advance(kind, pair, ordered.number, request);
+  return advanceScaled(kind, ordered, request);
+}
+void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
+                      double (&position)[3], double (&normal)[3]) {
+  const OrderedPair ordered(kind, x);
+  AdvancingPair pair(kind, ordered.x);
+  const NearestPoint near = pair.nearestAt(t);
+  const double s = kind == ContinuousContactKind::kEdgeEdge ? placeOnFirstEdge(near) : 0;
+  const double way[3] = {near.point.x, near.point.y, near.point.z};
+  const auto at = [&](int i, int k) {
+    return (1 - t) * ordered.x[i].t0[k] + t * ordered.x[i].t1[k];
+  };
+  for (int k = 0; k < 3; ++k) {
+    const double on_first = s > 0 ? (1 - s) * at(0, k) + s * at(1, k) : at(0, k);
+    position[k] = on_first + 0.5 * way[k];
+  }
+  Vec n = near.distance > 0 ? pair.direction(near, 1) : Vec{0, 0, 0};
+  const int num_first = kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+  if (ordered.number[0] >= num_first) n = -1. * n;
+  normal[0] = n.x;
+  normal[1] = n.y;
+  normal[2] = n.z;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

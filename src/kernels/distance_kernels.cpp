@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The distance filter of eight pairs: a direction that separates them at both ends of
+// their windows.
+#include <cfloat>
+
+#if defined(FCL_CCD_USE_HIGHWAY)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/distance_kernels.cpp"
+#include "hwy/foreach_target.h"
+#endif
+
+#include "elementary/distance_advance.h"
+#include "kernels/eight_features.h"
+#include "kernels/kernel_functions.h"
+#include "kernels/lanes.h"
+#include "kernels/vectors.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE Vectors operator*(const Doubles& s, const Vectors& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+
+HWY_INLINE Vectors select(const DoubleMask& mask, const Vectors& a, const Vectors& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
+
+/// The shortest of some vectors so far.
+struct Shortest {
+  Vectors vector;
+  Doubles square;
+
+  HWY_INLINE void take(const Vectors& v, const DoubleMask& is_valid) {
+    const Doubles other = dot(v, v);
+    const DoubleMask is_shorter = is_valid & (other < square);
+    vector = select(is_shorter, v, vector);
+    square = select(is_shorter, other, square);
+  }
+};
+
+/// Takes the point of the side pq that is nearest to the origin.
+HWY_INLINE void takeSide(const Vectors& p, const Vectors& q, Shortest& best) {
+  const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.);
+  const Vectors way = q - p;
+  const Doubles length = dot(way, way), along = zero - dot(p, way);
+  // A NaN of a side without length becomes 0.
+  const Doubles s = min(one, max(along / length, zero));
+  best.take(p + s * way, zero <= zero);
+}
+
+/// The vector from the origin to about the nearest point of a polygon of three or four
+/// corners, as nearestPoint() has it.
+HWY_INLINE Vectors nearestPoint(const Vectors* corner, int count) {
+  const Doubles zero = broadcast<kEight>(0.);
+  Shortest best{corner[0], dot(corner[0], corner[0])};
+  for (int k = 0; k < count; ++k)
+    takeSide(corner[k], corner[k + 1 < count ? k + 1 : 0], best);
+  const Vectors v = corner[1] - corner[0], w = corner[count - 1] - corner[0],
+                n = cross(v, w);
+  const Doubles square = dot(n, n), along = dot(cross(w, corner[0]), n),
+                across = dot(cross(corner[0], v), n);
+  const DoubleMask is_inside =
+      (along > zero) & (across > zero) &
+      (count == 3 ? (along + across < square) : (along < square) & (across < square));
+  best.take((dot(corner[0], n) / square) * n, is_inside);
+  return best.vector;
+}
+
+/// Differences of the points of two features that move linearly, at both ends of the
+/// window, in the order of DifferencePolygon, and a bound on their coordinates.
+struct MovingPolygons {
+  Vectors l[4], h[4];
+  Doubles norm;
+  int count;
+
+  HWY_INLINE MovingPolygons(ContinuousContactKind kind, const Points& x,
+                            const Doubles& lo, const Doubles& hi)
+      : norm(broadcast<kEight>(0.)),
+        count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
+    for (int k = 0; k < count; ++k) {
+      const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
+      const Vectors t0 = x.t0[p.second] - x.t0[p.first],
+                    t1 = x.t1[p.second] - x.t1[p.first];
+      norm = max(max(maxNorm(t0), maxNorm(t1)), norm);
+      l[k] = at(t0, t1, lo);
+      h[k] = at(t0, t1, hi);
+    }
+  }
+};
+
+/// Numbers with squares and fourth powers in the range of double.
+HWY_INLINE DoubleMask isMiddling(const Doubles& size) {
+  return (size >= broadcast<kEight>(0x1p-200)) & (size <= broadcast<kEight>(0x1p200));
+}
+
+/// The direction is that of the nearest points in the middle of the window.
+///
+/// u = 2^-53, N the norm. A corner is off by 8 u of its length, which is below 2 N, a
+/// product with it by 3 u more: 22 u N times the length of the direction, which rounds by
+/// 3 u. advanceToDistance() reports what comes within d (1 + kShare) + kTouching (d + 2
+/// N): twice these tolerances are more than all of it.
+unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
+                                 const std::uint32_t* codes, const TimeWindow* windows,
+                                 std::size_t count, double latest, double distance) {
+  // The last one fills up the eight.
+  std::uint32_t eight_codes[kEight];
+  TimeWindow eight_windows[kEight];
+  for (std::size_t lane = 0; lane < kEight; ++lane) {
+    eight_codes[lane] = codes[lane < count ? lane : count - 1];
+    eight_windows[lane] = windows[lane < count ? lane : count - 1];
+  }
+  Doubles starts, ends;
+  loadTwoEach(&eight_windows->lo, starts, ends);
+  // windowLo() and windowHi().
+  const Doubles margin = broadcast<kEight>(kWindowMargin);
+  const Doubles lo = max(broadcast<kEight>(0.), starts - margin),
+                hi = min(broadcast<kEight>(latest),
+                         min(broadcast<kEight>(1.), ends + margin));
+  const Points points{EightFeatures(pairs, eight_codes)};
+  const MovingPolygons x(kind, points, lo, hi);
+  Vectors middle[4];
+  for (int k = 0; k < x.count; ++k)
+    middle[k] = broadcast<kEight>(0.5) * (x.l[k] + x.h[k]);
+  const Vectors n = nearestPoint(middle, x.count);
+  const Doubles square = dot(n, n);
+  constexpr double kTouching = 2 * DistanceTolerance::kTouching;
+  const double reach = distance * (1 + 2 * DistanceTolerance::kShare + kTouching);
+  const Doubles least = squareRoot(square) * (broadcast<kEight>(reach) +
+                                              broadcast<kEight>(2 * kTouching) * x.norm);
+  DoubleMask apart =
+      isMiddling(x.norm) & isMiddling(square) & isMiddling(broadcast<kEight>(distance));
+  for (int k = 0; k < x.count; ++k)
+    apart = apart & (dot(n, x.l[k]) > least) & (dot(n, x.h[k]) > least);
+  return ((1U << count) - 1) & ~bits(apart);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "query/distance_contact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Where the boxes of a mesh are relative to.
+double originOf(const MeshInstance& mesh, int frame, int k) {
+  return mesh.translation[frame][k] +
+         (mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k]);
+}
+
+/// Bound on the difference of a coordinate of two vertices, but for rounding.
+double sizeOf(const MeshInstance& a, const MeshInstance& b) {
+  double size = 0;
+  for (int frame = 0; frame < 2; ++frame)
+    for (int k = 0; k < 3; ++k)
+      size = std::max(size, std::abs(originOf(a, frame, k) - originOf(b, frame, k)));
+  for (const MeshInstance* mesh : {&a, &b})
+    size += mesh->tree ? mesh->tree->reach() : mesh->rigid.reach();
+  return size;
+}
+
+}  // namespace
+
+double reachOf(const MeshInstance& a, const MeshInstance& b, double d) {
+  // The tolerance of a pair is kTouching (d + L), with L at most the length of a vector
+  // of three such coordinates, below twice their size. The rest is more than the rounding
+  // of this.
+  return d * (1 + 2 * DistanceTolerance::kShare) +
+         2 * DistanceTolerance::kTouching * (d + 2 * sizeOf(a, b));
+}
+
+void enlarge(double reach, KdopShift& shift) {
+  // The first three directions are axes, the others have the length sqrt(2).
+  constexpr double kDiagonal = 1.4142135623730952;
+  for (int j = 0; j < 16; ++j)
+    for (Kdop16* box : {&shift.t0, &shift.t1})
+      box->half[j] =
+          roundUp(double{box->half[j]} + (j % 8 < 3 ? reach : kDiagonal * reach), 0.f);
+}
+
+FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
+                         bool is_self) {
+  constexpr std::uint32_t kUnused = std::numeric_limits<std::uint32_t>::max();
+  FeatureContact contact{pair, found.toc_lo, found.toc_hi};
+  contact.kind = found.kind;
+  if (!isPart(found.kind)) return contact;
+  const int num_first = pair.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
+  for (int i = 0; i < 4; ++i)
+    contact.vertices[i] = found.points[i] < 0 ? kUnused : pair.vertices[found.points[i]];
+  bool is_first = found.points[0] < num_first;
+  if (found.kind == ContinuousContactKind::kVertexEdge) {
+    if (contact.vertices[2] < contact.vertices[1])
+      std::swap(contact.vertices[1], contact.vertices[2]);
+    contact.first_on_a = is_first == pair.first_on_a;
+    if (!is_self || contact.first_on_a) return contact;
+  } else {
+    const bool is_turned =
+        is_self ? contact.vertices[1] < contact.vertices[0] : is_first != pair.first_on_a;
+    if (is_turned) {
+      std::swap(contact.vertices[0], contact.vertices[1]);
+      is_first = !is_first;
+    }
+    contact.first_on_a = is_first == pair.first_on_a;
+    if (contact.first_on_a) return contact;
+  }
+  contact.first_on_a = true;
+  std::swap(contact.triangles[0], contact.triangles[1]);
+  return contact;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Contact at a distance: what boxes are enlarged by, and the contact of a pair of
+// features that comes near enough.
+#ifndef FCL_CCD_QUERY_DISTANCE_CONTACT_H
+#define FCL_CCD_QUERY_DISTANCE_CONTACT_H
+
+#include "elementary/distance_advance.h"
+#include "mesh/moving_kdop.h"
+#include "query/contact_sink.h"
+#include "query/feature_batch.h"
+#include "tree/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Pairs of features that stay further apart are no contacts at a distance of d.
+/// Infinity where the size of the meshes is beyond the range of double.
+double reachOf(const MeshInstance& a, const MeshInstance& b, double d);
+
+/// @brief Adds a distance to what is added to boxes: boxes that come within it overlap.
+void enlarge(double reach, KdopShift& shift);
+
+/// @brief The contact of a pair: of the features that are nearest at its time. Their
+/// vertices have ascending ids; those that are not used have the largest number.
+/// @param pair  a VF or EE pair and the triangles that the contact names
+/// @param is_self  a vertex and an edge are named with the vertex on mesh a, of two
+/// vertices the one with the lower id
+FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
+                         bool is_self);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif
