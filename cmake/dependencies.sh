@@ -2,7 +2,7 @@
 # Installs the Debian packages that the project needs and the system does not have. test.sh,
 # demo.sh and report.sh source this file.
 
-# fcl_ccd_install_dependencies build|all [PACKAGE ...]
+# fcl_ccd_install_dependencies build|python|test|all [PACKAGE ...]
 fcl_ccd_install_dependencies() {
   # These are for the build and the tests. pkg-config: a test builds with fcl.pc.
   local packages=(
@@ -11,6 +11,20 @@ fcl_ccd_install_dependencies() {
     libcli11-dev nlohmann-json3-dev libcgal-dev
     libgtest-dev libpng-dev zlib1g-dev libgmp-dev libmpfr-dev
   )
+  # These are for the Python package. python: it and the library, and nothing else.
+  local python_packages=(pybind11-dev python3-dev python3-numpy)
+  if [ "$1" = python ]; then
+    packages=(
+      g++ cmake make libfcl-dev libeigen3-dev libboost-dev libhwy-dev libtbb-dev
+      "${python_packages[@]}"
+    )
+  elif [ "$1" != build ]; then
+    packages+=("${python_packages[@]}" python3-pytest)
+  fi
+  # These are for the tests of the Python package that a user can do without.
+  if [ "$1" = all ]; then
+    packages+=(mypy python3-matplotlib python3-pip python3-setuptools python3-wheel)
+  fi
   # These are for the second compiler, the style checks and the reference.
   if [ "$1" = all ]; then packages+=(clang clang-format-14 clang-tidy-14 doxygen); fi
   packages+=("${@:2}")

@@ -24,7 +24,7 @@ if [ "${CI-}" = true ] && ! $doors; then all=true; fi
 if $all || $doors; then
   fcl_ccd_install_dependencies all
 else
-  fcl_ccd_install_dependencies build
+  fcl_ccd_install_dependencies test
 fi
 jobs=$(nproc)
 if ! $all && ! $doors; then
@@ -41,7 +41,7 @@ build() {
 }
 
 if $doors; then
-  build release
+  build release -DFCL_CCD_BUILD_PYTHON=ON
   for compiler in g++ clang++; do
     bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
   done
@@ -69,9 +69,9 @@ if $all; then
   build asan-ubsan
   echo "== asan-ubsan: unit tests"
   ctest --preset asan-ubsan -j "$jobs"
-  build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON
+  build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
 else
-  build release
+  build release -DFCL_CCD_BUILD_PYTHON=ON
 fi
 echo "== release: tests ($((SECONDS / 60)) min so far)"
 ctest --preset release -j "$jobs"

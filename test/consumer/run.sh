@@ -11,6 +11,7 @@ export CXX=$2
 work=$3
 shift 3
 project_dir=$(cd "$source_dir/../.." && pwd)
+python=${PYTHON:-/usr/bin/python3}
 
 step() { echo "== $*"; }
 fail() {
@@ -21,6 +22,7 @@ fail() {
 all_doors=(
   package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
+  python_package python_extension
   spaces standards cxx14_message two_consumers examples lto
   flags_cxx11 flags_baseline flags_v3 flags_native flags_native_O0
   add_subdirectory add_subdirectory_native add_subdirectory_static
@@ -170,6 +172,30 @@ door_lfcl() { # the flag -lfcl; also the library's path, other linkers, and a pl
 door_dlopen() { # a program that loads "libfcl.so" at run time gets FCL's own
   "$CXX" -std=c++17 "$source_dir/load.cpp" -o "$work/load" -ldl
   run_with "$prefix" "$work/load" libfcl.so ""
+}
+
+door_python_package() { # the Python package in the prefix
+  local module
+  module=$(find "$prefix" -path '*/fcl_ccd/_core*.so')
+  [ -n "$module" ] || fail "The prefix has no Python package. Build with FCL_CCD_BUILD_PYTHON=ON"
+  PYTHONPATH=$(dirname "$(dirname "$module")") "$python" \
+    "$project_dir/python/examples/planner.py"
+}
+
+door_python_extension() { # a Python module of the program that binds FCL's names, with -lfcl
+  local name includes
+  read -ra includes <<<"$("${python}-config" --includes)"
+  name=fcl_extension$("${python}-config" --extension-suffix)
+  mkdir -p "$work/python" "$work/python_stock"
+  "$CXX" -std=c++17 -O1 -shared -fPIC "${includes[@]}" -I"$prefix/include" "${around[@]}" \
+    "$source_dir/python_extension.cpp" -o "$work/python/$name" -L"$prefix/$lib" -lfcl
+  PYTHONPATH=$work/python run_with "$prefix" "$python" "$source_dir/python_extension.py"
+  # Control: the same source with stock FCL.
+  "$CXX" -std=c++17 -O1 -shared -fPIC "${includes[@]}" "${around[@]}" \
+    "$source_dir/python_extension.cpp" -o "$work/python_stock/$name" -lfcl
+  if PYTHONPATH=$work/python_stock "$python" "$source_dir/python_extension.py"; then
+    fail "The Python module succeeds with stock FCL, so it does not test this package"
+  fi
 }
 
 door_spaces() { # a prefix with spaces in its path

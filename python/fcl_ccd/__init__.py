@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Continuous collision detection of triangle meshes that deform or move during a step.
+
+A step goes from t = 0 to t = 1. A contact is a vertex and a face, or two edges, that touch
+during the step. No contact is missed, and no time is late.
+
+    import fcl_ccd
+
+    cloth = fcl_ccd.DeformableMesh(vertices, triangles)   # (n, 3) floats, (m, 3) integers
+    tool = fcl_ccd.RigidMesh(tool_vertices, tool_triangles)
+
+    cloth.update(next_vertices)                           # each step
+    result = fcl_ccd.self_collide(cloth)                  # the cloth with itself
+    result = fcl_ccd.collide(cloth, tool, motion2=(pose_t0, pose_t1))   # 4x4 arrays
+
+    if result:
+        print(result.time_of_contact)                     # in fractions of the step
+        print(result.contacts["pos"])                     # (k, 3): a structured array
+
+Meshes: DeformableMesh, RigidMesh. Motions of a mesh: a pose, two poses, LinearMotion,
+ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a Filter and give
+a Result. For your own solver: candidates(), self_candidates(); vertex_face() and
+edge_edge() on arrays.
+
+Errors: ValueError with the words of the library, TypeError for arguments of another type,
+RuntimeError for an update of a mesh while a query of it runs.
+"""
+
+from ._core import version as __version__
+from ._meshes import DeformableMesh, RigidMesh
+from ._motions import LinearMotion, Motion, ScrewMotion, SplineMotion
+from ._queries import (
+    Filter,
+    Kind,
+    Result,
+    candidate_dtype,
+    candidates,
+    collide,
+    contact_dtype,
+    edge_edge,
+    feature_test_dtype,
+    self_candidates,
+    self_collide,
+    vertex_face,
+)
+
+__all__ = [
+    "DeformableMesh",
+    "Filter",
+    "Kind",
+    "LinearMotion",
+    "Motion",
+    "Result",
+    "RigidMesh",
+    "ScrewMotion",
+    "SplineMotion",
+    "candidate_dtype",
+    "candidates",
+    "collide",
+    "contact_dtype",
+    "edge_edge",
+    "feature_test_dtype",
+    "self_candidates",
+    "self_collide",
+    "vertex_face",
+]

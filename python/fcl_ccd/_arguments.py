@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Conversion and checks of arguments. What is contiguous and of the right type is not copied."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+_WANTED = {"f": "numbers", "i": "integers"}
+
+
+def _array(values: ArrayLike, name: str, kind: str, shape: Sequence[Optional[int]]) -> NDArray[Any]:
+    """An array of float64 (kind "f") or int64 ("i") in C order. None in shape: any length."""
+    array = np.asarray(values)
+    if array.dtype.kind not in ("iuf" if kind == "f" else "iu") and array.size > 0:
+        raise TypeError(f"{name} has elements of type {array.dtype}. Give {_WANTED[kind]}")
+    if array.ndim != len(shape) or any(
+        wanted not in (None, given) for wanted, given in zip(shape, array.shape)
+    ):
+        wanted_shape = ", ".join("n" if n is None else str(n) for n in shape)
+        raise ValueError(
+            f"{name} has the shape {array.shape}. Give an array of shape ({wanted_shape})"
+        )
+    return np.ascontiguousarray(array, dtype=np.float64 if kind == "f" else np.int64)
+
+
+def points(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    return _array(values, name, "f", (None, 3))
+
+
+def triangles(values: ArrayLike, name: str = "triangles") -> NDArray[np.int64]:
+    return _array(values, name, "i", (None, 3))
+
+
+def feature_points(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    return _array(values, name, "f", (None, 4, 3))
+
+
+def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:
+    array = _array(values, name, "f", shape)
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has a number that is not finite")
+    return array
+
+
+# A rotation that was computed or stored in single precision is taken, one that scales is not.
+_MOST_DEVIATION = 1e-5
+
+
+def poses(begin: ArrayLike, end: ArrayLike, name: str) -> NDArray[np.float64]:
+    """The poses at t = 0 and t = 1 as one array of shape (2, 4, 4)."""
+    both = np.empty((2, 4, 4))
+    both[0] = pose(begin, name)
+    both[1] = both[0] if end is begin else pose(end, name)
+    return both
+
+
+def pose(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    matrix = numbers(values, name, 4, 4)
+    if (matrix[3] != (0, 0, 0, 1)).any():
+        raise ValueError(f"{name}: the last row of a pose is 0 0 0 1, not {matrix[3]}")
+    rotation = matrix[:3, :3]
+    deviation = np.abs(rotation @ rotation.T - np.eye(3)).max()
+    if not (deviation <= _MOST_DEVIATION and np.linalg.det(rotation) > 0):
+        raise ValueError(
+            f"{name} is not a rotation and a translation. Scale or mirror the vertices instead"
+        )
+    return matrix
+
+
+def integer(value: int, name: str, most: int = 2**31 - 1) -> int:
+    number = operator.index(value)
+    if not 0 <= number <= most:
+        raise ValueError(f"{name} is {number}; it must be from 0 to {most}")
+    return number
+
+
+def bit_masks(values: Optional[ArrayLike], name: str) -> Sequence[int]:
+    """The groups or masks of triangles; None or empty: those of the object count."""
+    if values is None:
+        return ()
+    array = _array(values, name, "i", (None,))
+    if ((array < 0) | (array >= 2**32)).any():
+        raise ValueError(f"{name} has a number out of range. A group or mask has 32 bits")
+    masks: Sequence[int] = array.tolist()
+    return masks
+
+
+def origins(values: Optional[ArrayLike]) -> Sequence[int]:
+    if values is None:
+        return ()
+    array = _array(values, "origins", "i", (None,))
+    if ((array < -1) | (array >= 2**31)).any():
+        raise ValueError("origins has a number out of range. Give triangle numbers, or -1")
+    numbers_of_triangles: Sequence[int] = array.tolist()
+    return numbers_of_triangles
+
+
+def frames(given: Tuple[ArrayLike, ...]) -> Tuple[Optional[NDArray[np.float64]], NDArray[np.float64]]:
+    """The previous frame, or None, and the current frame."""
+    if len(given) == 1:
+        return None, points(given[0], "current")
+    if len(given) == 2:
+        return points(given[0], "previous"), points(given[1], "current")
+    raise TypeError(f"update() takes one or two frames; {len(given)} are given")

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Optional, overload
+
+from . import _arguments, _core
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+class DeformableMesh(_core.DeformableMesh):
+    """A triangle mesh that deforms between two frames, t = 0 and t = 1.
+
+    Build it once, then give each next step with update(). Until the first update() both
+    frames are equal. Queries test the motion between the two frames: each vertex moves on
+    a straight line.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float64
+        Positions in any unit of length, which positions of contacts have too. Other
+        numbers are converted.
+    triangles : (m, 3) array of integers
+        Vertex numbers, from 0. At least one triangle.
+    num_threads : int
+        Threads of the build and of updates. 0: all cores.
+
+    Raises ValueError for a vertex number out of range, a position that is not finite or
+    an array of another shape, and TypeError for elements of another type.
+
+    Attributes (read-only)
+    ----------------------
+    previous, current : (n, 3) float64, copies of the two frames
+    triangles : (m, 3) int64, a copy
+    num_vertices, num_triangles : int
+    is_deforming : bool, whether the frames differ
+    num_restructurings : int, how many updates have made parts of the tree anew
+
+    Threads: queries of one mesh may run side by side. An update while a query of the mesh
+    runs, or the reverse, raises RuntimeError and changes nothing.
+    """
+
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, num_threads: int = 1) -> None:
+        super().__init__(
+            _arguments.points(vertices, "vertices"),
+            _arguments.triangles(triangles),
+            _arguments.integer(num_threads, "num_threads"),
+        )
+
+    @overload
+    def update(self, current: ArrayLike, /) -> None: ...
+
+    @overload
+    def update(self, previous: ArrayLike, current: ArrayLike, /) -> None: ...
+
+    def update(self, *frames: ArrayLike) -> None:
+        """Give the next step: update(current) or update(previous, current).
+
+        With one frame, what was the current frame becomes the previous one. Frames are
+        (n, 3) arrays; contiguous float64 is read in place. After an error (ValueError,
+        TypeError) the mesh is unchanged.
+        """
+        previous, current = _arguments.frames(frames)
+        self._update(previous, current)
+
+    def update_topology(
+        self,
+        triangles: ArrayLike,
+        previous: ArrayLike,
+        current: ArrayLike,
+        *,
+        origins: Optional[ArrayLike] = None,
+    ) -> None:
+        """Give the next step of a mesh that has torn, broken, grown or lost parts.
+
+        Parameters
+        ----------
+        triangles : (m, 3) array of integers
+            All triangles of the new mesh.
+        previous, current : (n, 3) arrays
+            Both frames of the new mesh.
+        origins : (m,) array of integers, optional
+            For each triangle the number of the old triangle that it was, or was cut from;
+            -1 for a new one. A hint that saves time and never changes an answer. None:
+            triangle i was triangle i.
+        """
+        self._update_topology(
+            _arguments.triangles(triangles),
+            _arguments.points(previous, "previous"),
+            _arguments.points(current, "current"),
+            _arguments.origins(origins),
+        )
+
+    def __repr__(self) -> str:
+        return f"DeformableMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"
+
+
+class RigidMesh(_core.RigidMesh):
+    """A triangle mesh that does not deform. Queries take its motion as an argument.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array of float64
+        Positions in the frame of the mesh.
+    triangles : (m, 3) array of integers
+        Vertex numbers, from 0. At least one triangle.
+
+    Errors are those of DeformableMesh. Attributes (read-only): vertices, triangles
+    (copies), num_vertices, num_triangles. Any number of threads may query it.
+    """
+
+    def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
+        super().__init__(_arguments.points(vertices, "vertices"), _arguments.triangles(triangles))
+
+    def __repr__(self) -> str:
+        return f"RigidMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"

@@ -1,0 +1,420 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Union, overload
+
+import numpy as np
+
+from . import _arguments, _core
+from ._motions import MotionLike, path_of
+
+if TYPE_CHECKING:
+    from typing import Any
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Mesh = Union[_core.DeformableMesh, _core.RigidMesh]
+    Sink = Callable[[NDArray[np.void]], Optional[bool]]
+
+contact_dtype: np.dtype[np.void] = _core.contact_dtype
+candidate_dtype: np.dtype[np.void] = _core.candidate_dtype
+feature_test_dtype: np.dtype[np.void] = _core.feature_test_dtype
+
+
+class Kind(enum.IntEnum):
+    """The field "kind" of contacts and candidates."""
+
+    VERTEX_FACE = 0
+    EDGE_EDGE = 1
+    CROSSING = 2
+
+
+_ALL_BITS = 0xFFFFFFFF
+
+
+class Filter(_core.Filter):
+    """Which objects and triangles can be in contact.
+
+    Two triangles can be in contact if the group of each one has a bit in common with the
+    mask of the other one. A pair of features is tested if any two triangles that hold the
+    features can be in contact.
+
+    group, mask : int, 32 bits
+        Of the whole mesh.
+    triangle_groups, triangle_masks : (m,) arrays of integers, optional
+        One for each triangle. They replace those of the mesh.
+    """
+
+    def __init__(
+        self,
+        group: int = 1,
+        mask: int = _ALL_BITS,
+        *,
+        triangle_groups: Optional[ArrayLike] = None,
+        triangle_masks: Optional[ArrayLike] = None,
+    ) -> None:
+        super().__init__(
+            _arguments.integer(group, "group", _ALL_BITS),
+            _arguments.integer(mask, "mask", _ALL_BITS),
+            _arguments.bit_masks(triangle_groups, "triangle_groups"),
+            _arguments.bit_masks(triangle_masks, "triangle_masks"),
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result:
+    """The answer of collide() and self_collide(). It is true if there is a collision.
+
+    Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
+
+    is_collide : bool
+        Whether the surfaces touch during the step, or cross at t = 0.
+    time_of_contact : float
+        Never later than the first contact, and earlier by at most toc_err. 0 if the
+        surfaces touch or cross at t = 0. 1 without collision.
+    contacts : structured array (n,) of contact_dtype, sorted by time
+        kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE
+        b1, b2       int64       triangles of o1 and o2 that have the features
+        vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
+                                 CROSSING: e0, e1, f0, f1, f2. Unused entries are -1.
+        first_on_o1  bool        whether the vertex (or the edge that crosses) is of o1 and
+                                 the face of o2; false: the reverse. Edge ea is of o1.
+        toc_lo, toc_hi  float64  bracket of the first time at which the features touch
+        pos          (3,) float64  where they touch at toc_lo, in the world frame
+        normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
+                                 self-collision from the vertex to the face, or from edge
+                                 ea to edge eb. Zero if it is not defined.
+    contacts_cut : bool
+        Whether num_max_contacts dropped contacts.
+    initially_crossing : bool
+        Whether an edge passes through a triangle at t = 0.
+    crossing : structured array of 0 or 1 elements of contact_dtype
+        Such an edge and triangle, of kind Kind.CROSSING.
+    crossings : structured array of contact_dtype
+        All of them, if enable_crossings asks for them.
+    counts : dict, how many candidates each stage of the query saw and removed
+    times : dict, wall time of the parts of the query in seconds
+    contact_tf1, contact_tf2 : (4, 4) float64
+        Poses of o1 and o2 at the upper end of the first contact's bracket; without a
+        collision, at t = 1.
+    """
+
+    is_collide: bool
+    time_of_contact: float
+    contacts: NDArray[np.void]
+    contacts_cut: bool
+    initially_crossing: bool
+    crossing: NDArray[np.void]
+    crossings: NDArray[np.void]
+    counts: Dict[str, int]
+    times: Dict[str, float]
+    contact_tf1: NDArray[np.float64]
+    contact_tf2: NDArray[np.float64]
+
+    def __bool__(self) -> bool:
+        return self.is_collide
+
+    def __repr__(self) -> str:
+        return (
+            f"Result(is_collide={self.is_collide}, time_of_contact={self.time_of_contact}, "
+            f"{len(self.contacts)} contacts, initially_crossing={self.initially_crossing})"
+        )
+
+
+_ACCEPTS_ALL = Filter()
+
+
+def _request(
+    query: str,
+    toc_err: float,
+    t_max: float,
+    num_max_contacts: Optional[int],
+    enable_contact: bool,
+    enable_crossings: bool,
+    filter1: Optional[Filter],
+    filter2: Optional[Filter],
+    accepts_triangles: Optional[Callable[[int, int], bool]],
+    num_threads: int,
+) -> _core.Request:
+    if accepts_triangles is not None and not callable(accepts_triangles):
+        raise TypeError("accepts_triangles is not a function")
+    if num_max_contacts is not None:
+        num_max_contacts = _arguments.integer(num_max_contacts, "num_max_contacts", 2**63 - 1)
+    return _core.Request(
+        query,
+        toc_err,
+        num_max_contacts,
+        enable_contact,
+        t_max,
+        enable_crossings,
+        _filter(filter1, "filter1"),
+        _filter(filter2, "filter2"),
+        accepts_triangles,
+        _arguments.integer(num_threads, "num_threads"),
+    )
+
+
+def _filter(given: Optional[Filter], name: str) -> _core.Filter:
+    if given is None:
+        return _ACCEPTS_ALL
+    if not isinstance(given, Filter):
+        raise TypeError(f"{name} is of type {type(given).__name__}. Give a fcl_ccd.Filter")
+    return given
+
+
+def _mesh(o: Mesh, name: str) -> Mesh:
+    if not isinstance(o, _core.Mesh):
+        raise TypeError(
+            f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh"
+        )
+    return o
+
+
+def self_collide(
+    o: Mesh,
+    *,
+    query: str = "all",
+    toc_err: float = 1e-4,
+    t_max: float = 1.0,
+    num_max_contacts: Optional[int] = None,
+    enable_contact: bool = True,
+    enable_crossings: bool = False,
+    filter1: Optional[Filter] = None,
+    accepts_triangles: Optional[Callable[[int, int], bool]] = None,
+    num_threads: int = 1,
+) -> Result:
+    """The contacts of a mesh with itself during the step. Its pose does not matter.
+
+    The keywords are those of collide(). filter1 is used for both sides. In
+    accepts_triangles(b1, b2) both are triangles of the mesh, in any order.
+    """
+    request = _request(
+        query,
+        toc_err,
+        t_max,
+        num_max_contacts,
+        enable_contact,
+        enable_crossings,
+        filter1,
+        None,
+        accepts_triangles,
+        num_threads,
+    )
+    fields = _core.self_collide(_mesh(o, "o"), request)
+    return Result(**fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4))
+
+
+def collide(
+    o1: Mesh,
+    o2: Mesh,
+    motion1: MotionLike = None,
+    motion2: MotionLike = None,
+    *,
+    query: str = "all",
+    toc_err: float = 1e-4,
+    t_max: float = 1.0,
+    num_max_contacts: Optional[int] = None,
+    enable_contact: bool = True,
+    enable_crossings: bool = False,
+    filter1: Optional[Filter] = None,
+    filter2: Optional[Filter] = None,
+    accepts_triangles: Optional[Callable[[int, int], bool]] = None,
+    num_threads: int = 1,
+) -> Result:
+    """The contacts of two meshes during the step.
+
+    Parameters
+    ----------
+    o1, o2 : DeformableMesh or RigidMesh
+    motion1, motion2 : how each mesh moves
+        None             at rest, vertices are in the world frame
+        (4, 4) array     at rest in this pose
+        (begin, end)     two poses, (4, 4) each. A rigid mesh turns at constant speed about
+                         the origin of its frame, which goes straight. Each vertex of a
+                         mesh that deforms goes straight from begin * previous to
+                         end * current.
+        a LinearMotion, ScrewMotion or SplineMotion
+    query : "all", "first" or "any"
+        "all": all contacts. "first": the contacts that may be the first; later ones are
+        skipped. "any": at most one contact; the query stops at the first proof.
+    toc_err : float
+        Largest width of a time bracket, in fractions of the step. 0: as narrow as doubles
+        allow. It never changes whether there is a contact.
+    t_max : float
+        Only contacts until this time are reported, in [0, 1].
+    num_max_contacts : int, optional
+        Keep at most this number of contacts, the earliest ones.
+    enable_contact : bool
+        Whether position and normal of contacts are computed.
+    enable_crossings : bool
+        Whether Result.crossings lists all edges that pass through a face at t = 0.
+    filter1, filter2 : Filter, optional
+        Which triangles of o1 and of o2 can be in contact.
+    accepts_triangles : function(b1, b2) -> bool, optional
+        Called with a triangle of o1 and one of o2 that the filters accept. False rejects
+        the two. It must always give the same answer for the same triangles. An exception
+        from it ends the query and reaches the caller. A call takes about a microsecond,
+        and threads wait for each other: prefer filters.
+    num_threads : int
+        1: the caller's thread. n: at most n threads. 0: all cores. The answer does not
+        depend on it. A query in which a mesh turns uses one thread.
+
+    If all vertices go straight the answer is exact: no contact is missed and none is
+    invented. If a mesh turns, contact means to come within some hundred roundings of
+    touching. Other threads of Python run during a query.
+
+    Raises ValueError with the words of the library for arguments that cannot be used, and
+    TypeError for arguments of another type.
+    """
+    request = _request(
+        query,
+        toc_err,
+        t_max,
+        num_max_contacts,
+        enable_contact,
+        enable_crossings,
+        filter1,
+        filter2,
+        accepts_triangles,
+        num_threads,
+    )
+    return Result(
+        **_core.collide(
+            _mesh(o1, "o1"),
+            path_of(motion1, "motion1"),
+            _mesh(o2, "o2"),
+            path_of(motion2, "motion2"),
+            request,
+        )
+    )
+
+
+_BLOCK = 65536
+
+
+def _hand_out(ask: Callable[[Sink, int], bool], sink: Optional[Sink], block: int) -> Any:
+    block = _arguments.integer(block, "block", 2**63 - 1)
+    if sink is not None:
+        return ask(sink, block)
+    blocks: List[NDArray[np.void]] = []
+    ask(blocks.append, 2**63 - 1)  # one block at most
+    return blocks[0] if blocks else np.empty(0, candidate_dtype)
+
+
+@overload
+def self_candidates(o: Mesh, sink: None = None, *, block: int = _BLOCK) -> NDArray[np.void]: ...
+
+
+@overload
+def self_candidates(o: Mesh, sink: Sink, *, block: int = _BLOCK) -> bool: ...
+
+
+def self_candidates(o: Mesh, sink: Optional[Sink] = None, *, block: int = _BLOCK) -> Any:
+    """The pairs of features of a mesh that may touch during the step, for your own solver.
+
+    Sinks, blocks and fields are those of candidates().
+    """
+    mesh = _mesh(o, "o")
+    return _hand_out(lambda take, size: _core.self_candidates(mesh, take, size), sink, block)
+
+
+@overload
+def candidates(
+    o1: Mesh,
+    o2: Mesh,
+    motion1: MotionLike = None,
+    motion2: MotionLike = None,
+    sink: None = None,
+    *,
+    block: int = _BLOCK,
+) -> NDArray[np.void]: ...
+
+
+@overload
+def candidates(
+    o1: Mesh,
+    o2: Mesh,
+    motion1: MotionLike = None,
+    motion2: MotionLike = None,
+    *,
+    sink: Sink,
+    block: int = _BLOCK,
+) -> bool: ...
+
+
+def candidates(
+    o1: Mesh,
+    o2: Mesh,
+    motion1: MotionLike = None,
+    motion2: MotionLike = None,
+    sink: Optional[Sink] = None,
+    *,
+    block: int = _BLOCK,
+) -> Any:
+    """The pairs of features of two meshes that may touch during the step.
+
+    They are not tested yet. Every pair that touches is among them, and none comes twice.
+    vertex_face() and edge_edge() on all of them give the contacts of collide().
+
+    sink : function(array) -> None or bool, optional
+        Takes the candidates in blocks, as structured arrays of candidate_dtype that it may
+        keep. False ends the query. Without a sink all candidates are returned as one array.
+    block : int
+        A block has at least this number of candidates, except the last one.
+
+    Fields of candidate_dtype: kind, first_on_o1, vertices ((4,) int32), b1 and b2 as in
+    Result.contacts; window_lo, window_hi (float64): the features do not touch before
+    window_lo or after window_hi, in fractions of the step.
+
+    Returns the array, or with a sink whether all candidates were handed out. All paths
+    must be straight: ValueError for a rigid mesh that turns.
+    """
+    mesh1, mesh2 = _mesh(o1, "o1"), _mesh(o2, "o2")
+    path1, path2 = path_of(motion1, "motion1"), path_of(motion2, "motion2")
+    return _hand_out(
+        lambda take, size: _core.candidates(mesh1, path1, mesh2, path2, take, size), sink, block
+    )
+
+
+def vertex_face(t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4) -> NDArray[np.void]:
+    """Test n vertices against n triangles, one by one, exactly.
+
+    t0, t1 : (n, 4, 3) arrays
+        The points v, f0, f1, f2 of each query at t = 0 and at t = 1. They move on straight
+        lines.
+    toc_err : float
+        Largest width of [toc_lo, toc_hi]. 0: as narrow as doubles allow.
+
+    Returns a structured array (n,) of feature_test_dtype:
+        is_contact      bool     whether they touch at some t in [0, 1]; this is exact
+        toc_lo, toc_hi  float64  bracket of the first such time; without contact both are 1
+
+    Raises ValueError, with the number of the query, for a coordinate that is not finite.
+    Other threads of Python run during the call.
+    """
+    return _feature_tests(_core.vertex_face, t0, t1, toc_err)
+
+
+def edge_edge(t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4) -> NDArray[np.void]:
+    """Test n edges against n edges, one by one, exactly.
+
+    t0, t1 : (n, 4, 3) arrays
+        The points ea0, ea1, eb0, eb1 of each query at t = 0 and at t = 1.
+
+    Everything else is as in vertex_face().
+    """
+    return _feature_tests(_core.edge_edge, t0, t1, toc_err)
+
+
+def _feature_tests(
+    test: Callable[[NDArray[np.float64], NDArray[np.float64], float], NDArray[np.void]],
+    t0: ArrayLike,
+    t1: ArrayLike,
+    toc_err: float,
+) -> NDArray[np.void]:
+    begin, end = _arguments.feature_points(t0, "t0"), _arguments.feature_points(t1, "t1")
+    if begin.shape != end.shape:
+        raise ValueError(f"t0 has {len(begin)} queries and t1 has {len(end)}")
+    return test(begin, end, toc_err)

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <atomic>
+#include <exception>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "arrays.h"
+#include "fcl/narrowphase/continuous_contact.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+#include "meshes.h"
+#include "motions.h"
+#include "queries.h"
+
+namespace fcl_ccd {
+namespace python {
+
+using Contact = fcl::ContinuousContact<double>;
+using Contacts = fcl::ContinuousContacts<double>;
+using Outcome = fcl::detail::QueryOutcome<double>;
+
+template <>
+py::dtype makeDtype<Contact>() {
+  return RecordType<Contact>()
+      .field("kind", "<i4", &Contact::kind)
+      .field("b1", "<i8", &Contact::b1)
+      .field("b2", "<i8", &Contact::b2)
+      .field("vertices", "(5,)<i4", &Contact::vertices)
+      .field("first_on_o1", "?", &Contact::first_on_o1)
+      .field("toc_lo", "<f8", &Contact::toc_lo)
+      .field("toc_hi", "<f8", &Contact::toc_hi)
+      .field("pos", "(3,)<f8", &Contact::pos)
+      .field("normal", "(3,)<f8", &Contact::normal)
+      .dtype();
+}
+
+namespace {
+
+fcl::ContinuousQuery toQuery(const std::string& name) {
+  if (name == "all") return fcl::ContinuousQuery::kAll;
+  if (name == "first") return fcl::ContinuousQuery::kFirst;
+  if (name == "any") return fcl::ContinuousQuery::kAny;
+  throw py::value_error("query is '" + name + "'. Give 'all', 'first' or 'any'");
+}
+
+/// A request without its function of Python, which belongs to one call.
+struct Request {
+  fcl::detail::QuerySettings settings{};
+  fcl::ContinuousFilter filter1, filter2;
+  py::object accepts_triangles;
+};
+
+/// The function of Python that accepts pairs of triangles. The threads of a query call it
+/// in turn, since it needs the GIL. After its first exception it is not called again, and
+/// the exception reaches the caller when the query has ended.
+class TriangleFilter {
+ public:
+  /// @param function  None: accepts all
+  explicit TriangleFilter(const py::object& function) {
+    if (function.is_none()) return;
+    call_ = [this, &function](std::intptr_t b1, std::intptr_t b2) {
+      return ask(function, b1, b2);
+    };
+  }
+
+  /// Null: all pairs are accepted.
+  const std::function<bool(std::intptr_t, std::intptr_t)>* function() const {
+    return call_ ? &call_ : nullptr;
+  }
+
+  /// Runs a query. The caller does not have the GIL.
+  template <typename Query>
+  void run(Query&& query) {
+    try {
+      query();
+    } catch (...) {
+      if (!failed_) throw;
+    }
+    if (failed_) std::rethrow_exception(error_);
+  }
+
+ private:
+  bool ask(const py::object& function, std::intptr_t b1, std::intptr_t b2) {
+    if (failed_) return false;
+    const py::gil_scoped_acquire acquire;
+    try {
+      const int answer = PyObject_IsTrue(function(b1, b2).ptr());
+      if (answer < 0) throw py::error_already_set();
+      return answer == 1;
+    } catch (py::error_already_set&) {
+      if (!failed_) error_ = std::current_exception();
+      failed_ = true;
+      return false;
+    }
+  }
+
+  std::function<bool(std::intptr_t, std::intptr_t)> call_;
+  std::atomic<bool> failed_{false};
+  std::exception_ptr error_;
+};
+
+py::dict toDict(const fcl::StageCounts& counts) {
+  using py::literals::operator""_a;
+  return py::dict(
+      "node_pairs"_a = counts.node_pairs, "triangle_pairs"_a = counts.triangle_pairs,
+      "adjacent_pairs"_a = counts.adjacent_pairs, "fan_culled"_a = counts.fan_culled,
+      "plane_culled"_a = counts.plane_culled, "feature_pairs"_a = counts.feature_pairs,
+      "box_culled"_a = counts.box_culled, "mask_culled"_a = counts.mask_culled,
+      "filter_culled"_a = counts.filter_culled, "solver_culled"_a = counts.solver_culled,
+      "exact_culled"_a = counts.exact_culled, "exact_tests"_a = counts.exact_tests,
+      "contacts"_a = counts.contacts, "crossing_tests"_a = counts.crossing_tests);
+}
+
+/// The fields of the class Result of Python.
+py::dict toDict(const Outcome& outcome, Contacts&& contacts) {
+  using py::literals::operator""_a;
+  std::vector<Contact> crossing;
+  if (contacts.initially_crossing) crossing.push_back(contacts.crossing);
+  return py::dict("is_collide"_a = outcome.is_collide,
+                  "time_of_contact"_a = outcome.toc_lo,
+                  "contacts"_a = toArray(std::move(contacts.contacts)),
+                  "contacts_cut"_a = contacts.contacts_cut,
+                  "initially_crossing"_a = contacts.initially_crossing,
+                  "crossing"_a = toArray(std::move(crossing)),
+                  "crossings"_a = toArray(std::move(contacts.crossings)),
+                  "counts"_a = toDict(contacts.counts),
+                  "times"_a = py::dict("update"_a = contacts.times.update,
+                                       "traverse"_a = contacts.times.traverse,
+                                       "test"_a = contacts.times.test));
+}
+
+/// Runs ask(settings, outcome, contacts) without the GIL.
+template <typename Ask>
+py::dict answer(const Request& request, const Ask& ask) {
+  Outcome outcome{};
+  Contacts contacts;
+  {
+    TriangleFilter filter(request.accepts_triangles);
+    fcl::detail::QuerySettings settings = request.settings;
+    settings.filter1 = &request.filter1;
+    settings.filter2 = &request.filter2;
+    settings.accepts_triangles = filter.function();
+    const py::gil_scoped_release release;
+    filter.run([&] { ask(settings, outcome, contacts); });
+  }
+  return toDict(outcome, std::move(contacts));
+}
+
+py::dict collideSelf(const Mesh& o, const Request& request) {
+  const Mesh::Reading reading(o);
+  py::dict result =
+      answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
+        fcl::detail::answerSelf(&o.geometry(), settings, outcome, &contacts);
+      });
+  return result;
+}
+
+py::dict collidePair(const Mesh& o1, const Motion& motion1, const Mesh& o2,
+                     const Motion& motion2, const Request& request) {
+  const Mesh::Reading reading1(o1), reading2(o2);
+  const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
+  double hi = 1;
+  py::dict result =
+      answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
+        if (!fcl::detail::answerPair(moving1, moving2, settings, outcome, &contacts))
+          throw std::runtime_error("the motion of a mesh cannot be followed");
+        hi = outcome.is_collide ? outcome.toc_hi : 1;
+      });
+  const bool is_collide = py::cast<bool>(result["is_collide"]);
+  const auto pose = [&](const auto& moving) {
+    return toArray(is_collide ? fcl::detail::poseAt(moving, hi) : moving.pose[1]);
+  };
+  result["contact_tf1"] = pose(moving1);
+  result["contact_tf2"] = pose(moving2);
+  return result;
+}
+
+fcl::ContinuousFilter makeFilter(std::uint32_t group, std::uint32_t mask,
+                                 std::vector<std::uint32_t> triangle_groups,
+                                 std::vector<std::uint32_t> triangle_masks) {
+  return {group, mask, std::move(triangle_groups), std::move(triangle_masks)};
+}
+
+Request makeRequest(const std::string& query, double toc_err,
+                    std::optional<std::size_t> num_max_contacts, bool enable_contact,
+                    double t_max, bool enable_crossings,
+                    const fcl::ContinuousFilter& filter1,
+                    const fcl::ContinuousFilter& filter2, py::object accepts_triangles,
+                    int num_threads) {
+  Request request;
+  request.settings.with_contacts = true;
+  request.settings.query = toQuery(query);
+  request.settings.toc_err = toc_err;
+  request.settings.num_max_contacts =
+      num_max_contacts.value_or(std::numeric_limits<std::size_t>::max());
+  request.settings.enable_contact = enable_contact;
+  request.settings.t_max = t_max;
+  request.settings.enable_crossings = enable_crossings;
+  request.settings.num_threads = num_threads;
+  request.filter1 = filter1;
+  request.filter2 = filter2;
+  request.accepts_triangles = std::move(accepts_triangles);
+  return request;
+}
+
+}  // namespace
+
+void bindCollisions(py::module_& module) {
+  module.attr("contact_dtype") = dtypeOf<Contact>();
+  py::class_<fcl::ContinuousFilter>(module, "Filter")
+      .def(py::init(&makeFilter), py::arg("group"), py::arg("mask"),
+           py::arg("triangle_groups"), py::arg("triangle_masks"));
+  py::class_<Request>(module, "Request")
+      .def(py::init(&makeRequest), py::arg("query"), py::arg("toc_err"),
+           py::arg("num_max_contacts"), py::arg("enable_contact"), py::arg("t_max"),
+           py::arg("enable_crossings"), py::arg("filter1"), py::arg("filter2"),
+           py::arg("accepts_triangles"), py::arg("num_threads"));
+  module.def("self_collide", &collideSelf);
+  module.def("collide", &collidePair);
+}
+
+}  // namespace python
+}  // namespace fcl_ccd

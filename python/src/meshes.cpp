@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "meshes.h"
+
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace fcl_ccd {
+namespace python {
+namespace {
+
+using fcl::Triangle;
+using fcl::Vector3d;
+
+void requireCount(py::ssize_t count, const char* what) {
+  constexpr py::ssize_t kMost = py::ssize_t{1} << 29;  // as the library
+  if (count > kMost)
+    throw py::value_error(std::to_string(count) + " " + what +
+                          "; at most 2^29 are allowed");
+}
+
+std::vector<Vector3d> toVertices(const Doubles& array) {
+  requireCount(array.size() / 3, "vertices");
+  const double* x = array.data();
+  std::vector<Vector3d> vertices;
+  vertices.reserve(static_cast<std::size_t>(array.size()) / 3);
+  for (py::ssize_t i = 0; i + 2 < array.size(); i += 3)
+    vertices.emplace_back(x[i], x[i + 1], x[i + 2]);
+  return vertices;
+}
+
+std::string refersTo(std::size_t triangle, std::int64_t vertex,
+                     std::size_t num_vertices) {
+  return "triangle " + std::to_string(triangle) + " refers to vertex " +
+         std::to_string(vertex) + " of " + std::to_string(num_vertices) +
+         " vertices, which are numbered from 0";
+}
+
+/// FCL's triangles have unsigned numbers, and its own models check none of them.
+std::vector<Triangle> toTriangles(const Integers& array, std::size_t num_vertices) {
+  requireCount(array.size() / 3, "triangles");
+  const auto count = static_cast<std::size_t>(array.size()) / 3;
+  const std::int64_t* ids = array.data();
+  const auto last = static_cast<std::int64_t>(num_vertices) - 1;
+  std::vector<Triangle> triangles;
+  triangles.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int64_t* t = ids + 3 * i;
+    for (int k = 0; k < 3; ++k)
+      if (t[k] < 0 || t[k] > last) throw py::value_error(refersTo(i, t[k], num_vertices));
+    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                           static_cast<std::size_t>(t[2]));
+  }
+  return triangles;
+}
+
+template <typename Model>
+void requireOk(int code, const Model& model) {
+  if (code != fcl::BVH_OK) throw py::value_error(model.lastError());
+}
+
+std::size_t numPoints(const Doubles& array) {
+  return static_cast<std::size_t>(array.size()) / 3;
+}
+
+py::array copyOf(const Vector3d* points, int count) {
+  py::array_t<double> out({py::ssize_t{count}, py::ssize_t{3}});
+  double* to = out.mutable_data();
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k) *to++ = points[i][k];
+  return out;
+}
+
+py::array copyOf(const Triangle* triangles, int count) {
+  py::array_t<std::int64_t> out({py::ssize_t{count}, py::ssize_t{3}});
+  std::int64_t* to = out.mutable_data();
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k) *to++ = static_cast<std::int64_t>(triangles[i][k]);
+  return out;
+}
+
+/// A property that reads the model, while no update runs.
+template <typename MeshType, typename Read>
+auto readModel(Read&& read) {
+  return [read](const MeshType& mesh) {
+    const Mesh::Reading reading(mesh);
+    return read(mesh.model());
+  };
+}
+
+}  // namespace
+
+Mesh::Reading::Reading(const Mesh& mesh) : mesh_(mesh) {
+  if (mesh.is_written_)
+    throw std::runtime_error(
+        "the mesh is being updated by another thread. Wait until the update has ended");
+  ++mesh.num_readers_;
+}
+
+Mesh::Writing::Writing(const Mesh& mesh) : mesh_(mesh) {
+  if (mesh.is_written_ || mesh.num_readers_ > 0)
+    throw std::runtime_error(
+        "a query or an update of the mesh has not ended, in another thread or in the "
+        "caller of this function. Update the mesh when it has ended");
+  mesh.is_written_ = true;
+}
+
+DeformableMesh::DeformableMesh(const Doubles& vertices, const Integers& triangles,
+                               int num_threads) {
+  const py::gil_scoped_release release;
+  requireOk(model_.setNumThreads(num_threads), model_);
+  const std::vector<Vector3d> points = toVertices(vertices);
+  const std::vector<Triangle> faces = toTriangles(triangles, points.size());
+  model_.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size()));
+  requireOk(model_.addSubModel(points, faces), model_);
+  requireOk(model_.endModel(fcl::FclTree::kSkip), model_);
+}
+
+void DeformableMesh::update(const std::optional<Doubles>& previous,
+                            const Doubles& current) {
+  const Writing writing(*this);
+  const py::gil_scoped_release release;
+  if (previous)
+    requireSize(*previous, static_cast<std::size_t>(current.size()), "previous");
+  // The model's frame is 3 doubles a vertex without gaps.
+  static_assert(sizeof(Vector3d) == 3 * sizeof(double), "");
+  const double* from = previous ? previous->data() : model_.vertices[0].data();
+  requireOk(model_.updateFrames(from, current.data(), numPoints(current)), model_);
+}
+
+void DeformableMesh::updateTopology(const Integers& triangles, const Doubles& previous,
+                                    const Doubles& current,
+                                    const std::vector<int>& origins) {
+  const Writing writing(*this);
+  const py::gil_scoped_release release;
+  requireSize(previous, static_cast<std::size_t>(current.size()), "previous");
+  requireOk(model_.updateTopology(toTriangles(triangles, numPoints(current)), origins,
+                                  previous.data(), current.data(), numPoints(current)),
+            model_);
+}
+
+RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
+  const py::gil_scoped_release release;
+  const std::vector<Vector3d> points = toVertices(vertices);
+  const std::vector<Triangle> faces = toTriangles(triangles, points.size());
+  // What FCL does not check.
+  if (faces.empty()) throw py::value_error("the mesh has no triangles. Give some");
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (!points[i].allFinite())
+      throw py::value_error("vertex " + std::to_string(i) + " is not finite");
+  if (model_.beginModel(static_cast<int>(faces.size()),
+                        static_cast<int>(points.size())) != fcl::BVH_OK ||
+      model_.addSubModel(points, faces) != fcl::BVH_OK ||
+      model_.endModel() != fcl::BVH_OK)
+    throw std::bad_alloc();  // the only failure that is left
+}
+
+void bindMeshes(py::module_& module) {
+  py::class_<Mesh>(module, "Mesh");
+  using Deformable = DeformableMesh::Model;
+  py::class_<DeformableMesh, Mesh>(module, "DeformableMesh")
+      .def(py::init<const Doubles&, const Integers&, int>(), py::arg("vertices"),
+           py::arg("triangles"), py::arg("num_threads"))
+      .def("_update", &DeformableMesh::update, py::arg("previous"), py::arg("current"))
+      .def("_update_topology", &DeformableMesh::updateTopology, py::arg("triangles"),
+           py::arg("previous"), py::arg("current"), py::arg("origins"))
+      .def_property_readonly(
+          "num_vertices",
+          readModel<DeformableMesh>([](const Deformable& m) { return m.num_vertices; }))
+      .def_property_readonly(
+          "num_triangles",
+          readModel<DeformableMesh>([](const Deformable& m) { return m.num_tris; }))
+      .def_property_readonly("num_restructurings",
+                             readModel<DeformableMesh>([](const Deformable& m) {
+                               return m.numRestructurings();
+                             }))
+      .def_property_readonly(
+          "is_deforming",
+          readModel<DeformableMesh>([](const Deformable& m) { return m.isDeforming(); }))
+      .def_property_readonly("previous",
+                             readModel<DeformableMesh>([](const Deformable& m) {
+                               return copyOf(m.prev_vertices, m.num_vertices);
+                             }))
+      .def_property_readonly("current",
+                             readModel<DeformableMesh>([](const Deformable& m) {
+                               return copyOf(m.vertices, m.num_vertices);
+                             }))
+      .def_property_readonly("triangles",
+                             readModel<DeformableMesh>([](const Deformable& m) {
+                               return copyOf(m.tri_indices, m.num_tris);
+                             }));
+  py::class_<RigidMesh, Mesh>(module, "RigidMesh")
+      .def(py::init<const Doubles&, const Integers&>(), py::arg("vertices"),
+           py::arg("triangles"))
+      .def_property_readonly("num_vertices",
+                             [](const RigidMesh& m) { return m.model().num_vertices; })
+      .def_property_readonly("num_triangles",
+                             [](const RigidMesh& m) { return m.model().num_tris; })
+      .def_property_readonly("vertices",
+                             [](const RigidMesh& m) {
+                               return copyOf(m.model().vertices, m.model().num_vertices);
+                             })
+      .def_property_readonly("triangles", [](const RigidMesh& m) {
+        return copyOf(m.model().tri_indices, m.model().num_tris);
+      });
+}
+
+}  // namespace python
+}  // namespace fcl_ccd

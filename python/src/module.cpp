@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The compiled part of the Python package fcl_ccd. It checks what keeps memory safe. The
+// files *.py convert and check the arguments of users.
+#include <pybind11/pybind11.h>
+
+#include "fcl/ccd_version.h"
+#include "fcl/common/exception.h"
+#include "meshes.h"
+#include "motions.h"
+#include "queries.h"
+
+PYBIND11_MODULE(_core, module) {
+  namespace python = fcl_ccd::python;
+  // The library's exceptions are about its arguments.
+  pybind11::register_local_exception_translator([](std::exception_ptr error) {
+    try {
+      if (error) std::rethrow_exception(error);
+    } catch (const fcl::Exception& exception) {
+      PyErr_SetString(PyExc_ValueError, exception.what());
+    }
+  });
+  module.attr("version") = FCL_CCD_VERSION;
+  python::bindMeshes(module);
+  python::bindMotions(module);
+  python::bindCollisions(module);
+  python::bindFeatures(module);
+}

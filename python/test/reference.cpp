@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Answers in C++ for the tests of the Python package. Reads commands from stdin and
+// prints each answer as numbers, one line an element. Floating-point numbers are
+// hexadecimal, so that nothing is rounded. test_answers.py writes the commands.
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/math/bv/OBBRSS.h>
+#include <fcl/math/motion/interp_motion.h>
+#include <fcl/math/motion/screw_motion.h>
+#include <fcl/math/motion/spline_motion.h>
+#include <fcl/math/motion/translation_motion.h>
+#include <fcl/narrowphase/continuous_candidates.h>
+#include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/continuous_features.h>
+
+namespace {
+
+using fcl::Transform3d;
+using fcl::Vector3d;
+using Geometry = fcl::CollisionGeometry<double>;
+using Request = fcl::ContinuousContactRequestd;
+using Result = fcl::ContinuousContactResultd;
+
+std::string readWord() {
+  std::string word;
+  if (!(std::cin >> word)) throw std::runtime_error("the input ends in a command");
+  return word;
+}
+double readNumber() { return std::stod(readWord()); }
+int readInt() { return std::stoi(readWord()); }
+
+Vector3d readVector() {
+  Vector3d v;
+  for (int k = 0; k < 3; ++k) v[k] = readNumber();
+  return v;
+}
+
+std::vector<Vector3d> readVectors(int count) {
+  std::vector<Vector3d> vectors;
+  for (int i = 0; i < count; ++i) vectors.push_back(readVector());
+  return vectors;
+}
+
+std::vector<fcl::Triangle> readTriangles(int count) {
+  std::vector<fcl::Triangle> triangles;
+  for (int i = 0; i < count; ++i) {
+    const int a = readInt(), b = readInt(), c = readInt();
+    triangles.emplace_back(a, b, c);
+  }
+  return triangles;
+}
+
+Transform3d readPose() {
+  Transform3d tf = Transform3d::Identity();
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) tf.matrix()(row, column) = readNumber();
+  return tf;
+}
+
+void requireOk(int code) {
+  if (code != fcl::BVH_OK) throw std::runtime_error("a model refuses its input");
+}
+
+template <typename Model>
+std::unique_ptr<Model> build(const std::vector<Vector3d>& vertices,
+                             const std::vector<fcl::Triangle>& triangles) {
+  auto model = std::make_unique<Model>();
+  requireOk(model->beginModel());
+  requireOk(model->addSubModel(vertices, triangles));
+  requireOk(model->endModel());
+  return model;
+}
+
+std::unique_ptr<Geometry> readDeformable() {
+  const int num_vertices = readInt(), num_triangles = readInt();
+  const auto previous = readVectors(num_vertices), current = readVectors(num_vertices);
+  auto model = build<fcl::DeformableBVHModel<>>(previous, readTriangles(num_triangles));
+  requireOk(model->updateFrames(previous[0].data(), current[0].data(), previous.size()));
+  return model;
+}
+
+std::unique_ptr<Geometry> readRigid() {
+  const int num_vertices = readInt(), num_triangles = readInt();
+  const auto vertices = readVectors(num_vertices);
+  return build<fcl::BVHModel<fcl::OBBRSSd>>(vertices, readTriangles(num_triangles));
+}
+
+std::vector<std::uint32_t> readBits() {
+  std::vector<std::uint32_t> bits(static_cast<std::size_t>(readInt()));
+  for (auto& b : bits) b = static_cast<std::uint32_t>(std::stoul(readWord()));
+  return bits;
+}
+
+fcl::ContinuousFilter readFilter() {
+  fcl::ContinuousFilter filter;
+  filter.group = static_cast<std::uint32_t>(std::stoul(readWord()));
+  filter.mask = static_cast<std::uint32_t>(std::stoul(readWord()));
+  filter.triangle_groups = readBits();
+  filter.triangle_masks = readBits();
+  return filter;
+}
+
+Request readRequest() {
+  Request request;
+  const std::string query = readWord();
+  request.query = query == "all"     ? fcl::ContinuousQuery::kAll
+                  : query == "first" ? fcl::ContinuousQuery::kFirst
+                                     : fcl::ContinuousQuery::kAny;
+  request.toc_err = readNumber();
+  request.t_max = readNumber();
+  request.num_max_contacts = static_cast<std::size_t>(std::stoull(readWord()));
+  request.enable_contact = readInt() != 0;
+  request.enable_crossings = readInt() != 0;
+  request.filter1 = readFilter();
+  request.filter2 = readFilter();
+  if (readInt() != 0)
+    request.accepts_triangles = [](std::intptr_t b1, std::intptr_t b2) {
+      return (b1 + b2) % 3 != 0;
+    };
+  return request;
+}
+
+std::unique_ptr<fcl::MotionBased> readMotion() {
+  const std::string kind = readWord();
+  if (kind == "spline") {
+    const auto t = readVectors(4), r = readVectors(4);
+    return std::make_unique<fcl::SplineMotion<double>>(t[0], t[1], t[2], t[3], r[0], r[1],
+                                                       r[2], r[3]);
+  }
+  const Transform3d begin = readPose(), end = readPose();
+  if (kind == "screw") return std::make_unique<fcl::ScrewMotion<double>>(begin, end);
+  if (kind == "linear")
+    return std::make_unique<fcl::InterpMotion<double>>(begin, end, readVector());
+  if (kind == "translation")
+    return std::make_unique<fcl::TranslationMotion<double>>(begin, end);
+  throw std::runtime_error("no such motion: " + kind);
+}
+
+void print(const fcl::ContinuousContactd& c) {
+  std::printf("%d %ld %ld", static_cast<int>(c.kind), static_cast<long>(c.b1),
+              static_cast<long>(c.b2));
+  for (const int v : c.vertices) std::printf(" %d", v);
+  std::printf(" %d %a %a", c.first_on_o1, c.toc_lo, c.toc_hi);
+  for (int k = 0; k < 3; ++k) std::printf(" %a", c.pos[k]);
+  for (int k = 0; k < 3; ++k) std::printf(" %a", c.normal[k]);
+  std::printf("\n");
+}
+
+void print(const Transform3d& tf) {
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      std::printf("%a ", tf.matrix()(row, column));
+  std::printf("\n");
+}
+
+void print(const Result& result) {
+  std::printf("%d %a %d %d %zu %zu\n", result.is_collide, result.time_of_contact,
+              result.contacts_cut, result.initially_crossing, result.contacts.size(),
+              result.crossings.size());
+  print(result.contact_tf1);
+  print(result.contact_tf2);
+  for (const auto& contact : result.contacts) print(contact);
+  if (result.initially_crossing) print(result.crossing);
+  for (const auto& crossing : result.crossings) print(crossing);
+}
+
+bool print(const fcl::ContinuousCandidate* candidates, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& c = candidates[i];
+    std::printf("%d %d", static_cast<int>(c.kind), c.first_on_o1);
+    for (const int v : c.vertices) std::printf(" %d", v);
+    std::printf(" %ld %ld %a %a\n", static_cast<long>(c.b1), static_cast<long>(c.b2),
+                c.window_lo, c.window_hi);
+  }
+  return true;
+}
+
+void answerFeatures(bool is_vertex_face) {
+  const int count = readInt();
+  const double toc_err = readNumber();
+  const auto test = is_vertex_face ? &fcl::vertexFace<double> : &fcl::edgeEdge<double>;
+  for (int i = 0; i < count; ++i) {
+    const auto a = readVectors(4), b = readVectors(4);
+    const auto result = test(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], toc_err);
+    std::printf("%d %a %a\n", result.is_contact, result.toc_lo, result.toc_hi);
+  }
+}
+
+class Commands {
+ public:
+  void run(const std::string& command) {
+    if (command == "deformable") {
+      meshes_.push_back(readDeformable());
+    } else if (command == "rigid") {
+      meshes_.push_back(readRigid());
+    } else if (command == "self") {
+      const Geometry* o = readMesh();
+      fcl::continuousSelfCollide(o, readRequest(), result_);
+      print(result_);
+    } else if (command == "poses" || command == "motions") {
+      answerPair(command == "motions");
+    } else if (command == "self_candidates") {
+      fcl::continuousSelfCandidates(
+          readMesh(), [](const auto* c, std::size_t count) { return print(c, count); });
+    } else if (command == "vf" || command == "ee") {
+      answerFeatures(command == "vf");
+    } else {
+      throw std::runtime_error("no such command: " + command);
+    }
+    std::printf("end\n");
+  }
+
+ private:
+  const Geometry* readMesh() {
+    return meshes_.at(static_cast<std::size_t>(readInt())).get();
+  }
+
+  void answerPair(bool with_motions) {
+    const Geometry *o1 = readMesh(), *o2 = readMesh();
+    if (with_motions) {
+      const auto motion1 = readMotion(), motion2 = readMotion();
+      fcl::continuousCollide(o1, motion1.get(), o2, motion2.get(), readRequest(),
+                             result_);
+    } else {
+      Transform3d tf[4];
+      for (auto& t : tf) t = readPose();
+      fcl::continuousCollide(o1, tf[0], tf[1], o2, tf[2], tf[3], readRequest(), result_);
+    }
+    print(result_);
+  }
+
+  std::vector<std::unique_ptr<Geometry>> meshes_;
+  Result result_;
+};
+
+}  // namespace
+
+int main() {
+  try {
+    Commands commands;
+    std::string command;
+    while (std::cin >> command) commands.run(command);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Wrong inputs of each kind: the exception, and what its text says."""
+
+import numpy as np
+import pytest
+from scenes import grid, pose
+
+import fcl_ccd
+
+VERTICES, TRIANGLES = grid(4)
+NAN, INF = float("nan"), float("inf")
+
+
+def changed(array, index, value):
+    out = np.array(array, dtype=float if isinstance(value, float) else None)
+    out[index] = value
+    return out
+
+
+@pytest.mark.parametrize("kind", [fcl_ccd.DeformableMesh, fcl_ccd.RigidMesh])
+@pytest.mark.parametrize(
+    "vertices, triangles, error, text",
+    [
+        (VERTICES[:, :2], TRIANGLES, ValueError, r"vertices has the shape \(16, 2\)"),
+        (VERTICES.ravel(), TRIANGLES, ValueError, r"shape \(48,\). Give an array of shape \(n, 3\)"),
+        (VERTICES, TRIANGLES.ravel(), ValueError, "triangles has the shape"),
+        (VERTICES.astype(complex), TRIANGLES, TypeError, "vertices has elements of type complex"),
+        ([["a", "b", "c"]], TRIANGLES, TypeError, "vertices has elements of type"),
+        (VERTICES, TRIANGLES.astype(float), TypeError, "elements of type float64. Give integers"),
+        (VERTICES, changed(TRIANGLES, (3, 1), 16), ValueError, "triangle 3 refers to vertex 16"),
+        (VERTICES, changed(TRIANGLES, (3, 1), -1), ValueError, "triangle 3 refers to vertex -1"),
+        (VERTICES, np.array([[0, 1, 2**63 + 1]], np.uint64), ValueError, "triangle 0 refers to"),
+        (changed(VERTICES, (5, 2), NAN), TRIANGLES, ValueError, "vertex 5 .*is not finite"),
+        (changed(VERTICES, (5, 0), INF), TRIANGLES, ValueError, "vertex 5 .*is not finite"),
+        (VERTICES, np.zeros((0, 3), int), ValueError, "no triangles"),
+        (np.zeros((0, 3)), np.zeros((0, 3), int), ValueError, "no triangles"),
+        (None, TRIANGLES, (TypeError, ValueError), "vertices"),
+    ],
+)
+def test_meshes(kind, vertices, triangles, error, text):
+    with pytest.raises(error, match=text):
+        kind(vertices, triangles)
+
+
+def mesh_at_rest():
+    return fcl_ccd.DeformableMesh(VERTICES, TRIANGLES)
+
+
+@pytest.mark.parametrize(
+    "frames, error, text",
+    [
+        ((VERTICES[:-1],), ValueError, "15 .*16"),
+        ((VERTICES, VERTICES[:-1]), ValueError, "previous has 48 numbers instead of 45"),
+        ((VERTICES[:-1], VERTICES[:-1]), ValueError, "15 .*16"),
+        ((changed(VERTICES, (2, 1), NAN),), ValueError, "vertex 2 of the current frame"),
+        ((changed(VERTICES, (7, 1), INF), VERTICES), ValueError, "vertex 7 of the previous frame"),
+        ((), TypeError, "one or two frames; 0 are given"),
+        ((VERTICES,) * 3, TypeError, "one or two frames; 3 are given"),
+        ((VERTICES.astype(str),), TypeError, "current has elements of type"),
+    ],
+)
+def test_updates_change_nothing_when_refused(frames, error, text):
+    mesh = mesh_at_rest()
+    mesh.update(VERTICES + 1)
+    with pytest.raises(error, match=text):
+        mesh.update(*frames)
+    np.testing.assert_array_equal(mesh.previous, VERTICES)
+    np.testing.assert_array_equal(mesh.current, VERTICES + 1)
+    assert not fcl_ccd.self_collide(mesh)
+
+
+@pytest.mark.parametrize(
+    "triangles, previous, current, origins, text",
+    [
+        (TRIANGLES + 1, VERTICES, VERTICES, None, "refers to vertex 16"),
+        (TRIANGLES, VERTICES[1:], VERTICES, None, "previous has 45 numbers"),
+        (TRIANGLES, VERTICES, VERTICES, [1, 2], "2 origins given for 18 triangles"),
+        (TRIANGLES, VERTICES, VERTICES, np.full(18, 18), "18"),
+        (TRIANGLES, VERTICES, VERTICES, np.full(18, -2), "origins has a number out of range"),
+        (TRIANGLES, VERTICES, changed(VERTICES, 3, NAN), None, "vertex 3 of the current frame"),
+    ],
+)
+def test_topologies(triangles, previous, current, origins, text):
+    mesh = mesh_at_rest()
+    with pytest.raises(ValueError, match=text):
+        mesh.update_topology(triangles, previous, current, origins=origins)
+    np.testing.assert_array_equal(mesh.triangles, TRIANGLES)
+
+
+@pytest.mark.parametrize(
+    "options, error, text",
+    [
+        ({"query": "most"}, ValueError, "query is 'most'. Give 'all', 'first' or 'any'"),
+        ({"query": 3}, TypeError, "query"),
+        ({"toc_err": -1}, ValueError, "toc_err is negative or NaN"),
+        ({"toc_err": NAN}, ValueError, "toc_err is negative or NaN"),
+        ({"toc_err": "small"}, TypeError, "toc_err"),
+        ({"t_max": 1.5}, ValueError, "t_max is 1.5"),
+        ({"t_max": NAN}, ValueError, "t_max is nan"),
+        ({"num_max_contacts": 0}, ValueError, "num_max_contacts is 0"),
+        ({"num_max_contacts": -1}, ValueError, "num_max_contacts is -1"),
+        ({"num_threads": -1}, ValueError, "num_threads is -1"),
+        ({"num_threads": 1.5}, TypeError, "float"),
+        ({"query": "any", "enable_crossings": True}, ValueError, "enable_crossings"),
+        ({"accepts_triangles": 1}, TypeError, "accepts_triangles is not a function"),
+        ({"filter1": {"group": 1}}, TypeError, "filter1 is of type dict"),
+        ({"filter1": fcl_ccd.Filter(triangle_groups=[1])}, ValueError, "1 .*18"),
+        ({"colour": 1}, TypeError, "colour"),
+    ],
+)
+def test_requests(options, error, text):
+    mesh = mesh_at_rest()
+    with pytest.raises(error, match=text):
+        fcl_ccd.self_collide(mesh, **options)
+    with pytest.raises(error, match=text):
+        fcl_ccd.collide(mesh, fcl_ccd.RigidMesh(VERTICES, TRIANGLES), **options)
+
+
+@pytest.mark.parametrize(
+    "options, error, text",
+    [
+        ({"group": 2**32}, ValueError, "group is 4294967296"),
+        ({"mask": -1}, ValueError, "mask is -1"),
+        ({"triangle_groups": [[1]]}, ValueError, "triangle_groups has the shape"),
+        ({"triangle_masks": [-1]}, ValueError, "triangle_masks has a number out of range"),
+        ({"triangle_masks": [0.5]}, TypeError, "triangle_masks has elements of type float64"),
+    ],
+)
+def test_filters(options, error, text):
+    with pytest.raises(error, match=text):
+        fcl_ccd.Filter(**options)
+
+
+MIRROR = np.diag([1.0, 1.0, -1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    "make, text",
+    [
+        (lambda: np.eye(3), r"motion1 has the shape \(3, 3\)"),
+        (lambda: np.eye(4)[None], r"motion1 has the shape \(1, 4, 4\)"),
+        (lambda: 2 * np.eye(4), "the last row of a pose"),
+        (lambda: np.diag([2.0, 2.0, 2.0, 1.0]), "motion1 is not a rotation and a translation"),
+        (lambda: MIRROR, "motion1 is not a rotation and a translation"),
+        (lambda: (np.eye(4), pose((NAN, 0, 0))), "motion1 has a number that is not finite"),
+        (lambda: fcl_ccd.LinearMotion(np.eye(4), MIRROR), "a pose of LinearMotion is not"),
+        (lambda: fcl_ccd.LinearMotion(np.eye(4), np.eye(4), (0, 0)), "reference has the shape"),
+        (lambda: fcl_ccd.LinearMotion(np.eye(4), np.eye(4), (0, 0, INF)), "reference has a number"),
+        (lambda: fcl_ccd.LinearMotion(np.eye(4), pose(angle=1), (0, 0, 1e300)), "reference point"),
+        (lambda: fcl_ccd.ScrewMotion(np.eye(4), np.eye(3)), "a pose of ScrewMotion has the shape"),
+        (lambda: fcl_ccd.SplineMotion(np.zeros((3, 3)), np.zeros((4, 3))), "translation has the"),
+        (lambda: fcl_ccd.SplineMotion(np.zeros((4, 3)), np.full((4, 3), NAN)), "rotation has a"),
+        (lambda: fcl_ccd.SplineMotion(np.zeros((4, 3)), np.arange(12.0).reshape(4, 3) * 1e7), r"2\^20 radians"),
+    ],
+)
+def test_motions(make, text):
+    mesh = fcl_ccd.RigidMesh(VERTICES, TRIANGLES)
+    with pytest.raises(ValueError, match=text):
+        fcl_ccd.collide(mesh, mesh, make())
+
+
+def test_objects_that_are_no_meshes():
+    mesh = mesh_at_rest()
+    for call in (
+        lambda: fcl_ccd.self_collide(VERTICES),
+        lambda: fcl_ccd.collide(mesh, None),
+        lambda: fcl_ccd.candidates(mesh, "mesh"),
+        lambda: fcl_ccd.self_candidates(3),
+    ):
+        with pytest.raises(TypeError, match="Give a DeformableMesh or a RigidMesh"):
+            call()
+
+
+def test_candidates():
+    mesh, turns = fcl_ccd.RigidMesh(VERTICES, TRIANGLES), (np.eye(4), pose(angle=1))
+    with pytest.raises(ValueError, match="o2 is a rigid mesh that turns"):
+        fcl_ccd.candidates(mesh, mesh, None, turns)
+    with pytest.raises(ValueError, match="block is -1"):
+        fcl_ccd.candidates(mesh, mesh, block=-1)
+
+
+@pytest.mark.parametrize("test", [fcl_ccd.vertex_face, fcl_ccd.edge_edge])
+def test_feature_tests(test):
+    t0 = np.arange(36.0).reshape(3, 4, 3)
+    with pytest.raises(ValueError, match=r"t0 has the shape \(36,\). Give .* \(n, 4, 3\)"):
+        test(t0.ravel(), t0)
+    with pytest.raises(ValueError, match="t0 has 3 queries and t1 has 2"):
+        test(t0, t0[:2])
+    with pytest.raises(ValueError, match="query 2: (f0|ea1)_t1 is not finite"):
+        test(t0, changed(t0, (2, 1, 0), NAN))
+    with pytest.raises(ValueError, match="toc_err is negative"):
+        test(t0, t0, toc_err=-1)
+    with pytest.raises(TypeError, match="t1 has elements of type"):
+        test(t0, t0.astype(complex))
+    assert test(t0[:0], t0[:0]).shape == (0,)
+
+
+def test_exceptions_of_callbacks_reach_the_caller():
+    vertices = np.concatenate([VERTICES, VERTICES + (0.1, 0.1, 1e-3)])
+    two = np.concatenate([TRIANGLES, TRIANGLES + 16])
+    mesh = fcl_ccd.DeformableMesh(vertices, two)
+    mesh.update(vertices - np.repeat([[0.0], [0.5]], 16, axis=0) * (0, 0, 1))
+    calls = []
+
+    def fails(b1, b2):
+        calls.append((b1, b2))
+        raise KeyError("my error")
+
+    for num_threads in (1, 2):
+        calls.clear()
+        with pytest.raises(KeyError, match="my error"):
+            fcl_ccd.self_collide(mesh, accepts_triangles=fails, num_threads=num_threads)
+        assert 1 <= len(calls) <= 2
+    with pytest.raises(KeyError, match="my error"):
+        fcl_ccd.self_candidates(mesh, lambda block: fails(0, 0))
+    with pytest.raises(TypeError):
+        fcl_ccd.self_collide(mesh, accepts_triangles=lambda: True)
+    assert fcl_ccd.self_collide(mesh)  # it still answers

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The package as a user meets it: help, types, examples, the wheel."""
+
+import importlib.util
+import inspect
+import os
+import pydoc
+import shutil
+import subprocess
+import sys
+import types
+from pathlib import Path
+
+import pytest
+
+import fcl_ccd
+
+SOURCE = Path(__file__).resolve().parent.parent
+EXAMPLES = sorted((SOURCE / "examples").glob("*.py"))
+
+
+def require(*modules):
+    """Skips a test for which a package is missing, but not in CI."""
+    missing = [name for name in modules if importlib.util.find_spec(name) is None]
+    if not missing:
+        return
+    message = f"missing: {', '.join(missing)} (cmake/dependencies.sh has the packages)"
+    if os.environ.get("CI") == "true":
+        pytest.fail(message)
+    pytest.skip(message)
+
+
+def run(*command, **options):
+    done = subprocess.run(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False, **options
+    )
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def test_help_has_every_name():
+    text = pydoc.plain(pydoc.render_doc(fcl_ccd))
+    for name in fcl_ccd.__all__:
+        assert name in text
+        thing = getattr(fcl_ccd, name)
+        if isinstance(thing, (type, types.FunctionType)):
+            assert len(inspect.getdoc(thing) or "") > 40, name
+            # Arguments are in the signature, and each is described.
+            if isinstance(thing, types.FunctionType):
+                described = (thing.__doc__ or "") + (fcl_ccd.collide.__doc__ or "")
+                described += (fcl_ccd.candidates.__doc__ or "") + (fcl_ccd.vertex_face.__doc__ or "")
+                for argument in inspect.signature(thing).parameters:
+                    assert argument in described or argument == "o", (name, argument)
+    for field in fcl_ccd.contact_dtype.names:
+        assert field in fcl_ccd.Result.__doc__
+
+
+def test_help_starts_with_an_example_that_runs():
+    code = inspect.getdoc(fcl_ccd).split("import fcl_ccd", 1)[1].split("Meshes:", 1)[0]
+    given = """
+import numpy as np
+import fcl_ccd
+vertices = np.array([(-1, -1, 0), (1, -1, 0), (0, 1, 0)], float)
+triangles = tool_triangles = np.array([(0, 1, 2)])
+tool_vertices = vertices * 0.5
+next_vertices = vertices + (0, 0, 0.5)
+pose_t0, pose_t1 = np.eye(4), np.eye(4)
+pose_t0[2, 3], pose_t1[2, 3] = 1, -1
+"""
+    dedented = "\n".join(line[4:] for line in code.splitlines())
+    names = {}
+    exec(given + dedented, names)  # pylint: disable=exec-used
+    assert names["result"].is_collide
+
+
+def test_types(tmp_path):
+    """The package and the examples' calls are typed; a wrong call is found."""
+    require("mypy")
+    program = tmp_path / "program.py"
+    program.write_text(
+        """
+import numpy as np
+import fcl_ccd
+
+mesh = fcl_ccd.DeformableMesh(np.zeros((3, 3)), [(0, 1, 2)])
+mesh.update(np.ones((3, 3)))
+time: float = fcl_ccd.collide(mesh, mesh, np.eye(4), (np.eye(4), np.eye(4))).time_of_contact
+done: bool = fcl_ccd.self_candidates(mesh, lambda block: None)
+number: int = fcl_ccd.self_candidates(mesh).size
+fcl_ccd.self_collide(3)
+""",
+        encoding="utf-8",
+    )
+    package = Path(fcl_ccd.__file__).parent
+    strict = ["--strict", "--no-error-summary", "--cache-dir", os.devnull]
+    found = subprocess.run(
+        [sys.executable, "-m", "mypy", *strict, package, program],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=package.parent,
+    )
+    (error,) = found.stdout.splitlines()
+    assert "program.py:10:" in error and 'incompatible type "int"' in error
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=[path.stem for path in EXAMPLES])
+def test_examples(example, tmp_path):
+    if "import matplotlib" in example.read_text(encoding="utf-8"):
+        require("matplotlib")
+    assert run(sys.executable, example, cwd=tmp_path)
+    if example.stem == "contact_picture":
+        assert (tmp_path / "contacts.png").stat().st_size > 10000
+
+
+def test_wheel(tmp_path):
+    """Built without network, from the module that is there, and used without the project."""
+    require("pip", "setuptools", "wheel")
+    copy = tmp_path / "project" / "python"
+    shutil.copytree(SOURCE, copy, ignore=shutil.ignore_patterns("__pycache__", "build"))
+    header = tmp_path / "project" / "include" / "fcl" / "ccd_version.h"
+    header.parent.mkdir(parents=True)
+    shutil.copy(SOURCE.parent / "include" / "fcl" / "ccd_version.h", header)
+    pip = [sys.executable, "-m", "pip", "--disable-pip-version-check"]
+    offline = ["--no-index", "--no-deps"]
+    run(*pip, "wheel", *offline, "--no-build-isolation", "-w", tmp_path, copy)
+    (wheel,) = tmp_path.glob("*.whl")
+    assert fcl_ccd.__version__ in wheel.name and "none-any" not in wheel.name
+    run(*pip, "install", *offline, "--target", tmp_path / "installed", wheel)
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path / "installed")}
+    code = "import fcl_ccd, sys; sys.stdout.write(fcl_ccd.__file__)"
+    found = run(sys.executable, "-c", code, env=environment, cwd=tmp_path)
+    assert found.startswith(str(tmp_path / "installed"))
+    run(sys.executable, SOURCE / "examples" / "planner.py", env=environment, cwd=tmp_path)
