@@ -6,7 +6,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 # All files of the source folders, also those that git does not know yet.
-files() { find examples include src test \( -name '*.h' -o -name '*.cpp' \) -print0; }
+files() { find examples include python src test \( -name '*.h' -o -name '*.cpp' \) -print0; }
 
 if [ "${1-}" = --fix ]; then
   files | xargs -0 clang-format-14 -i

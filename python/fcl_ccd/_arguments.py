@@ -48,29 +48,8 @@ def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:
     return array
 
 
-# A rotation that was computed or stored in single precision is taken, one that scales is not.
-_MOST_DEVIATION = 1e-5
-
-
-def poses(begin: ArrayLike, end: ArrayLike, name: str) -> NDArray[np.float64]:
-    """The poses at t = 0 and t = 1 as one array of shape (2, 4, 4)."""
-    both = np.empty((2, 4, 4))
-    both[0] = pose(begin, name)
-    both[1] = both[0] if end is begin else pose(end, name)
-    return both
-
-
 def pose(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    matrix = numbers(values, name, 4, 4)
-    if (matrix[3] != (0, 0, 0, 1)).any():
-        raise ValueError(f"{name}: the last row of a pose is 0 0 0 1, not {matrix[3]}")
-    rotation = matrix[:3, :3]
-    deviation = np.abs(rotation @ rotation.T - np.eye(3)).max()
-    if not (deviation <= _MOST_DEVIATION and np.linalg.det(rotation) > 0):
-        raise ValueError(
-            f"{name} is not a rotation and a translation. Scale or mirror the vertices instead"
-        )
-    return matrix
+    return _array(values, name, "f", (4, 4))
 
 
 def integer(value: int, name: str, most: int = 2**31 - 1) -> int:

@@ -32,9 +32,12 @@ class LinearMotion(Motion):
     def __init__(
         self, begin: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)
     ) -> None:
+        name = "a pose of LinearMotion"
         self._path = _core.Motion.turn(
-            _arguments.poses(begin, end, "a pose of LinearMotion"),
+            _arguments.pose(begin, name),
+            _arguments.pose(end, name),
             _arguments.numbers(reference, "reference", 3),
+            name,
         )
 
 
@@ -45,7 +48,10 @@ class ScrewMotion(Motion):
     """
 
     def __init__(self, begin: ArrayLike, end: ArrayLike) -> None:
-        self._path = _core.Motion.screw(_arguments.poses(begin, end, "a pose of ScrewMotion"))
+        name = "a pose of ScrewMotion"
+        self._path = _core.Motion.screw(
+            _arguments.pose(begin, name), _arguments.pose(end, name), name
+        )
 
 
 class SplineMotion(Motion):
@@ -66,7 +72,7 @@ class SplineMotion(Motion):
 
 MotionLike = Optional[Union[Motion, "ArrayLike", "Sequence[ArrayLike]"]]
 
-_AT_ORIGIN = _core.Motion.straight(np.array([np.eye(4)] * 2))
+_AT_ORIGIN = _core.Motion.straight(np.eye(4), np.eye(4), "identity")
 
 
 def path_of(motion: MotionLike, name: str) -> _core.Motion:
@@ -77,9 +83,12 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
         return motion._path
     poses = np.asarray(motion)
     if poses.shape == (4, 4):
-        return _core.Motion.straight(_arguments.poses(poses, poses, name))
+        pose = _arguments.pose(poses, name)
+        return _core.Motion.straight(pose, pose, name)
     if poses.shape == (2, 4, 4):
-        return _core.Motion.straight(_arguments.poses(poses[0], poses[1], name))
+        return _core.Motion.straight(
+            _arguments.pose(poses[0], name), _arguments.pose(poses[1], name), name
+        )
     raise ValueError(
         f"{name} has the shape {poses.shape}. Give a pose of shape (4, 4), a pair of poses, or a "
         "LinearMotion, ScrewMotion or SplineMotion"

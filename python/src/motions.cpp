@@ -2,6 +2,9 @@
 #include "motions.h"
 
 #include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "fcl/math/motion/spline_motion.h"
 
@@ -11,28 +14,71 @@ namespace {
 
 using fcl::Vector3d;
 using fcl::detail::PathKind;
+using fcl::detail::PoseNumbers;
 
-/// @param poses  begin and end, each 4 x 4
-Motion betweenPoses(const Doubles& poses, PathKind kind) {
-  requireSize(poses, 2 * 16, "the poses");
+/// A rotation that was computed or stored in single precision is taken, one that scales
+/// is not.
+constexpr double kMostDeviation = 1e-5;
+
+double determinant(const double (&r)[9]) {
+  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
+         r[2] * (r[3] * r[7] - r[4] * r[6]);
+}
+
+bool isRotation(const double (&r)[9]) {
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double product =
+          r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
+      if (std::abs(product - (i == k)) > kMostDeviation) return false;
+    }
+  return determinant(r) > 0;
+}
+
+/// @param matrix  4 x 4, row by row
+/// @param name  what an exception calls it
+PoseNumbers<double> toPose(const double* matrix, const std::string& name) {
+  if (!std::all_of(matrix, matrix + 16, [](double x) { return std::isfinite(x); }))
+    throw py::value_error(name + " has a number that is not finite");
+  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
+    throw py::value_error(name + ": the last row of a pose is 0 0 0 1");
+  PoseNumbers<double> pose;
+  for (int row = 0; row < 3; ++row) {
+    std::copy_n(matrix + 4 * row, 3, pose.rotation + 3 * row);
+    pose.translation[row] = matrix[4 * row + 3];
+  }
+  if (!isRotation(pose.rotation))
+    throw py::value_error(name +
+                          " is not a rotation and a translation. Scale or mirror the "
+                          "vertices instead");
+  return pose;
+}
+
+Motion betweenPoses(const Doubles& begin, const Doubles& end, PathKind kind,
+                    const std::string& name) {
+  requireSize(begin, 16, "the pose at t = 0");
+  requireSize(end, 16, "the pose at t = 1");
   Motion motion{};
   motion.path.path = kind;
-  for (int end = 0; end < 2; ++end) {
-    auto& pose = motion.path.pose[end];
-    const double* matrix = poses.data() + 16 * end;
-    for (int row = 0; row < 3; ++row) {
-      std::copy_n(matrix + 4 * row, 3, pose.rotation + 3 * row);
-      pose.translation[row] = matrix[4 * row + 3];
-    }
-  }
+  motion.path.pose[0] = toPose(begin.data(), name);
+  motion.path.pose[1] = toPose(end.data(), name);
   return motion;
 }
 
-Motion turn(const Doubles& poses, const Doubles& reference) {
-  Motion motion = betweenPoses(poses, PathKind::kTurn);
+Motion straight(const Doubles& begin, const Doubles& end, const std::string& name) {
+  return betweenPoses(begin, end, PathKind::kStraight, name);
+}
+
+Motion turn(const Doubles& begin, const Doubles& end, const Doubles& reference,
+            const std::string& name) {
+  Motion motion = betweenPoses(begin, end, PathKind::kTurn, name);
   requireSize(reference, 3, "reference");
   std::copy_n(reference.data(), 3, motion.path.reference);
   return motion;
+}
+
+Motion screw(const Doubles& begin, const Doubles& end, const std::string& name) {
+  return betweenPoses(begin, end, PathKind::kScrew, name);
 }
 
 /// @param translation, rotation  4 control points each
@@ -67,13 +113,9 @@ py::array toArray(const fcl::detail::PoseNumbers<double>& pose) {
 
 void bindMotions(py::module_& module) {
   py::class_<Motion>(module, "Motion")
-      .def_static(
-          "straight",
-          [](const Doubles& poses) { return betweenPoses(poses, PathKind::kStraight); })
+      .def_static("straight", &straight)
       .def_static("turn", &turn)
-      .def_static(
-          "screw",
-          [](const Doubles& poses) { return betweenPoses(poses, PathKind::kScrew); })
+      .def_static("screw", &screw)
       .def_static("spline", &spline);
 }
 

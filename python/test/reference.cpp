@@ -3,8 +3,11 @@
 // Answers in C++ for the tests of the Python package. Reads commands from stdin and
 // prints each answer as numbers, one line an element. Floating-point numbers are
 // hexadecimal, so that nothing is rounded. test_answers.py writes the commands.
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -193,6 +196,49 @@ void answerFeatures(bool is_vertex_face) {
   }
 }
 
+/// Prints the least time of some calls, in seconds.
+template <typename Call>
+void printTime(int repeats, const Call& call) {
+  using Clock = std::chrono::steady_clock;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < repeats; ++i) {
+    const auto start = Clock::now();
+    call();
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  std::printf("%a\n", least);
+  std::fflush(stdout);
+}
+
+/// Times a step of a mesh: update and self-query, with a result of its own.
+void timeStep() {
+  const int repeats = readInt(), num_vertices = readInt(), num_triangles = readInt();
+  const auto previous = readVectors(num_vertices), current = readVectors(num_vertices);
+  auto model = build<fcl::DeformableBVHModel<>>(previous, readTriangles(num_triangles));
+  const Request request = readRequest();
+  printTime(repeats, [&] {
+    requireOk(
+        model->updateFrames(previous[0].data(), current[0].data(), previous.size()));
+    Result result;
+    fcl::continuousSelfCollide(model.get(), request, result);
+  });
+}
+
+/// Times a loop over vertexFace().
+void timeVertexFace() {
+  const int repeats = readInt(), count = readInt();
+  std::vector<std::vector<Vector3d>> queries;
+  for (int i = 0; i < count; ++i) queries.push_back(readVectors(8));
+  std::vector<fcl::ContinuousFeatureTestResultd> results(queries.size());
+  printTime(repeats, [&] {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const auto& x = queries[i];
+      results[i] =
+          fcl::vertexFace<double>(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], 1e-4);
+    }
+  });
+}
+
 class Commands {
  public:
   void run(const std::string& command) {
@@ -209,6 +255,10 @@ class Commands {
     } else if (command == "self_candidates") {
       fcl::continuousSelfCandidates(
           readMesh(), [](const auto* c, std::size_t count) { return print(c, count); });
+    } else if (command == "time_step") {
+      timeStep();
+    } else if (command == "time_vf") {
+      timeVertexFace();
     } else if (command == "vf" || command == "ee") {
       answerFeatures(command == "vf");
     } else {

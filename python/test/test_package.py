@@ -132,3 +132,14 @@ def test_wheel(tmp_path):
     found = run(sys.executable, "-c", code, env=environment, cwd=tmp_path)
     assert found.startswith(str(tmp_path / "installed"))
     run(sys.executable, SOURCE / "examples" / "planner.py", env=environment, cwd=tmp_path)
+
+
+def test_code_of_the_page():
+    """The blocks of doc/python.md, one after the other."""
+    page = (SOURCE.parent / "doc" / "python.md").read_text(encoding="utf-8")
+    blocks = [part.split("```", 1)[0] for part in page.split("```python\n")[1:]]
+    assert len(blocks) > 5
+    names = {}
+    exec("\n".join(blocks), names)  # pylint: disable=exec-used
+    assert names["number"] > 0 and len(names["contacts"]) > 0
+    assert 0 < len(names["touched"]) and (names["fixed"][names["touched"]] == 1).all()
