@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -35,7 +36,7 @@ struct BinaryDigits {
   }
 
   int numDigits() const {
-    assert(!isEmpty());
+    assert(digits != 0);
     return 64 -
            __builtin_clzll(static_cast<std::uint64_t>(digits < 0 ? -digits : digits));
   }

@@ -201,7 +201,7 @@ void runBaselines(Table& table, const Options& options) {
 
 /// Each option of a request, off and on.
 void runOptions(Table& table, const Options& options) {
-  const auto add = [&](const Scene& scene) {
+  const auto add = [&](const SpeedScene& scene) {
     for (const OptionRow& row : measureOptions(scene, options.effort)) table.add(row);
   };
   for (const DataScene& data : readDataScenes(options)) add(data.scene);

@@ -23,7 +23,7 @@ using Contact = ContinuousContact<double>;
 /// The objects of a query, and how it is asked.
 class Query {
  public:
-  explicit Query(const Scene& scene) : a_(modelOf(scene.a)) {
+  explicit Query(const SpeedScene& scene) : a_(modelOf(scene.a)) {
     if (!scene.isSelf()) b_ = modelOf(scene.b);
   }
 
@@ -83,7 +83,7 @@ std::vector<PairName> namesOf(const std::vector<Contact>& contacts) {
 }
 
 /// Times of a query without and with an option, one after the other in each repeat.
-OptionRow measure(const Scene& scene, const std::string& option, const Query& query,
+OptionRow measure(const SpeedScene& scene, const std::string& option, const Query& query,
                   const Request& off, const Request& on, const Effort& effort) {
   OptionRow row;
   row.scene = scene.name;
@@ -107,7 +107,8 @@ void setErrors(const std::vector<PairName>& found, const std::vector<PairName>& 
 }
 
 /// The first contact with a coarse tolerance beside one that is fine.
-OptionRow measureCoarse(const Scene& scene, const Query& query, const Effort& effort) {
+OptionRow measureCoarse(const SpeedScene& scene, const Query& query,
+                        const Effort& effort) {
   const Request fine = requestFor(ContinuousQuery::kFirst, 1e-9);
   const Request coarse = requestFor(ContinuousQuery::kFirst);
   OptionRow row = measure(scene, "toc_err 1e-4 for 1e-9", query, fine, coarse, effort);
@@ -121,7 +122,7 @@ OptionRow measureCoarse(const Scene& scene, const Query& query, const Effort& ef
 }
 
 /// All contacts in the first tenth of the step.
-OptionRow measureTMax(const Scene& scene, const Query& query, const Effort& effort) {
+OptionRow measureTMax(const SpeedScene& scene, const Query& query, const Effort& effort) {
   const Request off = requestFor(ContinuousQuery::kAll);
   Request on = off;
   on.t_max = 0.1;
@@ -153,7 +154,7 @@ bool isHeldBy(const std::vector<std::vector<int>>& at, const int* first, const i
 }
 
 /// Marks of triangles: all may meet, or only those of different halves of the mesh.
-void addMarks(const Scene& scene, const Query& query, const Effort& effort,
+void addMarks(const SpeedScene& scene, const Query& query, const Effort& effort,
               std::vector<OptionRow>& rows) {
   const Request off = requestFor(ContinuousQuery::kAll);
   const std::vector<Contact> whole = query(off).contacts;
@@ -246,7 +247,8 @@ std::vector<PairName> crossingsOf(const FramePairMesh& mesh) {
 }
 
 /// All crossings at t = 0 beside a first contact, for which one is enough.
-OptionRow measureCrossings(const Scene& scene, const Query& query, const Effort& effort) {
+OptionRow measureCrossings(const SpeedScene& scene, const Query& query,
+                           const Effort& effort) {
   const Request off = requestFor(ContinuousQuery::kFirst);
   Request on = off;
   on.enable_crossings = true;
@@ -264,7 +266,7 @@ OptionRow measureCrossings(const Scene& scene, const Query& query, const Effort&
 
 }  // namespace
 
-std::vector<OptionRow> measureOptions(const Scene& scene, const Effort& effort) {
+std::vector<OptionRow> measureOptions(const SpeedScene& scene, const Effort& effort) {
   const Query query(scene);
   std::vector<OptionRow> rows{measureCoarse(scene, query, effort)};
   if (!scene.isSelf()) return rows;

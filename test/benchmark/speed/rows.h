@@ -75,7 +75,7 @@ std::vector<BaselineRow> measureBaselines(const SpeedScene& scene, const Effort&
 /// and the errors of the answers with it; of two meshes only the tolerance. Errors are
 /// against answers without the option, of which the rows know which ones are to stay,
 /// and against brute force (crossings).
-std::vector<OptionRow> measureOptions(const Scene& scene, const Effort& effort);
+std::vector<OptionRow> measureOptions(const SpeedScene& scene, const Effort& effort);
 
 /// @brief All self-contacts in every step of a sequence, with a model that is updated
 /// from frame to frame, and with one that is built anew for each.
