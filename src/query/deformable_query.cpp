@@ -13,6 +13,7 @@
 #include "query/distance_contact.h"
 #include "self_culling/embedded_fans.h"
 #include "self_culling/embedded_regions.h"
+#include "self_culling/regions_apart.h"
 #include "tree/box_position.h"
 #include "tree/traversal.h"
 
@@ -260,11 +261,18 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
                      bool with_regions, double min_distance, int num_threads,
                      StageTimes& times) {
   SelfProofs proofs;
-  // What is proved not to touch may come near.
-  if (min_distance > 0) return proofs;
   if (&mesh != &other || !mesh.tree || !mesh.isInPlace()) return proofs;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
+  if (min_distance > 0) {
+    // What is proved not to touch may come near.
+    if (with_regions)
+      proofs.nodes_in_fans =
+          findNodesApart(tree, findEmbeddedRegions(tree, kernels(), num_threads),
+                         reachOf(mesh, mesh, min_distance));
+    times.traverse += secondsSince(start);
+    return proofs;
+  }
   std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (with_regions) {
     EmbeddedRegions regions = findEmbeddedRegions(tree, kernels(), num_threads);

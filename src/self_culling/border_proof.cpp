@@ -14,12 +14,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// The direction of bit `bit` in a set of directions.
-void directionOf(int bit, int (&d)[3]) {
-  const int axis = bit % static_cast<int>(kNumAxes);
-  for (int k = 0; k < 3; ++k) d[k] = bit == axis ? kAxes[axis][k] : -kAxes[axis][k];
-}
-
 /// Two vectors with entries 1, 0 and -1 that are perpendicular to d, and whose cross
 /// product points along d. They are the unit vectors of the zero entries of d, and one
 /// vector for each two nonzero entries that follow each other.
@@ -49,12 +43,18 @@ struct PlaneAxes {
 
 }  // namespace
 
+void directionOf(int bit, int (&d)[3]) {
+  const int axis = bit % static_cast<int>(kNumAxes);
+  for (int k = 0; k < 3; ++k) d[k] = bit == axis ? kAxes[axis][k] : -kAxes[axis][k];
+}
+
 bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t directions) {
   assert(border.size() > 0 && border.points.size() > border.begins.back() + 1);
   border_ = &border;
   const double size = tree_.reach() * tree_.reach();
   if (directions == 0 || !isInRange(size)) return false;
-  project(widest(directions));
+  direction_ = widest(directions);
+  project(direction_);
   return isSimple() && windsOnce();
 }
 

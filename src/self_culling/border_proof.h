@@ -26,6 +26,9 @@ struct BorderTree {
   const MovingKdopNode& node(int i) const { return nodes[static_cast<std::size_t>(i)]; }
 };
 
+/// @brief The vector of a bit of a set of directions (kAxes).
+void directionOf(int bit, int (&d)[3]);
+
 /// @brief Tests one border after another.
 class BorderProof {
  public:
@@ -38,6 +41,9 @@ class BorderProof {
   /// is on the left of its edges.
   /// @param border  has at least one edge
   bool isEmbedded(const RegionBorder& border, std::uint32_t directions);
+
+  /// @brief The bit of the direction of the last proof.
+  int direction() const { return direction_; }
 
  private:
   struct Point {
@@ -78,6 +84,7 @@ class BorderProof {
   const Kernels& kernels_;
   /// The border that is tested, and its points in the plane.
   const RegionBorder* border_{nullptr};
+  int direction_{0};
   std::vector<MovingPoint> points_;
   BorderTree boxes_;
 };

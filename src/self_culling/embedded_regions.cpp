@@ -147,7 +147,11 @@ class RegionSearch {
     const std::uint32_t directions = faced_.of(region.first, region.last);
     if (directions == 0) return false;
     const RegionBorder& border = borderOf(open, borders);
-    if (border.size() > 0 && borders.proof.isEmbedded(border, directions)) return true;
+    if (border.size() > 0 && borders.proof.isEmbedded(border, directions)) {
+      found_.directions[static_cast<std::size_t>(open.node)] =
+          static_cast<std::uint8_t>(borders.proof.direction());
+      return true;
+    }
     in_vain += region.last - region.first;
     return false;
   }
@@ -174,7 +178,8 @@ class RegionSearch {
 EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                                     int num_threads, std::uint32_t least_triangles) {
   EmbeddedRegions found{std::vector<std::uint8_t>(tree.numNodes(), 0),
-                        std::vector<std::uint8_t>(tree.vertices().size(), 0)};
+                        std::vector<std::uint8_t>(tree.vertices().size(), 0),
+                        std::vector<std::uint8_t>(tree.numNodes(), 0)};
   assert(tree.numNodes() > 0 && least_triangles > 0);
   RegionSearch regions(tree, kernels, least_triangles, found);
   // Two open nodes have no common triangle, and no vertex is written for both.

@@ -26,6 +26,8 @@ namespace deformable {
 struct EmbeddedRegions {
   std::vector<std::uint8_t> nodes;
   std::vector<std::uint8_t> interior;
+  /// For each node that is a root, the bit of the direction (kAxes) of the proof.
+  std::vector<std::uint8_t> directions;
 };
 
 /// @brief Least number of triangles of a region. To find regions of 64 triangles takes

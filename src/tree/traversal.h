@@ -77,8 +77,9 @@ struct SelfCulling {
   /// For each vertex of the tree, whether its fan is embedded (findEmbeddedFans()). Pairs
   /// of triangles in one such fan are left out.
   const std::uint8_t* fans{nullptr};
-  /// For each node, the vertex whose embedded fan contains it (findNodesInFans()). Pairs
-  /// below two nodes in the same fan are left out.
+  /// For each node, the vertex whose embedded fan contains it (findNodesInFans()), or the
+  /// region in which its features are apart (findNodesApart()). Pairs below two nodes in
+  /// the same one are left out.
   const std::uint32_t* nodes_in_fans{nullptr};
   /// For each node, whether it is an embedded region (EmbeddedRegions::nodes). Pairs
   /// below it are left out.

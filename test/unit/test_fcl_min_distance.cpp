@@ -19,6 +19,7 @@
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "moving_mesh.h"
+#include "query/deformable_query.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -28,6 +29,8 @@ namespace {
 using detail::deformable::advanceToDistance;
 using detail::deformable::DistanceContact;
 using detail::deformable::DistanceRequest;
+using detail::deformable::QueryOptions;
+using detail::deformable::querySelf;
 using detail::deformable::VertexPath;
 using Model = DeformableBVHModel<OBBRSS<double>>;
 using RigidModel = BVHModel<OBBRSS<double>>;
@@ -211,6 +214,44 @@ TEST(FCL_MIN_DISTANCE, selfAgainstAllPairs) {
   EXPECT_GT(seen.later, 500U);
 }
 
+/// Smooth sheets, most pairs of which are left out by a proof; they are bent, squeezed
+/// and sheared, so that triangles get low.
+TEST(FCL_MIN_DISTANCE, smoothSheetsAgainstAllPairs) {
+  Random random(87);
+  constexpr int kSide = 13;
+  const auto sheet = [&](double squeeze, double shear, double wave) {
+    return makeSheet(kSide, kSide, [=](double u, double v) {
+      return Vector3<double>(squeeze * u + shear * v, v,
+                             wave * std::sin(7 * u) * std::cos(5 * v));
+    });
+  };
+  std::size_t contacts = 0, left_out = 0;
+  for (int i = 0; i < 8; ++i) {
+    const TestMesh from = sheet(1, 0, 0.02),
+                   to = sheet(random.uniform(0.2, 1), random.uniform(-1, 1),
+                              random.uniform(0, 0.06));
+    const MovingMesh mesh{from.vertices, to.vertices, from.triangles};
+    const auto model = modelOf(mesh);
+    for (const double share : {0.02, 0.2, 0.6, 1.2}) {
+      SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(share));
+      Request request = requestAt(share / kSide);
+      request.ignore_initially_closer = i % 2;
+      const Result result = selfContacts<double>(*model, request);
+      ASSERT_EQ(contactsOf(result, true), bruteForce(mesh, mesh, request));
+      contacts += result.contacts.size();
+      const PreparedMovingMesh prepared(mesh);
+      QueryOptions options;
+      options.min_distance = request.min_distance;
+      options.leaves_out_regions = false;
+      const auto whole = querySelf(prepared.instance(), options).counts.triangle_pairs;
+      EXPECT_LE(result.counts.triangle_pairs, whole);
+      left_out += 2 * result.counts.triangle_pairs < whole;
+    }
+  }
+  EXPECT_GT(contacts, 5000U);
+  EXPECT_GT(left_out, 6U);
+}
+
 TEST(FCL_MIN_DISTANCE, pairsAgainstAllPairs) {
   Random random(82);
   Seen seen;
@@ -277,10 +318,10 @@ TEST(FCL_MIN_DISTANCE, rigidMeshes) {
 TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
   Random random(83);
   for (int i = 0; i < 20; ++i) {
-    const MovingMesh mesh = crumpledSheet(random, 5, 0.2);
+    const MovingMesh mesh = crumpledSheet(random, 6, 0.4);
     const auto model = modelOf(mesh);
     Request request = requestAt(std::pow(10, random.uniform(-3, -1)));
-    request.ignore_initially_closer = true;
+    request.ignore_initially_closer = i % 2;
     const Result all = selfContacts<double>(*model, request);
     ASSERT_FALSE(all.contacts.empty());
     EXPECT_EQ(all.time_of_contact, all.contacts.front().toc_lo);
@@ -309,6 +350,7 @@ TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
 
     request.num_max_contacts = 1000000;
     request.t_max = 0.5 * all.time_of_contact;
+    if (request.t_max == 0) continue;
     const Result none = selfContacts<double>(*model, request);
     EXPECT_TRUE(none.contacts.empty());
     EXPECT_EQ(none.time_of_contact, 1);
@@ -422,11 +464,12 @@ TEST(FCL_MIN_DISTANCE, aPlateAboveAPlate) {
 /// that are near.
 TEST(FCL_MIN_DISTANCE, candidatesAreAllThatComeNear) {
   Random random(86);
+  std::size_t all_near = 0;
   for (int i = 0; i < 8; ++i) {
     MovingMesh mesh = crumpledSheet(random, 5, 0.1);
     if (i % 2) mesh.t1 = mesh.t0;
     const auto model = modelOf(mesh);
-    const double distance = std::pow(10, random.uniform(-2, -0.7));
+    const double distance = std::pow(10, random.uniform(-1.3, -0.6));
     std::set<Name> candidates;
     std::size_t count = 0;
     EXPECT_TRUE(continuousSelfCandidates(
@@ -474,10 +517,11 @@ TEST(FCL_MIN_DISTANCE, candidatesAreAllThatComeNear) {
             edges[e][1] != edges[f][0] && edges[e][1] != edges[f][1])
           expectIfNear(Kind::kEdgeEdge,
                        {edges[e][0], edges[e][1], edges[f][0], edges[f][1]});
-    EXPECT_GT(near, 20U);
+    all_near += near;
     // And not all pairs there are.
     EXPECT_LT(count, edges.size() * edges.size() / 2);
   }
+  EXPECT_GT(all_near, 200U);
 }
 
 TEST(FCL_MIN_DISTANCE, whatCannotBeAskedIsRefused) {

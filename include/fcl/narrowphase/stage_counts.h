@@ -52,9 +52,11 @@ struct StageCounts {
   std::uint64_t box_culled{0};
   /// feature pairs that the filters of the request reject
   std::uint64_t mask_culled{0};
-  /// feature pairs that provably never become coplanar while their boxes overlap
+  /// feature pairs that provably never become coplanar while their boxes overlap; with
+  /// min_distance: those that a direction provably keeps further apart
   std::uint64_t filter_culled{0};
-  /// feature pairs for which the certified solve proved that there is no contact
+  /// feature pairs for which the certified solve (with min_distance: directional
+  /// advancement) proved that there is no contact
   std::uint64_t solver_culled{0};
   /// feature pairs that the solve left undecided and that integers proved to be no
   /// contact
