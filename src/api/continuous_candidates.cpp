@@ -80,6 +80,7 @@ bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const PreparedMotion motion1 = preparedMotion(o1, "o1"),
                        motion2 = preparedMotion(o2, "o2");
   return handOut(sink, [&](const auto& inner) {
+    const deformable::DefaultFloatingPoint mode;
     return deformable::candidatesOfMotions(motion1.body(), motion2.body(), inner);
   });
 }

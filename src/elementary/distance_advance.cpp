@@ -111,7 +111,10 @@ constexpr double kDown = 1 - 0x1p-50, kUp = 1 + 0x1p-50;
 double firstRoot(double gap, double rate, double bend) {
   const double discriminant = rate * rate - 4 * gap * bend;
   if (!(discriminant >= 0)) return kInfinity;
-  const double divisor = std::sqrt(discriminant) - rate;
+  const double root = std::sqrt(discriminant);
+  // Of the two forms of the root, the one whose sum does not cancel.
+  if (rate > 0) return bend < 0 ? (root + rate) / (-2 * bend) : kInfinity;
+  const double divisor = root - rate;
   return divisor > 0 ? 2 * gap / divisor : kInfinity;
 }
 
@@ -121,10 +124,12 @@ double firstRoot(double gap, double rate, double bend) {
 /// corner is off by 5 u L, and n is below 1 + 5 u: the margin needs 16 u (d + L).
 ///
 /// A direction that turns, while it turns by less than its length: (n + tau m) . (c + tau
-/// c') for each corner, at most d |n + tau m| <= d (1 + tau^2 m^2 / 2) (1 + 8 u) + rest.
-/// With c 8 u L off and c', below 2 L, 4 u L off, the three coefficients are off by 11 u
-/// L, 24 u L and 12 u L + 4 u d, if times tau. The root adds 8 u of each, 48 u L + 8 u d,
-/// the length of the direction 12 u d, the time 4 u L: below 100 u (d + L).
+/// c') for each corner, at most d |n + tau m| <= d (1 + tau n . m + tau^2 m^2 / 2) (1 + 8
+/// u) + rest, since the root of 1 + x is at most 1 + x / 2. The term with n . m is
+/// rounding as a rule, but not in slivers, where m is a quotient by a small area. With c
+/// 8 u L off and c', below 2 L, 4 u L off, the three coefficients are off by 11 u L, 24 u
+/// L and 12 u L + 4 u d, if times tau. The root adds 8 u of each, 48 u L + 8 u d, the
+/// length of the direction 12 u d, the time 4 u L: below 100 u (d + L).
 class AdvancingPair {
  public:
   AdvancingPair(ContinuousContactKind kind, const FeaturePoints& x) : polygon_(kind, x) {}
@@ -236,7 +241,8 @@ class AdvancingPair {
     if (!(longest > 0)) return {-kInfinity, 0};
     for (int k = 0; k < polygon_.count(); ++k) {
       const Vec c = corners_[k], change = velocity(k);
-      const double gap = dot(n, c) - least, closing = dot(n, change) + dot(turn, c),
+      const double gap = dot(n, c) - least,
+                   closing = dot(n, change) + dot(turn, c) - d * dot(n, turn),
                    bend = dot(turn, change) - 0.5 * d * square;
       if (!(gap > 0)) return {-kInfinity, 0};
       const double root = firstRoot(gap, closing, bend);
@@ -342,7 +348,13 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
         reached <= d * (1 + DistanceTolerance::kShare) + tolerance.touching) {
       // Half of the tolerance more than what would be a contact at t = 0.
       d = reached * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance.touching;
-      if (!(d > 0)) return out;
+      if (!(d > 0)) {
+        // They touch, and may pass through each other without coming nearer.
+        setNearest(kind, near, number, out);
+        order(kind, out);
+        setBracket(pair, tolerance, request, request.distance, 0, reached, rate, out);
+        return out;
+      }
       tolerance = DistanceTolerance(d, pair.size());
     }
     const double share = out.steps < kPlainSteps ? 0 : DistanceTolerance::kShare;

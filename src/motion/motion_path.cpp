@@ -177,6 +177,17 @@ double largestDifference(const double (&points)[4][3]) {
   return most * kUpward;
 }
 
+/// A placement or a rate of the program, if it is one.
+BoundedMotion::Placement checked(const BoundedMotion::Placement& placement,
+                                 const char* name) {
+  const auto is_finite = [](double x) { return std::isfinite(x); };
+  if (std::all_of(placement.rotation, placement.rotation + 9, is_finite) &&
+      std::all_of(placement.translation, placement.translation + 3, is_finite))
+    return placement;
+  throw Exception(std::string("BoundedMotion::") + name +
+                  " gives a number that is not finite");
+}
+
 /// A bound of the program, if it is one.
 double checked(double bound, const char* name) {
   if (bound >= 0 && std::isfinite(bound)) return bound * kUpward;
@@ -320,18 +331,7 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
 }
 
 MotionPath MotionPath::bounded(const BoundedMotion& motion) {
-  const auto require = [](const BoundedMotion::Placement& placement, const char* name) {
-    const auto is_finite = [](double x) { return std::isfinite(x); };
-    if (std::all_of(placement.rotation, placement.rotation + 9, is_finite) &&
-        std::all_of(placement.translation, placement.translation + 3, is_finite))
-      return;
-    throw Exception(std::string("BoundedMotion::") + name +
-                    " gives a number that is not finite");
-  };
-  const BoundedMotion::Placement rate = motion.rateAt(0);
-  require(motion.placementAt(0), "placementAt()");
-  require(motion.placementAt(1), "placementAt()");
-  require(rate, "rateAt()");
+  const BoundedMotion::Placement rate = checked(motion.rateAt(0), "rateAt()");
   MotionPath path;
   path.kind_ = Kind::kBounded;
   path.motion_ = &motion;
@@ -366,7 +366,7 @@ void MotionPath::shift(const double (&origin)[3]) {
 Pose MotionPath::pose(double t) const {
   if (kind_ == Kind::kSpline) return splinePose(t);
   if (kind_ == Kind::kBounded) {
-    const BoundedMotion::Placement at = motion_->placementAt(t);
+    const BoundedMotion::Placement at = checked(motion_->placementAt(t), "placementAt()");
     Pose out;
     std::copy(at.rotation, at.rotation + 9, out.rotation);
     for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k] - origin_[k];
@@ -389,7 +389,7 @@ Pose MotionPath::pose(double t) const {
 PoseRate MotionPath::rate(double t) const {
   if (kind_ == Kind::kSpline) return splineRate(t);
   if (kind_ == Kind::kBounded) {
-    const BoundedMotion::Placement at = motion_->rateAt(t);
+    const BoundedMotion::Placement at = checked(motion_->rateAt(t), "rateAt()");
     PoseRate out;
     std::copy(at.rotation, at.rotation + 9, out.rotation);
     std::copy(at.translation, at.translation + 3, out.translation);

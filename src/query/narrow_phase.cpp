@@ -48,7 +48,7 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
       progress_(progress),
       task_(task) {
   assert(options.toc_err > 0 && options.max_contacts > 0);
-  assert((&a == &b) == !shift);
+  assert(&a == &b || shift);
 }
 
 void NarrowPhase::begin(std::size_t task) {

@@ -293,11 +293,12 @@ TEST_F(BoundedMotions, FclAnswersShapes) {
 /// Says one thing that is wrong.
 class Wrong : public Pendulum {
  public:
-  enum class What { kPlacement, kRate, kAcceleration, kSpeed, kThrow };
+  enum class What { kPlacement, kLater, kRate, kAcceleration, kSpeed, kThrow };
   explicit Wrong(What what) : Pendulum(1, 1, 0), what_(what) {}
   Placement placementAt(double t) const override {
     Placement at = Pendulum::placementAt(t);
-    if (what_ == What::kPlacement) at.translation[1] = std::nan("");
+    if (what_ == What::kPlacement || (what_ == What::kLater && t > 0 && t < 1))
+      at.translation[1] = std::nan("");
     if (what_ == What::kThrow && t > 0 && t < 1) throw std::runtime_error("no such time");
     return at;
   }
@@ -327,6 +328,7 @@ TEST_F(BoundedMotions, RefuseWhatIsNoNumber) {
     collide<ContinuousContactRequest<double>>(*bar_, Wrong(what), *plate, result);
   };
   expectRefused([&] { ask(Wrong::What::kPlacement); }, "o1: the transform");
+  expectRefused([&] { ask(Wrong::What::kLater); }, "placementAt()");
   expectRefused([&] { ask(Wrong::What::kRate); }, "rateAt()");
   expectRefused([&] { ask(Wrong::What::kAcceleration); }, "accelerationBound()");
   expectRefused([&] { ask(Wrong::What::kSpeed); }, "angularSpeedBound()");

@@ -39,6 +39,39 @@ void expectTime(const Result& result, double time) {
   EXPECT_LE(result.toc_hi - result.toc_lo, kErr);
 }
 
+// The direction that turns is a quotient by the area of a sliver, and not perpendicular.
+TEST(FCL_DISTANCE_FEATURES, sliverThatOpensInItsPlane) {
+  const V v(0, 0, 0);
+  const V t0[3] = {{-0.6666666666666666, 0.17694924931527778, 0.1769494082609972},
+                   {0.33333333333333337, 0.17694924931527778, 0.1769494082609972},
+                   {0.33333333333333337, 0.17694948773385688, 0.1769491698424181}};
+  const V t1[3] = {{-0.6666666666666666, 0.010109949108694699, 0.3434434413877474},
+                   {0.33333333333333337, 0.010109949108694699, 0.3434434413877474},
+                   {0.33333333333333337, 0.5101101875272738, -0.1565567970308317}};
+  // At t = 1 the distance is 0.25 (1 - 2.7e-10), by rational arithmetic.
+  EXPECT_TRUE(
+      vertexFaceWithin<double>(v, t0[0], t0[1], t0[2], v, t1[0], t1[1], t1[2], kErr, 0.25)
+          .is_contact);
+}
+
+// A pair that begins just above the distance, moves away and comes back, as after a step
+// of a simulation.
+TEST(FCL_DISTANCE_FEATURES, comesBackToTheDistance) {
+  const V v(0, 0, 0);
+  const double d = 0x1.df86c571174b9p-5;
+  const V t0[3] = {{-0x1.cce81940ee351p+1, -0x1.346970ff5b7fcp+1, 0x1.df86c57121355p-5},
+                   {0x1.b42dc32b8c4d3p+1, -0x1.1c4b0181ae792p+1, 0x1.df86c57121355p-5},
+                   {-0x1.af5dec6805470p-4, 0x1.95a4bf7f03f40p+1, 0x1.df86c57121355p-5}};
+  const V t1[3] = {{-0x1.944441941b5d4p+1, -0x1.346970ff5b7fcp+1, -0x1.308404095b53cp-6},
+                   {0x1.ecd19ad85f250p+1, -0x1.1c4b0181ae792p+1, 0x1.376f922a89468p-3},
+                   {0x1.5947424c956cfp-2, 0x1.95a4bf7f03f40p+1, 0x1.108066eb5c579p-4}};
+  // The exact first time is 0.97822769 and some more digits.
+  const Result result =
+      vertexFaceWithin<double>(v, t0[0], t0[1], t0[2], v, t1[0], t1[1], t1[2], kErr, d);
+  EXPECT_TRUE(result.is_contact);
+  EXPECT_LE(result.toc_lo, 0.9782277);
+}
+
 TEST(FCL_DISTANCE_FEATURES, closedForms) {
   const V f0(0, 0, 0), f1(4, 0, 0), f2(0, 4, 0), down(0, 0, -2);
   // A vertex falls on a face from the height 1 and is a quarter above it at 3/8.

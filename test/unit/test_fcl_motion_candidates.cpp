@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cfenv>
 #include <map>
 #include <memory>
 #include <utility>
@@ -172,6 +173,31 @@ TEST_F(MotionCandidates, LeaveOutWhatIsApart) {
   const std::size_t touching = candidatesAt(1.999);
   EXPECT_GE(touching, 10U);
   EXPECT_LE(touching, 5000U);
+}
+
+/// The caller's rounding mode changes no candidate, and is the caller's in the sink and
+/// afterwards.
+TEST_F(MotionCandidates, KeepTheCallersFloatingPointMode) {
+  const auto ball = makeModel<Rigid>(makeIcosphere(2, 1));
+  Transform3<double> still = Transform3<double>::Identity(), end = still;
+  end.linear() = Eigen::AngleAxisd(1, Vector3<double>::UnitX()).toRotationMatrix();
+  const auto ask = [&](int mode) {
+    std::fesetround(mode);
+    const Windows windows = windowsOf([&](const ContinuousCandidateSink& sink) {
+      return continuousCandidates(
+          ball.get(), still, end, ball.get(), still, still,
+          [&](const ContinuousCandidate* candidates, std::size_t count) {
+            EXPECT_EQ(std::fegetround(), mode);
+            return sink(candidates, count);
+          });
+    });
+    EXPECT_EQ(std::fegetround(), mode);
+    std::fesetround(FE_TONEAREST);
+    return windows;
+  };
+  const Windows expected = ask(FE_TONEAREST);
+  EXPECT_EQ(ask(FE_UPWARD), expected);
+  EXPECT_EQ(ask(FE_DOWNWARD), expected);
 }
 
 TEST_F(MotionCandidates, EndWhenTheSinkWantsNoMore) {
