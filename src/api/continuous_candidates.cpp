@@ -125,7 +125,8 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     throw Exception(
         std::string("continuousCandidates: ") + (&unfit == &placed1 ? "o1" : "o2") +
         (unfit.isMesh() ? " follows a motion class of the program, whose path is not "
-                          "known. Give one of FCL's motions"
+                          "known. Give one of FCL's motions, or derive the class from "
+                          "BoundedMotion"
                         : " is not a triangle mesh, and candidates need two triangle "
                           "meshes. Give a mesh of its surface"));
   }

@@ -128,7 +128,8 @@ void requireNoDistance(double distance, const char* name, const PlacedGeometry<S
   if (!(distance > 0)) return;
   throw Exception(std::string(name) + " needs straight paths, and " +
                   (o1.goesStraight() ? "o2" : "o1") +
-                  " turns. Give parts of its path one after the other, as the two frames "
+                  " turns or follows a curve. Give parts of its path one after the "
+                  "other, as the two frames "
                   "of a DeformableBVHModel");
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Speed and errors of queries of two rigid meshes that turn: the library's beside FCL's
-// methods and beside straight paths of the vertices. doc/speed_error.md explains the
+// methods and beside straight paths of the vertices. doc/numerics.md explains the
 // report.
 #include <CLI/CLI.hpp>
 #include <algorithm>

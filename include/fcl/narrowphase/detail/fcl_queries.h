@@ -120,9 +120,10 @@ std::string explainNoContacts(const CollisionGeometry<S>& o1,
            " is not a triangle mesh, and only two triangle meshes have contacts. Give a "
            "mesh of its surface, or ask with a ContinuousCollisionRequest: FCL then "
            "answers, and takes meshes as they are in their current frame";
-  return "contacts need two triangle meshes that follow transforms or FCL's own motion "
-         "classes. Give the poses of another motion class as transforms, in steps with a "
-         "small rotation; a model without triangles has no contacts";
+  return "contacts need two triangle meshes that follow transforms, FCL's own motion "
+         "classes, or a BoundedMotion. Derive another motion class from BoundedMotion "
+         "too; "
+         "a model without triangles has no contacts";
 }
 
 /// @brief FCL reports no contacts.
