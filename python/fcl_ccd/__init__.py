@@ -19,8 +19,9 @@ during the step. No contact is missed, and no time is late.
 
 Meshes: DeformableMesh, RigidMesh. Motions of a mesh: a pose, two poses, LinearMotion,
 ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a Filter and give
-a Result. For your own solver: candidates(), self_candidates(); vertex_face() and
-edge_edge() on arrays.
+a Result. With min_distance features are in contact at a distance. For your own solver:
+candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
+vertex_vertex() on arrays.
 
 Errors: ValueError with the words of the library, TypeError for arguments of another type,
 RuntimeError for an update of a mesh while a query of it runs.
@@ -41,7 +42,9 @@ from ._queries import (
     feature_test_dtype,
     self_candidates,
     self_collide,
+    vertex_edge,
     vertex_face,
+    vertex_vertex,
 )
 
 __all__ = [
@@ -62,5 +65,7 @@ __all__ = [
     "feature_test_dtype",
     "self_candidates",
     "self_collide",
+    "vertex_edge",
     "vertex_face",
+    "vertex_vertex",
 ]

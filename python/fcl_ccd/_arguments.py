@@ -37,8 +37,8 @@ def triangles(values: ArrayLike, name: str = "triangles") -> NDArray[np.int64]:
     return _array(values, name, "i", (None, 3))
 
 
-def feature_points(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    return _array(values, name, "f", (None, 4, 3))
+def feature_points(values: ArrayLike, name: str, num_points: int) -> NDArray[np.float64]:
+    return _array(values, name, "f", (None, num_points, 3))
 
 
 def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:

@@ -87,6 +87,8 @@ class Request:
         filter2: Filter,
         accepts_triangles: Optional[Callable[[int, int], bool]],
         num_threads: int,
+        min_distance: float,
+        ignore_initially_closer: bool,
     ) -> None: ...
 
 def self_collide(o: Mesh, request: Request) -> Dict[str, Any]: ...
@@ -94,7 +96,10 @@ def collide(
     o1: Mesh, motion1: Motion, o2: Mesh, motion2: Motion, request: Request
 ) -> Dict[str, Any]: ...
 def self_candidates(
-    o: Mesh, sink: Callable[[NDArray[np.void]], Optional[bool]], block_size: int
+    o: Mesh,
+    sink: Callable[[NDArray[np.void]], Optional[bool]],
+    block_size: int,
+    min_distance: float,
 ) -> bool: ...
 def candidates(
     o1: Mesh,
@@ -103,10 +108,17 @@ def candidates(
     motion2: Motion,
     sink: Callable[[NDArray[np.void]], Optional[bool]],
     block_size: int,
+    min_distance: float,
 ) -> bool: ...
 def vertex_face(
-    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float
+    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float, min_distance: float
 ) -> NDArray[np.void]: ...
 def edge_edge(
-    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float
+    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float, min_distance: float
+) -> NDArray[np.void]: ...
+def vertex_edge(
+    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float, min_distance: float
+) -> NDArray[np.void]: ...
+def vertex_vertex(
+    t0: NDArray[np.float64], t1: NDArray[np.float64], toc_err: float, min_distance: float
 ) -> NDArray[np.void]: ...

@@ -29,6 +29,8 @@ class Kind(enum.IntEnum):
     VERTEX_FACE = 0
     EDGE_EDGE = 1
     CROSSING = 2
+    VERTEX_EDGE = 3
+    VERTEX_VERTEX = 4
 
 
 _ALL_BITS = 0xFFFFFFFF
@@ -75,14 +77,19 @@ class Result:
         Never later than the first contact, and earlier by at most toc_err. 0 if the
         surfaces touch or cross at t = 0. 1 without collision.
     contacts : structured array (n,) of contact_dtype, sorted by time
-        kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE
+        kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE; with min_distance also
+                                 Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX
         b1, b2       int64       triangles of o1 and o2 that have the features
         vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
-                                 CROSSING: e0, e1, f0, f1, f2. Unused entries are -1.
-        first_on_o1  bool        whether the vertex (or the edge that crosses) is of o1 and
-                                 the face of o2; false: the reverse. Edge ea is of o1.
+                                 CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
+                                 VERTEX_VERTEX: v of o1, v of o2. Unused entries are -1.
+        first_on_o1  bool        whether the first feature is of o1 and the second of o2;
+                                 false: the reverse. Edge ea is of o1.
+        within_tolerance  bool   whether only nearness is proved, not a crossing; false on
+                                 straight paths without min_distance
         toc_lo, toc_hi  float64  bracket of the first time at which the features touch
-        pos          (3,) float64  where they touch at toc_lo, in the world frame
+        pos          (3,) float64  where they touch at toc_lo, in the world frame; with
+                                 min_distance the middle between their nearest points
         normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
                                  self-collision from the vertex to the face, or from edge
                                  ea to edge eb. Zero if it is not defined.
@@ -137,6 +144,8 @@ def _request(
     filter2: Optional[Filter],
     accepts_triangles: Optional[Callable[[int, int], bool]],
     num_threads: int,
+    min_distance: float,
+    ignore_initially_closer: bool,
 ) -> _core.Request:
     if accepts_triangles is not None and not callable(accepts_triangles):
         raise TypeError("accepts_triangles is not a function")
@@ -153,6 +162,8 @@ def _request(
         _filter(filter2, "filter2"),
         accepts_triangles,
         _arguments.integer(num_threads, "num_threads"),
+        min_distance,
+        ignore_initially_closer,
     )
 
 
@@ -178,6 +189,8 @@ def self_collide(
     query: str = "all",
     toc_err: float = 1e-4,
     t_max: float = 1.0,
+    min_distance: float = 0.0,
+    ignore_initially_closer: bool = False,
     num_max_contacts: Optional[int] = None,
     enable_contact: bool = True,
     enable_crossings: bool = False,
@@ -201,6 +214,8 @@ def self_collide(
         None,
         accepts_triangles,
         num_threads,
+        min_distance,
+        ignore_initially_closer,
     )
     fields = _core.self_collide(_mesh(o, "o"), request)
     return Result(**fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4))
@@ -215,6 +230,8 @@ def collide(
     query: str = "all",
     toc_err: float = 1e-4,
     t_max: float = 1.0,
+    min_distance: float = 0.0,
+    ignore_initially_closer: bool = False,
     num_max_contacts: Optional[int] = None,
     enable_contact: bool = True,
     enable_crossings: bool = False,
@@ -244,6 +261,12 @@ def collide(
         allow. It never changes whether there is a contact.
     t_max : float
         Only contacts until this time are reported, in [0, 1].
+    min_distance : float
+        The distance at which features are in contact, in the unit of the vertices. 0:
+        features that touch. Above 0 all paths must be straight.
+    ignore_initially_closer : bool
+        Whether pairs that are nearer than min_distance at t = 0 are in contact only when
+        they come nearer than they are then. If false, they are contacts at t = 0.
     num_max_contacts : int, optional
         Keep at most this number of contacts, the earliest ones.
     enable_contact : bool
@@ -279,6 +302,8 @@ def collide(
         filter2,
         accepts_triangles,
         num_threads,
+        min_distance,
+        ignore_initially_closer,
     )
     return Result(
         **_core.collide(
@@ -304,20 +329,28 @@ def _hand_out(ask: Callable[[Sink, int], bool], sink: Optional[Sink], block: int
 
 
 @overload
-def self_candidates(o: Mesh, sink: None = None, *, block: int = _BLOCK) -> NDArray[np.void]: ...
+def self_candidates(
+    o: Mesh, sink: None = None, *, block: int = _BLOCK, min_distance: float = 0.0
+) -> NDArray[np.void]: ...
 
 
 @overload
-def self_candidates(o: Mesh, sink: Sink, *, block: int = _BLOCK) -> bool: ...
+def self_candidates(
+    o: Mesh, sink: Sink, *, block: int = _BLOCK, min_distance: float = 0.0
+) -> bool: ...
 
 
-def self_candidates(o: Mesh, sink: Optional[Sink] = None, *, block: int = _BLOCK) -> Any:
+def self_candidates(
+    o: Mesh, sink: Optional[Sink] = None, *, block: int = _BLOCK, min_distance: float = 0.0
+) -> Any:
     """The pairs of features of a mesh that may touch during the step, for your own solver.
 
-    Sinks, blocks and fields are those of candidates().
+    Sinks, blocks, distance and fields are those of candidates().
     """
     mesh = _mesh(o, "o")
-    return _hand_out(lambda take, size: _core.self_candidates(mesh, take, size), sink, block)
+    return _hand_out(
+        lambda take, size: _core.self_candidates(mesh, take, size, min_distance), sink, block
+    )
 
 
 @overload
@@ -329,6 +362,7 @@ def candidates(
     sink: None = None,
     *,
     block: int = _BLOCK,
+    min_distance: float = 0.0,
 ) -> NDArray[np.void]: ...
 
 
@@ -341,6 +375,7 @@ def candidates(
     *,
     sink: Sink,
     block: int = _BLOCK,
+    min_distance: float = 0.0,
 ) -> bool: ...
 
 
@@ -352,69 +387,113 @@ def candidates(
     sink: Optional[Sink] = None,
     *,
     block: int = _BLOCK,
+    min_distance: float = 0.0,
 ) -> Any:
     """The pairs of features of two meshes that may touch during the step.
 
     They are not tested yet. Every pair that touches is among them, and none comes twice.
-    vertex_face() and edge_edge() on all of them give the contacts of collide().
+    On straight paths vertex_face() and edge_edge() on all of them give the contacts of
+    collide().
 
     sink : function(array) -> None or bool, optional
         Takes the candidates in blocks, as structured arrays of candidate_dtype that it may
         keep. False ends the query. Without a sink all candidates are returned as one array.
     block : int
         A block has at least this number of candidates, except the last one.
+    min_distance : float
+        Above 0: every pair that comes within this distance is among the candidates. All
+        paths must be straight then.
 
     Fields of candidate_dtype: kind, first_on_o1, vertices ((4,) int32), b1 and b2 as in
     Result.contacts; window_lo, window_hi (float64): the features do not touch before
     window_lo or after window_hi, in fractions of the step.
 
-    Returns the array, or with a sink whether all candidates were handed out. All paths
-    must be straight: ValueError for a rigid mesh that turns.
+    Returns the array, or with a sink whether all candidates were handed out.
     """
     mesh1, mesh2 = _mesh(o1, "o1"), _mesh(o2, "o2")
     path1, path2 = path_of(motion1, "motion1"), path_of(motion2, "motion2")
     return _hand_out(
-        lambda take, size: _core.candidates(mesh1, path1, mesh2, path2, take, size), sink, block
+        lambda take, size: _core.candidates(
+            mesh1, path1, mesh2, path2, take, size, min_distance
+        ),
+        sink,
+        block,
     )
 
 
-def vertex_face(t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4) -> NDArray[np.void]:
-    """Test n vertices against n triangles, one by one, exactly.
+def vertex_face(
+    t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4, min_distance: float = 0.0
+) -> NDArray[np.void]:
+    """Test n vertices against n triangles, one by one.
 
     t0, t1 : (n, 4, 3) arrays
         The points v, f0, f1, f2 of each query at t = 0 and at t = 1. They move on straight
         lines.
     toc_err : float
         Largest width of [toc_lo, toc_hi]. 0: as narrow as doubles allow.
+    min_distance : float
+        The distance at which they are in contact. 0: they touch, decided exactly. Above 0:
+        a pair that stays further apart than min_distance and some roundings is no contact.
 
     Returns a structured array (n,) of feature_test_dtype:
-        is_contact      bool     whether they touch at some t in [0, 1]; this is exact
+        is_contact      bool     whether they are in contact at some t in [0, 1]
         toc_lo, toc_hi  float64  bracket of the first such time; without contact both are 1
 
     Raises ValueError, with the number of the query, for a coordinate that is not finite.
     Other threads of Python run during the call.
     """
-    return _feature_tests(_core.vertex_face, t0, t1, toc_err)
+    return _feature_tests(_core.vertex_face, 4, t0, t1, toc_err, min_distance)
 
 
-def edge_edge(t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4) -> NDArray[np.void]:
-    """Test n edges against n edges, one by one, exactly.
+def edge_edge(
+    t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4, min_distance: float = 0.0
+) -> NDArray[np.void]:
+    """Test n edges against n edges, one by one.
 
     t0, t1 : (n, 4, 3) arrays
         The points ea0, ea1, eb0, eb1 of each query at t = 0 and at t = 1.
 
     Everything else is as in vertex_face().
     """
-    return _feature_tests(_core.edge_edge, t0, t1, toc_err)
+    return _feature_tests(_core.edge_edge, 4, t0, t1, toc_err, min_distance)
+
+
+def vertex_edge(
+    t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4, min_distance: float
+) -> NDArray[np.void]:
+    """Test n vertices against n edges, one by one.
+
+    t0, t1 : (n, 3, 3) arrays
+        The points v, e0, e1 of each query at t = 0 and at t = 1.
+
+    Everything else is as in vertex_face().
+    """
+    return _feature_tests(_core.vertex_edge, 3, t0, t1, toc_err, min_distance)
+
+
+def vertex_vertex(
+    t0: ArrayLike, t1: ArrayLike, *, toc_err: float = 1e-4, min_distance: float
+) -> NDArray[np.void]:
+    """Test n vertices against n vertices, one by one.
+
+    t0, t1 : (n, 2, 3) arrays
+        The points v, w of each query at t = 0 and at t = 1.
+
+    Everything else is as in vertex_face().
+    """
+    return _feature_tests(_core.vertex_vertex, 2, t0, t1, toc_err, min_distance)
 
 
 def _feature_tests(
-    test: Callable[[NDArray[np.float64], NDArray[np.float64], float], NDArray[np.void]],
+    test: Callable[[NDArray[np.float64], NDArray[np.float64], float, float], NDArray[np.void]],
+    num_points: int,
     t0: ArrayLike,
     t1: ArrayLike,
     toc_err: float,
+    min_distance: float,
 ) -> NDArray[np.void]:
-    begin, end = _arguments.feature_points(t0, "t0"), _arguments.feature_points(t1, "t1")
+    begin = _arguments.feature_points(t0, "t0", num_points)
+    end = _arguments.feature_points(t1, "t1", num_points)
     if begin.shape != end.shape:
         raise ValueError(f"t0 has {len(begin)} queries and t1 has {len(end)}")
-    return test(begin, end, toc_err)
+    return test(begin, end, toc_err, min_distance)

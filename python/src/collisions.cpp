@@ -29,6 +29,7 @@ py::dtype makeDtype<Contact>() {
       .field("b2", "<i8", &Contact::b2)
       .field("vertices", "(5,)<i4", &Contact::vertices)
       .field("first_on_o1", "?", &Contact::first_on_o1)
+      .field("within_tolerance", "?", &Contact::within_tolerance)
       .field("toc_lo", "<f8", &Contact::toc_lo)
       .field("toc_hi", "<f8", &Contact::toc_hi)
       .field("pos", "(3,)<f8", &Contact::pos)
@@ -188,7 +189,7 @@ Request makeRequest(const std::string& query, double toc_err,
                     double t_max, bool enable_crossings,
                     const fcl::ContinuousFilter& filter1,
                     const fcl::ContinuousFilter& filter2, py::object accepts_triangles,
-                    int num_threads) {
+                    int num_threads, double min_distance, bool ignore_initially_closer) {
   Request request;
   request.settings.with_contacts = true;
   request.settings.query = toQuery(query);
@@ -199,6 +200,8 @@ Request makeRequest(const std::string& query, double toc_err,
   request.settings.t_max = t_max;
   request.settings.enable_crossings = enable_crossings;
   request.settings.num_threads = num_threads;
+  request.settings.min_distance = min_distance;
+  request.settings.ignore_initially_closer = ignore_initially_closer;
   request.filter1 = filter1;
   request.filter2 = filter2;
   request.accepts_triangles = std::move(accepts_triangles);
@@ -216,7 +219,8 @@ void bindCollisions(py::module_& module) {
       .def(py::init(&makeRequest), py::arg("query"), py::arg("toc_err"),
            py::arg("num_max_contacts"), py::arg("enable_contact"), py::arg("t_max"),
            py::arg("enable_crossings"), py::arg("filter1"), py::arg("filter2"),
-           py::arg("accepts_triangles"), py::arg("num_threads"));
+           py::arg("accepts_triangles"), py::arg("num_threads"), py::arg("min_distance"),
+           py::arg("ignore_initially_closer"));
   module.def("self_collide", &collideSelf);
   module.def("collide", &collidePair);
 }

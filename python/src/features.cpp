@@ -86,50 +86,88 @@ bool handOut(const py::object& sink, std::size_t block_size, const Query& query)
   return all && (blocks.isEmpty() || blocks.handOut());
 }
 
-bool selfCandidates(const Mesh& o, const py::object& sink, std::size_t block_size) {
+bool selfCandidates(const Mesh& o, const py::object& sink, std::size_t block_size,
+                    double min_distance) {
   const Mesh::Reading reading(o);
   return handOut(sink, block_size, [&](const auto& take) {
-    return fcl::detail::answerSelfCandidates(&o.geometry(), take);
+    return fcl::detail::answerSelfCandidates(&o.geometry(), take, min_distance);
   });
 }
 
 bool candidates(const Mesh& o1, const Motion& motion1, const Mesh& o2,
-                const Motion& motion2, const py::object& sink, std::size_t block_size) {
+                const Motion& motion2, const py::object& sink, std::size_t block_size,
+                double min_distance) {
   const Mesh::Reading reading1(o1), reading2(o2);
   return handOut(sink, block_size, [&](const auto& take) {
     return fcl::detail::answerCandidates(motion1.of(o1.geometry()),
-                                         motion2.of(o2.geometry()), take);
+                                         motion2.of(o2.geometry()), take, min_distance);
   });
 }
 
-using Test = FeatureTestResult (*)(const Vector3d&, const Vector3d&, const Vector3d&,
-                                   const Vector3d&, const Vector3d&, const Vector3d&,
-                                   const Vector3d&, const Vector3d&, double);
+template <std::size_t num_points>
+using Points = std::array<Vector3d, num_points>;
 
-/// The four points of a query at one time.
-std::array<Vector3d, 4> pointsAt(const double* x) {
-  return {Vector3d(x[0], x[1], x[2]), Vector3d(x[3], x[4], x[5]),
-          Vector3d(x[6], x[7], x[8]), Vector3d(x[9], x[10], x[11])};
+template <std::size_t num_points>
+Points<num_points> pointsAt(const double* x) {
+  Points<num_points> points;
+  for (Vector3d& point : points) {
+    point = Vector3d(x[0], x[1], x[2]);
+    x += 3;
+  }
+  return points;
 }
 
-/// @param t0, t1  n x 4 x 3
-template <Test test>
-py::array testAll(const Doubles& t0, const Doubles& t1, double toc_err) {
-  const auto count = static_cast<std::size_t>(t0.size()) / 12;
-  requireSize(t0, 12 * count, "t0");
-  requireSize(t1, 12 * count, "t1");
+/// Runs a test of num_points points for each query.
+/// @param t0, t1  n x num_points x 3
+template <std::size_t num_points, typename Test>
+py::array testAll(const Doubles& t0, const Doubles& t1, const Test& test) {
+  constexpr std::size_t kNumbers = 3 * num_points;
+  const auto count = static_cast<std::size_t>(t0.size()) / kNumbers;
+  requireSize(t0, kNumbers * count, "t0");
+  requireSize(t1, kNumbers * count, "t1");
   std::vector<FeatureTestResult> results;
   {
     const py::gil_scoped_release release;
     results.reserve(count);
     for (std::size_t i = 0; i < count; ++i) try {
-        const auto a = pointsAt(t0.data() + 12 * i), b = pointsAt(t1.data() + 12 * i);
-        results.push_back(test(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], toc_err));
+        results.push_back(test(pointsAt<num_points>(t0.data() + kNumbers * i),
+                               pointsAt<num_points>(t1.data() + kNumbers * i)));
       } catch (const fcl::Exception& error) {
         throw py::value_error("query " + std::to_string(i) + ": " + error.what());
       }
   }
   return toArray(std::move(results));
+}
+
+py::array testVertexFaces(const Doubles& t0, const Doubles& t1, double toc_err,
+                          double distance) {
+  return testAll<4>(t0, t1, [&](const Points<4>& a, const Points<4>& b) {
+    return fcl::vertexFaceWithin<double>(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3],
+                                         toc_err, distance);
+  });
+}
+
+py::array testEdgeEdges(const Doubles& t0, const Doubles& t1, double toc_err,
+                        double distance) {
+  return testAll<4>(t0, t1, [&](const Points<4>& a, const Points<4>& b) {
+    return fcl::edgeEdgeWithin<double>(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3],
+                                       toc_err, distance);
+  });
+}
+
+py::array testVertexEdges(const Doubles& t0, const Doubles& t1, double toc_err,
+                          double distance) {
+  return testAll<3>(t0, t1, [&](const Points<3>& a, const Points<3>& b) {
+    return fcl::vertexEdgeWithin<double>(a[0], a[1], a[2], b[0], b[1], b[2], toc_err,
+                                         distance);
+  });
+}
+
+py::array testVertexVertices(const Doubles& t0, const Doubles& t1, double toc_err,
+                             double distance) {
+  return testAll<2>(t0, t1, [&](const Points<2>& a, const Points<2>& b) {
+    return fcl::vertexVertexWithin<double>(a[0], a[1], b[0], b[1], toc_err, distance);
+  });
 }
 
 }  // namespace
@@ -139,8 +177,10 @@ void bindFeatures(py::module_& module) {
   module.attr("feature_test_dtype") = dtypeOf<FeatureTestResult>();
   module.def("self_candidates", &selfCandidates);
   module.def("candidates", &candidates);
-  module.def("vertex_face", &testAll<&fcl::vertexFace<double>>);
-  module.def("edge_edge", &testAll<&fcl::edgeEdge<double>>);
+  module.def("vertex_face", &testVertexFaces);
+  module.def("edge_edge", &testEdgeEdges);
+  module.def("vertex_edge", &testVertexEdges);
+  module.def("vertex_vertex", &testVertexVertices);
 }
 
 }  // namespace python

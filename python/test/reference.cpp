@@ -119,6 +119,8 @@ Request readRequest() {
   request.toc_err = readNumber();
   request.t_max = readNumber();
   request.num_max_contacts = static_cast<std::size_t>(std::stoull(readWord()));
+  request.min_distance = readNumber();
+  request.ignore_initially_closer = readInt() != 0;
   request.enable_contact = readInt() != 0;
   request.enable_crossings = readInt() != 0;
   request.filter1 = readFilter();
@@ -150,7 +152,7 @@ void print(const fcl::ContinuousContactd& c) {
   std::printf("%d %ld %ld", static_cast<int>(c.kind), static_cast<long>(c.b1),
               static_cast<long>(c.b2));
   for (const int v : c.vertices) std::printf(" %d", v);
-  std::printf(" %d %a %a", c.first_on_o1, c.toc_lo, c.toc_hi);
+  std::printf(" %d %d %a %a", c.first_on_o1, c.within_tolerance, c.toc_lo, c.toc_hi);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.pos[k]);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.normal[k]);
   std::printf("\n");
@@ -185,13 +187,32 @@ bool print(const fcl::ContinuousCandidate* candidates, std::size_t count) {
   return true;
 }
 
-void answerFeatures(bool is_vertex_face) {
+const fcl::ContinuousCandidateSink kPrint = [](const fcl::ContinuousCandidate* candidates,
+                                               std::size_t count) {
+  return print(candidates, count);
+};
+
+/// @param kind  "vf", "ee", "ve" or "vv"
+void answerFeatures(const std::string& kind) {
+  using namespace fcl;
+  const int num_points = kind == "vv" ? 2 : kind == "ve" ? 3 : 4;
   const int count = readInt();
-  const double toc_err = readNumber();
-  const auto test = is_vertex_face ? &fcl::vertexFace<double> : &fcl::edgeEdge<double>;
+  const double toc_err = readNumber(), d = readNumber();
   for (int i = 0; i < count; ++i) {
-    const auto a = readVectors(4), b = readVectors(4);
-    const auto result = test(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], toc_err);
+    const auto a = readVectors(num_points), b = readVectors(num_points);
+    ContinuousFeatureTestResultd result;
+    if (kind == "vv")
+      result = vertexVertexWithin(a[0], a[1], b[0], b[1], toc_err, d);
+    else if (kind == "ve")
+      result = vertexEdgeWithin(a[0], a[1], a[2], b[0], b[1], b[2], toc_err, d);
+    else if (d == 0)
+      result = (kind == "vf" ? vertexFace<double>
+                             : edgeEdge<double>)(a[0], a[1], a[2], a[3], b[0], b[1], b[2],
+                                                 b[3], toc_err);
+    else
+      result = (kind == "vf" ? vertexFaceWithin<double>
+                             : edgeEdgeWithin<double>)(a[0], a[1], a[2], a[3], b[0], b[1],
+                                                       b[2], b[3], toc_err, d);
     std::printf("%d %a %a\n", result.is_contact, result.toc_lo, result.toc_hi);
   }
 }
@@ -253,14 +274,20 @@ class Commands {
     } else if (command == "poses" || command == "motions") {
       answerPair(command == "motions");
     } else if (command == "self_candidates") {
-      fcl::continuousSelfCandidates(
-          readMesh(), [](const auto* c, std::size_t count) { return print(c, count); });
+      const Geometry* o = readMesh();
+      const double distance = readNumber();
+      fcl::continuousSelfCandidates(o, kPrint, distance);
+    } else if (command == "candidates") {
+      const Geometry *o1 = readMesh(), *o2 = readMesh();
+      Transform3d tf[4];
+      for (auto& t : tf) t = readPose();
+      fcl::continuousCandidates(o1, tf[0], tf[1], o2, tf[2], tf[3], kPrint, readNumber());
     } else if (command == "time_step") {
       timeStep();
     } else if (command == "time_vf") {
       timeVertexFace();
-    } else if (command == "vf" || command == "ee") {
-      answerFeatures(command == "vf");
+    } else if (command == "vf" || command == "ee" || command == "ve" || command == "vv") {
+      answerFeatures(command);
     } else {
       throw std::runtime_error("no such command: " + command);
     }

@@ -37,6 +37,8 @@ def request(
     toc_err=1e-4,
     t_max=1.0,
     num_max_contacts=_NO_LIMIT,
+    min_distance=0.0,
+    ignore_initially_closer=False,
     enable_contact=True,
     enable_crossings=False,
     filter1={},
@@ -49,6 +51,7 @@ def request(
             float(toc_err).hex(),
             float(t_max).hex(),
             str(num_max_contacts),
+            f"{float(min_distance).hex()} {int(ignore_initially_closer)}",
             f"{int(enable_contact)} {int(enable_crossings)}",
             _filter(**filter1),
             _filter(**filter2),
@@ -66,9 +69,9 @@ def in_python(options):
     return options
 
 
-def features(kind, t0, t1, toc_err):
+def features(kind, t0, t1, toc_err, min_distance=0.0):
     both = np.concatenate([t0, t1], axis=1)
-    return f"{kind} {len(t0)} {toc_err.hex()} {_text(both)}"
+    return f"{kind} {len(t0)} {toc_err.hex()} {min_distance.hex()} {_text(both)}"
 
 
 def poses(begin, end):

@@ -33,6 +33,8 @@ REQUESTS = [
     {"filter1": HALF},
     {"filter1": {"group": 4, "mask": 3}},
     {"accepts_triangles": by_parity},
+    {"min_distance": 0.004},
+    {"min_distance": 0.02, "ignore_initially_closer": True, "query": "first"},
 ]
 
 
@@ -148,7 +150,7 @@ def test_spline_ends_as_documented():
 def test_self_candidates():
     """In one array, in blocks, and ended by the sink."""
     lines = reference.run(
-        [reference.deformable(PREVIOUS, CURRENT, TRIANGLES), "self_candidates 0"]
+        [reference.deformable(PREVIOUS, CURRENT, TRIANGLES), "self_candidates 0 0"]
     )[1]
     mesh = cloth()
     all_at_once = fcl_ccd.self_candidates(mesh)
@@ -160,6 +162,34 @@ def test_self_candidates():
     seen = []
     ended = fcl_ccd.self_candidates(mesh, lambda b: seen.append(b) or len(seen) < 2, block=500)
     assert ended is False and len(seen) == 2
+
+
+def test_candidates_at_a_distance_and_of_a_mesh_that_turns():
+    mesh, ball = cloth(), fcl_ccd.RigidMesh(*BALL)
+    still = reference.poses(np.eye(4), np.eye(4))
+    models = [reference.deformable(PREVIOUS, CURRENT, TRIANGLES), reference.rigid(*BALL)]
+    _, _, near, pairs, turning = reference.run(
+        models
+        + ["self_candidates 0 0.01"]
+        + [f"candidates 0 1 {still} {reference.poses(BEGIN, END)} 0.05"]
+        + [f"candidates 0 1 {still} {reference.poses(BEGIN, TURNED)} 0"]
+    )
+    reference.require_same_records(fcl_ccd.self_candidates(mesh, min_distance=0.01), near)
+    assert len(near) > len(fcl_ccd.self_candidates(mesh))
+    found = fcl_ccd.candidates(mesh, ball, motion2=(BEGIN, END), min_distance=0.05)
+    reference.require_same_records(found, pairs)
+    found = fcl_ccd.candidates(mesh, ball, motion2=(BEGIN, TURNED))
+    reference.require_same_records(found, turning)
+
+
+@pytest.mark.parametrize("kind, num_points", [("vf", 4), ("ee", 4), ("ve", 3), ("vv", 2)])
+def test_feature_tests_at_a_distance(kind, num_points):
+    t0, t1 = np.random.default_rng(3).normal(size=(2, 300, num_points, 3))
+    test = {"vf": "vertex_face", "ee": "edge_edge", "ve": "vertex_edge", "vv": "vertex_vertex"}
+    answer = getattr(fcl_ccd, test[kind])(t0, t1, toc_err=1e-6, min_distance=0.3)
+    (lines,) = reference.run([reference.features(kind, t0, t1, 1e-6, 0.3)])
+    reference.require_same_records(answer, lines)
+    assert 0 < answer["is_contact"].sum() < len(t0)
 
 
 def points_of(candidates, kind, frame1, frame2):

@@ -97,6 +97,8 @@ def test_topologies(triangles, previous, current, origins, text):
         ({"toc_err": "small"}, TypeError, "toc_err"),
         ({"t_max": 1.5}, ValueError, "t_max is 1.5"),
         ({"t_max": NAN}, ValueError, "t_max is nan"),
+        ({"min_distance": -1}, ValueError, "min_distance"),
+        ({"min_distance": NAN}, ValueError, "min_distance"),
         ({"num_max_contacts": 0}, ValueError, "num_max_contacts is 0"),
         ({"num_max_contacts": -1}, ValueError, "num_max_contacts is -1"),
         ({"num_threads": -1}, ValueError, "num_threads is -1"),
@@ -173,8 +175,12 @@ def test_objects_that_are_no_meshes():
 
 def test_candidates():
     mesh, turns = fcl_ccd.RigidMesh(VERTICES, TRIANGLES), (np.eye(4), pose(angle=1))
-    with pytest.raises(ValueError, match="o2 is a rigid mesh that turns"):
-        fcl_ccd.candidates(mesh, mesh, None, turns)
+    with pytest.raises(ValueError, match="min_distance"):
+        fcl_ccd.candidates(mesh, mesh, None, turns, min_distance=0.1)
+    with pytest.raises(ValueError, match="min_distance"):
+        fcl_ccd.collide(mesh, mesh, None, turns, min_distance=0.1)
+    with pytest.raises(ValueError, match="min_distance"):
+        fcl_ccd.self_candidates(mesh, min_distance=INF)
     with pytest.raises(ValueError, match="block is -1"):
         fcl_ccd.candidates(mesh, mesh, block=-1)
 
@@ -192,6 +198,8 @@ def test_feature_tests(test):
         test(t0, t0, toc_err=-1)
     with pytest.raises(TypeError, match="t1 has elements of type"):
         test(t0, t0.astype(complex))
+    with pytest.raises(ValueError, match="min_distance"):
+        test(t0, t0, min_distance=NAN)
     assert test(t0[:0], t0[:0]).shape == (0,)
 
 
