@@ -262,8 +262,12 @@ TEST(FCL_DISTANCE_FEATURES, initiallyCloser) {
   };
   EXPECT_FALSE(fall(0.5, 0.5).is_contact);
   EXPECT_FALSE(fall(0.5, 2).is_contact);
-  EXPECT_FALSE(fall(0, 0).is_contact);
-  EXPECT_FALSE(fall(0, 2).is_contact);
+  // What touches may pass through without coming nearer.
+  for (const double to : {0., 2., -2.}) {
+    const DistanceContact touching = fall(0, to);
+    EXPECT_TRUE(touching.is_contact);
+    EXPECT_EQ(touching.toc_hi, 0);
+  }
   const DistanceContact nearer = fall(0.5, 0.25);
   EXPECT_TRUE(nearer.is_contact);
   EXPECT_LE(nearer.toc_lo, 1e-8);
