@@ -394,7 +394,9 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   const TestMesh t0{body.mesh.t0, body.mesh.triangles},
       t1{body.mesh.t1, body.mesh.triangles};
   const auto rigid = makeModel<Plain<double>>(t0);
-  refused(o, rigid.get(), turned, "o2 is a rigid mesh that turns");
+  expectRefused(
+      [&] { continuousCandidates(o, here, here, rigid.get(), here, turned, sink, 0.1); },
+      "min_distance needs straight paths, and o2 turns");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   Transform3<double> broken = here;
   broken.translation()[1] = nan;

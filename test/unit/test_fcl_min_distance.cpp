@@ -218,18 +218,26 @@ TEST(FCL_MIN_DISTANCE, selfAgainstAllPairs) {
 /// and sheared, so that triangles get low.
 TEST(FCL_MIN_DISTANCE, smoothSheetsAgainstAllPairs) {
   Random random(87);
-  constexpr int kSide = 13;
-  const auto sheet = [&](double squeeze, double shear, double wave) {
-    return makeSheet(kSide, kSide, [=](double u, double v) {
+  constexpr int kSide = 13, kLarge = 40;
+  const auto sheet = [&](double squeeze, double shear, double wave, int side) {
+    return makeSheet(side, side, [=](double u, double v) {
       return Vector3<double>(squeeze * u + shear * v, v,
                              wave * std::sin(7 * u) * std::cos(5 * v));
     });
   };
+  // Pairs of triangles that a query meets, with and without the proof.
+  const auto trianglePairs = [](const MovingMesh& mesh, double distance, bool proves) {
+    const PreparedMovingMesh prepared(mesh);
+    QueryOptions options;
+    options.min_distance = distance;
+    options.leaves_out_regions = proves;
+    return querySelf(prepared.instance(), options).counts.triangle_pairs;
+  };
   std::size_t contacts = 0, left_out = 0;
   for (int i = 0; i < 8; ++i) {
-    const TestMesh from = sheet(1, 0, 0.02),
+    const TestMesh from = sheet(1, 0, 0.02, kSide),
                    to = sheet(random.uniform(0.2, 1), random.uniform(-1, 1),
-                              random.uniform(0, 0.06));
+                              random.uniform(0, 0.06), kSide);
     const MovingMesh mesh{from.vertices, to.vertices, from.triangles};
     const auto model = modelOf(mesh);
     for (const double share : {0.02, 0.2, 0.6, 1.2}) {
@@ -239,17 +247,19 @@ TEST(FCL_MIN_DISTANCE, smoothSheetsAgainstAllPairs) {
       const Result result = selfContacts<double>(*model, request);
       ASSERT_EQ(contactsOf(result, true), bruteForce(mesh, mesh, request));
       contacts += result.contacts.size();
-      const PreparedMovingMesh prepared(mesh);
-      QueryOptions options;
-      options.min_distance = request.min_distance;
-      options.leaves_out_regions = false;
-      const auto whole = querySelf(prepared.instance(), options).counts.triangle_pairs;
+      const auto whole = trianglePairs(mesh, request.min_distance, false);
       EXPECT_LE(result.counts.triangle_pairs, whole);
-      left_out += 2 * result.counts.triangle_pairs < whole;
+      left_out += result.counts.triangle_pairs < whole;
     }
   }
   EXPECT_GT(contacts, 5000U);
   EXPECT_GT(left_out, 6U);
+  const TestMesh from = sheet(1, 0, 0.02, kLarge), to = sheet(0.9, 0.1, 0.03, kLarge);
+  const MovingMesh large{from.vertices, to.vertices, from.triangles};
+  const double low = 0.1 / kLarge, high = 1.5 / kLarge;
+  EXPECT_LT(4 * trianglePairs(large, low, true), trianglePairs(large, low, false));
+  // Nothing is apart by more than the heights of its triangles.
+  EXPECT_EQ(trianglePairs(large, high, true), trianglePairs(large, high, false));
 }
 
 TEST(FCL_MIN_DISTANCE, pairsAgainstAllPairs) {

@@ -236,7 +236,7 @@ TEST(FCL_ORACLE, distancesByHand) {
 }
 
 TEST(FCL_ORACLE, generatedDistances) {
-  constexpr std::uint64_t kCount = 6000;
+  constexpr std::uint64_t kCount = 4000;
   DistanceTally tally;
   for (std::uint64_t number = 0; number < kCount; ++number)
     ASSERT_EQ(distanceDisagreement(distanceQuery(number), tally), "")
