@@ -14,6 +14,15 @@
 #include "deformable_model_test.h"
 #include "fcl/narrowphase/distance.h"
 
+// gcc and clang tell in different ways that the address sanitizer is on.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define FCL_TEST_ADDRESS_SANITIZER
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define FCL_TEST_ADDRESS_SANITIZER
+#endif
+
 namespace fcl {
 namespace test {
 namespace {
@@ -413,7 +422,7 @@ TYPED_TEST(DeformableModel, BuildWithoutMemory) {
 
 TYPED_TEST(DeformableModel, AddsWithoutMemory) {
   USING_FIXTURE;
-#ifdef __SANITIZE_ADDRESS__
+#ifdef FCL_TEST_ADDRESS_SANITIZER
   GTEST_SKIP() << "FCL allocates arrays, whose allocation is the sanitizer's own";
 #endif
   const auto p = this->points(frame(3));
