@@ -26,18 +26,30 @@ install(
 install(
   TARGETS fcl_ccd
   EXPORT fcl_ccd-targets
-  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
-  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT dev
+  ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)
 if(TARGET fcl-ccd)
-  install(TARGETS fcl-ccd RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS fcl-ccd RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT tool)
+  install(FILES ${PROJECT_SOURCE_DIR}/doc/fcl-ccd.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1
+          COMPONENT tool)
+  install(
+    FILES ${PROJECT_SOURCE_DIR}/src/tools/fcl_ccd/completion.bash
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+    RENAME fcl-ccd
+    COMPONENT tool)
 endif()
+# From here on everything is for those who compile with the library.
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 install(EXPORT fcl_ccd-targets DESTINATION ${package_dir})
 install(
   DIRECTORY ${PROJECT_SOURCE_DIR}/include/fcl
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING
   PATTERN "*.h")
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
+              ${PROJECT_SOURCE_DIR}/CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/doc ${PROJECT_SOURCE_DIR}/examples
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 # What a program links in addition to the library and FCL: nothing if the library is shared.
 set(FCL_CCD_PRIVATE_LIBS "")
@@ -106,3 +118,12 @@ configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in ${CMAKE_CURRENT_BINARY_DIR}/f
                @ONLY)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl.pc
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+add_custom_target(
+  uninstall
+  COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt -P
+          ${PROJECT_SOURCE_DIR}/cmake/uninstall.cmake
+  VERBATIM)
+if(UNIX AND NOT APPLE)
+  include(cmake/packages.cmake)
+endif()

@@ -22,7 +22,7 @@ fail() {
 all_doors=(
   package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
-  python_package python_extension
+  python_package python_extension uninstall deb
   spaces standards cxx14_message two_consumers examples lto
   flags_cxx11 flags_baseline flags_v3 flags_native flags_native_O0
   add_subdirectory add_subdirectory_native add_subdirectory_static
@@ -196,6 +196,52 @@ door_python_extension() { # a Python module of the program that binds FCL's name
   if PYTHONPATH=$work/python_stock "$python" "$source_dir/python_extension.py"; then
     fail "The Python module succeeds with stock FCL, so it does not test this package"
   fi
+}
+
+door_uninstall() { # nothing is left; the file of another program is
+  local gone=$work/gone component
+  for component in library dev; do
+    cmake --install "$build_dir" --prefix "$gone" --component "$component" >/dev/null
+  done
+  [ -f "$gone/$lib/libfcl.a" ] || fail "The components library and dev install no library"
+  touch "$gone/$lib/libother.so"
+  for component in library dev; do
+    cmake -DMANIFEST="$build_dir/install_manifest_$component.txt" \
+      -P "$project_dir/cmake/uninstall.cmake"
+  done
+  [ "$(find "$gone" -type f -o -type l)" = "$gone/$lib/libother.so" ]
+}
+
+door_deb() { # Debian packages: no file of stock FCL, installed beside it, used, removed
+  local root=$work/deb_root deb=$work/deb own theirs
+  cpack --config "$build_dir/CPackConfig.cmake" -G DEB -B "$deb" >"$work/cpack.log" 2>&1 ||
+    { cat "$work/cpack.log"; fail "cpack failed"; }
+  own=$(for package in "$deb"/*.deb; do dpkg-deb --fsys-tarfile "$package" | tar -t; done |
+    grep -v '/$' | sed 's|^\./|/|' | LC_ALL=C sort)
+  [ -z "$(uniq -d <<<"$own")" ] || fail "Two packages have the same file"
+  theirs=$(dpkg -L libfcl-dev libfcl0.7 | LC_ALL=C sort -u)
+  [ -z "$(LC_ALL=C comm -12 <(echo "$own") <(echo "$theirs"))" ] || fail "A file is stock FCL's"
+
+  mkdir -p "$root/var/lib/dpkg"/{info,updates,triggers}
+  touch "$root/var/lib/dpkg/status"
+  local dpkg=(dpkg --root="$root" --log=/dev/null --force-depends --force-not-root
+    --force-bad-path)
+  "${dpkg[@]}" -i "$deb"/*.deb >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; fail "dpkg -i"; }
+  # What is installed is used from there. The links lead to the place without the root.
+  local name
+  for name in "bin/fcl-ccd" "share/man/man1/fcl-ccd.1" \
+    "share/bash-completion/completions/fcl-ccd"; do
+    [ -e "$root$(readlink "$root/usr/$name")" ] || fail "The link /usr/$name leads nowhere"
+  done
+  "$root/usr/lib/fcl-ccd/bin/fcl-ccd" --version
+  configure_and_run deb_program "$root/usr/lib/fcl-ccd"
+  PYTHONPATH=$root$(cat "$root/usr/lib/python3/dist-packages/fcl-ccd.pth") "$python" \
+    -c "import fcl_ccd; print(fcl_ccd.__file__)"
+  [ "$root$(cat "$root/etc/ld.so.conf.d/fcl-ccd.conf")" = "$root/usr/lib/fcl-ccd/$lib" ]
+
+  "${dpkg[@]}" -P fcl-ccd python3-fcl-ccd libfcl-ccd-dev libfcl-ccd0.1 >>"$work/dpkg.log" 2>&1
+  [ -z "$(find "$root" -path "$root/var" -prune -o \( -type f -o -type l \) -print)" ] ||
+    fail "Removed packages leave files"
 }
 
 door_spaces() { # a prefix with spaces in its path

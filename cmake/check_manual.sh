@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Fails and names the option when the manual page or the bash completion of fcl-ccd has not the
+# same options as --help, or package.xml another version.
+#   bash cmake/check_manual.sh PROGRAM
+set -euo pipefail
+program=$1
+cd "$(dirname "$0")/.."
+manual=doc/fcl-ccd.1
+completion=src/tools/fcl_ccd/completion.bash
+
+options() { grep -oE '(^|[^a-z-])--[a-z][a-z-]+' | grep -oE -- '--[a-z][a-z-]+' | LC_ALL=C sort -u; }
+
+help=$({ "$program" --help; "$program" run --help; "$program" queries --help; } | options)
+[ "$(wc -l <<<"$help")" -gt 15 ] || { echo "Few options were found: --help has changed" >&2; exit 1; }
+
+failed=0
+compare() { # NAME OPTIONS
+  local difference
+  if ! difference=$(diff <(echo "$help") <(echo "$2")); then
+    echo "$1 differs from --help (<):" >&2
+    echo "$difference" >&2
+    failed=1
+  fi
+}
+compare "$manual" "$(sed 's/\\-/-/g; s/\\f.//g' "$manual" | options)"
+compare "$completion" "$(options <"$completion")"
+
+# What the completion offers for a command.
+offered() { # COMMAND
+  bash -c "source $completion; COMP_WORDS=(fcl-ccd $1 --) COMP_CWORD=2
+    _fcl_ccd fcl-ccd -- $1; printf '%s\n' \"\${COMPREPLY[@]}\"" | LC_ALL=C sort -u
+}
+for command in run queries; do
+  for option in $("$program" "$command" --help | grep -oE '^  [^ ].*' | options); do
+    grep -qxF -- "$option" <(offered "$command") ||
+      { echo "$completion: $command does not offer $option" >&2; failed=1; }
+  done
+done
+
+version=$(sed -n 's/.*define FCL_CCD_VERSION "\(.*\)"/\1/p' include/fcl/ccd_version.h)
+if ! grep -q "<version>$version</version>" package.xml; then
+  echo "package.xml: the version is not $version" >&2
+  failed=1
+fi
+exit $failed

@@ -1,0 +1,34 @@
+# bash completion of fcl-ccd                                       -*- shell-script -*-
+
+_fcl_ccd() {
+  local word=$2 previous=$3 command=${COMP_WORDS[1]-}
+  local common='--help --toc-err --repeat --json'
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    mapfile -t COMPREPLY < <(compgen -W 'run queries --help --version' -- "$word")
+    return
+  fi
+  local words=
+  case $previous in
+    --query) words='all first any' ;;
+    --kind) words='vf ee' ;;
+    --columns) words='triangles position normal triangles,position,normal' ;;
+    --start | --end | --stride | --jobs | --threads | --toc-err | --repeat) return ;;
+    *)
+      case $command:$word in
+        run:-*)
+          words="$common --against --start --end --stride --no-self --query --jobs --threads
+            --weld --contacts --columns --steps --resume --paint"
+          ;;
+        queries:-*) words="$common --kind --print" ;;
+        *)
+          compopt -o filenames
+          mapfile -t COMPREPLY < <(compgen -f -- "$word")
+          return
+          ;;
+      esac
+      ;;
+  esac
+  mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
+}
+complete -F _fcl_ccd fcl-ccd
