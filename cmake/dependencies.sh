@@ -19,7 +19,8 @@ fcl_ccd_install_dependencies() {
       "${python_packages[@]}"
     )
   elif [ "$1" != build ]; then
-    packages+=("${python_packages[@]}" python3-pytest)
+    # A test makes Debian packages.
+    packages+=("${python_packages[@]}" python3-pytest dpkg-dev file)
   fi
   # These are for the tests of the Python package that a user can do without.
   if [ "$1" = all ]; then
