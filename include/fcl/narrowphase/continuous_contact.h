@@ -155,8 +155,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   S min_distance{0};
 
   /// @brief Whether pairs that are nearer than min_distance at t = 0 are in contact only
-  /// when they come nearer than they are then. If false, they are contacts at t = 0. A
-  /// crossing at t = 0 is told in both cases.
+  /// when they come nearer than they are then. If false, they are contacts at t = 0.
+  /// Pairs that touch at t = 0 are contacts, and a crossing is told, in both cases.
   bool ignore_initially_closer{false};
 
   /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be
