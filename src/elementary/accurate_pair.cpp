@@ -122,7 +122,6 @@ AccuratePair::Factors AccuratePair::factors(int i) const {
 }
 
 bool AccuratePair::volume(double lo, double hi, double (&b)[4], double& error) const {
-  assert(0 <= lo && lo <= hi && hi <= 1);
   const double v[4] = {volume_[0].hi, volume_[1].hi / 3, volume_[2].hi / 3,
                        volume_[3].hi};
   // Three steps of a blossom are 9 units. The rounding of the coefficients is two more,

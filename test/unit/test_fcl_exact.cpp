@@ -126,6 +126,13 @@ TEST(FCL_EXACT_TEST, bracketsContainKnownTimes) {
   }
 }
 
+bool isFinite(const MovingPair& pair) {
+  for (const VertexPath& p : pair.x)
+    for (int k = 0; k < 3; ++k)
+      if (!std::isfinite(p.t0[k]) || !std::isfinite(p.t1[k])) return false;
+  return true;
+}
+
 /// Pairs that doubles do not decide: all families of degenerate pairs, points that nearly
 /// meet in one point, and coordinates of very different size.
 MovingPair hardPair(Random& random, int i) {
@@ -139,12 +146,13 @@ MovingPair hardPair(Random& random, int i) {
       for (int k = 0; k < 3; ++k) p.t1[k] = center[k] + factor * (p.t0[k] - center[k]);
   }
   const int power = static_cast<int>(random.index(1200)) - 600;
+  MovingPair scaled = pair;
   if (i % 7 == 2)
-    for (auto& p : pair.x)
+    for (auto& p : scaled.x)
       for (double& c : p.t1) c = std::ldexp(c, power);
   if (i % 11 == 3)
-    pair = test::mapped(pair, [power](double c) { return std::ldexp(c, power); });
-  return pair;
+    scaled = test::mapped(scaled, [power](double c) { return std::ldexp(c, power); });
+  return isFinite(scaled) ? scaled : pair;
 }
 
 bool isNarrow(const ElementaryResult& r, double toc_err) {
