@@ -277,7 +277,7 @@ void makeGrazing(Random& random, Query& q) {
 
 struct Options {
   std::string out;
-  int queries{100};
+  int queries{170};
   int samples{2000};
 };
 
