@@ -103,7 +103,7 @@ struct TrianglePair {
 /// @brief A pair of features of one of many triangle pairs: 16 times the number of the
 /// triangle pair and a bit of feature_pairs.h.
 inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
-  assert(bit >= 0 && bit < kNumFeaturePairs);
+  assert(bit >= 0 && bit < 16);
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
 
