@@ -149,7 +149,8 @@ class MagnifiedPair {
     if (!fits()) return;
     for (std::size_t i = 0; i < 3; ++i)
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto [to, from] = table().difference[i];
+        // clang 14 captures no structured bindings.
+        const int to = table().difference[i].to, from = table().difference[i].from;
         const auto difference = [&](int frame) {
           const auto at = [&](int p) {
             const BinaryDigits d((frame == 0 ? x[p].t0 : x[p].t1)[k]);
