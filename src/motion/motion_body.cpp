@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "fcl/common/exception.h"
 #include "query/feature_batch.h"
@@ -55,6 +56,31 @@ MotionBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
 }
 
 }  // namespace
+
+double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triangle) {
+  double most = 0;
+  for (int k = 0; k < 3; ++k) {
+    const Vec from = triangle.corner[0][k], to = triangle.corner[1][k], way = to - from;
+    most = std::max(most, bound.between(from, to, 0) +
+                              bound.per_displacement * std::sqrt(dot(way, way)));
+  }
+  return most * kUpward;
+}
+
+FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b) {
+  const FeaturePair features = featurePair(pair);
+  FeatureIds ids{features.kind, features.first_on_a, {}, {a.index, b.index}};
+  for (int i = 0; i < 4; ++i) {
+    const unsigned corner = kFeaturePoints[pair][i];
+    ids.vertices[i] =
+        static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner] : b.vertex[corner - 3]);
+  }
+  if (ids.kind == ContinuousContactKind::kEdgeEdge)
+    for (int i = 0; i < 4; i += 2)
+      if (ids.vertices[i] > ids.vertices[i + 1])
+        std::swap(ids.vertices[i], ids.vertices[i + 1]);
+  return ids;
+}
 
 MotionBody::MotionBody(const RigidTree& tree, const VertexFrames& frames,
                        const Triangle* triangles, const MotionPath& path)

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "fcl/math/triangle.h"
+#include "mesh/feature_pairs.h"
 #include "mesh/vertex_frames.h"
 #include "motion/motion_boxes.h"
 #include "motion/motion_path.h"
@@ -45,6 +46,13 @@ struct BodyTriangle {
   /// features.
   std::uint32_t owned;
 };
+
+/// @brief Bound on the acceleration of the corners during the span of the bound.
+double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triangle);
+
+/// @brief A pair of features of triangles of two bodies (feature_pairs.h), by ids. An
+/// edge is the same, in whichever of its triangles it is found.
+FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b);
 
 /// @brief A mesh that moves along a path, as a query reads it. It does not own the mesh.
 class MotionBody {

@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "mesh/feature_pairs.h"
 #include "motion/motion_query.h"
 
 namespace fcl {
@@ -54,14 +52,7 @@ struct SpannedPair {
   void span(const MotionBody& body, const BodyTriangle& triangle, double t0, double t1,
             int side) {
     const AccelerationBound bound = body.path().acceleration(t0, t1);
-    double most = 0;
-    for (int i = 0; i < 3; ++i) {
-      const Vec from = triangle.corner[0][i], to = triangle.corner[1][i], way = to - from;
-      most = std::max(most, bound.between(from, to, 0) +
-                                bound.per_displacement * std::sqrt(dot(way, way)));
-    }
-    constexpr double kUpward = 1 + 0x1p-40;
-    deviation[side] = 0.125 * (t1 - t0) * (t1 - t0) * most * kUpward;
+    deviation[side] = 0.125 * (t1 - t0) * (t1 - t0) * accelerationOf(bound, triangle);
     for (int end = 0; end < 2; ++end) {
       const double t = end == 0 ? t0 : t1;
       const Pose pose = body.path().pose(t);
@@ -130,24 +121,7 @@ class CandidateList {
  private:
   void add(int bit, const BodyTriangle& a, const BodyTriangle& b,
            const NearTriangles& near) {
-    const FeaturePair pair = featurePair(bit);
-    FeatureCandidate candidate{};
-    candidate.kind = pair.kind;
-    candidate.first_on_a = pair.first_on_a;
-    for (int i = 0; i < 4; ++i) {
-      const unsigned corner = kFeaturePoints[bit][i];
-      candidate.vertices[i] = static_cast<std::uint32_t>(
-          corner < 3 ? a.vertex[corner] : b.vertex[corner - 3]);
-    }
-    // An edge is the same, in whichever of its triangles it is found.
-    if (pair.kind == ContinuousContactKind::kEdgeEdge)
-      for (int i = 0; i < 4; i += 2)
-        if (candidate.vertices[i] > candidate.vertices[i + 1])
-          std::swap(candidate.vertices[i], candidate.vertices[i + 1]);
-    candidate.triangles[0] = a.index;
-    candidate.triangles[1] = b.index;
-    candidate.window_lo = near.t0;
-    candidate.window_hi = near.t1;
+    const FeatureCandidate candidate{idsOf(bit, a, b), near.t0, near.t1, {}};
     list_.emplace_back(nameOf(candidate), candidate);
   }
 

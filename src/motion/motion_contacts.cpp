@@ -136,26 +136,8 @@ class FeatureContacts {
   }
 
   void put(const BodyTriangle& a, const BodyTriangle& b, int bit, double lo, double hi) {
-    const FeaturePair pair = featurePair(bit);
-    FeatureContact contact;
-    contact.kind = pair.kind;
-    contact.first_on_a = pair.first_on_a;
-    for (int i = 0; i < 4; ++i) {
-      const unsigned corner = kFeaturePoints[bit][i];
-      contact.vertices[i] = static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner]
-                                                                  : b.vertex[corner - 3]);
-    }
-    // An edge is the same, in whichever of its triangles it is found.
-    if (pair.kind == ContinuousContactKind::kEdgeEdge)
-      for (int i = 0; i < 4; i += 2)
-        if (contact.vertices[i] > contact.vertices[i + 1])
-          std::swap(contact.vertices[i], contact.vertices[i + 1]);
-    contact.triangles[0] = a.index;
-    contact.triangles[1] = b.index;
-    contact.toc_lo = lo;
     // A contact at the beginning has exactly the time 0.
-    contact.toc_hi = lo == 0 ? 0 : hi;
-    sink_.add(contact);
+    sink_.add({idsOf(bit, a, b), lo, lo == 0 ? 0 : hi});
   }
 
   static constexpr int kMostSteps = 10000;

@@ -165,14 +165,12 @@ TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTrian
       jerk_(0) {
   for (int body = 0; body < 2; ++body) {
     const AccelerationBound bound = path_[body]->acceleration(t0, t1);
-    double most = 0;
-    for (int k = 0; k < 3; ++k) {
-      const Vec from = triangle_[body]->corner[0][k], to = triangle_[body]->corner[1][k];
-      most = std::max(
-          most, bound.between(from, to, 0) + bound.per_displacement * norm(to - from));
-      if (norm(to - from) > 0 || !(bound.jerk < HUGE_VAL)) jerk_ = HUGE_VAL;
-    }
-    acceleration_ += most * kUpward;
+    const double most = accelerationOf(bound, *triangle_[body]);
+    for (int k = 0; k < 3; ++k)
+      if (norm(triangle_[body]->corner[1][k] - triangle_[body]->corner[0][k]) > 0 ||
+          !(bound.jerk < HUGE_VAL))
+        jerk_ = HUGE_VAL;
+    acceleration_ += most;
     if (jerk_ < HUGE_VAL) jerk_ += most * bound.jerk * kUpward;
   }
 }
