@@ -16,6 +16,7 @@
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "motion/motion_path.h"
 #include "moving_mesh.h"
 #include "test_models.h"
 
@@ -274,6 +275,22 @@ TEST_F(BoundedMotions, GiveTheAnswersOfFclsMotionOnTheSamePath) {
     }
   }
   EXPECT_GE(contacts, 1000U);
+}
+
+/// The bound for a ball that goes along a line is one for the ball anywhere on it.
+TEST_F(BoundedMotions, BoundBallsAlongALine) {
+  using detail::deformable::MotionPath;
+  using detail::deformable::Vec;
+  const Pendulum pendulum(1, 2, 0.5);
+  const auto bound = MotionPath::bounded(pendulum).acceleration(0.25, 0.75);
+  const Vec begin{0.1, 0, 0}, end{-2, 1, 3};
+  for (const bool turned : {false, true}) {
+    const double whole = bound.between(turned ? end : begin, turned ? begin : end, 0.25);
+    for (const double s : {0., 0.3, 0.5, 1.}) {
+      const Vec at = (1 - s) * begin + s * end;
+      EXPECT_GE(whole, pendulum.accelerationBound({at.x, at.y, at.z}, 0.25, 0.25, 0.75));
+    }
+  }
 }
 
 TEST_F(BoundedMotions, FclAnswersShapes) {

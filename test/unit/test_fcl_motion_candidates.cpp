@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cfenv>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <utility>
@@ -153,6 +154,34 @@ TEST_F(MotionCandidates, HoldAllContactsBetweenTransforms) {
     contacts += expectContactsAmong(windows, result);
   }
   EXPECT_GE(contacts, 300U);
+}
+
+/// A triangle on a wide arc meets another one far from the chord of the arc.
+TEST_F(MotionCandidates, FollowTheArc) {
+  const auto triangleAt = [](double angle) {
+    const Vector3<double> out(std::cos(angle), std::sin(angle), 0), up(0, 0, 0.1);
+    return makeModel<Rigid>(
+        TestMesh{{out - up, 1.1 * out, out + up}, {Triangle(0, 1, 2)}});
+  };
+  constexpr double kTurn = 2.8;
+  Transform3<double> still = Transform3<double>::Identity(), end = still;
+  end.linear() = Eigen::AngleAxisd(kTurn, Vector3<double>::UnitZ()).toRotationMatrix();
+  const auto moving = triangleAt(0);
+  for (const double angle : {0.3, 0.7, 1.4, 2.1, 2.6}) {
+    SCOPED_TRACE(angle);
+    const auto other = triangleAt(angle);
+    const Windows windows = windowsOf([&](const ContinuousCandidateSink& sink) {
+      return continuousCandidates(moving.get(), still, end, other.get(), still, still,
+                                  sink);
+    });
+    ContinuousContactRequest<double> request;
+    request.ccd_motion_type = CCDM_LINEAR;
+    ContinuousContactResult<double> result;
+    continuousCollide(moving.get(), still, end, other.get(), still, still, request,
+                      result);
+    EXPECT_NEAR(result.time_of_contact, angle / kTurn, 1e-12);
+    EXPECT_GE(expectContactsAmong(windows, result), 1U);
+  }
 }
 
 /// Two balls of 1280 triangles that turn: what cannot meet is not handed out.
