@@ -19,13 +19,6 @@ bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
   return key(x) < key(y);
 }
 
-/// After FNV-1a, by words.
-std::size_t hashOf(const std::array<std::uint32_t, 5>& key) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::uint32_t word : key) hash = (hash ^ word) * 0x100000001b3;
-  return static_cast<std::size_t>(hash ^ (hash >> 32));
-}
-
 }  // namespace
 
 bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
@@ -51,86 +44,55 @@ bool ContactSink::mayRepeat(const FeatureContact& contact) const {
   return may_repeat_ || isPart(contact.kind);
 }
 
-/// A pair that is kept already; null if it is not.
-FeatureContact* ContactSink::findKept(const FeatureContact& contact) {
-  const PairKey key = keyOf(contact);
-  const auto isIt = [&key](const FeatureContact& c) { return keyOf(c) == key; };
-  if (cut_) {
-    if (seen_.count(key) == 0) return nullptr;
-    return &*std::find_if(contacts_.begin(), contacts_.end(), isIt);
-  }
-  if (places_.empty()) return nullptr;
-  const std::size_t mask = places_.size() - 1;
-  for (std::size_t i = hashOf(key) & mask; places_[i] != 0; i = (i + 1) & mask)
-    if (isIt(contacts_[places_[i] - 1])) return &contacts_[places_[i] - 1];
-  return nullptr;
-}
-
-/// Puts a kept pair into the table, which is never more than half full.
-void ContactSink::note(std::size_t index) {
-  if (2 * (num_places_ + 1) > places_.size()) {
-    const std::vector<std::uint32_t> before = std::move(places_);
-    places_.assign(std::max<std::size_t>(64, 2 * before.size()), 0);
-    num_places_ = 0;
-    for (const std::uint32_t place : before)
-      if (place != 0) note(place - 1);
-  }
-  const std::size_t mask = places_.size() - 1;
-  std::size_t i = hashOf(keyOf(contacts_[index])) & mask;
-  while (places_[i] != 0) i = (i + 1) & mask;
-  places_[i] = static_cast<std::uint32_t>(index + 1);
-  ++num_places_;
-}
-
-/// From here on contacts_ is a heap.
+/// From here on the kept contacts are in order.
 void ContactSink::cut() {
   if (cut_) return;
   cut_ = true;
-  std::make_heap(contacts_.begin(), contacts_.end(), isEarlier);
-  for (const FeatureContact& contact : contacts_)
-    if (mayRepeat(contact)) seen_.insert(keyOf(contact));
-  places_.clear();
-  num_places_ = 0;
+  for (FeatureContact& contact : contacts_) order_.insert(&contact);
+}
+
+void ContactSink::replace(FeatureContact& kept, const FeatureContact& contact) {
+  if (cut_) order_.erase(&kept);
+  kept = contact;
+  if (cut_) order_.insert(&kept);
 }
 
 bool ContactSink::add(const FeatureContact& contact) {
   assert(0 <= contact.toc_lo && contact.toc_lo <= contact.toc_hi && contact.toc_hi <= 1);
   first_hi_ = std::min(first_hi_, contact.toc_hi);
   const bool may_repeat = mayRepeat(contact);
-  if (FeatureContact* kept = may_repeat ? findKept(contact) : nullptr) {
-    if (isPart(contact.kind) ? !isPreferred(contact, *kept) : !isEarlier(contact, *kept))
-      return false;
-    *kept = contact;
-    if (cut_) std::make_heap(contacts_.begin(), contacts_.end(), isEarlier);
-    return true;
-  }
+  if (may_repeat)
+    if (const auto seen = seen_.find(keyOf(contact)); seen != seen_.end()) {
+      FeatureContact& kept = *seen->second;
+      if (isPart(contact.kind) ? !isPreferred(contact, kept) : !isEarlier(contact, kept))
+        return false;
+      replace(kept, contact);
+      return true;
+    }
   if (contacts_.size() < capacity_) {
     contacts_.push_back(contact);
-    if (may_repeat) note(contacts_.size() - 1);
+    if (may_repeat) seen_.emplace(keyOf(contact), &contacts_.back());
     return true;
   }
   cut();
-  if (!isEarlier(contact, contacts_.front())) return false;
-  std::pop_heap(contacts_.begin(), contacts_.end(), isEarlier);
-  if (mayRepeat(contacts_.back())) seen_.erase(keyOf(contacts_.back()));
-  contacts_.back() = contact;
-  std::push_heap(contacts_.begin(), contacts_.end(), isEarlier);
-  if (may_repeat) seen_.insert(keyOf(contact));
+  FeatureContact& latest = **order_.rbegin();
+  if (!isEarlier(contact, latest)) return false;
+  if (mayRepeat(latest)) seen_.erase(keyOf(latest));
+  replace(latest, contact);
+  if (may_repeat) seen_.emplace(keyOf(contact), &latest);
   return true;
 }
 
 bool ContactSink::mayKeepAtStart(const FeatureIds& pair) const {
-  if (!cut_ || contacts_.front().toc_lo > 0) return true;
-  FeatureContact contact{pair, 0, 0};
-  return isEarlier(contact, contacts_.front());
+  if (latestKept() > 0) return true;
+  return isEarlier(FeatureContact{pair, 0, 0}, **order_.rbegin());
 }
 
 void ContactSink::clear() {
   cut_ = false;
   first_hi_ = 1;
   contacts_.clear();
-  places_.clear();
-  num_places_ = 0;
+  order_.clear();
   seen_.clear();
 }
 

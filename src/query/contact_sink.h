@@ -9,6 +9,7 @@
 #include <deque>
 #include <iterator>
 #include <set>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,9 @@ class ContactSink {
       : capacity_(capacity), may_repeat_(may_repeat) {
     assert(capacity > 0);
   }
+  // The addresses of contacts are kept.
+  ContactSink(const ContactSink&) = delete;
+  ContactSink& operator=(const ContactSink&) = delete;
 
   /// @return whether the sink keeps the contact
   bool add(const FeatureContact& contact);
@@ -62,7 +66,7 @@ class ContactSink {
 
   /// @brief A contact that begins after this time changes nothing: the sink would drop
   /// it, and it has dropped others before.
-  double latestKept() const { return cut_ ? contacts_.front().toc_lo : 1; }
+  double latestKept() const { return cut_ ? (*order_.rbegin())->toc_lo : 1; }
 
   /// @brief Whether a contact of the pair, or of parts of it, could be kept; it cannot if
   /// more than enough at t = 0 come before it.
@@ -76,24 +80,34 @@ class ContactSink {
 
  private:
   using PairKey = std::array<std::uint32_t, 5>;
+  struct KeyHash {
+    /// After FNV-1a, by words.
+    std::size_t operator()(const PairKey& key) const {
+      std::uint64_t hash = 0xcbf29ce484222325;
+      for (const std::uint32_t word : key) hash = (hash ^ word) * 0x100000001b3;
+      return static_cast<std::size_t>(hash ^ (hash >> 32));
+    }
+  };
+  struct Earlier {
+    bool operator()(const FeatureContact* x, const FeatureContact* y) const {
+      return isEarlier(*x, *y);
+    }
+  };
   static PairKey keyOf(const FeatureContact& contact);
-  FeatureContact* findKept(const FeatureContact& contact);
-  void note(std::size_t index);
   void cut();
+  void replace(FeatureContact& kept, const FeatureContact& contact);
   bool mayRepeat(const FeatureContact& contact) const;
 
   std::size_t capacity_;
   bool may_repeat_;
   bool cut_{false};
   double first_hi_{1};
-  /// If cut_, a heap with the latest contact in front.
+  /// Their addresses stay.
   std::deque<FeatureContact> contacts_;
-  /// Until cut_, a table of the kept pairs that may repeat: 0, or 1 and where one is. A
-  /// pair is looked for from its hash on.
-  std::vector<std::uint32_t> places_;
-  std::size_t num_places_{0};
-  /// From then on, their names.
-  std::set<PairKey> seen_;
+  /// If cut_: the contacts, earliest first.
+  std::set<FeatureContact*, Earlier> order_;
+  /// The contacts whose pairs may come again.
+  std::unordered_map<PairKey, FeatureContact*, KeyHash> seen_;
 };
 
 /// @brief The contacts of several lists, earliest first. Only pointers are sorted, since

@@ -8,8 +8,7 @@ namespace fcl {
 
 /// @brief What the queries of this library need to know about a motion class of a
 /// program. A class that derives from `MotionBase<S>` and from this one is followed by
-/// the
-/// @ref continuous_queries of two triangle meshes as FCL's own motions are: with
+/// the @ref continuous_queries of two triangle meshes as FCL's own motions are: with
 /// contacts, never late, no contact missed. A motion class without it is answered by FCL,
 /// from samples.
 ///
