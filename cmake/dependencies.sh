@@ -21,6 +21,8 @@ fcl_ccd_install_dependencies() {
   elif [ "$1" != build ]; then
     # A test makes Debian packages.
     packages+=("${python_packages[@]}" python3-pytest dpkg-dev file)
+    # fcl-ccd splits its steps over the ranks of mpirun, which a test does.
+    packages+=(libopenmpi-dev openmpi-bin)
   fi
   # These are for the tests of the Python package that a user can do without.
   if [ "$1" = all ]; then

@@ -27,7 +27,8 @@ FrameStore::Frame FrameStore::get(std::size_t frame) {
     const auto [at, is_new] = entries_.try_emplace(frame);
     if (is_new) {
       at->second.frame = promise.get_future().share();
-      at->second.uses_left = (frame > begin_ ? 1 : 0) + (frame < end_ ? 1 : 0);
+      at->second.uses_left =
+          (frame > 0 && share_.has(frame - 1) ? 1 : 0) + (share_.has(frame) ? 1 : 0);
       is_ours = true;
     }
     future = at->second.frame;

@@ -9,24 +9,26 @@
 #include <mutex>
 
 #include "mesh_sequence.h"
+#include "step_share.h"
 
 namespace fcl_ccd {
 
-/// @brief The frames of a mesh for the steps [begin, end). Step i goes from frame i to
+/// @brief The frames of a mesh for the steps of a share. Step i goes from frame i to
 /// frame i + 1. Each frame is read once, by the thread that asks for it first, and is
-/// dropped when both of its steps have it. A mesh with one frame stands still.
+/// dropped when those of its two steps that are in the share have it. A mesh with one
+/// frame stands still.
 class FrameStore {
  public:
   using Frame = std::shared_ptr<const Vertices>;
 
-  FrameStore(const MeshSequence& meshes, std::size_t begin, std::size_t end)
-      : meshes_(meshes), begin_(begin), end_(end) {}
+  FrameStore(const MeshSequence& meshes, const StepShare& share)
+      : meshes_(meshes), share_(share) {}
 
   struct Pair {
     Frame from, to;
   };
 
-  /// @brief Both frames of a step. Call it once for each step, on any thread.
+  /// @brief Both frames of a step of the share. Call it once for each, on any thread.
   /// @throws std::runtime_error as MeshSequence::read().
   Pair take(std::size_t step);
 
@@ -39,8 +41,7 @@ class FrameStore {
   Frame get(std::size_t frame);
 
   const MeshSequence& meshes_;
-  std::size_t begin_;
-  std::size_t end_;
+  StepShare share_;
   std::mutex mutex_;
   std::map<std::size_t, Entry> entries_;
 };

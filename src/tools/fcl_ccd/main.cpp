@@ -10,11 +10,13 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "fcl/ccd_version.h"
 #include "output_file.h"
 #include "queries_command.h"
+#include "ranks.h"
 #include "run_command.h"
 #include "run_inputs.h"
 #include "stop_signal.h"
@@ -304,10 +306,22 @@ int reportFailure(const char* what) {
   return fcl_ccd::kRefused;
 }
 
-}  // namespace
+/// Prints what the parser says, on one rank.
+int endParsing(const CLI::App& app, const CLI::ParseError& error,
+               const fcl_ccd::Ranks& ranks) {
+  std::ostringstream unread;
+  const int code = ranks.rank() == 0 ? app.exit(error) : app.exit(error, unread, unread);
+  return code == 0 ? 0 : fcl_ccd::kRefused;
+}
 
-int main(int argc, char** argv) try {
-  occupyStandardStreams();
+/// The command line as one text.
+std::string joined(int argc, char** argv) {
+  std::string text;
+  for (int i = 1; i < argc; ++i) text.append(argv[i]).append(1, '\0');
+  return text;
+}
+
+int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   CLI::App app("Continuous collision detection for triangle meshes that deform");
   app.name("fcl-ccd");
   app.footer(kMainExamples);
@@ -316,23 +330,34 @@ int main(int argc, char** argv) try {
   fcl_ccd::RunOptions run_options;
   fcl_ccd::QueriesOptions queries_options;
   const CLI::App* run = addRun(app, run_options);
-  addQueries(app, queries_options);
+  const CLI::App* queries = addQueries(app, queries_options);
   try {
     app.parse(argc, argv);
     if (run_options.resume && run_options.contacts_path.empty() &&
         run_options.steps_path.empty())
       throw CLI::ValidationError("--resume", "needs --contacts or --steps to continue");
+    if (queries->parsed() && ranks.size() > 1)
+      throw CLI::ValidationError("queries",
+                                 "runs in one process: start it without mpirun");
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : fcl_ccd::kRefused;
+    return endParsing(app, error, ranks);
   }
 
   if (run->parsed()) {
     fcl_ccd::catchStopSignals();
-    return fcl_ccd::runCommand(run_options);
+    return fcl_ccd::runCommand(run_options, ranks, joined(argc, argv));
   }
   fcl_ccd::removeTemporariesOnSignal();
   fcl_ccd::queriesCommand(queries_options);
   return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  occupyStandardStreams();
+  fcl_ccd::Ranks ranks;
+  return runProgram(argc, argv, ranks);
 } catch (const fcl_ccd::StoppedBySignal& stopped) {
   reportFailure(stopped.what());
   return fcl_ccd::kSignalled + fcl_ccd::stopSignal();

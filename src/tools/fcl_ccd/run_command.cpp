@@ -4,21 +4,25 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
-#include <cstring>
-#include <memory>
+#include <functional>
 #include <new>
+#include <optional>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "fcl/ccd_version.h"
-#include "frame_store.h"
 #include "growing_file.h"
 #include "in_order.h"
 #include "output_set.h"
+#include "own_steps.h"
 #include "progress_line.h"
+#include "rank_steps.h"
 #include "resume.h"
 #include "run_inputs.h"
+#include "step_maker.h"
 #include "stop_signal.h"
 #include "write_error.h"
 
@@ -27,124 +31,22 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Parallelism {
-  std::size_t jobs{1};
-  int threads{1};
-};
-
 /// @brief The number of jobs and of threads.
-Parallelism parallelismOf(const RunOptions& options, std::size_t num_steps) {
+Parallelism parallelismOf(const RunOptions& options, bool is_alone,
+                          std::size_t num_steps) {
   const std::size_t cores = std::max(1u, std::thread::hardware_concurrency());
   Parallelism parallelism;
   parallelism.threads = options.threads.value_or(1);
   // Steps at the same time do not wait for each other, as threads of one step do. But
   // their times are not those of a step that has the machine to itself.
   const bool times_count = options.settings.repeat > 1 || options.threads;
+  // mpirun starts a rank for each core.
   parallelism.jobs = options.jobs ? static_cast<std::size_t>(*options.jobs)
-                                  : std::size_t{times_count ? 1u : 0u};
+                                  : std::size_t{times_count || !is_alone ? 1u : 0u};
   if (parallelism.jobs == 0) parallelism.jobs = cores;
   parallelism.jobs = std::min(parallelism.jobs, num_steps);
   return parallelism;
 }
-
-/// @brief The results of a step, ready for the outputs.
-struct StepRecord {
-  RunSummary summary;
-  std::string row;
-  std::string contact_lines;
-  std::string step_line;
-  std::string json;
-  std::optional<PaintedMesh> painted;
-};
-
-/// @brief Makes the records of steps. Several threads may make different records at the
-/// same time.
-class StepMaker {
- public:
-  StepMaker(const RunOptions& options, const FramePaths& paths, const RunInputs& inputs,
-            const Parallelism& parallelism, std::size_t begin)
-      : options_(options),
-        paths_(paths),
-        inputs_(inputs),
-        settings_(options.settings),
-        look_ahead_(2 * parallelism.jobs),
-        frames_a_(inputs.a, begin, paths.numSteps()),
-        scenes_(parallelism.jobs) {
-    settings_.num_threads = parallelism.threads;
-    settings_.points = options.columns.position || options.columns.normal;
-    if (inputs.b) frames_b_.emplace(*inputs.b, begin, paths.numSteps());
-  }
-
-  StepRecord make(std::size_t step, std::size_t worker) {
-    announce(step);
-    const FrameStore::Pair a = frames_a_.take(step);
-    FrameStore::Pair b;
-    if (frames_b_) b = frames_b_->take(step);
-    const SceneFrame from{a.from.get(), b.from.get()}, to{a.to.get(), b.to.get()};
-    StepReport report;
-    report.index = step;
-    report.files = paths_.filesOf(step);
-    report.vertices = a.to->size() + (b.to ? b.to->size() : 0);
-    report.triangles =
-        inputs_.a.triangles().size() + (inputs_.b ? inputs_.b->triangles().size() : 0);
-    report.result = query(from, to, scenes_[worker], step);
-    return record(report, to);
-  }
-
- private:
-  void announce(std::size_t step) const {
-    const std::size_t frame = step + 1 + look_ahead_;
-    if (frame >= paths_.a.size()) return;
-    inputs_.a.announce(frame);
-    if (paths_.b.size() > 1) inputs_.b->announce(frame);
-  }
-
-  StepResult query(const SceneFrame& from, const SceneFrame& to,
-                   std::unique_ptr<Scene>& scene, std::size_t step) const {
-    const auto namingFiles = [&](const char* what) {
-      std::string name;
-      for (const std::string& file : paths_.filesOf(step)) name += file + ' ';
-      name.back() = ':';
-      return std::runtime_error(name + ' ' + what);
-    };
-    try {
-      // A query for any contact may find another one in another tree. So each step has
-      // its own tree, and the answer does not depend on the step with which a run began.
-      const bool is_new =
-          scene == nullptr || settings_.query == fcl::ContinuousQuery::kAny;
-      if (is_new) scene = std::make_unique<Scene>(inputs_.triangles(), from, settings_);
-      StepResult result = scene->step(from, to);
-      if (is_new) result.times.build = scene->buildTime();
-      return result;
-    } catch (const std::bad_alloc&) {
-      throw namingFiles("out of memory. Fewer --jobs need less");
-    } catch (const std::exception& error) {
-      throw namingFiles(error.what());
-    }
-  }
-
-  StepRecord record(const StepReport& report, const SceneFrame& to) const {
-    StepRecord record;
-    record.summary = summaryOf(report);
-    record.row = tableRow(report);
-    if (!options_.contacts_path.empty())
-      record.contact_lines = contactLines(report, options_.columns);
-    if (!options_.steps_path.empty()) record.step_line = stepLine(report);
-    if (!options_.json_path.empty()) record.json = toJson(report).dump();
-    if (!options_.paint_path.empty() && report.index + 1 == paths_.numSteps())
-      record.painted = paint(inputs_.triangles(), to, report.result);
-    return record;
-  }
-
-  const RunOptions& options_;
-  const FramePaths& paths_;
-  const RunInputs& inputs_;
-  QuerySettings settings_;
-  std::size_t look_ahead_;
-  FrameStore frames_a_;
-  std::optional<FrameStore> frames_b_;
-  std::vector<std::unique_ptr<Scene>> scenes_;  ///< one for each worker
-};
 
 /// @brief The first line of the list of steps: the options on which answers depend.
 std::string stepsHead(const RunOptions& options) {
@@ -184,9 +86,8 @@ class RunOutputs {
     if (steps_) steps_->append(record.step_line);
     if (json_) json_->write((has_json_step_ ? ",\n" : "\n") + record.json);
     has_json_step_ = true;
-    if (record.painted)
-      paint_->write(encodePaintedPly(record.painted->mesh, record.painted->colours));
-    is_painted_ = record.painted.has_value();
+    if (paint_ && !record.painted.empty()) paint_->write(record.painted);
+    is_painted_ = !record.painted.empty();
     print(record.row);
     summary_.add(record.summary);
     commit();
@@ -242,6 +143,11 @@ class RunOutputs {
   RunSummary summary_;
 };
 
+/// @brief Gives the steps in order to a function. Returns an end: without a cause if all
+/// steps were done.
+using StepTaker = std::function<void(std::size_t, const StepRecord&)>;
+using StepSource = std::function<StepOutcome(const StepTaker&)>;
+
 /// @brief A run that has begun: its steps, and how it ends.
 class Run {
  public:
@@ -255,37 +161,32 @@ class Run {
         outputs_(options, resume_point.summary) {}
 
   /// @return the exit code.
-  int run(StepMaker& maker, std::size_t jobs) {
+  int run(const StepSource& source) {
+    StepOutcome last;
     try {
       outputs_.open(growing_, resume_point_);
-      doSteps(maker, jobs);
+      last = doSteps(source);
     } catch (const WriteError& error) {
       return endAfter(error);
     } catch (const std::bad_alloc&) {
       return end(kBadFrame, "out of memory. Fewer --jobs need less");
+    } catch (const RankLost& error) {
+      return end(kRankLost, error.what());
     } catch (const std::runtime_error& error) {
       return end(kBadFrame, error.what());
     }
-    const int signal_number = stopSignal();
-    if (num_done_ < num_steps_)
-      return end(kSignalled + signal_number, strsignal(signal_number));
-    return end(0, "");
+    return end(last.end_code, last.cause);
   }
 
  private:
-  void doSteps(StepMaker& maker, std::size_t jobs) {
+  StepOutcome doSteps(const StepSource& source) {
     progress_.begin(num_steps_, num_done_);
-    inOrder<StepRecord>(
-        num_done_, num_steps_, jobs,
-        [&](std::size_t step, std::size_t worker) { return maker.make(step, worker); },
-        [&](std::size_t step, const StepRecord& record) {
-          progress_.clear();
-          outputs_.add(record);
-          num_done_ = step + 1;
-          progress_.step(num_done_, outputs_.summary().vf + outputs_.summary().ee);
-        },
-        [] { return stopSignal() == 0; });
-    progress_.clear();
+    return source([&](std::size_t step, const StepRecord& record) {
+      progress_.clear();
+      outputs_.add(record);
+      num_done_ = step + 1;
+      progress_.step(num_done_, outputs_.summary().vf + outputs_.summary().ee);
+    });
   }
 
   int end(int code, const std::string& cause) {
@@ -339,31 +240,120 @@ void reserveOutputs(const FramePaths& paths, const RunOptions& options) {
     outputs.reserve(*path);
 }
 
-}  // namespace
+/// @brief What a run needs before its first step.
+struct Preparation {
+  Preparation() = default;
+  Preparation(const Preparation&) = delete;  // `growing` refers to `paths`
+  Preparation& operator=(const Preparation&) = delete;
 
-int runCommand(const RunOptions& options) {
-  const FramePaths paths = listFrames(options);
-  reserveOutputs(paths, options);
-  const GrowingOutputs growing{
-      options.contacts_path, contactsHead(options.columns),
-      options.steps_path,    stepsHead(options),
-      paths.numSteps(),      [&](std::size_t step) { return paths.filesOf(step); }};
-  const std::size_t latest = paths.numSteps() - (options.paint_path.empty() ? 0 : 1);
-  const ResumePoint resume_point =
-      options.resume ? findResumePoint(growing, latest) : ResumePoint();
-
-  const Parallelism parallelism = parallelismOf(options, paths.numSteps());
+  FramePaths paths;
+  Parallelism parallelism;
+  std::optional<RunInputs> inputs;
   std::vector<std::string> notes;
-  const RunInputs inputs = [&] {
-    ProgressLine progress;
-    progress.show("reading the frames");
-    return openInputs(paths, options, parallelism.jobs, notes);
-  }();
+  // Of the process that writes the outputs.
+  GrowingOutputs growing;
+  ResumePoint resume_point;
+};
+
+void prepareInputs(const RunOptions& options, bool is_alone, Preparation& run) {
+  run.parallelism = parallelismOf(options, is_alone, run.paths.numSteps());
+  ProgressLine progress;
+  progress.show("reading the frames");
+  run.inputs.emplace(openInputs(run.paths, options, run.parallelism.jobs, run.notes));
+}
+
+void prepare(const RunOptions& options, bool is_alone, Preparation& run) {
+  run.paths = listFrames(options);
+  reserveOutputs(run.paths, options);
+  const FramePaths& paths = run.paths;
+  run.growing = {options.contacts_path, contactsHead(options.columns),
+                 options.steps_path,    stepsHead(options),
+                 paths.numSteps(),      [&](std::size_t i) { return paths.filesOf(i); }};
+  const std::size_t latest = paths.numSteps() - (options.paint_path.empty() ? 0 : 1);
+  if (options.resume) run.resume_point = findResumePoint(run.growing, latest);
+  prepareInputs(options, is_alone, run);
+}
+
+void report(const std::vector<std::string>& notes) {
   for (const std::string& note : notes)
     std::fprintf(stderr, "fcl-ccd: %s\n", note.c_str());
+}
 
-  StepMaker maker(options, paths, inputs, parallelism, resume_point.step);
-  return Run(options, growing, resume_point).run(maker, parallelism.jobs);
+int runAlone(const RunOptions& options) {
+  Preparation run;
+  prepare(options, true, run);
+  report(run.notes);
+  const StepShare all{run.resume_point.step, run.paths.numSteps(), 1};
+  StepMaker maker(options, run.paths, *run.inputs, run.parallelism, all);
+  const auto source = [&](const StepTaker& take) {
+    std::size_t num_done = all.first;
+    inOrder<StepRecord>(
+        all.first, all.end, maker.numJobs(),
+        [&](std::size_t step, std::size_t worker) { return maker.make(step, worker); },
+        [&](std::size_t step, const StepRecord& record) {
+          take(step, record);
+          num_done = step + 1;
+        },
+        [] { return stopSignal() == 0; });
+    return num_done < all.end ? endBySignal() : StepOutcome();
+  };
+  return Run(options, run.growing, run.resume_point).run(source);
+}
+
+/// The first rank: makes steps like the others, and has the outputs.
+int runFirstRank(const RunOptions& options, Ranks& ranks, const std::string& command) {
+  RankGatherer gatherer(ranks);
+  Preparation run;
+  try {
+    prepare(options, false, run);
+  } catch (...) {
+    gatherer.refuse();
+    throw;
+  }
+  const std::size_t first = run.resume_point.step, end = run.paths.numSteps();
+  gatherer.begin({command, end, ""}, first);
+  report(run.notes);
+  StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
+                  {first, end, static_cast<std::size_t>(ranks.size())});
+  OwnSteps own(maker);
+  const int code =
+      Run(options, run.growing, run.resume_point).run([&](const StepTaker& take) {
+        return gatherer.take(own, first, end, take);
+      });
+  try {
+    gatherer.end(own);
+  } catch (const RankLost& error) {
+    if (code != kRankLost) report({error.what()});
+  }
+  return code;
+}
+
+int runOtherRank(const RunOptions& options, Ranks& ranks, const std::string& command) {
+  Preparation run;
+  Readiness readiness{command, 0, ""};
+  try {
+    run.paths = listFrames(options);
+    readiness.num_steps = run.paths.numSteps();
+    prepareInputs(options, false, run);
+  } catch (const std::exception& error) {
+    readiness.cause = error.what();
+  }
+  const std::optional<std::size_t> first = awaitBegin(ranks, readiness);
+  if (!first) return 0;
+  StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
+                  {*first + static_cast<std::size_t>(ranks.rank()), run.paths.numSteps(),
+                   static_cast<std::size_t>(ranks.size())});
+  OwnSteps own(maker);
+  sendSteps(ranks, own);
+  return 0;
+}
+
+}  // namespace
+
+int runCommand(const RunOptions& options, Ranks& ranks, const std::string& command) {
+  if (ranks.size() == 1) return runAlone(options);
+  return ranks.rank() == 0 ? runFirstRank(options, ranks, command)
+                           : runOtherRank(options, ranks, command);
 }
 
 }  // namespace fcl_ccd

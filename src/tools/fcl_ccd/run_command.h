@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "frame_list.h"
+#include "ranks.h"
 #include "run_report.h"
 #include "scene.h"
 
@@ -32,13 +33,15 @@ struct RunOptions {
 constexpr int kRefused = 2;      ///< nothing was begun, no file was changed
 constexpr int kBadFrame = 3;     ///< a frame stopped the run
 constexpr int kNotWritten = 4;   ///< an output stopped the run
+constexpr int kRankLost = 5;     ///< a process of mpirun died
 constexpr int kSignalled = 128;  ///< a signal stopped the run; its number is added
 
 /// @brief `fcl-ccd run`: tests every pair of consecutive frames, prints a table to
-/// stdout, and writes files.
+/// stdout, and writes files. With several ranks the first one prints and writes.
+/// @param command  the command line, which is the same on all ranks.
 /// @return the exit code. If the run was stopped after its begin, stderr has the cause.
 /// @throws std::runtime_error that names the file and the cause, if nothing was begun.
-int runCommand(const RunOptions& options);
+int runCommand(const RunOptions& options, Ranks& ranks, const std::string& command);
 
 }  // namespace fcl_ccd
 

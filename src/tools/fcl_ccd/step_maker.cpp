@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "step_maker.h"
+
+#include <algorithm>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+namespace fcl_ccd {
+
+StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
+                     const RunInputs& inputs, const Parallelism& parallelism,
+                     const StepShare& share)
+    : options_(options),
+      paths_(paths),
+      inputs_(inputs),
+      settings_(options.settings),
+      share_(share),
+      frames_a_(inputs.a, share),
+      scenes_(parallelism.jobs) {
+  settings_.num_threads = parallelism.threads;
+  settings_.points = options.columns.position || options.columns.normal;
+  if (inputs.b) frames_b_.emplace(*inputs.b, share);
+}
+
+StepRecord StepMaker::make(std::size_t step, std::size_t worker) {
+  announce(step);
+  const FrameStore::Pair a = frames_a_.take(step);
+  FrameStore::Pair b;
+  if (frames_b_) b = frames_b_->take(step);
+  const SceneFrame from{a.from.get(), b.from.get()}, to{a.to.get(), b.to.get()};
+  StepReport report;
+  report.index = step;
+  report.files = paths_.filesOf(step);
+  report.vertices = a.to->size() + (b.to ? b.to->size() : 0);
+  report.triangles =
+      inputs_.a.triangles().size() + (inputs_.b ? inputs_.b->triangles().size() : 0);
+  report.result = query(from, to, scenes_[worker], step);
+  return record(report, to);
+}
+
+void StepMaker::announce(std::size_t step) const {
+  const std::size_t later = step + 2 * numJobs() * share_.stride;
+  const auto announceFrame = [this](std::size_t frame) {
+    if (frame >= paths_.a.size()) return;
+    inputs_.a.announce(frame);
+    if (paths_.b.size() > 1) inputs_.b->announce(frame);
+  };
+  // With a stride of 1 the step before has announced this one.
+  if (share_.stride > 1) announceFrame(later);
+  announceFrame(later + 1);
+}
+
+StepResult StepMaker::query(const SceneFrame& from, const SceneFrame& to,
+                            std::unique_ptr<Scene>& scene, std::size_t step) const {
+  const auto namingFiles = [&](const char* what) {
+    std::string name;
+    for (const std::string& file : paths_.filesOf(step)) name += file + ' ';
+    name.back() = ':';
+    return std::runtime_error(name + ' ' + what);
+  };
+  try {
+    // A query for any contact may find another one in another tree. So each step has
+    // its own tree, and the answer does not depend on the step with which a run began.
+    const bool is_new = scene == nullptr || settings_.query == fcl::ContinuousQuery::kAny;
+    if (is_new) scene = std::make_unique<Scene>(inputs_.triangles(), from, settings_);
+    StepResult result = scene->step(from, to);
+    if (is_new) result.times.build = scene->buildTime();
+    return result;
+  } catch (const std::bad_alloc&) {
+    throw namingFiles("out of memory. Fewer --jobs need less");
+  } catch (const std::exception& error) {
+    throw namingFiles(error.what());
+  }
+}
+
+StepRecord StepMaker::record(const StepReport& report, const SceneFrame& to) const {
+  StepRecord record;
+  record.summary = summaryOf(report);
+  record.row = tableRow(report);
+  if (!options_.contacts_path.empty())
+    record.contact_lines = contactLines(report, options_.columns);
+  if (!options_.steps_path.empty()) record.step_line = stepLine(report);
+  if (!options_.json_path.empty()) record.json = toJson(report).dump();
+  if (!options_.paint_path.empty() && report.index + 1 == paths_.numSteps()) {
+    const PaintedMesh painted = paint(inputs_.triangles(), to, report.result);
+    record.painted = encodePaintedPly(painted.mesh, painted.colours);
+  }
+  return record;
+}
+
+}  // namespace fcl_ccd
