@@ -164,10 +164,16 @@ class CcdToolTest : public ::testing::Test {
   /// `out_name` is the file for its stdout.
   Outcome run(const std::string& arguments,
               const std::string& out_name = "out.txt") const {
+    return runShell("'" FCL_CCD_TOOL "' " + arguments, out_name);
+  }
+
+  /// @brief Runs a command of the shell in the test's folder.
+  Outcome runShell(const std::string& command,
+                   const std::string& out_name = "out.txt") const {
     const fs::path out = path(out_name), err = path("err.txt");
-    const std::string command = "cd '" + folder_.string() + "' && '" FCL_CCD_TOOL "' " +
-                                arguments + " >" + out_name + " 2>err.txt";
-    const int status = std::system(command.c_str());
+    const int status = std::system(
+        ("cd '" + folder_.string() + "' && " + command + " >" + out_name + " 2>err.txt")
+            .c_str());
     Outcome outcome{WIFEXITED(status) ? WEXITSTATUS(status) : -1, "", readText(err)};
     fs::remove(err);
     if (!fs::is_regular_file(out)) return outcome;

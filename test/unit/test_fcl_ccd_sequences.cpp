@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "ccd_tool.h"
+#include "ccd_sequence.h"
 #include "csv_rows.h"
 #include "frame_list.h"
 #include "mesh_io.h"
@@ -28,51 +28,6 @@ namespace {
 using namespace fcl::test;
 using fcl_ccd::Triangles;
 using fcl_ccd::Vertices;
-
-/// @brief The drop of the tip in a frame. It goes through the floor and back, so that
-/// some steps have a contact, some begin crossing, and some have neither.
-double dropOf(std::size_t frame) {
-  constexpr std::array<double, 5> kDrops{0, 0.5, 2, 1.5, 0.25};
-  return kDrops[frame % kDrops.size()];
-}
-
-/// @brief The files that grow with each step.
-const std::string kOutputs =
-    " --contacts c.csv --steps s.jsonl --columns triangles,position,normal";
-
-class CcdSequence : public CcdToolTest {
- protected:
-  std::string frameName(std::size_t frame) const {
-    return "f/tip" + std::to_string(frame) + ".ply";
-  }
-
-  void writeFrame(std::size_t frame) const {
-    writeText(path(frameName(frame)),
-              toBinaryPly<double>(floorAndTip(dropOf(frame)), false));
-  }
-
-  /// @brief Frames f/tip0.ply ...: names without leading zeros.
-  void writeFrames(std::size_t count) const {
-    fs::create_directory(path("f"));
-    for (std::size_t frame = 0; frame < count; ++frame) writeFrame(frame);
-  }
-
-  /// @brief Runs the program, returns the contents of c.csv and s.jsonl, and removes
-  /// them.
-  std::pair<std::string, std::string> outputsOf(const std::string& arguments) const {
-    const Outcome outcome = run(arguments + kOutputs);
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-    return takeOutputs();
-  }
-
-  std::pair<std::string, std::string> takeOutputs() const {
-    std::pair<std::string, std::string> outputs{readText(path("c.csv")),
-                                                readText(path("s.jsonl"))};
-    fs::remove(path("c.csv"));
-    fs::remove(path("s.jsonl"));
-    return outputs;
-  }
-};
 
 TEST_F(CcdSequence, ListsFramesInNaturalOrder) {
   for (const char* name : {"f9.ply", "f10.ply", "f1.ply", "f010.ply", ".f2.ply", "n.txt"})
@@ -561,29 +516,16 @@ TEST_F(CcdSequence, BinaryPlyIsReadWithWhatElseItHas) {
 
 // The commands of the page, in its order, in a folder with the files that it names.
 TEST_F(CcdSequence, TheManualsCommandsWork) {
-  writeFrames(12);
-  fs::create_directory(path("frames"));
-  for (int frame = 0; frame < 12; ++frame) {
-    std::string number = std::to_string(frame);
-    number.insert(0, 4 - number.size(), '0');
-    fs::copy(path(frameName(static_cast<std::size_t>(frame))),
-             path("frames/frame_" + number + ".ply"));
-  }
-  writeText(path("body.obj"), toObj(edgeAlongX()));
+  writeFramesOfThePages();
   writeText(path("scan_0.stl"), toBinaryStl(toSoup(stripAndSpike(0))));
   writeText(path("scan_1.stl"), toBinaryStl(toSoup(stripAndSpike(2))));
-  int num_commands = 0;
-  bool in_commands = false;
-  for (const std::string& line :
-       linesOf(readText(FCL_CCD_SOURCE_DIR "/doc/program.md"))) {
-    if (line.rfind("```", 0) == 0) in_commands = line == "```sh";
-    const std::string program = "fcl-ccd ";
-    if (!in_commands || line.rfind(program, 0) != 0) continue;
-    const Outcome outcome = run(line.substr(program.size()));
-    EXPECT_EQ(outcome.exit_code, 0) << line << '\n' << outcome.err;
-    ++num_commands;
+  const std::vector<std::string> commands =
+      commandsOf(FCL_CCD_SOURCE_DIR "/doc/program.md", "fcl-ccd ");
+  for (const std::string& command : commands) {
+    const Outcome outcome = run(command.substr(command.find(' ')));
+    EXPECT_EQ(outcome.exit_code, 0) << command << '\n' << outcome.err;
   }
-  EXPECT_GE(num_commands, 8);
+  EXPECT_GE(commands.size(), 8u);
 }
 
 }  // namespace
