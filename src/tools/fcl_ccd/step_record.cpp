@@ -2,7 +2,6 @@
 #include "step_record.h"
 
 #include <cstring>
-#include <utility>
 
 #include "run_command.h"
 #include "stop_signal.h"
@@ -49,28 +48,47 @@ StepOutcome endBySignal() {
   return {std::nullopt, kSignalled + signal_number, strsignal(signal_number)};
 }
 
+// A message begins with the size of its head. The texts behind the head may be large, and
+// are copied as they are.
 std::string toBytes(const StepOutcome& outcome) {
-  Json fields = Json::array({outcome.end_code, outcome.cause});
+  Json head = Json::array({outcome.end_code, outcome.cause});
+  std::size_t size = 0;
   if (outcome.record) {
-    fields.push_back(encode(outcome.record->summary));
-    for (const auto text : kTexts) fields.push_back(*outcome.record.*text);
+    head.push_back(encode(outcome.record->summary));
+    for (const auto text : kTexts) {
+      head.push_back((*outcome.record.*text).size());
+      size += (*outcome.record.*text).size();
+    }
   }
-  std::string bytes;
-  Json::to_cbor(fields, bytes);
+  std::string packed_head;
+  Json::to_cbor(head, packed_head);
+  const std::size_t head_size = packed_head.size();
+  std::string bytes(sizeof head_size, '\0');
+  std::memcpy(bytes.data(), &head_size, sizeof head_size);
+  bytes.reserve(sizeof head_size + head_size + size);
+  bytes += packed_head;
+  if (outcome.record)
+    for (const auto text : kTexts) bytes += *outcome.record.*text;
   return bytes;
 }
 
 StepOutcome outcomeOf(const std::string& bytes) {
-  Json fields = Json::from_cbor(bytes);
+  std::size_t head_size = 0;
+  std::memcpy(&head_size, bytes.data(), sizeof head_size);
+  std::size_t at = sizeof head_size + head_size;
+  const Json head = Json::from_cbor(bytes.data() + sizeof head_size, bytes.data() + at);
   StepOutcome outcome;
-  fields.at(0).get_to(outcome.end_code);
-  fields.at(1).get_to(outcome.cause);
-  if (fields.size() == 2) return outcome;
+  head.at(0).get_to(outcome.end_code);
+  head.at(1).get_to(outcome.cause);
+  if (head.size() == 2) return outcome;
   StepRecord& record = outcome.record.emplace();
-  record.summary = decodeSummary(fields.at(2));
+  record.summary = decodeSummary(head.at(2));
   std::size_t i = 3;
-  for (const auto text : kTexts)
-    record.*text = std::move(fields.at(i++).get_ref<std::string&>());
+  for (const auto text : kTexts) {
+    const std::size_t size = head.at(i++);
+    record.*text = bytes.substr(at, size);
+    at += size;
+  }
   return outcome;
 }
 
