@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <regex>
 #include <set>
 #include <string>
 #include <thread>
@@ -169,6 +170,23 @@ TEST_F(CcdSequence, ResumesEitherFileAlone) {
   ASSERT_EQ(run("run f --end 6 --resume" + kOutputs).exit_code, 0);
   ASSERT_EQ(run("run f --resume" + kOutputs).exit_code, 0);
   EXPECT_EQ(takeOutputs(), std::make_pair(contacts, steps));
+}
+
+// The JSON report has the steps of the last run, and a summary of all.
+TEST_F(CcdSequence, JsonAfterResumeSummarisesAllSteps) {
+  writeFrames(12);
+  const auto jsonLinesOf = [&](const std::string& arguments) {
+    EXPECT_EQ(run(arguments + " --json r.json" + kOutputs).exit_code, 0);
+    return linesOf(std::regex_replace(readText(path("r.json")),
+                                      std::regex("\"ms\":\\{[^}]*\\}"), ""));
+  };
+  const std::vector<std::string> whole = jsonLinesOf("run f");
+  ASSERT_EQ(whole.size(), 1u + 11u + 2u);
+  ASSERT_EQ(run("run f --end 7" + kOutputs).exit_code, 0);
+  std::vector<std::string> expected{whole[0]};
+  expected.insert(expected.end(), whole.begin() + 8, whole.end());
+  EXPECT_EQ(jsonLinesOf("run f --resume"), expected);
+  EXPECT_NE(expected.back().find("\"steps\":11"), std::string::npos);
 }
 
 TEST_F(CcdSequence, ResumeRefusesWhatAnotherRunWrote) {

@@ -80,13 +80,15 @@ Stopping:
   --resume continues after the last whole step in the files of --contacts and --steps. At
   the end the files are as if the run had never stopped.
   Exit code: 0 done; 2 refused, no file written or changed; 3 a later frame cannot be read
-  or used; 4 an output cannot be written (disk full); 128 + N stopped by signal N.
-  After 3, 4 and 128 + N the files have all steps that were done.
+  or used; 4 an output cannot be written (disk full); 5 a rank of mpirun died; 128 + N
+  stopped by signal N. After 3, 4, 5 and 128 + N the files have all steps that were done.
 
 Cores:
   By default the program does as many steps at the same time as there are cores. With
   --repeat or --threads it does one step after the other, so that the times are those of a
   step that has the machine to itself. The output is the same.
+  'mpirun -n K fcl-ccd run ...' splits the steps over K processes (ranks), also on several
+  machines. Rank 0 writes the same files. Each rank does one step at a time, or --jobs.
 
 Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply cloth_2.ply --json times.json --repeat 5
@@ -95,6 +97,7 @@ Examples:
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl --resume
   fcl-ccd run frame_%04d.ply --start 100 --end 199 --contacts contacts.csv
+  mpirun -n 4 fcl-ccd run frames/ --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
   fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
 
