@@ -182,21 +182,21 @@ pid_t processOf(pid_t mpirun, int rank) {
   return 0;
 }
 
-/// @brief Starts a run on three ranks that would take seconds.
+/// @brief Starts a run on three ranks. It has many short steps and would take seconds.
 pid_t startLongRun(const fs::path& folder) {
   const pid_t child = fork();
   if (child != 0) return child;
   if (chdir(folder.c_str()) != 0 || std::freopen("out.txt", "w", stdout) == nullptr ||
       std::freopen("err.txt", "w", stderr) == nullptr)
     _exit(99);
-  execlp("mpirun", "mpirun", "-n", "3", kTool, "run", "f", "--repeat", "4000",
+  execlp("mpirun", "mpirun", "-n", "3", kTool, "run", "f", "--repeat", "2000",
          "--contacts", "c.csv", "--steps", "s.jsonl", "--columns",
          "triangles,position,normal", static_cast<char*>(nullptr));
   _exit(99);
 }
 
 TEST_F(CcdRanks, ARankThatDiesLeavesTheStepsThatWereDone) {
-  writeFrames(60);
+  writeFrames(600);
   const auto whole = outputsOf("run f");
   constexpr int kMpirun = -1;
   for (const auto& [victim, signal_number] :
@@ -221,8 +221,8 @@ TEST_F(CcdRanks, ARankThatDiesLeavesTheStepsThatWereDone) {
     if (victim != kMpirun) expectTold("process rank " + std::to_string(victim));
     // Rank 0 tells what was done.
     if (victim != 0)
-      expectTold("of 59 steps; they are in c.csv and s.jsonl. --resume continues");
-    EXPECT_LT(linesOf(readText(path("s.jsonl"))).size(), 60u);
+      expectTold("of 599 steps; they are in c.csv and s.jsonl. --resume continues");
+    EXPECT_LT(linesOf(readText(path("s.jsonl"))).size(), 600u);
     EXPECT_EQ(files(),
               (std::set<std::string>{"c.csv", "err.txt", "f", "out.txt", "s.jsonl"}));
     EXPECT_EQ(outputsOf("run f --resume"), whole);

@@ -22,7 +22,7 @@ std::string bytesOf(const Json& message) {
   return bytes;
 }
 
-constexpr const char* kOwnStep = "a step of its own";
+constexpr const char* kOwnStep = "this rank's step did not end";
 
 /// Why a run cannot begin on another rank; empty if it can.
 std::string hindrance(const Json& other, const Readiness& own) {

@@ -27,14 +27,14 @@ std::string rankName(int rank) { return "rank " + std::to_string(rank); }
 
 }  // namespace
 
-void Ranks::requirePatience(const std::string& awaited) {
+void Ranks::requirePatience(const std::string& missing) {
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::milliseconds kPatience(500);
   if (stopSignal() == 0) return;
   if (!stopped_at_) stopped_at_ = Clock::now();
   if (Clock::now() - *stopped_at_ < kPatience) return;
-  throw RankLost(std::string(strsignal(stopSignal())) + "; then no answer of " + awaited +
-                 ". If a rank died, mpirun tells which");
+  throw RankLost(std::string(strsignal(stopSignal())) + "; then " + missing +
+                 " in half a second. If a rank died, mpirun tells which");
 }
 
 #ifdef FCL_CCD_USE_MPI
@@ -62,7 +62,7 @@ void await(Ranks& ranks, int other, Holds holds) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   while (!holds()) {
-    ranks.requirePatience(rankName(other));
+    ranks.requirePatience(rankName(other) + " gave no answer");
     const Clock::duration pause = (Clock::now() - begin) / 8;
     std::this_thread::sleep_for(std::clamp<Clock::duration>(
         pause, std::chrono::microseconds(20), std::chrono::milliseconds(1)));

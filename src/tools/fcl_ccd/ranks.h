@@ -57,7 +57,8 @@ class Ranks {
 
   /// @brief For a caller that waits for something else: throws RankLost half a second
   /// after a signal.
-  void requirePatience(const std::string& awaited);
+  /// @param missing  what did not happen.
+  void requirePatience(const std::string& missing);
 
  private:
   struct Messages;
