@@ -53,7 +53,7 @@ void RankGatherer::begin(const Readiness& own, std::size_t first_step) {
     const Json other = Json::from_cbor(ranks_.receive(rank));
     if (!cause.empty()) continue;
     cause = hindrance(other, own);
-    if (!cause.empty()) cause = other.at("name").get<std::string>() + ": " + cause;
+    if (!cause.empty()) cause.insert(0, other.at("name").get<std::string>() + ": ");
   }
   ranks_.post(cause.empty() ? bytesOf(first_step) : "");
   if (cause.empty()) return;
@@ -73,8 +73,7 @@ StepOutcome RankGatherer::take(
     const std::function<void(std::size_t, const StepRecord&)>& take) {
   for (std::size_t step = begin; step < end; ++step) {
     const std::size_t rank = (step - begin) % has_ended_.size();
-    const StepOutcome outcome = rank == 0
-                                    ? nextOwn(ranks_, own)
+    StepOutcome outcome = rank == 0 ? nextOwn(ranks_, own)
                                     : outcomeOf(ranks_.receive(static_cast<int>(rank)));
     if (!outcome.record) {
       has_ended_[rank] = true;
