@@ -119,6 +119,27 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
 }
 
 template <typename S>
+ContinuousContact<S> toContinuousContact(const ShapeContact& contact,
+                                         bool with_geometry) {
+  ContinuousContact<S> out;
+  out.kind = contact.kind;
+  out.first_on_o1 = contact.mesh_is_first;
+  out.b1 = contact.triangles[0];
+  out.b2 = contact.triangles[1];
+  std::copy(contact.vertices, contact.vertices + 3, out.vertices.begin());
+  out.toc_lo = contact.toc_lo;
+  out.toc_hi = contact.toc_hi;
+  out.within_tolerance = contact.within_tolerance;
+  if (!with_geometry) return out;
+  const auto vector = [](const Vec& v) -> Vector3<S> {
+    return {static_cast<S>(v.x), static_cast<S>(v.y), static_cast<S>(v.z)};
+  };
+  out.pos = vector(contact.position);
+  out.normal = vector(contact.normal);
+  return out;
+}
+
+template <typename S>
 Contact<S> toContact(const ContinuousContact<S>& contact) {
   Contact<S> out(contact.o1, contact.o2, static_cast<int>(contact.b1),
                  static_cast<int>(contact.b2));
@@ -147,6 +168,7 @@ S roundTimeUp(double t) {
       const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool);   \
   template ContinuousContact<S> toContinuousContact(                                \
       const Crossing&, const MeshInstance&, const MeshInstance&, bool);             \
+  template ContinuousContact<S> toContinuousContact(const ShapeContact&, bool);     \
   template Contact<S> toContact(const ContinuousContact<S>&);                       \
   template S roundTimeDown<S>(double);                                              \
   template S roundTimeUp<S>(double);

@@ -5,6 +5,7 @@
 #include "api/prepared_motion.h"
 #include "fcl/narrowphase/contact.h"
 #include "fcl/narrowphase/continuous_contact.h"
+#include "motion/shape_contacts.h"
 #include "query/contact_sink.h"
 #include "query/narrow_phase.h"
 #include "tree/mesh_instance.h"
@@ -34,6 +35,10 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
 template <typename S>
 ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshInstance& a,
                                          const MeshInstance& b, bool with_geometry);
+
+/// @overload
+template <typename S>
+ContinuousContact<S> toContinuousContact(const ShapeContact& contact, bool with_geometry);
 
 /// @brief The contact as FCL's type; penetration depth 0.
 template <typename S>

@@ -4,18 +4,22 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "api/contact_conversion.h"
 #include "api/prepared_mesh.h"
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "api/request_filter.h"
+#include "api/unbounded_shapes.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "motion/motion_contacts.h"
+#include "motion/shape_contacts.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -29,6 +33,7 @@ using deformable::PreparedMesh;
 using deformable::PreparedMotion;
 using deformable::QueryAnswer;
 using deformable::QueryOptions;
+using deformable::ShapeAnswer;
 
 QueryOptions makeOptions(const QuerySettings& settings) {
   QueryOptions options;
@@ -219,6 +224,74 @@ void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   outcome = outcomeOf<S>(answer);
 }
 
+template <typename S>
+void fillContacts(const ShapeAnswer& answer, const PlacedGeometry<S>& o1,
+                  const PlacedGeometry<S>& o2, bool with_geometry,
+                  ContinuousContacts<S>& result) {
+  ContinuousContacts<S> out;
+  out.contacts.reserve(answer.contacts.size());
+  for (const auto& contact : answer.contacts) {
+    out.contacts.push_back(deformable::toContinuousContact<S>(contact, with_geometry));
+    out.contacts.back().o1 = &o1.geometry();
+    out.contacts.back().o2 = &o2.geometry();
+  }
+  out.contacts_cut = answer.cut;
+  out.counts = answer.counts;
+  result = std::move(out);
+}
+
+template <typename S>
+ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                          const QueryOptions& options, double& update) {
+  const auto is_unbounded = [](const PlacedGeometry<S>& o) {
+    return deformable::isUnbounded(o.geometry());
+  };
+  if (is_unbounded(o1) && is_unbounded(o2)) return queryUnbounded(o1, o2, options);
+  // The part of an unbounded shape that matters depends on the other object.
+  const bool second_first = is_unbounded(o1);
+  const PreparedMotion bounded(second_first ? o2 : o1, second_first ? "o2" : "o1",
+                               options.toc_err, options.num_threads),
+      other(second_first ? o1 : o2, second_first ? "o1" : "o2", options.toc_err,
+            options.num_threads, bounded.body().size());
+  update = bounded.updateTime() + other.updateTime();
+  return answerOf([&] {
+    return queryShapeContacts((second_first ? other : bounded).body(),
+                              (second_first ? bounded : other).body(), options);
+  });
+}
+
+/// Answers a shape, and a mesh or another shape. Threads are used only to make trees.
+template <typename S>
+void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                  QueryOptions options, const QuerySettings& settings,
+                  QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
+  if (options.ignores_initially_closer)
+    throw Exception(
+        "request.ignore_initially_closer is for two meshes that go straight. Give a mesh "
+        "of the surface of the shape");
+  // The first contact that is found is the first of all.
+  if (!settings.with_contacts) options.query = ContinuousQuery::kAny;
+  RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
+  const deformable::MeshInstance without_owners;
+  options.filter = filter.prepare(without_owners, without_owners);
+  const auto start = std::chrono::steady_clock::now();
+  double update = 0;
+  ShapeAnswer answer;
+  if (!filter.rejectsAll()) answer = shapeAnswerOf(o1, o2, options, update);
+  outcome = {false, 1, 1};
+  if (!answer.contacts.empty()) {
+    const auto& first = answer.contacts.front();
+    outcome = {true, deformable::roundTimeDown<S>(first.toc_lo),
+               deformable::roundTimeUp<S>(first.toc_hi)};
+  }
+  if (!contacts) return;
+  fillContacts(answer, o1, o2, settings.enable_contact, *contacts);
+  contacts->times.update = update;
+  contacts->times.test =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
+      update;
+}
+
 }  // namespace
 
 template <typename S>
@@ -233,6 +306,8 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const auto answer_pair = [&] {
     if (answerer == Answerer::kCurvedPaths)
       return answerMotions(placed1, placed2, options, settings, outcome, contacts);
+    if (answerer == Answerer::kShapes)
+      return answerShapes(placed1, placed2, options, settings, outcome, contacts);
     const PreparedMesh mesh1(placed1.geometry(), placed1.beginning(), placed1.end(), "o1",
                              options.num_threads);
     const PreparedMesh mesh2(placed2.geometry(), placed2.beginning(), placed2.end(), "o2",

@@ -62,18 +62,24 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
 
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
-                               double toc_err, int num_threads) {
-  const bool posed = isPosed(placed);
-  mesh_.emplace(placed.geometry(), posed ? placed.beginning() : Pose(),
-                posed ? placed.end() : Pose(), name, num_threads);
+                               double toc_err, int num_threads, double reach) {
   const MotionPath path = motionPathOf(placed);
-  const MeshInstance& mesh = mesh_->instance();
-  if (mesh.tree)
-    body_.emplace(*mesh.tree, path);
-  else
-    body_.emplace(mesh.rigid, mesh.frames, mesh.triangles, path);
+  if (placed.isShape()) {
+    shape_.emplace(
+        convexShapeOf(placed.geometry(), name, reach + path.translationReach()));
+    body_.emplace(*shape_, path);
+  } else {
+    const bool posed = isPosed(placed);
+    mesh_.emplace(placed.geometry(), posed ? placed.beginning() : Pose(),
+                  posed ? placed.end() : Pose(), name, num_threads);
+    const MeshInstance& mesh = mesh_->instance();
+    if (mesh.tree)
+      body_.emplace(*mesh.tree, path);
+    else
+      body_.emplace(mesh.rigid, mesh.frames, mesh.triangles, path);
+  }
   requireDefined(placed, name, toc_err);
-  requireInRange(mesh.frames, name);
+  requireInRange(name);
 }
 
 // A reference point that was never set has the value that was in memory. It may be NaN.
@@ -87,7 +93,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   if (moving.path == PathKind::kUndefined)
     throw Exception(
         name +
-        ": request.ccd_motion_type does not define how a mesh turns between two "
+        ": request.ccd_motion_type does not define how an object turns between two "
         "transforms. Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has "
         "the control points of a spline");
   if (moving.path != PathKind::kTurn) return;
@@ -104,20 +110,24 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
         "InterpMotion(R1, T1, R2, T2, O), with O = 0");
 }
 
-void PreparedMotion::requireInRange(const VertexFrames& frames,
-                                    const std::string& name) const {
+void PreparedMotion::requireInRange(const std::string& name) const {
   if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).of({0, 0, 0}, 0) <
       kMostSize)
     return;
+  if (mesh_) requireFinite(mesh_->instance().frames, name);
+  throw Exception(name +
+                  ": its path has coordinates beyond 2^200. Use smaller units or a "
+                  "smaller translation");
+}
+
+void PreparedMotion::requireFinite(const VertexFrames& frames,
+                                   const std::string& name) const {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const VertexPath path = frames[i];
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
         throw Exception(name + ": vertex " + std::to_string(i) + " is not finite");
   }
-  throw Exception(name +
-                  ": the mesh turns and its path has coordinates beyond 2^200. Use "
-                  "smaller units or a smaller translation");
 }
 
 VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
@@ -152,7 +162,7 @@ MeshInstance PreparedMotion::beginning() const {
 #define FCL_CCD_INSTANTIATE(S)                                                          \
   template MotionPath motionPathOf(const PlacedGeometry<S>&);                           \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
-                                          double, int);
+                                          double, int, double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

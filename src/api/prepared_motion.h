@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "api/convex_shapes.h"
 #include "api/prepared_mesh.h"
 #include "api/query_arguments.h"
 #include "motion/motion_body.h"
@@ -19,41 +20,48 @@ namespace deformable {
 template <typename S>
 MotionPath motionPathOf(const PlacedGeometry<S>& placed);
 
-/// @brief A mesh made ready for a query in which one of the meshes turns. It owns what
-/// was computed for the query, as PreparedMesh does. Vertices are in the frame that the
-/// motion moves. Exception: if a mesh deforms, its rotation changes and its vertices go
-/// straight, the vertices are posed.
+/// @brief A mesh or a shape made ready for a query in which one of the objects turns or
+/// is a shape. It owns what was computed for the query, as PreparedMesh does. Vertices
+/// are in the frame that the motion moves. Exception: if a mesh deforms, its rotation
+/// changes and its vertices go straight, the vertices are posed.
 class PreparedMotion {
  public:
   /// @param name  how errors call the geometry, for example "o1"
   /// @param toc_err  largest error of time that rounding of the path may cause
+  /// @param reach  of a plane or halfspace: how far the other object may come from the
+  /// origin of the world
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
-  /// @throws fcl::Exception  as PreparedMesh; also when the path is not defined or leaves
-  /// the range of numbers
+  /// @throws fcl::Exception  as PreparedMesh and convexShapeOf(); also when the path is
+  /// not defined or leaves the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
-                 int num_threads);
+                 int num_threads, double reach = 0);
 
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;
 
   const MotionBody& body() const { return *body_; }
-  double updateTime() const { return mesh_->updateTime(); }
+  double updateTime() const { return mesh_ ? mesh_->updateTime() : 0; }
 
   /// @brief The position of a vertex at time t, and its position one unit of time later
   /// if it kept its velocity.
+  /// @pre it is a mesh
   VertexPath tangentAt(std::uint32_t vertex, double t) const;
 
   /// @brief The mesh in its pose at t = 0.
+  /// @pre it is a mesh
   MeshInstance beginning() const;
 
  private:
   template <typename S>
   void requireDefined(const PlacedGeometry<S>& placed, const std::string& name,
                       double toc_err) const;
-  void requireInRange(const VertexFrames& frames, const std::string& name) const;
+  void requireInRange(const std::string& name) const;
+  void requireFinite(const VertexFrames& frames, const std::string& name) const;
 
+  /// One of them is there.
   std::optional<PreparedMesh> mesh_;
+  std::optional<ConvexShape> shape_;
   std::optional<MotionBody> body_;
 };
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <string>
 
+#include "api/convex_shapes.h"
 #include "api/prepared_mesh.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/collision_geometry.h"
@@ -59,18 +60,20 @@ template <typename S>
 class PlacedGeometry {
  public:
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
-      : moving_(moving), kind_(deformable::meshKindOf(*moving.geometry)) {
+      : moving_(moving),
+        kind_(deformable::meshKindOf(*moving.geometry)),
+        is_shape_(deformable::isConvexShape(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
     const bool is_constant = isConstantRotation(moving.pose[0], moving.pose[1]);
     // A rotation that differs by a few roundings only is constant.
-    if (kind_ == MeshKind::kRigid && is_constant)
+    if (isRigid() && is_constant)
       std::copy(beginning_.rotation, beginning_.rotation + 9, end_.rotation);
     const bool bends = moving.path == PathKind::kSpline ||
                        moving.path == PathKind::kBounded || (isTurn() && !is_constant);
     if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
-    if (kind_ == MeshKind::kRigid)
+    if (isRigid())
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
   }
 
@@ -80,14 +83,16 @@ class PlacedGeometry {
   const deformable::Pose& end() const { return end_; }
 
   bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
-  bool isRigid() const { return kind_ == deformable::MeshKind::kRigid; }
+  bool isShape() const { return is_shape_; }
+  bool isRigid() const { return kind_ == deformable::MeshKind::kRigid || is_shape_; }
 
   /// Whether all vertices move on straight lines.
   bool goesStraight() const { return goes_straight_; }
 
   /// Whether this library can follow the path.
   bool isKnown() const {
-    return isMesh() && (goes_straight_ || moving_.path != PathKind::kUnknown);
+    return (isMesh() || isShape()) &&
+           (goes_straight_ || moving_.path != PathKind::kUnknown);
   }
 
  private:
@@ -97,6 +102,7 @@ class PlacedGeometry {
 
   const MovingGeometry<S>& moving_;
   deformable::MeshKind kind_;
+  bool is_shape_;
   deformable::Pose beginning_, end_;
   bool goes_straight_{false};
 };
@@ -104,7 +110,8 @@ class PlacedGeometry {
 enum class Answerer {
   kStraightPaths,  ///< all vertices of both meshes move on straight lines
   kCurvedPaths,    ///< two meshes, and at least one turns or follows a spline
-  kFcl             ///< FCL: one is no mesh, or follows a motion that is not known
+  kShapes,         ///< a shape, and a mesh or another shape
+  kFcl  ///< FCL: one is an octree, or follows a motion that is not known, for example
 };
 
 /// Which method answers a pair.
@@ -113,6 +120,12 @@ enum class Answerer {
 /// of straight paths. FCL gets other geometries as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  if (o1.isShape() || o2.isShape()) {
+    if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
+    deformable::requireFinite(o1.beginning(), o1.end(), "o1");
+    deformable::requireFinite(o2.beginning(), o2.end(), "o2");
+    return Answerer::kShapes;
+  }
   if (o1.goesStraight() && o2.goesStraight()) return Answerer::kStraightPaths;
   if (o1.isMesh() && o2.isMesh()) {
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");

@@ -98,7 +98,13 @@ MotionBody::MotionBody(const MovingKdopTree& tree, const MotionPath& path)
   }
 }
 
+MotionBody::MotionBody(const ConvexShape& shape, const MotionPath& path)
+    : shape_(&shape), path_(path) {
+  radius_ = (norm(shape.box().center) + shape.box().radius) * kUpward;
+}
+
 BodyPart MotionBody::root() const {
+  if (shape_) return {~0, 0};
   if (tree_) return {0, BodyPart::kRoot};
   const int link = rigid_->link(0);
   return {link < 0 ? link : 0, 0};
@@ -153,6 +159,7 @@ MotionBox MotionBody::movingRoot(int frame) const {
 }
 
 MotionBox MotionBody::box(const BodyPart& part, int frame) const {
+  if (shape_) return shape_->box();
   if (!tree_) return rigidBox(part.box);
   return part.box == BodyPart::kRoot ? movingRoot(frame) : movingBox(part.box, frame);
 }

@@ -7,6 +7,7 @@
 #include "fcl/math/triangle.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/vertex_frames.h"
+#include "motion/convex_shape.h"
 #include "motion/motion_boxes.h"
 #include "motion/motion_path.h"
 #include "numerics/moving_vector.h"
@@ -54,7 +55,8 @@ double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triang
 /// edge is the same, in whichever of its triangles it is found.
 FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b);
 
-/// @brief A mesh that moves along a path, as a query reads it. It does not own the mesh.
+/// @brief A mesh or a shape that moves along a path, as a query reads it. It does not own
+/// the mesh or shape.
 class MotionBody {
  public:
   /// @brief A rigid mesh.
@@ -67,9 +69,14 @@ class MotionBody {
   /// @param tree  refit in the body frame
   MotionBody(const MovingKdopTree& tree, const MotionPath& path);
 
+  /// @brief A convex shape. It has one part, which counts as a triangle.
+  MotionBody(const ConvexShape& shape, const MotionPath& path);
+
   const MotionPath& path() const { return path_; }
   MotionPath& path() { return path_; }
   bool isRigid() const { return !tree_; }
+  /// @brief Null: a mesh.
+  const ConvexShape* shape() const { return shape_; }
 
   BodyPart root() const;
   void open(const BodyPart& part, MotionNode& out) const;
@@ -77,9 +84,10 @@ class MotionBody {
   MotionBox box(const BodyPart& part, int frame) const;
   /// @throws NonFiniteVertex
   /// @throws fcl::Exception  an index out of range
+  /// @pre it is a mesh
   BodyTriangle triangle(std::int32_t place) const;
 
-  /// @brief Bound on the distance of the mesh from the origin of the body frame, in both
+  /// @brief Bound on the distance of the body from the origin of the body frame, in both
   /// frames.
   double radius() const { return radius_; }
   /// @brief Bound on the motion of a vertex in the body frame.
@@ -100,6 +108,7 @@ class MotionBody {
 
   const RigidTree* rigid_{nullptr};
   const MovingKdopTree* tree_{nullptr};
+  const ConvexShape* shape_{nullptr};
   VertexFrames frames_;
   const Triangle* triangles_{nullptr};
   MotionPath path_;

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "motion/convex_advance.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -143,6 +145,11 @@ class MotionTraversal {
     return box;
   }
 
+  /// The radius of a part, with the margin around the core of a shape.
+  double sizeOf(const MotionBody& body, const BodyPart& part, double t) const {
+    return boxAt(body, part, t).radius + (body.shape() ? body.shape()->radius() : 0);
+  }
+
   static void interpolate(const MotionBox& end, double t, MotionBox& box) {
     for (int k = 0; k < 3; ++k) {
       box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
@@ -224,6 +231,9 @@ class MotionTraversal {
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
+      if (one.body.shape() && !one.body.shape()->fillsBox() &&
+          !narrowByShape(opened, work, boxes, lane, margin[lane], windows))
+        continue;
       Work child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
       child.start = std::max(work.start, work.t0 + windows.lo[lane] * dt);
@@ -232,6 +242,55 @@ class MotionTraversal {
       setSpan(end, child);
       push(child);
     }
+  }
+
+  /// From the center of a shape to that of a box.
+  static Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape,
+                        const MotionBox& box, const Pose& pose_box) {
+    const auto posed = [](const Pose& pose, const Vec& x) -> Vec {
+      const double(&r)[9] = pose.rotation;
+      const double(&t)[3] = pose.translation;
+      return {r[0] * x.x + r[1] * x.y + r[2] * x.z + t[0],
+              r[3] * x.x + r[4] * x.y + r[5] * x.z + t[1],
+              r[6] * x.x + r[7] * x.y + r[8] * x.z + t[2]};
+    };
+    return posed(pose_box, {box.center[0], box.center[1], box.center[2]}) -
+           posed(pose_shape, shape.center());
+  }
+
+  /// Shortens the window of a box that may overlap the box of a shape, by the direction
+  /// that parts the shape itself from the box in the middle of the span.
+  /// @return whether they may overlap
+  bool narrowByShape(int opened, const Work& work, const MotionBoxes* const (&boxes)[2],
+                     int lane, double margin, MeetingWindows& windows) {
+    const SpanPoses poses[2] = {side_[1 - opened].spanPoses(work.t0, work.t1),
+                                side_[opened].spanPoses(work.t0, work.t1)};
+    const MotionBox begin = boxes[0]->get(lane), end = boxes[1]->get(lane);
+    MotionBox middle = begin;
+    interpolate(end, 0.5, middle);
+    const ConvexShape* shape = side_[1 - opened].body.shape();
+    const auto posed = [&](const Pose& pose) -> PosedConvex {
+      return {shape, nullptr, pose, {}};
+    };
+    const auto posedBox = [](const MotionBox& box, const Pose& pose) -> PosedConvex {
+      return {nullptr, &box, pose, {}};
+    };
+    const Vec n = convexGap(posed(poses[0].middle), posedBox(middle, poses[1].middle),
+                            towardsBox(*shape, poses[0].middle, middle, poses[1].middle),
+                            margin, margin)
+                      .direction;
+    const auto gap = [&](const PosedConvex& of_shape, const PosedConvex& of_box) {
+      return -of_box.reach(-1. * n) - of_shape.reach(n) - margin;
+    };
+    const double first =
+                     gap(posed(poses[0].beginning), posedBox(begin, poses[1].beginning)),
+                 last = gap(posed(poses[0].end), posedBox(end, poses[1].end));
+    if (first > 0 && last > 0) return false;
+    // Rounded outward.
+    const double root = first / (first - last);
+    if (first > 0) windows.lo[lane] = std::max(windows.lo[lane], root * (1 - 0x1p-40));
+    if (last > 0) windows.hi[lane] = std::min(windows.hi[lane], root * (1 + 0x1p-40));
+    return true;
   }
 
   /// The span of a work: that of its parent, cut to [start, end], with ends that are
@@ -250,8 +309,8 @@ class MotionTraversal {
   void divide(Work& work) {
     constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
-    const double radius[2] = {boxAt(side_[0].body, work.a, work.t0).radius,
-                              boxAt(side_[1].body, work.b, work.t0).radius};
+    const double radius[2] = {sizeOf(side_[0].body, work.a, work.t0),
+                              sizeOf(side_[1].body, work.b, work.t0)};
     const double dt = work.t1 - work.t0;
     if (dt > kShortest &&
         deviation(0, work.a, work.t0, work.t1) + deviation(1, work.b, work.t0, work.t1) >
@@ -273,30 +332,46 @@ class MotionTraversal {
     testAlone(half);
   }
 
-  void advance(Work work) {
-    const BodyTriangle a = side_[0].body.triangle(~work.a.child),
-                       b = side_[1].body.triangle(~work.b.child);
-    if (options_.rules && !options_.rules->accept(a.index, b.index)) return;
+  /// Advances a pair of triangles, or of a triangle and a shape, or of two shapes.
+  void advance(const Work& work) {
+    const MotionBody &a = side_[0].body, &b = side_[1].body;
+    const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
-    TrianglePairMotion pair(side_[0].body.path(), a, side_[1].body.path(), b, work.start,
-                            end, tolerance_);
+    if (a.shape() || b.shape()) {
+      const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
+      const std::int32_t index[2] = {x.shape ? kNoTriangle : x.triangle.index,
+                                     y.shape ? kNoTriangle : y.triangle.index};
+      ConvexPairMotion pair(x, y, work.start, end, tolerance_);
+      advance(work, index, end, pair);
+      return;
+    }
+    const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
+    TrianglePairMotion pair(a.path(), x, b.path(), y, work.start, end, tolerance_);
+    MotionContact* contact = advance(work, {x.index, y.index}, end, pair);
+    if (contact) contact->nearest = pair.nearest();
+  }
+
+  /// @return the contact, if there is one; valid until the next call
+  template <typename Pair>
+  MotionContact* advance(Work work, const std::int32_t (&index)[2], double end,
+                         Pair& pair) {
+    if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
     const double last = options_.all || works_.empty() ? end : works_.front().start;
     int left = options_.max_steps - work.steps;
     const auto answer = pair.advance(work.start, last, left, counts_);
-    if (answer == TrianglePairMotion::Answer::kApart) return;
+    if (answer == TrianglePairMotion::Answer::kApart) return nullptr;
     if (answer == TrianglePairMotion::Answer::kOpen && left > 0) {
       work.steps = options_.max_steps - left;
-      return push(work);
+      push(work);
+      return nullptr;
     }
     MotionContact contact{};
-    contact.triangle[0] = a.index;
-    contact.triangle[1] = b.index;
+    std::copy(index, index + 2, contact.triangle);
     contact.place[0] = ~work.a.child;
     contact.place[1] = ~work.b.child;
     contact.toc_lo = contact.toc_hi = work.start;
     contact.certainty = MotionCertainty::kGivenUp;
-    contact.nearest = pair.nearest();
     if (answer == TrianglePairMotion::Answer::kContact) {
       contact.toc_hi = pair.proveContact(
           work.start,
@@ -307,6 +382,7 @@ class MotionTraversal {
     }
     contacts_.push_back(contact);
     if (!options_.all) latest_ = std::min(latest_, contact.toc_lo);
+    return &contacts_.back();
   }
 
   /// Sorts the contacts. A pair of triangles may have been found in several spans; its
@@ -349,7 +425,6 @@ class MotionTraversal {
 BodiesNearOrigin::BodiesNearOrigin(const MotionBody& from_a, const MotionBody& from_b)
     : a(from_a), b(from_b) {
   const Pose pose_a = a.path().pose(0), pose_b = b.path().pose(0);
-  double origin[3];
   for (int k = 0; k < 3; ++k)
     origin[k] = 0.5 * pose_a.translation[k] + 0.5 * pose_b.translation[k];
   a.path().shift(origin);

@@ -20,7 +20,7 @@ struct MotionQueryOptions {
   double toc_err{1e-4};
   /// The latest time that matters.
   double last{1};
-  /// Bodies are in contact at this distance.
+  /// Bodies are in contact at this distance; of a shape it is that of its core.
   double distance{0};
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
@@ -30,7 +30,8 @@ struct MotionQueryOptions {
 };
 
 struct MotionAnswer {
-  /// Sorted by (toc_lo, triangles).
+  /// Sorted by (toc_lo, triangles). One for each pair of triangles, or for each triangle
+  /// and the shape.
   std::vector<MotionContact> contacts;
   MotionCounts counts;
   /// Largest distance of a reported pair, less the requested distance.
@@ -42,7 +43,12 @@ struct MotionAnswer {
 struct BodiesNearOrigin {
   BodiesNearOrigin(const MotionBody& from_a, const MotionBody& from_b);
   MotionBody a, b;
+  /// The place of the new origin in the world.
+  double origin[3];
 };
+
+/// @brief The number of the triangle of a shape, which has none.
+constexpr std::int32_t kNoTriangle = -1;
 
 /// @brief The contacts of two bodies during t in [0, 1]. (1) It never misses: surfaces
 /// that come within the distance have a contact. (2) It is never late: toc_lo is not

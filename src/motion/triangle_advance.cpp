@@ -144,12 +144,14 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
 MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                                  double wanted_distance)
     : distance(wanted_distance) {
-  const double speed = a.speed() + b.speed();
-  position =
-      (a.positionError() + b.positionError() +
-       kUnitRounding * (16 * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
-      kUpward;
-  rate = (a.rateError() + b.rateError() + 16 * kUnitRounding * speed) * kUpward;
+  // A support function rounds by another 16 u of the size and of the speed.
+  const double speed = a.speed() + b.speed(),
+               roundings = a.shape() || b.shape() ? 32 : 16;
+  position = (a.positionError() + b.positionError() +
+              kUnitRounding *
+                  (roundings * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
+             kUpward;
+  rate = (a.rateError() + b.rateError() + roundings * kUnitRounding * speed) * kUpward;
   touching = 4 * position;
 }
 

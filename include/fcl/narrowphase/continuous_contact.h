@@ -28,25 +28,26 @@ struct ContinuousContact {
   const CollisionGeometry<S>* o2{nullptr};
 
   /// @brief Numbers of the triangles of o1 and of o2 that have the features, as in
-  /// fcl::Contact.
+  /// fcl::Contact. -1 for a shape.
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
   /// f1, f2. VE: v, e0, e1. VV: v of o1, v of o2; in a self-collision the lower id first.
-  /// Unused entries are -1.
+  /// With a shape: those of the vertex, edge or face of the mesh that is nearest to it at
+  /// toc_lo. Unused entries are -1.
   std::array<int, 5> vertices{{-1, -1, -1, -1, -1}};
 
   /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2;
   /// the vertex (VE) to o1, the edge to o2. False: the reverse. EE: edge a always belongs
-  /// to o1.
+  /// to o1. With a shape: whether the mesh is o1.
   bool first_on_o1{true};
 
   /// @brief True: it is not proved that the surfaces cross in the bracket, only that the
   /// features are within the query's tolerance of each other at toc_lo. Only if a mesh
-  /// turns, or with min_distance: then no time was found in the bracket at which the
-  /// features provably are within that distance. Otherwise contacts on straight paths are
-  /// exact, and this is false.
+  /// turns, with a shape, or with min_distance: then no time was found in the bracket at
+  /// which the features provably are within that distance. Otherwise contacts on straight
+  /// paths are exact, and this is false.
   bool within_tolerance{false};
 
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
@@ -58,10 +59,10 @@ struct ContinuousContact {
   /// kAll that holds for the time_of_contact of the result; the brackets in the list may
   /// begin before it.
   ///
-  /// If a mesh turns: the features do not touch before toc_lo, and are within the query's
-  /// tolerance of each other then (continuous_collision.h). At toc_hi the two triangles
-  /// provably cross. If no such time is found within toc_err and until t_max (they may
-  /// only graze), toc_hi equals toc_lo.
+  /// If a mesh turns, or with a shape: the features do not touch before toc_lo, and are
+  /// within the query's tolerance of each other then (continuous_collision.h). At toc_hi
+  /// the two triangles provably cross. If no such time is found within toc_err and until
+  /// t_max (they may only graze), toc_hi equals toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -84,6 +85,9 @@ struct ContinuousContact {
   /// With min_distance it points from the nearest point of o1 to that of o2, in a
   /// self-collision from the first feature to the second. It is the zero vector if they
   /// touch.
+  ///
+  /// With a shape it is a direction that parts the two objects just before they touch. It
+  /// is the zero vector if they overlap at t = 0.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief The number of entries of `vertices` that are used.
@@ -92,9 +96,15 @@ struct ContinuousContact {
       case ContinuousContactKind::kCrossing:
         return 5;
       case ContinuousContactKind::kVertexEdge:
+      case ContinuousContactKind::kFaceShape:
         return 3;
       case ContinuousContactKind::kVertexVertex:
+      case ContinuousContactKind::kEdgeShape:
         return 2;
+      case ContinuousContactKind::kVertexShape:
+        return 1;
+      case ContinuousContactKind::kShapes:
+        return 0;
       default:
         return 4;
     }

@@ -12,11 +12,15 @@ namespace fcl {
 
 /// @brief Which features meet in a continuous contact.
 enum class ContinuousContactKind {
-  kVertexFace,   ///< a vertex meets a triangle
-  kEdgeEdge,     ///< two edges meet
-  kCrossing,     ///< an edge already passes through a triangle at t = 0
-  kVertexEdge,   ///< a vertex comes near an edge; only with min_distance
-  kVertexVertex  ///< two vertices come near each other; only with min_distance
+  kVertexFace,    ///< a vertex meets a triangle
+  kEdgeEdge,      ///< two edges meet
+  kCrossing,      ///< an edge already passes through a triangle at t = 0
+  kVertexEdge,    ///< a vertex comes near an edge; only with min_distance
+  kVertexVertex,  ///< two vertices come near each other; only with min_distance
+  kVertexShape,   ///< a vertex of a mesh meets a shape, such as a Sphere or a Box
+  kEdgeShape,     ///< an edge of a mesh meets a shape
+  kFaceShape,     ///< a triangle of a mesh meets a shape
+  kShapes         ///< two shapes meet
 };
 
 /// @brief What a continuous query looks for.

@@ -112,18 +112,18 @@ inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>
 template <typename S>
 std::string explainNoContacts(const CollisionGeometry<S>& o1,
                               const CollisionGeometry<S>& o2) {
-  const bool is_mesh1 = o1.getObjectType() == OT_BVH,
-             is_mesh2 = o2.getObjectType() == OT_BVH;
-  const std::string who = is_mesh1 ? "o2" : "o1";
-  if (!is_mesh1 || !is_mesh2)
-    return who +
-           " is not a triangle mesh, and only two triangle meshes have contacts. Give a "
-           "mesh of its surface, or ask with a ContinuousCollisionRequest: FCL then "
-           "answers, and takes meshes as they are in their current frame";
-  return "contacts need two triangle meshes that follow transforms, FCL's own motion "
-         "classes, or a BoundedMotion. Derive another motion class from BoundedMotion "
-         "too; "
-         "a model without triangles has no contacts";
+  const auto has_contacts = [](const CollisionGeometry<S>& o) {
+    return o.getObjectType() == OT_BVH || o.getObjectType() == OT_GEOM;
+  };
+  if (!has_contacts(o1) || !has_contacts(o2))
+    return std::string(has_contacts(o1) ? "o2" : "o1") +
+           " is neither a triangle mesh nor a shape, and only these have contacts. Ask "
+           "with a ContinuousCollisionRequest: FCL then answers, and takes meshes as "
+           "they "
+           "are in their current frame";
+  return "contacts need triangle meshes or shapes that follow transforms, FCL's own "
+         "motion classes, or a BoundedMotion. Derive another motion class from "
+         "BoundedMotion too; a model without triangles has no contacts";
 }
 
 /// @brief FCL reports no contacts.

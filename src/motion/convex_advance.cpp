@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/convex_advance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUpward = 1 + 0x1p-40;
+
+Vec vecOf(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+
+Vec applied(const double (&m)[9], const Vec& x) {
+  return {m[0] * x.x + m[1] * x.y + m[2] * x.z, m[3] * x.x + m[4] * x.y + m[5] * x.z,
+          m[6] * x.x + m[7] * x.y + m[8] * x.z};
+}
+
+double accelerationOf(const MovingConvex& set, double t0, double t1) {
+  const AccelerationBound bound = set.path->acceleration(t0, t1);
+  if (!set.shape) return accelerationOf(bound, set.triangle);
+  return bound.of(set.shape->center(), set.shape->box().radius) * kUpward;
+}
+
+}  // namespace
+
+MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place) {
+  MovingConvex out{&body.path(), body.shape(), {}, body.speed()};
+  if (!out.shape) out.triangle = body.triangle(place);
+  return out;
+}
+
+ConvexPairMotion::ConvexPairMotion(const MovingConvex& a, const MovingConvex& b,
+                                   double t0, double t1, const MotionTolerance& tolerance)
+    : set_{&a, &b},
+      t1_(t1),
+      tolerance_(tolerance),
+      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
+
+ConvexPairMotion::Side ConvexPairMotion::sideAt(int k, double t) const {
+  const MovingConvex& set = *set_[k];
+  Side side{};
+  side.now.shape = set.shape;
+  side.now.pose = set.path->pose(t);
+  side.rate = set.path->rate(t);
+  if (set.shape) return side;
+  for (int i = 0; i < 3; ++i) {
+    const Vec from = set.triangle.corner[0][i], moving = set.triangle.corner[1][i] - from,
+              x = (1 - t) * from + t * set.triangle.corner[1][i];
+    side.now.corner[i] =
+        applied(side.now.pose.rotation, x) + vecOf(side.now.pose.translation);
+    side.velocity[i] = applied(side.rate.rotation, x) +
+                       applied(side.now.pose.rotation, moving) +
+                       vecOf(side.rate.translation);
+  }
+  return side;
+}
+
+double ConvexPairMotion::Side::reachAfter(double h, const Vec& n,
+                                          const Vec& change) const {
+  if (!now.shape) {
+    double most = -HUGE_VAL;
+    for (int i = 0; i < 3; ++i)
+      most = std::max(most, dot(n, now.corner[i]) +
+                                h * (dot(n, velocity[i]) + dot(change, now.corner[i])));
+    return most;
+  }
+  // As n . (R x + T) + h (n . (R' x + T') + n' . (R x + T)) for all points x of the core.
+  const Vec later = n + h * change;
+  const double(&r)[9] = now.pose.rotation;
+  const double(&v)[9] = rate.rotation;
+  double turned[3];
+  for (int k = 0; k < 3; ++k)
+    turned[k] = r[k] * later.x + r[3 + k] * later.y + r[6 + k] * later.z +
+                h * (v[k] * n.x + v[3 + k] * n.y + v[6 + k] * n.z);
+  return now.shape->reach({turned[0], turned[1], turned[2]}) +
+         dot(later, vecOf(now.pose.translation)) + h * dot(n, vecOf(rate.translation));
+}
+
+double ConvexPairMotion::Side::size() const {
+  if (now.shape) return 2 * now.shape->box().radius;
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec edge = now.corner[(i + 1) % 3] - now.corner[i];
+    square = std::max(square, dot(edge, edge));
+  }
+  return std::sqrt(square);
+}
+
+ConvexPairMotion::Separator ConvexPairMotion::inWorld(const Vec& direction) const {
+  return {direction, {0, 0, 0}, acceleration_, margin()};
+}
+
+// The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
+// the second derivative of n . z is n . z'' + 2 n' . z' + n'' . z, and r times the norm
+// of R'' is at most the bound on the acceleration of points within r of the origin.
+ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const State& state,
+                                                     const ConvexGap& gap) const {
+  const MotionPath& path = *set_[k]->path;
+  const double(&r)[9] = state.side[k].now.pose.rotation;
+  const double(&v)[9] = state.side[k].rate.rotation;
+  const Vec& n = gap.direction;
+  const Vec m = {r[0] * n.x + r[3] * n.y + r[6] * n.z,
+                 r[1] * n.x + r[4] * n.y + r[7] * n.z,
+                 r[2] * n.x + r[5] * n.y + r[8] * n.z};
+  const double stretch = path.stretch() * path.stretch(),
+               rate = set_[0]->speed + set_[1]->speed,
+               turn = path.speed(1) - path.speed(0),
+               apart = gap.distance + state.side[0].size() + state.side[1].size() +
+                       rate * (t1_ - t);
+  const double turning = 2 * turn * rate + path.acceleration(t, t1_).of({0, 0, 0}, apart);
+  return {applied(r, m), applied(v, m), (acceleration_ + turning) * stretch * kUpward,
+          margin() * stretch * kUpward};
+}
+
+/// The gap of the cores along a direction, `h` later, at least. It is concave in h, since
+/// a support function is convex.
+double ConvexPairMotion::gapAfter(double h, const State& state,
+                                  const Separator& along) const {
+  return -state.side[1].reachAfter(h, -1. * along.direction, -1. * along.change) -
+         state.side[0].reachAfter(h, along.direction, along.change) - along.margin -
+         h * tolerance_.rate - 0.5 * along.acceleration * h * h;
+}
+
+/// A step, at most to the end of the span, during which the direction separates the sets;
+/// negative if it does not separate them now. A step that ends with a gap had one all the
+/// time, since the gap is concave.
+double ConvexPairMotion::step(double t, const State& state,
+                              const Separator& along) const {
+  const double longest = t1_ - t;
+  double lower = 0, gap = gapAfter(0, state, along);
+  if (!(gap > 0)) return -1;
+  double upper = longest, beyond = gapAfter(longest, state, along);
+  if (beyond >= 0) return longest;
+  // The line between the two values is below the gap, so that its root is a step that is
+  // too short. There the gap may be 0 and round to less; half of the margin is for that.
+  const double least = -0.5 * tolerance_.position;
+  constexpr int kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    const double chord = lower + (upper - lower) * (gap / (gap - beyond)),
+                 at = gapAfter(chord, state, along);
+    if (!(at >= least) || !(chord > lower)) break;
+    if (!(at > 0)) return chord;
+    const double slope = (beyond - at) / (upper - chord);
+    lower = chord;
+    gap = at;
+    // Beyond a time at which the gap is negative it stays negative.
+    const double middle = std::min(0.5 * (lower + upper), lower - 2 * gap / slope),
+                 there = gapAfter(middle, state, along);
+    if (there >= 0) {
+      lower = middle;
+      gap = there;
+    } else {
+      upper = middle;
+      beyond = there;
+    }
+    if (upper - lower < 0.1 * lower) break;
+  }
+  return lower;
+}
+
+/// A direction that turns with a body stays at right angles to its flat sides, so that a
+/// large one does not shorten the step.
+double ConvexPairMotion::longestStep(double t, const State& state,
+                                     const ConvexGap& gap) const {
+  double best = step(t, state, inWorld(gap.direction));
+  for (int k = 0; k < 2; ++k) {
+    if (best >= t1_ - t) return best;
+    if (!set_[k]->path->isTranslation())
+      best = std::max(best, step(t, state, inBody(k, t, state, gap)));
+  }
+  return best;
+}
+
+ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
+  return convexGap(state.side[0].now, state.side[1].now, guess_, margin(), contact);
+}
+
+ConvexGap ConvexPairMotion::gapAt(double t) const { return gapOf(stateAt(t), 0); }
+
+ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
+                                                   MotionCounts& counts) {
+  const double contact = tolerance_.distance + tolerance_.touching - tolerance_.position;
+  while (true) {
+    const State state = stateAt(t);
+    ++counts.steps;
+    const ConvexGap gap = gapOf(state, contact);
+    if (gap.distance <= contact) return Answer::kContact;
+    if (steps-- <= 0) return Answer::kOpen;
+    guess_ = gap.direction;
+    const double h = longestStep(t, state, gap);
+    if (h >= t1_ - t) return Answer::kApart;
+    // As in TrianglePairMotion::advance().
+    const double next = t + h * (1 - 0x1p-48);
+    if (!(next > t)) return Answer::kGivenUp;
+    t = next;
+    if (t > last) return Answer::kOpen;
+  }
+}
+
+double ConvexPairMotion::proveContact(double t, double width) const {
+  const double longest = std::min(width, 1 - t), speed = set_[0]->speed + set_[1]->speed;
+  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
+       h *= 4) {
+    const double time = std::min(t + std::min(h, longest), 1.);
+    if (!(time > t)) return t;
+    const ConvexGap gap = gapOf(stateAt(time), 0);
+    if (gap.depth > 4 * tolerance_.position ||
+        gap.distance + tolerance_.position <= tolerance_.distance)
+      return time;
+    if (h >= longest) return t;
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The first time at which a convex shape touches a triangle or another shape. Both move
+// on curved paths. The decision is on the true paths.
+#ifndef FCL_CCD_MOTION_CONVEX_ADVANCE_H
+#define FCL_CCD_MOTION_CONVEX_ADVANCE_H
+
+#include "motion/convex_distance.h"
+#include "motion/convex_shape.h"
+#include "motion/motion_body.h"
+#include "motion/triangle_advance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A shape, or a triangle of a mesh, that moves.
+struct MovingConvex {
+  const MotionPath* path;
+  /// Null: the triangle.
+  const ConvexShape* shape;
+  BodyTriangle triangle;
+  /// Bound on the velocity of a point.
+  double speed;
+};
+
+/// @brief The shape of a body, or a triangle of its mesh.
+MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place);
+
+/// @brief Two convex sets of which one is a shape, in a span of time. What
+/// TrianglePairMotion is for two triangles.
+class ConvexPairMotion {
+ public:
+  using Answer = TrianglePairMotion::Answer;
+
+  /// @param tolerance  its distance is that of the cores
+  ConvexPairMotion(const MovingConvex& a, const MovingConvex& b, double t0, double t1,
+                   const MotionTolerance& tolerance);
+
+  /// @brief As TrianglePairMotion::advance(). Also kContact where the sets overlap.
+  Answer advance(double& t, double last, int& steps, MotionCounts& counts);
+
+  /// @brief As TrianglePairMotion::proveContact().
+  double proveContact(double t, double width) const;
+
+  /// @brief The gap of the cores at a time.
+  ConvexGap gapAt(double t) const;
+
+ private:
+  /// A set at a time, with the velocities of its points.
+  struct Side {
+    PosedConvex now;
+    PoseRate rate;
+    Vec velocity[3];
+    /// The largest coordinate n . x + h (n . x' + n' . x) of a point: along a direction
+    /// that changes, `h` later, up to terms of second order.
+    double reachAfter(double h, const Vec& n, const Vec& change) const;
+    /// How far two points may be apart.
+    double size() const;
+  };
+  struct State {
+    Side side[2];
+  };
+  Side sideAt(int k, double t) const;
+  State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
+  ConvexGap gapOf(const State& state, double contact) const;
+  /// A direction that is fixed in the world, or in a body.
+  struct Separator {
+    Vec direction, change;
+    /// Bound on the second derivative of the relative coordinate of two points.
+    double acceleration;
+    double margin;
+  };
+  /// The gap that a step keeps. Its end may round by another half of the position error.
+  double margin() const { return 2 * tolerance_.position + tolerance_.distance; }
+  Separator inWorld(const Vec& direction) const;
+  Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
+  double gapAfter(double h, const State& state, const Separator& separator) const;
+  double step(double t, const State& state, const Separator& separator) const;
+  double longestStep(double t, const State& state, const ConvexGap& gap) const;
+
+  const MovingConvex* set_[2];
+  double t1_;
+  const MotionTolerance& tolerance_;
+  /// Bound on the relative acceleration of two points.
+  double acceleration_{0};
+  /// The direction of the last gap.
+  Vec guess_{1, 0, 0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

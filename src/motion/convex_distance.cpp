@@ -1,0 +1,353 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/convex_distance.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+
+Vec rotated(const double (&r)[9], const Vec& x) {
+  return {r[0] * x.x + r[1] * x.y + r[2] * x.z, r[3] * x.x + r[4] * x.y + r[5] * x.z,
+          r[6] * x.x + r[7] * x.y + r[8] * x.z};
+}
+
+Vec rotatedBack(const double (&r)[9], const Vec& x) {
+  return {r[0] * x.x + r[3] * x.y + r[6] * x.z, r[1] * x.x + r[4] * x.y + r[7] * x.z,
+          r[2] * x.x + r[5] * x.y + r[8] * x.z};
+}
+
+/// The corner of a box that is farthest along a direction; without the pad.
+Vec supportOf(const MotionBox& box, const Vec& d) {
+  Vec corner = {box.center[0], box.center[1], box.center[2]};
+  for (int i = 0; i < 3; ++i) {
+    const Vec axis = {box.axis[i][0], box.axis[i][1], box.axis[i][2]};
+    corner = corner + (dot(axis, d) < 0 ? -box.extent[i] : box.extent[i]) * axis;
+  }
+  return corner;
+}
+
+/// A point of b minus a point of a.
+struct Difference {
+  Vec point[2];
+  int id[2];
+  Vec between;
+};
+
+/// Up to four differences, and weights of the point of their hull nearest to the origin.
+struct Simplex {
+  Difference vertex[4];
+  double weight[4];
+  int count{0};
+};
+
+/// The point of the hull of some differences that is nearest to the origin.
+struct Nearest {
+  double square{HUGE_VAL};
+  Vec point{0, 0, 0};
+  int count{0};
+  int vertex[3]{};
+  double weight[3]{};
+};
+
+void keep(const Nearest& candidate, Nearest& best) {
+  if (candidate.square < best.square) best = candidate;
+}
+
+Nearest onVertex(const Simplex& s, int i) {
+  Nearest out;
+  out.point = s.vertex[i].between;
+  out.square = dot(out.point, out.point);
+  out.count = 1;
+  out.vertex[0] = i;
+  out.weight[0] = 1;
+  return out;
+}
+
+Nearest onEdge(const Simplex& s, int i, int j) {
+  const Vec &p = s.vertex[i].between, edge = s.vertex[j].between - p;
+  const double square = dot(edge, edge), t = square > 0 ? -dot(p, edge) / square : 0;
+  if (!(t > 0)) return onVertex(s, i);
+  if (!(t < 1)) return onVertex(s, j);
+  Nearest out;
+  out.point = p + t * edge;
+  out.square = dot(out.point, out.point);
+  out.count = 2;
+  out.vertex[0] = i;
+  out.vertex[1] = j;
+  out.weight[0] = 1 - t;
+  out.weight[1] = t;
+  return out;
+}
+
+Nearest onFace(const Simplex& s, int i, int j, int k) {
+  const Vec x[3] = {s.vertex[i].between, s.vertex[j].between, s.vertex[k].between};
+  const int id[3] = {i, j, k};
+  const Vec n = cross(x[1] - x[0], x[2] - x[0]);
+  const double square = dot(n, n);
+  double weight[3];
+  bool is_inside = square > 0;
+  for (int e = 0; e < 3 && is_inside; ++e) {
+    const Vec &from = x[(e + 1) % 3], to = x[(e + 2) % 3];
+    weight[e] = dot(cross(to - from, -1. * from), n) / square;
+    is_inside = weight[e] > 0;
+  }
+  Nearest best;
+  if (is_inside) {
+    best.point = (dot(n, x[0]) / square) * n;
+    best.square = dot(best.point, best.point);
+    best.count = 3;
+    for (int e = 0; e < 3; ++e) {
+      best.vertex[e] = id[e];
+      best.weight[e] = weight[e];
+    }
+    return best;
+  }
+  for (int e = 0; e < 3; ++e) keep(onEdge(s, id[e], id[(e + 1) % 3]), best);
+  return best;
+}
+
+/// How deep the origin is inside a tetrahedron, less what its faces round by; 0 if it is
+/// not inside by more. Sets the weights of the vertices.
+double depthInside(Simplex& s) {
+  constexpr double kRounding = 0x1p-48;
+  double least = HUGE_VAL;
+  for (int i = 0; i < 4; ++i) {
+    const Vec &a = s.vertex[(i + 1) % 4].between, u = s.vertex[(i + 2) % 4].between - a,
+              v = s.vertex[(i + 3) % 4].between - a, n = cross(u, v);
+    const double length = norm(n),
+                 error = kRounding * norm(u) * norm(v) * norm(a) / length;
+    if (!(error < HUGE_VAL)) return 0;
+    const double opposite = dot(n, s.vertex[i].between - a) / length,
+                 origin = -dot(n, a) / length;
+    if (opposite == 0) return 0;
+    least = std::min(least, (opposite > 0 ? origin : -origin) - error);
+    s.weight[i] = origin / opposite;
+  }
+  return std::max(least, 0.);
+}
+
+Nearest nearestTo(const Simplex& s) {
+  switch (s.count) {
+    case 1:
+      return onVertex(s, 0);
+    case 2:
+      return onEdge(s, 0, 1);
+    case 3:
+      return onFace(s, 0, 1, 2);
+    default:
+      break;
+  }
+  Nearest best;
+  for (int i = 0; i < 4; ++i)
+    keep(onFace(s, (i + 1) % 4, (i + 2) % 4, (i + 3) % 4), best);
+  return best;
+}
+
+/// Keeps the vertices that hold the nearest point.
+void reduce(const Nearest& nearest, Simplex& s) {
+  Simplex out;
+  out.count = nearest.count;
+  for (int i = 0; i < nearest.count; ++i) {
+    out.vertex[i] = s.vertex[nearest.vertex[i]];
+    out.weight[i] = nearest.weight[i];
+  }
+  s = out;
+}
+
+class GapSearch {
+ public:
+  GapSearch(const PosedConvex& a, const PosedConvex& b, double enough, double contact)
+      : set_{&a, &b}, enough_(enough), contact_(contact) {
+    out_.direction = {0, 0, 0};
+    out_.gap = -HUGE_VAL;
+    out_.depth = 0;
+  }
+
+  ConvexGap run(const Vec& guess) {
+    constexpr int kMostRounds = 200, kRoundsToFlats = 3;
+    if (!add(guess)) add({1, 0, 0});
+    Nearest nearest = nearestTo(simplex_);
+    for (int round = 0; round < kMostRounds; ++round) {
+      reduce(nearest, simplex_);
+      const double distance = std::sqrt(nearest.square);
+      setPoints(distance);
+      if (round >= kRoundsToFlats) tryFlats(nearest.point);
+      if (distance <= contact_ || isEnough()) return out_;
+      const bool is_new = addAlong(nearest.point);
+      if (isEnough()) return out_;
+      if (!is_new) break;
+      if (simplex_.count == 4) {
+        out_.depth = depthInside(simplex_);
+        if (out_.depth > 0) {
+          setPoints(0);
+          return out_;
+        }
+      }
+      const Nearest next = nearestTo(simplex_);
+      if (!(next.square < nearest.square)) break;
+      nearest = next;
+    }
+    tryAll();
+    return out_;
+  }
+
+ private:
+  bool isEnough() const {
+    return out_.gap - enough_ >= 0.5 * (out_.distance - enough_) && out_.gap > enough_;
+  }
+
+  /// The difference that is least along a direction, which is noted if it shows more.
+  Difference measure(const Vec& n) {
+    Difference d;
+    d.point[0] = set_[0]->support(n, d.id[0]);
+    d.point[1] = set_[1]->support(-1. * n, d.id[1]);
+    d.between = d.point[1] - d.point[0];
+    const double gap = dot(n, d.between);
+    if (gap > out_.gap) {
+      out_.gap = gap;
+      out_.direction = n;
+    }
+    return d;
+  }
+
+  /// @return whether the simplex has grown
+  bool add(const Vec& direction) {
+    const double length = norm(direction);
+    if (!(length > 0x1p-500)) return false;
+    const Difference d = measure((1 / length) * direction);
+    for (int i = 0; i < simplex_.count; ++i) {
+      const Vec change = d.between - simplex_.vertex[i].between;
+      if (maxNorm(change) == 0) return false;
+    }
+    simplex_.vertex[simplex_.count++] = d;
+    return true;
+  }
+
+  /// The direction of a simplex has less rounding than the line to its nearest point.
+  bool addAlong(const Vec& nearest) {
+    const Vec exact = perpendicular(nearest);
+    return add(exact) || (maxNorm(exact - nearest) > 0 && add(nearest));
+  }
+
+  Vec perpendicular(const Vec& nearest) const {
+    const auto vertex = [this](int i) -> const Vec& {
+      return simplex_.vertex[i].between;
+    };
+    Vec n = nearest;
+    if (simplex_.count == 2) {
+      const Vec edge = vertex(1) - vertex(0);
+      n = cross(edge, cross(vertex(0), edge));
+    } else if (simplex_.count == 3) {
+      n = cross(vertex(1) - vertex(0), vertex(2) - vertex(0));
+    }
+    if (!(norm(n) > 0x1p-500)) return nearest;
+    return dot(n, nearest) < 0 ? -1. * n : n;
+  }
+
+  /// Flat sides that nearly touch are parallel to them up to rounding, and the line
+  /// between nearest points is not.
+  void tryFlats(const Vec& nearest) {
+    constexpr double kLeastCosine = 0.5;
+    const double length = norm(nearest);
+    for (const PosedConvex* set : set_) {
+      const Vec n = set->flatNormal(nearest);
+      const double size = norm(n), cosine = dot(n, nearest);
+      if (!(std::abs(cosine) > kLeastCosine * size * length)) continue;
+      measure(((cosine > 0 ? 1 : -1) / size) * n);
+    }
+  }
+
+  /// Directions that are at right angles to edges or faces of the simplex.
+  void tryAll() {
+    const auto vertex = [this](int i) -> const Vec& {
+      return simplex_.vertex[i].between;
+    };
+    const auto both = [this](const Vec& n) {
+      const double length = norm(n);
+      if (!(length > 0x1p-500)) return;
+      measure((1 / length) * n);
+      measure((-1 / length) * n);
+    };
+    const int count = simplex_.count;
+    for (int i = 0; i < count; ++i) {
+      both(vertex(i));
+      for (int j = i + 1; j < count; ++j) {
+        const Vec edge = vertex(j) - vertex(i);
+        both(cross(edge, cross(vertex(i), edge)));
+        for (int k = j + 1; k < count; ++k) both(cross(edge, vertex(k) - vertex(i)));
+      }
+    }
+  }
+
+  void setPoints(double distance) {
+    out_.distance = distance;
+    for (int side = 0; side < 2; ++side) {
+      Vec point{0, 0, 0};
+      unsigned corners = 0;
+      for (int i = 0; i < simplex_.count; ++i) {
+        point = point + simplex_.weight[i] * simplex_.vertex[i].point[side];
+        corners |= 1U << simplex_.vertex[i].id[side];
+      }
+      out_.point[side] = point;
+      out_.corners[side] = corners;
+    }
+  }
+
+  const PosedConvex* set_[2];
+  double enough_, contact_;
+  Simplex simplex_;
+  ConvexGap out_{};
+};
+
+}  // namespace
+
+Vec PosedConvex::support(const Vec& direction, int& id) const {
+  id = 0;
+  if (shape || box) {
+    const Vec d = rotatedBack(pose.rotation, direction),
+              local = shape ? shape->support(d) : supportOf(*box, d);
+    return rotated(pose.rotation, local) +
+           Vec{pose.translation[0], pose.translation[1], pose.translation[2]};
+  }
+  double most = -HUGE_VAL;
+  for (int k = 0; k < 3; ++k) {
+    const double along = dot(corner[k], direction);
+    if (!(along > most)) continue;
+    most = along;
+    id = k;
+  }
+  return corner[id];
+}
+
+double PosedConvex::reach(const Vec& direction) const {
+  int id;
+  return dot(direction, support(direction, id));
+}
+
+Vec PosedConvex::flatNormal(const Vec& direction) const {
+  if (!shape && !box) return cross(corner[1] - corner[0], corner[2] - corner[0]);
+  Vec best = direction;
+  double most = -1;
+  for (const auto& axis : (shape ? shape->box() : *box).axis) {
+    const Vec n = rotated(pose.rotation, {axis[0], axis[1], axis[2]});
+    const double along = std::abs(dot(n, direction));
+    if (!(along > most)) continue;
+    most = along;
+    best = n;
+  }
+  return best;
+}
+
+ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
+                    double enough, double contact) {
+  return GapSearch(a, b, enough, contact).run(guess);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

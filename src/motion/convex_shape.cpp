@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/convex_shape.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUpward = 1 + 0x1p-40;
+
+double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+
+/// The farthest point of a circle around the z axis.
+Vec onCircle(double radius, double height, const Vec& d) {
+  const double length = std::sqrt(d.x * d.x + d.y * d.y);
+  if (!(length > 0)) return {0, 0, height};
+  return {radius * (d.x / length), radius * (d.y / length), height};
+}
+
+double circleReach(double radius, const Vec& d) {
+  return radius * std::sqrt(d.x * d.x + d.y * d.y);
+}
+
+}  // namespace
+
+const Vec ConvexShape::kFrameAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+
+ConvexShape ConvexShape::hull(std::vector<Vec> points, double radius,
+                              const Vec (&axes)[3]) {
+  ConvexShape shape(Kind::kHull, {0, 0, 0});
+  shape.points_ = std::move(points);
+  shape.radius_ = radius;
+  shape.setBox(axes);
+  return shape;
+}
+
+ConvexShape ConvexShape::ellipsoid(const Vec& half_axes) {
+  ConvexShape shape(Kind::kEllipsoid, half_axes);
+  shape.setBox(kFrameAxes);
+  return shape;
+}
+
+ConvexShape ConvexShape::cone(double radius, double height) {
+  ConvexShape shape(Kind::kCone, {radius, radius, 0.5 * height});
+  shape.setBox(kFrameAxes);
+  return shape;
+}
+
+ConvexShape ConvexShape::cylinder(double radius, double height) {
+  ConvexShape shape(Kind::kCylinder, {radius, radius, 0.5 * height});
+  shape.setBox(kFrameAxes);
+  return shape;
+}
+
+Vec ConvexShape::support(const Vec& d) const {
+  switch (kind_) {
+    case Kind::kEllipsoid: {
+      const Vec scaled = {size_.x * d.x, size_.y * d.y, size_.z * d.z};
+      const double length = norm(scaled);
+      if (!(length > 0)) return {0, 0, 0};
+      return {size_.x * (scaled.x / length), size_.y * (scaled.y / length),
+              size_.z * (scaled.z / length)};
+    }
+    case Kind::kCone:
+      if (size_.z * d.z >= circleReach(size_.x, d) - size_.z * d.z)
+        return {0, 0, size_.z};
+      return onCircle(size_.x, -size_.z, d);
+    case Kind::kCylinder:
+      return onCircle(size_.x, d.z < 0 ? -size_.z : size_.z, d);
+    default:
+      break;
+  }
+  const Vec* farthest = &points_.front();
+  double most = dot(*farthest, d);
+  for (const Vec& point : points_) {
+    const double along = dot(point, d);
+    if (!(along > most)) continue;
+    most = along;
+    farthest = &point;
+  }
+  return *farthest;
+}
+
+double ConvexShape::reach(const Vec& d) const {
+  switch (kind_) {
+    case Kind::kEllipsoid:
+      return norm({size_.x * d.x, size_.y * d.y, size_.z * d.z});
+    case Kind::kCone:
+      return std::max(size_.z * d.z, circleReach(size_.x, d) - size_.z * d.z);
+    case Kind::kCylinder:
+      return circleReach(size_.x, d) + size_.z * std::abs(d.z);
+    default:
+      return dot(support(d), d);
+  }
+}
+
+void ConvexShape::setBox(const Vec (&axes)[3]) {
+  Vec center = {0, 0, 0};
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec& axis = axes[i];
+    const double upper = reach(axis), lower = -reach(-1. * axis);
+    center = center + (0.5 * (upper + lower)) * axis;
+    box_.axis[i][0] = axis.x;
+    box_.axis[i][1] = axis.y;
+    box_.axis[i][2] = axis.z;
+    box_.extent[i] = 0.5 * (upper - lower);
+    square += box_.extent[i] * box_.extent[i];
+  }
+  box_.center[0] = center.x;
+  box_.center[1] = center.y;
+  box_.center[2] = center.z;
+  // Every number above rounds by less than this.
+  box_.pad = 0x1p-45 * (norm(center) + std::sqrt(square));
+  box_.radius = std::sqrt(square) * kUpward + box_.pad;
+  box_.displacement = 0;
+  fills_box_ = hasCornersOfBox();
+}
+
+bool ConvexShape::hasCornersOfBox() const {
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    Vec p = center();
+    for (unsigned i = 0; i < 3; ++i)
+      p = p + ((corner >> i & 1U) != 0 ? box_.extent[i] : -box_.extent[i]) *
+                  Vec{box_.axis[i][0], box_.axis[i][1], box_.axis[i][2]};
+    if (std::none_of(points_.begin(), points_.end(),
+                     [&](const Vec& x) { return norm(x - p) <= box_.pad; }))
+      return false;
+  }
+  return true;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

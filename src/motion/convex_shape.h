@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Convex shapes by their support functions.
+#ifndef FCL_CCD_MOTION_CONVEX_SHAPE_H
+#define FCL_CCD_MOTION_CONVEX_SHAPE_H
+
+#include <vector>
+
+#include "motion/motion_boxes.h"
+#include "numerics/moving_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A convex solid in the frame of its body: all points within `radius` of a core.
+/// The core of a sphere is a point, that of a capsule an edge.
+class ConvexShape {
+ public:
+  /// @brief The hull of points.
+  /// @param axes  unit vectors at right angles, along which its box lies
+  /// @pre there is a point; all are finite
+  static ConvexShape hull(std::vector<Vec> points, double radius,
+                          const Vec (&axes)[3] = kFrameAxes);
+  /// @brief All points with (x / a)^2 + (y / b)^2 + (z / c)^2 <= 1.
+  static ConvexShape ellipsoid(const Vec& half_axes);
+  /// @brief Around the z axis, from the base at -height / 2 to the tip at height / 2.
+  static ConvexShape cone(double radius, double height);
+  /// @brief Around the z axis, from -height / 2 to height / 2.
+  static ConvexShape cylinder(double radius, double height);
+
+  /// @brief A point of the core that is farthest along a direction, up to rounding by
+  /// 2^-50 of the size.
+  Vec support(const Vec& direction) const;
+
+  /// @brief The largest coordinate of the core along a direction that is not longer than
+  /// 2, up to rounding by 2^-49 of the size.
+  double reach(const Vec& direction) const;
+
+  /// @brief How far the shape stands out from its core.
+  double radius() const { return radius_; }
+
+  /// @brief A box that contains the core.
+  const MotionBox& box() const { return box_; }
+
+  /// @brief Whether the core is its box, up to the box's pad.
+  bool fillsBox() const { return fills_box_; }
+
+  /// @brief A point inside.
+  Vec center() const { return {box_.center[0], box_.center[1], box_.center[2]}; }
+
+ private:
+  enum class Kind { kHull, kEllipsoid, kCone, kCylinder };
+  static const Vec kFrameAxes[3];
+
+  ConvexShape(Kind kind, const Vec& size) : kind_(kind), size_(size) {}
+  void setBox(const Vec (&axes)[3]);
+  bool hasCornersOfBox() const;
+
+  Kind kind_;
+  /// Half axes; or radius, radius and half height.
+  Vec size_;
+  std::vector<Vec> points_;
+  double radius_{0};
+  MotionBox box_{};
+  bool fills_box_{false};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

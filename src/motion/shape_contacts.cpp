@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/shape_contacts.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "motion/convex_advance.h"
+#include "motion/motion_query.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double radiusOf(const MotionBody& body) {
+  return body.shape() ? body.shape()->radius() : 0;
+}
+
+/// The feature of a triangle whose corners hold the nearest point.
+void setFeature(const BodyTriangle& triangle, unsigned corners, ShapeContact& contact) {
+  int count = 0;
+  for (int k = 0; k < 3; ++k)
+    if ((corners >> k & 1U) != 0) contact.vertices[count++] = triangle.vertex[k];
+  contact.kind = count == 1   ? ContinuousContactKind::kVertexShape
+                 : count == 2 ? ContinuousContactKind::kEdgeShape
+                              : ContinuousContactKind::kFaceShape;
+}
+
+class ShapeContacts {
+ public:
+  ShapeContacts(const MotionBody& a, const MotionBody& b, double distance)
+      : near_(a, b),
+        body_{&near_.a, &near_.b},
+        tolerance_(near_.a, near_.b, distance + radiusOf(a) + radiusOf(b)) {}
+
+  ShapeContact contactOf(const MotionContact& found) const {
+    const MovingConvex set[2] = {movingConvexOf(*body_[0], found.place[0]),
+                                 movingConvexOf(*body_[1], found.place[1])};
+    const ConvexPairMotion pair(set[0], set[1], found.toc_lo, found.toc_lo, tolerance_);
+    const ConvexGap gap = pair.gapAt(found.toc_lo);
+    ShapeContact contact{};
+    std::copy(found.triangle, found.triangle + 2, contact.triangles);
+    contact.toc_lo = found.toc_lo;
+    // A contact at the beginning has exactly the time 0.
+    contact.toc_hi = found.toc_lo == 0 ? 0 : found.toc_hi;
+    contact.within_tolerance = found.certainty != MotionCertainty::kCrossing;
+    contact.kind = ContinuousContactKind::kShapes;
+    std::fill(contact.vertices, contact.vertices + 3, -1);
+    for (int side = 0; side < 2; ++side)
+      if (!body_[side]->shape()) {
+        contact.mesh_is_first = side == 0;
+        setFeature(set[side].triangle, gap.corners[side], contact);
+      }
+    setGeometry(gap, contact);
+    return contact;
+  }
+
+ private:
+  /// The position is half-way between the surfaces, or inside of both. Sets that overlap
+  /// have no normal.
+  void setGeometry(const ConvexGap& gap, ShapeContact& contact) const {
+    const double radius[2] = {radiusOf(*body_[0]), radiusOf(*body_[1])};
+    if (gap.gap + tolerance_.touching > radius[0] + radius[1])
+      contact.normal = gap.direction;
+    Vec way = gap.point[1] - gap.point[0];
+    if (gap.distance > 0) way = (1 / gap.distance) * way;
+    double along = 0.5 * (gap.distance + radius[0] - radius[1]);
+    if (gap.distance <= radius[0] + radius[1])
+      along = std::min(std::max({along, -radius[0], gap.distance - radius[1]}),
+                       std::min(radius[0], gap.distance + radius[1]));
+    contact.position = gap.point[0] + along * way +
+                       Vec{near_.origin[0], near_.origin[1], near_.origin[2]};
+  }
+
+  BodiesNearOrigin near_;
+  const MotionBody* body_[2];
+  MotionTolerance tolerance_;
+};
+
+MotionQueryOptions motionOptionsOf(const MotionBody& a, const MotionBody& b,
+                                   const QueryOptions& options) {
+  MotionQueryOptions wanted;
+  wanted.toc_err = options.toc_err;
+  wanted.all = options.query == ContinuousQuery::kAll;
+  wanted.last = options.t_max;
+  wanted.distance = options.min_distance + radiusOf(a) + radiusOf(b);
+  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
+  return wanted;
+}
+
+/// Keeps those that may be the first.
+void keepFirst(std::vector<MotionContact>& contacts) {
+  double first_hi = 1;
+  for (const MotionContact& contact : contacts)
+    first_hi = std::min(first_hi, contact.toc_hi);
+  while (contacts.size() > 1 && contacts.back().toc_lo > first_hi) contacts.pop_back();
+}
+
+}  // namespace
+
+ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
+                               const QueryOptions& options) {
+  ShapeAnswer answer;
+  const auto ask = [&](const MotionQueryOptions& wanted) {
+    MotionAnswer found = queryMotions(a, b, wanted);
+    answer.counts.node_pairs += found.counts.box_tests;
+    answer.counts.triangle_pairs += found.counts.triangle_pairs;
+    return std::move(found.contacts);
+  };
+  MotionQueryOptions wanted = motionOptionsOf(a, b, options);
+  std::vector<MotionContact> touching = ask(wanted);
+  if (options.query == ContinuousQuery::kFirst && !touching.empty()) {
+    // All that begin before the first bracket ends.
+    wanted.all = true;
+    wanted.last = touching.front().toc_hi;
+    std::vector<MotionContact> first = ask(wanted);
+    // A graze has a bracket without width, at whose end another division of the step may
+    // see nothing.
+    if (!first.empty()) touching = std::move(first);
+    keepFirst(touching);
+  }
+  const std::size_t most =
+      options.query == ContinuousQuery::kAny ? 1 : options.max_contacts;
+  if (touching.size() > most) {
+    touching.resize(most);
+    answer.cut = options.query != ContinuousQuery::kAny;
+  }
+  const ShapeContacts contacts(a, b, options.min_distance);
+  answer.contacts.reserve(touching.size());
+  for (const MotionContact& contact : touching)
+    answer.contacts.push_back(contacts.contactOf(contact));
+  answer.counts.contacts = answer.contacts.size();
+  return answer;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

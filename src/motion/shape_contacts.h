@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MOTION_SHAPE_CONTACTS_H
+#define FCL_CCD_MOTION_SHAPE_CONTACTS_H
+
+#include <cstdint>
+#include <vector>
+
+#include "fcl/narrowphase/stage_counts.h"
+#include "motion/motion_body.h"
+#include "query/deformable_query.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The first contact of a triangle of a mesh with a shape, or of two shapes.
+struct ShapeContact {
+  ContinuousContactKind kind;
+  /// Whether the mesh is body a.
+  bool mesh_is_first;
+  /// Vertex ids of the mesh's feature. The kind says how many there are; the others are
+  /// -1.
+  std::int32_t vertices[3];
+  /// Triangles of a and b; -1 for a shape.
+  std::int32_t triangles[2];
+  double toc_lo, toc_hi;
+  bool within_tolerance;
+  /// In the world. The normal is a unit vector from a to b, or zero if there is none.
+  Vec position, normal;
+};
+
+struct ShapeAnswer {
+  /// Sorted by (toc_lo, triangles).
+  std::vector<ShapeContact> contacts;
+  bool cut{false};
+  StageCounts counts;
+};
+
+/// @brief The contacts of two bodies, of which one is a shape at least: one for each
+/// triangle of a mesh, or one of two shapes. As in queryMotions(), no contact is missed,
+/// and no time is late. Shapes are solid: what is inside of one at t = 0 touches it then.
+/// @pre the floating-point mode is the default one
+/// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
+ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
+                               const QueryOptions& options);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,548 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Public queries of shapes, against closed forms; every way to ask.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/capsule.h"
+#include "fcl/geometry/shape/cone.h"
+#include "fcl/geometry/shape/convex.h"
+#include "fcl/geometry/shape/cylinder.h"
+#include "fcl/geometry/shape/ellipsoid.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
+#include "fcl/geometry/shape/sphere.h"
+#include "fcl/geometry/shape/triangle_p.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/motion/screw_motion.h"
+#include "fcl/math/motion/translation_motion.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "test_models.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Point = Vector3<double>;
+using Geometry = std::shared_ptr<CollisionGeometry<double>>;
+using Pose = Transform3<double>;
+using Request = ContinuousContactRequest<double>;
+using Result = ContinuousContactResult<double>;
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kTocErr = 1e-9;
+
+Pose at(double x, double y, double z) {
+  Pose pose = Pose::Identity();
+  pose.translation() << x, y, z;
+  return pose;
+}
+
+Pose turned(double angle, const Point& axis, Pose pose = Pose::Identity()) {
+  pose.linear() = AngleAxis<double>(angle, axis).toRotationMatrix();
+  return pose;
+}
+
+struct Moving {
+  Geometry geometry;
+  Pose begin, end;
+};
+
+Request requestOf(ContinuousQuery query = ContinuousQuery::kFirst) {
+  Request request;
+  request.query = query;
+  request.toc_err = kTocErr;
+  request.ccd_motion_type = CCDM_LINEAR;
+  request.num_max_contacts = 100000;
+  request.enable_contact = true;
+  return request;
+}
+
+Result ask(const Moving& a, const Moving& b, const Request& request = requestOf()) {
+  Result result;
+  continuousCollide(a.geometry.get(), a.begin, a.end, b.geometry.get(), b.begin, b.end,
+                    request, result);
+  return result;
+}
+
+/// Expects the first contact at a time, whichever object comes first.
+void expectFirst(const Moving& a, const Moving& b, double time) {
+  const Result results[2] = {ask(a, b), ask(b, a)};
+  for (const Result& result : results) {
+    ASSERT_TRUE(result.is_collide);
+    EXPECT_LE(result.time_of_contact, time + 1e-15);
+    EXPECT_NEAR(result.time_of_contact, time, 1e-11);
+    ASSERT_FALSE(result.contacts.empty());
+    EXPECT_GE(result.contacts[0].toc_hi, result.contacts[0].toc_lo);
+    EXPECT_LE(result.contacts[0].toc_hi, time + kTocErr);
+  }
+  EXPECT_NEAR(results[0].time_of_contact, results[1].time_of_contact, 1e-11);
+  EXPECT_LT((results[0].contacts[0].normal + results[1].contacts[0].normal).norm(), 1e-6);
+  // FCL's own request has the same time, up to rounding: it looks for nothing else.
+  ContinuousCollisionRequest<double> own;
+  own.ccd_motion_type = CCDM_LINEAR;
+  own.toc_err = kTocErr;
+  ContinuousCollisionResult<double> own_result;
+  EXPECT_NEAR(continuousCollide(a.geometry.get(), a.begin, a.end, b.geometry.get(),
+                                b.begin, b.end, own, own_result),
+              time, 1e-11);
+  EXPECT_TRUE(own_result.is_collide);
+}
+
+Geometry octahedron(double radius) {
+  auto vertices = std::make_shared<std::vector<Point>>();
+  for (int i = 0; i < 6; ++i) {
+    Point p = Point::Zero();
+    p[i / 2] = i % 2 == 1 ? radius : -radius;
+    vertices->push_back(p);
+  }
+  const int corners[8][3] = {{1, 3, 5}, {3, 0, 5}, {0, 2, 5}, {2, 1, 5},
+                             {3, 1, 4}, {0, 3, 4}, {2, 0, 4}, {1, 2, 4}};
+  auto faces = std::make_shared<std::vector<int>>();
+  for (const auto& face : corners) {
+    faces->push_back(3);
+    faces->insert(faces->end(), face, face + 3);
+  }
+  return std::make_shared<Convex<double>>(vertices, 8, faces);
+}
+
+Geometry floorMesh() {
+  const TestMesh sheet =
+      makeSheet(8, 8, [](double u, double v) { return Point(4 * u - 2, 4 * v - 2, 0); });
+  auto model = std::make_shared<BVHModel<OBBRSS<double>>>();
+  model->beginModel();
+  model->addSubModel(sheet.vertices, sheet.triangles);
+  model->endModel();
+  return model;
+}
+
+Geometry deformableFloor(double from, double to) {
+  const auto frame = [](double z) {
+    return makeSheet(8, 8,
+                     [z](double u, double v) { return Point(4 * u - 2, 4 * v - 2, z); });
+  };
+  auto model = std::make_shared<DeformableBVHModel<>>();
+  model->beginModel();
+  model->addSubModel(frame(from).vertices, frame(from).triangles);
+  model->endModel();
+  const auto coordinates = [](const TestMesh& mesh) {
+    return mesh.vertices.front().data();
+  };
+  const TestMesh frames[2] = {frame(from), frame(to)};
+  model->updateFrames(coordinates(frames[0]), coordinates(frames[1]),
+                      frames[0].vertices.size());
+  return model;
+}
+
+/// Something that stands on z = 0 or reaches up to `top` on the z axis.
+struct Target {
+  std::string name;
+  Geometry geometry;
+  double top;
+};
+
+std::vector<Target> targets() {
+  return {
+      {"sphere", std::make_shared<Sphere<double>>(0.5), 0.5},
+      {"capsule", std::make_shared<Capsule<double>>(0.25, 1.), 0.75},
+      {"box", std::make_shared<Box<double>>(1., 2., 0.5), 0.25},
+      {"ellipsoid", std::make_shared<Ellipsoid<double>>(0.5, 0.75, 0.375), 0.375},
+      {"cone", std::make_shared<Cone<double>>(0.5, 1.), 0.5},
+      {"cylinder", std::make_shared<Cylinder<double>>(0.5, 0.75), 0.375},
+      {"convex", octahedron(0.5), 0.5},
+      {"triangle",
+       std::make_shared<TriangleP<double>>(Point(-1, -1, 0), Point(2, -1, 0),
+                                           Point(-1, 2, 0)),
+       0},
+      {"plane", std::make_shared<Plane<double>>(Point(0, 0, 1), 0.25), 0.25},
+      {"halfspace", std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.125), 0.125},
+      {"mesh", floorMesh(), 0},
+      {"cloth", deformableFloor(0, 0), 0}};
+}
+
+TEST(ShapeCollide, BallDropsOnEverything) {
+  const double radius = 0.25;
+  for (const Target& target : targets()) {
+    SCOPED_TRACE(target.name);
+    const Moving ball{std::make_shared<Sphere<double>>(radius), at(0, 0, 2),
+                      at(0, 0, -2)};
+    const Moving still{target.geometry, at(0, 0, 0), at(0, 0, 0)};
+    expectFirst(ball, still, (2 - radius - target.top) / 4);
+  }
+}
+
+TEST(ShapeCollide, TheNormalIsTheWayOfTheBall) {
+  for (const Target& target : targets()) {
+    SCOPED_TRACE(target.name);
+    const Result result =
+        ask({target.geometry, at(0, 0, 0), at(0, 0, 0)},
+            {std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)});
+    ASSERT_FALSE(result.contacts.empty());
+    EXPECT_LT((result.contacts[0].normal - Point(0, 0, 1)).norm(), 1e-6);
+    EXPECT_LT((result.contacts[0].pos - Point(0, 0, target.top)).norm(), 1e-6);
+  }
+}
+
+TEST(ShapeCollide, ScenesFarFromTheOrigin) {
+  const double far = 0x1p20;
+  for (const Target& target : targets()) {
+    if (target.geometry->getObjectType() == OT_GEOM &&
+        (target.name == "plane" || target.name == "halfspace"))
+      continue;
+    SCOPED_TRACE(target.name);
+    const Result result =
+        ask({std::make_shared<Sphere<double>>(0.25), at(far, far, 2), at(far, far, -2)},
+            {target.geometry, at(far, far, 0), at(far, far, 0)});
+    ASSERT_TRUE(result.is_collide);
+    EXPECT_LE(result.time_of_contact, (1.75 - target.top) / 4);
+    EXPECT_NEAR(result.time_of_contact, (1.75 - target.top) / 4, 1e-7);
+  }
+}
+
+TEST(ShapeCollide, EveryPairThatPassesAboveDoesNotTouch) {
+  // Around the z axis everything is within 2 of the origin.
+  for (const Target& a : targets()) {
+    if (a.name == "plane" || a.name == "halfspace") continue;
+    for (const Target& b : targets()) {
+      if (a.geometry->getObjectType() == OT_BVH && b.geometry->getObjectType() == OT_BVH)
+        continue;
+      SCOPED_TRACE(a.name + " over " + b.name);
+      const Moving over{a.geometry, turned(0, Point(0, 1, 0), at(-3, 0, 4)),
+                        turned(2, Point(0, 1, 0), at(3, 0, 4))};
+      const Moving below{b.geometry, at(0, 0, 0), at(0, 0, 0)};
+      EXPECT_FALSE(ask(over, below).is_collide);
+      EXPECT_FALSE(ask(below, over).is_collide);
+    }
+  }
+}
+
+TEST(ShapeCollide, WhatIsInsideTouchesAtTheBeginning) {
+  const Geometry ball = std::make_shared<Sphere<double>>(0.0625);
+  for (const Target& target : targets()) {
+    if (target.geometry->getObjectType() == OT_BVH || target.name == "triangle" ||
+        target.name == "plane")
+      continue;
+    SCOPED_TRACE(target.name);
+    for (const double still : {0., 0.125}) {
+      const Result result = ask({ball, at(0, 0, 0), at(0, 0, still)},
+                                {target.geometry, at(0, 0, 0), at(0, 0, 0)});
+      ASSERT_TRUE(result.is_collide);
+      EXPECT_EQ(result.time_of_contact, 0);
+      ASSERT_EQ(result.contacts.size(), 1u);
+      EXPECT_EQ(result.contacts[0].toc_hi, 0);
+      EXPECT_EQ(result.contacts[0].kind, ContinuousContactKind::kShapes);
+    }
+  }
+  // A surface has no inside.
+  EXPECT_FALSE(ask({ball, at(0, 0, 1), at(0, 0, 1)},
+                   {std::make_shared<Plane<double>>(Point(0, 0, 1), 0.5), at(0, 0, 0),
+                    at(0, 0, 0)})
+                   .is_collide);
+}
+
+TEST(ShapeCollide, BoxTurnsOnItsEdge) {
+  // The lowest point of a square of side 1 at an angle is (cos + sin) / 2 below its
+  // center.
+  const double height = 0.6, angle = kPi / 2,
+               time = (kPi / 4 - std::acos(height * std::sqrt(2.))) / angle;
+  const Moving box{std::make_shared<Box<double>>(1., 1., 1.),
+                   turned(0, Point(1, 0, 0), at(0, 0, height)),
+                   turned(angle, Point(1, 0, 0), at(0, 0, height))};
+  for (const Geometry& floor :
+       {Geometry(std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.)),
+        Geometry(std::make_shared<Plane<double>>(Point(0, 0, 1), 0.)), floorMesh()})
+    expectFirst(box, {floor, at(0, 0, 0), at(0, 0, 0)}, time);
+}
+
+TEST(ShapeCollide, AHalfspaceTurnsIntoABall) {
+  // The distance of (2, 0, 1) from a plane through the origin, turned by an angle about
+  // y, is cos - 2 sin.
+  const double radius = 0.25, angle = -1,
+               time = -(std::acos(radius / std::sqrt(5.)) - std::atan(2.)) / angle;
+  const Moving ball{std::make_shared<Sphere<double>>(radius), at(2, 0, 1), at(2, 0, 1)};
+  const Moving floor{std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.),
+                     turned(0, Point(0, 1, 0)), turned(angle, Point(0, 1, 0))};
+  expectFirst(ball, floor, time);
+}
+
+TEST(ShapeCollide, TipOfAConeOnAPlane) {
+  const Moving cone{std::make_shared<Cone<double>>(0.5, 1.),
+                    turned(kPi, Point(1, 0, 0), at(0, 0, 2)),
+                    turned(kPi, Point(1, 0, 0), at(0, 0, 0))};
+  expectFirst(
+      cone,
+      {std::make_shared<Plane<double>>(Point(0, 0, 1), 0.), at(0, 0, 0), at(0, 0, 0)},
+      0.75);
+}
+
+TEST(ShapeCollide, ACapsuleSpinsIntoABall) {
+  // The core, of half length 1, turns about y; the ball is where it has turned to 1 rad.
+  const double radius = 0.125, ball = 0.0625, r = 0.75,
+               time = (1 - std::asin((radius + ball) / r)) / 2;
+  const Moving rod{std::make_shared<Capsule<double>>(radius, 2.),
+                   turned(0, Point(0, 1, 0)), turned(2, Point(0, 1, 0))};
+  const Pose place = at(r * std::sin(1), 0, r * std::cos(1));
+  expectFirst(rod, {std::make_shared<Sphere<double>>(ball), place, place}, time);
+}
+
+TEST(ShapeCollide, ClothFallsOnABall) {
+  const Moving cloth{deformableFloor(1, -1), at(0, 0, 0), at(0, 0, 0)};
+  const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 0), at(0, 0, 0)};
+  expectFirst(cloth, ball, 0.375);
+}
+
+TEST(ShapeCollide, AllContactsHaveOneForEachTriangle) {
+  // The ball ends at z = 0 and reaches a circle of 0.5 in the plane of the sheet.
+  const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
+  const Moving ball{std::make_shared<Sphere<double>>(0.5), at(0.125, 0, 1),
+                    at(0.125, 0, 0)};
+  const Result result = ask(floor, ball, requestOf(ContinuousQuery::kAll));
+  std::set<std::intptr_t> triangles;
+  for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+    const auto& contact = result.contacts[i];
+    EXPECT_TRUE(triangles.insert(contact.b1).second);
+    EXPECT_EQ(contact.b2, -1);
+    EXPECT_TRUE(contact.first_on_o1);
+    EXPECT_NEAR(contact.pos[2], 0, 1e-9);
+    EXPECT_LE(result.contacts[i == 0 ? 0 : i - 1].toc_lo, contact.toc_lo);
+    // At the time the ball reaches a circle around its axis.
+    const double depth = 1 - contact.toc_lo, square = 0.25 - depth * depth;
+    const Point from = contact.pos - Point(0.125, 0, 0);
+    EXPECT_NEAR(from.head<2>().squaredNorm(), square, 1e-6);
+    for (int k = 0; k < contact.numVertices(); ++k)
+      EXPECT_GE(contact.vertices[static_cast<std::size_t>(k)], 0);
+  }
+  // By brute force: triangles whose nearest point to the axis is within 0.5.
+  const TestMesh sheet =
+      makeSheet(8, 8, [](double u, double v) { return Point(4 * u - 2, 4 * v - 2, 0); });
+  std::size_t expected = 0;
+  for (const Triangle& triangle : sheet.triangles) {
+    const Geometry face = std::make_shared<TriangleP<double>>(
+        sheet.vertices[triangle[0]], sheet.vertices[triangle[1]],
+        sheet.vertices[triangle[2]]);
+    expected += ask({face, at(0, 0, 0), at(0, 0, 0)}, ball).is_collide ? 1 : 0;
+  }
+  EXPECT_GT(expected, 8u);
+  EXPECT_EQ(result.contacts.size(), expected);
+}
+
+TEST(ShapeCollide, KindsOfContacts) {
+  const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
+  const Geometry ball = std::make_shared<Sphere<double>>(0.0625);
+  const auto kindAt = [&](double x, double y) {
+    const Result result = ask(floor, {ball, at(x, y, 1), at(x, y, -1)});
+    return result.contacts.at(0).kind;
+  };
+  EXPECT_EQ(kindAt(0, 0), ContinuousContactKind::kVertexShape);
+  EXPECT_EQ(kindAt(0.25, 0), ContinuousContactKind::kEdgeShape);
+  EXPECT_EQ(kindAt(0.375, 0.25), ContinuousContactKind::kFaceShape);
+}
+
+TEST(ShapeCollide, MinDistance) {
+  Request request = requestOf();
+  request.min_distance = 0.25;
+  for (const Target& target : targets()) {
+    SCOPED_TRACE(target.name);
+    const Result result =
+        ask({std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)},
+            {target.geometry, at(0, 0, 0), at(0, 0, 0)}, request);
+    ASSERT_TRUE(result.is_collide);
+    EXPECT_LE(result.time_of_contact, (1.5 - target.top) / 4 + 1e-15);
+    EXPECT_NEAR(result.time_of_contact, (1.5 - target.top) / 4, 1e-11);
+  }
+}
+
+TEST(ShapeCollide, TMaxCutsAtTheTime) {
+  const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
+  const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
+  Request request = requestOf();
+  request.t_max = 0.4375 - 1e-9;
+  EXPECT_FALSE(ask(ball, floor, request).is_collide);
+  request.t_max = 0.4375;
+  EXPECT_TRUE(ask(ball, floor, request).is_collide);
+}
+
+TEST(ShapeCollide, FiltersSeeNoTriangleOfAShape) {
+  const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
+  const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
+  Request request = requestOf(ContinuousQuery::kAll);
+  request.accepts_triangles = [](std::intptr_t a, std::intptr_t b) {
+    EXPECT_EQ(a, -1);
+    return b % 2 == 0;
+  };
+  const Result result = ask(ball, floor, request);
+  EXPECT_FALSE(result.contacts.empty());
+  for (const auto& contact : result.contacts) EXPECT_EQ(contact.b2 % 2, 0);
+  request.accepts_triangles = nullptr;
+  request.filter1.group = 2;
+  request.filter2.mask = 1;
+  EXPECT_FALSE(ask(ball, floor, request).is_collide);
+}
+
+TEST(ShapeCollide, ParallelFlats) {
+  const auto plane = [](double d) -> Geometry {
+    return std::make_shared<Plane<double>>(Point(0, 0, 1), d);
+  };
+  const auto below = [](double d) -> Geometry {
+    return std::make_shared<Halfspace<double>>(Point(0, 0, 1), d);
+  };
+  const auto above = [](double d) -> Geometry {
+    return std::make_shared<Halfspace<double>>(Point(0, 0, -1), -d);
+  };
+  const Pose still = at(0, 0, 0), down = at(0, 0, -2), up = at(0, 0, 2);
+  expectFirst({plane(1), still, down}, {plane(0), still, still}, 0.5);
+  expectFirst({plane(-1), still, up}, {plane(0), still, still}, 0.5);
+  expectFirst({plane(1), still, down}, {below(0), still, still}, 0.5);
+  expectFirst({plane(-1), still, up}, {above(0), still, still}, 0.5);
+  expectFirst({above(1), still, down}, {below(0), still, still}, 0.5);
+  EXPECT_EQ(ask({below(1), still, up}, {below(-5), still, still}).time_of_contact, 0);
+  EXPECT_EQ(ask({plane(-1), still, up}, {below(0), still, still}).time_of_contact, 0);
+  EXPECT_FALSE(ask({plane(1), still, up}, {plane(0), still, still}).is_collide);
+  // Others meet at once.
+  EXPECT_EQ(ask({plane(5), still, still},
+                {plane(0), turned(0.1, Point(1, 0, 0)), turned(0.1, Point(1, 0, 0))})
+                .time_of_contact,
+            0);
+}
+
+TEST(ShapeCollide, ShapesWithoutExtent) {
+  const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
+  const std::vector<Geometry> points = {std::make_shared<Sphere<double>>(0.),
+                                        std::make_shared<Capsule<double>>(0., 0.),
+                                        std::make_shared<Box<double>>(0., 0., 0.),
+                                        std::make_shared<Cone<double>>(0., 0.),
+                                        std::make_shared<Cylinder<double>>(0., 0.),
+                                        std::make_shared<Ellipsoid<double>>(0., 0., 0.)};
+  for (const Geometry& point : points)
+    expectFirst({point, at(0.3, 0.1, 1), at(0.3, 0.1, -1)}, floor, 0.5);
+  const std::vector<Geometry> flat = {std::make_shared<Box<double>>(1., 1., 0.),
+                                      std::make_shared<Cylinder<double>>(1., 0.),
+                                      std::make_shared<Cone<double>>(1., 0.),
+                                      std::make_shared<Ellipsoid<double>>(1., 1., 0.),
+                                      std::make_shared<Capsule<double>>(0., 1.)};
+  for (std::size_t i = 0; i < flat.size(); ++i) {
+    SCOPED_TRACE(i);
+    const double half = i == 4 ? 0.5 : 0;
+    expectFirst({flat[i], at(0.3, 0.1, 1), at(0.3, 0.1, -1)}, floor, 0.5 * (1 - half));
+  }
+}
+
+TEST(ShapeCollide, GrazingBallAndEdge) {
+  // The ball passes at a height of its radius plus or minus a part of it.
+  const double radius = 0.5;
+  for (const double part : {1e-2, 1e-4, 1e-6}) {
+    const Geometry bar = std::make_shared<Cylinder<double>>(0.25, 4.);
+    for (const double side : {-1., 1.}) {
+      const double height = radius + 0.25 + side * part;
+      const Result result = ask(
+          {std::make_shared<Sphere<double>>(radius), at(-2, height, 0), at(2, height, 0)},
+          {bar, at(0, 0, 0), at(0, 0, 0)});
+      ASSERT_EQ(result.is_collide, side < 0);
+      if (side > 0) continue;
+      const double x = std::sqrt(0.75 * 0.75 - height * height);
+      EXPECT_LE(result.time_of_contact, (2 - x) / 4 + 1e-15);
+      EXPECT_NEAR(result.time_of_contact, (2 - x) / 4, 1e-8);
+    }
+  }
+}
+
+TEST(ShapeCollide, MotionsAndObjects) {
+  const Geometry ball = std::make_shared<Sphere<double>>(0.25), floor = floorMesh();
+  const auto still =
+      std::make_shared<TranslationMotion<double>>(at(0, 0, 0), at(0, 0, 0));
+  const auto fall =
+      std::make_shared<TranslationMotion<double>>(at(0, 0, 2), at(0, 0, -2));
+  const ScrewMotion<double> screw(at(0, 0, 2), turned(1, Point(0, 0, 1), at(0, 0, -2)));
+  ContinuousCollisionRequest<double> request;
+  ContinuousCollisionResult<double> result;
+  EXPECT_NEAR(continuousCollide(ball.get(), fall.get(), floor.get(), still.get(), request,
+                                result),
+              0.4375, 1e-12);
+  EXPECT_NEAR(
+      continuousCollide(ball.get(), &screw, floor.get(), still.get(), request, result),
+      0.4375, 1e-12);
+  const ContinuousCollisionObject<double> moving(ball, fall), resting(floor, still);
+  EXPECT_NEAR(collide(&moving, &resting, request, result), 0.4375, 1e-12);
+  const CollisionObject<double> object1(ball, at(0, 0, 2)), object2(floor, at(0, 0, 0));
+  EXPECT_NEAR(
+      continuousCollide(&object1, at(0, 0, -2), &object2, at(0, 0, 0), request, result),
+      0.4375, 1e-12);
+  // FCL's solvers are not asked.
+  for (const CCDSolverType solver : {CCDC_NAIVE, CCDC_CONSERVATIVE_ADVANCEMENT,
+                                     CCDC_RAY_SHOOTING, CCDC_POLYNOMIAL_SOLVER}) {
+    request.ccd_solver_type = solver;
+    EXPECT_NEAR(continuousCollide(ball.get(), at(0, 0, 2), at(0, 0, -2), floor.get(),
+                                  at(0, 0, 0), at(0, 0, 0), request, result),
+                0.4375, 1e-12);
+  }
+}
+
+TEST(ShapeCollide, TheDefaultMotionKeepsTheEndRotation) {
+  // A rod that turns by a quarter passes the ball; translated only it would not.
+  ContinuousCollisionRequest<double> request;
+  ContinuousCollisionResult<double> result;
+  const Capsule<double> rod(0.125, 2);
+  const Sphere<double> ball(0.125);
+  continuousCollide(&rod, Pose::Identity(), turned(kPi / 2, Point(0, 1, 0)), &ball,
+                    at(0.6, 0, 0.6), at(0.6, 0, 0.6), request, result);
+  EXPECT_TRUE(result.is_collide);
+}
+
+TEST(ShapeCollide, InFloat) {
+  const Sphere<float> ball(0.25F);
+  const Box<float> box(1.F, 1.F, 0.5F);
+  Transform3<float> begin = Transform3<float>::Identity(), end = begin;
+  const Transform3<float> still = begin;
+  begin.translation() << 0, 0, 2;
+  end.translation() << 0, 0, -2;
+  ContinuousCollisionRequest<float> request;
+  ContinuousCollisionResult<float> result;
+  const float time =
+      continuousCollide(&ball, begin, end, &box, still, still, request, result);
+  EXPECT_LE(time, 0.375F);
+  EXPECT_NEAR(time, 0.375F, 1e-6F);
+}
+
+TEST(ShapeCollide, BadInputHasAClearError) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto messageOf = [](const Geometry& geometry, const Pose& end) -> std::string {
+    try {
+      ask({geometry, at(0, 0, 0), end},
+          {std::make_shared<Sphere<double>>(1.), at(0, 0, 0), at(0, 0, 0)});
+    } catch (const Exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const Pose still = at(0, 0, 0);
+  const std::vector<std::pair<Geometry, std::string>> bad = {
+      {std::make_shared<Sphere<double>>(-1.), "radius of the sphere"},
+      {std::make_shared<Box<double>>(1., kNan, 1.), "side of the box"},
+      {std::make_shared<Capsule<double>>(1., -1.), "length of the capsule"},
+      {std::make_shared<Cone<double>>(kNan, 1.), "radius of the cone"},
+      {std::make_shared<Cylinder<double>>(1., -2.), "height of the cylinder"},
+      {std::make_shared<Ellipsoid<double>>(1., 1., kNan), "radius of the ellipsoid"},
+      {std::make_shared<TriangleP<double>>(Point(kNan, 0, 0), Point(1, 0, 0),
+                                           Point(0, 1, 0)),
+       "triangle"}};
+  for (const auto& [geometry, words] : bad) {
+    const std::string message = messageOf(geometry, still);
+    EXPECT_NE(message.find("o1: "), std::string::npos) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  }
+  EXPECT_NE(messageOf(std::make_shared<Sphere<double>>(1.), at(kNan, 0, 0)), "");
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
