@@ -1,0 +1,660 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Continuous collision of many objects: which of them meet during the step, and when.
+#ifndef FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
+#define FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "fcl/broadphase/broadphase_continuous_collision_manager.h"
+#include "fcl/narrowphase/continuous_collision.h"
+
+namespace fcl {
+
+/// @brief Two objects in contact. A mesh in contact with itself is both of them.
+template <typename S>
+struct ContinuousPairResult {
+  ContinuousCollisionObject<S>* o1{nullptr};
+  ContinuousCollisionObject<S>* o2{nullptr};
+
+  /// @brief The answer of continuousCollide() for the two, o1 first.
+  ContinuousContactResult<S> result;
+};
+
+/// @brief The answer for many objects.
+template <typename S>
+struct ContinuousManagerResult {
+  bool is_collide{false};
+
+  /// @brief The time of the first contact among `pairs`, in fractions of the step; never
+  /// later than the true one. 1 without collision.
+  S time_of_contact{1};
+
+  /// @brief ContinuousQuery::kFirst: the pair that is first in contact. kAny: one pair
+  /// that is in contact. kAll: all pairs in contact, sorted by their time of contact. If
+  /// times are equal, the order of the candidates decides.
+  std::vector<ContinuousPairResult<S>> pairs;
+
+  /// @brief The number of pairs whose boxes meet.
+  std::size_t num_candidates{0};
+
+  /// @brief The number of pairs that were tested.
+  std::size_t num_tested{0};
+};
+
+using ContinuousManagerResultf = ContinuousManagerResult<float>;
+using ContinuousManagerResultd = ContinuousManagerResult<double>;
+
+namespace detail {
+
+/// @brief Two objects whose boxes meet during [t_lo, t_hi].
+struct BroadPhasePair {
+  double t_lo, t_hi;
+  void* o1;
+  void* o2;
+};
+
+struct BroadPhaseSettings {
+  /// Pairs that come within this distance.
+  double distance;
+  /// Pairs that meet no later than this time.
+  double t_max;
+  bool with_self;
+};
+
+/// @brief The box of an object during the whole step.
+struct StepBox {
+  double lower[3];
+  double upper[3];
+};
+
+/// @brief The moving boxes of objects, and the pairs that meet. The border between the
+/// manager, which is compiled with the program, and the library: see query_numbers.h.
+template <typename S>
+class FCL_EXPORT ContinuousBroadPhase {
+ public:
+  /// Reads the geometry and the motion of an object.
+  using Read = MovingGeometry<S> (*)(const void* object);
+
+  ContinuousBroadPhase();
+  ~ContinuousBroadPhase();
+  ContinuousBroadPhase(const ContinuousBroadPhase&) = delete;
+  ContinuousBroadPhase& operator=(const ContinuousBroadPhase&) = delete;
+
+  void insert(void* const* objects, std::size_t count, Read read);
+  void update(void* const* objects, std::size_t count, Read read);
+  void remove(const void* object);
+  void rebuild();
+  void clear();
+  void setFilter(const void* object, std::uint32_t group, std::uint32_t mask);
+  void setSelf(const void* object, bool self);
+
+  std::size_t size() const;
+  bool contains(const void* object) const;
+  /// In the order of their registration.
+  std::vector<void*> objects() const;
+  /// The box of an object, which need not be registered, as it is now.
+  static StepBox stepBox(const void* object, Read read);
+
+  /// Sorted by t_lo, then by the order of registration.
+  std::vector<BroadPhasePair> pairs(const BroadPhaseSettings& settings) const;
+  std::vector<BroadPhasePair> pairsOf(void* object, Read read,
+                                      const BroadPhaseSettings& settings) const;
+  std::vector<BroadPhasePair> pairsWith(const ContinuousBroadPhase& other,
+                                        const BroadPhaseSettings& settings) const;
+
+ private:
+  class Boxes;
+  std::unique_ptr<Boxes> boxes_;
+};
+
+/// @brief An object of FCL's discrete queries that stands for one that moves: its pose is
+/// that at t = 0, its AABB covers the step, its user data is the ContinuousCollisionObject.
+template <typename S>
+class StepObject : public CollisionObject<S> {
+ public:
+  explicit StepObject(ContinuousCollisionObject<S>* o)
+      // Without a geometry FCL's constructor leaves the geometry's own AABB as it is.
+      : CollisionObject<S>(std::shared_ptr<CollisionGeometry<S>>()) {
+    this->cgeom_const = o->collisionGeometry();
+    this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
+    this->setUserData(o);
+  }
+
+  void place(const Transform3<S>& tf, const StepBox& box) {
+    const Matrix3<S> rotation = tf.linear();
+    const Vector3<S> translation = tf.translation();
+    this->setTransform(rotation, translation);
+    for (int k = 0; k < 3; ++k) {
+      this->aabb.min_[k] = static_cast<S>(box.lower[k]);
+      this->aabb.max_[k] = static_cast<S>(box.upper[k]);
+    }
+  }
+};
+
+}  // namespace detail
+
+/// @brief Finds the contacts of many objects that move: a concrete
+/// BroadPhaseContinuousCollisionManager, which FCL declares and does not have.
+///
+/// Objects are meshes and shapes that follow any motion. Each has a box that moves: boxes
+/// at the ends of up to 16 spans of the step, enlarged by what the motion can deviate
+/// from straight lines in between. Two objects are a candidate if their boxes overlap at
+/// the same time. So objects that fly side by side are no candidate, and no contact is
+/// missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
+///
+/// An object has no box, and is a candidate with all others, if its motion is a class of
+/// the program that is no BoundedMotion, or if it is an octree, a point cloud, or a plane
+/// or halfspace whose normal is not along an axis.
+///
+/// The manager reads an object when it is registered or updated. After a change of its
+/// motion or of its geometry call update(). An object that rests (its box is the same at
+/// all times) costs nothing in a step in which it is not updated.
+///
+/// Queries name pairs by their objects, in the order of their registration. The order of
+/// candidates is that of the beginnings of their windows.
+///
+/// Time: to register, update or unregister one object O(log n); to update() all, or a
+/// large part of them at once, O(n log n), to build a new tree.
+///
+/// Thread-safety: const functions may run at the same time, except those that call back
+/// with FCL's CollisionCallBack. The broad phase itself runs in the caller's thread;
+/// ContinuousContactRequest::num_threads is for the queries of pairs. Answers do not
+/// depend on it.
+///
+/// The manager does not own the objects. They must live until they are unregistered.
+///
+/// @throws fcl::Exception  An object is null, or has no geometry or motion; it is
+/// registered twice, or is not registered; a mesh is not built; a geometry or a path is
+/// not finite. Then nothing has changed.
+template <typename S>
+class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S> {
+ public:
+  using Object = ContinuousCollisionObject<S>;
+
+  ContinuousCollisionManager() = default;
+  ContinuousCollisionManager(const ContinuousCollisionManager&) = delete;
+  ContinuousCollisionManager& operator=(const ContinuousCollisionManager&) = delete;
+
+  /// @brief Adds objects.
+  void registerObjects(const std::vector<Object*>& objects) override;
+  /// @brief Adds an object.
+  void registerObject(Object* object) override;
+  /// @brief Removes an object.
+  void unregisterObject(Object* object) override;
+  /// @brief Removes all objects.
+  void clear() override;
+
+  /// @brief Makes new trees, as FCL's managers do. Queries do not need it: it may make
+  /// them faster after many single changes.
+  void setup() override;
+  /// @brief Reads all objects again.
+  void update() override;
+  /// @brief Reads one object again.
+  void update(Object* object) override;
+  /// @brief Reads these objects again, for example those that moved.
+  void update(const std::vector<Object*>& objects) override;
+
+  /// @brief Which others the object can be in contact with. Callbacks do not get a pair
+  /// that the filters reject. Groups of triangles act in the queries that take a request.
+  void setFilter(Object* object, const ContinuousFilter& filter);
+  /// @brief Whether queries of all objects, with a request, look for contacts of the
+  /// object with itself. It must be a mesh.
+  void setSelfCollision(Object* object, bool enabled);
+
+  /// @brief The objects, in the order of their registration.
+  void getObjects(std::vector<Object*>& objects) const override;
+  /// @brief Whether there is no object.
+  bool empty() const override { return size() == 0; }
+  /// @brief The number of objects.
+  std::size_t size() const override { return boxes_.size(); }
+
+  /// @brief First contact, any contact, or all contacts of all objects: request.query.
+  ///
+  /// kFirst: pairs are tested in the order of their windows, up to the best time so far.
+  /// All fields of the request act as in continuousCollide() of a pair, with these
+  /// differences: filter1 and filter2 are those of setFilter(); num_max_contacts is per
+  /// pair. With min_distance above 0 pairs of two objects that rest are searched anew in
+  /// each query.
+  /// @throws fcl::Exception  what continuousCollide() throws, with the numbers of the
+  /// objects in getObjects()
+  void collide(const ContinuousContactRequest<S>& request,
+               ContinuousManagerResult<S>& result) const;
+  /// @brief The same for one object, which is o1, with all others. It need not be
+  /// registered. It is read now.
+  void collide(Object* object, const ContinuousContactRequest<S>& request,
+               ContinuousManagerResult<S>& result) const;
+  /// @brief The same for the objects of this manager, which are o1, and of another one.
+  void collide(const ContinuousCollisionManager& other,
+               const ContinuousContactRequest<S>& request,
+               ContinuousManagerResult<S>& result) const;
+
+  /// @brief Calls back for each candidate of all objects, in the order of their windows,
+  /// until the callback returns true. FCL's default callback is
+  /// DefaultContinuousCollisionFunction, which keeps the answer for the last pair only.
+  void collide(void* cdata, ContinuousCollisionCallBack<S> callback) const;
+  /// @brief Calls back for the candidates of one object, which comes first.
+  void collide(Object* object, void* cdata,
+               ContinuousCollisionCallBack<S> callback) const;
+  /// @brief Calls back for the candidates of this manager and of another one.
+  void collide(const ContinuousCollisionManager& other, void* cdata,
+               ContinuousCollisionCallBack<S> callback) const;
+
+  /// @brief FCL's interface has the callback of discrete queries. It gets objects that
+  /// stand for those that move: with their geometry, their pose at t = 0, an AABB that
+  /// covers the step, and the ContinuousCollisionObject as getUserData(). They live until
+  /// the object is unregistered.
+  void collide(void* cdata, CollisionCallBack<S> callback) const override;
+  /// @overload
+  void collide(Object* object, void* cdata, CollisionCallBack<S> callback) const override;
+  /// @overload
+  /// @throws fcl::Exception  the other manager is no ContinuousCollisionManager
+  void collide(BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
+               CollisionCallBack<S> callback) const override;
+
+  /// @brief Not available: FCL has no continuous distance query that a callback could
+  /// call. @throws fcl::Exception  always
+  void distance(void* cdata, DistanceCallBack<S> callback) const override;
+  /// @overload
+  void distance(Object* object, void* cdata, DistanceCallBack<S> callback) const override;
+  /// @overload
+  void distance(BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
+                DistanceCallBack<S> callback) const override;
+
+ private:
+  using Pairs = std::vector<detail::BroadPhasePair>;
+  using Request = ContinuousContactRequest<S>;
+  using Result = ContinuousManagerResult<S>;
+  using PairResult = ContinuousPairResult<S>;
+  using StepObjects =
+      std::unordered_map<const Object*, std::unique_ptr<detail::StepObject<S>>>;
+
+  static Object* objectOf(void* object) { return static_cast<Object*>(object); }
+  static detail::MovingGeometry<S> read(const void* object);
+  static void requireUsable(const Object* object);
+  static std::vector<void*> addressesOf(const std::vector<Object*>& objects);
+  static detail::BroadPhaseSettings settingsOf(const Request& request);
+  static detail::BroadPhaseSettings allCandidates() { return {0, 1, false}; }
+  [[noreturn]] static void refuseDistance();
+
+  const ContinuousFilter* filterOf(const Object* object) const;
+  std::string nameOf(const Object* object) const;
+  bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
+            Request& request, Result& result, PairResult& tested) const;
+  void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
+              const Request& request, Result& result) const;
+  static bool isEarlier(const PairResult& x, const PairResult& y) {
+    return x.result.time_of_contact < y.result.time_of_contact;
+  }
+  void answerFirst(const Pairs& pairs, const ContinuousCollisionManager& other,
+                   const Request& request, Result& result) const;
+  static void callBack(const Pairs& pairs, void* cdata,
+                       ContinuousCollisionCallBack<S> callback);
+  CollisionObject<S>* stepObject(Object* object) const;
+  void callBack(const Pairs& pairs, const ContinuousCollisionManager& other, void* cdata,
+                CollisionCallBack<S> callback) const;
+
+  detail::ContinuousBroadPhase<S> boxes_;
+  /// Those that have groups of triangles.
+  std::unordered_map<const Object*, ContinuousFilter> triangle_filters_;
+  mutable StepObjects step_objects_;
+};
+
+using ContinuousCollisionManagerf = ContinuousCollisionManager<float>;
+using ContinuousCollisionManagerd = ContinuousCollisionManager<double>;
+
+template <typename S>
+detail::MovingGeometry<S> ContinuousCollisionManager<S>::read(const void* object) {
+  const auto& o = *static_cast<const Object*>(object);
+  const MotionBase<S>& motion = *o.getMotion();
+  detail::MovingGeometry<S> moving{
+      o.collisionGeometry().get(), {}, detail::PathKind::kUnknown, {}, {}, nullptr};
+  if (detail::readMotion(motion, moving)) return moving;
+  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
+    detail::readBoundedMotion(*bounded, moving);
+  else
+    moving.path = detail::PathKind::kUnknown;
+  return moving;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::requireUsable(const Object* object) {
+  detail::requireNotNull(object, "object");
+  detail::requireNotNull(object->collisionGeometry().get(), "object: the geometry");
+  detail::requireNotNull(object->getMotion(), "object: the motion");
+}
+
+template <typename S>
+std::vector<void*> ContinuousCollisionManager<S>::addressesOf(
+    const std::vector<Object*>& objects) {
+  for (const Object* object : objects) requireUsable(object);
+  return {objects.begin(), objects.end()};
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::registerObjects(const std::vector<Object*>& objects) {
+  const std::vector<void*> addresses = addressesOf(objects);
+  boxes_.insert(addresses.data(), addresses.size(), &read);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::registerObject(Object* object) {
+  registerObjects({object});
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
+  boxes_.remove(object);
+  triangle_filters_.erase(object);
+  step_objects_.erase(object);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::clear() {
+  boxes_.clear();
+  triangle_filters_.clear();
+  step_objects_.clear();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setup() {
+  boxes_.rebuild();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::update() {
+  const std::vector<void*> objects = boxes_.objects();
+  boxes_.update(objects.data(), objects.size(), &read);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::update(Object* object) {
+  update(std::vector<Object*>{object});
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::update(const std::vector<Object*>& objects) {
+  const std::vector<void*> addresses = addressesOf(objects);
+  boxes_.update(addresses.data(), addresses.size(), &read);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setFilter(Object* object,
+                                              const ContinuousFilter& filter) {
+  const auto all = [](std::uint32_t whole, const std::vector<std::uint32_t>& parts) {
+    if (!parts.empty()) whole = 0;
+    for (const std::uint32_t part : parts) whole |= part;
+    return whole;
+  };
+  boxes_.setFilter(object, all(filter.group, filter.triangle_groups),
+                   all(filter.mask, filter.triangle_masks));
+  if (filter.triangle_groups.empty() && filter.triangle_masks.empty())
+    triangle_filters_.erase(object);
+  else
+    triangle_filters_[object] = filter;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::setSelfCollision(Object* object, bool enabled) {
+  if (enabled && object && object->getObjectType() != OT_BVH)
+    throw Exception("setSelfCollision: the object is not a mesh");
+  boxes_.setSelf(object, enabled);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::getObjects(std::vector<Object*>& objects) const {
+  objects.clear();
+  for (void* object : boxes_.objects()) objects.push_back(objectOf(object));
+}
+
+template <typename S>
+detail::BroadPhaseSettings ContinuousCollisionManager<S>::settingsOf(
+    const Request& request) {
+  return {static_cast<double>(request.min_distance), static_cast<double>(request.t_max),
+          false};
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(const Request& request,
+                                            Result& result) const {
+  detail::BroadPhaseSettings settings = settingsOf(request);
+  settings.with_self = true;
+  answer(boxes_.pairs(settings), *this, request, result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(Object* object, const Request& request,
+                                            Result& result) const {
+  requireUsable(object);
+  answer(boxes_.pairsOf(object, &read, settingsOf(request)), *this, request, result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(const ContinuousCollisionManager& other,
+                                            const Request& request,
+                                            Result& result) const {
+  if (&other == this) return collide(request, result);
+  answer(boxes_.pairsWith(other.boxes_, settingsOf(request)), other, request, result);
+}
+
+template <typename S>
+const ContinuousFilter* ContinuousCollisionManager<S>::filterOf(
+    const Object* object) const {
+  const auto entry = triangle_filters_.find(object);
+  return entry == triangle_filters_.end() ? nullptr : &entry->second;
+}
+
+template <typename S>
+std::string ContinuousCollisionManager<S>::nameOf(const Object* object) const {
+  const std::vector<void*> objects = boxes_.objects();
+  const auto place = std::find(objects.begin(), objects.end(), object);
+  if (place == objects.end()) return "the object";
+  return "object " + std::to_string(place - objects.begin());
+}
+
+/// Tests a pair. The filters of the objects were tested with their boxes; what is left
+/// are groups of triangles. Returns whether the two are in contact.
+template <typename S>
+bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
+                                         const ContinuousCollisionManager& other,
+                                         Request& request, Result& result,
+                                         PairResult& tested) const {
+  tested.o1 = objectOf(pair.o1);
+  tested.o2 = objectOf(pair.o2);
+  const ContinuousFilter *filter1 = filterOf(tested.o1),
+                         *filter2 = other.filterOf(tested.o2), none;
+  const bool is_filtered = filter1 || filter2;
+  if (is_filtered) {
+    request.filter1 = filter1 ? *filter1 : none;
+    request.filter2 = filter2 ? *filter2 : none;
+  }
+  ++result.num_tested;
+  try {
+    if (pair.o1 == pair.o2)
+      continuousSelfCollide(tested.o1->collisionGeometry().get(), request, tested.result);
+    else
+      fcl::collide(tested.o1, tested.o2, request, tested.result);
+  } catch (const Exception& error) {
+    throw Exception("o1 is " + nameOf(tested.o1) + ", o2 is " + other.nameOf(tested.o2) +
+                    ": " + error.what());
+  }
+  if (is_filtered) request.filter1 = request.filter2 = none;
+  return tested.result.is_collide;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
+                                           const ContinuousCollisionManager& other,
+                                           const Request& asked, Result& out) const {
+  Result result;
+  result.num_candidates = pairs.size();
+  Request request = asked;
+  request.filter1 = request.filter2 = ContinuousFilter();
+  if (asked.query == ContinuousQuery::kFirst) {
+    answerFirst(pairs, other, request, result);
+  } else {
+    for (const detail::BroadPhasePair& pair : pairs) {
+      PairResult tested;
+      if (!test(pair, other, request, result, tested)) continue;
+      result.pairs.push_back(std::move(tested));
+      if (asked.query == ContinuousQuery::kAny) break;
+    }
+    std::stable_sort(result.pairs.begin(), result.pairs.end(), &isEarlier);
+  }
+  result.is_collide = !result.pairs.empty();
+  if (result.is_collide)
+    result.time_of_contact = result.pairs.front().result.time_of_contact;
+  out = std::move(result);
+}
+
+/// The bracket of a contact may depend on t_max: within toc_err, and the times of two
+/// pairs that are that near each other may change places. So pairs are tested up to 2
+/// toc_err after the best time. At the end those in that range are tested again, up to
+/// the request's t_max, and the answer does not depend on the order of the tests.
+template <typename S>
+void ContinuousCollisionManager<S>::answerFirst(const Pairs& pairs,
+                                                const ContinuousCollisionManager& other,
+                                                const Request& asked,
+                                                Result& result) const {
+  struct InContact {
+    std::size_t pair;
+    bool is_cut;
+    PairResult tested;
+  };
+  std::vector<InContact> found;
+  Request request = asked;
+  request.filter1 = request.filter2 = ContinuousFilter();
+  const S range = 2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (pairs[i].t_lo > static_cast<double>(request.t_max)) break;
+    PairResult tested;
+    if (!test(pairs[i], other, request, result, tested)) continue;
+    const S latest = tested.result.time_of_contact + range;
+    found.push_back({i, request.t_max < asked.t_max, std::move(tested)});
+    request.t_max = std::min(request.t_max, latest);
+  }
+  const S latest = request.t_max;
+  request.t_max = asked.t_max;
+  for (InContact& contact : found) {
+    if (contact.tested.result.time_of_contact > latest) continue;
+    if (contact.is_cut)
+      test(pairs[contact.pair], other, request, result, contact.tested);
+    if (result.pairs.empty())
+      result.pairs.push_back(std::move(contact.tested));
+    else if (isEarlier(contact.tested, result.pairs.front()))
+      result.pairs.front() = std::move(contact.tested);
+  }
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::callBack(const Pairs& pairs, void* cdata,
+                                             ContinuousCollisionCallBack<S> callback) {
+  for (const detail::BroadPhasePair& pair : pairs)
+    if (callback(objectOf(pair.o1), objectOf(pair.o2), cdata)) return;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    void* cdata, ContinuousCollisionCallBack<S> callback) const {
+  callBack(boxes_.pairs(allCandidates()), cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    Object* object, void* cdata, ContinuousCollisionCallBack<S> callback) const {
+  requireUsable(object);
+  callBack(boxes_.pairsOf(object, &read, allCandidates()), cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    const ContinuousCollisionManager& other, void* cdata,
+    ContinuousCollisionCallBack<S> callback) const {
+  if (&other == this) return collide(cdata, callback);
+  callBack(boxes_.pairsWith(other.boxes_, allCandidates()), cdata, callback);
+}
+
+template <typename S>
+CollisionObject<S>* ContinuousCollisionManager<S>::stepObject(Object* object) const {
+  std::unique_ptr<detail::StepObject<S>>& step_object = step_objects_[object];
+  if (!step_object) step_object.reset(new detail::StepObject<S>(object));
+  const detail::MovingGeometry<S> moving = read(object);
+  Transform3<S> tf = detail::toTransform(moving.pose[0]);
+  if (moving.path == detail::PathKind::kUnknown)
+    object->getMotion()->getCurrentTransform(tf);
+  step_object->place(tf, boxes_.stepBox(object, &read));
+  return step_object.get();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::callBack(const Pairs& pairs,
+                                             const ContinuousCollisionManager& other,
+                                             void* cdata,
+                                             CollisionCallBack<S> callback) const {
+  for (const detail::BroadPhasePair& pair : pairs)
+    if (callback(stepObject(objectOf(pair.o1)), other.stepObject(objectOf(pair.o2)),
+                 cdata))
+      return;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(void* cdata,
+                                            CollisionCallBack<S> callback) const {
+  callBack(boxes_.pairs(allCandidates()), *this, cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(Object* object, void* cdata,
+                                            CollisionCallBack<S> callback) const {
+  requireUsable(object);
+  callBack(boxes_.pairsOf(object, &read, allCandidates()), *this, cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::collide(
+    BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
+    CollisionCallBack<S> callback) const {
+  if (other == this) return collide(cdata, callback);
+  const auto* manager = dynamic_cast<const ContinuousCollisionManager*>(other);
+  if (!manager)
+    throw Exception(
+        "collide: the other manager is not a ContinuousCollisionManager, so its objects "
+        "have no boxes that move. Register its objects in one");
+  callBack(boxes_.pairsWith(manager->boxes_, allCandidates()), *manager, cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::refuseDistance() {
+  throw Exception(
+      "ContinuousCollisionManager has no distance query: FCL has none for objects that "
+      "move. For contact at a distance set ContinuousContactRequest::min_distance; for "
+      "distances at one pose use one of FCL's managers of CollisionObjects");
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(void*, DistanceCallBack<S>) const {
+  refuseDistance();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(Object*, void*, DistanceCallBack<S>) const {
+  refuseDistance();
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(BroadPhaseContinuousCollisionManager<S>*,
+                                             void*, DistanceCallBack<S>) const {
+  refuseDistance();
+}
+
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <unordered_set>
+
+#include "api/object_bounds.h"
+#include "api/query_arguments.h"
+#include "base/default_floating_point.h"
+#include "broadphase/broad_phase.h"
+#include "fcl/broadphase/continuous_collision_manager.h"
+
+namespace fcl {
+namespace detail {
+
+using deformable::BoundsList;
+using deformable::BroadPhase;
+using deformable::DefaultFloatingPoint;
+using deformable::MeetingObjects;
+using deformable::MeetingQuery;
+using deformable::MovingBounds;
+
+template <typename S>
+class ContinuousBroadPhase<S>::Boxes : public BroadPhase {};
+
+namespace {
+
+/// The bounds of objects. An error names the object by its place in the list.
+template <typename S, typename Read>
+BoundsList boundsOf(void* const* objects, std::size_t count, Read read) {
+  BoundsList bounds;
+  bounds.items.reserve(count);
+  bounds.boxes.reserve(2 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    try {
+      appendBounds<S>(read(objects[i]), bounds);
+    } catch (const Exception& error) {
+      if (count == 1) throw;
+      throw Exception(std::string(error.what()) + " (object " + std::to_string(i) +
+                      " of the list)");
+    }
+  }
+  return bounds;
+}
+
+MeetingQuery queryOf(const BroadPhaseSettings& settings) {
+  requireDistance(settings.distance, "request.min_distance");
+  if (!(settings.t_max >= 0 && settings.t_max <= 1))
+    throw Exception("request.t_max is " + std::to_string(settings.t_max) +
+                    "; it must be in [0, 1]");
+  MeetingQuery query;
+  query.distance = settings.distance;
+  query.latest = settings.t_max;
+  query.with_self = settings.with_self;
+  return query;
+}
+
+std::vector<BroadPhasePair> toPairs(const std::vector<MeetingObjects>& meeting) {
+  std::vector<BroadPhasePair> pairs;
+  pairs.reserve(meeting.size());
+  for (const MeetingObjects& pair : meeting)
+    pairs.push_back({pair.window.lo, pair.window.hi, pair.o1, pair.o2});
+  return pairs;
+}
+
+void requireRegistered(const BroadPhase& boxes, const void* object) {
+  if (!boxes.contains(object))
+    throw Exception(
+        "the object is not registered in this manager. Call registerObject() first");
+}
+
+}  // namespace
+
+template <typename S>
+ContinuousBroadPhase<S>::ContinuousBroadPhase() : boxes_(new Boxes) {}
+
+template <typename S>
+ContinuousBroadPhase<S>::~ContinuousBroadPhase() = default;
+
+template <typename S>
+void ContinuousBroadPhase<S>::insert(void* const* objects, std::size_t count, Read read) {
+  const DefaultFloatingPoint mode;
+  std::unordered_set<const void*> seen;
+  for (std::size_t i = 0; i < count; ++i)
+    if (boxes_->contains(objects[i]) || !seen.insert(objects[i]).second)
+      throw Exception("object " + std::to_string(i) +
+                      " of the list is registered already, or twice in the list. After a "
+                      "change call update()");
+  boxes_->insert(objects, boundsOf<S>(objects, count, read));
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::update(void* const* objects, std::size_t count, Read read) {
+  const DefaultFloatingPoint mode;
+  for (std::size_t i = 0; i < count; ++i) requireRegistered(*boxes_, objects[i]);
+  boxes_->update(objects, boundsOf<S>(objects, count, read));
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::remove(const void* object) {
+  requireRegistered(*boxes_, object);
+  boxes_->remove(object);
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::rebuild() {
+  boxes_->rebuild();
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::clear() {
+  boxes_->clear();
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::setFilter(const void* object, std::uint32_t group,
+                                        std::uint32_t mask) {
+  requireRegistered(*boxes_, object);
+  boxes_->setFilter(object, {group, mask});
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::setSelf(const void* object, bool self) {
+  requireRegistered(*boxes_, object);
+  boxes_->setSelf(object, self);
+}
+
+template <typename S>
+std::size_t ContinuousBroadPhase<S>::size() const {
+  return boxes_->size();
+}
+
+template <typename S>
+bool ContinuousBroadPhase<S>::contains(const void* object) const {
+  return boxes_->contains(object);
+}
+
+template <typename S>
+std::vector<void*> ContinuousBroadPhase<S>::objects() const {
+  return boxes_->objects();
+}
+
+template <typename S>
+StepBox ContinuousBroadPhase<S>::stepBox(const void* object, Read read) {
+  const DefaultFloatingPoint mode;
+  BoundsList list;
+  appendBounds<S>(read(object), list);
+  StepBox out;
+  for (int k = 0; k < 3; ++k) {
+    double below = list.boxes.front().half[k], above = list.boxes.front().half[k + 3];
+    for (const deformable::HalfAxisBox& box : list.boxes) {
+      below = std::max(below, box.half[k]);
+      above = std::max(above, box.half[k + 3]);
+    }
+    // One unit more, for a box in float.
+    const auto step = [](double x, double to) {
+      const S rounded = static_cast<S>(x);
+      return static_cast<double>(std::nextafter(rounded, static_cast<S>(to)));
+    };
+    out.lower[k] = step(-below, -HUGE_VAL);
+    out.upper[k] = step(above, HUGE_VAL);
+  }
+  return out;
+}
+
+template <typename S>
+std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairs(
+    const BroadPhaseSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  return toPairs(boxes_->pairs(queryOf(settings)));
+}
+
+template <typename S>
+std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsOf(
+    void* object, Read read, const BroadPhaseSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  const MeetingQuery query = queryOf(settings);
+  const BoundsList bounds = boundsOf<S>(&object, 1, read);
+  return toPairs(boxes_->pairsOf(object, bounds.at(0), query));
+}
+
+template <typename S>
+std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsWith(
+    const ContinuousBroadPhase& other, const BroadPhaseSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  return toPairs(boxes_->pairsWith(*other.boxes_, queryOf(settings)));
+}
+
+template class ContinuousBroadPhase<double>;
+template class ContinuousBroadPhase<float>;
+
+}  // namespace detail
+}  // namespace fcl

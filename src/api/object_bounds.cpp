@@ -1,0 +1,287 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/object_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "api/prepared_motion.h"
+#include "api/query_arguments.h"
+#include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/capsule.h"
+#include "fcl/geometry/shape/cone.h"
+#include "fcl/geometry/shape/convex.h"
+#include "fcl/geometry/shape/cylinder.h"
+#include "fcl/geometry/shape/ellipsoid.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
+#include "fcl/geometry/shape/sphere.h"
+#include "fcl/geometry/shape/triangle_p.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+using namespace deformable;
+
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+constexpr double kUpward = 1 + 0x1p-40;
+/// A pair query adds up to 2^-44 of the coordinates of both objects, for rounding and for
+/// its tolerance (motion_query.cpp, numerics.md). The boxes of both have room for it.
+constexpr double kRoom = 0x1p-40;
+/// The deviation from straight lines is at most this share of the radius of an object, if
+/// this needs no more than kMostSpans.
+constexpr double kDeviation = 0x1p-4;
+constexpr int kMostSpans = 16;
+/// FCL's default. A larger rounding error of an InterpMotion's reference point is refused.
+constexpr double kTocErr = 1e-4;
+
+double norm(const double (&v)[3]) {
+  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/// A body as its bounds are made: boxes in its frame, at t = 0 and t = 1.
+struct BoundedBody {
+  MotionBox box[2];
+  MotionPath path;
+};
+
+/// A box around a center: points of the body are within `pad` of it.
+MotionBox plainBox(const double (&center)[3], const double (&extent)[3], double pad) {
+  MotionBox box{};
+  for (int i = 0; i < 3; ++i) {
+    box.center[i] = center[i];
+    box.extent[i] = std::abs(extent[i]) * kUpward;
+    box.axis[i][i] = 1;
+  }
+  box.pad = std::abs(pad) * kUpward;
+  box.radius = (norm(box.extent) + box.pad) * kUpward;
+  return box;
+}
+
+MotionBox plainBox(double x, double y, double z, double pad = 0) {
+  return plainBox({0, 0, 0}, {x, y, z}, pad);
+}
+
+template <typename S>
+MotionBox boxOfPoints(const Vector3<S>* points, std::size_t count) {
+  double center[3], extent[3];
+  for (int k = 0; k < 3; ++k) {
+    double lo = kUnbounded, hi = -kUnbounded;
+    for (std::size_t i = 0; i < count; ++i) {
+      const double x = static_cast<double>(points[i][k]);
+      if (std::isnan(x)) lo = hi = x;
+      lo = std::min(lo, x);
+      hi = std::max(hi, x);
+    }
+    center[k] = 0.5 * (lo + hi);
+    // The center rounds.
+    extent[k] = 0.5 * (hi - lo) + 0x1p-50 * std::abs(center[k]);
+  }
+  return plainBox(center, extent, 0);
+}
+
+/// The box of a shape in its frame. Returns false for a shape without one.
+template <typename S>
+bool shapeBox(const CollisionGeometry<S>& o, MotionBox& box) {
+  const auto number = [](S x) { return static_cast<double>(x); };
+  switch (o.getNodeType()) {
+    case GEOM_BOX: {
+      const auto& side = static_cast<const Box<S>&>(o).side;
+      box = plainBox(number(side[0]) / 2, number(side[1]) / 2, number(side[2]) / 2);
+      return true;
+    }
+    case GEOM_SPHERE:
+      box = plainBox(0, 0, 0, number(static_cast<const Sphere<S>&>(o).radius));
+      return true;
+    case GEOM_ELLIPSOID: {
+      const auto& radii = static_cast<const Ellipsoid<S>&>(o).radii;
+      box = plainBox(number(radii[0]), number(radii[1]), number(radii[2]));
+      return true;
+    }
+    case GEOM_CAPSULE: {
+      const auto& capsule = static_cast<const Capsule<S>&>(o);
+      box = plainBox(0, 0, number(capsule.lz) / 2, number(capsule.radius));
+      return true;
+    }
+    case GEOM_CONE: {
+      const auto& cone = static_cast<const Cone<S>&>(o);
+      box = plainBox(number(cone.radius), number(cone.radius), number(cone.lz) / 2);
+      return true;
+    }
+    case GEOM_CYLINDER: {
+      const auto& cylinder = static_cast<const Cylinder<S>&>(o);
+      box = plainBox(number(cylinder.radius), number(cylinder.radius),
+                     number(cylinder.lz) / 2);
+      return true;
+    }
+    case GEOM_CONVEX: {
+      const auto& vertices = static_cast<const Convex<S>&>(o).getVertices();
+      if (vertices.empty()) return false;
+      box = boxOfPoints(vertices.data(), vertices.size());
+      return true;
+    }
+    case GEOM_TRIANGLE: {
+      const auto& triangle = static_cast<const TriangleP<S>&>(o);
+      const Vector3<S> corners[3] = {triangle.a, triangle.b, triangle.c};
+      box = boxOfPoints(corners, 3);
+      return true;
+    }
+    default:
+      return false;
+  }
+}
+
+double accelerationOf(const AccelerationBound& bound, const MotionBox (&box)[2]) {
+  if (bound.isZero() && bound.per_displacement == 0) return 0;
+  const auto center = [](const MotionBox& at) -> Vec {
+    return {at.center[0], at.center[1], at.center[2]};
+  };
+  return bound.between(center(box[0]), center(box[1]),
+                       std::max(box[0].radius, box[1].radius)) +
+         bound.per_displacement * box[0].displacement;
+}
+
+/// The box of the body at t in the world, without the deviation in a span.
+HalfAxisBox boxAt(const BoundedBody& body, double t, double pad) {
+  const Pose pose = body.path.pose(t);
+  const MotionBox &from = body.box[0], &to = body.box[1];
+  double center[3], extent[3];
+  for (int k = 0; k < 3; ++k) {
+    center[k] = (1 - t) * from.center[k] + t * to.center[k];
+    extent[k] = (1 - t) * from.extent[k] + t * to.extent[k];
+  }
+  HalfAxisBox out;
+  for (int k = 0; k < 3; ++k) {
+    const double* row = pose.rotation + 3 * k;
+    const double middle = row[0] * center[0] + row[1] * center[1] + row[2] * center[2] +
+                          pose.translation[k];
+    double half = pad;
+    // The axes are the same at both ends.
+    for (int j = 0; j < 3; ++j)
+      half += std::abs(row[0] * from.axis[j][0] + row[1] * from.axis[j][1] +
+                       row[2] * from.axis[j][2]) *
+              extent[j];
+    out.half[k] = half - middle;
+    out.half[k + 3] = half + middle;
+  }
+  return out;
+}
+
+int numSpans(const BoundedBody& body) {
+  const double deviation =
+      0.125 * accelerationOf(body.path.acceleration(0, 1), body.box);
+  const double wanted = kDeviation * std::max(body.box[0].radius, body.box[1].radius);
+  int n = 1;
+  while (n < kMostSpans && deviation > wanted * n * n) n *= 2;
+  return n;
+}
+
+void appendBody(const BoundedBody& body, BoundsList& list) {
+  const int n = numSpans(body);
+  const double stretch = body.path.stretch();
+  double size = body.path.translationReach(), pad = 0;
+  for (const MotionBox& box : body.box) {
+    size = std::max(size, body.path.translationReach() +
+                              stretch * (norm(box.center) + box.radius));
+    pad = std::max(pad, stretch * box.pad);
+  }
+  const std::size_t first = list.boxes.size();
+  for (int i = 0; i <= n; ++i)
+    list.boxes.push_back(boxAt(body, double(i) / n, pad + kRoom * size));
+  double before = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double dt = 1. / n;
+    double after = 0;
+    if (i < n)
+      after = 0.125 * dt * dt * kUpward *
+              accelerationOf(body.path.acceleration(i * dt, (i + 1) * dt), body.box);
+    for (double& half : list.boxes[first + static_cast<std::size_t>(i)].half)
+      half += std::max(before, after);
+    before = after;
+  }
+  const bool is_finite =
+      std::all_of(list.boxes.begin() + static_cast<std::ptrdiff_t>(first),
+                  list.boxes.end(), [](const HalfAxisBox& box) {
+                    return std::all_of(box.half, box.half + HalfAxisBox::kSides,
+                                       [](double x) { return std::isfinite(x); });
+                  });
+  if (!is_finite)
+    throw Exception(
+        "object: its geometry or its path is not finite, or too large for doubles. Give "
+        "finite numbers");
+  list.items.push_back({first, n});
+}
+
+void appendUnbounded(BoundsList& list) {
+  HalfAxisBox box;
+  std::fill(box.half, box.half + HalfAxisBox::kSides, kUnbounded);
+  list.items.push_back({list.boxes.size(), 1});
+  list.boxes.insert(list.boxes.end(), 2, box);
+}
+
+/// A plane, or the halfspace n x <= d: bounded along an axis that is parallel to the
+/// normal at all times.
+template <typename Shape>
+void appendFlat(const Shape& shape, bool is_plane, const MotionPath& path,
+                BoundsList& list) {
+  const double n[3] = {double{shape.n[0]}, double{shape.n[1]}, double{shape.n[2]}};
+  const double d = double{shape.d};
+  if (!std::isfinite(norm(n)) || !std::isfinite(d))
+    throw Exception("object: the plane or halfspace is not finite");
+  appendUnbounded(list);
+  if (!path.isTranslation()) return;
+  for (int end = 0; end < 2; ++end) {
+    const Pose pose = path.pose(end);
+    double normal[3];
+    for (int k = 0; k < 3; ++k)
+      normal[k] = pose.rotation[3 * k] * n[0] + pose.rotation[3 * k + 1] * n[1] +
+                  pose.rotation[3 * k + 2] * n[2];
+    HalfAxisBox& box = list.boxes[list.items.back().first + std::size_t(end)];
+    for (int k = 0; k < 3; ++k) {
+      if (normal[k] == 0 || normal[(k + 1) % 3] != 0 || normal[(k + 2) % 3] != 0)
+        continue;
+      const double at = d / normal[k] + pose.translation[k],
+                   room = kRoom * (std::abs(d / normal[k]) + path.translationReach());
+      if (is_plane || normal[k] > 0) box.half[k + 3] = at + room;
+      if (is_plane || normal[k] < 0) box.half[k] = room - at;
+    }
+  }
+}
+
+template <typename S>
+void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
+  requireFinite(placed.beginning(), placed.end(), "object");
+  const CollisionGeometry<S>& o = placed.geometry();
+  MotionBox box;
+  if (shapeBox(o, box)) {
+    appendBody({{box, box}, motionPathOf(placed)}, list);
+    return;
+  }
+  if (o.getNodeType() == GEOM_PLANE)
+    appendFlat(static_cast<const Plane<S>&>(o), true, motionPathOf(placed), list);
+  else if (o.getNodeType() == GEOM_HALFSPACE)
+    appendFlat(static_cast<const Halfspace<S>&>(o), false, motionPathOf(placed), list);
+  else
+    appendUnbounded(list);
+}
+
+}  // namespace
+
+template <typename S>
+void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
+  const PlacedGeometry<S> placed(moving);
+  if (moving.path == PathKind::kUnknown) return appendUnbounded(list);
+  if (!placed.isMesh()) return appendShape(placed, list);
+  requireFinite(placed.beginning(), placed.end(), "object");
+  const PreparedMotion motion(placed, "object", kTocErr, 1);
+  const MotionBody& body = motion.body();
+  appendBody({{body.box(body.root(), 0), body.box(body.root(), 1)}, body.path()}, list);
+}
+
+template void appendBounds(const MovingGeometry<double>&, BoundsList&);
+template void appendBounds(const MovingGeometry<float>&, BoundsList&);
+
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "broadphase/broad_phase.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Boxes with larger coordinates have no place in a tree: sums of their widths, and
+/// differences of these, stay finite in float.
+constexpr float kMostTreeHalf = 0x1p100f;
+
+/// A tree is built again when more than one of this number of its objects change. To
+/// remove and insert an object takes about as long as to build for four.
+constexpr std::size_t kRebuildShare = 4;
+
+bool isBounded(const LinearBox& box) {
+  const auto is_small = [](float x) { return std::abs(x) < kMostTreeHalf; };
+  return std::all_of(box.t0, box.t0 + HalfAxisBox::kSides, is_small) &&
+         std::all_of(box.t1, box.t1 + HalfAxisBox::kSides, is_small);
+}
+
+bool isSameAtAllTimes(const MovingBounds& bounds) {
+  for (int i = 1; i <= bounds.num_spans; ++i)
+    if (!std::equal(bounds.boxes[i].half, bounds.boxes[i].half + HalfAxisBox::kSides,
+                    bounds.boxes[0].half))
+      return false;
+  return true;
+}
+
+LinearQuery linearQuery(const MeetingQuery& query) {
+  return LinearQuery(query.distance, query.latest);
+}
+
+}  // namespace
+
+std::vector<void*> BroadPhase::objects() const {
+  std::vector<std::pair<std::uint64_t, void*>> in_order;
+  in_order.reserve(slot_of_.size());
+  for (const auto& entry : slot_of_) {
+    const Slot& slot = at(entry.second);
+    in_order.emplace_back(slot.serial, slot.object);
+  }
+  std::sort(in_order.begin(), in_order.end());
+  std::vector<void*> out;
+  out.reserve(in_order.size());
+  for (const auto& entry : in_order) out.push_back(entry.second);
+  return out;
+}
+
+BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
+  SlotNumber i;
+  if (free_.empty()) {
+    i = static_cast<SlotNumber>(slots_.size());
+    slots_.emplace_back();
+    is_stale_.push_back(0);
+  } else {
+    i = free_.back();
+    free_.pop_back();
+  }
+  slot_of_.emplace(object, i);
+  at(i).object = object;
+  at(i).serial = next_serial_++;
+  at(i).filter = ObjectFilter();
+  at(i).self = false;
+  return i;
+}
+
+void BroadPhase::setBounds(const MovingBounds& bounds, Slot& slot) {
+  slot.boxes.assign(bounds.boxes, bounds.boxes + bounds.num_spans + 1);
+  slot.rests = isSameAtAllTimes(bounds);
+  slot.box = linearBox(bounds);
+  slot.place = !isBounded(slot.box) ? kUnbounded : slot.rests ? kResting : kMoving;
+}
+
+void BroadPhase::join(SlotNumber i) {
+  std::vector<SlotNumber>& members = members_[at(i).place];
+  at(i).member = members.size();
+  members.push_back(i);
+}
+
+void BroadPhase::leave(SlotNumber i) {
+  std::vector<SlotNumber>& members = members_[at(i).place];
+  members[at(i).member] = members.back();
+  at(members.back()).member = at(i).member;
+  members.pop_back();
+}
+
+void BroadPhase::markStale(SlotNumber i) {
+  char& is_stale = is_stale_[static_cast<std::size_t>(i)];
+  if (is_stale) return;
+  is_stale = 1;
+  stale_.push_back(i);
+}
+
+void BroadPhase::insert(void* const* objects, const BoundsList& bounds) {
+  std::vector<SlotNumber> slots;
+  slots.reserve(bounds.items.size());
+  for (std::size_t i = 0; i < bounds.items.size(); ++i)
+    slots.push_back(newSlot(objects[i]));
+  change(slots, bounds, true);
+}
+
+void BroadPhase::update(void* const* objects, const BoundsList& bounds) {
+  std::vector<SlotNumber> slots;
+  slots.reserve(bounds.items.size());
+  for (std::size_t i = 0; i < bounds.items.size(); ++i)
+    slots.push_back(numberOf(objects[i]));
+  change(slots, bounds, false);
+}
+
+/// Gives new bounds to objects. A tree in which many objects change is built again.
+void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
+                        bool are_new) {
+  const bool is_rebuilt[2] = {
+      slots.size() * kRebuildShare > members_[kMoving].size(),
+      slots.size() * kRebuildShare > members_[kResting].size()};
+  bool is_touched[2] = {false, false};
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    const SlotNumber number = slots[i];
+    Slot& slot = at(number);
+    if (!are_new) {
+      if (slot.rests) markStale(number);
+      leave(number);
+      if (slot.place != kUnbounded) {
+        is_touched[slot.place] = true;
+        if (!is_rebuilt[slot.place]) tree_[slot.place].remove(number);
+      }
+    }
+    setBounds(bounds.at(i), slot);
+    if (slot.rests) markStale(number);
+    join(number);
+    if (slot.place == kUnbounded) continue;
+    is_touched[slot.place] = true;
+    if (!is_rebuilt[slot.place]) tree_[slot.place].insert({slot.box, number});
+  }
+  for (const Place place : {kMoving, kResting})
+    if (is_touched[place] && is_rebuilt[place]) buildTree(place);
+}
+
+void BroadPhase::buildTree(Place place) {
+  std::vector<MovingBoxTree::Leaf> leaves;
+  leaves.reserve(members_[place].size());
+  for (const SlotNumber i : members_[place]) leaves.push_back({at(i).box, i});
+  tree_[place].build(leaves);
+}
+
+void BroadPhase::rebuild() {
+  buildTree(kMoving);
+  buildTree(kResting);
+}
+
+void BroadPhase::remove(const void* object) {
+  const auto entry = slot_of_.find(object);
+  assert(entry != slot_of_.end());
+  const SlotNumber i = entry->second;
+  slot_of_.erase(entry);
+  if (at(i).rests) markStale(i);
+  leave(i);
+  if (at(i).place != kUnbounded) tree_[at(i).place].remove(i);
+  at(i).object = nullptr;
+  free_.push_back(i);
+}
+
+void BroadPhase::clear() {
+  slot_of_.clear();
+  slots_.clear();
+  free_.clear();
+  for (auto& members : members_) members.clear();
+  for (auto& tree : tree_) tree.clear();
+  resting_.clear();
+  stale_.clear();
+  is_stale_.clear();
+}
+
+void BroadPhase::setFilter(const void* object, const ObjectFilter& filter) {
+  const SlotNumber i = numberOf(object);
+  at(i).filter = filter;
+  if (at(i).rests) markStale(i);
+}
+
+void BroadPhase::setSelf(const void* object, bool self) {
+  at(numberOf(object)).self = self;
+}
+
+ObjectFilter BroadPhase::filterOf(const void* object) const {
+  const auto entry = slot_of_.find(object);
+  return entry == slot_of_.end() ? ObjectFilter() : at(entry->second).filter;
+}
+
+void BroadPhase::addIfMeeting(SlotNumber a, SlotNumber b, const MeetingQuery& query,
+                              std::vector<Found>& found) const {
+  if (!at(a).filter.accepts(at(b).filter)) return;
+  const MeetingWindow window =
+      meetingWindow(at(a).bounds(), at(b).bounds(), query.distance);
+  if (window.isEmpty() || window.lo > query.latest) return;
+  if (at(b).serial < at(a).serial) std::swap(a, b);
+  found.push_back({window, a, b});
+}
+
+/// All pairs of which at least one object moves.
+void BroadPhase::findMoving(const MeetingQuery& query, std::vector<Found>& found) const {
+  const LinearQuery linear = linearQuery(query);
+  const auto add = [&](SlotNumber a, SlotNumber b) { addIfMeeting(a, b, query, found); };
+  tree_[kMoving].visitPairs(linear, add);
+  tree_[kMoving].visitPairs(tree_[kResting], linear, add);
+  const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
+  for (std::size_t i = 0; i < unbounded.size(); ++i) {
+    const SlotNumber a = unbounded[i];
+    const auto add_to = [&](SlotNumber b) { add(a, b); };
+    tree_[kMoving].visitMeeting(at(a).box, linear, add_to);
+    if (!at(a).rests) tree_[kResting].visitMeeting(at(a).box, linear, add_to);
+    for (std::size_t k = 0; k < i; ++k)
+      if (!at(a).rests || !at(unbounded[k]).rests) add(a, unbounded[k]);
+  }
+}
+
+/// The pairs of an object that rests with all others that rest.
+void BroadPhase::findRestingOf(SlotNumber i, std::vector<Found>& found) const {
+  const MeetingQuery query;
+  const auto add_to = [&](SlotNumber k) {
+    // Two stale ones find each other: once is enough.
+    if (k == i || (is_stale_[static_cast<std::size_t>(k)] && k < i)) return;
+    addIfMeeting(i, k, query, found);
+  };
+  tree_[kResting].visitMeeting(at(i).box, linearQuery(query), add_to);
+  for (const SlotNumber k : members_[kUnbounded])
+    if (at(k).rests) add_to(k);
+}
+
+void BroadPhase::refreshResting() const {
+  if (stale_.empty()) return;
+  const auto is_stale = [this](SlotNumber i) {
+    return is_stale_[static_cast<std::size_t>(i)] != 0;
+  };
+  resting_.erase(std::remove_if(resting_.begin(), resting_.end(),
+                                [&](const Found& pair) {
+                                  return is_stale(pair.a) || is_stale(pair.b);
+                                }),
+                 resting_.end());
+  for (const SlotNumber i : stale_)
+    if (at(i).object && at(i).rests) findRestingOf(i, resting_);
+  for (const SlotNumber i : stale_) is_stale_[static_cast<std::size_t>(i)] = 0;
+  stale_.clear();
+}
+
+/// All pairs of two objects that rest. What is remembered is for the distance 0.
+void BroadPhase::findResting(const MeetingQuery& query, std::vector<Found>& found) const {
+  if (query.distance == 0) {
+    const std::lock_guard<std::mutex> lock(resting_mutex_);
+    refreshResting();
+    found.insert(found.end(), resting_.begin(), resting_.end());
+    return;
+  }
+  const LinearQuery linear = linearQuery(query);
+  const auto add = [&](SlotNumber a, SlotNumber b) { addIfMeeting(a, b, query, found); };
+  tree_[kResting].visitPairs(linear, add);
+  const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
+  for (std::size_t i = 0; i < unbounded.size(); ++i) {
+    const SlotNumber a = unbounded[i];
+    if (!at(a).rests) continue;
+    tree_[kResting].visitMeeting(at(a).box, linear, [&](SlotNumber b) { add(a, b); });
+    for (std::size_t k = 0; k < i; ++k)
+      if (at(unbounded[k]).rests) add(a, unbounded[k]);
+  }
+}
+
+std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
+                                               const BroadPhase& other) const {
+  std::sort(found.begin(), found.end(), [&](const Found& x, const Found& y) {
+    if (x.window.lo != y.window.lo) return x.window.lo < y.window.lo;
+    if (x.a != y.a) return at(x.a).serial < at(y.a).serial;
+    return other.at(x.b).serial < other.at(y.b).serial;
+  });
+  std::vector<MeetingObjects> out;
+  out.reserve(found.size());
+  for (const Found& pair : found)
+    out.push_back({pair.window, at(pair.a).object, other.at(pair.b).object});
+  return out;
+}
+
+std::vector<MeetingObjects> BroadPhase::pairs(const MeetingQuery& query) const {
+  std::vector<Found> found;
+  findMoving(query, found);
+  findResting(query, found);
+  if (query.with_self)
+    for (const auto& entry : slot_of_)
+      if (at(entry.second).self)
+        found.push_back({{0, 1}, entry.second, entry.second});
+  return sorted(found, *this);
+}
+
+std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds& bounds,
+                                                const MeetingQuery& query) const {
+  const LinearQuery linear = linearQuery(query);
+  const LinearBox box = linearBox(bounds);
+  const ObjectFilter filter = filterOf(object);
+  std::vector<Found> found;
+  const auto add = [&](SlotNumber i) {
+    if (at(i).object == object || !filter.accepts(at(i).filter)) return;
+    const MeetingWindow window = meetingWindow(bounds, at(i).bounds(), query.distance);
+    if (!window.isEmpty() && window.lo <= query.latest) found.push_back({window, i, i});
+  };
+  for (const MovingBoxTree& tree : tree_) tree.visitMeeting(box, linear, add);
+  for (const SlotNumber i : members_[kUnbounded]) add(i);
+  std::vector<MeetingObjects> out = sorted(found, *this);
+  for (MeetingObjects& pair : out) pair.o1 = object;
+  return out;
+}
+
+std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,
+                                                  const MeetingQuery& query) const {
+  const LinearQuery linear = linearQuery(query);
+  std::vector<Found> found;
+  const auto add = [&](SlotNumber a, SlotNumber b) {
+    const Slot &x = at(a), &y = other.at(b);
+    if (x.object == y.object || !x.filter.accepts(y.filter)) return;
+    const MeetingWindow window = meetingWindow(x.bounds(), y.bounds(), query.distance);
+    if (!window.isEmpty() && window.lo <= query.latest) found.push_back({window, a, b});
+  };
+  for (const MovingBoxTree& one : tree_)
+    for (const MovingBoxTree& two : other.tree_) one.visitPairs(two, linear, add);
+  for (const SlotNumber a : members_[kUnbounded]) {
+    const auto add_to = [&](SlotNumber b) { add(a, b); };
+    for (const MovingBoxTree& two : other.tree_)
+      two.visitMeeting(at(a).box, linear, add_to);
+    for (const SlotNumber b : other.members_[kUnbounded]) add(a, b);
+  }
+  for (const SlotNumber b : other.members_[kUnbounded])
+    for (const MovingBoxTree& one : tree_)
+      one.visitMeeting(other.at(b).box, linear, [&](SlotNumber a) { add(a, b); });
+  return sorted(found, other);
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

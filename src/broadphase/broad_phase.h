@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_BROADPHASE_BROAD_PHASE_H
+#define FCL_CCD_BROADPHASE_BROAD_PHASE_H
+
+#include <cstddef>
+#include <cstdint>
+#include <mutex>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "broadphase/moving_box_tree.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Groups and masks: two objects can be in contact if the group of each one has a
+/// bit in common with the mask of the other one.
+struct ObjectFilter {
+  std::uint32_t group{1};
+  std::uint32_t mask{~std::uint32_t{0}};
+
+  bool accepts(const ObjectFilter& other) const {
+    return (group & other.mask) != 0 && (other.group & mask) != 0;
+  }
+};
+
+/// @brief The moving bounds of many objects in one array.
+struct BoundsList {
+  struct Item {
+    std::size_t first;
+    int num_spans;
+  };
+  std::vector<HalfAxisBox> boxes;
+  std::vector<Item> items;
+
+  MovingBounds at(std::size_t i) const {
+    return {boxes.data() + items[i].first, items[i].num_spans};
+  }
+  void clear() {
+    boxes.clear();
+    items.clear();
+  }
+};
+
+/// @brief Two objects whose boxes meet, and when.
+struct MeetingObjects {
+  MeetingWindow window;
+  void* o1;
+  void* o2;
+};
+
+struct MeetingQuery {
+  double distance{0};
+  double latest{1};
+  /// Whether objects with setSelf() are paired with themselves.
+  bool with_self{false};
+};
+
+/// @brief Finds the pairs of objects whose moving boxes meet. Objects that move, and
+/// those that rest, have a tree each; objects without bounds are in a list and are tested
+/// against all others. The pairs of two objects that rest are remembered: they cost
+/// nothing until such an object is added, changed or removed.
+///
+/// Thread-safety: const functions may run at the same time.
+class BroadPhase {
+ public:
+  BroadPhase() = default;
+  BroadPhase(const BroadPhase&) = delete;
+  BroadPhase& operator=(const BroadPhase&) = delete;
+
+  std::size_t size() const { return slot_of_.size(); }
+  bool contains(const void* object) const { return slot_of_.count(object) != 0; }
+  /// @brief In the order in which they were inserted.
+  std::vector<void*> objects() const;
+
+  /// @pre no object is there, and none twice
+  void insert(void* const* objects, const BoundsList& bounds);
+  /// @pre all objects are there, and none twice
+  void update(void* const* objects, const BoundsList& bounds);
+  /// @pre the object is there
+  void remove(const void* object);
+  void setFilter(const void* object, const ObjectFilter& filter);
+  void setSelf(const void* object, bool self);
+  void clear();
+  /// @brief New trees.
+  void rebuild();
+
+  /// @brief The filter of an object; of one that is not there, the default.
+  ObjectFilter filterOf(const void* object) const;
+
+  /// @brief Sorted by the start of the window, then by the order of insertion. Of a pair,
+  /// o1 was inserted first.
+  std::vector<MeetingObjects> pairs(const MeetingQuery& query) const;
+  /// @brief The pairs of one object, which is o1, with all others.
+  std::vector<MeetingObjects> pairsOf(void* object, const MovingBounds& bounds,
+                                      const MeetingQuery& query) const;
+  /// @brief o1 is in this set, o2 in the other one.
+  std::vector<MeetingObjects> pairsWith(const BroadPhase& other,
+                                        const MeetingQuery& query) const;
+
+ private:
+  using SlotNumber = std::int32_t;
+  enum Place { kMoving, kResting, kUnbounded, kNumPlaces };
+
+  struct Slot {
+    void* object{nullptr};
+    std::uint64_t serial{0};
+    ObjectFilter filter;
+    bool self{false};
+    /// Whether its box is the same at all times.
+    bool rests{false};
+    Place place{kUnbounded};
+    /// In members_[place].
+    std::size_t member{0};
+    LinearBox box;
+    std::vector<HalfAxisBox> boxes;
+
+    MovingBounds bounds() const {
+      return {boxes.data(), static_cast<int>(boxes.size()) - 1};
+    }
+  };
+  struct Found {
+    MeetingWindow window;
+    SlotNumber a, b;
+  };
+  Slot& at(SlotNumber i) { return slots_[static_cast<std::size_t>(i)]; }
+  const Slot& at(SlotNumber i) const { return slots_[static_cast<std::size_t>(i)]; }
+  SlotNumber numberOf(const void* object) const { return slot_of_.at(object); }
+  SlotNumber newSlot(void* object);
+  void setBounds(const MovingBounds& bounds, Slot& slot);
+  void join(SlotNumber i);
+  void leave(SlotNumber i);
+  void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
+              bool are_new);
+  void buildTree(Place place);
+  void markStale(SlotNumber i);
+
+  void addIfMeeting(SlotNumber a, SlotNumber b, const MeetingQuery& query,
+                    std::vector<Found>& found) const;
+  void findMoving(const MeetingQuery& query, std::vector<Found>& found) const;
+  void findResting(const MeetingQuery& query, std::vector<Found>& found) const;
+  void refreshResting() const;
+  void findRestingOf(SlotNumber i, std::vector<Found>& found) const;
+  std::vector<MeetingObjects> sorted(std::vector<Found>& found,
+                                     const BroadPhase& other) const;
+
+  std::unordered_map<const void*, SlotNumber> slot_of_;
+  std::vector<Slot> slots_;
+  std::vector<SlotNumber> free_;
+  std::vector<SlotNumber> members_[kNumPlaces];
+  MovingBoxTree tree_[2];
+  std::uint64_t next_serial_{0};
+
+  /// The pairs of objects that rest, at the distance 0, except those of stale slots.
+  mutable std::mutex resting_mutex_;
+  mutable std::vector<Found> resting_;
+  mutable std::vector<SlotNumber> stale_;
+  mutable std::vector<char> is_stale_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "broadphase/moving_bounds.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cfloat>
+#include <cmath>
+
+#include "mesh/moving_kdop.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// More than the rounding of a time, a quotient of sums of doubles.
+constexpr double kWindowMargin = 0x1p-48;
+
+/// One side of a box that moves, at place i of n + 1 equally spaced places.
+double sideAt(const MovingBounds& bounds, int side, int i, int n) {
+  const int spans = bounds.num_spans, place = i * spans / n, rest = i * spans % n;
+  const double from = bounds.boxes[place].half[side];
+  if (rest == 0) return from;
+  const double to = bounds.boxes[place + 1].half[side];
+  // Equal ends also where they are infinite.
+  return from == to ? from : from + (to - from) * (double(rest) / n);
+}
+
+/// The window in one span, as fractions of it.
+MeetingWindow spanWindow(const MovingBounds& a, const MovingBounds& b, double distance,
+                         int i, int n) {
+  MeetingWindow window{0, 1};
+  for (int j = 0; j < HalfAxisBox::kSides; ++j) {
+    const int k = HalfAxisBox::opposite(j);
+    const double s0 = sideAt(a, j, i, n) + sideAt(b, k, i, n) + distance,
+                 s1 = sideAt(a, j, i + 1, n) + sideAt(b, k, i + 1, n) + distance;
+    if (s0 >= 0 && s1 >= 0) continue;
+    if (s0 < 0 && s1 < 0) return {1, 0};
+    const double change = s0 - s1;
+    if (!(std::abs(change) <= DBL_MAX)) continue;  // no quotient
+    const double t = s0 / change;
+    if (s0 < 0)
+      window.lo = std::max(window.lo, t - kWindowMargin);
+    else
+      window.hi = std::min(window.hi, t + kWindowMargin);
+  }
+  return window;
+}
+
+}  // namespace
+
+MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
+                            double distance) {
+  const int n = std::max(a.num_spans, b.num_spans);
+  assert(n % a.num_spans == 0 && n % b.num_spans == 0);
+  MeetingWindow whole{1, 0};
+  bool is_first = true;
+  for (int i = 0; i < n; ++i) {
+    const MeetingWindow part = spanWindow(a, b, distance, i, n);
+    if (part.isEmpty()) continue;
+    // n is a power of two: these quotients and sums round by 2^-53.
+    if (is_first) whole.lo = std::max(0., (i + part.lo) / n - kWindowMargin);
+    whole.hi = std::min(1., (i + part.hi) / n + kWindowMargin);
+    is_first = false;
+  }
+  return whole;
+}
+
+LinearBox linearBox(const MovingBounds& bounds) {
+  const int n = bounds.num_spans;
+  LinearBox out;
+  for (int j = 0; j < HalfAxisBox::kSides; ++j) {
+    const double from = bounds.boxes[0].half[j], to = bounds.boxes[n].half[j];
+    double above = 0;
+    for (int i = 1; i < n; ++i) {
+      const double part = double(i) / n;
+      above =
+          std::max(above, bounds.boxes[i].half[j] - ((1 - part) * from + part * to));
+    }
+    // The sums of doubles above round by far less than roundUp() adds, 2^-22 of the
+    // result, or of the padding below.
+    const auto pad = static_cast<float>((std::abs(from) + std::abs(to)) * 0x1p-48);
+    out.t0[j] = roundUp(from + above, std::isfinite(pad) ? pad : 0);
+    out.t1[j] = roundUp(to + above, std::isfinite(pad) ? pad : 0);
+  }
+  return out;
+}
+
+LinearQuery::LinearQuery(double reach, double last)
+    : distance(reach > 0 ? roundUp(reach * (1 + 0x1p-18), 0) : 0),
+      latest(roundUp(last, 0)) {}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
