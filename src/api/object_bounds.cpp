@@ -34,7 +34,8 @@ constexpr double kRoom = 0x1p-40;
 /// this needs no more than kMostSpans.
 constexpr double kDeviation = 0x1p-4;
 constexpr int kMostSpans = 16;
-/// FCL's default. A larger rounding error of an InterpMotion's reference point is refused.
+/// FCL's default. A larger rounding error of an InterpMotion's reference point is
+/// refused.
 constexpr double kTocErr = 1e-4;
 
 double norm(const double (&v)[3]) {
@@ -170,21 +171,33 @@ HalfAxisBox boxAt(const BoundedBody& body, double t, double pad) {
 }
 
 int numSpans(const BoundedBody& body) {
-  const double deviation =
-      0.125 * accelerationOf(body.path.acceleration(0, 1), body.box);
+  const double deviation = 0.125 * accelerationOf(body.path.acceleration(0, 1), body.box);
   const double wanted = kDeviation * std::max(body.box[0].radius, body.box[1].radius);
   int n = 1;
   while (n < kMostSpans && deviation > wanted * n * n) n *= 2;
   return n;
 }
 
+[[noreturn]] void refuse() {
+  throw Exception(
+      "object: its geometry or its path is not finite, or too large for doubles. Give "
+      "finite numbers");
+}
+
+bool isFinite(const HalfAxisBox& box) {
+  return std::all_of(box.half, box.half + HalfAxisBox::kSides,
+                     [](double x) { return std::isfinite(x); });
+}
+
 void appendBody(const BoundedBody& body, BoundsList& list) {
+  for (const MotionBox& box : body.box)
+    if (!std::isfinite(norm(box.center) + box.radius)) refuse();
   const int n = numSpans(body);
   const double stretch = body.path.stretch();
   double size = body.path.translationReach(), pad = 0;
   for (const MotionBox& box : body.box) {
-    size = std::max(size, body.path.translationReach() +
-                              stretch * (norm(box.center) + box.radius));
+    size = std::max(
+        size, body.path.translationReach() + stretch * (norm(box.center) + box.radius));
     pad = std::max(pad, stretch * box.pad);
   }
   const std::size_t first = list.boxes.size();
@@ -201,16 +214,8 @@ void appendBody(const BoundedBody& body, BoundsList& list) {
       half += std::max(before, after);
     before = after;
   }
-  const bool is_finite =
-      std::all_of(list.boxes.begin() + static_cast<std::ptrdiff_t>(first),
-                  list.boxes.end(), [](const HalfAxisBox& box) {
-                    return std::all_of(box.half, box.half + HalfAxisBox::kSides,
-                                       [](double x) { return std::isfinite(x); });
-                  });
-  if (!is_finite)
-    throw Exception(
-        "object: its geometry or its path is not finite, or too large for doubles. Give "
-        "finite numbers");
+  const auto end = list.boxes.end();
+  if (!std::all_of(end - (n + 1), end, isFinite)) refuse();
   list.items.push_back({first, n});
 }
 
@@ -228,8 +233,7 @@ void appendFlat(const Shape& shape, bool is_plane, const MotionPath& path,
                 BoundsList& list) {
   const double n[3] = {double{shape.n[0]}, double{shape.n[1]}, double{shape.n[2]}};
   const double d = double{shape.d};
-  if (!std::isfinite(norm(n)) || !std::isfinite(d))
-    throw Exception("object: the plane or halfspace is not finite");
+  if (!std::isfinite(norm(n)) || !std::isfinite(d)) refuse();
   appendUnbounded(list);
   if (!path.isTranslation()) return;
   for (int end = 0; end < 2; ++end) {

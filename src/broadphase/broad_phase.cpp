@@ -116,9 +116,8 @@ void BroadPhase::update(void* const* objects, const BoundsList& bounds) {
 /// Gives new bounds to objects. A tree in which many objects change is built again.
 void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
                         bool are_new) {
-  const bool is_rebuilt[2] = {
-      slots.size() * kRebuildShare > members_[kMoving].size(),
-      slots.size() * kRebuildShare > members_[kResting].size()};
+  const bool is_rebuilt[2] = {slots.size() * kRebuildShare > members_[kMoving].size(),
+                              slots.size() * kRebuildShare > members_[kResting].size()};
   bool is_touched[2] = {false, false};
   for (std::size_t i = 0; i < slots.size(); ++i) {
     const SlotNumber number = slots[i];
@@ -289,8 +288,7 @@ std::vector<MeetingObjects> BroadPhase::pairs(const MeetingQuery& query) const {
   findResting(query, found);
   if (query.with_self)
     for (const auto& entry : slot_of_)
-      if (at(entry.second).self)
-        found.push_back({{0, 1}, entry.second, entry.second});
+      if (at(entry.second).self) found.push_back({{0, 1}, entry.second, entry.second});
   return sorted(found, *this);
 }
 

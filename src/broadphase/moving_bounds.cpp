@@ -74,8 +74,7 @@ LinearBox linearBox(const MovingBounds& bounds) {
     double above = 0;
     for (int i = 1; i < n; ++i) {
       const double part = double(i) / n;
-      above =
-          std::max(above, bounds.boxes[i].half[j] - ((1 - part) * from + part * to));
+      above = std::max(above, bounds.boxes[i].half[j] - ((1 - part) * from + part * to));
     }
     // The sums of doubles above round by far less than roundUp() adds, 2^-22 of the
     // result, or of the padding below.

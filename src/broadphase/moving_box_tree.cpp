@@ -95,8 +95,7 @@ void MovingBoxTree::replaceChild(std::int32_t parent, std::int32_t from,
 /// If one child is higher than the other by more than one, it takes the place of the
 /// node, which takes the lower grandchild. Returns the node that is in the place now.
 std::int32_t MovingBoxTree::balance(std::int32_t node) {
-  const int difference =
-      at(at(node).child[1]).height - at(at(node).child[0]).height;
+  const int difference = at(at(node).child[1]).height - at(at(node).child[0]).height;
   if (difference >= -1 && difference <= 1) return node;
   const int side = difference > 0 ? 1 : 0;
   const std::int32_t up = at(node).child[side];

@@ -117,7 +117,8 @@ class FCL_EXPORT ContinuousBroadPhase {
 };
 
 /// @brief An object of FCL's discrete queries that stands for one that moves: its pose is
-/// that at t = 0, its AABB covers the step, its user data is the ContinuousCollisionObject.
+/// that at t = 0, its AABB covers the step, its user data is the
+/// ContinuousCollisionObject.
 template <typename S>
 class StepObject : public CollisionObject<S> {
  public:
@@ -285,7 +286,10 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   static detail::BroadPhaseSettings allCandidates() { return {0, 1, false}; }
   [[noreturn]] static void refuseDistance();
 
-  const ContinuousFilter* filterOf(const Object* object) const;
+  const ContinuousFilter& filterOf(const Object* object) const;
+  static bool hasTriangles(const ContinuousFilter& filter) {
+    return !filter.triangle_groups.empty() || !filter.triangle_masks.empty();
+  }
   std::string nameOf(const Object* object) const;
   bool test(const detail::BroadPhasePair& pair, const ContinuousCollisionManager& other,
             Request& request, Result& result, PairResult& tested) const;
@@ -303,8 +307,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                 CollisionCallBack<S> callback) const;
 
   detail::ContinuousBroadPhase<S> boxes_;
-  /// Those that have groups of triangles.
-  std::unordered_map<const Object*, ContinuousFilter> triangle_filters_;
+  /// Those that were set.
+  std::unordered_map<const Object*, ContinuousFilter> filters_;
   mutable StepObjects step_objects_;
 };
 
@@ -353,14 +357,14 @@ void ContinuousCollisionManager<S>::registerObject(Object* object) {
 template <typename S>
 void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
   boxes_.remove(object);
-  triangle_filters_.erase(object);
+  filters_.erase(object);
   step_objects_.erase(object);
 }
 
 template <typename S>
 void ContinuousCollisionManager<S>::clear() {
   boxes_.clear();
-  triangle_filters_.clear();
+  filters_.clear();
   step_objects_.clear();
 }
 
@@ -396,10 +400,7 @@ void ContinuousCollisionManager<S>::setFilter(Object* object,
   };
   boxes_.setFilter(object, all(filter.group, filter.triangle_groups),
                    all(filter.mask, filter.triangle_masks));
-  if (filter.triangle_groups.empty() && filter.triangle_masks.empty())
-    triangle_filters_.erase(object);
-  else
-    triangle_filters_[object] = filter;
+  filters_[object] = filter;
 }
 
 template <typename S>
@@ -446,10 +447,11 @@ void ContinuousCollisionManager<S>::collide(const ContinuousCollisionManager& ot
 }
 
 template <typename S>
-const ContinuousFilter* ContinuousCollisionManager<S>::filterOf(
+const ContinuousFilter& ContinuousCollisionManager<S>::filterOf(
     const Object* object) const {
-  const auto entry = triangle_filters_.find(object);
-  return entry == triangle_filters_.end() ? nullptr : &entry->second;
+  static const ContinuousFilter none;
+  const auto entry = filters_.find(object);
+  return entry == filters_.end() ? none : entry->second;
 }
 
 template <typename S>
@@ -469,12 +471,12 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
                                          PairResult& tested) const {
   tested.o1 = objectOf(pair.o1);
   tested.o2 = objectOf(pair.o2);
-  const ContinuousFilter *filter1 = filterOf(tested.o1),
-                         *filter2 = other.filterOf(tested.o2), none;
-  const bool is_filtered = filter1 || filter2;
+  const ContinuousFilter &filter1 = filterOf(tested.o1),
+                         &filter2 = other.filterOf(tested.o2);
+  const bool is_filtered = hasTriangles(filter1) || hasTriangles(filter2);
   if (is_filtered) {
-    request.filter1 = filter1 ? *filter1 : none;
-    request.filter2 = filter2 ? *filter2 : none;
+    request.filter1 = filter1;
+    request.filter2 = filter2;
   }
   ++result.num_tested;
   try {
@@ -486,7 +488,7 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
     throw Exception("o1 is " + nameOf(tested.o1) + ", o2 is " + other.nameOf(tested.o2) +
                     ": " + error.what());
   }
-  if (is_filtered) request.filter1 = request.filter2 = none;
+  if (is_filtered) request.filter1 = request.filter2 = ContinuousFilter();
   return tested.result.is_collide;
 }
 
@@ -532,7 +534,8 @@ void ContinuousCollisionManager<S>::answerFirst(const Pairs& pairs,
   std::vector<InContact> found;
   Request request = asked;
   request.filter1 = request.filter2 = ContinuousFilter();
-  const S range = 2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
+  const S range =
+      2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (pairs[i].t_lo > static_cast<double>(request.t_max)) break;
     PairResult tested;
@@ -545,8 +548,7 @@ void ContinuousCollisionManager<S>::answerFirst(const Pairs& pairs,
   request.t_max = asked.t_max;
   for (InContact& contact : found) {
     if (contact.tested.result.time_of_contact > latest) continue;
-    if (contact.is_cut)
-      test(pairs[contact.pair], other, request, result, contact.tested);
+    if (contact.is_cut) test(pairs[contact.pair], other, request, result, contact.tested);
     if (result.pairs.empty())
       result.pairs.push_back(std::move(contact.tested));
     else if (isEarlier(contact.tested, result.pairs.front()))
