@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+//   fcl_ccd_managers [LARGEST] > managers.csv
+//
+// Speed and errors of the continuous manager on 100 to LARGEST (100,000) objects at equal
+// density. doc/broad_phase.md explains the columns.
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "fcl/broadphase/continuous_collision_manager.h"
+#include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/sphere.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "machine.h"
+#include "mesh_generators.h"
+#include "moving_objects.h"
+
+namespace {
+
+using namespace fcl::test;
+using Object = fcl::ContinuousCollisionObject<double>;
+using Manager = fcl::ContinuousCollisionManager<double>;
+using Geometry = std::shared_ptr<fcl::CollisionGeometry<double>>;
+using Motion = fcl::MotionBase<double>;
+using Vector = fcl::Vector3<double>;
+using ObjectPair = std::pair<Object*, Object*>;
+using Clock = std::chrono::steady_clock;
+
+constexpr double kRadius = .5;
+
+double milliseconds(Clock::time_point since) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - since).count();
+}
+
+template <typename Work>
+double medianOf(int runs, Work&& work) {
+  std::vector<double> times;
+  for (int i = 0; i < runs; ++i) {
+    const auto start = Clock::now();
+    work();
+    times.push_back(milliseconds(start));
+  }
+  std::nth_element(times.begin(), times.begin() + runs / 2, times.end());
+  return times[static_cast<std::size_t>(runs / 2)];
+}
+
+/// A kind of scene.
+struct Kind {
+  const char* name;
+  bool has_shapes, turns;
+  /// One object of this number moves.
+  std::size_t one_moves_of;
+  /// The edge of the cube that an object has for itself.
+  double spacing;
+};
+
+constexpr Kind kKinds[] = {{"meshes", false, false, 1, 1.55},
+                           {"meshes_turning", false, true, 1, 1.55},
+                           {"boxes_spheres_meshes", true, false, 1, 1.55},
+                           {"one_of_101_moves", true, false, 101, 1.55}};
+
+Geometry makeMesh() {
+  const TestMesh mesh = makeUvSphere(10, 6, kRadius);  // 100 triangles
+  auto model = std::make_shared<fcl::BVHModel<fcl::OBBRSS<double>>>();
+  model->beginModel();
+  model->addSubModel(mesh.vertices, mesh.triangles);
+  model->endModel();
+  return model;
+}
+
+struct Scene {
+  std::vector<std::unique_ptr<Object>> owned;
+  std::vector<Object*> objects, moving;
+  std::vector<std::array<double, 6>> sweeps;  ///< a box that contains the object
+  std::vector<Geometry> geometries;
+};
+
+std::shared_ptr<Motion> makeMotion(const Vector& from, const Vector& to, bool turns,
+                                   Random& random) {
+  if (!turns) return translation(from, to);
+  const fcl::AngleAxis<double> turn(1, randomDirection(random));
+  return std::make_shared<fcl::InterpMotion<double>>(
+      fcl::Matrix3<double>::Identity(), from, turn.toRotationMatrix(), to,
+      Vector(0, 0, 0));
+}
+
+/// Objects that rest are on a grid, so that none touch.
+Vector placeOf(const Kind& kind, std::size_t i, std::size_t count, bool moves,
+               Random& random) {
+  const double edge = kind.spacing * std::cbrt(double(count));
+  if (moves) return random.point(edge / 2);
+  const auto side = static_cast<std::size_t>(std::ceil(std::cbrt(double(count))));
+  const Vector cell(double(i % side), double(i / side % side), double(i / side / side));
+  return kind.spacing * cell - Vector::Constant(edge / 2);
+}
+
+Scene makeScene(const Kind& kind, std::size_t count) {
+  Random random(count);
+  Scene scene;
+  for (std::size_t i = 0; i < count; ++i) {
+    // A geometry for 8 objects.
+    if (i % 8 == 0) {
+      const std::size_t form = kind.has_shapes ? i / 8 % 3 : 0;
+      if (form == 0) scene.geometries.push_back(makeMesh());
+      if (form == 1)
+        scene.geometries.push_back(std::make_shared<fcl::Sphere<double>>(kRadius));
+      if (form == 2)
+        scene.geometries.push_back(std::make_shared<fcl::Box<double>>(.6, .6, .6));
+    }
+    const bool moves = i % kind.one_moves_of == 0;
+    const Vector from = placeOf(kind, i, count, moves, random),
+                 to = moves ? Vector(from + random.point(.4)) : from;
+    scene.owned.push_back(makeObject(
+        scene.geometries.back(), makeMotion(from, to, moves && kind.turns, random)));
+    scene.objects.push_back(scene.owned.back().get());
+    if (moves) scene.moving.push_back(scene.objects.back());
+    // Meshes turn about their center.
+    const double r = kRadius * 1.1;
+    std::array<double, 6> sweep;
+    for (int k = 0; k < 3; ++k) {
+      sweep[static_cast<std::size_t>(k)] = std::min(from[k], to[k]) - r;
+      sweep[static_cast<std::size_t>(k + 3)] = std::max(from[k], to[k]) + r;
+    }
+    scene.sweeps.push_back(sweep);
+  }
+  return scene;
+}
+
+bool isMesh(const Object* object) { return object->getObjectType() == fcl::OT_BVH; }
+
+bool isInContact(const Object* o1, const Object* o2) {
+  fcl::ContinuousContactRequest<double> request;
+  request.query = fcl::ContinuousQuery::kFirst;
+  request.enable_contact = false;
+  fcl::ContinuousContactResult<double> result;
+  fcl::collide(o1, o2, request, result);
+  return result.is_collide;
+}
+
+/// The pairs of meshes in contact, found by sorting the sweeps along x.
+std::set<ObjectPair> sortedPairsInContact(const Scene& scene) {
+  std::vector<std::size_t> order(scene.objects.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return scene.sweeps[a][0] < scene.sweeps[b][0];
+  });
+  std::set<ObjectPair> out;
+  for (std::size_t i = 0; i < order.size(); ++i)
+    for (std::size_t k = i + 1; k < order.size(); ++k) {
+      const auto &a = scene.sweeps[order[i]], &b = scene.sweeps[order[k]];
+      if (b[0] > a[3]) break;
+      if (b[1] > a[4] || a[1] > b[4] || b[2] > a[5] || a[2] > b[5]) continue;
+      Object *one = scene.objects[std::min(order[i], order[k])],
+             *two = scene.objects[std::max(order[i], order[k])];
+      if (isMesh(one) && isMesh(two) && isInContact(one, two)) out.emplace(one, two);
+    }
+  return out;
+}
+
+bool collect(Object* o1, Object* o2, void* pairs) {
+  static_cast<std::vector<ObjectPair>*>(pairs)->emplace_back(o1, o2);
+  return false;
+}
+
+bool collectContact(Object* o1, Object* o2, void* pairs) {
+  if (isMesh(o1) && isMesh(o2) && isInContact(o1, o2)) collect(o1, o2, pairs);
+  return false;
+}
+
+void measure(const Kind& kind, std::size_t count) {
+  const Scene scene = makeScene(kind, count);
+  Manager manager;
+  const auto start = Clock::now();
+  manager.registerObjects(scene.objects);
+  const double insert = milliseconds(start);
+  std::vector<ObjectPair> candidates, contacts;
+  manager.collide(&candidates, &collect);  // remembers the pairs that rest
+  const int runs = count > 20000 ? 7 : 15;
+  const double update = medianOf(runs, [&] { manager.update(scene.moving); });
+  const double query = medianOf(runs, [&] {
+    candidates.clear();
+    manager.collide(&candidates, &collect);
+  });
+  const double all = medianOf(3, [&] {
+    contacts.clear();
+    manager.collide(&contacts, &collectContact);
+  });
+  std::size_t meet = 0;
+  const double pairs = medianOf(3, [&] {
+    meet = 0;
+    for (const ObjectPair& pair : candidates)
+      if (isMesh(pair.first) && isMesh(pair.second))
+        meet += isInContact(pair.first, pair.second);
+  });
+  const std::set<ObjectPair> truth = sortedPairsInContact(scene),
+                             found(contacts.begin(), contacts.end());
+  const auto lacking = [](const std::set<ObjectPair>& from,
+                          const std::set<ObjectPair>& in) {
+    return std::count_if(from.begin(), from.end(),
+                         [&](const ObjectPair& pair) { return !in.count(pair); });
+  };
+  std::printf("%s,%zu,%zu,%.3f,%.3f,%.3f,%.4f,%zu,%.2f,%.2f,%zu,%td,%td\n", kind.name,
+              count, scene.moving.size(), insert, update, query,
+              1e3 * (update + query) / double(scene.moving.size()), candidates.size(),
+              pairs, all, contacts.size(), lacking(truth, found), lacking(found, truth));
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const long largest = argc > 1 ? std::atol(argv[1]) : 100000;
+  std::printf(
+      "kind,objects,moving,insert_ms,update_ms,query_ms,us_per_moving,candidates,"
+      "pair_queries_ms,query_with_pairs_ms,contacts,missed,extra\n");
+  for (const Kind& kind : kKinds)
+    for (std::size_t count = 100; count <= static_cast<std::size_t>(largest); count *= 10)
+      measure(kind, kind.one_moves_of == 1 ? count : count + count / 100);
+  std::fprintf(stderr, "%s\n", machineName().c_str());
+  return 0;
+}
