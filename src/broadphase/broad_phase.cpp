@@ -191,42 +191,70 @@ ObjectFilter BroadPhase::filterOf(const void* object) const {
   return entry == slot_of_.end() ? ObjectFilter() : at(entry->second).filter;
 }
 
-void BroadPhase::addIfMeeting(SlotNumber a, SlotNumber b, const MeetingQuery& query,
-                              std::vector<Found>& found) const {
-  if (!at(a).filter.accepts(at(b).filter)) return;
-  const MeetingWindow window =
-      meetingWindow(at(a).bounds(), at(b).bounds(), query.distance);
-  if (window.isEmpty() || window.lo > query.latest) return;
-  if (at(b).serial < at(a).serial) std::swap(a, b);
-  found.push_back({window, a, b});
+/// Adds those pairs whose boxes meet and whose filters accept each other.
+void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
+                            const std::vector<SlotPair>& near, const MeetingQuery& query,
+                            std::vector<Found>& found) {
+  // Neighbours in space are scattered in memory.
+  constexpr std::size_t kAheadOfSlots = 16, kAheadOfBoxes = 8;
+  const std::size_t last = near.size() - 1;
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    const SlotPair &slots = near[std::min(i + kAheadOfSlots, last)],
+                   &boxes = near[std::min(i + kAheadOfBoxes, last)];
+    __builtin_prefetch(&one.at(slots.first));
+    __builtin_prefetch(&two.at(slots.second));
+    __builtin_prefetch(one.at(boxes.first).boxes.data());
+    __builtin_prefetch(two.at(boxes.second).boxes.data());
+    const Slot &a = one.at(near[i].first), &b = two.at(near[i].second);
+    if (a.object == b.object || !a.filter.accepts(b.filter)) continue;
+    const MeetingWindow window = meetingWindow(a.bounds(), b.bounds(), query.distance);
+    if (window.isEmpty() || window.lo > query.latest) continue;
+    if (&one == &two && b.serial < a.serial)
+      found.push_back({window, b.serial, a.serial, near[i].second, near[i].first});
+    else
+      found.push_back({window, a.serial, b.serial, near[i].first, near[i].second});
+  }
 }
 
-/// All pairs of which at least one object moves.
-void BroadPhase::findMoving(const MeetingQuery& query, std::vector<Found>& found) const {
-  const LinearQuery linear = linearQuery(query);
-  const auto add = [&](SlotNumber a, SlotNumber b) { addIfMeeting(a, b, query, found); };
-  tree_[kMoving].visitPairs(linear, add);
-  tree_[kMoving].visitPairs(tree_[kResting], linear, add);
+/// The pairs of which at least one object moves.
+void BroadPhase::findMoving(const LinearQuery& query, std::vector<SlotPair>& near) const {
+  const auto add = [&](SlotNumber a, SlotNumber b) { near.emplace_back(a, b); };
+  tree_[kMoving].visitPairs(query, add);
+  tree_[kMoving].visitPairs(tree_[kResting], query, add);
   const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
   for (std::size_t i = 0; i < unbounded.size(); ++i) {
     const SlotNumber a = unbounded[i];
     const auto add_to = [&](SlotNumber b) { add(a, b); };
-    tree_[kMoving].visitMeeting(at(a).box, linear, add_to);
-    if (!at(a).rests) tree_[kResting].visitMeeting(at(a).box, linear, add_to);
+    tree_[kMoving].visitMeeting(at(a).box, query, add_to);
+    if (!at(a).rests) tree_[kResting].visitMeeting(at(a).box, query, add_to);
     for (std::size_t k = 0; k < i; ++k)
       if (!at(a).rests || !at(unbounded[k]).rests) add(a, unbounded[k]);
   }
 }
 
-/// The pairs of an object that rests with all others that rest.
-void BroadPhase::findRestingOf(SlotNumber i, std::vector<Found>& found) const {
-  const MeetingQuery query;
+/// The pairs of two objects that rest.
+void BroadPhase::findResting(const LinearQuery& query,
+                             std::vector<SlotPair>& near) const {
+  const auto add = [&](SlotNumber a, SlotNumber b) { near.emplace_back(a, b); };
+  tree_[kResting].visitPairs(query, add);
+  const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
+  for (std::size_t i = 0; i < unbounded.size(); ++i) {
+    const SlotNumber a = unbounded[i];
+    if (!at(a).rests) continue;
+    tree_[kResting].visitMeeting(at(a).box, query, [&](SlotNumber b) { add(a, b); });
+    for (std::size_t k = 0; k < i; ++k)
+      if (at(unbounded[k]).rests) add(a, unbounded[k]);
+  }
+}
+
+/// The pairs of a stale object that rests with all others that rest.
+void BroadPhase::findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const {
   const auto add_to = [&](SlotNumber k) {
     // Two stale ones find each other: once is enough.
-    if (k == i || (is_stale_[static_cast<std::size_t>(k)] && k < i)) return;
-    addIfMeeting(i, k, query, found);
+    if (k != i && !(is_stale_[static_cast<std::size_t>(k)] && k < i))
+      near.emplace_back(i, k);
   };
-  tree_[kResting].visitMeeting(at(i).box, linearQuery(query), add_to);
+  tree_[kResting].visitMeeting(at(i).box, LinearQuery(0, 1), add_to);
   for (const SlotNumber k : members_[kUnbounded])
     if (at(k).rests) add_to(k);
 }
@@ -241,54 +269,52 @@ void BroadPhase::refreshResting() const {
                                   return is_stale(pair.a) || is_stale(pair.b);
                                 }),
                  resting_.end());
+  std::vector<SlotPair> near;
   for (const SlotNumber i : stale_)
-    if (at(i).object && at(i).rests) findRestingOf(i, resting_);
+    if (at(i).object && at(i).rests) findRestingOf(i, near);
+  addMeeting(*this, *this, near, MeetingQuery(), resting_);
   for (const SlotNumber i : stale_) is_stale_[static_cast<std::size_t>(i)] = 0;
   stale_.clear();
 }
 
-/// All pairs of two objects that rest. What is remembered is for the distance 0.
-void BroadPhase::findResting(const MeetingQuery& query, std::vector<Found>& found) const {
-  if (query.distance == 0) {
-    const std::lock_guard<std::mutex> lock(resting_mutex_);
-    refreshResting();
-    found.insert(found.end(), resting_.begin(), resting_.end());
-    return;
-  }
-  const LinearQuery linear = linearQuery(query);
-  const auto add = [&](SlotNumber a, SlotNumber b) { addIfMeeting(a, b, query, found); };
-  tree_[kResting].visitPairs(linear, add);
-  const std::vector<SlotNumber>& unbounded = members_[kUnbounded];
-  for (std::size_t i = 0; i < unbounded.size(); ++i) {
-    const SlotNumber a = unbounded[i];
-    if (!at(a).rests) continue;
-    tree_[kResting].visitMeeting(at(a).box, linear, [&](SlotNumber b) { add(a, b); });
-    for (std::size_t k = 0; k < i; ++k)
-      if (at(unbounded[k]).rests) add(a, unbounded[k]);
-  }
-}
-
 std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
                                                const BroadPhase& other) const {
-  std::sort(found.begin(), found.end(), [&](const Found& x, const Found& y) {
+  std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) {
     if (x.window.lo != y.window.lo) return x.window.lo < y.window.lo;
-    if (x.a != y.a) return at(x.a).serial < at(y.a).serial;
-    return other.at(x.b).serial < other.at(y.b).serial;
+    if (x.serial_a != y.serial_a) return x.serial_a < y.serial_a;
+    return x.serial_b < y.serial_b;
   });
   std::vector<MeetingObjects> out;
   out.reserve(found.size());
-  for (const Found& pair : found)
+  constexpr std::size_t kAhead = 16;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Found &pair = found[i], &ahead = found[std::min(i + kAhead, found.size() - 1)];
+    __builtin_prefetch(&at(ahead.a));
+    __builtin_prefetch(&other.at(ahead.b));
     out.push_back({pair.window, at(pair.a).object, other.at(pair.b).object});
+  }
   return out;
 }
 
 std::vector<MeetingObjects> BroadPhase::pairs(const MeetingQuery& query) const {
+  std::vector<SlotPair> near;
   std::vector<Found> found;
-  findMoving(query, found);
-  findResting(query, found);
+  findMoving(linearQuery(query), near);
+  if (query.distance == 0) {
+    // What is remembered is for the distance 0.
+    const std::lock_guard<std::mutex> lock(resting_mutex_);
+    refreshResting();
+    found = resting_;
+  } else {
+    findResting(linearQuery(query), near);
+  }
+  addMeeting(*this, *this, near, query, found);
   if (query.with_self)
-    for (const auto& entry : slot_of_)
-      if (at(entry.second).self) found.push_back({{0, 1}, entry.second, entry.second});
+    for (const auto& entry : slot_of_) {
+      const Slot& slot = at(entry.second);
+      if (slot.self)
+        found.push_back({{0, 1}, slot.serial, slot.serial, entry.second, entry.second});
+    }
   return sorted(found, *this);
 }
 
@@ -299,9 +325,11 @@ std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds
   const ObjectFilter filter = filterOf(object);
   std::vector<Found> found;
   const auto add = [&](SlotNumber i) {
-    if (at(i).object == object || !filter.accepts(at(i).filter)) return;
-    const MeetingWindow window = meetingWindow(bounds, at(i).bounds(), query.distance);
-    if (!window.isEmpty() && window.lo <= query.latest) found.push_back({window, i, i});
+    const Slot& slot = at(i);
+    if (slot.object == object || !filter.accepts(slot.filter)) return;
+    const MeetingWindow window = meetingWindow(bounds, slot.bounds(), query.distance);
+    if (!window.isEmpty() && window.lo <= query.latest)
+      found.push_back({window, slot.serial, slot.serial, i, i});
   };
   for (const MovingBoxTree& tree : tree_) tree.visitMeeting(box, linear, add);
   for (const SlotNumber i : members_[kUnbounded]) add(i);
@@ -313,13 +341,8 @@ std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds
 std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,
                                                   const MeetingQuery& query) const {
   const LinearQuery linear = linearQuery(query);
-  std::vector<Found> found;
-  const auto add = [&](SlotNumber a, SlotNumber b) {
-    const Slot &x = at(a), &y = other.at(b);
-    if (x.object == y.object || !x.filter.accepts(y.filter)) return;
-    const MeetingWindow window = meetingWindow(x.bounds(), y.bounds(), query.distance);
-    if (!window.isEmpty() && window.lo <= query.latest) found.push_back({window, a, b});
-  };
+  std::vector<SlotPair> near;
+  const auto add = [&](SlotNumber a, SlotNumber b) { near.emplace_back(a, b); };
   for (const MovingBoxTree& one : tree_)
     for (const MovingBoxTree& two : other.tree_) one.visitPairs(two, linear, add);
   for (const SlotNumber a : members_[kUnbounded]) {
@@ -331,6 +354,8 @@ std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,
   for (const SlotNumber b : other.members_[kUnbounded])
     for (const MovingBoxTree& one : tree_)
       one.visitMeeting(other.at(b).box, linear, [&](SlotNumber a) { add(a, b); });
+  std::vector<Found> found;
+  addMeeting(*this, other, near, query, found);
   return sorted(found, other);
 }
 

@@ -121,8 +121,11 @@ class BroadPhase {
       return {boxes.data(), static_cast<int>(boxes.size()) - 1};
     }
   };
+  using SlotPair = std::pair<SlotNumber, SlotNumber>;
+  /// Two objects that meet, with all that sorting needs.
   struct Found {
     MeetingWindow window;
+    std::uint64_t serial_a, serial_b;
     SlotNumber a, b;
   };
   Slot& at(SlotNumber i) { return slots_[static_cast<std::size_t>(i)]; }
@@ -137,12 +140,13 @@ class BroadPhase {
   void buildTree(Place place);
   void markStale(SlotNumber i);
 
-  void addIfMeeting(SlotNumber a, SlotNumber b, const MeetingQuery& query,
-                    std::vector<Found>& found) const;
-  void findMoving(const MeetingQuery& query, std::vector<Found>& found) const;
-  void findResting(const MeetingQuery& query, std::vector<Found>& found) const;
+  static void addMeeting(const BroadPhase& one, const BroadPhase& two,
+                         const std::vector<SlotPair>& near, const MeetingQuery& query,
+                         std::vector<Found>& found);
+  void findMoving(const LinearQuery& query, std::vector<SlotPair>& near) const;
+  void findResting(const LinearQuery& query, std::vector<SlotPair>& near) const;
+  void findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const;
   void refreshResting() const;
-  void findRestingOf(SlotNumber i, std::vector<Found>& found) const;
   std::vector<MeetingObjects> sorted(std::vector<Found>& found,
                                      const BroadPhase& other) const;
 

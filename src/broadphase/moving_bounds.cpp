@@ -16,24 +16,29 @@ namespace {
 /// More than the rounding of a time, a quotient of sums of doubles.
 constexpr double kWindowMargin = 0x1p-48;
 
-/// One side of a box that moves, at place i of n + 1 equally spaced places.
-double sideAt(const MovingBounds& bounds, int side, int i, int n) {
+/// The box at place i of n + 1 equally spaced places.
+HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
+  if (bounds.num_spans == n) return bounds.boxes[i];
   const int spans = bounds.num_spans, place = i * spans / n, rest = i * spans % n;
-  const double from = bounds.boxes[place].half[side];
-  if (rest == 0) return from;
-  const double to = bounds.boxes[place + 1].half[side];
-  // Equal ends also where they are infinite.
-  return from == to ? from : from + (to - from) * (double(rest) / n);
+  HalfAxisBox box = bounds.boxes[place];
+  if (rest == 0) return box;
+  const double part = double(rest) / n;
+  for (int j = 0; j < HalfAxisBox::kSides; ++j) {
+    const double to = bounds.boxes[place + 1].half[j];
+    // Equal ends also where they are infinite.
+    if (box.half[j] != to) box.half[j] += (to - box.half[j]) * part;
+  }
+  return box;
 }
 
-/// The window in one span, as fractions of it.
-MeetingWindow spanWindow(const MovingBounds& a, const MovingBounds& b, double distance,
-                         int i, int n) {
+/// The window in a span between two boxes of each object, as fractions of the span.
+MeetingWindow spanWindow(const HalfAxisBox& a0, const HalfAxisBox& a1,
+                         const HalfAxisBox& b0, const HalfAxisBox& b1, double distance) {
   MeetingWindow window{0, 1};
   for (int j = 0; j < HalfAxisBox::kSides; ++j) {
     const int k = HalfAxisBox::opposite(j);
-    const double s0 = sideAt(a, j, i, n) + sideAt(b, k, i, n) + distance,
-                 s1 = sideAt(a, j, i + 1, n) + sideAt(b, k, i + 1, n) + distance;
+    const double s0 = a0.half[j] + b0.half[k] + distance,
+                 s1 = a1.half[j] + b1.half[k] + distance;
     if (s0 >= 0 && s1 >= 0) continue;
     if (s0 < 0 && s1 < 0) return {1, 0};
     const double change = s0 - s1;
@@ -55,8 +60,12 @@ MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
   assert(n % a.num_spans == 0 && n % b.num_spans == 0);
   MeetingWindow whole{1, 0};
   bool is_first = true;
+  HalfAxisBox a0 = boxAt(a, 0, n), b0 = boxAt(b, 0, n);
   for (int i = 0; i < n; ++i) {
-    const MeetingWindow part = spanWindow(a, b, distance, i, n);
+    const HalfAxisBox a1 = boxAt(a, i + 1, n), b1 = boxAt(b, i + 1, n);
+    const MeetingWindow part = spanWindow(a0, a1, b0, b1, distance);
+    a0 = a1;
+    b0 = b1;
     if (part.isEmpty()) continue;
     // n is a power of two: these quotients and sums round by 2^-53.
     if (is_first) whole.lo = std::max(0., (i + part.lo) / n - kWindowMargin);

@@ -47,6 +47,13 @@ struct LinearBox {
 /// @brief The least linear box around moving bounds whose ends are parallel to theirs.
 LinearBox linearBox(const MovingBounds& bounds);
 
+/// @brief The sum of the widths at both ends: what a random box meets grows with it.
+inline float widthOf(const LinearBox& box) {
+  float sum = 0;
+  for (int j = 0; j < HalfAxisBox::kSides; ++j) sum += box.t0[j] + box.t1[j];
+  return sum;
+}
+
 /// @brief Which pairs of linear boxes a traversal visits.
 struct LinearQuery {
   /// Boxes count when they are within this distance along all axes.
@@ -64,15 +71,25 @@ constexpr float kFloatWindowLoss = 0x1p-20f;
 /// the overlap is linear; the boxes are near while all six are >= 0. The sign of a float
 /// sum is exact. (LinearQuery enlarges the distance for the second sum.)
 inline bool mayMeet(const LinearBox& a, const LinearBox& b, const LinearQuery& query) {
-  float enter = 0, leave = query.latest;
-  for (int j = 0; j < HalfAxisBox::kSides; ++j) {
+  constexpr int kSides = HalfAxisBox::kSides;
+  float s0[kSides], s1[kSides], highest = 0, lowest = 0;
+  // Most pairs are apart along one side at all times, or along none.
+  for (int j = 0; j < kSides; ++j) {
     const int k = HalfAxisBox::opposite(j);
-    const float s0 = a.t0[j] + b.t0[k] + query.distance,
-                s1 = a.t1[j] + b.t1[k] + query.distance;
-    if (s0 >= 0 && s1 >= 0) continue;
-    if (s0 < 0 && s1 < 0) return false;
-    const float t = s0 / (s0 - s1);
-    if (s0 < 0)
+    s0[j] = a.t0[j] + b.t0[k] + query.distance;
+    s1[j] = a.t1[j] + b.t1[k] + query.distance;
+    const float more = s0[j] > s1[j] ? s0[j] : s1[j],
+                less = s0[j] > s1[j] ? s1[j] : s0[j];
+    highest = highest < more ? highest : more;
+    lowest = lowest < less ? lowest : less;
+  }
+  if (highest < 0) return false;
+  if (lowest >= 0) return true;
+  float enter = 0, leave = query.latest;
+  for (int j = 0; j < kSides; ++j) {
+    if (s0[j] >= 0 && s1[j] >= 0) continue;
+    const float t = s0[j] / (s0[j] - s1[j]);
+    if (s0[j] < 0)
       enter = enter > t * (1 - kFloatWindowLoss) ? enter : t * (1 - kFloatWindowLoss);
     else
       leave = leave < t * (1 + kFloatWindowLoss) ? leave : t * (1 + kFloatWindowLoss);

@@ -20,19 +20,6 @@ LinearBox unionOf(const LinearBox& a, const LinearBox& b) {
   return out;
 }
 
-/// The sum of the widths at both ends: what a random box meets grows with it.
-float widthOf(const LinearBox& box) {
-  float sum = 0;
-  for (int j = 0; j < kSides; ++j) sum += box.t0[j] + box.t1[j];
-  return sum;
-}
-
-/// Four times the center along an axis, in the middle of the step.
-float middleOf(const LinearBox& box, int axis) {
-  const int upper = HalfAxisBox::opposite(axis);
-  return (box.t0[upper] - box.t0[axis]) + (box.t1[upper] - box.t1[axis]);
-}
-
 }  // namespace
 
 void MovingBoxTree::clear() {
@@ -159,49 +146,56 @@ void MovingBoxTree::remove(std::int32_t object) {
   refitAbove(above);
 }
 
-std::int32_t MovingBoxTree::buildPart(Leaf* first, Leaf* last, std::int32_t parent) {
+std::int32_t MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* first,
+                                      Middle* last, std::int32_t parent) {
   const std::int32_t node = newNode();
   at(node).parent = parent;
   if (last - first == 1) {
-    at(node).box = first->box;
-    at(node).child[0] = first->object;
+    const Leaf& leaf = leaves[first->leaf];
+    at(node).box = leaf.box;
+    at(node).child[0] = leaf.object;
     at(node).child[1] = kNone;
     at(node).height = 0;
-    setPlace(first->object, node);
+    setPlace(leaf.object, node);
     return node;
   }
-  float widest = -1;
+  Middle lo = *first, hi = *first;
+  for (const Middle* middle = first + 1; middle != last; ++middle)
+    for (int k = 0; k < 3; ++k) {
+      lo.at[k] = std::min(lo.at[k], middle->at[k]);
+      hi.at[k] = std::max(hi.at[k], middle->at[k]);
+    }
   int axis = 0;
-  for (int k = 0; k < 3; ++k) {
-    float lo = middleOf(first->box, k), hi = lo;
-    for (const Leaf* leaf = first + 1; leaf != last; ++leaf) {
-      lo = std::min(lo, middleOf(leaf->box, k));
-      hi = std::max(hi, middleOf(leaf->box, k));
-    }
-    if (hi - lo > widest) {
-      widest = hi - lo;
-      axis = k;
-    }
-  }
-  Leaf* const middle = first + (last - first) / 2;
-  std::nth_element(first, middle, last, [axis](const Leaf& x, const Leaf& y) {
-    return middleOf(x.box, axis) < middleOf(y.box, axis);
+  for (int k = 1; k < 3; ++k)
+    if (hi.at[k] - lo.at[k] > hi.at[axis] - lo.at[axis]) axis = k;
+  Middle* const half = first + (last - first) / 2;
+  std::nth_element(first, half, last, [axis](const Middle& x, const Middle& y) {
+    return x.at[axis] < y.at[axis];
   });
   // The vector of nodes may grow in between.
-  const std::int32_t left = buildPart(first, middle, node);
-  const std::int32_t right = buildPart(middle, last, node);
+  const std::int32_t left = buildPart(leaves, first, half, node);
+  const std::int32_t right = buildPart(leaves, half, last, node);
   at(node).child[0] = left;
   at(node).child[1] = right;
   fit(node);
   return node;
 }
 
-void MovingBoxTree::build(std::vector<Leaf>& leaves) {
+void MovingBoxTree::build(const std::vector<Leaf>& leaves) {
   clear();
   if (leaves.empty()) return;
+  std::vector<Middle> middles(leaves.size());
+  for (std::size_t i = 0; i < leaves.size(); ++i) {
+    const LinearBox& box = leaves[i].box;
+    middles[i].leaf = static_cast<std::uint32_t>(i);
+    for (int k = 0; k < 3; ++k) {
+      const int upper = HalfAxisBox::opposite(k);
+      middles[i].at[k] = (box.t0[upper] - box.t0[k]) + (box.t1[upper] - box.t1[k]);
+    }
+  }
   nodes_.reserve(2 * leaves.size());
   count_ = leaves.size();
-  root_ = buildPart(leaves.data(), leaves.data() + leaves.size(), kNone);
+  root_ = buildPart(leaves, middles.data(), middles.data() + middles.size(), kNone);
 }
 
 }  // namespace deformable

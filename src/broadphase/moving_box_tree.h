@@ -35,7 +35,7 @@ class MovingBoxTree {
   void remove(std::int32_t object);
   /// @brief A new tree of these leaves: halved at the median of the widest axis, nodes in
   /// the order of a traversal.
-  void build(std::vector<Leaf>& leaves);
+  void build(const std::vector<Leaf>& leaves);
   void clear();
 
   /// @brief Calls visit(object) for each object that a box may meet.
@@ -62,6 +62,11 @@ class MovingBoxTree {
     std::int32_t height;
     bool isLeaf() const { return height == 0; }
   };
+  /// A leaf, and four times the center of its box in the middle of the step.
+  struct Middle {
+    float at[3];
+    std::uint32_t leaf;
+  };
   using NodePair = std::pair<std::int32_t, std::int32_t>;
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
@@ -75,7 +80,8 @@ class MovingBoxTree {
   void replaceChild(std::int32_t parent, std::int32_t from, std::int32_t to);
   std::int32_t balance(std::int32_t node);
   void refitAbove(std::int32_t node);
-  std::int32_t buildPart(Leaf* first, Leaf* last, std::int32_t parent);
+  std::int32_t buildPart(const std::vector<Leaf>& leaves, Middle* first, Middle* last,
+                         std::int32_t parent);
   template <typename Visit>
   static void visitCross(const MovingBoxTree& a, const MovingBoxTree& b,
                          const LinearQuery& query, std::vector<NodePair>& stack,
@@ -105,7 +111,7 @@ void MovingBoxTree::visitMeeting(const LinearBox& box, const LinearQuery& query,
   }
 }
 
-/// The pairs on the stack: their boxes may meet. Opens the higher of two nodes.
+/// The pairs on the stack: their boxes may meet. Opens the wider of two nodes.
 template <typename Visit>
 void MovingBoxTree::visitCross(const MovingBoxTree& a, const MovingBoxTree& b,
                                const LinearQuery& query, std::vector<NodePair>& stack,
@@ -116,7 +122,7 @@ void MovingBoxTree::visitCross(const MovingBoxTree& a, const MovingBoxTree& b,
     const Node &x = a.at(pair.first), &y = b.at(pair.second);
     if (x.isLeaf() && y.isLeaf()) {
       visit(x.child[0], y.child[0]);
-    } else if (x.height >= y.height) {
+    } else if (y.isLeaf() || (!x.isLeaf() && widthOf(x.box) >= widthOf(y.box))) {
       for (const std::int32_t child : x.child)
         if (mayMeet(a.at(child).box, y.box, query)) stack.push_back({child, pair.second});
     } else {
