@@ -19,9 +19,10 @@ constexpr float kMostTreeHalf = 0x1p100f;
 constexpr std::size_t kRebuildShare = 4;
 
 bool isBounded(const LinearBox& box) {
-  const auto is_small = [](float x) { return std::abs(x) < kMostTreeHalf; };
-  return std::all_of(box.t0, box.t0 + HalfAxisBox::kSides, is_small) &&
-         std::all_of(box.t1, box.t1 + HalfAxisBox::kSides, is_small);
+  for (const auto& axis : box.axis)
+    for (const float bound : axis)
+      if (!(std::abs(bound) < kMostTreeHalf)) return false;
+  return true;
 }
 
 bool isSameAtAllTimes(const MovingBounds& bounds) {

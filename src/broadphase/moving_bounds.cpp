@@ -6,8 +6,6 @@
 #include <cfloat>
 #include <cmath>
 
-#include "mesh/moving_kdop.h"
-
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -88,8 +86,9 @@ LinearBox linearBox(const MovingBounds& bounds) {
     // The sums of doubles above round by far less than roundUp() adds, 2^-22 of the
     // result, or of the padding below.
     const auto pad = static_cast<float>((std::abs(from) + std::abs(to)) * 0x1p-48);
-    out.t0[j] = roundUp(from + above, std::isfinite(pad) ? pad : 0);
-    out.t1[j] = roundUp(to + above, std::isfinite(pad) ? pad : 0);
+    float* const side = out.axis[j % 3] + (j < 3 ? 0 : 2);
+    side[0] = roundUp(from + above, std::isfinite(pad) ? pad : 0);
+    side[1] = roundUp(to + above, std::isfinite(pad) ? pad : 0);
   }
   return out;
 }

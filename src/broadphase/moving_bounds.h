@@ -4,6 +4,8 @@
 
 #include <cstddef>
 
+#include "mesh/moving_kdop.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -37,11 +39,11 @@ struct MeetingWindow {
 MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
                             double distance);
 
-/// @brief A box that moves linearly during the whole step, as a node of a tree has it:
-/// HalfAxisBox at t = 0 and t = 1, in floats that are rounded outward.
-struct LinearBox {
-  float t0[HalfAxisBox::kSides];
-  float t1[HalfAxisBox::kSides];
+/// @brief A box that moves linearly during the whole step, as a node of a tree has it.
+/// For each axis: minus the lower bound at t = 0 and t = 1, then the upper bound at t = 0
+/// and t = 1, rounded outward.
+struct alignas(16) LinearBox {
+  float axis[3][4];
 };
 
 /// @brief The least linear box around moving bounds whose ends are parallel to theirs.
@@ -50,7 +52,7 @@ LinearBox linearBox(const MovingBounds& bounds);
 /// @brief The sum of the widths at both ends: what a random box meets grows with it.
 inline float widthOf(const LinearBox& box) {
   float sum = 0;
-  for (int j = 0; j < HalfAxisBox::kSides; ++j) sum += box.t0[j] + box.t1[j];
+  for (const auto& axis : box.axis) sum += (axis[0] + axis[1]) + (axis[2] + axis[3]);
   return sum;
 }
 
@@ -67,33 +69,36 @@ struct LinearQuery {
 /// More than the rounding of a quotient of sums of floats, 2^-22 of itself.
 constexpr float kFloatWindowLoss = 0x1p-20f;
 
-/// @brief Whether two linear boxes may be near each other. Along a side the depth s(t) of
-/// the overlap is linear; the boxes are near while all six are >= 0. The sign of a float
-/// sum is exact. (LinearQuery enlarges the distance for the second sum.)
+/// @brief Whether two linear boxes may be near each other. Along each of the six sides
+/// the depth s(t) of the overlap is linear; the boxes are near while all are >= 0. The
+/// sign of a float sum is exact. (LinearQuery enlarges the distance for the second sum.)
 inline bool mayMeet(const LinearBox& a, const LinearBox& b, const LinearQuery& query) {
-  constexpr int kSides = HalfAxisBox::kSides;
-  float s0[kSides], s1[kSides], highest = 0, lowest = 0;
-  // Most pairs are apart along one side at all times, or along none.
-  for (int j = 0; j < kSides; ++j) {
-    const int k = HalfAxisBox::opposite(j);
-    s0[j] = a.t0[j] + b.t0[k] + query.distance;
-    s1[j] = a.t1[j] + b.t1[k] + query.distance;
-    const float more = s0[j] > s1[j] ? s0[j] : s1[j],
-                less = s0[j] > s1[j] ? s1[j] : s0[j];
-    highest = highest < more ? highest : more;
-    lowest = lowest < less ? lowest : less;
+  Float4 depth[3];
+  Mask4 apart{}, at_an_end{};
+  for (int k = 0; k < 3; ++k) {
+    const float* other = b.axis[k];
+    const Float4 one = {a.axis[k][0], a.axis[k][1], a.axis[k][2], a.axis[k][3]},
+                 two = {other[2], other[3], other[0], other[1]};
+    depth[k] = one + two + query.distance;
+    const Mask4 negative = depth[k] < 0,
+                other_end = {negative[1], negative[0], negative[3], negative[2]};
+    apart |= negative & other_end;
+    at_an_end |= negative;
   }
-  if (highest < 0) return false;
-  if (lowest >= 0) return true;
+  // Most pairs are apart along one side at all times, or along none at any.
+  if (isAny(apart)) return false;
+  if (!isAny(at_an_end)) return true;
   float enter = 0, leave = query.latest;
-  for (int j = 0; j < kSides; ++j) {
-    if (s0[j] >= 0 && s1[j] >= 0) continue;
-    const float t = s0[j] / (s0[j] - s1[j]);
-    if (s0[j] < 0)
-      enter = enter > t * (1 - kFloatWindowLoss) ? enter : t * (1 - kFloatWindowLoss);
-    else
-      leave = leave < t * (1 + kFloatWindowLoss) ? leave : t * (1 + kFloatWindowLoss);
-  }
+  for (const Float4& s : depth)
+    for (int side = 0; side < 4; side += 2) {
+      const float s0 = s[side], s1 = s[side + 1];
+      if (s0 >= 0 && s1 >= 0) continue;
+      const float t = s0 / (s0 - s1);
+      if (s0 < 0)
+        enter = enter > t * (1 - kFloatWindowLoss) ? enter : t * (1 - kFloatWindowLoss);
+      else
+        leave = leave < t * (1 + kFloatWindowLoss) ? leave : t * (1 + kFloatWindowLoss);
+    }
   return enter <= leave;
 }
 

@@ -9,14 +9,10 @@ namespace detail {
 namespace deformable {
 namespace {
 
-constexpr int kSides = HalfAxisBox::kSides;
-
 LinearBox unionOf(const LinearBox& a, const LinearBox& b) {
   LinearBox out;
-  for (int j = 0; j < kSides; ++j) {
-    out.t0[j] = std::max(a.t0[j], b.t0[j]);
-    out.t1[j] = std::max(a.t1[j], b.t1[j]);
-  }
+  for (int k = 0; k < 3; ++k)
+    for (int i = 0; i < 4; ++i) out.axis[k][i] = std::max(a.axis[k][i], b.axis[k][i]);
   return out;
 }
 
@@ -189,8 +185,8 @@ void MovingBoxTree::build(const std::vector<Leaf>& leaves) {
     const LinearBox& box = leaves[i].box;
     middles[i].leaf = static_cast<std::uint32_t>(i);
     for (int k = 0; k < 3; ++k) {
-      const int upper = HalfAxisBox::opposite(k);
-      middles[i].at[k] = (box.t0[upper] - box.t0[k]) + (box.t1[upper] - box.t1[k]);
+      const auto& axis = box.axis[k];
+      middles[i].at[k] = (axis[2] - axis[0]) + (axis[3] - axis[1]);
     }
   }
   nodes_.reserve(2 * leaves.size());

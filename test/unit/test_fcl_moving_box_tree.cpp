@@ -110,7 +110,8 @@ TEST(MovingBounds, LinearBoxesContainTheirBounds) {
     for (int k = 0; k <= 64; ++k)
       for (int j = 0; j < HalfAxisBox::kSides; ++j) {
         const double t = k / 64.;
-        EXPECT_GE((1 - t) * double{box.t0[j]} + t * double{box.t1[j]}, sideAt(a, j, t));
+        const float* side = box.axis[j % 3] + (j < 3 ? 0 : 2);
+        EXPECT_GE((1 - t) * double{side[0]} + t * double{side[1]}, sideAt(a, j, t));
       }
   }
 }
