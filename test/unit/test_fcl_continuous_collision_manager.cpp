@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "fcl/broadphase/broadphase_dynamic_AABB_tree.h"
 #include "fcl/broadphase/default_broadphase_callbacks.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
@@ -338,6 +339,38 @@ TEST(ContinuousCollisionManager, FclsInterface) {
   EXPECT_THROW(base.distance(nullptr, nullptr), Exception);
   EXPECT_THROW(base.distance(scene.objects[0], nullptr, nullptr), Exception);
   EXPECT_THROW(manager.distance(&manager, nullptr, nullptr), Exception);
+}
+
+TEST(SweptCollisionObject, FclsDiscreteManagersMissNoContact) {
+  Random random(6);
+  Scene scene = randomScene(random, 40, .25);
+  DynamicAABBTreeCollisionManager<double> tree;
+  std::vector<std::unique_ptr<SweptCollisionObject<double>>> swept;
+  for (Object* object : scene.objects) {
+    swept.push_back(std::make_unique<SweptCollisionObject<double>>(object));
+    tree.registerObject(swept.back().get());
+  }
+  for (int step = 0; step < 2; ++step) {
+    if (step == 1)
+      for (const auto& object : swept) {
+        auto* moving = static_cast<Object*>(object->getUserData());
+        const auto geometry = std::const_pointer_cast<CollisionGeometry<double>>(
+            moving->collisionGeometry());
+        moving->~Object();
+        new (moving) Object(geometry, randomObjectMotion(random, .8));
+        moving->setUserData(nullptr);
+        object->update();
+      }
+    tree.update();
+    SeenObjects seen;
+    tree.collide(&seen, &collectDiscrete);
+    const std::vector<PairTime> truth = bruteForce(scene.objects, Request());
+    EXPECT_GT(truth.size(), 10u);
+    for (const PairTime& pair : truth) {
+      const auto name = std::minmax(pair.pair.first, pair.pair.second);
+      EXPECT_EQ(seen.pairs.count({name.first, name.second}), 1u);
+    }
+  }
 }
 
 TEST(ContinuousCollisionManager, OneAndTwoManagers) {

@@ -116,32 +116,33 @@ class FCL_EXPORT ContinuousBroadPhase {
   std::unique_ptr<Boxes> boxes_;
 };
 
-/// @brief An object of FCL's discrete queries that stands for one that moves: its pose is
-/// that at t = 0, its AABB covers the step, its user data is the
-/// ContinuousCollisionObject.
+/// @brief Reads the geometry and the motion of a ContinuousCollisionObject. Of a motion
+/// that is not known nothing is read.
 template <typename S>
-class StepObject : public CollisionObject<S> {
- public:
-  explicit StepObject(ContinuousCollisionObject<S>* o)
-      // Without a geometry FCL's constructor leaves the geometry's own AABB as it is.
-      : CollisionObject<S>(std::shared_ptr<CollisionGeometry<S>>()) {
-    this->cgeom_const = o->collisionGeometry();
-    this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
-    this->setUserData(o);
-  }
-
-  void place(const Transform3<S>& tf, const StepBox& box) {
-    const Matrix3<S> rotation = tf.linear();
-    const Vector3<S> translation = tf.translation();
-    this->setTransform(rotation, translation);
-    for (int k = 0; k < 3; ++k) {
-      this->aabb.min_[k] = static_cast<S>(box.lower[k]);
-      this->aabb.max_[k] = static_cast<S>(box.upper[k]);
-    }
-  }
-};
+MovingGeometry<S> readObject(const void* object);
 
 }  // namespace detail
+
+/// @brief An object for FCL's managers of discrete objects that stands for one that
+/// moves. Its AABB covers the step, so that these managers find the pairs that can meet.
+/// Its pose is that at t = 0. A callback finds the object that moves as getUserData().
+template <typename S>
+class SweptCollisionObject : public CollisionObject<S> {
+ public:
+  /// @param object  must live as long as this
+  /// @throws fcl::Exception  as ContinuousCollisionManager
+  explicit SweptCollisionObject(ContinuousCollisionObject<S>* object);
+
+  /// @brief Reads the object again. Do not call FCL's computeAABB(), which covers one
+  /// pose. @throws fcl::Exception  as ContinuousCollisionManager
+  void update();
+
+ private:
+  ContinuousCollisionObject<S>* object_;
+};
+
+using SweptCollisionObjectf = SweptCollisionObject<float>;
+using SweptCollisionObjectd = SweptCollisionObject<double>;
 
 /// @brief Finds the contacts of many objects that move: a concrete
 /// BroadPhaseContinuousCollisionManager, which FCL declares and does not have.
@@ -152,9 +153,10 @@ class StepObject : public CollisionObject<S> {
 /// the same time. So objects that fly side by side are no candidate, and no contact is
 /// missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
 ///
-/// An object has no box, and is a candidate with all others, if its motion is a class of
-/// the program that is no BoundedMotion, or if it is an octree, a point cloud, or a plane
-/// or halfspace whose normal is not along an axis.
+/// An object has no box (SweptCollisionObject: an infinite one), and is a candidate with
+/// all others, if its motion is a class of the program that is no BoundedMotion, or if it
+/// is an octree, a point cloud, or a plane or halfspace whose normal is not along an
+/// axis.
 ///
 /// The manager reads an object when it is registered or updated. After a change of its
 /// motion or of its geometry call update(). An object that rests (its box is the same at
@@ -249,10 +251,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void collide(const ContinuousCollisionManager& other, void* cdata,
                ContinuousCollisionCallBack<S> callback) const;
 
-  /// @brief FCL's interface has the callback of discrete queries. It gets objects that
-  /// stand for those that move: with their geometry, their pose at t = 0, an AABB that
-  /// covers the step, and the ContinuousCollisionObject as getUserData(). They live until
-  /// the object is unregistered.
+  /// @brief FCL's interface has the callback of discrete queries. It gets a
+  /// SweptCollisionObject for each object. These live until the object is unregistered.
   void collide(void* cdata, CollisionCallBack<S> callback) const override;
   /// @overload
   void collide(Object* object, void* cdata, CollisionCallBack<S> callback) const override;
@@ -275,12 +275,10 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   using Request = ContinuousContactRequest<S>;
   using Result = ContinuousManagerResult<S>;
   using PairResult = ContinuousPairResult<S>;
-  using StepObjects =
-      std::unordered_map<const Object*, std::unique_ptr<detail::StepObject<S>>>;
+  using SweptObjects =
+      std::unordered_map<const Object*, std::unique_ptr<SweptCollisionObject<S>>>;
 
   static Object* objectOf(void* object) { return static_cast<Object*>(object); }
-  static detail::MovingGeometry<S> read(const void* object);
-  static void requireUsable(const Object* object);
   static std::vector<void*> addressesOf(const std::vector<Object*>& objects);
   static detail::BroadPhaseSettings settingsOf(const Request& request);
   static detail::BroadPhaseSettings allCandidates() { return {0, 1, false}; }
@@ -302,51 +300,83 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                    const Request& request, Result& result) const;
   static void callBack(const Pairs& pairs, void* cdata,
                        ContinuousCollisionCallBack<S> callback);
-  CollisionObject<S>* stepObject(Object* object) const;
+  CollisionObject<S>* sweptObject(Object* object) const;
   void callBack(const Pairs& pairs, const ContinuousCollisionManager& other, void* cdata,
                 CollisionCallBack<S> callback) const;
 
   detail::ContinuousBroadPhase<S> boxes_;
   /// Those that were set.
   std::unordered_map<const Object*, ContinuousFilter> filters_;
-  mutable StepObjects step_objects_;
+  mutable SweptObjects swept_objects_;
 };
 
 using ContinuousCollisionManagerf = ContinuousCollisionManager<float>;
 using ContinuousCollisionManagerd = ContinuousCollisionManager<double>;
 
+namespace detail {
+
 template <typename S>
-detail::MovingGeometry<S> ContinuousCollisionManager<S>::read(const void* object) {
-  const auto& o = *static_cast<const Object*>(object);
-  const MotionBase<S>& motion = *o.getMotion();
-  detail::MovingGeometry<S> moving{
-      o.collisionGeometry().get(), {}, detail::PathKind::kUnknown, {}, {}, nullptr};
-  if (detail::readMotion(motion, moving)) return moving;
-  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
-    detail::readBoundedMotion(*bounded, moving);
-  else
-    moving.path = detail::PathKind::kUnknown;
-  return moving;
+void requireUsable(const ContinuousCollisionObject<S>* object) {
+  requireNotNull(object, "object");
+  requireNotNull(object->collisionGeometry().get(), "object: the geometry");
+  requireNotNull(object->getMotion(), "object: the motion");
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::requireUsable(const Object* object) {
-  detail::requireNotNull(object, "object");
-  detail::requireNotNull(object->collisionGeometry().get(), "object: the geometry");
-  detail::requireNotNull(object->getMotion(), "object: the motion");
+MovingGeometry<S> readObject(const void* object) {
+  const auto& o = *static_cast<const ContinuousCollisionObject<S>*>(object);
+  const MotionBase<S>& motion = *o.getMotion();
+  MovingGeometry<S> moving{
+      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr};
+  if (readMotion(motion, moving)) return moving;
+  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
+    readBoundedMotion(*bounded, moving);
+  else
+    moving.path = PathKind::kUnknown;
+  return moving;
+}
+
+}  // namespace detail
+
+// Without a geometry FCL's constructor leaves the geometry's own AABB as it is.
+template <typename S>
+SweptCollisionObject<S>::SweptCollisionObject(ContinuousCollisionObject<S>* object)
+    : CollisionObject<S>(std::shared_ptr<CollisionGeometry<S>>()), object_(object) {
+  detail::requireUsable(object);
+  this->cgeom_const = object->collisionGeometry();
+  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
+  this->setUserData(object);
+  update();
+}
+
+template <typename S>
+void SweptCollisionObject<S>::update() {
+  const detail::MovingGeometry<S> moving = detail::readObject<S>(object_);
+  Transform3<S> tf = detail::toTransform(moving.pose[0]);
+  if (moving.path == detail::PathKind::kUnknown)
+    object_->getMotion()->getCurrentTransform(tf);
+  const detail::StepBox box =
+      detail::ContinuousBroadPhase<S>::stepBox(object_, &detail::readObject<S>);
+  const Matrix3<S> rotation = tf.linear();
+  const Vector3<S> translation = tf.translation();
+  this->setTransform(rotation, translation);
+  for (int k = 0; k < 3; ++k) {
+    this->aabb.min_[k] = static_cast<S>(box.lower[k]);
+    this->aabb.max_[k] = static_cast<S>(box.upper[k]);
+  }
 }
 
 template <typename S>
 std::vector<void*> ContinuousCollisionManager<S>::addressesOf(
     const std::vector<Object*>& objects) {
-  for (const Object* object : objects) requireUsable(object);
+  for (const Object* object : objects) detail::requireUsable(object);
   return {objects.begin(), objects.end()};
 }
 
 template <typename S>
 void ContinuousCollisionManager<S>::registerObjects(const std::vector<Object*>& objects) {
   const std::vector<void*> addresses = addressesOf(objects);
-  boxes_.insert(addresses.data(), addresses.size(), &read);
+  boxes_.insert(addresses.data(), addresses.size(), &detail::readObject<S>);
 }
 
 template <typename S>
@@ -358,14 +388,14 @@ template <typename S>
 void ContinuousCollisionManager<S>::unregisterObject(Object* object) {
   boxes_.remove(object);
   filters_.erase(object);
-  step_objects_.erase(object);
+  swept_objects_.erase(object);
 }
 
 template <typename S>
 void ContinuousCollisionManager<S>::clear() {
   boxes_.clear();
   filters_.clear();
-  step_objects_.clear();
+  swept_objects_.clear();
 }
 
 template <typename S>
@@ -376,7 +406,7 @@ void ContinuousCollisionManager<S>::setup() {
 template <typename S>
 void ContinuousCollisionManager<S>::update() {
   const std::vector<void*> objects = boxes_.objects();
-  boxes_.update(objects.data(), objects.size(), &read);
+  boxes_.update(objects.data(), objects.size(), &detail::readObject<S>);
 }
 
 template <typename S>
@@ -387,7 +417,7 @@ void ContinuousCollisionManager<S>::update(Object* object) {
 template <typename S>
 void ContinuousCollisionManager<S>::update(const std::vector<Object*>& objects) {
   const std::vector<void*> addresses = addressesOf(objects);
-  boxes_.update(addresses.data(), addresses.size(), &read);
+  boxes_.update(addresses.data(), addresses.size(), &detail::readObject<S>);
 }
 
 template <typename S>
@@ -434,8 +464,9 @@ void ContinuousCollisionManager<S>::collide(const Request& request,
 template <typename S>
 void ContinuousCollisionManager<S>::collide(Object* object, const Request& request,
                                             Result& result) const {
-  requireUsable(object);
-  answer(boxes_.pairsOf(object, &read, settingsOf(request)), *this, request, result);
+  detail::requireUsable(object);
+  answer(boxes_.pairsOf(object, &detail::readObject<S>, settingsOf(request)), *this,
+         request, result);
 }
 
 template <typename S>
@@ -572,8 +603,9 @@ void ContinuousCollisionManager<S>::collide(
 template <typename S>
 void ContinuousCollisionManager<S>::collide(
     Object* object, void* cdata, ContinuousCollisionCallBack<S> callback) const {
-  requireUsable(object);
-  callBack(boxes_.pairsOf(object, &read, allCandidates()), cdata, callback);
+  detail::requireUsable(object);
+  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allCandidates()), cdata,
+           callback);
 }
 
 template <typename S>
@@ -585,15 +617,13 @@ void ContinuousCollisionManager<S>::collide(
 }
 
 template <typename S>
-CollisionObject<S>* ContinuousCollisionManager<S>::stepObject(Object* object) const {
-  std::unique_ptr<detail::StepObject<S>>& step_object = step_objects_[object];
-  if (!step_object) step_object.reset(new detail::StepObject<S>(object));
-  const detail::MovingGeometry<S> moving = read(object);
-  Transform3<S> tf = detail::toTransform(moving.pose[0]);
-  if (moving.path == detail::PathKind::kUnknown)
-    object->getMotion()->getCurrentTransform(tf);
-  step_object->place(tf, boxes_.stepBox(object, &read));
-  return step_object.get();
+CollisionObject<S>* ContinuousCollisionManager<S>::sweptObject(Object* object) const {
+  std::unique_ptr<SweptCollisionObject<S>>& swept = swept_objects_[object];
+  if (swept)
+    swept->update();
+  else
+    swept.reset(new SweptCollisionObject<S>(object));
+  return swept.get();
 }
 
 template <typename S>
@@ -602,7 +632,7 @@ void ContinuousCollisionManager<S>::callBack(const Pairs& pairs,
                                              void* cdata,
                                              CollisionCallBack<S> callback) const {
   for (const detail::BroadPhasePair& pair : pairs)
-    if (callback(stepObject(objectOf(pair.o1)), other.stepObject(objectOf(pair.o2)),
+    if (callback(sweptObject(objectOf(pair.o1)), other.sweptObject(objectOf(pair.o2)),
                  cdata))
       return;
 }
@@ -616,8 +646,9 @@ void ContinuousCollisionManager<S>::collide(void* cdata,
 template <typename S>
 void ContinuousCollisionManager<S>::collide(Object* object, void* cdata,
                                             CollisionCallBack<S> callback) const {
-  requireUsable(object);
-  callBack(boxes_.pairsOf(object, &read, allCandidates()), *this, cdata, callback);
+  detail::requireUsable(object);
+  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allCandidates()), *this, cdata,
+           callback);
 }
 
 template <typename S>
