@@ -2,7 +2,8 @@
 # Fails when a public function is missing from the reference. Run doxygen first.
 #   bash cmake/check_reference.sh [TAG_FILE]
 # The script finds functions in the public headers by their form: a declaration outside of
-# detail begins at the first column, a public member of DeformableBVHModel at the third.
+# detail begins at the first column, a public member of DeformableBVHModel and of
+# ContinuousCollisionManager at the third.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tags=${1:-build/doc/fcl_ccd.tag}
@@ -15,6 +16,9 @@ declared=$(
     sed -n '/DeformableBVHModel .*: public/,/^ private:/p' \
       include/fcl/geometry/bvh/deformable_bvh_model.h |
       grep -oE '^  (int|bool|std::size_t|void) [a-z][A-Za-z]+\('
+    sed -n '/^class ContinuousCollisionManager /,/^ private:/p' \
+      include/fcl/broadphase/continuous_collision_manager.h |
+      grep -oE '^  (bool|std::size_t|void) [a-z][A-Za-z]+\('
   } | sed 's/.* //; s/($//' | LC_ALL=C sort | uniq -c
 )
 missing=0

@@ -144,7 +144,7 @@ void expectAnswers(const Manager& manager, const std::vector<Object*>& objects) 
     if (pair.pair == *namesOf(result).begin()) {
       EXPECT_EQ(pair.time, first);
     }
-  EXPECT_LE(result.num_tested, result.num_candidates + 1);
+  EXPECT_LE(result.num_tested, result.num_box_pairs + 1);
 
   request.query = ContinuousQuery::kAny;
   manager.collide(request, result);
@@ -209,13 +209,13 @@ bool collectPair(Object* o1, Object* o2, void* pairs) {
   return false;
 }
 
-PairSet candidatesOf(const Manager& manager) {
+PairSet boxPairsOf(const Manager& manager) {
   PairSet pairs;
   manager.collide(&pairs, &collectPair);
   return pairs;
 }
 
-TEST(ContinuousCollisionManager, ChangesKeepTheCandidates) {
+TEST(ContinuousCollisionManager, ChangesKeepTheBoxPairs) {
   Random random(3);
   Scene scene = randomScene(random, 60);
   Manager manager;
@@ -245,7 +245,7 @@ TEST(ContinuousCollisionManager, ChangesKeepTheCandidates) {
     Manager fresh;
     for (std::size_t k = 0; k < 60; ++k)
       if (is_in[k]) fresh.registerObject(scene.objects[k]);
-    EXPECT_EQ(candidatesOf(manager), candidatesOf(fresh));
+    EXPECT_EQ(boxPairsOf(manager), boxPairsOf(fresh));
     std::vector<Object*> objects, expected;
     manager.getObjects(objects);
     fresh.getObjects(expected);
@@ -254,7 +254,7 @@ TEST(ContinuousCollisionManager, ChangesKeepTheCandidates) {
   }
   manager.clear();
   EXPECT_TRUE(manager.empty());
-  EXPECT_TRUE(candidatesOf(manager).empty());
+  EXPECT_TRUE(boxPairsOf(manager).empty());
 }
 
 TEST(ContinuousCollisionManager, FormationFlight) {
@@ -269,7 +269,7 @@ TEST(ContinuousCollisionManager, FormationFlight) {
   Object* wall = scene.add(geometries()[1], translation({40, 30, 0}, {40, 30, 0}));
   Manager manager;
   manager.registerObjects(scene.objects);
-  for (const auto& pair : candidatesOf(manager))
+  for (const auto& pair : boxPairsOf(manager))
     EXPECT_TRUE(pair.first == wall || pair.second == wall);
   Request request;
   request.query = ContinuousQuery::kFirst;
@@ -305,7 +305,7 @@ TEST(ContinuousCollisionManager, FclsInterface) {
   const BroadPhaseContinuousCollisionManager<double>& base = manager;
   SeenObjects seen;
   base.collide(&seen, &collectDiscrete);
-  EXPECT_EQ(seen.pairs, candidatesOf(manager));
+  EXPECT_EQ(seen.pairs, boxPairsOf(manager));
   ASSERT_GT(seen.pairs.size(), 5u);
   for (CollisionObject<double>* object : seen.objects) {
     // The AABB covers the geometry at the pose, which is that of the beginning.
@@ -325,14 +325,14 @@ TEST(ContinuousCollisionManager, FclsInterface) {
   // One against all, and the two halves, are all pairs.
   seen = SeenObjects();
   for (Object* object : scene.objects) base.collide(object, &seen, &collectDiscrete);
-  EXPECT_EQ(seen.pairs, candidatesOf(manager));
+  EXPECT_EQ(seen.pairs, boxPairsOf(manager));
   PairSet pairs;
   half[0].collide(half[1], &pairs, &collectPair);
   seen = SeenObjects();
   half[0].collide(&half[1], &seen, &collectDiscrete);
   EXPECT_EQ(seen.pairs, pairs);
   for (const Manager& one : half) one.collide(&pairs, &collectPair);
-  EXPECT_EQ(pairs, candidatesOf(manager));
+  EXPECT_EQ(pairs, boxPairsOf(manager));
 
   DefaultContinuousCollisionData<double> data;
   manager.collide(&data, DefaultContinuousCollisionFunction<double>);
@@ -412,7 +412,7 @@ TEST(ContinuousCollisionManager, GroupsAndMasks) {
   for (int i = 0; i < 3; ++i) scene.add(geometries()[0], still);
   Manager manager;
   manager.registerObjects(scene.objects);
-  EXPECT_EQ(candidatesOf(manager).size(), 3u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 3u);
   ContinuousFilter robot, wall;
   robot.group = 2;
   wall.group = 4;
@@ -420,15 +420,15 @@ TEST(ContinuousCollisionManager, GroupsAndMasks) {
   manager.setFilter(scene.objects[0], robot);
   manager.setFilter(scene.objects[1], wall);
   manager.setFilter(scene.objects[2], wall);
-  EXPECT_EQ(candidatesOf(manager).size(), 2u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 2u);
   // Groups of triangles: all of them reject the robot.
   robot.triangle_masks.assign(20, 8);
   manager.setFilter(scene.objects[0], robot);
-  EXPECT_EQ(candidatesOf(manager).size(), 0u);
-  // One of them accepts it: a candidate, whose contacts are those of this triangle.
+  EXPECT_EQ(boxPairsOf(manager).size(), 0u);
+  // One of them accepts it: a box pair, whose contacts are those of this triangle.
   robot.triangle_masks[7] = 4;
   manager.setFilter(scene.objects[0], robot);
-  EXPECT_EQ(candidatesOf(manager).size(), 2u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 2u);
   Result result;
   manager.collide(Request(), result);
   ASSERT_EQ(result.pairs.size(), 2u);
@@ -441,20 +441,20 @@ TEST(ContinuousCollisionManager, ObjectsThatRestAreRemembered) {
     scene.add(geometries()[1], translation({.5 * i, 0, 0}, {.5 * i, 0, 0}));
   Manager manager;
   manager.registerObjects(scene.objects);
-  EXPECT_EQ(candidatesOf(manager).size(), 39u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 39u);
   manager.unregisterObject(scene.objects[10]);
-  EXPECT_EQ(candidatesOf(manager).size(), 37u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 37u);
   // It takes the place of the one that is gone.
   Object* other = scene.add(geometries()[0], translation({0, 0, 0}, {0, 0, 0}));
   manager.registerObject(other);
-  EXPECT_EQ(candidatesOf(manager).size(), 38u);
+  EXPECT_EQ(boxPairsOf(manager).size(), 38u);
   // At a distance they are found anew.
   Request request;
   request.min_distance = .3;
   request.query = ContinuousQuery::kAll;
   Result result;
   manager.collide(request, result);
-  EXPECT_GT(result.num_candidates, 38u);
+  EXPECT_GT(result.num_box_pairs, 38u);
 }
 
 TEST(ContinuousCollisionManager, SelfCollisionOnRequest) {
@@ -498,7 +498,7 @@ TEST(ContinuousCollisionManager, AnObjectWithoutABoxIsPairedWithAll) {
             translation({0, 0, 0}, {0, 0, 0}));
   Manager manager;
   manager.registerObjects(scene.objects);
-  const PairSet pairs = candidatesOf(manager);
+  const PairSet pairs = boxPairsOf(manager);
   const auto has = [&](std::size_t i, std::size_t k) {
     return pairs.count(std::minmax<const void*>(scene.objects[i], scene.objects[k])) == 1;
   };
@@ -526,7 +526,7 @@ TEST(ContinuousCollisionManager, Float) {
   ASSERT_EQ(result.pairs.size(), 1u);
   EXPECT_EQ(result.pairs[0].o1, &a);
   EXPECT_EQ(result.pairs[0].o2, &b);
-  EXPECT_EQ(result.num_candidates, 1u);
+  EXPECT_EQ(result.num_box_pairs, 1u);
   ContinuousContactResult<float> alone;
   fcl::collide(&a, &b, request, alone);
   EXPECT_EQ(result.time_of_contact, alone.time_of_contact);

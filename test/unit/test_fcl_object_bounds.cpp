@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The moving boxes of objects contain them at all times, whatever the motion, and are
-// tight where the path is straight. Objects that overlap at some time are candidates.
+// tight where the path is straight. Objects that overlap at some time are box pairs.
 #include "api/object_bounds.h"
 
 #include <gtest/gtest.h>
@@ -198,7 +198,7 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
   Random random(2);
   std::vector<Body> bodies = makeMeshes();
   for (Body& body : makeShapes()) bodies.push_back(std::move(body));
-  int num_overlapping = 0, num_candidates = 0;
+  int num_overlapping = 0, num_box_pairs = 0;
   for (int scene = 0; scene < 20; ++scene) {
     constexpr std::size_t kCount = 30;
     constexpr int kSamples = 64;
@@ -234,7 +234,7 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
     manager.collide(&met, function);
     for (std::size_t i = 0; i < kCount; ++i)
       for (std::size_t k = i + 1; k < kCount; ++k) {
-        num_candidates += met[i][k];
+        num_box_pairs += met[i][k];
         bool overlap = false;
         for (std::size_t s = 0; s <= kSamples && !overlap; ++s) {
           overlap = true;
@@ -248,8 +248,8 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
       }
   }
   EXPECT_GT(num_overlapping, 300);
-  // Few candidates beyond.
-  EXPECT_LT(num_candidates, 1.5 * num_overlapping);
+  // Few box pairs beyond.
+  EXPECT_LT(num_box_pairs, 1.5 * num_overlapping);
 }
 
 }  // namespace

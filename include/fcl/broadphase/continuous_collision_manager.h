@@ -40,11 +40,11 @@ struct ContinuousManagerResult {
 
   /// @brief ContinuousQuery::kFirst: the pair that is first in contact. kAny: one pair
   /// that is in contact. kAll: all pairs in contact, sorted by their time of contact. If
-  /// times are equal, the order of the candidates decides.
+  /// times are equal, the order of the box pairs decides.
   std::vector<ContinuousPairResult<S>> pairs;
 
   /// @brief The number of pairs whose boxes meet.
-  std::size_t num_candidates{0};
+  std::size_t num_box_pairs{0};
 
   /// @brief The number of pairs that were tested.
   std::size_t num_tested{0};
@@ -149,11 +149,11 @@ using SweptCollisionObjectd = SweptCollisionObject<double>;
 ///
 /// Objects are meshes and shapes that follow any motion. Each has a box that moves: boxes
 /// at the ends of up to 16 spans of the step, enlarged by what the motion can deviate
-/// from straight lines in between. Two objects are a candidate if their boxes overlap at
-/// the same time. So objects that fly side by side are no candidate, and no contact is
+/// from straight lines in between. Two objects are a box pair if their boxes overlap at
+/// the same time. So objects that fly side by side are no box pair, and no contact is
 /// missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
 ///
-/// An object has no box (SweptCollisionObject: an infinite one), and is a candidate with
+/// An object has no box (SweptCollisionObject: an infinite one), and is a box pair with
 /// all others, if its motion is a class of the program that is no BoundedMotion, or if it
 /// is an octree, a point cloud, or a plane or halfspace whose normal is not along an
 /// axis.
@@ -163,7 +163,7 @@ using SweptCollisionObjectd = SweptCollisionObject<double>;
 /// all times) costs nothing in a step in which it is not updated.
 ///
 /// Queries name pairs by their objects, in the order of their registration. The order of
-/// candidates is that of the beginnings of their windows.
+/// box pairs is that of the beginnings of their windows.
 ///
 /// Time: to register, update or unregister one object O(log n); to update() all, or a
 /// large part of them at once, O(n log n), to build a new tree.
@@ -240,14 +240,14 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                const ContinuousContactRequest<S>& request,
                ContinuousManagerResult<S>& result) const;
 
-  /// @brief Calls back for each candidate of all objects, in the order of their windows,
+  /// @brief Calls back for each box pair of all objects, in the order of their windows,
   /// until the callback returns true. FCL's default callback is
   /// DefaultContinuousCollisionFunction, which keeps the answer for the last pair only.
   void collide(void* cdata, ContinuousCollisionCallBack<S> callback) const;
-  /// @brief Calls back for the candidates of one object, which comes first.
+  /// @brief Calls back for the box pairs of one object, which comes first.
   void collide(Object* object, void* cdata,
                ContinuousCollisionCallBack<S> callback) const;
-  /// @brief Calls back for the candidates of this manager and of another one.
+  /// @brief Calls back for the box pairs of this manager and of another one.
   void collide(const ContinuousCollisionManager& other, void* cdata,
                ContinuousCollisionCallBack<S> callback) const;
 
@@ -281,7 +281,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   static Object* objectOf(void* object) { return static_cast<Object*>(object); }
   static std::vector<void*> addressesOf(const std::vector<Object*>& objects);
   static detail::BroadPhaseSettings settingsOf(const Request& request);
-  static detail::BroadPhaseSettings allCandidates() { return {0, 1, false}; }
+  static detail::BroadPhaseSettings allBoxPairs() { return {0, 1, false}; }
   [[noreturn]] static void refuseDistance();
 
   const ContinuousFilter& filterOf(const Object* object) const;
@@ -528,7 +528,7 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
                                            const ContinuousCollisionManager& other,
                                            const Request& asked, Result& out) const {
   Result result;
-  result.num_candidates = pairs.size();
+  result.num_box_pairs = pairs.size();
   Request request = asked;
   request.filter1 = request.filter2 = ContinuousFilter();
   if (asked.query == ContinuousQuery::kFirst) {
@@ -597,14 +597,14 @@ void ContinuousCollisionManager<S>::callBack(const Pairs& pairs, void* cdata,
 template <typename S>
 void ContinuousCollisionManager<S>::collide(
     void* cdata, ContinuousCollisionCallBack<S> callback) const {
-  callBack(boxes_.pairs(allCandidates()), cdata, callback);
+  callBack(boxes_.pairs(allBoxPairs()), cdata, callback);
 }
 
 template <typename S>
 void ContinuousCollisionManager<S>::collide(
     Object* object, void* cdata, ContinuousCollisionCallBack<S> callback) const {
   detail::requireUsable(object);
-  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allCandidates()), cdata,
+  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allBoxPairs()), cdata,
            callback);
 }
 
@@ -613,7 +613,7 @@ void ContinuousCollisionManager<S>::collide(
     const ContinuousCollisionManager& other, void* cdata,
     ContinuousCollisionCallBack<S> callback) const {
   if (&other == this) return collide(cdata, callback);
-  callBack(boxes_.pairsWith(other.boxes_, allCandidates()), cdata, callback);
+  callBack(boxes_.pairsWith(other.boxes_, allBoxPairs()), cdata, callback);
 }
 
 template <typename S>
@@ -640,14 +640,14 @@ void ContinuousCollisionManager<S>::callBack(const Pairs& pairs,
 template <typename S>
 void ContinuousCollisionManager<S>::collide(void* cdata,
                                             CollisionCallBack<S> callback) const {
-  callBack(boxes_.pairs(allCandidates()), *this, cdata, callback);
+  callBack(boxes_.pairs(allBoxPairs()), *this, cdata, callback);
 }
 
 template <typename S>
 void ContinuousCollisionManager<S>::collide(Object* object, void* cdata,
                                             CollisionCallBack<S> callback) const {
   detail::requireUsable(object);
-  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allCandidates()), *this, cdata,
+  callBack(boxes_.pairsOf(object, &detail::readObject<S>, allBoxPairs()), *this, cdata,
            callback);
 }
 
@@ -661,7 +661,7 @@ void ContinuousCollisionManager<S>::collide(
     throw Exception(
         "collide: the other manager is not a ContinuousCollisionManager, so its objects "
         "have no boxes that move. Register its objects in one");
-  callBack(boxes_.pairsWith(manager->boxes_, allCandidates()), *manager, cdata, callback);
+  callBack(boxes_.pairsWith(manager->boxes_, allBoxPairs()), *manager, cdata, callback);
 }
 
 template <typename S>

@@ -187,7 +187,7 @@ struct PairTimes {
 };
 
 PairTimes measurePairs(const Scene& scene, const Manager& manager,
-                       const std::vector<ObjectPair>& candidates) {
+                       const std::vector<ObjectPair>& box_pairs) {
   PairTimes out;
   const int runs = scene.objects.size() > 2000 ? 1 : 3;
   std::vector<ObjectPair> contacts;
@@ -198,7 +198,7 @@ PairTimes measurePairs(const Scene& scene, const Manager& manager,
   std::size_t meet = 0;
   out.alone = medianOf(runs, [&] {
     meet = 0;
-    for (const ObjectPair& pair : candidates)
+    for (const ObjectPair& pair : box_pairs)
       if (isMesh(pair.first) && isMesh(pair.second))
         meet += isInContact(pair.first, pair.second);
   });
@@ -221,19 +221,19 @@ void measure(const Kind& kind, std::size_t count, bool with_pairs) {
   const double start = now();
   manager.registerObjects(scene.objects);
   const double insert = now() - start;
-  std::vector<ObjectPair> candidates;
-  manager.collide(&candidates, &collect);  // remembers the pairs that rest
+  std::vector<ObjectPair> box_pairs;
+  manager.collide(&box_pairs, &collect);  // remembers the pairs that rest
   const int runs = 15;
   const double update = medianOf(runs, [&] { manager.update(scene.moving); });
   const double query = medianOf(runs, [&] {
-    candidates.clear();
-    manager.collide(&candidates, &collect);
+    box_pairs.clear();
+    manager.collide(&box_pairs, &collect);
   });
   PairTimes pairs;
-  if (with_pairs) pairs = measurePairs(scene, manager, candidates);
+  if (with_pairs) pairs = measurePairs(scene, manager, box_pairs);
   std::printf("%s,%zu,%zu,%.3f,%.3f,%.3f,%.4f,%zu,%.2f,%.2f,%zu,%td,%td\n", kind.name,
               count, scene.moving.size(), insert, update, query,
-              1e3 * (update + query) / double(scene.moving.size()), candidates.size(),
+              1e3 * (update + query) / double(scene.moving.size()), box_pairs.size(),
               pairs.alone, pairs.within, pairs.contacts, pairs.missed, pairs.extra);
   std::fflush(stdout);
 }
@@ -244,7 +244,7 @@ int main(int argc, char** argv) {
   const long largest = argc > 1 ? std::atol(argv[1]) : 100000;
   const bool with_pairs = argc <= 2 || std::string(argv[2]) != "boxes";
   std::printf(
-      "kind,objects,moving,insert_ms,update_ms,query_ms,us_per_moving,candidates,"
+      "kind,objects,moving,insert_ms,update_ms,query_ms,us_per_moving,box_pairs,"
       "pair_queries_ms,query_with_pairs_ms,contacts,missed,extra\n");
   for (const Kind& kind : kKinds)
     for (std::size_t count = 100; count <= static_cast<std::size_t>(largest); count *= 10)
