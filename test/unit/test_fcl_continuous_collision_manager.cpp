@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -507,6 +508,34 @@ TEST(ContinuousCollisionManager, AnObjectWithoutABoxIsPairedWithAll) {
   EXPECT_FALSE(has(3, 0));
   EXPECT_FALSE(has(3, 1));
   for (const std::size_t i : {0, 1, 2, 3}) EXPECT_TRUE(has(4, i));
+}
+
+TEST(ContinuousCollisionManager, QueriesOfSeveralThreads) {
+  Random random(7);
+  const Scene scene = randomScene(random, 60, .4);
+  Manager manager;
+  manager.registerObjects(scene.objects);
+  Request request;
+  request.query = ContinuousQuery::kFirst;
+  // The first query of all remembers the pairs that rest.
+  std::vector<PairSet> pairs(4);
+  std::vector<Result> results(4);
+  std::vector<std::thread> threads;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    threads.emplace_back([&, i] {
+      pairs[i] = boxPairsOf(manager);
+      manager.collide(request, results[i]);
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_GT(pairs[0].size(), 30u);
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    EXPECT_EQ(pairs[i], pairs[0]);
+    EXPECT_EQ(results[i].time_of_contact, results[0].time_of_contact);
+  }
+  request.num_threads = 4;
+  manager.collide(request, results[1]);
+  EXPECT_EQ(results[1].time_of_contact, results[0].time_of_contact);
+  EXPECT_EQ(results[1].num_tested, results[0].num_tested);
 }
 
 TEST(ContinuousCollisionManager, Float) {
