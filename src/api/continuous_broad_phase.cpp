@@ -92,8 +92,11 @@ void ContinuousBroadPhase<S>::insert(void* const* objects, std::size_t count, Re
 template <typename S>
 void ContinuousBroadPhase<S>::update(void* const* objects, std::size_t count, Read read) {
   const DefaultFloatingPoint mode;
-  for (std::size_t i = 0; i < count; ++i) requireRegistered(*boxes_, objects[i]);
-  boxes_->update(objects, boundsOf<S>(objects, count, read));
+  const std::vector<std::int32_t> slots = boxes_->find(objects, count);
+  const auto missing = std::find(slots.begin(), slots.end(), -1);
+  if (missing != slots.end())
+    requireRegistered(*boxes_, objects[missing - slots.begin()]);
+  boxes_->update(slots, boundsOf<S>(objects, count, read));
 }
 
 template <typename S>

@@ -106,12 +106,19 @@ void BroadPhase::insert(void* const* objects, const BoundsList& bounds) {
   change(slots, bounds, true);
 }
 
-void BroadPhase::update(void* const* objects, const BoundsList& bounds) {
-  std::vector<SlotNumber> slots;
-  slots.reserve(bounds.items.size());
-  for (std::size_t i = 0; i < bounds.items.size(); ++i)
-    slots.push_back(numberOf(objects[i]));
+void BroadPhase::update(const std::vector<SlotNumber>& slots, const BoundsList& bounds) {
   change(slots, bounds, false);
+}
+
+std::vector<BroadPhase::SlotNumber> BroadPhase::find(void* const* objects,
+                                                     std::size_t count) const {
+  std::vector<SlotNumber> slots;
+  slots.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto entry = slot_of_.find(objects[i]);
+    slots.push_back(entry == slot_of_.end() ? -1 : entry->second);
+  }
+  return slots;
 }
 
 /// Gives new bounds to objects. A tree in which many objects change is built again.

@@ -77,8 +77,10 @@ class BroadPhase {
 
   /// @pre no object is there, and none twice
   void insert(void* const* objects, const BoundsList& bounds);
-  /// @pre all objects are there, and none twice
-  void update(void* const* objects, const BoundsList& bounds);
+  /// @param slots  of the objects, by find()
+  void update(const std::vector<std::int32_t>& slots, const BoundsList& bounds);
+  /// @brief The slots of objects, or -1 for those that are not there.
+  std::vector<std::int32_t> find(void* const* objects, std::size_t count) const;
   /// @pre the object is there
   void remove(const void* object);
   void setFilter(const void* object, const ObjectFilter& filter);
