@@ -18,7 +18,6 @@ using deformable::BroadPhase;
 using deformable::DefaultFloatingPoint;
 using deformable::MeetingObjects;
 using deformable::MeetingQuery;
-using deformable::MovingBounds;
 
 template <typename S>
 class ContinuousBroadPhase<S>::Boxes : public BroadPhase {};
