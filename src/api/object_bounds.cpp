@@ -6,18 +6,11 @@
 #include <limits>
 #include <vector>
 
+#include "api/convex_shapes.h"
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
-#include "fcl/geometry/shape/box.h"
-#include "fcl/geometry/shape/capsule.h"
-#include "fcl/geometry/shape/cone.h"
-#include "fcl/geometry/shape/convex.h"
-#include "fcl/geometry/shape/cylinder.h"
-#include "fcl/geometry/shape/ellipsoid.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
-#include "fcl/geometry/shape/sphere.h"
-#include "fcl/geometry/shape/triangle_p.h"
 
 namespace fcl {
 namespace detail {
@@ -47,92 +40,6 @@ struct BoundedBody {
   MotionBox box[2];
   MotionPath path;
 };
-
-/// A box around a center: points of the body are within `pad` of it.
-MotionBox plainBox(const double (&center)[3], const double (&extent)[3], double pad) {
-  MotionBox box{};
-  for (int i = 0; i < 3; ++i) {
-    box.center[i] = center[i];
-    box.extent[i] = std::abs(extent[i]) * kUpward;
-    box.axis[i][i] = 1;
-  }
-  box.pad = std::abs(pad) * kUpward;
-  box.radius = (norm(box.extent) + box.pad) * kUpward;
-  return box;
-}
-
-MotionBox plainBox(double x, double y, double z, double pad = 0) {
-  return plainBox({0, 0, 0}, {x, y, z}, pad);
-}
-
-template <typename S>
-MotionBox boxOfPoints(const Vector3<S>* points, std::size_t count) {
-  double center[3], extent[3];
-  for (int k = 0; k < 3; ++k) {
-    double lo = kUnbounded, hi = -kUnbounded;
-    for (std::size_t i = 0; i < count; ++i) {
-      const double x = static_cast<double>(points[i][k]);
-      if (std::isnan(x)) lo = hi = x;
-      lo = std::min(lo, x);
-      hi = std::max(hi, x);
-    }
-    center[k] = 0.5 * (lo + hi);
-    // The center rounds.
-    extent[k] = 0.5 * (hi - lo) + 0x1p-50 * std::abs(center[k]);
-  }
-  return plainBox(center, extent, 0);
-}
-
-/// The box of a shape in its frame. Returns false for a shape without one.
-template <typename S>
-bool shapeBox(const CollisionGeometry<S>& o, MotionBox& box) {
-  const auto number = [](S x) { return static_cast<double>(x); };
-  switch (o.getNodeType()) {
-    case GEOM_BOX: {
-      const auto& side = static_cast<const Box<S>&>(o).side;
-      box = plainBox(number(side[0]) / 2, number(side[1]) / 2, number(side[2]) / 2);
-      return true;
-    }
-    case GEOM_SPHERE:
-      box = plainBox(0, 0, 0, number(static_cast<const Sphere<S>&>(o).radius));
-      return true;
-    case GEOM_ELLIPSOID: {
-      const auto& radii = static_cast<const Ellipsoid<S>&>(o).radii;
-      box = plainBox(number(radii[0]), number(radii[1]), number(radii[2]));
-      return true;
-    }
-    case GEOM_CAPSULE: {
-      const auto& capsule = static_cast<const Capsule<S>&>(o);
-      box = plainBox(0, 0, number(capsule.lz) / 2, number(capsule.radius));
-      return true;
-    }
-    case GEOM_CONE: {
-      const auto& cone = static_cast<const Cone<S>&>(o);
-      box = plainBox(number(cone.radius), number(cone.radius), number(cone.lz) / 2);
-      return true;
-    }
-    case GEOM_CYLINDER: {
-      const auto& cylinder = static_cast<const Cylinder<S>&>(o);
-      box = plainBox(number(cylinder.radius), number(cylinder.radius),
-                     number(cylinder.lz) / 2);
-      return true;
-    }
-    case GEOM_CONVEX: {
-      const auto& vertices = static_cast<const Convex<S>&>(o).getVertices();
-      if (vertices.empty()) return false;
-      box = boxOfPoints(vertices.data(), vertices.size());
-      return true;
-    }
-    case GEOM_TRIANGLE: {
-      const auto& triangle = static_cast<const TriangleP<S>&>(o);
-      const Vector3<S> corners[3] = {triangle.a, triangle.b, triangle.c};
-      box = boxOfPoints(corners, 3);
-      return true;
-    }
-    default:
-      return false;
-  }
-}
 
 double accelerationOf(const AccelerationBound& bound, const MotionBox (&box)[2]) {
   if (bound.isZero() && bound.per_displacement == 0) return 0;
@@ -258,17 +165,16 @@ template <typename S>
 void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
   requireFinite(placed.beginning(), placed.end(), "object");
   const CollisionGeometry<S>& o = placed.geometry();
-  MotionBox box;
-  if (shapeBox(o, box)) {
-    appendBody({{box, box}, motionPathOf(placed)}, list);
-    return;
-  }
+  const MotionPath path = motionPathOf(placed);
   if (o.getNodeType() == GEOM_PLANE)
-    appendFlat(static_cast<const Plane<S>&>(o), true, motionPathOf(placed), list);
-  else if (o.getNodeType() == GEOM_HALFSPACE)
-    appendFlat(static_cast<const Halfspace<S>&>(o), false, motionPathOf(placed), list);
-  else
-    appendUnbounded(list);
+    return appendFlat(static_cast<const Plane<S>&>(o), true, path, list);
+  if (o.getNodeType() == GEOM_HALFSPACE)
+    return appendFlat(static_cast<const Halfspace<S>&>(o), false, path, list);
+  const ConvexShape shape = convexShapeOf(o, "object", 0);
+  MotionBox box = shape.box();
+  box.pad += shape.radius();
+  box.radius = (box.radius + shape.radius()) * kUpward;
+  appendBody({{box, box}, path}, list);
 }
 
 }  // namespace
@@ -277,7 +183,8 @@ template <typename S>
 void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   const PlacedGeometry<S> placed(moving);
   if (moving.path == PathKind::kUnknown) return appendUnbounded(list);
-  if (!placed.isMesh()) return appendShape(placed, list);
+  if (placed.isShape()) return appendShape(placed, list);
+  if (!placed.isMesh()) return appendUnbounded(list);
   requireFinite(placed.beginning(), placed.end(), "object");
   const PreparedMotion motion(placed, "object", kTocErr, 1);
   const MotionBody& body = motion.body();
