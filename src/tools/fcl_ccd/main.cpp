@@ -3,6 +3,9 @@
 // The command line: options and help.
 #include <fcl/config.h>
 #include <fcntl.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -304,6 +307,17 @@ void occupyStandardStreams() {
   if (file >= 0) close(file);
 }
 
+/// Keeps the memory of a step for the next one. By default glibc gives large blocks back
+/// to the system, which fills them with zeros again: half of the time of a run whose
+/// steps have 100,000 contacts.
+void keepFreedMemory() {
+#ifdef __GLIBC__
+  constexpr int kLargestBlock = 1 << 30;
+  mallopt(M_MMAP_THRESHOLD, kLargestBlock);
+  mallopt(M_TRIM_THRESHOLD, kLargestBlock);
+#endif
+}
+
 int reportFailure(const char* what) {
   std::fprintf(stderr, "fcl-ccd: %s\n", what);
   return fcl_ccd::kRefused;
@@ -359,6 +373,7 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
 
 int main(int argc, char** argv) try {
   occupyStandardStreams();
+  keepFreedMemory();
   fcl_ccd::Ranks ranks;
   return runProgram(argc, argv, ranks);
 } catch (const fcl_ccd::StoppedBySignal& stopped) {
