@@ -22,6 +22,7 @@ constexpr Colour kViolet{150, 0, 200};
 /// The library decides every contact exactly. The table tells this to its reader.
 constexpr int kNumUncertain = 0;
 
+/// The program has no shapes.
 const char* nameOf(Kind kind) {
   switch (kind) {
     case Kind::kVertexFace:
@@ -32,10 +33,9 @@ const char* nameOf(Kind kind) {
       return "ve";
     case Kind::kVertexVertex:
       return "vv";
-    case Kind::kCrossing:
-      break;
+    default:
+      return "crossing";
   }
-  return "crossing";
 }
 
 std::string nameOf(const SceneVertex& vertex) {
