@@ -165,7 +165,8 @@ bool DeformableTraversal<S>::start(const MovingGeometry<S>& o1,
                                    CollisionResult<S>& result) {
   const deformable::DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed1(o1), placed2(o2);
-  if (!placed1.goesStraight() || !placed2.goesStraight()) return false;
+  for (const PlacedGeometry<S>* placed : {&placed1, &placed2})
+    if (!placed->isMesh() || !placed->goesStraight()) return false;
   const deformable::QueryOptions options = makeOptions(toc_err, request);
   const auto prepared = [](const PlacedGeometry<S>& o, const char* name) {
     return std::make_unique<deformable::PreparedMesh>(o.geometry(), o.beginning(),

@@ -180,9 +180,9 @@ bool isUsable(const Method& method, const std::string& a, const std::string& b) 
   const auto has = [&](const char* kind) { return a == kind || b == kind; };
   const bool flat = has("plane") || has("halfspace");
   if (!method.is_stock) return true;
-  if (flat && has("convex")) return false;
+  if ((flat && has("convex")) || has("triangle")) return false;
   if (method.name != "FCL-advancement") return true;
-  return !flat && !has("ellipsoid") && !has("triangle") && !(has(kMesh) && has("sphere"));
+  return !flat && !has("ellipsoid") && !(has(kMesh) && has("sphere"));
 }
 
 struct Errors {
