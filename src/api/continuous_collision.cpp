@@ -252,7 +252,8 @@ ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& 
   const PreparedMotion bounded(second_first ? o2 : o1, second_first ? "o2" : "o1",
                                options.toc_err, options.num_threads),
       other(second_first ? o1 : o2, second_first ? "o1" : "o2", options.toc_err,
-            options.num_threads, bounded.body().size());
+            options.num_threads, bounded.isEmpty() ? 0 : bounded.body().size());
+  if (bounded.isEmpty() || other.isEmpty()) return {};
   update = bounded.updateTime() + other.updateTime();
   return answerOf([&] {
     return queryShapeContacts((second_first ? other : bounded).body(),
@@ -260,7 +261,8 @@ ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& 
   });
 }
 
-/// Answers a shape, and a mesh or another shape. Threads are used only to make trees.
+/// Answers a shape or an octree, and another one of these or a mesh. Threads are used
+/// only to make trees.
 template <typename S>
 void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   QueryOptions options, const QuerySettings& settings,

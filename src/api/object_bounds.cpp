@@ -184,9 +184,11 @@ void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   const PlacedGeometry<S> placed(moving);
   if (moving.path == PathKind::kUnknown) return appendUnbounded(list);
   if (placed.isShape()) return appendShape(placed, list);
-  if (!placed.isMesh()) return appendUnbounded(list);
+  if (!placed.isMesh() && !placed.isOctree()) return appendUnbounded(list);
   requireFinite(placed.beginning(), placed.end(), "object");
   const PreparedMotion motion(placed, "object", kTocErr, 1);
+  if (motion.isEmpty())
+    return appendBody({{MotionBox(), MotionBox()}, motionPathOf(placed)}, list);
   const MotionBody& body = motion.body();
   appendBody({{body.box(body.root(), 0), body.box(body.root(), 1)}, body.path()}, list);
 }

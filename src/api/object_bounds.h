@@ -15,9 +15,11 @@ namespace detail {
 /// straight lines by at most M dt^2 / 8, where M bounds their acceleration. The number of
 /// spans, up to 16, is such that this is small compared with the object.
 ///
-/// No bounds: a motion that is not known (PathKind::kUnknown), octrees, point clouds,
-/// geometries of the program. A plane or halfspace has bounds if its normal is along an
-/// axis.
+/// The box of an octree contains its occupied cells. It is made of at most 256 upper
+/// nodes of the octree, so that it is wider than they are by up to a tenth or so.
+///
+/// No bounds: a motion that is not known (PathKind::kUnknown), point clouds, geometries
+/// of the program. A plane or halfspace has bounds if its normal is along an axis.
 ///
 /// @pre the floating-point mode is the default one
 /// @throws fcl::Exception  a mesh as in PreparedMotion; a pose or a shape is not finite

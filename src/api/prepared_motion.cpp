@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "api/octree_nodes.h"
 #include "fcl/common/exception.h"
 
 namespace fcl {
@@ -68,6 +69,10 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     shape_.emplace(
         convexShapeOf(placed.geometry(), name, reach + path.translationReach()));
     body_.emplace(*shape_, path);
+  } else if (placed.isOctree()) {
+    octree_.emplace(octreeCellsOf(placed.geometry(), name));
+    if (octree_->isEmpty()) return;
+    body_.emplace(*octree_, path);
   } else {
     const bool posed = isPosed(placed);
     mesh_.emplace(placed.geometry(), posed ? placed.beginning() : Pose(),

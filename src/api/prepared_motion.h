@@ -9,6 +9,7 @@
 #include "api/prepared_mesh.h"
 #include "api/query_arguments.h"
 #include "motion/motion_body.h"
+#include "motion/octree_cells.h"
 
 namespace fcl {
 namespace detail {
@@ -20,10 +21,10 @@ namespace deformable {
 template <typename S>
 MotionPath motionPathOf(const PlacedGeometry<S>& placed);
 
-/// @brief A mesh or a shape made ready for a query in which one of the objects turns or
-/// is a shape. It owns what was computed for the query, as PreparedMesh does. Vertices
-/// are in the frame that the motion moves. Exception: if a mesh deforms, its rotation
-/// changes and its vertices go straight, the vertices are posed.
+/// @brief A mesh, a shape or an octree made ready for a query in which one of the objects
+/// turns or is no mesh. It owns what was computed for the query, as PreparedMesh does.
+/// Vertices are in the frame that the motion moves. Exception: if a mesh deforms, its
+/// rotation changes and its vertices go straight, the vertices are posed.
 class PreparedMotion {
  public:
   /// @param name  how errors call the geometry, for example "o1"
@@ -31,8 +32,8 @@ class PreparedMotion {
   /// @param reach  of a plane or halfspace: how far the other object may come from the
   /// origin of the world
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
-  /// @throws fcl::Exception  as PreparedMesh and convexShapeOf(); also when the path is
-  /// not defined or leaves the range of numbers
+  /// @throws fcl::Exception  as PreparedMesh, convexShapeOf() and octreeCellsOf(); also
+  /// when the path is not defined or leaves the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
                  int num_threads, double reach = 0);
@@ -40,6 +41,8 @@ class PreparedMotion {
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;
 
+  /// @brief Whether it is an octree without occupied cells. It has no body.
+  bool isEmpty() const { return octree_ && octree_->isEmpty(); }
   const MotionBody& body() const { return *body_; }
   double updateTime() const { return mesh_ ? mesh_->updateTime() : 0; }
 
@@ -62,6 +65,7 @@ class PreparedMotion {
   /// One of them is there.
   std::optional<PreparedMesh> mesh_;
   std::optional<ConvexShape> shape_;
+  std::optional<OctreeCells> octree_;
   std::optional<MotionBody> body_;
 };
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "api/convex_shapes.h"
+#include "api/octree_nodes.h"
 #include "api/prepared_mesh.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/collision_geometry.h"
@@ -62,7 +63,8 @@ class PlacedGeometry {
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
       : moving_(moving),
         kind_(deformable::meshKindOf(*moving.geometry)),
-        is_shape_(deformable::isConvexShape(*moving.geometry)) {
+        is_shape_(deformable::isConvexShape(*moving.geometry)),
+        is_octree_(deformable::isOctree(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
@@ -84,14 +86,17 @@ class PlacedGeometry {
 
   bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
   bool isShape() const { return is_shape_; }
-  bool isRigid() const { return kind_ == deformable::MeshKind::kRigid || is_shape_; }
+  bool isOctree() const { return is_octree_; }
+  bool isRigid() const {
+    return kind_ == deformable::MeshKind::kRigid || is_shape_ || is_octree_;
+  }
 
   /// Whether all vertices move on straight lines.
   bool goesStraight() const { return goes_straight_; }
 
   /// Whether this library can follow the path.
   bool isKnown() const {
-    return (isMesh() || isShape()) &&
+    return (isMesh() || isShape() || isOctree()) &&
            (goes_straight_ || moving_.path != PathKind::kUnknown);
   }
 
@@ -103,6 +108,7 @@ class PlacedGeometry {
   const MovingGeometry<S>& moving_;
   deformable::MeshKind kind_;
   bool is_shape_;
+  bool is_octree_;
   deformable::Pose beginning_, end_;
   bool goes_straight_{false};
 };
@@ -110,8 +116,8 @@ class PlacedGeometry {
 enum class Answerer {
   kStraightPaths,  ///< all vertices of both meshes move on straight lines
   kCurvedPaths,    ///< two meshes, and at least one turns or follows a spline
-  kShapes,         ///< a shape, and a mesh or another shape
-  kFcl  ///< FCL: one is an octree, or follows a motion that is not known, for example
+  kShapes,         ///< one is a shape or an octree, the other one of these or a mesh
+  kFcl  ///< FCL: one is a point cloud, or follows a motion that is not known, for example
 };
 
 /// Which method answers a pair.
@@ -120,7 +126,7 @@ enum class Answerer {
 /// of straight paths. FCL gets other geometries as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
-  if (o1.isShape() || o2.isShape()) {
+  if (o1.isShape() || o2.isShape() || o1.isOctree() || o2.isOctree()) {
     if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");

@@ -28,7 +28,12 @@ double accelerationOf(const MovingConvex& set, double t0, double t1) {
 
 MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place) {
   MovingConvex out{&body.path(), body.shape(), {}, body.speed()};
-  if (!out.shape) out.triangle = body.triangle(place);
+  if (body.isMesh()) out.triangle = body.triangle(place);
+  if (!body.octree()) return out;
+  out.shape = &body.octree()->cell(place);
+  const Vec center = out.shape->center();
+  const double far = std::sqrt(dot(center, center)) + out.shape->box().radius;
+  out.speed = std::min(out.speed, body.path().speed(far * kUpward));
   return out;
 }
 

@@ -14,7 +14,7 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A shape, or a triangle of a mesh, that moves.
+/// @brief A shape, a cell of an octree, or a triangle of a mesh, that moves.
 struct MovingConvex {
   const MotionPath* path;
   /// Null: the triangle.
@@ -24,7 +24,7 @@ struct MovingConvex {
   double speed;
 };
 
-/// @brief The shape of a body, or a triangle of its mesh.
+/// @brief The shape of a body, a cell of its octree, or a triangle of its mesh.
 MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place);
 
 /// @brief Two convex sets of which one is a shape, in a span of time. What

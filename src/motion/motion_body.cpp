@@ -103,8 +103,15 @@ MotionBody::MotionBody(const ConvexShape& shape, const MotionPath& path)
   radius_ = (norm(shape.box().center) + shape.box().radius) * kUpward;
 }
 
+MotionBody::MotionBody(OctreeCells& cells, const MotionPath& path)
+    : octree_(&cells), path_(path) {
+  const MotionBox whole = cells.box(0);
+  radius_ = (norm(whole.center) + whole.radius) * kUpward;
+}
+
 BodyPart MotionBody::root() const {
   if (shape_) return {~0, 0};
+  if (octree_) return {octree_->isLeaf(0) ? ~0 : 0, 0};
   if (tree_) return {0, BodyPart::kRoot};
   const int link = rigid_->link(0);
   return {link < 0 ? link : 0, 0};
@@ -160,11 +167,23 @@ MotionBox MotionBody::movingRoot(int frame) const {
 
 MotionBox MotionBody::box(const BodyPart& part, int frame) const {
   if (shape_) return shape_->box();
+  if (octree_) return octree_->box(part.box);
   if (!tree_) return rigidBox(part.box);
   return part.box == BodyPart::kRoot ? movingRoot(frame) : movingBox(part.box, frame);
 }
 
+void MotionBody::openOctree(std::int32_t node, MotionNode& out) const {
+  const OctreeCells::Children children = octree_->open(node);
+  out.count = children.count;
+  for (int lane = 0; lane < MotionBoxes::kWidth && children.count > 0; ++lane) {
+    const std::int32_t child = children.first + std::min(lane, children.count - 1);
+    out.part[lane] = {octree_->isLeaf(child) ? ~child : child, child};
+    out.box[0].set(lane, octree_->box(child));
+  }
+}
+
 void MotionBody::open(const BodyPart& part, MotionNode& out) const {
+  if (octree_) return openOctree(part.child, out);
   constexpr int kWidth = MotionBoxes::kWidth;
   if (tree_) {
     const MovingKdopNode& node = tree_->node(part.child);

@@ -10,6 +10,7 @@
 #include "motion/convex_shape.h"
 #include "motion/motion_boxes.h"
 #include "motion/motion_path.h"
+#include "motion/octree_cells.h"
 #include "numerics/moving_vector.h"
 #include "tree/moving_kdop_tree.h"
 #include "tree/rigid_tree.h"
@@ -18,12 +19,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A node or a triangle of a body's tree, and the place of its box.
+/// @brief A node or a triangle of a body's tree, and the place of its box. The cells of
+/// an octree count as triangles.
 struct BodyPart {
   /// >= 0: a node; < 0: ~triangle.
   std::int32_t child;
   /// RigidTree: the number of FCL's node. MovingKdopTree: eight times the number of the
-  /// parent, plus the lane; kRoot for the whole tree.
+  /// parent, plus the lane; kRoot for the whole tree. OctreeCells: the number of the
+  /// node.
   std::int32_t box;
 
   static constexpr std::int32_t kRoot = -1;
@@ -55,8 +58,8 @@ double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triang
 /// edge is the same, in whichever of its triangles it is found.
 FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b);
 
-/// @brief A mesh or a shape that moves along a path, as a query reads it. It does not own
-/// the mesh or shape.
+/// @brief A mesh, a shape or an octree that moves along a path, as a query reads it. It
+/// does not own them.
 class MotionBody {
  public:
   /// @brief A rigid mesh.
@@ -72,11 +75,19 @@ class MotionBody {
   /// @brief A convex shape. It has one part, which counts as a triangle.
   MotionBody(const ConvexShape& shape, const MotionPath& path);
 
+  /// @brief An octree. Its cells are solid; each counts as a triangle.
+  /// @param cells  a query opens its nodes
+  /// @pre it is not empty
+  MotionBody(OctreeCells& cells, const MotionPath& path);
+
   const MotionPath& path() const { return path_; }
   MotionPath& path() { return path_; }
   bool isRigid() const { return !tree_; }
-  /// @brief Null: a mesh.
+  bool isMesh() const { return !shape_ && !octree_; }
+  /// @brief Null: a mesh or an octree.
   const ConvexShape* shape() const { return shape_; }
+  /// @brief Null: a mesh or a shape.
+  OctreeCells* octree() const { return octree_; }
 
   BodyPart root() const;
   void open(const BodyPart& part, MotionNode& out) const;
@@ -102,6 +113,7 @@ class MotionBody {
   double size() const { return path_.translationReach() + path_.stretch() * radius_; }
 
  private:
+  void openOctree(std::int32_t node, MotionNode& out) const;
   MotionBox rigidBox(int node) const;
   MotionBox movingBox(std::int32_t box, int frame) const;
   MotionBox movingRoot(int frame) const;
@@ -109,6 +121,7 @@ class MotionBody {
   const RigidTree* rigid_{nullptr};
   const MovingKdopTree* tree_{nullptr};
   const ConvexShape* shape_{nullptr};
+  OctreeCells* octree_{nullptr};
   VertexFrames frames_;
   const Triangle* triangles_{nullptr};
   MotionPath path_;

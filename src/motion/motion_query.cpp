@@ -203,6 +203,8 @@ class MotionTraversal {
   /// Tests the children of one side's part against the other side's part.
   /// @param opened  the side whose children they are
   void test(const Work& work, int opened, const MotionNode& node) {
+    // A node of an octree may be occupied, and none of its children.
+    if (node.count == 0) return;
     Side& one = side_[1 - opened];
     Side& many = side_[opened];
     const BodyPart part = opened == 1 ? work.a : work.b;
@@ -332,15 +334,15 @@ class MotionTraversal {
     testAlone(half);
   }
 
-  /// Advances a pair of triangles, or of a triangle and a shape, or of two shapes.
+  /// Advances a pair of triangles, shapes or cells of an octree.
   void advance(const Work& work) {
     const MotionBody &a = side_[0].body, &b = side_[1].body;
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
-    if (a.shape() || b.shape()) {
+    if (!a.isMesh() || !b.isMesh()) {
       const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
-      const std::int32_t index[2] = {x.shape ? kNoTriangle : x.triangle.index,
-                                     y.shape ? kNoTriangle : y.triangle.index};
+      const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
+                                     b.isMesh() ? y.triangle.index : kNoTriangle};
       ConvexPairMotion pair(x, y, work.start, end, tolerance_);
       advance(work, index, end, pair);
       return;
@@ -367,9 +369,10 @@ class MotionTraversal {
       return nullptr;
     }
     MotionContact contact{};
-    std::copy(index, index + 2, contact.triangle);
     contact.place[0] = ~work.a.child;
     contact.place[1] = ~work.b.child;
+    for (int k = 0; k < 2; ++k)
+      contact.triangle[k] = side_[k].body.octree() ? contact.place[k] : index[k];
     contact.toc_lo = contact.toc_hi = work.start;
     contact.certainty = MotionCertainty::kGivenUp;
     if (answer == TrianglePairMotion::Answer::kContact) {

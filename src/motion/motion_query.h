@@ -30,8 +30,7 @@ struct MotionQueryOptions {
 };
 
 struct MotionAnswer {
-  /// Sorted by (toc_lo, triangles). One for each pair of triangles, or for each triangle
-  /// and the shape.
+  /// Sorted by (toc_lo, triangles). One for each pair of triangles, shapes or cells.
   std::vector<MotionContact> contacts;
   MotionCounts counts;
   /// Largest distance of a reported pair, less the requested distance.
@@ -47,7 +46,7 @@ struct BodiesNearOrigin {
   double origin[3];
 };
 
-/// @brief The number of the triangle of a shape, which has none.
+/// @brief The number of the triangle of a shape or an octree, which have none.
 constexpr std::int32_t kNoTriangle = -1;
 
 /// @brief The contacts of two bodies during t in [0, 1]. (1) It never misses: surfaces

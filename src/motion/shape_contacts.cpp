@@ -2,6 +2,7 @@
 #include "motion/shape_contacts.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 #include "motion/convex_advance.h"
@@ -14,6 +15,23 @@ namespace {
 
 double radiusOf(const MotionBody& body) {
   return body.shape() ? body.shape()->radius() : 0;
+}
+
+/// What a contact calls the part of a body.
+std::int64_t nameOf(const MotionBody& body, const MotionContact& contact, int side) {
+  return body.octree() ? body.octree()->number(contact.place[side])
+                       : contact.triangle[side];
+}
+
+/// The places of cells depend on the query; their names do not.
+void sortByNames(const MotionBody& a, const MotionBody& b,
+                 std::vector<MotionContact>& contacts) {
+  if (!a.octree() && !b.octree()) return;
+  std::sort(contacts.begin(), contacts.end(),
+            [&](const MotionContact& x, const MotionContact& y) {
+              return std::make_tuple(x.toc_lo, nameOf(a, x, 0), nameOf(b, x, 1)) <
+                     std::make_tuple(y.toc_lo, nameOf(a, y, 0), nameOf(b, y, 1));
+            });
 }
 
 /// The feature of a triangle whose corners hold the nearest point.
@@ -39,18 +57,19 @@ class ShapeContacts {
     const ConvexPairMotion pair(set[0], set[1], found.toc_lo, found.toc_lo, tolerance_);
     const ConvexGap gap = pair.gapAt(found.toc_lo);
     ShapeContact contact{};
-    std::copy(found.triangle, found.triangle + 2, contact.triangles);
     contact.toc_lo = found.toc_lo;
     // A contact at the beginning has exactly the time 0.
     contact.toc_hi = found.toc_lo == 0 ? 0 : found.toc_hi;
     contact.within_tolerance = found.certainty != MotionCertainty::kCrossing;
     contact.kind = ContinuousContactKind::kShapes;
     std::fill(contact.vertices, contact.vertices + 3, -1);
-    for (int side = 0; side < 2; ++side)
-      if (!body_[side]->shape()) {
+    for (int side = 0; side < 2; ++side) {
+      contact.triangles[side] = nameOf(*body_[side], found, side);
+      if (body_[side]->isMesh()) {
         contact.mesh_is_first = side == 0;
         setFeature(set[side].triangle, gap.corners[side], contact);
       }
+    }
     setGeometry(gap, contact);
     return contact;
   }
@@ -119,6 +138,7 @@ ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
     if (!first.empty()) touching = std::move(first);
     keepFirst(touching);
   }
+  sortByNames(a, b, touching);
   const std::size_t most =
       options.query == ContinuousQuery::kAny ? 1 : options.max_contacts;
   if (touching.size() > most) {

@@ -13,7 +13,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief The first contact of a triangle of a mesh with a shape, or of two shapes.
+/// @brief The first contact of a triangle of a mesh with a shape or a cell of an octree,
+/// or of two of these.
 struct ShapeContact {
   ContinuousContactKind kind;
   /// Whether the mesh is body a.
@@ -21,8 +22,8 @@ struct ShapeContact {
   /// Vertex ids of the mesh's feature. The kind says how many there are; the others are
   /// -1.
   std::int32_t vertices[3];
-  /// Triangles of a and b; -1 for a shape.
-  std::int32_t triangles[2];
+  /// Triangles of a and b; -1 for a shape; of a cell its number (OctreeCellNumber).
+  std::int64_t triangles[2];
   double toc_lo, toc_hi;
   bool within_tolerance;
   /// In the world. The normal is a unit vector from a to b, or zero if there is none.
@@ -36,9 +37,10 @@ struct ShapeAnswer {
   StageCounts counts;
 };
 
-/// @brief The contacts of two bodies, of which one is a shape at least: one for each
-/// triangle of a mesh, or one of two shapes. As in queryMotions(), no contact is missed,
-/// and no time is late. Shapes are solid: what is inside of one at t = 0 touches it then.
+/// @brief The contacts of two bodies, of which one is a shape or an octree at least: one
+/// for each pair of triangles, shapes and cells. As in queryMotions(), no contact is
+/// missed, and no time is late. Shapes and cells are solid: what is inside of one at t =
+/// 0 touches it then.
 /// @pre the floating-point mode is the default one
 /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,

@@ -50,6 +50,7 @@ struct NearestFeatures {
 
 /// @brief A contact of two triangles.
 struct MotionContact {
+  /// Of a shape kNoTriangle; of an octree the place of the cell.
   std::int32_t triangle[2];
   /// The places of the triangles in the trees.
   std::int32_t place[2];

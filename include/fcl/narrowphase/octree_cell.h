@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_NARROWPHASE_OCTREE_CELL_H
+#define FCL_NARROWPHASE_OCTREE_CELL_H
+
+#include "fcl/config.h"
+
+#if FCL_HAVE_OCTOMAP
+
+#include <algorithm>
+#include <cstdint>
+
+#include "fcl/common/exception.h"
+#include "fcl/geometry/octree/octree.h"
+#include "fcl/narrowphase/detail/octree_cell_number.h"
+
+namespace fcl {
+
+/// @brief A cell of an octree. A pruned node is one large cell.
+template <typename S>
+struct OctreeCell {
+  /// @brief In the frame of the octree.
+  Vector3<S> center;
+  /// @brief The side of the cube.
+  S size;
+  /// @brief As octomap names the cell: octomap::OcTree::search(key, depth) finds its
+  /// node.
+  octomap::OcTreeKey key;
+  unsigned int depth;
+};
+
+/// @brief The cell of an octree that is part of a continuous contact.
+/// @param b  ContinuousContact::b1 or b2, that of the octree. It is no pointer and not
+/// FCL's "query cell id" (which depends on addresses): it stays valid when the map
+/// changes, and means the same in each run.
+/// @throws fcl::Exception  b is not the number of a cell
+template <typename S>
+OctreeCell<S> octreeCell(const OcTree<S>& octree, std::intptr_t b) {
+  using detail::OctreeCellNumber;
+  if (!OctreeCellNumber::isNumber(b))
+    throw Exception(
+        "octreeCell: b is not the number of a cell. Give b1 or b2 of a "
+        "ContinuousContact, that of the octree");
+  const auto number = OctreeCellNumber::of(b);
+  const double size = number.size(2 * static_cast<double>(octree.getRootBV().max_[0]));
+  OctreeCell<S> cell;
+  for (int k = 0; k < 3; ++k)
+    cell.center[k] = static_cast<S>((number.index(k) + 0.5) * size);
+  cell.size = static_cast<S>(size);
+  std::copy(number.key, number.key + 3, cell.key.k);
+  cell.depth = number.depth;
+  return cell;
+}
+
+}  // namespace fcl
+
+#endif
+
+#endif

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The occupied cells of an octree, as a query reads them.
+#ifndef FCL_CCD_MOTION_OCTREE_CELLS_H
+#define FCL_CCD_MOTION_OCTREE_CELLS_H
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "fcl/narrowphase/detail/octree_cell_number.h"
+#include "motion/convex_shape.h"
+#include "motion/motion_boxes.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The nodes of an octree where the program has them. A node that is not occupied
+/// does not count, and neither does what is below it.
+class OctreeNodes {
+ public:
+  virtual ~OctreeNodes() = default;
+  /// @brief Null: there is none, or it is not occupied.
+  virtual const void* root() const = 0;
+  virtual bool isLeaf(const void* node) const = 0;
+  /// @brief The occupied children; null for others. Bit k of a child's number: whether it
+  /// is on the upper side along axis k.
+  virtual void readChildren(const void* node, const void* (&children)[8]) const = 0;
+};
+
+/// @brief The nodes of an octree that a query has seen, numbered in the order in which it
+/// saw them; the root is 0. No node is copied that the query does not reach. For one
+/// thread.
+class OctreeCells {
+ public:
+  /// @param root_size  the side of the root, whose center is the origin
+  OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size);
+
+  /// @brief Whether no cell is occupied, as far as the bounds were looked for.
+  bool isEmpty() const { return is_empty_; }
+
+  bool isLeaf(std::int32_t node) const { return at(node).is_leaf; }
+
+  /// @brief A box around the occupied cells of a node.
+  MotionBox box(std::int32_t node) const;
+
+  /// @brief The occupied children of a node have consecutive numbers.
+  struct Children {
+    std::int32_t first;
+    int count;
+  };
+  /// @pre it is no leaf
+  Children open(std::int32_t node);
+
+  /// @brief The cell of a leaf, which is solid. Valid as long as this object.
+  const ConvexShape& cell(std::int32_t leaf);
+
+  /// @brief The number by which contacts name the cell of a leaf.
+  std::int64_t number(std::int32_t leaf) const { return at(leaf).name.toNumber(); }
+
+ private:
+  struct Node {
+    const void* node;
+    OctreeCellNumber name;
+    std::int32_t first_child;
+    /// -1: not opened yet.
+    std::int32_t num_children;
+    /// -1: no shape yet.
+    std::int32_t shape;
+    bool is_leaf;
+  };
+  const Node& at(std::int32_t node) const {
+    return table_[static_cast<std::size_t>(node)];
+  }
+  void add(const void* node, const OctreeCellNumber& name);
+  void findBounds();
+
+  std::unique_ptr<const OctreeNodes> nodes_;
+  double root_size_;
+  bool is_empty_{true};
+  double lower_[3]{}, upper_[3]{};
+  std::vector<Node> table_;
+  std::deque<ConvexShape> shapes_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif
