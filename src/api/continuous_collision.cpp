@@ -240,12 +240,20 @@ void fillContacts(const ShapeAnswer& answer, const PlacedGeometry<S>& o1,
   result = std::move(out);
 }
 
+/// As in FCL, the cells of an octree meet only what the program calls occupied
+/// (cost_density and threshold_occupied).
+template <typename S>
+bool isNoObstacleFor(const PlacedGeometry<S>& octree, const PlacedGeometry<S>& other) {
+  return octree.isOctree() && !other.isOctree() && !other.geometry().isOccupied();
+}
+
 template <typename S>
 ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                           const QueryOptions& options, double& update) {
   const auto is_unbounded = [](const PlacedGeometry<S>& o) {
     return deformable::isUnbounded(o.geometry());
   };
+  if (isNoObstacleFor(o1, o2) || isNoObstacleFor(o2, o1)) return {};
   if (is_unbounded(o1) && is_unbounded(o2)) return queryUnbounded(o1, o2, options);
   // The part of an unbounded shape that matters depends on the other object.
   const bool second_first = is_unbounded(o1);

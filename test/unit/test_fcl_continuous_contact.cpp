@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
-#include "fcl/geometry/octree/octree.h"
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
@@ -461,9 +460,12 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   refused("o2", o, &motion, none, &motion, request);
   refused("motion1", o, nullptr, o, &motion, request);
   refused("motion2", o, &motion, o, nullptr, request);
-  const OcTree<double> map(0.1);
-  refused("o2 is neither a triangle mesh nor a shape", o, &motion, &map, &motion,
-          request);
+  struct OwnGeometry : CollisionGeometry<double> {
+    void computeLocalAABB() override {}
+  };
+  const OwnGeometry own;
+  refused("o2 is neither a triangle mesh nor a shape nor an octree", o, &motion, &own,
+          &motion, request);
   expectRefused([&] { continuousSelfCollide(none, request, result); }, "o is null");
   expectRefused([&] { continuousSelfCollide(sphere.get(), request, result); },
                 "not a triangle mesh");

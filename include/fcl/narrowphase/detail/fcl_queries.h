@@ -113,16 +113,16 @@ template <typename S>
 std::string explainNoContacts(const CollisionGeometry<S>& o1,
                               const CollisionGeometry<S>& o2) {
   const auto has_contacts = [](const CollisionGeometry<S>& o) {
-    return o.getObjectType() == OT_BVH || o.getObjectType() == OT_GEOM;
+    return o.getObjectType() == OT_BVH || o.getObjectType() == OT_GEOM ||
+           o.getObjectType() == OT_OCTREE;
   };
   if (!has_contacts(o1) || !has_contacts(o2))
     return std::string(has_contacts(o1) ? "o2" : "o1") +
-           " is neither a triangle mesh nor a shape, and only these have contacts. Ask "
-           "with a ContinuousCollisionRequest: FCL then answers, and takes meshes as "
-           "they "
-           "are in their current frame";
-  return "contacts need triangle meshes or shapes that follow transforms, FCL's own "
-         "motion classes, or a BoundedMotion. Derive another motion class from "
+           " is neither a triangle mesh nor a shape nor an octree, and only these have "
+           "contacts. Ask with a ContinuousCollisionRequest: FCL then answers, and takes "
+           "meshes as they are in their current frame";
+  return "contacts need triangle meshes, shapes or octrees that follow transforms, FCL's "
+         "own motion classes, or a BoundedMotion. Derive another motion class from "
          "BoundedMotion too; a model without triangles has no contacts";
 }
 
