@@ -15,8 +15,9 @@ namespace detail {
 /// straight lines by at most M dt^2 / 8, where M bounds their acceleration. The number of
 /// spans, up to 16, is such that this is small compared with the object.
 ///
-/// The box of an octree contains its occupied cells. It is made of at most 256 upper
-/// nodes of the octree, so that it is wider than they are by up to a tenth or so.
+/// The box of an octree contains its occupied cells. It is made of the octree's upper
+/// nodes, of which at most 256 are opened. So it may be wider than the cells, by up to
+/// about a tenth of the size of the map.
 ///
 /// No bounds: a motion that is not known (PathKind::kUnknown), point clouds, geometries
 /// of the program. A plane or halfspace has bounds if its normal is along an axis.

@@ -4,10 +4,8 @@
 // convex shapes.
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
-#include <functional>
-#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -181,6 +179,34 @@ TEST(OctreeCollision, ClothFallsThroughACell) {
   expectFirst(turning, still(oneCell()), (2 - kResolution) / 4);
 }
 
+/// Goes down from z = 2 to z = -2. A class that the library does not know.
+class OwnMotion : public TranslationMotion<double> {
+ public:
+  OwnMotion() : TranslationMotion<double>(at(0, 0, 2), at(0, 0, -2)) {}
+};
+
+TEST(OctreeCollision, MotionClassesOfTheProgram) {
+  const OwnMotion own;
+  const TranslationMotion<double> rest(Pose::Identity(), Pose::Identity());
+  const TestMesh sheet = bentSheet(2);
+  const auto cloth =
+      makeModel<DeformableBVHModel<KDOP<double, 16>>>(moved(sheet, .1, 0, 0), sheet);
+  const Octree octree = oneCell();
+  Result result;
+  // The poses at both ends of the step count for a cloth.
+  EXPECT_NEAR(
+      continuousCollide(cloth.get(), &own, octree.get(), &rest, requestOf(), result),
+      ask({cloth, at(0, 0, 2), at(0, 0, -2)}, still(octree)).time_of_contact, 1e-11);
+  EXPECT_TRUE(result.is_collide);
+  // FCL answers the others, and has no contacts.
+  const Sphere<double> ball(0.5);
+  EXPECT_THROW(continuousCollide(&ball, &own, octree.get(), &rest, requestOf(), result),
+               Exception);
+  EXPECT_THROW(
+      continuousCollide(cloth.get(), &rest, octree.get(), &own, requestOf(), result),
+      Exception);
+}
+
 /// The first time of a ball that drops on oneCell() or another octree; 1: none.
 double dropTime(const Octree& octree) {
   return ask(falling(std::make_shared<Sphere<double>>(0.5)), still(octree))
@@ -211,13 +237,6 @@ TEST(OctreeCollision, NodesBelowTheThresholdHideTheirCells) {
   map->search(octomap::OcTreeKey(32768, 32768, 32768), 12)->setLogOdds(-1);
   const Octree octree = octreeOf(map);
   EXPECT_EQ(dropTime(octree), 1);
-  // FCL's discrete query agrees.
-  const Sphere<double> ball(1);
-  CollisionRequest<double> request;
-  CollisionResult<double> result;
-  EXPECT_EQ(collide<double>(octree.get(), Pose::Identity(), &ball, Pose::Identity(),
-                            request, result),
-            0u);
   // A node may be occupied without an occupied child.
   const Map stale = makeMap();
   occupy(stale, 0, 0, 0, false);
@@ -456,7 +475,8 @@ Times bruteForce(const Moving& octree, const Moving& other, const Request& reque
   return times;
 }
 
-void expectAsBruteForce(const Moving& octree, const Moving& other,
+/// @return whether they touch
+bool expectAsBruteForce(const Moving& octree, const Moving& other,
                         const Request& request) {
   const Times expected = bruteForce(octree, other, request);
   double first = 1;
@@ -474,14 +494,18 @@ void expectAsBruteForce(const Moving& octree, const Moving& other,
         octreeCell(static_cast<const OcTree<double>&>(*octree.geometry), contact.b1);
     const auto same = expected.find(
         {contact.b2, {cell.center[0], cell.center[1], cell.center[2], cell.size}});
-    ASSERT_NE(same, expected.end());
-    EXPECT_NEAR(contact.toc_lo, same->second, 1e-11);
+    EXPECT_NE(same, expected.end());
+    if (same != expected.end()) {
+      EXPECT_NEAR(contact.toc_lo, same->second, 1e-11);
+    }
   }
+  return !expected.empty();
 }
 
 TEST(OctreeCollision, AgreesWithAllCells) {
   Random random(20);
   const std::vector<Geometry> objects = makeObjects();
+  int num_touching = 0;
   for (int scene = 0; scene < 10; ++scene)
     for (std::size_t i = 0; i < objects.size(); ++i) {
       SCOPED_TRACE("scene " + std::to_string(scene) + ", object " + std::to_string(i));
@@ -492,8 +516,9 @@ TEST(OctreeCollision, AgreesWithAllCells) {
                          randomPose(random, 1.5, turn)};
       Request request = requestOf(ContinuousQuery::kAll);
       if (scene % 3 == 1) request.ccd_motion_type = CCDM_SCREW;
-      expectAsBruteForce(octree, other, request);
+      num_touching += expectAsBruteForce(octree, other, request) ? 1 : 0;
     }
+  EXPECT_GT(num_touching, 60);
 }
 
 TEST(OctreeCollision, TwoOctrees) {

@@ -147,16 +147,15 @@ using SweptCollisionObjectd = SweptCollisionObject<double>;
 /// @brief Finds the contacts of many objects that move: a concrete
 /// BroadPhaseContinuousCollisionManager, which FCL declares and does not have.
 ///
-/// Objects are meshes and shapes that follow any motion. Each has a box that moves: boxes
-/// at the ends of up to 16 spans of the step, enlarged by what the motion can deviate
-/// from straight lines in between. Two objects are a box pair if their boxes overlap at
-/// the same time. So objects that fly side by side are no box pair, and no contact is
-/// missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
+/// Objects are meshes, shapes and octrees that follow any motion. Each has a box that
+/// moves: boxes at the ends of up to 16 spans of the step, enlarged by what the motion
+/// can deviate from straight lines in between. Two objects are a box pair if their boxes
+/// overlap at the same time. So objects that fly side by side are no box pair, and no
+/// contact is missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
 ///
 /// An object has no box (SweptCollisionObject: an infinite one), and is a box pair with
 /// all others, if its motion is a class of the program that is no BoundedMotion, or if it
-/// is an octree, a point cloud, or a plane or halfspace whose normal is not along an
-/// axis.
+/// is a point cloud, or a plane or halfspace whose normal is not along an axis.
 ///
 /// The manager reads an object when it is registered or updated. After a change of its
 /// motion or of its geometry call update(). An object that rests (its box is the same at

@@ -20,15 +20,20 @@ namespace fcl {
 ///
 /// Which pairs are answered here, whatever request.ccd_solver_type says: triangle meshes
 /// of any BV type, rigid or deforming (a DeformableBVHModel, or a BVHModel in FCL's
-/// updated state), and FCL's ten shapes, against each other. A DeformableBVHModel whose
-/// frames are equal is a rigid mesh. A mesh is a surface. Shapes are solid, but for a
-/// TriangleP and a Plane, which is a surface without end.
+/// updated state), FCL's ten shapes, and octrees, against each other. A
+/// DeformableBVHModel whose frames are equal is a rigid mesh. A mesh is a surface. Shapes
+/// are solid, but for a TriangleP and a Plane, which is a surface without end. Of an
+/// octree the cells that FCL calls occupied are solid: leaves that reach its threshold
+/// (OcTree::isNodeOccupied()), below nodes that reach it too. Other cells, and objects
+/// beside an octree that are not CollisionGeometry::isOccupied(), are no obstacles.
+/// octomap's nodes are read in place, only those near the other object.
 ///
-/// Which pairs FCL answers: octrees, point clouds, and a rigid mesh or a shape that
-/// follows a motion class of the program that is no BoundedMotion. FCL takes a mesh as it
-/// is in its current frame and ignores the deformation. It samples the motion and may
-/// miss a contact. There are no contacts. The way out: derive the motion class from
-/// BoundedMotion too. doc/choosing.md has the limits.
+/// Which pairs FCL answers: point clouds, geometries of the program, and a rigid mesh, a
+/// shape or an octree that follows a motion class of the program that is no
+/// BoundedMotion. FCL takes a mesh as it is in its current frame and ignores the
+/// deformation. It samples the motion and may miss a contact. There are no contacts. The
+/// way out: derive the motion class from BoundedMotion too. doc/choosing.md has the
+/// limits.
 ///
 /// Paths are the real-number evaluation of the given numbers, in double. t runs from 0 to
 /// 1. A contact is a VF or EE pair of closed features without a common vertex that touch
@@ -38,7 +43,8 @@ namespace fcl {
 ///   another motion class of the program (its poses at t = 0 and t = 1 count). A vertex
 ///   goes from tf_beg * (previous frame) to tf_end * (current frame). If two meshes go
 ///   straight the answer is exact.
-/// - Turning: a rigid mesh or a shape whose end transforms have different rotations. With
+/// - Turning: a rigid mesh, a shape or an octree whose end transforms have different
+/// rotations. With
 ///   CCDM_LINEAR and CCDM_TRANS it turns at constant speed about the origin of its frame,
 ///   which goes straight. (With CCDM_TRANS FCL drops the rotation without a message.)
 ///   With CCDM_SCREW it turns about the axis of a screw. CCDM_SPLINE is not defined
@@ -50,11 +56,11 @@ namespace fcl {
 ///   SplineMotion by its control points.
 /// - Motion classes of the program that are a BoundedMotion.
 ///
-/// If a mesh turns or follows a spline, or with a shape, contact means to come within a
-/// tolerance tau of touching. tau is some hundred units in the last place of the
-/// coordinates, relative to the middle between both objects (doc/numerics.md). No contact
-/// is missed and no time is late. Surfaces within tau at t = 0 give the time 0. A pair
-/// that slides for more than 10,000 steps without a proof is reported from then on:
+/// If a mesh turns or follows a spline, or with a shape or an octree, contact means to
+/// come within a tolerance tau of touching. tau is some hundred units in the last place
+/// of the coordinates, relative to the middle between both objects (doc/numerics.md). No
+/// contact is missed and no time is late. Surfaces within tau at t = 0 give the time 0. A
+/// pair that slides for more than 10,000 steps without a proof is reported from then on:
 /// early, never late.
 ///
 /// request.ccd_solver_type and num_max_iterations have no effect.
@@ -70,22 +76,23 @@ namespace fcl {
 ///
 /// Models are not changed. The same call gives the same answer.
 ///
-/// Thread-safety: concurrent calls on the same models are safe, also where FCL answers
-/// (FCL gets a copy of a model that it would write to). Concurrent calls on the same
-/// motion objects are safe where this library answers. Do not share a motion object
-/// between concurrent calls if FCL answers, or if it is of a class of the program:
-/// reading its pose changes it.
+/// Thread-safety: concurrent calls on the same models, shapes and octrees are safe, also
+/// where FCL answers (FCL gets a copy of a model that it would write to). Concurrent
+/// calls on the same motion objects are safe where this library answers. Do not share a
+/// motion object between concurrent calls if FCL answers, or if it is of a class of the
+/// program: reading its pose changes it.
 ///
 /// @throws fcl::Exception  The text names the object. For all pairs: an object or its
-/// motion is null; of meshes and shapes, a transform is not finite. For pairs that are
-/// answered here: a size of a shape is negative or not finite; a mesh is not built, is in
-/// the middle of an update, has more than 2^29 triangles or vertices, has a coordinate
-/// that is not finite or a triangle index out of range; the request is not usable
-/// (toc_err negative or NaN, num_max_contacts 0, num_threads negative); the reference
-/// point of an InterpMotion is not finite, or so large that its rounding exceeds toc_err;
-/// a path that turns has coordinates beyond 2^200. FCL checks nothing in what it answers.
-/// A coordinate of a rigid mesh is checked where boxes overlap. So a bad coordinate that
-/// cannot change the answer may stay unnoticed, for any number of threads alike.
+/// motion is null; of meshes, shapes and octrees, a transform is not finite. For pairs
+/// that are answered here: a size of a shape is negative or not finite; the resolution of
+/// an octree is not positive or not finite; a mesh is not built, is in the middle of an
+/// update, has more than 2^29 triangles or vertices, has a coordinate that is not finite
+/// or a triangle index out of range; the request is not usable (toc_err negative or NaN,
+/// num_max_contacts 0, num_threads negative); the reference point of an InterpMotion is
+/// not finite, or so large that its rounding exceeds toc_err; a path that turns has
+/// coordinates beyond 2^200. FCL checks nothing in what it answers. A coordinate of a
+/// rigid mesh is checked where boxes overlap. So a bad coordinate that cannot change the
+/// answer may stay unnoticed, for any number of threads alike.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
 /// at t = 0; 1 without collision
 /// @{
@@ -162,7 +169,7 @@ float continuousSelfCollide(const CollisionGeometry<float>* o,
                             ContinuousCollisionResult<float>& result);
 
 /// @name With contacts
-/// Only pairs of meshes that are answered here have contacts. For a pair that FCL answers
+/// Only pairs that are answered here have contacts. For a pair that FCL answers
 /// these throw fcl::Exception, whose text names the way out.
 /// @{
 

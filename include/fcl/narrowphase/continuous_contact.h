@@ -28,26 +28,27 @@ struct ContinuousContact {
   const CollisionGeometry<S>* o2{nullptr};
 
   /// @brief Numbers of the triangles of o1 and of o2 that have the features, as in
-  /// fcl::Contact. -1 for a shape.
+  /// fcl::Contact. -1 for a shape. For an octree the number of the cell, whose center,
+  /// size and key octreeCell() tells (octree_cell.h).
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
   /// f1, f2. VE: v, e0, e1. VV: v of o1, v of o2; in a self-collision the lower id first.
-  /// With a shape: those of the vertex, edge or face of the mesh that is nearest to it at
-  /// toc_lo. Unused entries are -1.
+  /// With a shape or a cell: those of the vertex, edge or face of the mesh nearest to it
+  /// at toc_lo. Unused entries are -1.
   std::array<int, 5> vertices{{-1, -1, -1, -1, -1}};
 
   /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2;
   /// the vertex (VE) to o1, the edge to o2. False: the reverse. EE: edge a always belongs
-  /// to o1. With a shape: whether the mesh is o1.
+  /// to o1. With a shape or an octree: whether the mesh is o1.
   bool first_on_o1{true};
 
   /// @brief True: it is not proved that the surfaces cross in the bracket, only that the
   /// features are within the query's tolerance of each other at toc_lo. Only if a mesh
-  /// turns, with a shape, or with min_distance: then no time was found in the bracket at
-  /// which the features provably are within that distance. Otherwise contacts on straight
-  /// paths are exact, and this is false.
+  /// turns, with a shape or an octree, or with min_distance: then no time was found in
+  /// the bracket at which the features provably are within that distance. Otherwise
+  /// contacts on straight paths are exact, and this is false.
   bool within_tolerance{false};
 
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
@@ -59,10 +60,11 @@ struct ContinuousContact {
   /// kAll that holds for the time_of_contact of the result; the brackets in the list may
   /// begin before it.
   ///
-  /// If a mesh turns, or with a shape: the features do not touch before toc_lo, and are
-  /// within the query's tolerance of each other then (continuous_collision.h). At toc_hi
-  /// the two triangles provably cross. If no such time is found within toc_err and until
-  /// t_max (they may only graze), toc_hi equals toc_lo.
+  /// If a mesh turns, or with a shape or an octree: the features do not touch before
+  /// toc_lo, and are within the query's tolerance of each other then
+  /// (continuous_collision.h). At toc_hi the two triangles provably cross. If no such
+  /// time is found within toc_err and until t_max (they may only graze), toc_hi equals
+  /// toc_lo.
   double toc_lo{0};
   double toc_hi{0};
 
@@ -86,8 +88,8 @@ struct ContinuousContact {
   /// self-collision from the first feature to the second. It is the zero vector if they
   /// touch.
   ///
-  /// With a shape it is a direction that parts the two objects just before they touch. It
-  /// is the zero vector if they overlap at t = 0.
+  /// With a shape or an octree it is a direction that parts the two objects just before
+  /// they touch. It is the zero vector if they overlap at t = 0.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief The number of entries of `vertices` that are used.
@@ -177,10 +179,11 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   ContinuousFilter filter1;
   ContinuousFilter filter2;
 
-  /// @brief Is called with a triangle of o1 and a triangle of o2 that the filters accept;
-  /// false rejects the two. Empty: none are rejected. It must always give the same answer
-  /// for the same triangles; in a self-collision also for (x, y) and (y, x), since it is
-  /// asked about either. Several threads of a query call it at the same time.
+  /// @brief Is called with a triangle of o1 and a triangle of o2 that the filters accept
+  /// (-1 for a shape or an octree); false rejects the two. Empty: none are rejected. It
+  /// must always give the same answer for the same triangles; in a self-collision also
+  /// for (x, y) and (y, x), since it is asked about either. Several threads of a query
+  /// call it at the same time.
   std::function<bool(std::intptr_t b1, std::intptr_t b2)> accepts_triangles;
 
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,

@@ -17,10 +17,10 @@ enum class ContinuousContactKind {
   kCrossing,      ///< an edge already passes through a triangle at t = 0
   kVertexEdge,    ///< a vertex comes near an edge; only with min_distance
   kVertexVertex,  ///< two vertices come near each other; only with min_distance
-  kVertexShape,   ///< a vertex of a mesh meets a shape, such as a Sphere or a Box
-  kEdgeShape,     ///< an edge of a mesh meets a shape
-  kFaceShape,     ///< a triangle of a mesh meets a shape
-  kShapes         ///< two shapes meet
+  kVertexShape,   ///< a vertex of a mesh meets a shape or a cell of an octree
+  kEdgeShape,     ///< an edge of a mesh meets a shape or a cell
+  kFaceShape,     ///< a triangle of a mesh meets a shape or a cell
+  kShapes         ///< two shapes, or a shape and a cell, or two cells meet
 };
 
 /// @brief What a continuous query looks for.

@@ -203,8 +203,8 @@ class DeformableMesh {
 /// @brief Whether a build or an update brings FCL's own tree up to date.
 ///
 /// FCL's discrete queries (collide, distance) need this tree. So do continuous queries
-/// that FCL answers (octrees, motion classes of the program). Continuous queries that
-/// this library answers do not need it. Broadphase managers do not need it, with one
+/// that FCL answers (point clouds, motion classes of the program). Continuous queries
+/// that this library answers do not need it. Broadphase managers do not need it, with one
 /// exception: collide(&object, ...) and distance(&object, ...) of the DynamicAABBTree
 /// managers read the node type of `object`, and throw as discrete queries do.
 enum class FclTree {

@@ -147,8 +147,8 @@ void readBoundedMotion(const BoundedMotion& motion, MovingGeometry<S>& moving) {
 
 /// A geometry that follows a motion. Another motion class of the program cannot be
 /// copied. Its poses are read only for a mesh that deforms, if the other object is a
-/// mesh or a shape; the motion is at its beginning afterwards. FCL answers all other
-/// geometries that follow it.
+/// mesh, a shape or an octree; the motion is at its beginning afterwards. FCL answers all
+/// other geometries that follow it.
 template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
@@ -162,8 +162,8 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
   Transform3<S> tf = Transform3<S>::Identity();
   moving.pose[0] = moving.pose[1] = toNumbers(tf);
   moving.path = PathKind::kUnknown;
-  if ((other->getObjectType() == OT_BVH || other->getObjectType() == OT_GEOM) &&
-      isDeformingMesh(*o))
+  const OBJECT_TYPE type = other->getObjectType();
+  if ((type == OT_BVH || type == OT_GEOM || type == OT_OCTREE) && isDeformingMesh(*o))
     for (int end = 1; end >= 0; --end) {
       motion->integrate(S(end));
       motion->getCurrentTransform(tf);
