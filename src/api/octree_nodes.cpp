@@ -2,6 +2,7 @@
 #include "api/octree_nodes.h"
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 
 #include "fcl/common/exception.h"
@@ -9,6 +10,7 @@
 
 #if FCL_HAVE_OCTOMAP
 #include "fcl/geometry/octree/octree.h"
+#include "fcl/narrowphase/octree_cell.h"
 #endif
 
 namespace fcl {
@@ -86,5 +88,21 @@ FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE
 
 }  // namespace deformable
+
+#if FCL_HAVE_OCTOMAP
+bool readOctreeCell(std::intptr_t number, double root_size, OctreeCellNumbers& cell) {
+  using deformable::OctreeCellNumber;
+  if (!OctreeCellNumber::isNumber(number)) return false;
+  const OctreeCellNumber name = OctreeCellNumber::of(number);
+  cell.size = name.size(root_size);
+  for (int k = 0; k < 3; ++k) {
+    cell.center[k] = (name.index(k) + 0.5) * cell.size;
+    cell.key[k] = name.key[k];
+  }
+  cell.depth = name.depth;
+  return true;
+}
+#endif
+
 }  // namespace detail
 }  // namespace fcl

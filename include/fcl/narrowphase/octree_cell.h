@@ -10,10 +10,28 @@
 #include <cstdint>
 
 #include "fcl/common/exception.h"
+#include "fcl/export.h"
 #include "fcl/geometry/octree/octree.h"
-#include "fcl/narrowphase/detail/octree_cell_number.h"
 
 namespace fcl {
+
+namespace detail {
+
+/// @brief A cell of an octree as numbers.
+struct OctreeCellNumbers {
+  double center[3];
+  double size;
+  std::uint16_t key[3];
+  unsigned depth;
+};
+
+/// @brief The cell that a contact names.
+/// @param root_size  the side of the octree's root
+/// @return false: it is the number of no cell
+FCL_EXPORT bool readOctreeCell(std::intptr_t number, double root_size,
+                               OctreeCellNumbers& cell);
+
+}  // namespace detail
 
 /// @brief A cell of an octree. A pruned node is one large cell.
 template <typename S>
@@ -35,19 +53,17 @@ struct OctreeCell {
 /// @throws fcl::Exception  b is not the number of a cell
 template <typename S>
 OctreeCell<S> octreeCell(const OcTree<S>& octree, std::intptr_t b) {
-  using detail::OctreeCellNumber;
-  if (!OctreeCellNumber::isNumber(b))
+  detail::OctreeCellNumbers numbers;
+  if (!detail::readOctreeCell(b, 2 * static_cast<double>(octree.getRootBV().max_[0]),
+                              numbers))
     throw Exception(
         "octreeCell: b is not the number of a cell. Give b1 or b2 of a "
         "ContinuousContact, that of the octree");
-  const auto number = OctreeCellNumber::of(b);
-  const double size = number.size(2 * static_cast<double>(octree.getRootBV().max_[0]));
   OctreeCell<S> cell;
-  for (int k = 0; k < 3; ++k)
-    cell.center[k] = static_cast<S>((number.index(k) + 0.5) * size);
-  cell.size = static_cast<S>(size);
-  std::copy(number.key, number.key + 3, cell.key.k);
-  cell.depth = number.depth;
+  for (int k = 0; k < 3; ++k) cell.center[k] = static_cast<S>(numbers.center[k]);
+  cell.size = static_cast<S>(numbers.size);
+  std::copy(numbers.key, numbers.key + 3, cell.key.k);
+  cell.depth = numbers.depth;
   return cell;
 }
 
