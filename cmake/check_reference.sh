@@ -11,7 +11,7 @@ tags=${1:-build/doc/fcl_ccd.tag}
 # Lines "count name": how often a function is declared.
 declared=$(
   {
-    grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>) [a-z][A-Za-z]+\(' \
+    grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>|OctreeCell<S>) [a-z][A-Za-z]+\(' \
       include/fcl/narrowphase/*.h
     sed -n '/DeformableBVHModel .*: public/,/^ private:/p' \
       include/fcl/geometry/bvh/deformable_bvh_model.h |

@@ -400,6 +400,26 @@ TEST(OctreeCollision, BroadPhaseBoxesContainTheCells) {
   EXPECT_GE(box.max_[2], 1 + kResolution);
 }
 
+TEST(OctreeCollision, TheManagerFindsTheirContacts) {
+  const auto motion = [](const Pose& begin, const Pose& end) {
+    return std::make_shared<TranslationMotion<double>>(begin, end);
+  };
+  const auto rest = motion(Pose::Identity(), Pose::Identity());
+  const Moving path = falling(std::make_shared<Sphere<double>>(0.5));
+  const auto drop = motion(path.begin, path.end),
+             aside = motion(at(3, 0, 0), at(3, 0, 1));
+  ContinuousCollisionObject<double> octree(oneCell(), rest), ball(path.geometry, drop),
+      other_ball(path.geometry, aside), empty(octreeOf(makeMap()), rest);
+  ContinuousCollisionManager<double> manager;
+  manager.registerObjects({&octree, &ball, &other_ball, &empty});
+  ContinuousManagerResult<double> result;
+  manager.collide(requestOf(ContinuousQuery::kAll), result);
+  ASSERT_EQ(result.pairs.size(), 1u);
+  EXPECT_EQ(result.pairs[0].o1, &octree);
+  EXPECT_EQ(result.pairs[0].o2, &ball);
+  EXPECT_NEAR(result.time_of_contact, (2 - 0.5 - kResolution) / 4, 1e-11);
+}
+
 Pose randomPose(Random& random, double distance, double angle) {
   Pose pose = Pose::Identity();
   pose.translation() = random.point(distance);
