@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Continuous collision detection of triangle meshes that deform or move during a step.
+"""Continuous collision detection of triangle meshes that deform or move, and of shapes.
 
 A step goes from t = 0 to t = 1. A contact is a vertex and a face, or two edges, that touch
-during the step. No contact is missed, and no time is late.
+during the step; or a triangle and a shape, or two shapes. No contact is missed, and no time
+is late.
 
     import fcl_ccd
 
@@ -17,7 +18,8 @@ during the step. No contact is missed, and no time is late.
         print(result.time_of_contact)                     # in fractions of the step
         print(result.contacts["pos"])                     # (k, 3): a structured array
 
-Meshes: DeformableMesh, RigidMesh. Motions of a mesh: a pose, two poses, LinearMotion,
+Meshes: DeformableMesh, RigidMesh. Shapes: Box, Sphere, Capsule, Ellipsoid, Cone, Cylinder,
+Convex, Plane, Halfspace, TriangleP. Motions of a mesh or a shape: a pose, two poses, LinearMotion,
 ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a Filter and give
 a Result. With min_distance features are in contact at a distance. For your own solver:
 candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
@@ -46,17 +48,39 @@ from ._queries import (
     vertex_face,
     vertex_vertex,
 )
+from ._shapes import (
+    Box,
+    Capsule,
+    Cone,
+    Convex,
+    Cylinder,
+    Ellipsoid,
+    Halfspace,
+    Plane,
+    Sphere,
+    TriangleP,
+)
 
 __all__ = [
+    "Box",
+    "Capsule",
+    "Cone",
+    "Convex",
+    "Cylinder",
     "DeformableMesh",
+    "Ellipsoid",
     "Filter",
+    "Halfspace",
     "Kind",
     "LinearMotion",
     "Motion",
+    "Plane",
     "Result",
     "RigidMesh",
     "ScrewMotion",
+    "Sphere",
     "SplineMotion",
+    "TriangleP",
     "candidate_dtype",
     "candidates",
     "collide",

@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+import math
 import operator
-from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -46,6 +47,34 @@ def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:
     if not np.isfinite(array).all():
         raise ValueError(f"{name} has a number that is not finite")
     return array
+
+
+def number(value: float, name: str) -> float:
+    if not isinstance(value, (int, float, np.integer, np.floating)) or isinstance(value, bool):
+        raise TypeError(f"{name} is of type {type(value).__name__}. Give a number")
+    out = float(value)
+    if not math.isfinite(out):
+        raise ValueError(f"{name} is {out}. Give a finite number")
+    return out
+
+
+def size(value: float, name: str) -> float:
+    """A length that is not negative."""
+    out = number(value, name)
+    if out < 0:
+        raise ValueError(f"{name} is {out}. A size is not negative")
+    return out
+
+
+def faces(values: Iterable[ArrayLike], name: str) -> Sequence[int]:
+    """Polygons in FCL's encoding: the number of vertices, then the vertices, of each face."""
+    encoded: List[int] = []
+    for i, face in enumerate(values):
+        ids = _array(face, f"face {i} of {name}", "i", (None,))
+        if ((ids < -(2**31)) | (ids >= 2**31)).any():
+            raise ValueError(f"face {i} of {name} has a number out of range")
+        encoded += [len(ids), *ids.tolist()]
+    return encoded
 
 
 def pose(values: ArrayLike, name: str) -> NDArray[np.float64]:

@@ -41,12 +41,15 @@ class DeformableMesh(_core.DeformableMesh):
     runs, or the reverse, raises RuntimeError and changes nothing.
     """
 
+    _is_built = False  # Compiled attributes exist only after __init__.
+
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, num_threads: int = 1) -> None:
         super().__init__(
             _arguments.points(vertices, "vertices"),
             _arguments.triangles(triangles),
             _arguments.integer(num_threads, "num_threads"),
         )
+        self._is_built = True
 
     @overload
     def update(self, current: ArrayLike, /) -> None: ...
@@ -93,6 +96,8 @@ class DeformableMesh(_core.DeformableMesh):
         )
 
     def __repr__(self) -> str:
+        if not self._is_built:
+            return "DeformableMesh(not built)"
         return f"DeformableMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"
 
 
@@ -110,8 +115,13 @@ class RigidMesh(_core.RigidMesh):
     (copies), num_vertices, num_triangles. Any number of threads may query it.
     """
 
+    _is_built = False  # Compiled attributes exist only after __init__.
+
     def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
         super().__init__(_arguments.points(vertices, "vertices"), _arguments.triangles(triangles))
+        self._is_built = True
 
     def __repr__(self) -> str:
+        if not self._is_built:
+            return "RigidMesh(not built)"
         return f"RigidMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Motion:
-    """The path of a mesh during a step: LinearMotion, ScrewMotion or SplineMotion."""
+    """The path of a mesh or a shape during a step: LinearMotion, ScrewMotion or SplineMotion."""
 
     _path: _core.Motion
 

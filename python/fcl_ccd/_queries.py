@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from ._core import Geometry
+
     Mesh = Union[_core.DeformableMesh, _core.RigidMesh]
     Sink = Callable[[NDArray[np.void]], Optional[bool]]
 
@@ -31,6 +33,10 @@ class Kind(enum.IntEnum):
     CROSSING = 2
     VERTEX_EDGE = 3
     VERTEX_VERTEX = 4
+    VERTEX_SHAPE = 5
+    EDGE_SHAPE = 6
+    FACE_SHAPE = 7
+    SHAPES = 8
 
 
 _ALL_BITS = 0xFFFFFFFF
@@ -72,27 +78,33 @@ class Result:
     Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
 
     is_collide : bool
-        Whether the surfaces touch during the step, or cross at t = 0.
+        Whether the two touch during the step, or cross or overlap at t = 0.
     time_of_contact : float
         Never later than the first contact, and earlier by at most toc_err. 0 if the
-        surfaces touch or cross at t = 0. 1 without collision.
+        two touch, cross or overlap at t = 0. 1 without collision.
     contacts : structured array (n,) of contact_dtype, sorted by time
         kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE; with min_distance also
-                                 Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX
-        b1, b2       int64       triangles of o1 and o2 that have the features
+                                 Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX. Of a mesh and a
+                                 shape, one for each triangle that touches, and named for
+                                 the feature that is nearest: Kind.VERTEX_SHAPE,
+                                 Kind.EDGE_SHAPE or Kind.FACE_SHAPE. Two shapes: Kind.SHAPES
+        b1, b2       int64       triangles of o1 and o2 that have the features; -1 for a shape
         vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
                                  CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
-                                 VERTEX_VERTEX: v of o1, v of o2. Unused entries are -1.
+                                 VERTEX_VERTEX: v of o1, v of o2. With a shape: the
+                                 vertices of the feature. Unused entries are -1.
         first_on_o1  bool        whether the first feature is of o1 and the second of o2;
-                                 false: the reverse. Edge ea is of o1.
-        within_tolerance  bool   whether only nearness is proved, not a crossing; false on
-                                 straight paths without min_distance
+                                 false: the reverse. Edge ea is of o1. With a shape:
+                                 whether the mesh is o1.
+        within_tolerance  bool   whether only nearness is proved, not a crossing; of meshes
+                                 on straight paths without min_distance it is false
         toc_lo, toc_hi  float64  bracket of the first time at which the features touch
         pos          (3,) float64  where they touch at toc_lo, in the world frame; with
                                  min_distance the middle between their nearest points
         normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
                                  self-collision from the vertex to the face, or from edge
-                                 ea to edge eb. Zero if it is not defined.
+                                 ea to edge eb. Zero if it is not defined, and if a
+                                 shape is overlapped at t = 0.
     contacts_cut : bool
         Whether num_max_contacts dropped contacts.
     initially_crossing : bool
@@ -176,9 +188,20 @@ def _filter(given: Optional[Filter], name: str) -> _core.Filter:
 
 
 def _mesh(o: Mesh, name: str) -> Mesh:
-    if not isinstance(o, _core.Mesh):
+    if isinstance(o, _core.Mesh):
+        return o
+    if isinstance(o, _core.Geometry):
         raise TypeError(
-            f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh"
+            f"{name} is a shape. Give a DeformableMesh or a RigidMesh, for example of its surface"
+        )
+    raise TypeError(f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh")
+
+
+def geometry_of(o: Geometry, name: str) -> Geometry:
+    if not isinstance(o, _core.Geometry):
+        raise TypeError(
+            f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh, or a "
+            "shape"
         )
     return o
 
@@ -222,8 +245,8 @@ def self_collide(
 
 
 def collide(
-    o1: Mesh,
-    o2: Mesh,
+    o1: Geometry,
+    o2: Geometry,
     motion1: MotionLike = None,
     motion2: MotionLike = None,
     *,
@@ -240,16 +263,17 @@ def collide(
     accepts_triangles: Optional[Callable[[int, int], bool]] = None,
     num_threads: int = 1,
 ) -> Result:
-    """The contacts of two meshes during the step.
+    """The contacts of two meshes, two shapes, or a mesh and a shape, during the step.
 
     Parameters
     ----------
-    o1, o2 : DeformableMesh or RigidMesh
-    motion1, motion2 : how each mesh moves
+    o1, o2 : DeformableMesh, RigidMesh, or a shape, for example Box
+        Shapes are solid; Plane and TriangleP are surfaces.
+    motion1, motion2 : how each of them moves
         None             at rest, vertices are in the world frame
         (4, 4) array     at rest in this pose
-        (begin, end)     two poses, (4, 4) each. A rigid mesh turns at constant speed about
-                         the origin of its frame, which goes straight. Each vertex of a
+        (begin, end)     two poses, (4, 4) each. A rigid mesh or a shape turns at constant
+                         speed about the origin of its frame, which goes straight. Each vertex of a
                          mesh that deforms goes straight from begin * previous to
                          end * current.
         a LinearMotion, ScrewMotion or SplineMotion
@@ -263,10 +287,11 @@ def collide(
         Only contacts until this time are reported, in [0, 1].
     min_distance : float
         The distance at which features are in contact, in the unit of the vertices. 0:
-        features that touch. Above 0 all paths must be straight.
+        features that touch. Above 0 all paths of two meshes must be straight.
     ignore_initially_closer : bool
         Whether pairs that are nearer than min_distance at t = 0 are in contact only when
-        they come nearer than they are then. If false, they are contacts at t = 0.
+        they come nearer than they are then. If false, they are contacts at t = 0. Not with
+        shapes.
     num_max_contacts : int, optional
         Keep at most this number of contacts, the earliest ones.
     enable_contact : bool
@@ -276,17 +301,17 @@ def collide(
     filter1, filter2 : Filter, optional
         Which triangles of o1 and of o2 can be in contact.
     accepts_triangles : function(b1, b2) -> bool, optional
-        Called with a triangle of o1 and one of o2 that the filters accept. False rejects
-        the two. It must always give the same answer for the same triangles. An exception
-        from it ends the query and reaches the caller. A call takes about a microsecond,
-        and threads wait for each other: prefer filters.
+        Called with a triangle of o1 and one of o2 that the filters accept; -1 for a shape.
+        False rejects the two. It must always give the same answer for the same triangles.
+        An exception from it ends the query and reaches the caller. A call takes about a
+        microsecond, and threads wait for each other: prefer filters.
     num_threads : int
         1: the caller's thread. n: at most n threads. 0: all cores. The answer does not
         depend on it. A query in which a mesh turns uses one thread.
 
-    If all vertices go straight the answer is exact: no contact is missed and none is
-    invented. If a mesh turns, contact means to come within some hundred roundings of
-    touching. Other threads of Python run during a query.
+    If all vertices of two meshes go straight the answer is exact: no contact is missed and
+    none is invented. If a mesh turns, or with a shape, contact means to come within some
+    hundred roundings of touching. Other threads of Python run during a query.
 
     Raises ValueError with the words of the library for arguments that cannot be used, and
     TypeError for arguments of another type.
@@ -307,9 +332,9 @@ def collide(
     )
     return Result(
         **_core.collide(
-            _mesh(o1, "o1"),
+            geometry_of(o1, "o1"),
             path_of(motion1, "motion1"),
-            _mesh(o2, "o2"),
+            geometry_of(o2, "o2"),
             path_of(motion2, "motion2"),
             request,
         )

@@ -150,7 +150,7 @@ py::dict answer(const Request& request, const Ask& ask) {
 }
 
 py::dict collideSelf(const Mesh& o, const Request& request) {
-  const Mesh::Reading reading(o);
+  const Geometry::Reading reading(o);
   py::dict result =
       answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
         fcl::detail::answerSelf(&o.geometry(), settings, outcome, &contacts);
@@ -158,15 +158,15 @@ py::dict collideSelf(const Mesh& o, const Request& request) {
   return result;
 }
 
-py::dict collidePair(const Mesh& o1, const Motion& motion1, const Mesh& o2,
+py::dict collidePair(const Geometry& o1, const Motion& motion1, const Geometry& o2,
                      const Motion& motion2, const Request& request) {
-  const Mesh::Reading reading1(o1), reading2(o2);
+  const Geometry::Reading reading1(o1), reading2(o2);
   const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
   double hi = 1;
   py::dict result =
       answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
         if (!fcl::detail::answerPair(moving1, moving2, settings, outcome, &contacts))
-          throw std::runtime_error("the motion of a mesh cannot be followed");
+          throw std::runtime_error("the motion of an object cannot be followed");
         hi = outcome.is_collide ? outcome.toc_hi : 1;
       });
   const bool is_collide = py::cast<bool>(result["is_collide"]);

@@ -88,7 +88,7 @@ bool handOut(const py::object& sink, std::size_t block_size, const Query& query)
 
 bool selfCandidates(const Mesh& o, const py::object& sink, std::size_t block_size,
                     double min_distance) {
-  const Mesh::Reading reading(o);
+  const Geometry::Reading reading(o);
   return handOut(sink, block_size, [&](const auto& take) {
     return fcl::detail::answerSelfCandidates(&o.geometry(), take, min_distance);
   });
@@ -97,7 +97,7 @@ bool selfCandidates(const Mesh& o, const py::object& sink, std::size_t block_siz
 bool candidates(const Mesh& o1, const Motion& motion1, const Mesh& o2,
                 const Motion& motion2, const py::object& sink, std::size_t block_size,
                 double min_distance) {
-  const Mesh::Reading reading1(o1), reading2(o2);
+  const Geometry::Reading reading1(o1), reading2(o2);
   return handOut(sink, block_size, [&](const auto& take) {
     return fcl::detail::answerCandidates(motion1.of(o1.geometry()),
                                          motion2.of(o2.geometry()), take, min_distance);

@@ -21,16 +21,6 @@ void requireCount(py::ssize_t count, const char* what) {
                           "; at most 2^29 are allowed");
 }
 
-std::vector<Vector3d> toVertices(const Doubles& array) {
-  requireCount(array.size() / 3, "vertices");
-  const double* x = array.data();
-  std::vector<Vector3d> vertices;
-  vertices.reserve(static_cast<std::size_t>(array.size()) / 3);
-  for (py::ssize_t i = 0; i + 2 < array.size(); i += 3)
-    vertices.emplace_back(x[i], x[i + 1], x[i + 2]);
-  return vertices;
-}
-
 std::string refersTo(std::size_t triangle, std::int64_t vertex,
                      std::size_t num_vertices) {
   return "triangle " + std::to_string(triangle) + " refers to vertex " +
@@ -85,26 +75,21 @@ py::array copyOf(const Triangle* triangles, int count) {
 template <typename MeshType, typename Read>
 auto readModel(Read&& read) {
   return [read](const MeshType& mesh) {
-    const Mesh::Reading reading(mesh);
+    const Geometry::Reading reading(mesh);
     return read(mesh.model());
   };
 }
 
 }  // namespace
 
-Mesh::Reading::Reading(const Mesh& mesh) : mesh_(mesh) {
-  if (mesh.is_written_)
-    throw std::runtime_error(
-        "the mesh is being updated by another thread. Wait until the update has ended");
-  ++mesh.num_readers_;
-}
-
-Mesh::Writing::Writing(const Mesh& mesh) : mesh_(mesh) {
-  if (mesh.is_written_ || mesh.num_readers_ > 0)
-    throw std::runtime_error(
-        "a query or an update of the mesh has not ended, in another thread or in the "
-        "caller of this function. Update the mesh when it has ended");
-  mesh.is_written_ = true;
+std::vector<Vector3d> toVertices(const Doubles& array) {
+  requireCount(array.size() / 3, "vertices");
+  const double* x = array.data();
+  std::vector<Vector3d> vertices;
+  vertices.reserve(static_cast<std::size_t>(array.size()) / 3);
+  for (py::ssize_t i = 0; i + 2 < array.size(); i += 3)
+    vertices.emplace_back(x[i], x[i + 1], x[i + 2]);
+  return vertices;
 }
 
 DeformableMesh::DeformableMesh(const Doubles& vertices, const Integers& triangles,
@@ -158,7 +143,8 @@ RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
 }
 
 void bindMeshes(py::module_& module) {
-  py::class_<Mesh>(module, "Mesh");
+  py::class_<Geometry>(module, "Geometry");
+  py::class_<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;
   py::class_<DeformableMesh, Mesh>(module, "DeformableMesh")
       .def(py::init<const Doubles&, const Integers&, int>(), py::arg("vertices"),

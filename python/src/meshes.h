@@ -5,47 +5,17 @@
 #define FCL_CCD_PYTHON_MESHES_H
 
 #include <optional>
+#include <vector>
 
 #include "arrays.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "geometry.h"
 
 namespace fcl_ccd {
 namespace python {
 
-/// A mesh, and who uses it. Queries and updates run without Python's lock (the GIL), so
-/// that two threads of Python may come to one mesh. Any number of queries may read it. An
-/// update needs it alone. What would be a data race in C++ is a RuntimeError in Python.
-class Mesh {
- public:
-  virtual ~Mesh() = default;
-  virtual const fcl::CollisionGeometry<double>& geometry() const = 0;
-
-  /// Made and destroyed while the thread has the GIL, which guards the counters.
-  class Reading {
-   public:
-    explicit Reading(const Mesh& mesh);
-    ~Reading() { --mesh_.num_readers_; }
-    Reading(const Reading&) = delete;
-    Reading& operator=(const Reading&) = delete;
-
-   private:
-    const Mesh& mesh_;
-  };
-  class Writing {
-   public:
-    explicit Writing(const Mesh& mesh);
-    ~Writing() { mesh_.is_written_ = false; }
-    Writing(const Writing&) = delete;
-    Writing& operator=(const Writing&) = delete;
-
-   private:
-    const Mesh& mesh_;
-  };
-
- private:
-  mutable int num_readers_{0};
-  mutable bool is_written_{false};
-};
+/// What has triangles, and can be queried with itself and for candidates.
+class Mesh : public Geometry {};
 
 class DeformableMesh : public Mesh {
  public:
@@ -76,6 +46,8 @@ class RigidMesh : public Mesh {
  private:
   Model model_;
 };
+
+std::vector<fcl::Vector3d> toVertices(const Doubles& array);
 
 void bindMeshes(py::module_& module);
 

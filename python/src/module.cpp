@@ -9,6 +9,7 @@
 #include "meshes.h"
 #include "motions.h"
 #include "queries.h"
+#include "shapes.h"
 
 PYBIND11_MODULE(_core, module) {
   namespace python = fcl_ccd::python;
@@ -22,6 +23,7 @@ PYBIND11_MODULE(_core, module) {
   });
   module.attr("version") = FCL_CCD_VERSION;
   python::bindMeshes(module);
+  python::bindShapes(module);
   python::bindMotions(module);
   python::bindCollisions(module);
   python::bindFeatures(module);

@@ -8,12 +8,24 @@
 #include <cstdio>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/geometry/shape/box.h>
+#include <fcl/geometry/shape/capsule.h>
+#include <fcl/geometry/shape/cone.h>
+#include <fcl/geometry/shape/convex.h>
+#include <fcl/geometry/shape/cylinder.h>
+#include <fcl/geometry/shape/ellipsoid.h>
+#include <fcl/geometry/shape/halfspace.h>
+#include <fcl/geometry/shape/plane.h>
+#include <fcl/geometry/shape/sphere.h>
+#include <fcl/geometry/shape/triangle_p.h>
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/math/motion/interp_motion.h>
 #include <fcl/math/motion/screw_motion.h>
@@ -94,6 +106,54 @@ std::unique_ptr<Geometry> readRigid() {
   const auto vertices = readVectors(num_vertices);
   return build<fcl::BVHModel<fcl::OBBRSSd>>(vertices, readTriangles(num_triangles));
 }
+
+/// A shape whose constructor takes as many numbers.
+template <typename Shape, std::size_t... i>
+std::unique_ptr<Geometry> readNumbers(std::index_sequence<i...>) {
+  double x[sizeof...(i)];
+  for (double& number : x) number = readNumber();
+  return std::make_unique<Shape>(x[i]...);
+}
+
+template <typename Shape, std::size_t count>
+std::unique_ptr<Geometry> readShape() {
+  return readNumbers<Shape>(std::make_index_sequence<count>());
+}
+
+template <typename Flat>
+std::unique_ptr<Geometry> readFlat() {
+  const Vector3d normal = readVector();
+  return std::make_unique<Flat>(normal, readNumber());
+}
+
+/// A tetrahedron, whose faces are always the same.
+std::unique_ptr<Geometry> readTetrahedron() {
+  return std::make_unique<fcl::Convexd>(
+      std::make_shared<const std::vector<Vector3d>>(readVectors(4)), 4,
+      std::make_shared<const std::vector<int>>(
+          std::vector<int>{3, 0, 2, 1, 3, 0, 1, 3, 3, 1, 2, 3, 3, 0, 3, 2}));
+}
+
+std::unique_ptr<Geometry> readTriangle() {
+  const auto corners = readVectors(3);
+  return std::make_unique<fcl::TriangleP<double>>(corners[0], corners[1], corners[2]);
+}
+
+using Reader = std::unique_ptr<Geometry> (*)();
+const std::map<std::string, Reader> kGeometries = {
+    {"deformable", &readDeformable},
+    {"rigid", &readRigid},
+    {"Box", &readShape<fcl::Boxd, 3>},
+    {"Sphere", &readShape<fcl::Sphered, 1>},
+    {"Capsule", &readShape<fcl::Capsuled, 2>},
+    {"Ellipsoid", &readShape<fcl::Ellipsoidd, 3>},
+    {"Cone", &readShape<fcl::Coned, 2>},
+    {"Cylinder", &readShape<fcl::Cylinderd, 2>},
+    {"Convex", &readTetrahedron},
+    {"Plane", &readFlat<fcl::Planed>},
+    {"Halfspace", &readFlat<fcl::Halfspaced>},
+    {"TriangleP", &readTriangle},
+};
 
 std::vector<std::uint32_t> readBits() {
   std::vector<std::uint32_t> bits(static_cast<std::size_t>(readInt()));
@@ -263,22 +323,21 @@ void timeVertexFace() {
 class Commands {
  public:
   void run(const std::string& command) {
-    if (command == "deformable") {
-      meshes_.push_back(readDeformable());
-    } else if (command == "rigid") {
-      meshes_.push_back(readRigid());
+    const auto geometry = kGeometries.find(command);
+    if (geometry != kGeometries.end()) {
+      geometries_.push_back(geometry->second());
     } else if (command == "self") {
-      const Geometry* o = readMesh();
+      const Geometry* o = readGeometry();
       fcl::continuousSelfCollide(o, readRequest(), result_);
       print(result_);
     } else if (command == "poses" || command == "motions") {
       answerPair(command == "motions");
     } else if (command == "self_candidates") {
-      const Geometry* o = readMesh();
+      const Geometry* o = readGeometry();
       const double distance = readNumber();
       fcl::continuousSelfCandidates(o, kPrint, distance);
     } else if (command == "candidates") {
-      const Geometry *o1 = readMesh(), *o2 = readMesh();
+      const Geometry *o1 = readGeometry(), *o2 = readGeometry();
       Transform3d tf[4];
       for (auto& t : tf) t = readPose();
       fcl::continuousCandidates(o1, tf[0], tf[1], o2, tf[2], tf[3], kPrint, readNumber());
@@ -295,12 +354,12 @@ class Commands {
   }
 
  private:
-  const Geometry* readMesh() {
-    return meshes_.at(static_cast<std::size_t>(readInt())).get();
+  const Geometry* readGeometry() {
+    return geometries_.at(static_cast<std::size_t>(readInt())).get();
   }
 
   void answerPair(bool with_motions) {
-    const Geometry *o1 = readMesh(), *o2 = readMesh();
+    const Geometry *o1 = readGeometry(), *o2 = readGeometry();
     if (with_motions) {
       const auto motion1 = readMotion(), motion2 = readMotion();
       fcl::continuousCollide(o1, motion1.get(), o2, motion2.get(), readRequest(),
@@ -313,7 +372,7 @@ class Commands {
     print(result_);
   }
 
-  std::vector<std::unique_ptr<Geometry>> meshes_;
+  std::vector<std::unique_ptr<Geometry>> geometries_;
   Result result_;
 };
 

@@ -27,6 +27,12 @@ def rigid(vertices, triangles):
     return f"rigid {len(vertices)} {len(triangles)} {_text(vertices)} {_text(triangles)}"
 
 
+def shape(name, *sizes):
+    """The command of a shape, and the shape. Of a Convex only tetrahedra are known."""
+    numbers = sizes[0] if name == "Convex" else np.concatenate([np.ravel(x) for x in sizes])
+    return f"{name} {_text(np.asarray(numbers, float))}", getattr(fcl_ccd, name)(*sizes)
+
+
 def _filter(group=1, mask=2**32 - 1, triangle_groups=(), triangle_masks=()):
     lists = [f"{len(bits)} {_text(np.asarray(bits, int))}" for bits in (triangle_groups, triangle_masks)]
     return f"{group} {mask} {' '.join(lists)}"
