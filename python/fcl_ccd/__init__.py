@@ -19,17 +19,18 @@ is late.
         print(result.contacts["pos"])                     # (k, 3): a structured array
 
 Meshes: DeformableMesh, RigidMesh. Shapes: Box, Sphere, Capsule, Ellipsoid, Cone, Cylinder,
-Convex, Plane, Halfspace, TriangleP. Motions of a mesh or a shape: a pose, two poses, LinearMotion,
-ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a Filter and give
-a Result. With min_distance features are in contact at a distance. For your own solver:
-candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
-vertex_vertex() on arrays.
+Convex, Plane, Halfspace, TriangleP. Motions of a mesh or a shape: a pose, two poses,
+LinearMotion, ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a
+Filter and give a Result. Many objects: CollisionManager. With min_distance features are in
+contact at a distance. For your own solver: candidates(), self_candidates(); vertex_face(),
+edge_edge(), vertex_edge() and vertex_vertex() on arrays.
 
 Errors: ValueError with the words of the library, TypeError for arguments of another type,
 RuntimeError for an update of a mesh while a query of it runs.
 """
 
 from ._core import version as __version__
+from ._manager import CollisionManager, ManagerResult, Pair
 from ._meshes import DeformableMesh, RigidMesh
 from ._motions import LinearMotion, Motion, ScrewMotion, SplineMotion
 from ._queries import (
@@ -64,6 +65,7 @@ from ._shapes import (
 __all__ = [
     "Box",
     "Capsule",
+    "CollisionManager",
     "Cone",
     "Convex",
     "Cylinder",
@@ -73,7 +75,9 @@ __all__ = [
     "Halfspace",
     "Kind",
     "LinearMotion",
+    "ManagerResult",
     "Motion",
+    "Pair",
     "Plane",
     "Result",
     "RigidMesh",

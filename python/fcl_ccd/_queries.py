@@ -145,7 +145,7 @@ class Result:
 _ACCEPTS_ALL = Filter()
 
 
-def _request(
+def request_of(
     query: str,
     toc_err: float,
     t_max: float,
@@ -170,8 +170,8 @@ def _request(
         enable_contact,
         t_max,
         enable_crossings,
-        _filter(filter1, "filter1"),
-        _filter(filter2, "filter2"),
+        filter_of(filter1, "filter1"),
+        filter_of(filter2, "filter2"),
         accepts_triangles,
         _arguments.integer(num_threads, "num_threads"),
         min_distance,
@@ -179,7 +179,7 @@ def _request(
     )
 
 
-def _filter(given: Optional[Filter], name: str) -> _core.Filter:
+def filter_of(given: Optional[Filter], name: str) -> _core.Filter:
     if given is None:
         return _ACCEPTS_ALL
     if not isinstance(given, Filter):
@@ -187,7 +187,7 @@ def _filter(given: Optional[Filter], name: str) -> _core.Filter:
     return given
 
 
-def _mesh(o: Mesh, name: str) -> Mesh:
+def mesh_of(o: Mesh, name: str) -> Mesh:
     if isinstance(o, _core.Mesh):
         return o
     if isinstance(o, _core.Geometry):
@@ -226,7 +226,7 @@ def self_collide(
     The keywords are those of collide(). filter1 is used for both sides. In
     accepts_triangles(b1, b2) both are triangles of the mesh, in any order.
     """
-    request = _request(
+    request = request_of(
         query,
         toc_err,
         t_max,
@@ -240,7 +240,7 @@ def self_collide(
         min_distance,
         ignore_initially_closer,
     )
-    fields = _core.self_collide(_mesh(o, "o"), request)
+    fields = _core.self_collide(mesh_of(o, "o"), request)
     return Result(**fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4))
 
 
@@ -316,7 +316,7 @@ def collide(
     Raises ValueError with the words of the library for arguments that cannot be used, and
     TypeError for arguments of another type.
     """
-    request = _request(
+    request = request_of(
         query,
         toc_err,
         t_max,
@@ -372,7 +372,7 @@ def self_candidates(
 
     Sinks, blocks, distance and fields are those of candidates().
     """
-    mesh = _mesh(o, "o")
+    mesh = mesh_of(o, "o")
     return _hand_out(
         lambda take, size: _core.self_candidates(mesh, take, size, min_distance), sink, block
     )
@@ -435,7 +435,7 @@ def candidates(
 
     Returns the array, or with a sink whether all candidates were handed out.
     """
-    mesh1, mesh2 = _mesh(o1, "o1"), _mesh(o2, "o2")
+    mesh1, mesh2 = mesh_of(o1, "o1"), mesh_of(o2, "o2")
     path1, path2 = path_of(motion1, "motion1"), path_of(motion2, "motion2")
     return _hand_out(
         lambda take, size: _core.candidates(

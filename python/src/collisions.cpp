@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
-#include <atomic>
-#include <exception>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -13,14 +11,12 @@
 #include "meshes.h"
 #include "motions.h"
 #include "queries.h"
+#include "requests.h"
 
 namespace fcl_ccd {
 namespace python {
 
 using Contact = fcl::ContinuousContact<double>;
-using Contacts = fcl::ContinuousContacts<double>;
-using Outcome = fcl::detail::QueryOutcome<double>;
-
 template <>
 py::dtype makeDtype<Contact>() {
   return RecordType<Contact>()
@@ -46,63 +42,7 @@ fcl::ContinuousQuery toQuery(const std::string& name) {
   throw py::value_error("query is '" + name + "'. Give 'all', 'first' or 'any'");
 }
 
-/// A request without its function of Python, which belongs to one call.
-struct Request {
-  fcl::detail::QuerySettings settings{};
-  fcl::ContinuousFilter filter1, filter2;
-  py::object accepts_triangles;
-};
-
-/// The function of Python that accepts pairs of triangles. The threads of a query call it
-/// in turn, since it needs the GIL. After its first exception it is not called again, and
-/// the exception reaches the caller when the query has ended.
-class TriangleFilter {
- public:
-  /// @param function  None: accepts all
-  explicit TriangleFilter(const py::object& function) {
-    if (function.is_none()) return;
-    call_ = [this, &function](std::intptr_t b1, std::intptr_t b2) {
-      return ask(function, b1, b2);
-    };
-  }
-
-  /// Null: all pairs are accepted.
-  const std::function<bool(std::intptr_t, std::intptr_t)>* function() const {
-    return call_ ? &call_ : nullptr;
-  }
-
-  /// Runs a query. The caller does not have the GIL.
-  template <typename Query>
-  void run(Query&& query) {
-    try {
-      query();
-    } catch (...) {
-      if (!failed_) throw;
-    }
-    if (failed_) std::rethrow_exception(error_);
-  }
-
- private:
-  bool ask(const py::object& function, std::intptr_t b1, std::intptr_t b2) {
-    if (failed_) return false;
-    const py::gil_scoped_acquire acquire;
-    try {
-      const int answer = PyObject_IsTrue(function(b1, b2).ptr());
-      if (answer < 0) throw py::error_already_set();
-      return answer == 1;
-    } catch (py::error_already_set&) {
-      if (!failed_) error_ = std::current_exception();
-      failed_ = true;
-      return false;
-    }
-  }
-
-  std::function<bool(std::intptr_t, std::intptr_t)> call_;
-  std::atomic<bool> failed_{false};
-  std::exception_ptr error_;
-};
-
-py::dict toDict(const fcl::StageCounts& counts) {
+py::dict countsOf(const fcl::StageCounts& counts) {
   using py::literals::operator""_a;
   return py::dict(
       "node_pairs"_a = counts.node_pairs, "triangle_pairs"_a = counts.triangle_pairs,
@@ -114,8 +54,9 @@ py::dict toDict(const fcl::StageCounts& counts) {
       "contacts"_a = counts.contacts, "crossing_tests"_a = counts.crossing_tests);
 }
 
-/// The fields of the class Result of Python.
-py::dict toDict(const Outcome& outcome, Contacts&& contacts) {
+}  // namespace
+
+py::dict fieldsOf(const Outcome& outcome, Contacts&& contacts) {
   using py::literals::operator""_a;
   std::vector<Contact> crossing;
   if (contacts.initially_crossing) crossing.push_back(contacts.crossing);
@@ -126,11 +67,13 @@ py::dict toDict(const Outcome& outcome, Contacts&& contacts) {
                   "initially_crossing"_a = contacts.initially_crossing,
                   "crossing"_a = toArray(std::move(crossing)),
                   "crossings"_a = toArray(std::move(contacts.crossings)),
-                  "counts"_a = toDict(contacts.counts),
+                  "counts"_a = countsOf(contacts.counts),
                   "times"_a = py::dict("update"_a = contacts.times.update,
                                        "traverse"_a = contacts.times.traverse,
                                        "test"_a = contacts.times.test));
 }
+
+namespace {
 
 /// Runs ask(settings, outcome, contacts) without the GIL.
 template <typename Ask>
@@ -146,7 +89,7 @@ py::dict answer(const Request& request, const Ask& ask) {
     const py::gil_scoped_release release;
     filter.run([&] { ask(settings, outcome, contacts); });
   }
-  return toDict(outcome, std::move(contacts));
+  return fieldsOf(outcome, std::move(contacts));
 }
 
 py::dict collideSelf(const Mesh& o, const Request& request) {

@@ -2,23 +2,30 @@
 #include "geometry.h"
 
 #include <stdexcept>
+#include <string>
 
 namespace fcl_ccd {
 namespace python {
 
-Geometry::Reading::Reading(const Geometry& geometry) : geometry_(geometry) {
-  if (geometry.is_written_)
-    throw std::runtime_error(
-        "the mesh is being updated by another thread. Wait until the update has ended");
-  ++geometry.num_readers_;
+void Guarded::Reading::add(const Guarded& read) {
+  if (read.is_written_)
+    throw std::runtime_error(std::string("the ") + read.name_ +
+                             " is being updated by another thread. Wait until the "
+                             "update has ended");
+  read_.push_back(&read);
+  ++read.num_readers_;
 }
 
-Geometry::Writing::Writing(const Geometry& geometry) : geometry_(geometry) {
-  if (geometry.is_written_ || geometry.num_readers_ > 0)
+Guarded::Writing::Writing(const Guarded& written) : written_(written) {
+  if (written.is_written_ || written.num_readers_ > 0) {
+    const std::string name = written.name_;
     throw std::runtime_error(
-        "a query or an update of the mesh has not ended, in another thread or in the "
-        "caller of this function. Update the mesh when it has ended");
-  geometry.is_written_ = true;
+        "a query or an update of the " + name +
+        " has not ended, in another thread or in the caller of this function. Update "
+        "the " +
+        name + " when it has ended");
+  }
+  written.is_written_ = true;
 }
 
 }  // namespace python

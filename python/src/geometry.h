@@ -5,20 +5,24 @@
 #define FCL_CCD_PYTHON_GEOMETRY_H
 
 #include <cstdint>
+#include <vector>
 
 #include "fcl/geometry/collision_geometry.h"
 
 namespace fcl_ccd {
 namespace python {
 
-/// A mesh or a shape, and who uses it. Queries and updates run without Python's lock (the
+/// Something that queries read and updates write. Both run without Python's lock (the
 /// GIL), so that two threads of Python may come to one mesh. Any number of queries may
 /// read it. An update needs it alone. What would be a data race in C++ is a RuntimeError
 /// in Python.
-class Geometry {
+class Guarded {
  public:
-  virtual ~Geometry() = default;
-  virtual const fcl::CollisionGeometry<double>& geometry() const = 0;
+  /// @param name  what exceptions call it
+  explicit Guarded(const char* name) : name_(name) {}
+  Guarded(const Guarded&) = delete;
+  Guarded& operator=(const Guarded&) = delete;
+  virtual ~Guarded() = default;
 
   /// How often somebody has written to it.
   std::uint64_t numUpdates() const { return num_updates_; }
@@ -26,32 +30,45 @@ class Geometry {
   /// Made and destroyed while the thread has the GIL, which guards the counters.
   class Reading {
    public:
-    explicit Reading(const Geometry& geometry);
-    ~Reading() { --geometry_.num_readers_; }
+    Reading() = default;
+    explicit Reading(const Guarded& read) { add(read); }
+    ~Reading() {
+      for (const Guarded* read : read_) --read->num_readers_;
+    }
     Reading(const Reading&) = delete;
     Reading& operator=(const Reading&) = delete;
 
+    void add(const Guarded& read);
+
    private:
-    const Geometry& geometry_;
+    std::vector<const Guarded*> read_;
   };
   class Writing {
    public:
-    explicit Writing(const Geometry& geometry);
+    explicit Writing(const Guarded& written);
     ~Writing() {
-      geometry_.is_written_ = false;
-      ++geometry_.num_updates_;
+      written_.is_written_ = false;
+      ++written_.num_updates_;
     }
     Writing(const Writing&) = delete;
     Writing& operator=(const Writing&) = delete;
 
    private:
-    const Geometry& geometry_;
+    const Guarded& written_;
   };
 
  private:
+  const char* name_;
   mutable int num_readers_{0};
   mutable bool is_written_{false};
   mutable std::uint64_t num_updates_{0};
+};
+
+/// A mesh or a shape.
+class Geometry : public Guarded {
+ public:
+  Geometry() : Guarded("mesh") {}
+  virtual const fcl::CollisionGeometry<double>& geometry() const = 0;
 };
 
 }  // namespace python

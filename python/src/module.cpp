@@ -26,5 +26,6 @@ PYBIND11_MODULE(_core, module) {
   python::bindShapes(module);
   python::bindMotions(module);
   python::bindCollisions(module);
+  python::bindManager(module);
   python::bindFeatures(module);
 }

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "fcl/math/motion/interp_motion.h"
+#include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
 
 namespace fcl_ccd {
@@ -99,6 +101,27 @@ Motion spline(const Doubles& translation, const Doubles& rotation) {
 }
 
 }  // namespace
+
+std::shared_ptr<fcl::MotionBase<double>> toFclMotion(const Motion& motion, bool deforms) {
+  const auto& path = motion.path;
+  if (path.path == PathKind::kSpline) {
+    const auto at = [&](int of, int i) { return Vector3d(path.control[of][i]); };
+    return std::make_shared<fcl::SplineMotion<double>>(
+        at(0, 0), at(0, 1), at(0, 2), at(0, 3), at(1, 0), at(1, 1), at(1, 2), at(1, 3));
+  }
+  const fcl::Transform3d begin = fcl::detail::toTransform(path.pose[0]),
+                         end = fcl::detail::toTransform(path.pose[1]);
+  if (path.path == PathKind::kScrew)
+    return std::make_shared<fcl::ScrewMotion<double>>(begin, end);
+  // A rigid body on a straight path turns about its origin, if it turns.
+  if (deforms && path.path == PathKind::kStraight &&
+      !fcl::detail::isConstantRotation(path.pose[0], path.pose[1]))
+    throw py::value_error(
+        "the rotations of the two poses of a DeformableMesh differ. In a manager give a "
+        "LinearMotion, in whose frame it deforms, or vertices in the world frame");
+  return std::make_shared<fcl::InterpMotion<double>>(begin, end,
+                                                     Vector3d(path.reference));
+}
 
 py::array toArray(const fcl::detail::PoseNumbers<double>& pose) {
   py::array_t<double> out({4, 4});

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// How a mesh moves during a step.
+// How a mesh or a shape moves during a step.
 #ifndef FCL_CCD_PYTHON_MOTIONS_H
 #define FCL_CCD_PYTHON_MOTIONS_H
+
+#include <memory>
 
 #include "arrays.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -10,7 +12,7 @@
 namespace fcl_ccd {
 namespace python {
 
-/// A path without the mesh that follows it.
+/// A path without the object that follows it.
 struct Motion {
   fcl::detail::MovingGeometry<double> path;
 
@@ -21,6 +23,10 @@ struct Motion {
     return moving;
   }
 };
+
+/// FCL's motion on the same path.
+/// @throws ValueError  deforms and the path is straight and turns: FCL has no such motion
+std::shared_ptr<fcl::MotionBase<double>> toFclMotion(const Motion& motion, bool deforms);
 
 /// A pose as a 4x4 array.
 py::array toArray(const fcl::detail::PoseNumbers<double>& pose);

@@ -26,6 +26,13 @@ def one_step(mesh, ball, i):
     fcl_ccd.self_collide(mesh, accepts_triangles=lambda b1, b2: b1 != b2 + 7)
     filter1 = fcl_ccd.Filter(triangle_groups=np.ones(len(TRIANGLES), int))
     fcl_ccd.collide(mesh, ball, None, pose((0.5, 0.5, 0.1)), filter1=filter1, enable_crossings=True)
+    fcl_ccd.collide(mesh, fcl_ccd.Sphere(0.2 + 1e-6 * i), None, pose((0.5, 0.5, 0.1)))
+    manager = fcl_ccd.CollisionManager()
+    manager.register("mesh", mesh, self_collision=True)
+    manager.register("ball", ball, pose((0.5, 0.5, 0.1)))
+    manager.update({"ball": pose((0.5, 0.5, 0.2))})
+    manager.collide()
+    manager.unregister("mesh")
     fcl_ccd.self_candidates(mesh)
     t0, t1 = PREVIOUS[:24].reshape(6, 4, 3), CURRENT[:24].reshape(6, 4, 3)
     fcl_ccd.vertex_face(t0, t1)
@@ -33,7 +40,9 @@ def one_step(mesh, ball, i):
     if i % 10 == 0:
         fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
         fcl_ccd.RigidMesh(*sphere(4, 5))
+        fcl_ccd.Convex(sphere(4, 5)[0], sphere(4, 5)[1])
         for wrong in (
+            lambda: manager.update({"ball": np.full((4, 4), np.inf)}),
             lambda: mesh.update(PREVIOUS[1:]),
             lambda: fcl_ccd.self_collide(mesh, toc_err=-1),
             lambda: fcl_ccd.self_collide(mesh, accepts_triangles=lambda b1, b2: 1 // 0),

@@ -1,0 +1,247 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Callable, Dict, Hashable, List, Mapping, Optional, Union
+
+from . import _core
+from ._motions import MotionLike, path_of
+from ._queries import Filter, Result, filter_of, geometry_of, mesh_of, request_of
+
+if TYPE_CHECKING:
+    from typing import Iterable, Iterator
+
+    from ._core import Geometry
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """Two objects of a manager in contact.
+
+    o1, o2 : the names of the objects. A mesh in contact with itself is both of them. A mesh
+        or shape that was given to collide() without a name is None.
+    result : Result of collide() for the two, o1 first
+    """
+
+    o1: Hashable
+    o2: Hashable
+    result: Result
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ManagerResult:
+    """The answer of CollisionManager.collide(). It is true if there is a collision.
+
+    is_collide : bool
+    time_of_contact : float
+        Of the first of the pairs, in fractions of the step; never late. 1 without collision.
+    pairs : list of Pair, sorted by time
+        query="all": all pairs in contact. "first": the pair that is first in contact. "any":
+        one pair in contact.
+    num_box_pairs : int, the number of pairs of objects whose boxes meet
+    num_tested : int, the number of pairs that were tested
+    """
+
+    is_collide: bool
+    time_of_contact: float
+    pairs: List[Pair]
+    num_box_pairs: int
+    num_tested: int
+
+    def __bool__(self) -> bool:
+        return self.is_collide
+
+    def __repr__(self) -> str:
+        return (
+            f"ManagerResult(is_collide={self.is_collide}, time_of_contact="
+            f"{self.time_of_contact}, {len(self.pairs)} pairs)"
+        )
+
+
+class CollisionManager:
+    """Finds the contacts of many meshes and shapes that move: a broad phase and its queries.
+
+    Each object has a name, a mesh or shape, and a motion. One mesh may be in many objects.
+    The boxes of objects move too, so that two objects that fly side by side are no pair. No
+    contact is missed.
+
+        manager = fcl_ccd.CollisionManager()
+        manager.register("floor", fcl_ccd.Halfspace((0, 0, 1), 0))
+        manager.register("tool", tool, (pose_t0, pose_t1))
+        result = manager.collide(query="first")
+        if result:
+            print(result.pairs[0].o1, result.pairs[0].o2, result.time_of_contact)
+        manager.update({"tool": (pose_t1, pose_t2)})     # the next step
+
+    len(manager) is the number of objects, list(manager) has their names in the order of
+    registration, and `name in manager` asks for one. If the library's error of a pair tells
+    the number of an object, it is the place in this list, from 0.
+
+    Time: to register, unregister or update one object O(log n), to update a large part of
+    them at once O(n log n). Objects that rest cost nothing until they are updated.
+
+    Threads: queries may run side by side, and other threads of Python run during a query. A
+    change of the manager while a query of it runs, or the reverse, raises RuntimeError and
+    changes nothing.
+    """
+
+    def __init__(self) -> None:
+        self._manager = _core.Manager()
+        self._objects: Dict[Hashable, _core.ManagedObject] = {}
+
+    def register(
+        self,
+        name: Hashable,
+        o: Geometry,
+        motion: MotionLike = None,
+        *,
+        filter: Optional[Filter] = None,
+        self_collision: bool = False,
+    ) -> None:
+        """Add an object.
+
+        name : str, int, or anything that can be a key of a dict
+        o : DeformableMesh, RigidMesh, or a shape. The manager keeps it alive.
+        motion : how it moves, as in collide(). Two poses whose rotations differ are for
+            rigid meshes and shapes: give a LinearMotion for a mesh that deforms.
+        filter : Filter, which other objects it can be in contact with
+        self_collision : bool, whether collide() looks for contacts of the mesh with itself
+
+        Raises ValueError if the name is registered, and for what collide() refuses. After an
+        error the manager is unchanged.
+        """
+        if name in self._objects:
+            raise ValueError(f"{name!r} is registered. After a change call update()")
+        geometry_of(o, "o")
+        if self_collision:
+            mesh_of(o, "o")  # type: ignore[arg-type]
+        accepts = filter_of(filter, "filter")
+        added = self._manager._insert(name, o, path_of(motion, "motion"))
+        self._objects[name] = added
+        if filter is not None:
+            self._manager._set_filter(added, accepts)
+        if self_collision:
+            self._manager._set_self_collision(added, True)
+
+    def unregister(self, name: Hashable) -> None:
+        """Remove an object. Raises ValueError if there is none of this name."""
+        self._manager._remove(self._object(name))
+        del self._objects[name]
+
+    def update(
+        self, objects: Optional[Union[Mapping[Hashable, MotionLike], Iterable[Hashable]]] = None
+    ) -> None:
+        """Give the next step: new motions, and new frames of meshes that deform.
+
+        objects : dict of names and motions, or names, optional
+            A dict: these objects get these motions. Names: these keep their motions, and
+            their meshes are read again. None: all objects.
+
+        A DeformableMesh that was updated must be named here, or the next query raises
+        RuntimeError. After an error the manager is unchanged.
+        """
+        if objects is None:
+            self._manager._update(list(self._objects.values()), [])
+            return
+        motions: List[_core.Motion] = []
+        if isinstance(objects, Mapping):
+            motions = [path_of(motion, f"the motion of {name!r}") for name, motion in objects.items()]
+        names = dict.fromkeys(objects)
+        self._manager._update([self._object(name) for name in names], motions)
+
+    def set_filter(self, name: Hashable, filter: Optional[Filter]) -> None:
+        """Replace the filter of an object: which others it can be in contact with. None: all."""
+        self._manager._set_filter(self._object(name), filter_of(filter, "filter"))
+
+    def set_self_collision(self, name: Hashable, enabled: bool) -> None:
+        """Whether collide() looks for contacts of the mesh of this object with itself."""
+        self._manager._set_self_collision(self._object(name), bool(enabled))
+
+    def collide(
+        self,
+        other: Union[None, Geometry, CollisionManager] = None,
+        motion: MotionLike = None,
+        *,
+        name: Optional[Hashable] = None,
+        query: str = "all",
+        toc_err: float = 1e-4,
+        t_max: float = 1.0,
+        min_distance: float = 0.0,
+        ignore_initially_closer: bool = False,
+        num_max_contacts: Optional[int] = None,
+        enable_contact: bool = True,
+        enable_crossings: bool = False,
+        accepts_triangles: Optional[Callable[[int, int], bool]] = None,
+        num_threads: int = 1,
+    ) -> ManagerResult:
+        """The pairs of objects in contact during the step.
+
+        Without other and name: all objects with each other, and meshes that were registered
+        with self_collision with themselves.
+
+        other : a mesh or a shape, or another CollisionManager, optional
+            A mesh or shape that need not be registered, which is o1, with all objects; or
+            the objects of this manager, which are o1, with those of the other one.
+        motion : of other, if it is a mesh or a shape; as in collide()
+        name : optional, a registered object, which is o1, with all others
+
+        The other keywords are those of collide(). query is about pairs too, see
+        ManagerResult; num_max_contacts and num_threads are for each pair.
+
+        Raises RuntimeError if a mesh was updated after the manager had read it.
+        """
+        request = request_of(
+            query,
+            toc_err,
+            t_max,
+            num_max_contacts,
+            enable_contact,
+            enable_crossings,
+            None,
+            None,
+            accepts_triangles,
+            num_threads,
+            min_distance,
+            ignore_initially_closer,
+        )
+        fields = self._ask(other, motion, name, request)
+        pairs = [Pair(o1, o2, Result(**answer)) for o1, o2, answer in fields.pop("pairs")]
+        return ManagerResult(pairs=pairs, **fields)
+
+    def _ask(
+        self,
+        other: Union[None, Geometry, CollisionManager],
+        motion: MotionLike,
+        name: Optional[Hashable],
+        request: _core.Request,
+    ) -> Dict[str, Any]:
+        if name is not None and other is not None:
+            raise ValueError("name and other are given. Give one of them")
+        if motion is not None and not isinstance(other, _core.Geometry):
+            raise ValueError("motion is for a mesh or a shape that is given as other")
+        if name is not None:
+            return self._manager._collide_one(self._object(name), request)
+        if other is None:
+            return self._manager._collide_all(request)
+        if isinstance(other, CollisionManager):
+            return self._manager._collide_manager(other._manager, request)
+        return self._manager._collide_geometry(
+            geometry_of(other, "other"), path_of(motion, "motion"), request
+        )
+
+    def _object(self, name: Hashable) -> _core.ManagedObject:
+        if name not in self._objects:
+            raise ValueError(f"{name!r} is not registered. Call register() first")
+        return self._objects[name]
+
+    def __len__(self) -> int:
+        return len(self._objects)
+
+    def __iter__(self) -> Iterator[Hashable]:
+        return iter(self._objects)
+
+    def __contains__(self, name: Hashable) -> bool:
+        return name in self._objects
+
+    def __repr__(self) -> str:
+        return f"CollisionManager({len(self)} objects)"

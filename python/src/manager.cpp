@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "fcl/broadphase/continuous_collision_manager.h"
+#include "meshes.h"
+#include "motions.h"
+#include "queries.h"
+#include "requests.h"
+
+namespace fcl_ccd {
+namespace python {
+namespace {
+
+using FclManager = fcl::ContinuousCollisionManagerd;
+using FclRequest = fcl::ContinuousContactRequestd;
+using FclResult = fcl::ContinuousManagerResultd;
+using FclMotion = std::shared_ptr<fcl::MotionBase<double>>;
+
+/// FCL's objects do not own what they refer to, and queries do not write to it.
+std::shared_ptr<fcl::CollisionGeometry<double>> borrow(const Geometry& geometry) {
+  auto* borrowed = const_cast<fcl::CollisionGeometry<double>*>(&geometry.geometry());
+  return {std::shared_ptr<void>(), borrowed};
+}
+
+/// A mesh or a shape, its motion, and the name that the user gave it.
+class ManagedObject : public fcl::ContinuousCollisionObjectd {
+ public:
+  ManagedObject(py::object name, py::object owner, const Motion& path)
+      : fcl::ContinuousCollisionObjectd(borrow(geometryOf(owner))),
+        name_(std::move(name)),
+        owner_(std::move(owner)),
+        geometry_(geometryOf(owner_)) {
+    motion = makeMotion(path);
+    takeNote();
+  }
+
+  const py::object& name() const { return name_; }
+  const Geometry& geometry() const { return geometry_; }
+
+  FclMotion makeMotion(const Motion& path) const {
+    return toFclMotion(path, dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr);
+  }
+  void swapMotion(FclMotion& other) { motion.swap(other); }
+
+  /// The manager has read the mesh.
+  void takeNote() { num_updates_ = geometry_.numUpdates(); }
+  bool isOutOfDate() const { return num_updates_ != geometry_.numUpdates(); }
+
+ private:
+  static const Geometry& geometryOf(const py::object& owner) {
+    return py::cast<const Geometry&>(owner);
+  }
+
+  py::object name_, owner_;
+  const Geometry& geometry_;
+  std::uint64_t num_updates_{0};
+};
+
+using ObjectPtr = std::shared_ptr<ManagedObject>;
+
+FclRequest toFclRequest(const Request& request, const TriangleFilter& filter) {
+  FclRequest out;
+  out.toc_err = request.settings.toc_err;
+  out.query = request.settings.query;
+  out.num_max_contacts = request.settings.num_max_contacts;
+  out.enable_contact = request.settings.enable_contact;
+  out.num_threads = request.settings.num_threads;
+  out.t_max = request.settings.t_max;
+  out.enable_crossings = request.settings.enable_crossings;
+  out.min_distance = request.settings.min_distance;
+  out.ignore_initially_closer = request.settings.ignore_initially_closer;
+  if (filter.function()) out.accepts_triangles = *filter.function();
+  return out;
+}
+
+py::tuple toTuple(fcl::ContinuousPairResult<double>& pair) {
+  const auto name = [](const fcl::ContinuousCollisionObjectd* o) {
+    return static_cast<const ManagedObject*>(o)->name();
+  };
+  const auto pose = [](const fcl::Transform3d& tf) {
+    return toArray(fcl::detail::toNumbers<double>(tf));
+  };
+  auto& result = pair.result;
+  py::dict fields = fieldsOf({result.is_collide, result.time_of_contact, 0},
+                             std::move(static_cast<Contacts&>(result)));
+  fields["contact_tf1"] = pose(result.contact_tf1);
+  fields["contact_tf2"] = pose(result.contact_tf2);
+  return py::make_tuple(name(pair.o1), name(pair.o2), fields);
+}
+
+py::dict fieldsOf(FclResult& result) {
+  using py::literals::operator""_a;
+  py::list pairs;
+  for (auto& pair : result.pairs) pairs.append(toTuple(pair));
+  return py::dict("is_collide"_a = result.is_collide,
+                  "time_of_contact"_a = result.time_of_contact, "pairs"_a = pairs,
+                  "num_box_pairs"_a = result.num_box_pairs,
+                  "num_tested"_a = result.num_tested);
+}
+
+class Manager : public Guarded {
+ public:
+  Manager() : Guarded("manager") {}
+
+  ObjectPtr insert(py::object name, py::object geometry, const Motion& motion) {
+    const Writing writing(*this);
+    auto object =
+        std::make_shared<ManagedObject>(std::move(name), std::move(geometry), motion);
+    const Reading reading(object->geometry());
+    owners_.emplace(object.get(), object);
+    try {
+      const py::gil_scoped_release release;
+      manager_.registerObject(object.get());
+    } catch (...) {
+      owners_.erase(object.get());
+      throw;
+    }
+    return object;
+  }
+
+  void remove(const ManagedObject& object) {
+    const Writing writing(*this);
+    const auto owner = owners_.find(&object);
+    if (owner == owners_.end()) throw py::value_error("the object is not registered");
+    manager_.unregisterObject(owner->second.get());
+    owners_.erase(owner);
+  }
+
+  /// @param objects  each once
+  /// @param motions  one for each object; or none: they keep theirs
+  void update(const std::vector<ObjectPtr>& objects,
+              const std::vector<const Motion*>& motions) {
+    const Writing writing(*this);
+    Reading reading;
+    std::vector<fcl::ContinuousCollisionObjectd*> addresses;
+    for (const ObjectPtr& object : objects) {
+      reading.add(object->geometry());
+      addresses.push_back(object.get());
+    }
+    std::vector<FclMotion> others;
+    for (std::size_t i = 0; i < motions.size(); ++i)
+      others.push_back(objects.at(i)->makeMotion(*motions[i]));
+    const auto swap_motions = [&] {
+      for (std::size_t i = 0; i < others.size(); ++i) objects[i]->swapMotion(others[i]);
+    };
+    swap_motions();
+    try {
+      const py::gil_scoped_release release;
+      manager_.update(addresses);
+    } catch (...) {
+      swap_motions();
+      throw;
+    }
+    for (const ObjectPtr& object : objects) object->takeNote();
+  }
+
+  void setFilter(const ObjectPtr& object, const fcl::ContinuousFilter& filter) {
+    const Writing writing(*this);
+    manager_.setFilter(object.get(), filter);
+  }
+
+  void setSelfCollision(const ObjectPtr& object, bool enabled) {
+    const Writing writing(*this);
+    manager_.setSelfCollision(object.get(), enabled);
+  }
+
+  py::dict collideAll(const Request& request) const {
+    Reading reading;
+    addAll(reading);
+    return answer(request, [&](const FclRequest& asked, FclResult& result) {
+      manager_.collide(asked, result);
+    });
+  }
+
+  /// @param object  registered
+  py::dict collideOne(const ObjectPtr& object, const Request& request) const {
+    Reading reading;
+    addAll(reading);
+    return answer(request, [&](const FclRequest& asked, FclResult& result) {
+      manager_.collide(object.get(), asked, result);
+    });
+  }
+
+  py::dict collideGeometry(const py::object& geometry, const Motion& motion,
+                           const Request& request) const {
+    ManagedObject object(py::none(), geometry, motion);
+    Reading reading(object.geometry());
+    addAll(reading);
+    return answer(request, [&](const FclRequest& asked, FclResult& result) {
+      manager_.collide(&object, asked, result);
+    });
+  }
+
+  py::dict collideManager(const Manager& other, const Request& request) const {
+    Reading reading;
+    addAll(reading);
+    other.addAll(reading);
+    return answer(request, [&](const FclRequest& asked, FclResult& result) {
+      manager_.collide(other.manager_, asked, result);
+    });
+  }
+
+ private:
+  /// Adds the manager and all that it has. An object that has changed since the manager
+  /// read it has a box that is out of date, and contacts would be missed.
+  void addAll(Reading& reading) const {
+    reading.add(*this);
+    std::vector<fcl::ContinuousCollisionObjectd*> objects;
+    manager_.getObjects(objects);
+    for (const auto* o : objects) {
+      const auto& object = *static_cast<const ManagedObject*>(o);
+      reading.add(object.geometry());
+      if (object.isOutOfDate())
+        throw std::runtime_error(
+            "the mesh of object " + py::cast<std::string>(py::repr(object.name())) +
+            " was updated after the manager had read it. Call the manager's update()");
+    }
+  }
+
+  template <typename Ask>
+  static py::dict answer(const Request& request, const Ask& ask) {
+    FclResult result;
+    {
+      TriangleFilter filter(request.accepts_triangles);
+      const FclRequest asked = toFclRequest(request, filter);
+      const py::gil_scoped_release release;
+      filter.run([&] { ask(asked, result); });
+    }
+    return fieldsOf(result);
+  }
+
+  FclManager manager_;
+  std::unordered_map<const ManagedObject*, ObjectPtr> owners_;
+};
+
+}  // namespace
+
+void bindManager(py::module_& module) {
+  py::class_<ManagedObject, ObjectPtr>(module, "ManagedObject");
+  py::class_<Manager>(module, "Manager")
+      .def(py::init<>())
+      .def("_insert", &Manager::insert)
+      .def("_remove", &Manager::remove)
+      .def("_update", &Manager::update)
+      .def("_set_filter", &Manager::setFilter)
+      .def("_set_self_collision", &Manager::setSelfCollision)
+      .def("_collide_all", &Manager::collideAll)
+      .def("_collide_one", &Manager::collideOne)
+      .def("_collide_geometry", &Manager::collideGeometry)
+      .def("_collide_manager", &Manager::collideManager);
+}
+
+}  // namespace python
+}  // namespace fcl_ccd

@@ -1,0 +1,278 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""CollisionManager: its pairs are those of collide() for each pair, to the bit."""
+
+import gc
+import itertools
+import threading
+import weakref
+
+import numpy as np
+import pytest
+from scenes import crumpled, grid, pose, sphere
+
+import fcl_ccd
+
+PREVIOUS, CURRENT, TRIANGLES = crumpled(8)
+BALL = fcl_ccd.RigidMesh(*sphere(6, 7, 0.5))
+DOWN = pose((0, 0, 2)), pose((0, 0, -2))
+
+
+def random_pose(random):
+    return pose(random.uniform(-2, 2, 3), random.normal(size=3), random.uniform(0, 2))
+
+
+def random_motion(random, may_turn):
+    begin, end = random_pose(random), random_pose(random)
+    kind = random.integers(5)
+    if kind == 0:
+        return begin
+    if kind == 1:
+        return fcl_ccd.ScrewMotion(begin, end)
+    if kind == 2:
+        return fcl_ccd.LinearMotion(begin, end, random.normal(size=3))
+    if kind == 3:
+        return fcl_ccd.SplineMotion(random.normal(size=(4, 3)), random.normal(size=(4, 3)))
+    if not may_turn:
+        end[:3, :3] = begin[:3, :3]
+    return begin, end
+
+
+def scene(seed, count=30):
+    """Names, geometries and motions: meshes that many objects share, shapes, a cloth."""
+    random = np.random.default_rng(seed)
+    cloth = fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
+    cloth.update(CURRENT)
+    geometries = [BALL, fcl_ccd.Box(0.5, 0.6, 0.7), fcl_ccd.Sphere(0.3), cloth]
+    geometries.append(fcl_ccd.Halfspace((0, 0, 1), -2))
+    objects = {}
+    for i in range(count):
+        o = geometries[min(random.integers(0, 30) % 8, 3)] if i > 0 else geometries[4]
+        objects[f"object {i}"] = o, random_motion(random, o is not cloth)
+    return objects
+
+
+def managed(objects, **options):
+    manager = fcl_ccd.CollisionManager()
+    for name, (o, motion) in objects.items():
+        manager.register(name, o, motion, **options)
+    return manager
+
+
+def answers_of(pairs, **options):
+    """The answers of collide() for pairs of (name, geometry, motion) that are in contact."""
+    found = {}
+    for (name1, o1, motion1), (name2, o2, motion2) in pairs:
+        result = fcl_ccd.collide(o1, o2, motion1, motion2, **options)
+        if result:
+            found[name1, name2] = result
+    return found
+
+
+def require_same_answers(result, expected):
+    assert bool(result) == result.is_collide == bool(expected)
+    assert {(pair.o1, pair.o2) for pair in result.pairs} == set(expected)
+    times = [pair.result.time_of_contact for pair in result.pairs]
+    assert times == sorted(times) and result.time_of_contact == min(times, default=1)
+    for pair in result.pairs:
+        wanted = expected[pair.o1, pair.o2]
+        assert pair.result.time_of_contact == wanted.time_of_contact
+        for name in fcl_ccd.contact_dtype.names:
+            np.testing.assert_array_equal(pair.result.contacts[name], wanted.contacts[name])
+        np.testing.assert_array_equal(pair.result.contact_tf1, wanted.contact_tf1)
+        np.testing.assert_array_equal(pair.result.contact_tf2, wanted.contact_tf2)
+    assert len(result.pairs) <= result.num_tested <= result.num_box_pairs
+
+
+def listed(objects):
+    return [(name, *o) for name, o in objects.items()]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_all_pairs(seed):
+    objects = scene(seed)
+    manager = managed(objects)
+    for options in ({}, {"t_max": 0.3, "num_threads": 2}):
+        expected = answers_of(itertools.combinations(listed(objects), 2), **options)
+        # The order of the two is that of registration.
+        require_same_answers(manager.collide(**options), expected)
+        assert len(expected) > 20
+    assert len(manager) == len(list(manager)) == 30 and "object 3" in manager
+
+
+def test_first_and_any():
+    objects = scene(3)
+    del objects["object 0"]  # the floor: many objects begin in it
+    manager = managed(objects)
+    everything = manager.collide()
+    first, any_pair = manager.collide(query="first"), manager.collide(query="any")
+    assert len(first.pairs) == len(any_pair.pairs) == 1
+    assert abs(first.time_of_contact - everything.time_of_contact) <= 1e-4
+    pair = any_pair.pairs[0]
+    assert (pair.o1, pair.o2) in {(p.o1, p.o2) for p in everything.pairs}
+    assert first.num_tested <= everything.num_tested
+
+
+def test_updates():
+    """Steps with new motions, objects that come and go, and a cloth with new frames."""
+    objects, later = scene(4), scene(5)
+    manager = managed(objects)
+    cloth = next(o for o, _ in objects.values() if isinstance(o, fcl_ccd.DeformableMesh))
+    names = [name for name, (o, _) in objects.items() if o is cloth]
+    for step in range(3):
+        manager.unregister(f"object {step + 1}")
+        del objects[f"object {step + 1}"]
+        motions = {
+            name: later[name][1]
+            for i, name in enumerate(objects)
+            if i % 3 == step and objects[name][0] is not cloth
+        }
+        manager.update(motions)
+        for name, motion in motions.items():
+            objects[name] = objects[name][0], motion
+        cloth.update(CURRENT + 0.1 * step)
+        with pytest.raises(RuntimeError, match="the mesh of object 'object .*Call the manager's"):
+            manager.collide()
+        manager.update([name for name in names if name in objects] if step else None)
+        expected = answers_of(itertools.combinations(listed(objects), 2))
+        require_same_answers(manager.collide(), expected)
+    assert list(manager) == list(objects)
+
+
+def test_one_object_and_another_manager():
+    objects, others = scene(6), scene(7, 10)
+    manager, other = managed(objects), managed(others)
+    one = [("object 5", *objects["object 5"])]
+    rest = [o for o in listed(objects) if o[0] != "object 5"]
+    require_same_answers(manager.collide(name="object 5"), answers_of(itertools.product(one, rest)))
+    ball, motion = fcl_ccd.Sphere(0.7), DOWN
+    expected = answers_of(itertools.product([(None, ball, motion)], listed(objects)))
+    require_same_answers(manager.collide(ball, motion), expected)
+    expected = answers_of(itertools.product(listed(objects), listed(others)))
+    require_same_answers(manager.collide(other), expected)
+    assert len(expected) > 10
+
+
+def test_filters_and_self_collision():
+    cloth = fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
+    cloth.update(CURRENT)
+    manager = fcl_ccd.CollisionManager()
+    manager.register("cloth", cloth, self_collision=True)
+    manager.register(7, BALL, DOWN, filter=fcl_ccd.Filter(group=2))
+    names = {(pair.o1, pair.o2) for pair in manager.collide().pairs}
+    assert names == {("cloth", "cloth"), ("cloth", 7)}
+    own = next(pair for pair in manager.collide().pairs if pair.o2 == "cloth")
+    assert len(own.result.contacts) == len(fcl_ccd.self_collide(cloth).contacts) > 0
+    manager.set_self_collision("cloth", False)
+    manager.set_filter("cloth", fcl_ccd.Filter(mask=1))
+    assert not manager.collide()
+    manager.set_filter("cloth", None)
+    assert [(pair.o1, pair.o2) for pair in manager.collide().pairs] == [("cloth", 7)]
+    assert not manager.collide(accepts_triangles=lambda b1, b2: False)
+    with pytest.raises(KeyError):
+        manager.collide(accepts_triangles=lambda b1, b2: {}[b1])
+
+
+def test_formation():
+    """Objects whose sweeps overlap but that are never near each other are no box pairs."""
+    manager = fcl_ccd.CollisionManager()
+    for i in range(10):
+        manager.register(i, fcl_ccd.Sphere(0.4), (pose((i, 0, 0)), pose((i + 20, 0, 0))))
+    result = manager.collide()
+    assert not result and result.num_box_pairs == 0 and result.time_of_contact == 1
+
+
+def test_wrong_calls_change_nothing():
+    manager = fcl_ccd.CollisionManager()
+    manager.register("ball", BALL, DOWN)
+    manager.register("box", fcl_ccd.Box(1, 1, 1))
+    cloth = fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
+    manager.register("cloth", cloth)
+    before = manager.collide()
+    far, place = pose((1.7e308,) * 3), pose((9, 9, 9))
+    turn = pose(), pose(angle=1)
+    for call, error, text in (
+        (lambda: manager.register("ball", BALL), ValueError, "'ball' is registered"),
+        (lambda: manager.register("x", PREVIOUS), TypeError, "o is of type ndarray"),
+        (lambda: manager.register("x", cloth, turn), ValueError, "give a LinearMotion"),
+        (lambda: manager.register("x", BALL, filter=3), TypeError, "filter is of type int"),
+        (lambda: manager.register([], BALL), TypeError, "unhashable"),
+        (lambda: manager.register("x", fcl_ccd.Sphere(1), self_collision=True), TypeError, "shape"),
+        (lambda: manager.register("x", fcl_ccd.Sphere(1e308), far), ValueError, "not finite"),
+        (lambda: manager.unregister("x"), ValueError, "'x' is not registered"),
+        (lambda: manager.update({"ball": place, "x": None}), ValueError, "'x' is not registered"),
+        (lambda: manager.update({"ball": np.eye(3)}), ValueError, "motion of 'ball' has the shape"),
+        (lambda: manager.update({"ball": place, "cloth": turn}), ValueError, "Linear"),
+        (lambda: manager.update({"ball": place, "box": far}), ValueError, "not finite"),
+        (lambda: manager.set_self_collision("box", True), ValueError, "not a mesh"),
+        (lambda: manager.set_filter("ball", 3), TypeError, "filter is of type int"),
+        (lambda: manager.collide(BALL, name="ball"), ValueError, "name and other are given"),
+        (lambda: manager.collide(motion=DOWN), ValueError, "motion is for a mesh"),
+        (lambda: manager.collide(3), TypeError, "other is of type int"),
+        (lambda: manager.collide(t_max=2), ValueError, "t_max"),
+        (lambda: manager.collide(toc_err=-1), ValueError, "o1 is object 1, o2 is object 2: .*toc_err"),
+    ):
+        with pytest.raises(error, match=text):
+            call()
+        after = manager.collide()
+        assert list(manager) == ["ball", "box", "cloth"]
+        assert [(p.o1, p.o2) for p in after.pairs] == [(p.o1, p.o2) for p in before.pairs]
+        assert after.time_of_contact == before.time_of_contact
+
+
+def test_changes_during_a_query_are_refused():
+    manager = fcl_ccd.CollisionManager()
+    manager.register("ball", BALL, DOWN)
+    mesh = fcl_ccd.DeformableMesh(*grid(4))
+    manager.register("mesh", mesh, pose((-0.5, -0.5, 0)))
+    calls = (
+        lambda: manager.update(),
+        lambda: manager.unregister("ball"),
+        lambda: manager.register("x", BALL),
+        lambda: mesh.update(grid(4)[0]),
+    )
+    refused = []
+
+    def interferes(b1, b2):
+        if not refused:
+            for call in calls:
+                with pytest.raises(RuntimeError, match="has not ended"):
+                    call()
+                refused.append(call)
+        return True
+
+    assert manager.collide(accepts_triangles=interferes) and len(refused) == 4
+    assert manager.collide(name="ball")
+
+
+def test_threads_query_one_manager():
+    manager = managed(scene(8, 12))
+    expected = [(pair.o1, pair.o2) for pair in manager.collide().pairs]
+    found = []
+
+    def work():
+        found.append([(pair.o1, pair.o2) for pair in manager.collide().pairs])
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert found == [expected] * 4
+
+
+def test_lifetimes():
+    """A manager keeps its meshes alive, and no longer than it needs them."""
+    mesh = fcl_ccd.RigidMesh(*sphere(4, 5))
+    alive = weakref.ref(mesh)
+    manager = fcl_ccd.CollisionManager()
+    manager.register("mesh", mesh)
+    manager.register("other", mesh, DOWN)
+    del mesh
+    gc.collect()
+    assert alive() is not None and manager.collide()
+    manager.unregister("mesh")
+    assert alive() is not None
+    result = manager.collide(alive())
+    del manager
+    gc.collect()
+    assert alive() is None and result.pairs[0].o2 == "other"
