@@ -145,7 +145,9 @@ class CollisionManager:
             return
         motions: List[_core.Motion] = []
         if isinstance(objects, Mapping):
-            motions = [path_of(motion, f"the motion of {name!r}") for name, motion in objects.items()]
+            motions = [
+                path_of(motion, f"the motion of {name!r}") for name, motion in objects.items()
+            ]
         names = dict.fromkeys(objects)
         self._manager._update([self._object(name) for name in names], motions)
 

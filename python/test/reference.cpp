@@ -4,8 +4,8 @@
 // prints each answer as numbers, one line an element. Floating-point numbers are
 // hexadecimal, so that nothing is rounded. test_answers.py writes the commands.
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <iostream>
 #include <limits>
 #include <map>
@@ -277,15 +277,14 @@ void answerFeatures(const std::string& kind) {
   }
 }
 
-/// Prints the least time of some calls, in seconds.
+/// Prints the least processor time of some calls, in seconds.
 template <typename Call>
 void printTime(int repeats, const Call& call) {
-  using Clock = std::chrono::steady_clock;
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < repeats; ++i) {
-    const auto start = Clock::now();
+    const std::clock_t start = std::clock();
     call();
-    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+    least = std::min(least, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
   }
   std::printf("%a\n", least);
   std::fflush(stdout);
@@ -305,17 +304,22 @@ void timeStep() {
   });
 }
 
-/// Times a loop over vertexFace().
+/// Times a loop over vertexFace(): arrays in, an array of answers out. The input has a
+/// part of the queries, which come several times.
 void timeVertexFace() {
-  const int repeats = readInt(), count = readInt();
-  std::vector<std::vector<Vector3d>> queries;
-  for (int i = 0; i < count; ++i) queries.push_back(readVectors(8));
-  std::vector<fcl::ContinuousFeatureTestResultd> results(queries.size());
+  const int repeats = readInt(), num_different = readInt(), times = readInt();
+  std::vector<Vector3d> queries = readVectors(8 * num_different);
+  queries.reserve(queries.size() * static_cast<std::size_t>(times));
+  const std::size_t part = queries.size();
+  for (int i = 1; i < times; ++i)
+    for (std::size_t k = 0; k < part; ++k) queries.push_back(queries[k]);
   printTime(repeats, [&] {
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      const auto& x = queries[i];
-      results[i] =
-          fcl::vertexFace<double>(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], 1e-4);
+    std::vector<fcl::ContinuousFeatureTestResultd> results;
+    results.reserve(queries.size() / 8);
+    for (std::size_t i = 0; i < queries.size(); i += 8) {
+      const Vector3d* x = &queries[i];
+      results.push_back(
+          fcl::vertexFace<double>(x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], 1e-4));
     }
   });
 }
