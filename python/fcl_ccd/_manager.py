@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Callable, Dict, Hashable, List, Mapping, 
 
 from . import _core
 from ._motions import MotionLike, path_of
-from ._queries import Filter, Result, filter_of, geometry_of, mesh_of, request_of
+from ._queries import Filter, Result, filter_of, geometry_of, request_of
 
 if TYPE_CHECKING:
     from typing import Iterable, Iterator
@@ -100,7 +100,7 @@ class CollisionManager:
     ) -> None:
         """Add an object.
 
-        name : str, int, or anything that can be a key of a dict
+        name : str, int, or anything else that can be a key of a dict, but not None
         o : DeformableMesh, RigidMesh, or a shape. The manager keeps it alive.
         motion : how it moves, as in collide(). Two poses whose rotations differ are for
             rigid meshes and shapes: give a LinearMotion for a mesh that deforms.
@@ -110,18 +110,17 @@ class CollisionManager:
         Raises ValueError if the name is registered, and for what collide() refuses. After an
         error the manager is unchanged.
         """
+        if name is None:
+            raise ValueError("name is None. Give a name")
         if name in self._objects:
             raise ValueError(f"{name!r} is registered. After a change call update()")
-        geometry_of(o, "o")
-        if self_collision:
-            mesh_of(o, "o")  # type: ignore[arg-type]
-        accepts = filter_of(filter, "filter")
-        added = self._manager._insert(name, o, path_of(motion, "motion"))
-        self._objects[name] = added
-        if filter is not None:
-            self._manager._set_filter(added, accepts)
-        if self_collision:
-            self._manager._set_self_collision(added, True)
+        self._objects[name] = self._manager._insert(
+            name,
+            geometry_of(o, "o"),
+            path_of(motion, "motion"),
+            filter_of(filter, "filter"),
+            bool(self_collision),
+        )
 
     def unregister(self, name: Hashable) -> None:
         """Remove an object. Raises ValueError if there is none of this name."""

@@ -110,17 +110,20 @@ class Manager : public Guarded {
  public:
   Manager() : Guarded("manager") {}
 
-  ObjectPtr insert(py::object name, py::object geometry, const Motion& motion) {
+  ObjectPtr insert(py::object name, py::object geometry, const Motion& motion,
+                   const fcl::ContinuousFilter& filter, bool self_collision) {
     const Writing writing(*this);
     auto object =
         std::make_shared<ManagedObject>(std::move(name), std::move(geometry), motion);
     const Reading reading(object->geometry());
-    owners_.emplace(object.get(), object);
+    const py::gil_scoped_release release;
+    manager_.registerObject(object.get());
     try {
-      const py::gil_scoped_release release;
-      manager_.registerObject(object.get());
+      manager_.setFilter(object.get(), filter);
+      manager_.setSelfCollision(object.get(), self_collision);
+      owners_.emplace(object.get(), object);
     } catch (...) {
-      owners_.erase(object.get());
+      manager_.unregisterObject(object.get());
       throw;
     }
     return object;
