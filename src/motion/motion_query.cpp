@@ -125,6 +125,8 @@ class MotionTraversal {
       Work work = works_.back();
       works_.pop_back();
       if (work.start > latest_) break;
+      // Nothing can be earlier than the contact that was found.
+      if (!options_.all && !contacts_.empty() && work.start == latest_) break;
       if (work.a.isTriangle() && work.b.isTriangle())
         visit(work);
       else
