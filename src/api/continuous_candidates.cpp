@@ -121,7 +121,8 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const PlacedGeometry<S> placed1 = placed(o1), placed2 = placed(o2);
   const Answerer answerer = answererOf(placed1, placed2);
   if (answerer == Answerer::kFcl || answerer == Answerer::kShapes) {
-    const PlacedGeometry<S>& unfit = placed1.isKnown() ? placed2 : placed1;
+    const bool is_first_fit = placed1.isMesh() && placed1.isKnown();
+    const PlacedGeometry<S>& unfit = is_first_fit ? placed2 : placed1;
     throw Exception(
         std::string("continuousCandidates: ") + (&unfit == &placed1 ? "o1" : "o2") +
         (unfit.isMesh() ? " follows a motion class of the program, whose path is not "

@@ -326,12 +326,23 @@ TEST(OctreeCollision, Options) {
   EXPECT_TRUE(cut.contacts_cut);
   ASSERT_EQ(cut.contacts.size(), 5u);
   for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(cut.contacts[i].b2, all[i].b2);
-  const auto sheet = makeModel<BVHModel<OBBRSS<double>>>(bentSheet(2));
-  EXPECT_THROW(
-      continuousCandidates(sheet.get(), Pose::Identity(), Pose::Identity(),
-                           floor.geometry.get(), Pose::Identity(), Pose::Identity(),
-                           [](const ContinuousCandidate*, std::size_t) { return true; }),
-      Exception);
+}
+
+TEST(OctreeCollision, HasNoCandidates) {
+  const Geometry sheet = makeModel<BVHModel<OBBRSS<double>>>(bentSheet(2)),
+                 octree = oneCell();
+  const auto refusal = [](const Geometry& o1, const Geometry& o2) -> std::string {
+    const Pose here = Pose::Identity();
+    try {
+      continuousCandidates(o1.get(), here, here, o2.get(), here, here,
+                           [](const ContinuousCandidate*, std::size_t) { return true; });
+    } catch (const Exception& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal(sheet, octree).find("o2 is not a triangle mesh"), std::string::npos);
+  EXPECT_NE(refusal(octree, sheet).find("o1 is not a triangle mesh"), std::string::npos);
 }
 
 TEST(OctreeCollision, Float) {
