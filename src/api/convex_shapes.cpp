@@ -101,7 +101,7 @@ ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name) {
 }
 
 /// The part of a plane, or of the halfspace below it, that matters within a reach of the
-/// origin. Its corners are computed with less error than the unit rounding of the reach.
+/// origin. Its corners round by up to 7 u of its size (MotionTolerance).
 ConvexShape slab(const Vec& normal, double offset, double reach, bool is_solid,
                  const std::string& name) {
   const double length = std::sqrt(dot(normal, normal));

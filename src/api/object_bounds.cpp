@@ -105,7 +105,8 @@ void appendBody(const BoundedBody& body, BoundsList& list) {
   for (const MotionBox& box : body.box) {
     size = std::max(
         size, body.path.translationReach() + stretch * (norm(box.center) + box.radius));
-    pad = std::max(pad, stretch * box.pad);
+    pad = std::max(
+        pad, stretch * box.pad + body.path.positionError(norm(box.center) + box.radius));
   }
   const std::size_t first = list.boxes.size();
   for (int i = 0; i <= n; ++i)

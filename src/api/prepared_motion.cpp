@@ -106,7 +106,10 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   for (int k = 0; k < 3; ++k)
     way[k] = placed.end().translation[k] - placed.beginning().translation[k];
   constexpr double kRounding = 64 * 0x1p-53, kLeastTocErr = 1e-9;
-  const double size = body_->radius() + norm(way);
+  double size = body_->radius() + norm(way);
+  if (shape_)
+    size += shape_->radius() + norm(placed.beginning().translation) +
+            norm(placed.end().translation);
   if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kLeastTocErr) * size))
     throw Exception(
         name +

@@ -18,6 +18,8 @@ struct Flat {
   Vec normal;
   double offset[2];
   bool is_solid;
+  /// Of the coordinates: offsets round by a few u of it.
+  double size;
 };
 
 Vec rotated(const double (&r)[9], const Vec& x) {
@@ -30,11 +32,12 @@ Flat flatOf(const Shape& shape, const Pose& beginning, const Pose& end, bool is_
   const Vec n = {static_cast<double>(shape.n[0]), static_cast<double>(shape.n[1]),
                  static_cast<double>(shape.n[2])};
   const double length = std::sqrt(dot(n, n));
-  Flat out{(1 / length) * rotated(beginning.rotation, n), {}, is_solid};
+  const double offset = static_cast<double>(shape.d) / length;
+  Flat out{(1 / length) * rotated(beginning.rotation, n), {}, is_solid, 0};
   for (int k = 0; k < 2; ++k) {
     const double(&t)[3] = (k == 0 ? beginning : end).translation;
-    out.offset[k] =
-        dot(out.normal, {t[0], t[1], t[2]}) + static_cast<double>(shape.d) / length;
+    out.offset[k] = dot(out.normal, {t[0], t[1], t[2]}) + offset;
+    out.size = std::max(out.size, std::hypot(t[0], t[1], t[2]) + std::abs(offset));
   }
   return out;
 }
@@ -78,6 +81,7 @@ ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
   constexpr double kParallel = 0x1p-48;
   const Flat a = flatOf(o1, "o1"), b = flatOf(o2, "o2");
   ShapeAnswer answer;
+  if (options.filter && !options.filter->rules().accept(-1, -1)) return answer;
   ShapeContact contact{};
   contact.kind = ContinuousContactKind::kShapes;
   std::fill(contact.vertices, contact.vertices + 3, -1);
@@ -87,13 +91,15 @@ ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
                             maxNorm(cross(a.normal, b.normal)) <= kParallel;
   if (are_parallel) {
     const FlatGap gap(a, b);
-    const double begin = gap.at[0] - options.min_distance,
-                 end = gap.at[1] - options.min_distance;
+    const double tolerance = 128 * 0x1p-53 * (a.size + b.size);
+    const double begin = gap.at[0] - options.min_distance - tolerance,
+                 end = gap.at[1] - options.min_distance - tolerance;
     if (begin > 0) {
       if (end > 0) return answer;
       const double t = begin / (begin - end);
       contact.toc_lo = t * (1 - 0x1p-48);
-      contact.toc_hi = std::min(t * (1 + 0x1p-48), 1.);
+      contact.toc_hi = contact.toc_lo;
+      contact.within_tolerance = true;
       if (contact.toc_lo > options.t_max) return answer;
     }
     if (begin > 0) contact.normal = gap.side * a.normal;

@@ -95,7 +95,7 @@ double ConvexPairMotion::Side::size() const {
 }
 
 ConvexPairMotion::Separator ConvexPairMotion::inWorld(const Vec& direction) const {
-  return {direction, {0, 0, 0}, acceleration_, margin()};
+  return {direction, {0, 0, 0}, acceleration_, margin(), 1};
 }
 
 // The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
@@ -110,14 +110,15 @@ ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const Stat
   const Vec m = {r[0] * n.x + r[3] * n.y + r[6] * n.z,
                  r[1] * n.x + r[4] * n.y + r[7] * n.z,
                  r[2] * n.x + r[5] * n.y + r[8] * n.z};
-  const double stretch = path.stretch() * path.stretch(),
-               rate = set_[0]->speed + set_[1]->speed,
-               turn = path.speed(1) - path.speed(0),
-               apart = gap.distance + state.side[0].size() + state.side[1].size() +
-                       rate * (t1_ - t);
-  const double turning = 2 * turn * rate + path.acceleration(t, t1_).of({0, 0, 0}, apart);
+  const double stretch = path.stretch() * path.stretch(), turn = path.turnSpeed(),
+               speed = set_[0]->speed + set_[1]->speed;
+  double apart = std::max(gap.distance, gap.gap) + speed * (t1_ - t);
+  for (int side = 0; side < 2; ++side)
+    apart += state.side[side].size() * set_[side]->path->stretch();
+  const double turning =
+      2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
   return {applied(r, m), applied(v, m), (acceleration_ + turning) * stretch * kUpward,
-          margin() * stretch * kUpward};
+          margin() * stretch * kUpward, 0.5 / turn};
 }
 
 /// The gap of the cores along a direction, `h` later, at least. It is concave in h, since
@@ -134,7 +135,7 @@ double ConvexPairMotion::gapAfter(double h, const State& state,
 /// time, since the gap is concave.
 double ConvexPairMotion::step(double t, const State& state,
                               const Separator& along) const {
-  const double longest = t1_ - t;
+  const double longest = std::min(t1_ - t, along.longest);
   double lower = 0, gap = gapAfter(0, state, along);
   if (!(gap > 0)) return -1;
   double upper = longest, beyond = gapAfter(longest, state, along);
@@ -183,7 +184,23 @@ ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
   return convexGap(state.side[0].now, state.side[1].now, guess_, margin(), contact);
 }
 
-ConvexGap ConvexPairMotion::gapAt(double t) const { return gapOf(stateAt(t), 0); }
+/// Prefers the direction of a flat side: where the gap is a few roundings wide another
+/// one may happen to show as much.
+ConvexGap ConvexPairMotion::gapAt(double t) const {
+  const State state = stateAt(t);
+  ConvexGap gap = gapOf(state, 0);
+  for (const Side& side : state.side) {
+    Vec n = side.now.flatNormal(gap.direction);
+    const double length = std::sqrt(dot(n, n));
+    if (!(length > 0x1p-500) || !(gap.gap > 0)) continue;
+    n = ((dot(n, gap.direction) < 0 ? -1 : 1) / length) * n;
+    const double along = -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+    if (!(along >= gap.gap - tolerance_.position)) continue;
+    gap.direction = n;
+    gap.gap = along;
+  }
+  return gap;
+}
 
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {

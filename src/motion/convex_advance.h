@@ -70,6 +70,8 @@ class ConvexPairMotion {
     /// Bound on the second derivative of the relative coordinate of two points.
     double acceleration;
     double margin;
+    /// The longest step, for which the direction stays of about the same length.
+    double longest;
   };
   /// The gap that a step keeps. Its end may round by another half of the position error.
   double margin() const { return 2 * tolerance_.position + tolerance_.distance; }

@@ -122,9 +122,11 @@ double depthInside(Simplex& s) {
     const double length = norm(n),
                  error = kRounding * norm(u) * norm(v) * norm(a) / length;
     if (!(error < HUGE_VAL)) return 0;
-    const double opposite = dot(n, s.vertex[i].between - a) / length,
-                 origin = -dot(n, a) / length;
-    if (opposite == 0) return 0;
+    const Vec across = s.vertex[i].between - a;
+    const double opposite = dot(n, across) / length, origin = -dot(n, a) / length;
+    // A flat tetrahedron has no inside.
+    if (!(std::abs(opposite) > kRounding * norm(u) * norm(v) * norm(across) / length))
+      return 0;
     least = std::min(least, (opposite > 0 ? origin : -origin) - error);
     s.weight[i] = origin / opposite;
   }
@@ -257,7 +259,8 @@ class GapSearch {
     for (const PosedConvex* set : set_) {
       const Vec n = set->flatNormal(nearest);
       const double size = norm(n), cosine = dot(n, nearest);
-      if (!(std::abs(cosine) > kLeastCosine * size * length)) continue;
+      if (!(size > 0x1p-500) || !(std::abs(cosine) > kLeastCosine * size * length))
+        continue;
       measure(((cosine > 0 ? 1 : -1) / size) * n);
     }
   }
@@ -285,7 +288,6 @@ class GapSearch {
   }
 
   void setPoints(double distance) {
-    out_.distance = distance;
     for (int side = 0; side < 2; ++side) {
       Vec point{0, 0, 0};
       unsigned corners = 0;
@@ -296,6 +298,8 @@ class GapSearch {
       out_.point[side] = point;
       out_.corners[side] = corners;
     }
+    // A thin face may round to less.
+    out_.distance = std::max(distance, norm(out_.point[1] - out_.point[0]));
   }
 
   const PosedConvex* set_[2];

@@ -12,18 +12,16 @@ namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
 
-double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+double norm(const Vec& v) { return std::hypot(v.x, v.y, v.z); }
 
 /// The farthest point of a circle around the z axis.
 Vec onCircle(double radius, double height, const Vec& d) {
-  const double length = std::sqrt(d.x * d.x + d.y * d.y);
+  const double length = std::hypot(d.x, d.y);
   if (!(length > 0)) return {0, 0, height};
   return {radius * (d.x / length), radius * (d.y / length), height};
 }
 
-double circleReach(double radius, const Vec& d) {
-  return radius * std::sqrt(d.x * d.x + d.y * d.y);
-}
+double circleReach(double radius, const Vec& d) { return radius * std::hypot(d.x, d.y); }
 
 }  // namespace
 

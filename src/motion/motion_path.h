@@ -107,6 +107,10 @@ class MotionPath {
   /// @brief Bound on the velocity of a point with |x| <= radius that rests in the body.
   double speed(double radius) const { return turn_speed_ * radius + translation_speed_; }
 
+  /// @brief Bound on the factor by which the derivative of the rotation makes a vector
+  /// longer.
+  double turnSpeed() const { return turn_speed_; }
+
   /// @brief The same as positionError(), but for rate(t).
   double rateError(double radius) const;
 

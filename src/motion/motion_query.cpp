@@ -97,7 +97,8 @@ class MotionTraversal {
         latest_(options.last) {
     // A kernel adds up no more than a hundred roundings of the sizes, and a time is
     // rounded by a few u.
-    box_margin_ = options.distance + 0x1p-44 * (a.size() + b.size()) +
+    box_margin_ = options.distance + tolerance_.position +
+                  0x1p-44 * (a.size() + b.size()) +
                   16 * kUnitRounding * (a.speed() + b.speed());
     direction_bound_ = (1 + 0x1p-10) * std::max(a.path().stretch(), b.path().stretch());
   }
@@ -311,17 +312,19 @@ class MotionTraversal {
   }
 
   void divide(Work& work) {
-    constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25;
+    // A part may be a point.
+    constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const double radius[2] = {sizeOf(side_[0].body, work.a, work.t0),
                               sizeOf(side_[1].body, work.b, work.t0)};
+    const int opened =
+        work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
     const double dt = work.t1 - work.t0;
     if (dt > kShortest &&
         deviation(0, work.a, work.t0, work.t1) + deviation(1, work.b, work.t0, work.t1) >
-            kMostDeviation * std::min(radius[0], radius[1]))
+            kMostDeviation *
+                std::max(std::min(radius[0], radius[1]), kLeastShare * radius[opened]))
       return halve(work);
-    const int opened =
-        work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
     test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a));
   }
 

@@ -144,9 +144,10 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
 MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                                  double wanted_distance)
     : distance(wanted_distance) {
-  // A support function rounds by another 16 u of the size and of the speed.
+  // A support function rounds by another 16 u of the size and of the speed, and the
+  // corners that stand for a plane by as much.
   const double speed = a.speed() + b.speed(),
-               roundings = a.shape() || b.shape() ? 32 : 16;
+               roundings = a.shape() || b.shape() ? 48 : 16;
   position = (a.positionError() + b.positionError() +
               kUnitRounding *
                   (roundings * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *

@@ -24,6 +24,7 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/geometry/shape/triangle_p.h"
 #include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
@@ -511,6 +512,86 @@ TEST(ShapeCollide, InFloat) {
       continuousCollide(&ball, begin, end, &box, still, still, request, result);
   EXPECT_LE(time, 0.375F);
   EXPECT_NEAR(time, 0.375F, 1e-6F);
+}
+
+TEST(ShapeCollide, ASlowTurnOfALargeBoxThatIsFast) {
+  // In nanometres: the turn is lost beside the speed if one is taken from their sum.
+  const double angle = 0.9e-6, way = 1e10, gap = 5e3;
+  const Moving box{std::make_shared<Box<double>>(8e10, 8e10, 2e9), at(0, 0, 0),
+                   turned(-angle, Point(0, 1, 0), at(-way, 0, 0))};
+  const Pose place = at(0, 0, 2e9 + gap);
+  const Result result = ask(box, {std::make_shared<Sphere<double>>(1e9), place, place});
+  // Over the origin the upper side is at 1e9 - x sin(t angle) for the center's x, -t way.
+  const double time = std::sqrt(gap / (way * angle));
+  ASSERT_TRUE(result.is_collide);
+  EXPECT_LE(result.time_of_contact, time + 1e-6);
+  EXPECT_NEAR(result.time_of_contact, time, 1e-4);
+}
+
+TEST(ShapeCollide, APointBesideAMeshThatTurns) {
+  const TestMesh cube = makeBox({1, 1, 1});
+  auto model = std::make_shared<BVHModel<OBBRSS<double>>>();
+  model->beginModel();
+  model->addSubModel(cube.vertices, cube.triangles);
+  model->endModel();
+  const Moving turning{model, at(0, 0, 0), turned(2, Point(0, 0, 1))};
+  const Pose inside = at(0.3, 0, 0.1), hit = at(1.2, 0.1, 0.1);
+  for (const double radius : {0., 1e-9}) {
+    const Geometry point = std::make_shared<Sphere<double>>(radius);
+    EXPECT_FALSE(ask(turning, {point, inside, inside}).is_collide);
+    EXPECT_TRUE(ask(turning, {point, hit, hit}).is_collide);
+  }
+}
+
+TEST(ShapeCollide, AnInterpMotionAboutAPointOutsideOfABall) {
+  const Sphere<double> ball(1);
+  const InterpMotion<double> moving(Matrix3<double>::Identity(), Point::Zero(),
+                                    turned(1, Point(0, 0, 1)).linear(), Point::Zero(),
+                                    Point(0.5, 0, 0)),
+      still(Matrix3<double>::Identity(), Point(5, 0, 0), Matrix3<double>::Identity(),
+            Point(5, 0, 0), Point::Zero());
+  ContinuousCollisionResult<double> result;
+  continuousCollide(&ball, &moving, &ball, &still, ContinuousCollisionRequest<double>(),
+                    result);
+  EXPECT_FALSE(result.is_collide);
+}
+
+TEST(ShapeCollide, PlanesFarFromTheOriginAreNotMissed) {
+  const auto plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 0.);
+  const auto scaled = std::make_shared<Plane<double>>(Point(0, 0, 1), 0.);
+  scaled->n = Point(0, 0, 49);
+  const double far = 1e6;
+  Request request = requestOf();
+  for (const double end : {far, far - 1}) {
+    const Result result = ask({plane, at(0, 0, far + 1), at(0, 0, end)},
+                              {scaled, at(0, 0, far), at(0, 0, far)}, request);
+    ASSERT_TRUE(result.is_collide);
+    const double time = 1 / (far + 1 - end);
+    EXPECT_LE(result.time_of_contact, time);
+    EXPECT_NEAR(result.time_of_contact, time, 1e-7);
+  }
+  request.accepts_triangles = [](std::intptr_t, std::intptr_t) { return false; };
+  EXPECT_FALSE(
+      ask({plane, at(0, 0, 1), at(0, 0, -1)}, {scaled, at(0, 0, 0), at(0, 0, 0)}, request)
+          .is_collide);
+}
+
+TEST(ShapeCollide, PositionsOfFlatContactsAreOnBothObjects) {
+  // A capsule that lies on a box within its radius, turned at random: the differences of
+  // their points are coplanar.
+  Random random(1);
+  for (int i = 0; i < 200; ++i) {
+    const Point axis = random.point(1);
+    const Pose tilt = turned(random.uniform(0, 3), axis.normalized());
+    const Pose on_top = tilt * at(0, 0, 0.7) * turned(kPi / 2, Point(0, 1, 0));
+    const Result result =
+        ask({std::make_shared<Box<double>>(2., 2., 1.), tilt, tilt},
+            {std::make_shared<Capsule<double>>(0.25, 1.), on_top, on_top});
+    ASSERT_TRUE(result.is_collide);
+    const Point local = tilt.inverse() * result.contacts.at(0).pos;
+    EXPECT_LT(local.head<2>().norm(), 1);
+    EXPECT_NEAR(local[2], 0.475, 0.03);
+  }
 }
 
 TEST(ShapeCollide, BadInputHasAClearError) {
