@@ -240,7 +240,7 @@ double truthOf(Query& query) {
   return first.within_tolerance ? sampled : std::min(sampled, first.toc_hi);
 }
 
-void run(int num_queries, const std::string& folder) {
+void run(int num_queries, const std::string& only, const std::string& folder) {
   const std::vector<std::string> kinds = {"sphere", "capsule",   "box",    "ellipsoid",
                                           "cone",   "cylinder",  "convex", "triangle",
                                           "plane",  "halfspace", kMesh};
@@ -256,6 +256,8 @@ void run(int num_queries, const std::string& folder) {
       const bool flat = kinds[i] == "plane" || kinds[i] == "halfspace";
       if (kinds[i] == kMesh || (flat && kinds[j] != kMesh)) continue;
       Random random(++seed);
+      const std::string pair = kinds[i] + "-" + kinds[j];
+      if (!only.empty() && only != pair) continue;
       std::vector<Query> queries;
       for (int k = 0; k < num_queries; ++k) {
         Query query{randomBody(kinds[j], random), randomBody(kinds[i], random), 0};
@@ -263,8 +265,7 @@ void run(int num_queries, const std::string& folder) {
         queries.push_back(std::move(query));
       }
       for (const Method& method : methods())
-        if (isUsable(method, kinds[i], kinds[j]))
-          measure(method, kinds[i] + "-" + kinds[j], queries, out);
+        if (isUsable(method, kinds[i], kinds[j])) measure(method, pair, queries, out);
     }
   std::fclose(out);
 }
@@ -273,13 +274,14 @@ void run(int num_queries, const std::string& folder) {
 
 int main(int argc, char** argv) {
   CLI::App app("Speed and errors of queries of shapes");
-  std::string folder;
+  std::string folder, only;
   int queries = 200;
   app.add_option("folder", folder, "where the table goes")->required();
   app.add_option("--queries", queries, "for each pair of kinds")->capture_default_str();
+  app.add_option("--pair", only, "only this one, for example sphere-mesh");
   CLI11_PARSE(app, argc, argv);
   try {
-    run(queries, folder);
+    run(queries, only, folder);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "fcl_ccd_shapes: %s\n", error.what());
     return 1;
