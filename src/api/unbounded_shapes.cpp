@@ -7,6 +7,7 @@
 
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
+#include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -22,11 +23,6 @@ struct Flat {
   double size;
 };
 
-Vec rotated(const double (&r)[9], const Vec& x) {
-  return {r[0] * x.x + r[1] * x.y + r[2] * x.z, r[3] * x.x + r[4] * x.y + r[5] * x.z,
-          r[6] * x.x + r[7] * x.y + r[8] * x.z};
-}
-
 template <typename Shape>
 Flat flatOf(const Shape& shape, const Pose& beginning, const Pose& end, bool is_solid) {
   const Vec n = {static_cast<double>(shape.n[0]), static_cast<double>(shape.n[1]),
@@ -36,7 +32,7 @@ Flat flatOf(const Shape& shape, const Pose& beginning, const Pose& end, bool is_
   Flat out{(1 / length) * rotated(beginning.rotation, n), {}, is_solid, 0};
   for (int k = 0; k < 2; ++k) {
     const double(&t)[3] = (k == 0 ? beginning : end).translation;
-    out.offset[k] = dot(out.normal, {t[0], t[1], t[2]}) + offset;
+    out.offset[k] = dot(out.normal, vecOf(t)) + offset;
     out.size = std::max(out.size, std::hypot(t[0], t[1], t[2]) + std::abs(offset));
   }
   return out;

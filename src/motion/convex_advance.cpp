@@ -4,19 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/posed_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
-
-Vec vecOf(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-Vec applied(const double (&m)[9], const Vec& x) {
-  return {m[0] * x.x + m[1] * x.y + m[2] * x.z, m[3] * x.x + m[4] * x.y + m[5] * x.z,
-          m[6] * x.x + m[7] * x.y + m[8] * x.z};
-}
 
 double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);
@@ -54,10 +49,9 @@ ConvexPairMotion::Side ConvexPairMotion::sideAt(int k, double t) const {
   for (int i = 0; i < 3; ++i) {
     const Vec from = set.triangle.corner[0][i], moving = set.triangle.corner[1][i] - from,
               x = (1 - t) * from + t * set.triangle.corner[1][i];
-    side.now.corner[i] =
-        applied(side.now.pose.rotation, x) + vecOf(side.now.pose.translation);
-    side.velocity[i] = applied(side.rate.rotation, x) +
-                       applied(side.now.pose.rotation, moving) +
+    side.now.corner[i] = posed(side.now.pose, x);
+    side.velocity[i] = rotated(side.rate.rotation, x) +
+                       rotated(side.now.pose.rotation, moving) +
                        vecOf(side.rate.translation);
   }
   return side;
@@ -107,9 +101,7 @@ ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const Stat
   const double(&r)[9] = state.side[k].now.pose.rotation;
   const double(&v)[9] = state.side[k].rate.rotation;
   const Vec& n = gap.direction;
-  const Vec m = {r[0] * n.x + r[3] * n.y + r[6] * n.z,
-                 r[1] * n.x + r[4] * n.y + r[7] * n.z,
-                 r[2] * n.x + r[5] * n.y + r[8] * n.z};
+  const Vec m = rotatedBack(r, n);
   const double stretch = path.stretch() * path.stretch(), turn = path.turnSpeed(),
                speed = set_[0]->speed + set_[1]->speed;
   double apart = std::max(gap.distance, gap.gap) + speed * (t1_ - t);
@@ -117,7 +109,7 @@ ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const Stat
     apart += state.side[side].size() * set_[side]->path->stretch();
   const double turning =
       2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
-  return {applied(r, m), applied(v, m), (acceleration_ + turning) * stretch * kUpward,
+  return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * stretch * kUpward,
           margin() * stretch * kUpward, 0.5 / turn};
 }
 
@@ -191,7 +183,7 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
   ConvexGap gap = gapOf(state, 0);
   for (const Side& side : state.side) {
     Vec n = side.now.flatNormal(gap.direction);
-    const double length = std::sqrt(dot(n, n));
+    const double length = norm(n);
     if (!(length > 0x1p-500) || !(gap.gap > 0)) continue;
     n = ((dot(n, gap.direction) < 0 ? -1 : 1) / length) * n;
     const double along = -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);

@@ -4,22 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/posed_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
-
-Vec rotated(const double (&r)[9], const Vec& x) {
-  return {r[0] * x.x + r[1] * x.y + r[2] * x.z, r[3] * x.x + r[4] * x.y + r[5] * x.z,
-          r[6] * x.x + r[7] * x.y + r[8] * x.z};
-}
-
-Vec rotatedBack(const double (&r)[9], const Vec& x) {
-  return {r[0] * x.x + r[3] * x.y + r[6] * x.z, r[1] * x.x + r[4] * x.y + r[7] * x.z,
-          r[2] * x.x + r[5] * x.y + r[8] * x.z};
-}
 
 /// The corner of a box that is farthest along a direction; without the pad.
 Vec supportOf(const MotionBox& box, const Vec& d) {
@@ -315,8 +305,7 @@ Vec PosedConvex::support(const Vec& direction, int& id) const {
   if (shape || box) {
     const Vec d = rotatedBack(pose.rotation, direction),
               local = shape ? shape->support(d) : supportOf(*box, d);
-    return rotated(pose.rotation, local) +
-           Vec{pose.translation[0], pose.translation[1], pose.translation[2]};
+    return posed(pose, local);
   }
   double most = -HUGE_VAL;
   for (int k = 0; k < 3; ++k) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "motion/posed_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -12,16 +14,23 @@ namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
 
-double norm(const Vec& v) { return std::hypot(v.x, v.y, v.z); }
+/// As norm(), also where squares are too small or too large for doubles.
+double anyNorm(const Vec& v) {
+  const double square = dot(v, v);
+  return square > 0x1p-900 && square < 0x1p900 ? std::sqrt(square)
+                                               : std::hypot(v.x, v.y, v.z);
+}
 
 /// The farthest point of a circle around the z axis.
 Vec onCircle(double radius, double height, const Vec& d) {
-  const double length = std::hypot(d.x, d.y);
+  const double length = anyNorm({d.x, d.y, 0});
   if (!(length > 0)) return {0, 0, height};
   return {radius * (d.x / length), radius * (d.y / length), height};
 }
 
-double circleReach(double radius, const Vec& d) { return radius * std::hypot(d.x, d.y); }
+double circleReach(double radius, const Vec& d) {
+  return radius * anyNorm({d.x, d.y, 0});
+}
 
 }  // namespace
 
@@ -58,7 +67,7 @@ Vec ConvexShape::support(const Vec& d) const {
   switch (kind_) {
     case Kind::kEllipsoid: {
       const Vec scaled = {size_.x * d.x, size_.y * d.y, size_.z * d.z};
-      const double length = norm(scaled);
+      const double length = anyNorm(scaled);
       if (!(length > 0)) return {0, 0, 0};
       return {size_.x * (scaled.x / length), size_.y * (scaled.y / length),
               size_.z * (scaled.z / length)};
@@ -86,7 +95,7 @@ Vec ConvexShape::support(const Vec& d) const {
 double ConvexShape::reach(const Vec& d) const {
   switch (kind_) {
     case Kind::kEllipsoid:
-      return norm({size_.x * d.x, size_.y * d.y, size_.z * d.z});
+      return anyNorm({size_.x * d.x, size_.y * d.y, size_.z * d.z});
     case Kind::kCone:
       return std::max(size_.z * d.z, circleReach(size_.x, d) - size_.z * d.z);
     case Kind::kCylinder:
@@ -124,7 +133,7 @@ bool ConvexShape::hasCornersOfBox() const {
     Vec p = center();
     for (unsigned i = 0; i < 3; ++i)
       p = p + ((corner >> i & 1U) != 0 ? box_.extent[i] : -box_.extent[i]) *
-                  Vec{box_.axis[i][0], box_.axis[i][1], box_.axis[i][2]};
+                  vecOf(box_.axis[i]);
     if (std::none_of(points_.begin(), points_.end(),
                      [&](const Vec& x) { return norm(x - p) <= box_.pad; }))
       return false;

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "motion/convex_advance.h"
+#include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -252,15 +253,7 @@ class MotionTraversal {
   /// From the center of a shape to that of a box.
   static Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape,
                         const MotionBox& box, const Pose& pose_box) {
-    const auto posed = [](const Pose& pose, const Vec& x) -> Vec {
-      const double(&r)[9] = pose.rotation;
-      const double(&t)[3] = pose.translation;
-      return {r[0] * x.x + r[1] * x.y + r[2] * x.z + t[0],
-              r[3] * x.x + r[4] * x.y + r[5] * x.z + t[1],
-              r[6] * x.x + r[7] * x.y + r[8] * x.z + t[2]};
-    };
-    return posed(pose_box, {box.center[0], box.center[1], box.center[2]}) -
-           posed(pose_shape, shape.center());
+    return posed(pose_box, vecOf(box.center)) - posed(pose_shape, shape.center());
   }
 
   /// Shortens the window of a box that may overlap the box of a shape, by the direction
@@ -274,22 +267,23 @@ class MotionTraversal {
     MotionBox middle = begin;
     interpolate(end, 0.5, middle);
     const ConvexShape* shape = side_[1 - opened].body.shape();
-    const auto posed = [&](const Pose& pose) -> PosedConvex {
+    const auto posedShape = [&](const Pose& pose) -> PosedConvex {
       return {shape, nullptr, pose, {}};
     };
     const auto posedBox = [](const MotionBox& box, const Pose& pose) -> PosedConvex {
       return {nullptr, &box, pose, {}};
     };
-    const Vec n = convexGap(posed(poses[0].middle), posedBox(middle, poses[1].middle),
-                            towardsBox(*shape, poses[0].middle, middle, poses[1].middle),
-                            margin, margin)
-                      .direction;
+    const Vec n =
+        convexGap(posedShape(poses[0].middle), posedBox(middle, poses[1].middle),
+                  towardsBox(*shape, poses[0].middle, middle, poses[1].middle), margin,
+                  margin)
+            .direction;
     const auto gap = [&](const PosedConvex& of_shape, const PosedConvex& of_box) {
       return -of_box.reach(-1. * n) - of_shape.reach(n) - margin;
     };
-    const double first =
-                     gap(posed(poses[0].beginning), posedBox(begin, poses[1].beginning)),
-                 last = gap(posed(poses[0].end), posedBox(end, poses[1].end));
+    const double first = gap(posedShape(poses[0].beginning),
+                             posedBox(begin, poses[1].beginning)),
+                 last = gap(posedShape(poses[0].end), posedBox(end, poses[1].end));
     if (first > 0 && last > 0) return false;
     // Rounded outward.
     const double root = first / (first - last);

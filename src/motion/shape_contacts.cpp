@@ -7,6 +7,7 @@
 
 #include "motion/convex_advance.h"
 #include "motion/motion_query.h"
+#include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -87,8 +88,7 @@ class ShapeContacts {
     if (gap.distance <= radius[0] + radius[1])
       along = std::min(std::max({along, -radius[0], gap.distance - radius[1]}),
                        std::min(radius[0], gap.distance + radius[1]));
-    contact.position = gap.point[0] + along * way +
-                       Vec{near_.origin[0], near_.origin[1], near_.origin[2]};
+    contact.position = gap.point[0] + along * way + vecOf(near_.origin);
   }
 
   BodiesNearOrigin near_;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elementary/predicates.h"
+#include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -13,8 +14,6 @@ namespace {
 
 constexpr double kUnitRounding = 0x1p-53;
 constexpr double kUpward = 1 + 0x1p-40;
-
-double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
 
 double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 
@@ -186,16 +185,9 @@ TrianglePairMotion::State TrianglePairMotion::at(double t) const {
     for (int i = 0; i < 3; ++i) {
       const Vec from = triangle_[body]->corner[0][i], to = triangle_[body]->corner[1][i];
       const Vec x = lerp(from, to, t), moving = to - from;
-      const auto applied = [](const double(&m)[9], const Vec& y) -> Vec {
-        return {m[0] * y.x + m[1] * y.y + m[2] * y.z,
-                m[3] * y.x + m[4] * y.y + m[5] * y.z,
-                m[6] * y.x + m[7] * y.y + m[8] * y.z};
-      };
-      const double(&p)[3] = pose.translation;
-      const double(&v)[3] = rate.translation;
-      state.p[body][i] = applied(pose.rotation, x) + Vec{p[0], p[1], p[2]};
-      state.v[body][i] = applied(rate.rotation, x) + applied(pose.rotation, moving) +
-                         Vec{v[0], v[1], v[2]};
+      state.p[body][i] = posed(pose, x);
+      state.v[body][i] = rotated(rate.rotation, x) + rotated(pose.rotation, moving) +
+                         vecOf(rate.translation);
     }
   }
   return state;
