@@ -14,13 +14,14 @@
 #include "deformable_model_test.h"
 #include "fcl/narrowphase/distance.h"
 
-// gcc and clang tell in different ways that the address sanitizer is on.
-#if defined(__has_feature)
+// gcc and clang tell in different ways that the address sanitizer is on. With gcc, headers
+// of other projects may define __has_feature to be 0.
+#if defined(__SANITIZE_ADDRESS__)
+#define FCL_TEST_ADDRESS_SANITIZER
+#elif defined(__has_feature)
 #if __has_feature(address_sanitizer)
 #define FCL_TEST_ADDRESS_SANITIZER
 #endif
-#elif defined(__SANITIZE_ADDRESS__)
-#define FCL_TEST_ADDRESS_SANITIZER
 #endif
 
 namespace fcl {
