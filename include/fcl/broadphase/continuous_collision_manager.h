@@ -101,7 +101,7 @@ class FCL_EXPORT ContinuousBroadPhase {
   bool contains(const void* object) const;
   /// In the order of their registration.
   std::vector<void*> objects() const;
-  /// The box of an object, which need not be registered, as it is now.
+  /// Reads an object, which need not be registered, and returns its box.
   static StepBox stepBox(const void* object, Read read);
 
   /// Sorted by t_lo, then by the order of registration.
@@ -116,8 +116,8 @@ class FCL_EXPORT ContinuousBroadPhase {
   std::unique_ptr<Boxes> boxes_;
 };
 
-/// @brief Reads the geometry and the motion of a ContinuousCollisionObject. Of a motion
-/// that is not known nothing is read.
+/// @brief Reads the geometry and the motion of a ContinuousCollisionObject. It reads
+/// nothing of a motion that the library does not know.
 template <typename S>
 MovingGeometry<S> readObject(const void* object);
 
@@ -144,14 +144,16 @@ class SweptCollisionObject : public CollisionObject<S> {
 using SweptCollisionObjectf = SweptCollisionObject<float>;
 using SweptCollisionObjectd = SweptCollisionObject<double>;
 
-/// @brief Finds the contacts of many objects that move: a concrete
-/// BroadPhaseContinuousCollisionManager, which FCL declares and does not have.
+/// @brief Finds the contacts of many objects that move. FCL declares the interface
+/// BroadPhaseContinuousCollisionManager and has no class that implements it; this class
+/// does.
 ///
 /// Objects are meshes, shapes and octrees that follow any motion. Each has a box that
-/// moves: boxes at the ends of up to 16 spans of the step, enlarged by what the motion
-/// can deviate from straight lines in between. Two objects are a box pair if their boxes
-/// overlap at the same time. So objects that fly side by side are no box pair, and no
-/// contact is missed. FCL's ContinuousCollisionObject::computeAABB() is not used.
+/// moves: boxes at the ends of up to 16 spans of the step, enlarged by the distance that
+/// the motion can deviate from straight lines in between. Two objects are a box pair if
+/// their boxes overlap at the same time. So objects that fly side by side are no box
+/// pair, and no contact is missed. FCL's ContinuousCollisionObject::computeAABB() is not
+/// used.
 ///
 /// An object has no box (SweptCollisionObject: an infinite one), and is a box pair with
 /// all others, if its motion is a class of the program that is no BoundedMotion, or if it
@@ -205,11 +207,12 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// @brief Reads these objects again, for example those that moved.
   void update(const std::vector<Object*>& objects) override;
 
-  /// @brief Which others the object can be in contact with. Callbacks do not get a pair
-  /// that the filters reject. Groups of triangles act in the queries that take a request.
+  /// @brief Sets with which objects this one can be in contact. Callbacks do not get a
+  /// pair that the filters reject. Groups of triangles act in the queries that take a
+  /// request.
   void setFilter(Object* object, const ContinuousFilter& filter);
-  /// @brief Whether queries of all objects, with a request, look for contacts of the
-  /// object with itself. It must be a mesh.
+  /// @brief Sets whether queries of all objects that take a request look for contacts of
+  /// the object with itself. It must be a mesh.
   void setSelfCollision(Object* object, bool enabled);
 
   /// @brief The objects, in the order of their registration.
@@ -243,7 +246,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// until the callback returns true. FCL's default callback is
   /// DefaultContinuousCollisionFunction, which keeps the answer for the last pair only.
   void collide(void* cdata, ContinuousCollisionCallBack<S> callback) const;
-  /// @brief Calls back for the box pairs of one object, which comes first.
+  /// @brief Calls back for the box pairs of one object, which is the first argument.
   void collide(Object* object, void* cdata,
                ContinuousCollisionCallBack<S> callback) const;
   /// @brief Calls back for the box pairs of this manager and of another one.
@@ -304,7 +307,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                 CollisionCallBack<S> callback) const;
 
   detail::ContinuousBroadPhase<S> boxes_;
-  /// Those that were set.
+  /// The filters that setFilter() has set.
   std::unordered_map<const Object*, ContinuousFilter> filters_;
   mutable SweptObjects swept_objects_;
 };

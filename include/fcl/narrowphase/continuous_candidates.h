@@ -55,11 +55,11 @@ using ContinuousCandidateSink =
 /// coplanarity filter.
 ///
 /// (1) Every pair that touches is among them. (A pair that crosses at t = 0 and never
-/// touches may be missing.) (2) No pair comes twice. Faces with the same three vertices
-/// are one face. (3) The order depends on the trees and is the same in every call. (4)
-/// on straight paths vertexFace() and edgeEdge() on all pairs give the contacts of the
-/// query if they get the same vertex paths. A posed coordinate is ((r0 x + r1 y) + r2 z)
-/// + t, computed in doubles.
+/// touches may be missing.) (2) No pair is handed out twice. Faces with the same three
+/// vertices are one face. (3) The order depends on the trees and is the same in every
+/// call. (4) On straight paths vertexFace() and edgeEdge() on all pairs give the contacts
+/// of the query if they get the same vertex paths. A posed coordinate is ((r0 x + r1 y) +
+/// r2 z) + t, computed in doubles.
 ///
 /// Memory: one block; all candidates if a mesh turns. A rigid BVHModel that is not a
 /// DeformableBVHModel has no table of feature owners, which (2) needs. On straight paths
@@ -72,9 +72,9 @@ using ContinuousCandidateSink =
 /// 2008.
 ///
 /// With min_distance = d > 0 the candidates are the pairs whose distance may fall to d
-/// during the step, and (1) reads: every pair that comes within d is among them. If both
-/// frames are equal (updateFrames(x, x)), these are the pairs that may be within d. The
-/// distance of features that share a vertex is 0: they are no candidates.
+/// during the step, and (1) becomes: every pair that comes within d is among them. If
+/// both frames are equal (updateFrames(x, x)), these are the pairs that may be within d.
+/// The distance of features that share a vertex is 0: they are no candidates.
 ///
 /// @param sink  takes the candidates, see ContinuousCandidateSink
 /// @param min_distance  d, not negative, finite, in the unit of the coordinates
@@ -113,7 +113,7 @@ bool continuousCandidates(const CollisionGeometry<float>* o1,
                           const Transform3<float>& tf2_end,
                           const ContinuousCandidateSink& sink, double min_distance = 0);
 
-/// @brief The candidates of two meshes that follow FCL's motions.
+/// @brief The candidates of two meshes that follow FCL's motions or a BoundedMotion.
 bool continuousCandidates(const CollisionGeometry<double>* o1,
                           const MotionBase<double>* motion1,
                           const CollisionGeometry<double>* o2,

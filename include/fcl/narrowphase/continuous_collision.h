@@ -22,11 +22,12 @@ namespace fcl {
 /// of any BV type, rigid or deforming (a DeformableBVHModel, or a BVHModel in FCL's
 /// updated state), FCL's ten shapes, and octrees, against each other. A
 /// DeformableBVHModel whose frames are equal is a rigid mesh. A mesh is a surface. Shapes
-/// are solid, but for a TriangleP and a Plane, which is a surface without end. Of an
+/// are solid, except TriangleP and Plane, which are surfaces (a Plane has no end). In an
 /// octree the cells that FCL calls occupied are solid: leaves that reach its threshold
-/// (OcTree::isNodeOccupied()), below nodes that reach it too. Other cells, and objects
-/// beside an octree that are not CollisionGeometry::isOccupied(), are no obstacles.
-/// octomap's nodes are read in place, only those near the other object.
+/// (OcTree::isNodeOccupied()), below nodes that reach it too. Other cells are no
+/// obstacles, and neither is an object beside an octree whose
+/// CollisionGeometry::isOccupied() is false. The query reads octomap's nodes in place,
+/// and only those near the other object.
 ///
 /// Which pairs FCL answers: point clouds, geometries of the program, and a rigid mesh, a
 /// shape or an octree that follows a motion class of the program that is no
@@ -35,20 +36,19 @@ namespace fcl {
 /// way out: derive the motion class from BoundedMotion too. doc/choosing.md has the
 /// limits.
 ///
-/// Paths are the real-number evaluation of the given numbers, in double. t runs from 0 to
-/// 1. A contact is a VF or EE pair of closed features without a common vertex that touch
-/// at some t in [0, 1].
+/// t runs from 0 (the beginning of the step) to 1 (its end). A path is defined by the
+/// given doubles, evaluated without rounding. A contact of two meshes is a VF or EE pair
+/// of closed features without a common vertex that touch at some t in [0, 1].
 /// - Straight paths: meshes whose rotation is constant (up to a few roundings). Also
-///   meshes that deform between two transforms with CCDM_TRANS or CCDM_SPLINE, or by
-///   another motion class of the program (its poses at t = 0 and t = 1 count). A vertex
-///   goes from tf_beg * (previous frame) to tf_end * (current frame). If two meshes go
-///   straight the answer is exact.
+///   meshes that deform between two transforms with CCDM_TRANS or CCDM_SPLINE, or by a
+///   motion class of the program that is no BoundedMotion (its poses at t = 0 and t = 1
+///   are used). A vertex goes from tf_beg * (previous frame) to tf_end * (current frame).
+///   If two meshes go straight the answer is exact.
 /// - Turning: a rigid mesh, a shape or an octree whose end transforms have different
-/// rotations. With
-///   CCDM_LINEAR and CCDM_TRANS it turns at constant speed about the origin of its frame,
-///   which goes straight. (With CCDM_TRANS FCL drops the rotation without a message.)
-///   With CCDM_SCREW it turns about the axis of a screw. CCDM_SPLINE is not defined
-///   between two transforms, and throws if a rigid mesh turns.
+///   rotations. With CCDM_LINEAR and CCDM_TRANS it turns at constant speed about the
+///   origin of its frame, which goes straight. (With CCDM_TRANS FCL ignores the rotation
+///   without a message.) With CCDM_SCREW it turns about the axis of a screw. CCDM_SPLINE
+///   is not defined between two transforms, and throws if such an object turns.
 /// - A mesh that deforms in a frame that turns: with CCDM_LINEAR, CCDM_SCREW, or a motion
 ///   object that turns. The path is motion(t) * ((1 - t) previous + t current).
 /// - FCL's motion objects: TranslationMotion; InterpMotion between the transforms that it
@@ -63,7 +63,8 @@ namespace fcl {
 /// pair that slides for more than 10,000 steps without a proof is reported from then on:
 /// early, never late.
 ///
-/// request.ccd_solver_type and num_max_iterations have no effect.
+/// request.ccd_solver_type and num_max_iterations have no effect on pairs that are
+/// answered here.
 ///
 /// request.toc_err is the largest width of the time bracket of a contact, in fractions of
 /// the step. 0: as narrow as doubles allow.
@@ -82,17 +83,22 @@ namespace fcl {
 /// motion object between concurrent calls if FCL answers, or if it is of a class of the
 /// program: reading its pose changes it.
 ///
-/// @throws fcl::Exception  The text names the object. For all pairs: an object or its
-/// motion is null; of meshes, shapes and octrees, a transform is not finite. For pairs
-/// that are answered here: a size of a shape is negative or not finite; the resolution of
-/// an octree is not positive or not finite; a mesh is not built, is in the middle of an
-/// update, has more than 2^29 triangles or vertices, has a coordinate that is not finite
-/// or a triangle index out of range; the request is not usable (toc_err negative or NaN,
-/// num_max_contacts 0, num_threads negative); the reference point of an InterpMotion is
-/// not finite, or so large that its rounding exceeds toc_err; a path that turns has
-/// coordinates beyond 2^200. FCL checks nothing in what it answers. A coordinate of a
-/// rigid mesh is checked where boxes overlap. So a bad coordinate that cannot change the
-/// answer may stay unnoticed, for any number of threads alike.
+/// @throws fcl::Exception  The text names the object.
+/// - For all pairs: an object or its motion is null. Of meshes, shapes and octrees: a
+///   transform is not finite.
+/// - For pairs that are answered here, meshes: the mesh is not built, is in the middle of
+///   an update, has more than 2^29 triangles or vertices, has a coordinate that is not
+///   finite or a triangle index out of range. A coordinate of a rigid mesh is checked
+///   where boxes overlap. So a bad coordinate that cannot change the answer may stay
+///   unnoticed, for any number of threads alike.
+/// - Shapes and octrees: a size of the shape is negative or not finite; the resolution of
+///   the octree is not positive or not finite.
+/// - Motions: the reference point of an InterpMotion is not finite, or so large that its
+///   rounding exceeds toc_err; a path that turns has coordinates beyond 2^200.
+/// - The request: toc_err is negative or NaN, num_max_contacts is 0, num_threads is
+///   negative, t_max is not in [0, 1]; min_distance is negative or not finite, or above 0
+///   for two meshes of which one turns.
+/// - FCL checks nothing in what it answers.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
 /// at t = 0; 1 without collision
 /// @{
@@ -159,7 +165,7 @@ float collide(const ContinuousCollisionObject<float>* o1,
               const ContinuousCollisionRequest<float>& request,
               ContinuousCollisionResult<float>& result);
 
-/// @brief The first contact of a mesh with itself; its pose does not matter.
+/// @brief The first contact of a mesh with itself. It needs no pose.
 double continuousSelfCollide(const CollisionGeometry<double>* o,
                              const ContinuousCollisionRequest<double>& request,
                              ContinuousCollisionResult<double>& result);
@@ -233,7 +239,8 @@ float collide(const ContinuousCollisionObject<float>* o1,
               const ContinuousContactRequest<float>& request,
               ContinuousContactResult<float>& result);
 
-/// @brief The contacts of a mesh with itself; its pose does not matter.
+/// @brief The contacts of a mesh with itself. It needs no pose: positions and normals
+/// are in the coordinates of the mesh.
 double continuousSelfCollide(const CollisionGeometry<double>* o,
                              const ContinuousContactRequest<double>& request,
                              ContinuousContactResult<double>& result);

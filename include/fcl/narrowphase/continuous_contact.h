@@ -17,8 +17,9 @@
 
 namespace fcl {
 
-/// @brief One contact between two features during t in [0, 1]. Features are closed: a
-/// triangle contains its border, an edge its ends.
+/// @brief One contact of two meshes, or of a mesh, a shape or an octree with another one,
+/// during t in [0, 1]. Features of meshes are closed: a triangle contains its border, an
+/// edge its ends.
 template <typename S>
 struct ContinuousContact {
   ContinuousContactKind kind{ContinuousContactKind::kVertexFace};
@@ -28,15 +29,15 @@ struct ContinuousContact {
   const CollisionGeometry<S>* o2{nullptr};
 
   /// @brief Numbers of the triangles of o1 and of o2 that have the features, as in
-  /// fcl::Contact. -1 for a shape. For an octree the number of the cell, whose center,
-  /// size and key octreeCell() tells (octree_cell.h).
+  /// fcl::Contact. -1 for a shape. For an octree the number of the cell: octreeCell()
+  /// (octree_cell.h) gives its center, size and key.
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
   /// f1, f2. VE: v, e0, e1. VV: v of o1, v of o2; in a self-collision the lower id first.
-  /// With a shape or a cell: those of the vertex, edge or face of the mesh nearest to it
-  /// at toc_lo. Unused entries are -1.
+  /// With a shape or a cell: the ids of the vertex, edge or face of the mesh that is
+  /// nearest to it at toc_lo. Unused entries are -1.
   std::array<int, 5> vertices{{-1, -1, -1, -1, -1}};
 
   /// @brief True: the vertex (VF) or the edge (crossing) belongs to o1, the face to o2;
@@ -44,20 +45,21 @@ struct ContinuousContact {
   /// to o1. With a shape or an octree: whether the mesh is o1.
   bool first_on_o1{true};
 
-  /// @brief True: it is not proved that the surfaces cross in the bracket, only that the
-  /// features are within the query's tolerance of each other at toc_lo. Only if a mesh
-  /// turns, with a shape or an octree, or with min_distance: then no time was found in
-  /// the bracket at which the features provably are within that distance. Otherwise
-  /// contacts on straight paths are exact, and this is false.
+  /// @brief Whether the contact is only proved up to the query's tolerance. Contacts of
+  /// two meshes on straight paths are exact, and this is false. If a mesh turns, or with
+  /// a shape or an octree, true says: the features are within the tolerance of each other
+  /// at toc_lo, and it is not proved that the surfaces cross in the bracket. With
+  /// min_distance, true says: no time was found in the bracket at which the features
+  /// provably are within that distance.
   bool within_tolerance{false};
 
   /// @brief Bracket of the time of contact, in fractions of the step. The first time at
   /// which the features touch lies in [toc_lo, toc_hi]. Its width is at most the
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
   /// 0] if the features touch at t = 0. On straight paths, with ContinuousQuery::kFirst
-  /// and kAny, it is no wider than an eighth of toc_hi either: toc_lo is 0 only for
+  /// and kAny, it is also no wider than an eighth of toc_hi. So toc_lo is 0 only for
   /// features that touch at t = 0 (or before 2^-1074, the first double above 0). With
-  /// kAll that holds for the time_of_contact of the result; the brackets in the list may
+  /// kAll this holds for the time_of_contact of the result; the brackets in the list may
   /// begin before it.
   ///
   /// If a mesh turns, or with a shape or an octree: the features do not touch before
@@ -68,8 +70,9 @@ struct ContinuousContact {
   double toc_lo{0};
   double toc_hi{0};
 
-  /// @brief The point where they touch at toc_lo, in the world frame. With min_distance:
-  /// the middle between their nearest points. Set only with enable_contact.
+  /// @brief The point where the two touch at toc_lo, in the world frame and the unit of
+  /// the coordinates. With min_distance: the middle between their nearest points. Set
+  /// only with enable_contact.
   Vector3<S> pos{Vector3<S>::Zero()};
 
   /// @brief Unit normal at toc_lo in the world frame: of the face (VF, crossing), or
@@ -88,8 +91,8 @@ struct ContinuousContact {
   /// self-collision from the first feature to the second. It is the zero vector if they
   /// touch.
   ///
-  /// With a shape or an octree it is a direction that parts the two objects just before
-  /// they touch. It is the zero vector if they overlap at t = 0.
+  /// With a shape or an octree it is a direction that separates the two objects just
+  /// before they touch. It is the zero vector if they overlap at t = 0.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief The number of entries of `vertices` that are used.
@@ -159,16 +162,19 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief The distance d at which features are in contact, in the unit of the
   /// coordinates; not negative, finite. 0: features that touch, exactly. Above 0: @ref
-  /// continuous_distance_tests says how exactly. A pair of features whose nearest points
-  /// at the time of contact lie on an edge or at a vertex is a contact of these parts (VE
-  /// or VV), which is listed once, at the earliest of such times. Features that share a
-  /// vertex are no contact. A discrete collide() finds nothing at the poses of a contact.
-  /// All paths must be straight: the query throws if a mesh turns.
+  /// continuous_distance_tests has the bounds. If the nearest points of a pair of
+  /// features lie on an edge or at a vertex at the time of contact, the contact is that
+  /// of these parts (VE or VV). It is listed once, at the earliest of such times.
+  /// Features that share a vertex are no contact. A discrete collide() finds nothing at
+  /// the poses of a contact. The paths of two meshes must be straight: the query throws
+  /// if one of them turns. Beside a shape or an octree any path will do.
   S min_distance{0};
 
   /// @brief Whether pairs that are nearer than min_distance at t = 0 are in contact only
-  /// when they come nearer than they are then. If false, they are contacts at t = 0.
-  /// Pairs that touch at t = 0 are contacts, and a crossing is told, in both cases.
+  /// when they come nearer than they are at t = 0. If false, they are contacts at t = 0.
+  /// In both cases pairs that touch at t = 0 are contacts, and a crossing is reported.
+  /// For two meshes only: the query throws with a shape or an octree, and if
+  /// min_distance is 0.
   bool ignore_initially_closer{false};
 
   /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be

@@ -81,14 +81,14 @@ FCL_EXPORT ContinuousFeatureTestResult<S> edgeEdge(
 /// 512 u (d + L) is never reported. (Pairs whose distance is lost to rounding may be: 2
 /// of 300,000 generated queries, half of which are degenerate.)
 /// Between these two distances either answer is right. (3) If toc_hi > toc_lo, the
-/// features are within d at toc_hi. The bracket is no wider than toc_err and an eighth of
-/// toc_hi. toc_hi = toc_lo means that no such time was found: the features only graze
-/// this distance, or come nearer very slowly. (4) The bracket is [0, 0] if the features
-/// are within d at t = 0. (5) The answer does not depend on the order of the features or
-/// of their vertices. (6) The same arguments give the same bits, in any floating-point
-/// mode, from any number of threads.
+/// features are within d at toc_hi. The bracket is no wider than toc_err, and no wider
+/// than an eighth of toc_hi. toc_hi = toc_lo means that no such time was found: they
+/// graze this distance, or come nearer very slowly. (4) The bracket is [0, 0] if the
+/// features are within d at t = 0. (5) The answer does not depend on the order of the
+/// features or of their vertices. (6) The same arguments give the same bits, in any
+/// floating-point mode, from any number of threads.
 ///
-/// Directional advancement, see doc/thickness.md.
+/// The method is directional advancement: doc/thickness.md describes it.
 ///
 /// @param min_distance  d, in the unit of the coordinates
 /// @throws fcl::Exception as the exact tests, and when min_distance is negative, infinite

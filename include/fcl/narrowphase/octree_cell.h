@@ -36,20 +36,20 @@ FCL_EXPORT bool readOctreeCell(std::intptr_t number, double root_size,
 /// @brief A cell of an octree. A pruned node is one large cell.
 template <typename S>
 struct OctreeCell {
-  /// @brief In the frame of the octree.
+  /// @brief The center of the cube, in the frame of the octree.
   Vector3<S> center;
   /// @brief The side of the cube.
   S size;
-  /// @brief As octomap names the cell: octomap::OcTree::search(key, depth) finds its
+  /// @brief octomap's name of the cell: octomap::OcTree::search(key, depth) finds its
   /// node.
   octomap::OcTreeKey key;
   unsigned int depth;
 };
 
 /// @brief The cell of an octree that is part of a continuous contact.
-/// @param b  ContinuousContact::b1 or b2, that of the octree. It is no pointer and not
-/// FCL's "query cell id" (which depends on addresses): it stays valid when the map
-/// changes, and means the same in each run.
+/// @param b  ContinuousContact::b1 if the octree is o1, b2 if it is o2. It is not FCL's
+/// "query cell id", which depends on addresses: it stays valid when the map changes, and
+/// means the same in each run.
 /// @throws fcl::Exception  b is not the number of a cell
 template <typename S>
 OctreeCell<S> octreeCell(const OcTree<S>& octree, std::intptr_t b) {

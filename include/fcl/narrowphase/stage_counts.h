@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// What a continuous query is asked for and what its stages tell: plain data, which the
-// stages themselves work with. Everything else that is public is in the headers that
-// include this one.
+// Kinds of contacts and of queries, and what the stages of a query count: plain data,
+// which the stages themselves use too. continuous_contact.h includes this header.
 #ifndef FCL_NARROWPHASE_STAGE_COUNTS_H
 #define FCL_NARROWPHASE_STAGE_COUNTS_H
 

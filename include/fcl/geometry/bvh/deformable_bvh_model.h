@@ -203,10 +203,11 @@ class DeformableMesh {
 /// @brief Whether a build or an update brings FCL's own tree up to date.
 ///
 /// FCL's discrete queries (collide, distance) need this tree. So do continuous queries
-/// that FCL answers (point clouds, motion classes of the program). Continuous queries
-/// that this library answers do not need it. Broadphase managers do not need it, with one
-/// exception: collide(&object, ...) and distance(&object, ...) of the DynamicAABBTree
-/// managers read the node type of `object`, and throw as discrete queries do.
+/// that FCL answers (point clouds, and motion classes that are no BoundedMotion).
+/// Continuous queries that this library answers do not need it. Broadphase managers do
+/// not need it, with one exception: collide(&object, ...) and distance(&object, ...) of
+/// the DynamicAABBTree managers read the node type of `object`, and throw as discrete
+/// queries do.
 enum class FclTree {
   kUpdate,  ///< bring the tree up to date
   kSkip     ///< leave the tree; queries that need it throw until updateFclTree()
@@ -236,7 +237,7 @@ enum class FclTree {
 /// is refused, until updateFrames(), updateTopology() or a replacement gives both frames.
 /// A begin... call while an update is open drops the vertices given so far. beginModel()
 /// is FCL's own: for a model that is built it prints, clears the model and returns an
-/// error; the second call begins.
+/// error. A second call of it then begins the new model.
 ///
 /// Differences from BVHModel:
 /// - build_state is BVH_BUILD_STATE_PROCESSED after an update, so that FCL's discrete

@@ -26,7 +26,7 @@ namespace fcl {
 /// sums are sound. If FCL's calls change the vertices later, they also replace these
 /// volumes: call this function again.
 ///
-/// Not at the same time as another call with the model.
+/// Thread-safety: do not call it at the same time as another call with the model.
 ///
 /// @tparam BV  any of FCL's
 /// @throws std::invalid_argument  the model is not built, or has begun an update or a

@@ -7,10 +7,10 @@
 namespace fcl {
 
 /// @brief What the queries of this library need to know about a motion class of a
-/// program. A class that derives from `MotionBase<S>` and from this one is followed by
-/// the @ref continuous_queries of two triangle meshes as FCL's own motions are: with
-/// contacts, never late, no contact missed. A motion class without it is answered by FCL,
-/// from samples.
+/// program. Derive the class from `MotionBase<S>` and from this one. Then the @ref
+/// continuous_queries of meshes, shapes and octrees follow it like FCL's own motions:
+/// with contacts, never late, no contact missed. If a rigid mesh, a shape or an octree
+/// follows a motion class that is no BoundedMotion, FCL answers, from samples.
 ///
 /// t runs from 0 to 1. A point x of the body is at p(t) = R(t) x + T(t). The true path is
 /// a smooth one for which the bounds hold and from which placementAt() and rateAt()

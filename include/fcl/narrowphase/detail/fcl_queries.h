@@ -57,8 +57,8 @@ bool isWrittenTo(NODE_TYPE type, OBJECT_TYPE other,
          (type == BV_RSS && other == OT_BVH);
 }
 
-/// @brief The geometry, or a copy if FCL would write to it. The copy takes a small part
-/// of the time of FCL's query.
+/// @brief The geometry, or a copy if FCL would write to it. Copying takes a small part of
+/// the time of FCL's query.
 template <typename S>
 std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
     const CollisionGeometry<S>* o, const CollisionGeometry<S>* other,
@@ -119,11 +119,11 @@ std::string explainNoContacts(const CollisionGeometry<S>& o1,
   if (!has_contacts(o1) || !has_contacts(o2))
     return std::string(has_contacts(o1) ? "o2" : "o1") +
            " is neither a triangle mesh nor a shape nor an octree, and only these have "
-           "contacts. Ask with a ContinuousCollisionRequest: FCL then answers, and takes "
+           "contacts. Give a ContinuousCollisionRequest: FCL then answers, and takes "
            "meshes as they are in their current frame";
-  return "contacts need triangle meshes, shapes or octrees that follow transforms, FCL's "
-         "own motion classes, or a BoundedMotion. Derive another motion class from "
-         "BoundedMotion too; a model without triangles has no contacts";
+  return "there are no contacts of this pair: an object follows a motion class that is "
+         "neither FCL's nor a BoundedMotion, or a model has no triangles. Derive the "
+         "motion class from BoundedMotion too, or give transforms";
 }
 
 /// @brief FCL reports no contacts.
