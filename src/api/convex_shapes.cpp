@@ -25,7 +25,7 @@ namespace {
 template <typename S>
 double requireSize(S size, const std::string& name, const char* what) {
   if (size >= 0 && std::isfinite(size)) return static_cast<double>(size);
-  throw Exception(name + ": the " + what + " is negative or not finite");
+  throw Exception(name + ": the " + what + " is negative or not finite. Give 0 or more");
 }
 
 template <typename S>

@@ -234,8 +234,7 @@ void DeformableMesh::checkCopy() const {
   if (phase() == Phase::kHalfUpdated)
     throw Exception(
         "DeformableBVHModel: a copy of a model whose last update failed. Give both "
-        "frames "
-        "to the model first, by updateFrames()");
+        "frames to the model first, by updateFrames()");
 }
 
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,

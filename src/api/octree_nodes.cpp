@@ -62,7 +62,8 @@ OctreeCells octreeCellsOf(const CollisionGeometry<S>& geometry, const std::strin
   const double root_size = 2 * static_cast<double>(octree.getRootBV().max_[0]);
   if (!(root_size > 0) || !std::isfinite(root_size))
     throw Exception(name +
-                    ": the resolution of the octree is not positive or not finite");
+                    ": the resolution of the octree is not positive or not finite. Make "
+                    "the map with a positive resolution");
   return OctreeCells(std::make_unique<OctomapNodes<S>>(octree), root_size);
 }
 
