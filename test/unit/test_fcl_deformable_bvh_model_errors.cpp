@@ -14,8 +14,8 @@
 #include "deformable_model_test.h"
 #include "fcl/narrowphase/distance.h"
 
-// gcc and clang tell in different ways that the address sanitizer is on. With gcc, headers
-// of other projects may define __has_feature to be 0.
+// gcc and clang tell in different ways that the address sanitizer is on. With gcc,
+// headers of other projects may define __has_feature to be 0.
 #if defined(__SANITIZE_ADDRESS__)
 #define FCL_TEST_ADDRESS_SANITIZER
 #elif defined(__has_feature)
