@@ -21,10 +21,9 @@ namespace fcl {
 /// has the same effect, without the cost of the first refit.
 ///
 /// The vertices, the triangles and the shape of the tree stay. The cost is that of FCL's
-/// refit from the top down, O(n log n) for n triangles: about 1.5 times that of its refit
-/// from the bottom up for 100,000 triangles. Nothing is needed for AABBs and KDOPs, whose
-/// sums are sound. If FCL's calls change the vertices later, they also replace these
-/// volumes: call this function again.
+/// refit from the top down, O(n log n) for n triangles. Nothing is needed for AABBs and
+/// KDOPs, whose sums are sound. If FCL's calls change the vertices later, they also
+/// replace these volumes: call this function again.
 ///
 /// Thread-safety: do not call it at the same time as another call with the model.
 ///
