@@ -19,6 +19,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "moving_mesh.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -252,7 +253,7 @@ TEST(FCL_CONTACT_OPTIONS, tMaxCountsATouchAtItself) {
 /// The contacts until t_max are those contacts of the whole step that begin no later.
 TEST(FCL_CONTACT_OPTIONS, tMaxLeavesTheEarlierContacts) {
   std::size_t some = 0, all = 0;
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < rounds(20U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto model = modelOf(randomSoup(random, 40, 60, 1, 1));
@@ -276,7 +277,7 @@ TEST(FCL_CONTACT_OPTIONS, tMaxLeavesTheEarlierContacts) {
       }
     }
   }
-  EXPECT_GE(some, 300U);
+  EXPECT_GE(some, rounds(300U));
   EXPECT_GE(all, 2 * some);
 }
 
@@ -418,7 +419,7 @@ Request allWithCrossings() {
 
 TEST(FCL_CONTACT_OPTIONS, filtersInASelfCollision) {
   std::size_t kept = 0, left_out = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < rounds(60U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const MovingMesh mesh =
@@ -455,8 +456,8 @@ TEST(FCL_CONTACT_OPTIONS, filtersInASelfCollision) {
       EXPECT_EQ(first.time_of_contact, both.time_of_contact);
     }
   }
-  EXPECT_GE(kept, 500U);
-  EXPECT_GE(left_out, 500U);
+  EXPECT_GE(kept, rounds(500U));
+  EXPECT_GE(left_out, rounds(500U));
 }
 
 /// Meshes that deform, rigid ones, and one that turns, on either side.

@@ -13,16 +13,7 @@
 #include "allocation_failures.h"
 #include "deformable_model_test.h"
 #include "fcl/narrowphase/distance.h"
-
-// gcc and clang tell in different ways that the address sanitizer is on. With gcc,
-// headers of other projects may define __has_feature to be 0.
-#if defined(__SANITIZE_ADDRESS__)
-#define FCL_TEST_ADDRESS_SANITIZER
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define FCL_TEST_ADDRESS_SANITIZER
-#endif
-#endif
+#include "sanitizer.h"
 
 namespace fcl {
 namespace test {
@@ -423,9 +414,8 @@ TYPED_TEST(DeformableModel, BuildWithoutMemory) {
 
 TYPED_TEST(DeformableModel, AddsWithoutMemory) {
   USING_FIXTURE;
-#ifdef FCL_TEST_ADDRESS_SANITIZER
-  GTEST_SKIP() << "FCL allocates arrays, whose allocation is the sanitizer's own";
-#endif
+  if (kHasAddressSanitizer)
+    GTEST_SKIP() << "FCL allocates arrays, whose allocation is the sanitizer's own";
   const auto p = this->points(frame(3));
   const std::function<int(Model&)> additions[] = {
       [&](Model& model) { return model.addVertex(p[0]); },

@@ -27,6 +27,7 @@
 #include "fcl/math/bv/kIOS.h"
 #include "moving_mesh.h"
 #include "placed_mesh.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -325,7 +326,7 @@ MovingMesh smallSoup(Random& random, std::size_t count, double step,
 
 TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
   std::size_t contacts = 0;
-  for (std::uint64_t seed = 1000; seed < 1300; ++seed) {
+  for (std::uint64_t seed = 1000; seed < 1000 + test::rounds(300U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const MovingMesh mesh =
@@ -337,7 +338,7 @@ TEST(FCL_DEFORMABLE_QUERY, selfAgainstBruteForce) {
     contacts += expectRightAnswers(body, body);
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(contacts, 1000U);
+  EXPECT_GT(contacts, test::rounds(1000U));
 }
 
 /// Moves some vertices far away, in one frame or in both.
@@ -353,7 +354,7 @@ void letFly(Random& random, double far, std::size_t count, MovingMesh& mesh) {
 
 TEST(FCL_DEFORMABLE_QUERY, flyingVerticesAgainstBruteForce) {
   std::size_t contacts = 0;
-  for (std::uint64_t seed = 4000; seed < 4060; ++seed) {
+  for (std::uint64_t seed = 4000; seed < 4000 + test::rounds(60U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const double far = std::pow(10, random.uniform(1, 40));
@@ -372,7 +373,7 @@ TEST(FCL_DEFORMABLE_QUERY, flyingVerticesAgainstBruteForce) {
     contacts += expectRightAnswers(body_a, body_a) + expectRightAnswers(body_a, body_b);
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(contacts, 500U);
+  EXPECT_GT(contacts, test::rounds(500U));
 }
 
 // If a simulation loses a vertex, a query takes only little longer: the boxes of all
@@ -474,7 +475,7 @@ TEST(FCL_DEFORMABLE_QUERY, filterDecidesJustAboveASlope) {
 
 TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
   std::size_t contacts = 0;
-  for (std::uint64_t seed = 2000; seed < 2300; ++seed) {
+  for (std::uint64_t seed = 2000; seed < 2000 + test::rounds(300U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const MovingMesh a = smallSoup(random, 20, 0.3);
@@ -491,7 +492,7 @@ TEST(FCL_DEFORMABLE_QUERY, pairAgainstBruteForce) {
         expectRightAnswers({pa.instance(), a.triangles}, {pb.instance(), b.triangles});
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(contacts, 1000U);
+  EXPECT_GT(contacts, test::rounds(1000U));
 }
 
 /// Tips of triangles that move to faces that come towards them, both as fast as their
@@ -553,7 +554,7 @@ void expectFirstOfAll(const Body& a, const Body& b, std::size_t count,
 TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
   constexpr std::size_t kCount = 600;  // several blocks
   std::uint64_t left_out = 0;
-  for (std::uint64_t seed = 6000; seed < 6060; ++seed) {
+  for (std::uint64_t seed = 6000; seed < 6000 + test::rounds(60U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     const auto randomWay = [&random] {
@@ -596,7 +597,7 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfWhatRushesIn) {
     expectFirstOfAll(body_d, body_c, kCount, left_out);
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(left_out, 10000U);
+  EXPECT_GT(left_out, test::rounds(10000U));
 }
 
 // A query of a large mesh begins with a few steps in all parts of it.
@@ -823,7 +824,7 @@ void addTriangle(const Vector3<double> (&corners)[3], const Vector3<double>& mot
 // wherever it is, even if nothing else is left.
 TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
   int scenes = 0;
-  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+  for (std::uint64_t seed = 1; seed <= test::rounds(30U); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     MovingMesh mesh = withLayers(movingTriangles(random, 400, 0.02, 1e-3));
@@ -846,7 +847,7 @@ TEST(FCL_DEFORMABLE_QUERY, findsTheOnlyCrossingBehindAnEarlyContact) {
     EXPECT_TRUE(isEarly(answer.contacts[0].toc_hi));
     EXPECT_GT(answer.counts.plane_culled, 1000U);
   }
-  EXPECT_GE(scenes, 10);
+  EXPECT_GE(scenes, test::rounds(10));
 }
 
 // A prepared mesh owns each feature once; a rigid one meets it repeatedly. In both there

@@ -20,6 +20,7 @@
 #include "feature_pair_generators.h"
 #include "query_generators.h"
 #include "rational_geometry.h"
+#include "sanitizer.h"
 
 namespace fcl {
 namespace detail {
@@ -464,7 +465,7 @@ TEST(FCL_ELEMENTARY_TEST, filterSeesTheSignsThatThereAre) {
   for (const test::QueryFamily& family : test::queryFamilies()) {
     if (std::string(family.name) == "extreme-exponents") continue;
     Random random(kSeed);
-    for (int i = 0; i < 500; ++i) {
+    for (int i = 0; i < test::rounds(500); ++i) {
       const MovingPair pair = family.generate(random);
       const bool is_culled = !mayBecomeCoplanar(pair.kind, pair.points(), 0, 1),
                  have_one_sign = haveOneSign(pair, 0, 1);
@@ -479,7 +480,7 @@ TEST(FCL_ELEMENTARY_TEST, filterSeesTheSignsThatThereAre) {
       seen += is_culled;
     }
   }
-  EXPECT_GT(all, 1000);
+  EXPECT_GT(all, test::rounds(1000));
   EXPECT_GT(seen, all * 95 / 100);  // the rest have different signs once rounded
 }
 

@@ -23,6 +23,7 @@
 #include "mesh/feature_pairs.h"
 #include "moving_mesh.h"
 #include "query/deformable_query.h"
+#include "sanitizer.h"
 #include "traverse.h"
 
 namespace fcl {
@@ -546,7 +547,7 @@ TEST(FCL_EMBEDDED_REGIONS, haveNoContact) {
   constexpr std::uint64_t kSeed = 106;
   Random random(kSeed);
   std::size_t large = 0, whole = 0, with_contacts = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < test::rounds(3000); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh = randomSheet(random);
     spoil(mesh, random);
@@ -561,9 +562,9 @@ TEST(FCL_EMBEDDED_REGIONS, haveNoContact) {
           !test::bruteForceSelfContacts({mesh.t0, mesh.t1, mesh.triangles}).empty();
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(large, 300U);
-  EXPECT_GT(whole, 200U);
-  EXPECT_GT(with_contacts, 100U);
+  EXPECT_GT(large, test::rounds(300U));
+  EXPECT_GT(whole, test::rounds(200U));
+  EXPECT_GT(with_contacts, test::rounds(100U));
 }
 
 std::vector<std::uint64_t> bitsOf(const QueryAnswer& answer) {

@@ -18,6 +18,7 @@
 #include "feature_pair_generators.h"
 #include "query_generators.h"
 #include "rational_geometry.h"
+#include "sanitizer.h"
 
 namespace fcl {
 namespace detail {
@@ -60,7 +61,7 @@ TEST(FCL_EXACT_TEST, gridPairs) {
   constexpr std::uint64_t kSeed = 21;
   Random random(kSeed);
   int contacts = 0, instants = 0;
-  for (int i = 0; i < 40000; ++i) {
+  for (int i = 0; i < test::rounds(40000); ++i) {
     const MovingPair pair = test::gridPair(random, 1 + i % 3);
     const ElementaryResult truth = exact(pair);
     ASSERT_NO_FATAL_FAILURE(expectDefinition(pair, truth)) << "seed " << kSeed;
@@ -72,8 +73,8 @@ TEST(FCL_EXACT_TEST, gridPairs) {
     ++contacts;
     instants += truth.toc_lo == truth.toc_hi;
   }
-  EXPECT_GT(contacts, 4000);
-  EXPECT_GT(instants, 1000);
+  EXPECT_GT(contacts, test::rounds(4000));
+  EXPECT_GT(instants, test::rounds(1000));
 }
 
 // Features that touch by construction at a time that is not a double: k / 7.
@@ -384,7 +385,7 @@ TEST(FCL_INSTANT_TEST, touchingIsExact) {
   constexpr std::uint64_t kSeed = 26;
   Random random(kSeed);
   int touch = 0;
-  for (int i = 0; i < 12000; ++i) {
+  for (int i = 0; i < test::rounds(12000); ++i) {
     const Tetrahedron t = degeneratePoints(random, i);
     const auto& p = t.p;
     const std::array<ExactPoint<Rational>, 4> e{t.exactPoint(0), t.exactPoint(1),
@@ -404,7 +405,7 @@ TEST(FCL_INSTANT_TEST, touchingIsExact) {
           << "seed " << kSeed << ", " << i;
     }
   }
-  EXPECT_GT(touch, 900);
+  EXPECT_GT(touch, test::rounds(900));
 }
 
 // The normal overflows, but the volume is an ordinary number.

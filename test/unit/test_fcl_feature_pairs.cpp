@@ -19,6 +19,7 @@
 #include "mesh/mesh_topology.h"
 #include "mesh_generators.h"
 #include "owned_features.h"
+#include "sanitizer.h"
 #include "tree/moving_kdop_tree.h"
 
 namespace fcl {
@@ -342,7 +343,7 @@ TEST(FCL_FEATURE_PAIRS, ownersByDefinition) {
 
 // All triangles around one vertex or one edge, and one face repeatedly.
 TEST(FCL_FEATURE_PAIRS, ownersOfCrowdedFeatures) {
-  constexpr std::size_t kCount = 50000;
+  constexpr std::size_t kCount = test::rounds(std::size_t{50000});
   std::vector<Triangle> wheel, book, same;
   for (std::size_t i = 2; i < kCount; ++i) {
     wheel.emplace_back(0, i - 1, i);

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_TEST_SUPPORT_SANITIZER_H
+#define FCL_TEST_SUPPORT_SANITIZER_H
+
+namespace fcl {
+namespace test {
+
+/// @brief Whether the address sanitizer is on. gcc and clang tell it in different ways;
+/// Eigen defines __has_feature for gcc, as 0.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kHasAddressSanitizer = true;
+#elif defined(__has_feature)
+constexpr bool kHasAddressSanitizer = __has_feature(address_sanitizer);
+#else
+constexpr bool kHasAddressSanitizer = false;
+#endif
+
+/// @brief `count` random cases, or an eighth of them under the address sanitizer. It
+/// looks for errors in memory, which need fewer cases than wrong answers, and each takes
+/// 10 to 20 times as long.
+template <typename Count>
+constexpr Count rounds(Count count) {
+  return kHasAddressSanitizer ? (count + 7) / 8 : count;
+}
+
+}  // namespace test
+}  // namespace fcl
+
+#endif
