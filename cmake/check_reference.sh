@@ -11,8 +11,8 @@ tags=${1:-build/doc/fcl_ccd.tag}
 # Lines "count name": how often a function is declared.
 declared=$(
   {
-    grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>|OctreeCell<S>) [a-z][A-Za-z]+\(' \
-      include/fcl/narrowphase/*.h
+    grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>|OctreeCell<S>|std::vector<int>) [a-z][A-Za-z]+\(' \
+      include/fcl/narrowphase/*.h include/fcl/geometry/bvh/weld_vertices.h
     sed -n '/DeformableBVHModel .*: public/,/^ private:/p' \
       include/fcl/geometry/bvh/deformable_bvh_model.h |
       grep -oE '^  (int|bool|std::size_t|void) [a-z][A-Za-z]+\('

@@ -18,6 +18,7 @@
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
+#include "mesh/triangle_soup.h"
 #include "motion/motion_contacts.h"
 #include "motion/shape_contacts.h"
 #include "query/deformable_query.h"
@@ -88,6 +89,13 @@ RequestFilter filterOf(const QuerySettings& settings, const CollisionGeometry<S>
   return RequestFilter(settings, numTrianglesOf(o1), numTrianglesOf(o2), is_self);
 }
 
+bool isTriangleSoup(const deformable::MeshInstance& mesh, std::size_t num_triangles) {
+  const std::size_t num_vertices = mesh.frames.size();
+  return mesh.tree
+             ? deformable::isTriangleSoup(mesh.tree->triangles(), num_vertices)
+             : deformable::isTriangleSoup(mesh.triangles, num_triangles, num_vertices);
+}
+
 /// Runs a query, unless its filter rejects all pairs.
 template <typename Query>
 QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
@@ -124,6 +132,7 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
                                   });
   }
   result.contacts_cut = answer.cut;
+  result.is_triangle_soup = false;
   result.initially_crossing = answer.hasCrossing();
   result.crossing =
       answer.hasCrossing() ? convert(answer.crossings.front()) : ContinuousContact<S>();
@@ -356,8 +365,11 @@ void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
     options.filter = filter.prepare(mesh.instance(), mesh.instance());
     const QueryAnswer answer =
         filteredAnswerOf(filter, [&] { return querySelf(mesh.instance(), options); });
-    if (contacts)
+    if (contacts) {
+      const bool is_soup = isTriangleSoup(mesh.instance(), numTrianglesOf(*o));
       fillContacts(answer, QueriedMeshes<S>{*o, *o, mesh, mesh}, settings, *contacts);
+      contacts->is_triangle_soup = is_soup;
+    }
     outcome = outcomeOf<S>(answer);
   });
 }

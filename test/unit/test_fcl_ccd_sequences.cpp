@@ -22,7 +22,6 @@
 #include "frame_list.h"
 #include "mesh_io.h"
 #include "triangulate.h"
-#include "weld.h"
 
 namespace {
 
@@ -399,34 +398,6 @@ TEST_F(CcdSequence, SoupIsNoticedAndWelded) {
     EXPECT_EQ(rowsOf("0.stl 1.stl " + std::string(weld),
                      "fcl-ccd: 0.stl: 14 of 27 vertices joined\n"),
               1u);
-}
-
-TEST(CcdWeld, JoinsWhatCoincidesInAllFrames) {
-  const Vertices first{{1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, -0.0, 0}, {1, 0, 0}};
-  fcl_ccd::Weld weld(first, 0);
-  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 0, 1, 0}));
-  EXPECT_EQ(weld.numJoined(), 3u);
-  weld.refine({{1, 0, 0}, {5, 0, 0}, {2, 0, 0}, {5, 0, 0}, {2, 0, 0}});
-  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 2, 1, 2}));
-  weld.refine(first);
-  EXPECT_EQ(weld.map(), (std::vector<int>{0, 1, 2, 1, 2}));
-  Triangles triangles{{4, 3, 2}};
-  fcl_ccd::joinVertices(weld.map(), triangles);
-  EXPECT_EQ(triangles, (Triangles{{2, 1, 2}}));
-}
-
-TEST(CcdWeld, JoinsToOneThatIsNear) {
-  // In a chain of steps of 0.75 the third is not near the first.
-  const Vertices chain{
-      {0, 0, 0}, {0.75, 0, 0}, {1.5, 0, 0}, {1.5, 1, -1}, {1.5, 1.25, 0}};
-  EXPECT_EQ(fcl_ccd::Weld(chain, 1).map(), (std::vector<int>{0, 0, 2, 2, 4}));
-  // The grid must not change the answer: neighbouring cells, far from the origin and near
-  // it.
-  for (const double at : {-1e9, -1.0, 0.0, 1.0, 1e9}) {
-    const Vertices pair{{at, at, at}, {at + 0.5, at - 0.5, at}};
-    EXPECT_EQ(fcl_ccd::Weld(pair, 0.5).map(), (std::vector<int>{0, 0})) << at;
-    EXPECT_EQ(fcl_ccd::Weld(pair, 0.25).map(), (std::vector<int>{0, 1})) << at;
-  }
 }
 
 double areaXY(const Vertices& vertices, const std::array<int, 3>& t) {

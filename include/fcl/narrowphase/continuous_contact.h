@@ -216,6 +216,13 @@ struct ContinuousContacts {
   /// @brief Whether num_max_contacts dropped contacts.
   bool contacts_cut{false};
 
+  /// @brief Only in a self-collision: whether no two triangles of the mesh have a common
+  /// vertex (triangle soup), as in STL files and exports with split vertices. Triangles
+  /// that lie side by side touch then, and are reported as contacts. weldVertices()
+  /// (geometry/bvh/weld_vertices.h) tells which vertices coincide. False for a mesh of
+  /// one triangle.
+  bool is_triangle_soup{false};
+
   /// @brief Whether an edge passes through a triangle at t = 0. The decision is exact.
   /// Such surfaces may have no VF or EE contact at all. With ContinuousQuery::kAny it is
   /// not decided if a contact is found first.

@@ -2,6 +2,7 @@
 #include "run_inputs.h"
 
 #include "in_order.h"
+#include "mesh/vertex_weld.h"
 #include "stop_signal.h"
 #include "weld.h"
 
@@ -34,13 +35,14 @@ void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
   requireNoSignal();
 }
 
-/// Reads every frame. This also checks it.
+/// Reads every frame, which also checks it; with a distance perhaps several times.
 void weldFrames(MeshSequence& meshes, double eps, std::vector<std::string>& notes) {
-  Weld weld(meshes.firstVertices(), eps);
-  for (std::size_t frame = 1; frame < meshes.size(); ++frame) {
+  fcl::detail::deformable::VertexWeld weld(meshes.firstVertices().size(), eps);
+  weld.refineByAll(meshes.size(), [&](std::size_t frame) {
     requireNoSignal();
-    weld.refine(meshes.read(frame));
-  }
+    if (frame == 0) return weld.refine(meshes.firstVertices().data()->data());
+    return weld.refine(meshes.read(frame).data()->data());
+  });
   meshes.join(weld.map());
   notes.push_back(meshes.path(0) + ": " + withCommas(weld.numJoined()) + " of " +
                   withCommas(weld.map().size()) + " vertices joined");
