@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <random>
 #include <regex>
 #include <set>
 #include <string>
@@ -171,6 +172,30 @@ TEST_F(CcdSequence, ResumesEitherFileAlone) {
   EXPECT_EQ(takeOutputs(), std::make_pair(contacts, steps));
 }
 
+// The rows of a step tell whether all of them were written.
+TEST_F(CcdSequence, ResumeCountsContactsOfEveryKind) {
+  writeFrames(12);
+  const std::string command = "run f --thickness 2.5";
+  const auto whole = outputsOf(command);
+  EXPECT_NE(whole.first.find("\n0,ve,"), std::string::npos) << whole.first;
+  writeText(path("c.csv"), whole.first);
+  std::string steps;
+  const std::vector<std::string> lines = linesOf(whole.second);
+  for (std::size_t i = 0; i < 1 + 6; ++i) steps += lines[i] + '\n';
+  writeText(path("s.jsonl"), steps);
+  const Outcome outcome = run(command + " --resume" + kOutputs);
+  EXPECT_EQ(linesOf(outcome.out)[1].substr(0, 5), "   6 ") << outcome.out;
+  EXPECT_EQ(takeOutputs(), whole);
+}
+
+// A frame that comes later may part vertices that were joined in the steps before.
+TEST_F(CcdSequence, ResumeOfWeldedFramesNeedsAllOfThem) {
+  writeFrames(6);
+  ASSERT_EQ(run("run f --weld --end 3" + kOutputs).exit_code, 0);
+  expectFailure("run f --weld --resume" + kOutputs, "s.jsonl: cannot go on");
+  EXPECT_EQ(run("run f --weld --end 3 --resume" + kOutputs).exit_code, 0);
+}
+
 // The JSON report has the steps of the last run, and a summary of all.
 TEST_F(CcdSequence, JsonAfterResumeSummarisesAllSteps) {
   writeFrames(12);
@@ -262,22 +287,38 @@ pid_t start(const fs::path& folder, std::vector<std::string> arguments) {
   _exit(99);
 }
 
+/// @brief Starts a run, or continues it, and kills it when the list of steps has some
+/// lines and then some time is over.
+/// @param repeat  each step is done so many times
+/// @return the exit status
+int killRun(const fs::path& folder, int signal_number, const char* repeat,
+            std::size_t num_lines, std::chrono::microseconds delay) {
+  const pid_t child =
+      start(folder,
+            {"fcl-ccd", "run", "f", "--repeat", repeat, "--contacts", "c.csv", "--steps",
+             "s.jsonl", "--columns", "triangles,position,normal", "--json", "r.json"});
+  while (linesOf(readText(folder / "s.jsonl")).size() < num_lines) {
+    siginfo_t ended{};
+    EXPECT_EQ(
+        waitid(P_PID, static_cast<id_t>(child), &ended, WEXITED | WNOHANG | WNOWAIT), 0);
+    if (ended.si_pid == child) break;
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  }
+  std::this_thread::sleep_for(delay);
+  kill(child, signal_number);
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child) << readText(folder / "err.txt");
+  return status;
+}
+
 TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
   writeFrames(60);
   const auto whole = outputsOf("run f");
   for (const int signal_number : {SIGINT, SIGTERM, SIGKILL}) {
     SCOPED_TRACE(signal_number);
     // The whole run would take seconds.
-    const pid_t child =
-        start(path(""), {"fcl-ccd", "run", "f", "--repeat", "5000", "--contacts", "c.csv",
-                         "--steps", "s.jsonl", "--columns", "triangles,position,normal",
-                         "--json", "r.json"});
-    while (linesOf(readText(path("s.jsonl"))).size() < 3 &&
-           waitpid(child, nullptr, WNOHANG) == 0)
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    kill(child, signal_number);
-    int status = 0;
-    ASSERT_EQ(waitpid(child, &status, 0), child) << readText(path("err.txt"));
+    const int status =
+        killRun(path(""), signal_number, "5000", 3, std::chrono::microseconds(0));
     std::set<std::string> left{"c.csv", "err.txt", "f", "out.txt", "s.jsonl"};
     if (signal_number == SIGKILL) {
       EXPECT_TRUE(WIFSIGNALED(status));
@@ -292,6 +333,29 @@ TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
     for (const char* name : {"r.json", "out.txt", "err.txt"}) fs::remove(path(name));
     EXPECT_EQ(outputsOf("run f --resume"), whole);
   }
+}
+
+// The moments are random: before the first step, between two, in the middle of one. Each
+// run is killed four times, and goes on each time from what was left.
+TEST_F(CcdSequence, RunsThatAreKilledAtTwentyMomentsAreResumed) {
+  writeFrames(60);
+  const auto whole = outputsOf("run f");
+  std::mt19937 random(20);
+  std::size_t num_killed = 0;
+  for (int run = 0; run < 5; ++run) {
+    for (int i = 0; i < 4; ++i) {
+      const std::size_t num_lines = 15 * static_cast<std::size_t>(i) + random() % 15;
+      const std::chrono::microseconds delay(random() % 3000);
+      SCOPED_TRACE(std::to_string(num_lines) + " lines, then " +
+                   std::to_string(delay.count()) + " us");
+      if (WIFSIGNALED(killRun(path(""), SIGKILL, "30", num_lines, delay))) ++num_killed;
+      for (const char* name : {"r.json", "out.txt", "err.txt"}) fs::remove(path(name));
+      for (const std::string& name : files())
+        EXPECT_TRUE(name == "c.csv" || name == "f" || name == "s.jsonl") << name;
+    }
+    EXPECT_EQ(outputsOf("run f --resume"), whole) << run;
+  }
+  EXPECT_GT(num_killed, 10u);
 }
 
 /// @brief Every triangle with three vertices of its own.

@@ -195,7 +195,8 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
     } else if (!is_there && name.find_first_of("*?[") != std::string::npos) {
       found = select(word, matchesOf(word), range);
     } else {
-      // The word is a file. If it does not exist, opening it fails with a message.
+      if (!is_there)
+        throw std::runtime_error(word + ": cannot open: there is no such file or folder");
       frames.push_back(word);
       continue;
     }

@@ -66,22 +66,23 @@ Output:
   one contact, not always the earliest.
   --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi. kind is vf (i0 is
   the vertex, i1 to i3 the face) or ee (i0 and i1 are edge a, i2 and i3 edge b); ve has no
-  i3, vv no i2 and i3. Ids count from 0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in
-  fractions of the step. --columns adds t0,t1 (the triangles of both features), x,y,z (the
-  point where they touch) and nx,ny,nz (unit normal, from A to B).
+  i3, vv no i2 and i3. Ids count from 0; ids of B begin with b. The first time of contact
+  lies in [toc_lo, toc_hi], in fractions of the step. --columns adds t0,t1 (the triangles of
+  both features), x,y,z (the point where they touch) and nx,ny,nz (unit normal, A to B).
   --steps: JSON lines: the options, one object for each step, and a summary at the end.
   --json: JSON with all steps and their times in milliseconds. build: making the tree, in
   the first step of each job. total = update + traverse + test.
   --paint: PLY of the last frame. Vertices of vf, ve and vv contacts are red, those of ee
-  contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come after
-  A's.
+  contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come
+  after A's.
   --contacts and --steps grow with each step. --json and --paint are written at the end.
 
 Stopping:
   After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. A second signal
   ends the program at once.
   --resume continues after the last whole step in the files of --contacts and --steps. At
-  the end the files are as if the run had never stopped.
+  the end the files are as if the run had never stopped. There may be more frames than
+  before, but not with --weld.
   Exit code: 0 done; 2 refused, no file written or changed; 3 a later frame cannot be read
   or used; 4 an output cannot be written (disk full); 5 a rank of mpirun died; 128 + N
   stopped by signal N. After 3, 4, 5 and 128 + N the files have all steps that were done.

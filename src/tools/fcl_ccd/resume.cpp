@@ -145,8 +145,7 @@ ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
     point.step = steps.size();
   } else if (contacts.end > 0) {
     while (point.step < steps.size() &&
-           contacts.rowsOf(point.step) ==
-               steps[point.step].summary.vf + steps[point.step].summary.ee)
+           contacts.rowsOf(point.step) == steps[point.step].summary.contacts())
       ++point.step;
   }
   point.step = std::min(point.step, latest);

@@ -49,7 +49,7 @@ Parallelism parallelismOf(const RunOptions& options, bool is_alone,
 }
 
 /// @brief The first line of the list of steps: the options on which answers depend.
-std::string stepsHead(const RunOptions& options) {
+std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
   constexpr const char* kQueries[] = {"all", "first", "any"};
   Json head = {{"fcl_ccd", FCL_CCD_VERSION},
                {"query", kQueries[static_cast<int>(options.settings.query)]},
@@ -60,6 +60,8 @@ std::string stepsHead(const RunOptions& options) {
     head["thickness"] = options.settings.min_distance;
     head["ignore_initially_closer"] = options.settings.ignore_initially_closer;
   }
+  // A later frame can part vertices that were joined in the steps before.
+  if (options.weld) head["frames"] = num_frames;
   return head.dump() + '\n';
 }
 
@@ -185,7 +187,7 @@ class Run {
       progress_.clear();
       outputs_.add(record);
       num_done_ = step + 1;
-      progress_.step(num_done_, outputs_.summary().vf + outputs_.summary().ee);
+      progress_.step(num_done_, outputs_.summary().contacts());
     });
   }
 
@@ -267,7 +269,7 @@ void prepare(const RunOptions& options, bool is_alone, Preparation& run) {
   reserveOutputs(run.paths, options);
   const FramePaths& paths = run.paths;
   run.growing = {options.contacts_path, contactsHead(options.columns),
-                 options.steps_path,    stepsHead(options),
+                 options.steps_path,    stepsHead(options, paths.a.size()),
                  paths.numSteps(),      [&](std::size_t i) { return paths.filesOf(i); }};
   const std::size_t latest = paths.numSteps() - (options.paint_path.empty() ? 0 : 1);
   if (options.resume) run.resume_point = findResumePoint(run.growing, latest);

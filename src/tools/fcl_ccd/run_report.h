@@ -46,6 +46,9 @@ struct RunSummary {
   std::size_t slowest_step{0};
   double slowest_ms{-1};  ///< of steps that have a time; negative: none has
 
+  /// @brief The contacts of all kinds: the rows of the contact list.
+  std::size_t contacts() const { return vf + ee + ve + vv; }
+
   /// @brief Adds a step that is after all others.
   void add(const RunSummary& step);
 };
