@@ -101,7 +101,7 @@ TEST_F(CcdRanks, GiveTheBytesOfOneProcess) {
   EXPECT_EQ(linesOf(one.steps).size(), 1u + 11u + 1u);
   EXPECT_EQ(linesOf(one.table).size(), 1u + 11u + 2u) << one.table;
   EXPECT_GT(one.painted.size(), 100'000u);
-  for (const int count : {2, 3})
+  for (const int count : {2, 3, 8})
     EXPECT_TRUE(resultsOf(onRanks(count, "run f")) == one) << count;
   EXPECT_TRUE(resultsOf(onRanks(4, "run f --jobs 2")) == one);
   // Ranks without a step.
