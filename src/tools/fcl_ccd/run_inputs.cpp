@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "run_inputs.h"
 
+#include <algorithm>
+
 #include "in_order.h"
 #include "mesh/vertex_weld.h"
 #include "stop_signal.h"
@@ -25,10 +27,14 @@ std::string withCommas(std::size_t number) {
 }
 
 void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
+  // Many frames at once: a check takes less time than the change to another thread.
+  constexpr std::size_t kBlock = 32;
   inOrder<bool>(
-      1, meshes.size(), num_workers,
-      [&](std::size_t frame, std::size_t) {
-        meshes.check(frame);
+      0, (meshes.size() + kBlock - 1) / kBlock, num_workers,
+      [&](std::size_t block, std::size_t) {
+        const std::size_t end = std::min(meshes.size(), (block + 1) * kBlock);
+        for (std::size_t frame = block * kBlock; frame < end && goOn(); ++frame)
+          if (frame > 0) meshes.check(frame);
         return true;
       },
       [](std::size_t, bool) {}, goOn);
