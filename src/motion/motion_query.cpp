@@ -149,11 +149,6 @@ class MotionTraversal {
     return box;
   }
 
-  /// The radius of a part, with the margin around the core of a shape.
-  double sizeOf(const MotionBody& body, const BodyPart& part, double t) const {
-    return boxAt(body, part, t).radius + (body.shape() ? body.shape()->radius() : 0);
-  }
-
   static void interpolate(const MotionBox& end, double t, MotionBox& box) {
     for (int k = 0; k < 3; ++k) {
       box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
@@ -162,34 +157,52 @@ class MotionTraversal {
     box.radius = (1 - t) * box.radius + t * end.radius;
   }
 
+  /// A part of a body during a span.
+  struct PartSpan {
+    /// At both ends.
+    MotionBox box[2];
+    /// The largest deviation of its points from straight lines.
+    double deviation;
+  };
+
   static double accelerationOf(const AccelerationBound& bound, const MotionBox& begin,
                                const MotionBox& end) {
-    const auto center = [](const MotionBox& box) -> Vec {
-      return {box.center[0], box.center[1], box.center[2]};
-    };
     if (bound.isZero() && bound.per_displacement == 0) return 0;
-    return bound.between(center(begin), center(end), std::max(begin.radius, end.radius)) +
+    return bound.between(vecOf(begin.center), vecOf(end.center),
+                         std::max(begin.radius, end.radius)) +
            bound.per_displacement * begin.displacement;
   }
 
-  /// The largest deviation of points of a part from straight lines during a span.
-  double deviation(int k, const BodyPart& part, double t0, double t1) const {
+  PartSpan partSpan(int k, const BodyPart& part, double t0, double t1) const {
     const MotionBody& body = side_[k].body;
     const double dt = t1 - t0;
-    const MotionBox begin = boxAt(body, part, t0), end = boxAt(body, part, t1);
-    return 0.125 * dt * dt * accelerationOf(body.path().acceleration(t0, t1), begin, end);
+    PartSpan span;
+    span.box[0] = boxAt(body, part, t0);
+    span.box[1] = body.isRigid() ? span.box[0] : boxAt(body, part, t1);
+    span.deviation =
+        0.125 * dt * dt *
+        accelerationOf(body.path().acceleration(t0, t1), span.box[0], span.box[1]);
+    return span;
+  }
+
+  /// The radius of a part, with the margin around the core of a shape.
+  double sizeOf(int k, const PartSpan& span) const {
+    const MotionBody& body = side_[k].body;
+    return span.box[0].radius + (body.shape() ? body.shape()->radius() : 0);
   }
 
   /// Tests the pair in its span, and adds the parts that may overlap.
   void testAlone(const Work& work) {
+    const MotionBody& body = side_[1].body;
     MotionNode node;
     node.count = 1;
-    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
-      node.part[lane] = work.b;
-      node.box[0].set(lane, side_[1].body.box(work.b, 0));
-      if (!side_[1].body.isRigid()) node.box[1].set(lane, side_[1].body.box(work.b, 1));
+    for (int frame = 0; frame < (body.isRigid() ? 1 : 2); ++frame) {
+      const MotionBox box = body.box(work.b, frame);
+      for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
+        node.box[frame].set(lane, box);
     }
-    test(work, 1, node);
+    std::fill(node.part, node.part + MotionBoxes::kWidth, work.b);
+    test(work, 1, node, partSpan(0, work.a, work.t0, work.t1));
   }
 
   /// The node's boxes at a time.
@@ -204,34 +217,47 @@ class MotionTraversal {
     return &scratch;
   }
 
+  /// The acceleration of a box of a node. Both ends are the same if the body is rigid.
+  static double laneAcceleration(const AccelerationBound& bound, const MotionBoxes& begin,
+                                 const MotionBoxes& end, int lane) {
+    if (&begin != &end || bound.motion)
+      return accelerationOf(bound, begin.get(lane), end.get(lane));
+    return bound.of({begin.center[0][lane], begin.center[1][lane], begin.center[2][lane]},
+                    begin.radius[lane]);
+  }
+
+  /// The margins of a node's boxes: how far the points of both bodies deviate from
+  /// straight lines, with padding and rounding.
+  /// @param own  the part of this of the other side
+  void setMargins(const Work& work, const MotionBody& body, const MotionBoxes& begin,
+                  const MotionBoxes& end, int count, double own,
+                  double (&margin)[MotionBoxes::kWidth]) const {
+    const double dt = work.t1 - work.t0, share = 0.125 * dt * dt;
+    const AccelerationBound bound = body.path().acceleration(work.t0, work.t1);
+    const bool is_straight = bound.isZero() && bound.per_displacement == 0;
+    for (int lane = 0; lane < count; ++lane) {
+      const double most = is_straight ? 0 : laneAcceleration(bound, begin, end, lane);
+      margin[lane] = direction_bound_ * (own + share * most + begin.pad[lane]);
+    }
+  }
+
   /// Tests the children of one side's part against the other side's part.
   /// @param opened  the side whose children they are
-  void test(const Work& work, int opened, const MotionNode& node) {
+  /// @param other  the part of the other side
+  void test(const Work& work, int opened, const MotionNode& node, const PartSpan& other) {
     // A node of an octree may be occupied, and none of its children.
     if (node.count == 0) return;
     Side& one = side_[1 - opened];
     Side& many = side_[opened];
-    const BodyPart part = opened == 1 ? work.a : work.b;
     const double dt = work.t1 - work.t0;
-    const MotionBox box[2] = {boxAt(one.body, part, work.t0),
-                              boxAt(one.body, part, work.t1)};
     MotionBoxes scratch[2];
     const MotionBoxes* boxes[2] = {boxesAt(many.body, node, work.t0, scratch[0]),
                                    boxesAt(many.body, node, work.t1, scratch[1])};
-    const double share = 0.125 * dt * dt;
-    const double own =
-        share * accelerationOf(one.body.path().acceleration(work.t0, work.t1), box[0],
-                               box[1]) +
-        box[0].pad + box_margin_;
-    const AccelerationBound bound = many.body.path().acceleration(work.t0, work.t1);
     double margin[MotionBoxes::kWidth] = {};
-    for (int lane = 0; lane < node.count; ++lane) {
-      const MotionBox begin = boxes[0]->get(lane), end = boxes[1]->get(lane);
-      margin[lane] = direction_bound_ *
-                     (own + share * accelerationOf(bound, begin, end) + begin.pad);
-    }
+    setMargins(work, many.body, *boxes[0], *boxes[1], node.count,
+               other.deviation + other.box[0].pad + box_margin_, margin);
     MeetingWindows windows;
-    motionKernels().meetingWindows(box, one.spanPoses(work.t0, work.t1), boxes,
+    motionKernels().meetingWindows(other.box, one.spanPoses(work.t0, work.t1), boxes,
                                    many.spanPoses(work.t0, work.t1), margin, node.count,
                                    windows);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
@@ -309,17 +335,18 @@ class MotionTraversal {
     // A part may be a point.
     constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
-    const double radius[2] = {sizeOf(side_[0].body, work.a, work.t0),
-                              sizeOf(side_[1].body, work.b, work.t0)};
+    const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
+                              partSpan(1, work.b, work.t0, work.t1)};
+    const double radius[2] = {sizeOf(0, span[0]), sizeOf(1, span[1])};
     const int opened =
         work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
-    const double dt = work.t1 - work.t0;
-    if (dt > kShortest &&
-        deviation(0, work.a, work.t0, work.t1) + deviation(1, work.b, work.t0, work.t1) >
+    if (work.t1 - work.t0 > kShortest &&
+        span[0].deviation + span[1].deviation >
             kMostDeviation *
                 std::max(std::min(radius[0], radius[1]), kLeastShare * radius[opened]))
       return halve(work);
-    test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a));
+    test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a),
+         span[1 - opened]);
   }
 
   void halve(const Work& work) {
