@@ -8,8 +8,10 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "distance_check.h"
+#include "motion_references.h"
 #include "query_check.h"
 #include "query_csv.h"
 #include "scene_check.h"
@@ -74,6 +76,39 @@ std::size_t checkDistances(std::uint64_t first, std::uint64_t count) {
   return complaints.count();
 }
 
+/// Cases of bodies that turn.
+template <typename Check>
+std::size_t checkMotions(std::uint64_t first, std::uint64_t count, Check&& check) {
+  fcl::test::MotionTally tally;
+  Complaints complaints;
+  for (std::uint64_t number = first; number < first + count; ++number) {
+    const std::string text = check(number, tally);
+    if (!text.empty()) complaints.add("case " + std::to_string(number), text);
+  }
+  std::printf("%zu cases (%zu grazes), %zu contacts (%zu cross at t = 0)", tally.cases,
+              tally.grazes, tally.contacts, tally.crossings);
+  if (tally.sampled + tally.advanced > 0)
+    std::printf(", by the reference %zu, by advancement %zu", tally.sampled,
+                tally.advanced);
+  constexpr const char* kKinds[] = {"interpolation", "screw", "spline"};
+  for (int kind = 0; kind < 3; ++kind)
+    if (tally.worst_bound[kind][0] > 0)
+      std::printf(", %s: %.4f of the bound, deforming %.4f", kKinds[kind],
+                  tally.worst_bound[kind][0], tally.worst_bound[kind][1]);
+  std::printf(": %zu disagreements\n", complaints.count());
+  if (tally.cases == 0) throw std::runtime_error("no cases to check");
+  return complaints.count();
+}
+
+std::size_t checkMeshes(std::uint64_t first, std::uint64_t count) {
+  constexpr int kSamples = 10000;
+  const std::vector<fcl::test::Body> bodies = fcl::test::makeBodies();
+  return checkMotions(
+      first, count, [&](std::uint64_t number, fcl::test::MotionTally& tally) {
+        return fcl::test::meshDisagreement(bodies, number, kSamples, tally);
+      });
+}
+
 std::size_t checkFiles(const std::string& data) {
   CheckTally tally;
   Complaints complaints;
@@ -113,10 +148,11 @@ int usage(const char* program) {
   std::fprintf(stderr,
                "usage: %s generated FIRST COUNT\n"
                "       %s distances FIRST COUNT\n"
+               "       %s spans|turns|meshes FIRST COUNT\n"
                "       %s queries DATA_FOLDER\n"
                "       %s scene FOLDER PREVIOUS.ply CURRENT.ply\n"
                "Returns 1 if the library and the oracle disagree.\n",
-               program, program, program, program);
+               program, program, program, program, program);
   return 2;
 }
 
@@ -129,6 +165,14 @@ int main(int argc, char** argv) {
       return checkGenerated(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
     if (what == "distances" && argc == 4)
       return checkDistances(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
+    if (what == "spans" && argc == 4)
+      return checkMotions(std::stoull(argv[2]), std::stoull(argv[3]),
+                          fcl::test::spanDisagreement) != 0;
+    if (what == "turns" && argc == 4)
+      return checkMotions(std::stoull(argv[2]), std::stoull(argv[3]),
+                          fcl::test::turnDisagreement) != 0;
+    if (what == "meshes" && argc == 4)
+      return checkMeshes(std::stoull(argv[2]), std::stoull(argv[3])) != 0;
     if (what == "queries" && argc == 3) return checkFiles(argv[2]) != 0;
     if (what == "scene" && argc == 5) return checkScene(argv[2], argv[3], argv[4]) != 0;
   } catch (const std::exception& error) {

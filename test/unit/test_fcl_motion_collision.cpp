@@ -155,6 +155,40 @@ TEST_F(MotionCollision, MotionObjects) {
   }
 }
 
+// One turn on top of the motions of both objects does not change the time.
+TEST_F(MotionCollision, OneTurnOnTopOfBoth) {
+  for (const double top : {-2.5, -1e-10, 0.7, 1.3})
+    for (const auto type : {CCDM_LINEAR, CCDM_SCREW}) {
+      Result result;
+      continuousCollide(bar_.get(), kStill, turned(kTurn + top), square_.get(), kStill,
+                        turned(top), requestOf<Request>(type), result);
+      EXPECT_NEAR(result.time_of_contact, kTime, 1e-12) << top;
+      EXPECT_LE(result.time_of_contact, kTime + 1e-15) << top;
+    }
+}
+
+// FCL's conservative advancement starts where the last call left the motion.
+TEST_F(MotionCollision, AdvancementThatMovedTheMotionDoesNotCount) {
+  const Vector3<double> zero = Vector3<double>::Zero();
+  const InterpMotion<double> motion(kStill.linear(), zero, turned(kTurn).linear(), zero,
+                                    zero);
+  const TranslationMotion<double> still(kStill, kStill);
+  Request request = requestOf<Request>();
+  Result result;
+  continuousCollide(bar_.get(), &motion, square_.get(), &still, request, result);
+  expectTheContact(result);
+  motion.integrate(1);
+  Request stock = request;
+  stock.ccd_solver_type = CCDC_CONSERVATIVE_ADVANCEMENT;
+  Result of_fcl;
+  continuousCollide<double>(bar_.get(), &motion, square_.get(), &still, stock, of_fcl);
+  EXPECT_FALSE(of_fcl.is_collide && std::abs(of_fcl.time_of_contact - kTime) < 1e-3)
+      << "FCL has become right";
+  Result again;
+  continuousCollide(bar_.get(), &motion, square_.get(), &still, request, again);
+  EXPECT_EQ(again.time_of_contact, result.time_of_contact);
+}
+
 // An interpolation about another point, and a screw, are other paths between the same
 // poses. Both move the bar's origin along x, the one on a line and the other on an arc.
 TEST_F(MotionCollision, ReferencePointAndAxisCount) {
@@ -523,21 +557,29 @@ TEST_F(MotionCollision, WhatIsRefused) {
 TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {
   const SinkingSheet sheet;
   const Vector3<double> zero = Vector3<double>::Zero();
-  const InterpMotion<double> motion(kStill.linear(), zero, turned(kTurn).linear(), zero,
-                                    zero);
+  const Vector3<double> z = Vector3<double>::UnitZ();
+  const InterpMotion<double> interpolation(kStill.linear(), zero, turned(kTurn).linear(),
+                                           zero, zero);
+  const ScrewMotion<double> screw(kStill, turned(kTurn));
+  const SplineMotion<double> spline(zero, zero, zero, zero, -kTurn * z, zero, kTurn * z,
+                                    2 * kTurn * z);
   const TranslationMotion<double> still(kStill, kStill);
   double worst[2] = {0, 0};
   const auto work = [&](double& error) {
-    for (int i = 0; i < 50; ++i)
-      for (const CollisionGeometry<double>* other :
-           {static_cast<const CollisionGeometry<double>*>(square_.get()),
-            static_cast<const CollisionGeometry<double>*>(sheet.model.get())}) {
-        Result result;
-        const double time = continuousCollide(bar_.get(), &motion, other, &still,
-                                              requestOf<Request>(), result);
-        const double expected = other == square_.get() ? kTime : sheet.time;
-        error = std::max(error, std::abs(time - expected));
-      }
+    for (int i = 0; i < 15; ++i)
+      for (const MotionBase<double>* motion :
+           {static_cast<const MotionBase<double>*>(&interpolation),
+            static_cast<const MotionBase<double>*>(&screw),
+            static_cast<const MotionBase<double>*>(&spline)})
+        for (const CollisionGeometry<double>* other :
+             {static_cast<const CollisionGeometry<double>*>(square_.get()),
+              static_cast<const CollisionGeometry<double>*>(sheet.model.get())}) {
+          Result result;
+          const double time = continuousCollide(bar_.get(), motion, other, &still,
+                                                requestOf<Request>(), result);
+          const double expected = other == square_.get() ? kTime : sheet.time;
+          error = std::max(error, std::abs(time - expected));
+        }
   };
   std::thread first(work, std::ref(worst[0])), second(work, std::ref(worst[1]));
   first.join();
@@ -546,20 +588,34 @@ TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {
   EXPECT_EQ(worst[0], worst[1]);
 }
 
-// The answer of any number of threads is the same.
+// The answer of any number of threads is the same to the bit.
 TEST_F(MotionCollision, NumberOfThreads) {
-  std::vector<ContactResult> results;
-  for (const int threads : {1, 2, 0}) {
-    ContactRequest request = requestOf<ContactRequest>();
-    request.num_threads = threads;
-    ContactResult result;
-    continuousCollide(bar_.get(), kStill, turned(kTurn), square_.get(), kStill, kStill,
-                      request, result);
-    results.push_back(result);
-  }
-  for (const ContactResult& result : results) {
-    EXPECT_EQ(result.time_of_contact, results[0].time_of_contact);
-    EXPECT_EQ(result.contacts.size(), results[0].contacts.size());
+  const SinkingSheet sheet;
+  for (const CollisionGeometry<double>* other :
+       {static_cast<const CollisionGeometry<double>*>(square_.get()),
+        static_cast<const CollisionGeometry<double>*>(sheet.model.get())}) {
+    std::vector<ContactResult> results;
+    for (const int threads : {1, 2, 7, 0}) {
+      ContactRequest request = requestOf<ContactRequest>();
+      request.num_threads = threads;
+      ContactResult result;
+      continuousCollide(bar_.get(), kStill, turned(kTurn), other, kStill, kStill, request,
+                        result);
+      results.push_back(result);
+    }
+    ASSERT_FALSE(results[0].contacts.empty());
+    for (const ContactResult& result : results) {
+      EXPECT_EQ(result.time_of_contact, results[0].time_of_contact);
+      ASSERT_EQ(result.contacts.size(), results[0].contacts.size());
+      for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+        const auto &x = result.contacts[i], &y = results[0].contacts[i];
+        EXPECT_EQ(x.toc_lo, y.toc_lo);
+        EXPECT_EQ(x.toc_hi, y.toc_hi);
+        EXPECT_EQ(x.vertices, y.vertices);
+        EXPECT_EQ(x.pos, y.pos);
+        EXPECT_EQ(x.normal, y.normal);
+      }
+    }
   }
 }
 

@@ -34,8 +34,6 @@ Vector3<double> applied(const PoseRate& rate, const Vector3<double>& x) {
   return applied(pose, x);
 }
 
-Vec toVec(const Vector3<double>& x) { return {x[0], x[1], x[2]}; }
-
 TEST(FCL_MOTION_PATH, sineAndCosine) {
   Random random(1);
   Real worst = 0, worst_relative = 0;
@@ -96,48 +94,6 @@ TEST(FCL_MOTION_PATH, reachesItsEnds) {
     EXPECT_LE((applied(path.pose(0), x) - motion.beginning * x).norm(), error);
     EXPECT_LE((applied(path.pose(1), x) - motion.end * x).norm(), error);
     EXPECT_LT(error, 1e-13);
-  }
-}
-
-/// Samples spans of a path: the distance of a point from the straight line between its
-/// ends, as a fraction of M s (1 - s) dt^2 / 2.
-/// @param x0, x1  the positions of the point in the body
-double worstDeviation(Random& random, const MotionPath& path, const Vector3<double>& x0,
-                      const Vector3<double>& x1, double acceleration, double t0,
-                      double t1) {
-  const auto at = [&](double t) {
-    return applied(path.pose(t), Vector3<double>((1 - t) * x0 + t * x1));
-  };
-  const double s = random.uniform(0.05, 0.95), dt = t1 - t0;
-  const Vector3<double> from = (1 - s) * at(t0) + s * at(t1) - at(t0 + s * dt);
-  const double rounding = 8 * path.positionError(2);
-  return (from.norm() - rounding) / (0.5 * acceleration * s * (1 - s) * dt * dt + 1e-300);
-}
-
-// A million spans: ten of each motion.
-TEST(FCL_MOTION_PATH, boundsTheAcceleration) {
-  Random random(4);
-  double worst[2] = {0, 0};
-  MotionPath path = randomMotion(random, 1).path();
-  for (int i = 0; i < 1000000; ++i) {
-    if (i % 10 == 0) path = randomMotion(random, 1).path();
-    const double t0 = random.uniform(0, 0.9),
-                 t1 = t0 + (1 - t0) * std::exp2(-random.uniform(0, 8));
-    const AccelerationBound bound = path.acceleration(t0, t1);
-    const Vector3<double> center = random.point(1);
-    const double radius = random.uniform(0, 0.5);
-    const Vector3<double> x = center + radius * randomDirection(random),
-                          to = x + random.point(0.5);
-    worst[0] = std::max(
-        worst[0],
-        worstDeviation(random, path, x, x, bound.of(toVec(center), radius), t0, t1));
-    const double moving = std::max(bound.of(toVec(x), 0), bound.of(toVec(to), 0)) +
-                          bound.per_displacement * (to - x).norm();
-    worst[1] = std::max(worst[1], worstDeviation(random, path, x, to, moving, t0, t1));
-  }
-  for (const double ratio : worst) {
-    EXPECT_LE(ratio, 1);
-    EXPECT_GE(ratio, 0.9) << "a bound that is never nearly reached";
   }
 }
 

@@ -9,15 +9,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 #include <vector>
 
-#include "fcl/math/bv/OBBRSS.h"
-#include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/collision.h"
 #include "motion/motion_contacts.h"
 #include "reference_motion.h"
-#include "test_models.h"
+#include "turning_bodies.h"
 
 namespace fcl {
 namespace test {
@@ -25,44 +22,6 @@ namespace {
 
 using namespace detail::deformable;
 using Kind = ReferenceMotion::Kind;
-using Model = BVHModel<OBBRSS<double>>;
-
-/// A mesh with FCL's tree.
-struct Body {
-  explicit Body(TestMesh m) : mesh(std::move(m)), model(makeModel<Model>(mesh)) {}
-  TestMesh mesh;
-  std::shared_ptr<Model> model;
-};
-
-/// A body on its path.
-struct MovingBody {
-  MovingBody(const Body& from, const MotionPath& path)
-      : tree(*from.model, Pose()),
-        body(tree,
-             VertexFrames(from.model->vertices->data(), from.model->vertices->data(),
-                          from.mesh.vertices.size()),
-             from.model->tri_indices, path) {}
-  MovingBody(const MovingBody&) = delete;
-  MovingBody& operator=(const MovingBody&) = delete;
-  RigidTree tree;
-  MotionBody body;
-};
-
-MotionAnswer ask(const Body& a, const MotionPath& path_a, const Body& b,
-                 const MotionPath& path_b, const MotionQueryOptions& options = {}) {
-  return queryMotions(MovingBody(a, path_a).body, MovingBody(b, path_b).body, options);
-}
-
-double timeOf(const MotionAnswer& answer) {
-  return answer.contacts.empty() ? 2 : answer.contacts[0].toc_lo;
-}
-
-Transform3<double> asTransform(const RealPose& pose) {
-  Transform3<double> tf = Transform3<double>::Identity();
-  tf.linear() = pose.rotation.cast<double>();
-  tf.translation() = pose.translation.cast<double>();
-  return tf;
-}
 
 /// Distance of two triangles at a time by the formulas of the motions.
 double distanceAt(const Body& a, const ReferenceMotion& motion_a, int triangle_a,
@@ -83,61 +42,6 @@ double distanceAt(const Body& a, const ReferenceMotion& motion_a, int triangle_a
       p[body][k] = {from[0], from[1], from[2]};
     }
   return std::sqrt(nearestFeatures(p[0], p[1]).square);
-}
-
-/// The first time at which FCL's discrete query finds a collision: a sample, then
-/// bisection between it and the previous one; 2 without collision.
-double sampledTime(const Body& a, const ReferenceMotion& motion_a, const Body& b,
-                   const ReferenceMotion& motion_b, int samples) {
-  const auto collides = [&](double t) {
-    CollisionResult<double> result;
-    return collide(a.model.get(), asTransform(motion_a.at(t)), b.model.get(),
-                   asTransform(motion_b.at(t)), CollisionRequest<double>(), result) > 0;
-  };
-  for (int i = 0; i <= samples; ++i) {
-    double hi = static_cast<double>(i) / samples;
-    if (!collides(hi)) continue;
-    double lo = std::max(0., hi - 1. / samples);
-    for (int k = 0; k < 30; ++k) {
-      const double middle = 0.5 * (lo + hi);
-      (collides(middle) ? hi : lo) = middle;
-    }
-    return hi;
-  }
-  return 2;
-}
-
-std::vector<Body> makeBodies() {
-  TestMesh ellipsoid = makeUvSphere(20, 15, 0.5), bumpy = makeIcosphere(3, 0.4);
-  for (auto& p : ellipsoid.vertices) p = Vector3<double>(p[0], 0.6 * p[1], 0.3 * p[2]);
-  for (auto& p : bumpy.vertices) p *= 1 + 0.1 * std::sin(9 * p[0]) * std::sin(7 * p[1]);
-  std::vector<Body> bodies;
-  bodies.emplace_back(ellipsoid);
-  bodies.emplace_back(bumpy);
-  bodies.emplace_back(makeBox({0.4, 0.25, 0.15}, 8));
-  bodies.emplace_back(makeCapsule(12, 10, 0.15, 0.6));
-  return bodies;
-}
-
-/// Moves b so that it passes a at a distance, or hits it with a depth, of 1e-2 to 1e-6.
-void makeGrazing(Random& random, const Body& a, const ReferenceMotion& motion_a,
-                 const Body& b, ReferenceMotion& motion_b) {
-  constexpr double kDepths[] = {1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
-  const Vector3<double> direction = randomDirection(random);
-  const auto isHit = [&](double offset) {
-    ReferenceMotion moved = motion_b;
-    moved.move(offset * direction);
-    return !ask(a, motion_a.path(), b, moved.path()).contacts.empty();
-  };
-  double lo = 3;
-  while (lo > -3 && !isHit(lo)) lo -= 0.1;
-  double hi = lo + 0.1;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (lo + hi);
-    (isHit(middle) ? lo : hi) = middle;
-  }
-  const double depth = kDepths[random.index(5)];
-  motion_b.move((random.index(2) ? lo - depth : hi + depth) * direction);
 }
 
 // Half of the scenes graze by construction. No contact is late, and none is missed.
