@@ -71,8 +71,11 @@ struct ContinuousContact {
   double toc_hi{0};
 
   /// @brief The point where the two touch at toc_lo, in the world frame and the unit of
-  /// the coordinates. With min_distance: the middle between their nearest points. Set
-  /// only with enable_contact.
+  /// the coordinates. With min_distance: the middle between their nearest points. With a
+  /// shape or an octree that overlaps the other object at t = 0: a point of both. Of two
+  /// planes or halfspaces: on the plane of o1, at the foot of the perpendicular from the
+  /// origin of the world; if they are not parallel they need not meet there. Set only
+  /// with enable_contact.
   Vector3<S> pos{Vector3<S>::Zero()};
 
   /// @brief Unit normal at toc_lo in the world frame: of the face (VF, crossing), or
@@ -155,9 +158,10 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   bool enable_contact{true};
 
   /// @brief Only contacts whose time is at most t_max are reported, in [0, 1]. The
-  /// decision is exact; if a mesh turns, it is within the tolerance of the query. The
-  /// query does no work for later contacts. If the first contact is later, there is no
-  /// collision and time_of_contact is 1.
+  /// decision is exact; if a mesh turns, or with a shape or an octree, it is within the
+  /// tolerance of the query: toc_lo is at most t_max. The query does no work for later
+  /// contacts. If the first contact is later, there is no collision and time_of_contact
+  /// is 1.
   S t_max{1};
 
   /// @brief The distance d at which features are in contact, in the unit of the
@@ -167,7 +171,12 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// of these parts (VE or VV). It is listed once, at the earliest of such times.
   /// Features that share a vertex are no contact. A discrete collide() finds nothing at
   /// the poses of a contact. The paths of two meshes must be straight: the query throws
-  /// if one of them turns. Beside a shape or an octree any path will do.
+  /// if one of them turns.
+  ///
+  /// With a shape or an octree it acts on every path: d is the distance from the surface
+  /// of the solid. Each triangle of the mesh, or the other shape, is a contact at the
+  /// first time at which it is not further away than d, up to the tolerance of the query.
+  /// Kinds of contacts, and one for each triangle, are as for d = 0.
   S min_distance{0};
 
   /// @brief Whether pairs that are nearer than min_distance at t = 0 are in contact only
@@ -195,8 +204,9 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
   /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
-  /// a mesh turns, only the trees that the query makes use threads. The answer does not
-  /// depend on this number. The StageCounts of a first-contact query may depend on it.
+  /// a mesh turns, or with a shape or an octree, only the trees that the query makes use
+  /// threads. The answer does not depend on this number. The StageCounts of a
+  /// first-contact query may depend on it.
   int num_threads{1};
 };
 
@@ -206,11 +216,11 @@ using ContinuousContactRequestd = ContinuousContactRequest<double>;
 /// @brief The fields that a query for contacts adds to FCL's result.
 template <typename S>
 struct ContinuousContacts {
-  /// @brief The VF and EE contacts, sorted by (toc_lo, kind, side, vertex ids). With
-  /// ContinuousQuery::kFirst: the contacts that may be the first, whose bracket begins no
-  /// later than the earliest bracket ends. (A contact of a rigid mesh may be found
-  /// several times with different brackets; the shortest one decides.) With kAny: at most
-  /// one.
+  /// @brief The contacts, sorted by (toc_lo, kind, side, vertex ids); with a shape or an
+  /// octree by (toc_lo, b1, b2). With ContinuousQuery::kFirst: the contacts that may be
+  /// the first, whose bracket begins no later than the earliest bracket ends. (A contact
+  /// of a rigid mesh may be found several times with different brackets; the shortest one
+  /// decides.) With kAny: at most one.
   std::vector<ContinuousContact<S>> contacts;
 
   /// @brief Whether num_max_contacts dropped contacts.
@@ -225,7 +235,8 @@ struct ContinuousContacts {
 
   /// @brief Whether an edge passes through a triangle at t = 0. The decision is exact.
   /// Such surfaces may have no VF or EE contact at all. With ContinuousQuery::kAny it is
-  /// not decided if a contact is found first.
+  /// not decided if a contact is found first. With a shape or an octree it is false: an
+  /// overlap at t = 0 is among the contacts.
   bool initially_crossing{false};
 
   /// @brief An edge and a face that cross at t = 0, if initially_crossing.
@@ -235,8 +246,9 @@ struct ContinuousContacts {
   /// side and ascending vertex ids. Only with enable_crossings.
   std::vector<ContinuousContact<S>> crossings;
 
-  /// @brief What each stage of the query saw and removed. If a mesh turns: only
-  /// node_pairs, triangle_pairs and contacts.
+  /// @brief What each stage of the query saw and removed. If a mesh turns, or with a
+  /// shape or an octree: only node_pairs, triangle_pairs and contacts. A shape or a cell
+  /// counts as a triangle.
   StageCounts counts;
 
   /// @brief The wall time of the parts of the query, in seconds.
