@@ -113,13 +113,16 @@ ConvexShape slab(const Vec& normal, double offset, double reach, bool is_solid,
   Vec u = cross(n, helper);
   u = (1 / std::sqrt(dot(u, u))) * u;
   const Vec v = cross(n, u), foot = (offset / length) * n;
-  // The foot is within |offset| of the origin.
-  const double side = 2 * (reach + std::abs(offset / length));
+  // The foot is the point of the plane nearest to the origin. What is within the reach of
+  // the origin is within it of the foot too, along the plane.
+  constexpr double kOutward = 1 + 0x1p-20;
+  const double side = kOutward * reach,
+               depth = kOutward * (reach + std::abs(offset / length));
   std::vector<Vec> corners;
   for (int below = 0; below < (is_solid ? 2 : 1); ++below)
     for (int i = 0; i < 4; ++i)
       corners.push_back(foot + ((i & 1) != 0 ? side : -side) * u +
-                        ((i & 2) != 0 ? side : -side) * v - (below * side) * n);
+                        ((i & 2) != 0 ? side : -side) * v - (below * depth) * n);
   return ConvexShape::hull(std::move(corners), 0, {u, v, n});
 }
 

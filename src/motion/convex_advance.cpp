@@ -15,6 +15,7 @@ constexpr double kUpward = 1 + 0x1p-40;
 
 double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);
+  if (bound.isZero() && bound.per_displacement == 0) return 0;
   if (!set.shape) return accelerationOf(bound, set.triangle);
   return bound.of(set.shape->center(), set.shape->box().radius) * kUpward;
 }
@@ -76,6 +77,11 @@ double ConvexPairMotion::Side::reachAfter(double h, const Vec& n,
                 h * (v[k] * n.x + v[3 + k] * n.y + v[6 + k] * n.z);
   return now.shape->reach({turned[0], turned[1], turned[2]}) +
          dot(later, vecOf(now.pose.translation)) + h * dot(n, vecOf(rate.translation));
+}
+
+Vec ConvexPairMotion::Side::center() const {
+  if (now.shape) return posed(now.pose, now.shape->center());
+  return (1. / 3) * (now.corner[0] + now.corner[1] + now.corner[2]);
 }
 
 double ConvexPairMotion::Side::size() const {
@@ -173,7 +179,9 @@ double ConvexPairMotion::longestStep(double t, const State& state,
 }
 
 ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
-  return convexGap(state.side[0].now, state.side[1].now, guess_, margin(), contact);
+  const Vec guess =
+      maxNorm(guess_) > 0 ? guess_ : state.side[1].center() - state.side[0].center();
+  return convexGap(state.side[0].now, state.side[1].now, guess, margin(), contact);
 }
 
 /// Prefers the direction of a flat side: where the gap is a few roundings wide another

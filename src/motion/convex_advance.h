@@ -55,6 +55,8 @@ class ConvexPairMotion {
     /// The largest coordinate n . x + h (n . x' + n' . x) of a point: along a direction
     /// that changes, `h` later, up to terms of second order.
     double reachAfter(double h, const Vec& n, const Vec& change) const;
+    /// A point inside.
+    Vec center() const;
     /// How far two points may be apart.
     double size() const;
   };
@@ -86,8 +88,8 @@ class ConvexPairMotion {
   const MotionTolerance& tolerance_;
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
-  /// The direction of the last gap.
-  Vec guess_{1, 0, 0};
+  /// The direction of the last gap; 0: there is none.
+  Vec guess_{0, 0, 0};
 };
 
 }  // namespace deformable

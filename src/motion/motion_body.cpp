@@ -55,6 +55,59 @@ MotionBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
   return box;
 }
 
+/// As boxOfSlabs() for eight boxes.
+template <typename Rows>
+void setSlabs(const Rows& rows, const double (&origin)[3], MotionBoxes& boxes) {
+  constexpr int kWidth = MotionBoxes::kWidth;
+  double square[kWidth] = {};
+  for (int j = 0; j < 3; ++j) {
+    const auto &lower = rows[MovingKdopNode::rowOf(j)],
+               &upper = rows[MovingKdopNode::rowOf(j + 8)];
+    for (int lane = 0; lane < kWidth; ++lane) {
+      const double low = double{lower[lane]}, high = double{upper[lane]},
+                   center = origin[j] + 0.5 * (high - low),
+                   extent = 0.5 * (high + low) * kUpward +
+                            4 * kUnitRounding * std::abs(center);
+      boxes.center[j][lane] = center;
+      boxes.extent[j][lane] = extent;
+      square[lane] += extent * extent;
+    }
+    for (int k = 0; k < 3; ++k) std::fill_n(boxes.axis[j][k], kWidth, j == k ? 1. : 0.);
+  }
+  for (int lane = 0; lane < kWidth; ++lane)
+    boxes.radius[lane] = std::sqrt(square[lane]) * kUpward;
+}
+
+bool isBounded(const MotionBoxes& boxes, int lane) {
+  return boxes.extent[0][lane] < kMostExtent && boxes.extent[1][lane] < kMostExtent &&
+         boxes.extent[2][lane] < kMostExtent;
+}
+
+/// The children of a node of a mesh that deforms; as MotionBody::movingBox() of each. The
+/// loops over lanes are the inner ones, so that compilers make vector code of them.
+void openMoving(const MovingKdopTree& tree, std::int32_t index, MotionNode& out) {
+  constexpr int kWidth = MotionBoxes::kWidth;
+  const MovingKdopNode& node = tree.node(index);
+  out.count = node.count;
+  for (int lane = 0; lane < kWidth; ++lane) {
+    const int from = std::min(lane, node.count - 1);
+    out.part[lane] = {node.child[from], index * kWidth + from};
+  }
+  for (int frame = 0; frame < 2; ++frame) {
+    MotionBoxes& boxes = out.box[frame];
+    setSlabs(frame == 0 ? node.t0 : node.t1, tree.origin(frame), boxes);
+    for (int lane = 0; lane < node.count; ++lane)
+      if (!isBounded(boxes, lane)) boxes.set(lane, unboundedBox());
+    for (int lane = 0; lane < kWidth; ++lane) {
+      boxes.pad[lane] = 0;
+      boxes.displacement[lane] =
+          std::sqrt(3.) * double{node.displacement[lane]} * kUpward;
+    }
+    for (int lane = node.count; lane < kWidth; ++lane)
+      boxes.set(lane, boxes.get(node.count - 1));
+  }
+}
+
 }  // namespace
 
 double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triangle) {
@@ -185,18 +238,7 @@ void MotionBody::openOctree(std::int32_t node, MotionNode& out) const {
 void MotionBody::open(const BodyPart& part, MotionNode& out) const {
   if (octree_) return openOctree(part.child, out);
   constexpr int kWidth = MotionBoxes::kWidth;
-  if (tree_) {
-    const MovingKdopNode& node = tree_->node(part.child);
-    out.count = node.count;
-    for (int lane = 0; lane < kWidth; ++lane) {
-      const int from = std::min(lane, node.count - 1);
-      const std::int32_t box = part.child * kWidth + from;
-      out.part[lane] = {node.child[from], box};
-      for (int frame = 0; frame < 2; ++frame)
-        out.box[frame].set(lane, movingBox(box, frame));
-    }
-    return;
-  }
+  if (tree_) return openMoving(*tree_, part.child, out);
   std::int32_t nodes[kWidth], children[kWidth];
   out.count = openBinary(part.child, nodes, children,
                          [this](std::int32_t i) { return rigid_->link(i); });

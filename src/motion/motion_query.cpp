@@ -43,7 +43,14 @@ class PoseTable {
 
 /// The data of a body in a traversal.
 struct Side {
-  explicit Side(const MotionBody& b) : body(b), reader(b), poses(b.path()) {}
+  explicit Side(const MotionBody& b)
+      : body(b), reader(b), poses(b.path()), goes_straight(goesStraight(b.path())) {}
+
+  /// Whether all points go straight, also those of a mesh that deforms.
+  static bool goesStraight(const MotionPath& path) {
+    const AccelerationBound bound = path.acceleration(0, 1);
+    return bound.isZero() && bound.per_displacement == 0;
+  }
 
   SpanPoses spanPoses(double t0, double t1) {
     return {poses.at(t0), poses.at(0.5 * (t0 + t1)), poses.at(t1)};
@@ -52,6 +59,7 @@ struct Side {
   const MotionBody& body;
   MotionBodyReader reader;
   PoseTable poses;
+  bool goes_straight;
 };
 
 /// Two parts in a span of time.
@@ -167,7 +175,6 @@ class MotionTraversal {
 
   static double accelerationOf(const AccelerationBound& bound, const MotionBox& begin,
                                const MotionBox& end) {
-    if (bound.isZero() && bound.per_displacement == 0) return 0;
     return bound.between(vecOf(begin.center), vecOf(end.center),
                          std::max(begin.radius, end.radius)) +
            bound.per_displacement * begin.displacement;
@@ -179,9 +186,11 @@ class MotionTraversal {
     PartSpan span;
     span.box[0] = boxAt(body, part, t0);
     span.box[1] = body.isRigid() ? span.box[0] : boxAt(body, part, t1);
-    span.deviation =
-        0.125 * dt * dt *
-        accelerationOf(body.path().acceleration(t0, t1), span.box[0], span.box[1]);
+    span.deviation = 0;
+    if (!side_[k].goes_straight)
+      span.deviation =
+          0.125 * dt * dt *
+          accelerationOf(body.path().acceleration(t0, t1), span.box[0], span.box[1]);
     return span;
   }
 
@@ -208,11 +217,18 @@ class MotionTraversal {
   /// The node's boxes at a time.
   const MotionBoxes* boxesAt(const MotionBody& body, const MotionNode& node, double t,
                              MotionBoxes& scratch) const {
-    if (body.isRigid()) return &node.box[0];
+    if (body.isRigid() || t == 0) return &node.box[0];
+    if (t == 1) return &node.box[1];
+    scratch = node.box[0];
     for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
-      MotionBox box = node.box[0].get(lane);
-      interpolate(node.box[1].get(lane), t, box);
-      scratch.set(lane, box);
+      for (int k = 0; k < 3; ++k) {
+        scratch.center[k][lane] =
+            (1 - t) * scratch.center[k][lane] + t * node.box[1].center[k][lane];
+        scratch.extent[k][lane] =
+            (1 - t) * scratch.extent[k][lane] + t * node.box[1].extent[k][lane];
+      }
+      scratch.radius[lane] =
+          (1 - t) * scratch.radius[lane] + t * node.box[1].radius[lane];
     }
     return &scratch;
   }
@@ -229,16 +245,17 @@ class MotionTraversal {
   /// The margins of a node's boxes: how far the points of both bodies deviate from
   /// straight lines, with padding and rounding.
   /// @param own  the part of this of the other side
-  void setMargins(const Work& work, const MotionBody& body, const MotionBoxes& begin,
+  void setMargins(const Work& work, const Side& side, const MotionBoxes& begin,
                   const MotionBoxes& end, int count, double own,
                   double (&margin)[MotionBoxes::kWidth]) const {
+    for (int lane = 0; lane < count; ++lane)
+      margin[lane] = direction_bound_ * (own + begin.pad[lane]);
+    if (side.goes_straight) return;
     const double dt = work.t1 - work.t0, share = 0.125 * dt * dt;
-    const AccelerationBound bound = body.path().acceleration(work.t0, work.t1);
-    const bool is_straight = bound.isZero() && bound.per_displacement == 0;
-    for (int lane = 0; lane < count; ++lane) {
-      const double most = is_straight ? 0 : laneAcceleration(bound, begin, end, lane);
-      margin[lane] = direction_bound_ * (own + share * most + begin.pad[lane]);
-    }
+    const AccelerationBound bound = side.body.path().acceleration(work.t0, work.t1);
+    for (int lane = 0; lane < count; ++lane)
+      margin[lane] +=
+          direction_bound_ * share * laneAcceleration(bound, begin, end, lane);
   }
 
   /// Tests the children of one side's part against the other side's part.
@@ -254,7 +271,7 @@ class MotionTraversal {
     const MotionBoxes* boxes[2] = {boxesAt(many.body, node, work.t0, scratch[0]),
                                    boxesAt(many.body, node, work.t1, scratch[1])};
     double margin[MotionBoxes::kWidth] = {};
-    setMargins(work, many.body, *boxes[0], *boxes[1], node.count,
+    setMargins(work, many, *boxes[0], *boxes[1], node.count,
                other.deviation + other.box[0].pad + box_margin_, margin);
     MeetingWindows windows;
     motionKernels().meetingWindows(other.box, one.spanPoses(work.t0, work.t1), boxes,
