@@ -188,6 +188,24 @@ inline PosedShape randomShape(const std::string& kind, Random& random) {
   return shape;
 }
 
+/// @brief Whether balls around two shapes are apart, so that they do not overlap.
+inline bool areFar(const PosedShape& a, const PosedShape& b) {
+  if (a.isFlat() || b.isFlat()) return false;
+  Vector3<double> center[2];
+  double radius[2];
+  for (int side = 0; side < 2; ++side) {
+    const PosedShape& shape = side == 0 ? a : b;
+    center[side] = shape.pose.translation();
+    // The largest is a capsule, of the radius 0.6 and a half length of 0.6.
+    radius[side] = 1.2;
+    if (shape.kind != "triangle") continue;
+    center[side] = shape.pose * shape.points[0];
+    radius[side] = std::max((shape.points[1] - shape.points[0]).norm(),
+                            (shape.points[2] - shape.points[0]).norm());
+  }
+  return (center[1] - center[0]).norm() > radius[0] + radius[1];
+}
+
 /// @brief Whether a bounded shape and another one overlap, by libccd or in closed form;
 /// wrong by about 1e-6.
 inline bool overlap(const PosedShape& a, const PosedShape& b) {

@@ -363,6 +363,27 @@ TEST(ShapeCollide, MinDistance) {
   }
 }
 
+TEST(ShapeCollide, MinDistanceOfAMeshThatTurns) {
+  // As in BoxTurnsOnItsEdge.
+  const double height = 0.7, distance = 0.0625, angle = kPi / 2,
+               time = (kPi / 4 - std::acos((height - distance) * std::sqrt(2.))) / angle;
+  const TestMesh cube = makeBox({0.5, 0.5, 0.5});
+  auto model = std::make_shared<BVHModel<OBBRSS<double>>>();
+  model->beginModel();
+  model->addSubModel(cube.vertices, cube.triangles);
+  model->endModel();
+  Request request = requestOf();
+  request.min_distance = distance;
+  const Moving box{model, turned(0, Point(1, 0, 0), at(0, 0, height)),
+                   turned(angle, Point(1, 0, 0), at(0, 0, height))};
+  const Geometry floor = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.);
+  const Result result = ask(box, {floor, at(0, 0, 0), at(0, 0, 0)}, request);
+  ASSERT_TRUE(result.is_collide);
+  EXPECT_LE(result.time_of_contact, time + 1e-15);
+  EXPECT_NEAR(result.time_of_contact, time, 1e-11);
+  EXPECT_NEAR(result.contacts.at(0).pos[2], 0.5 * distance, 1e-9);
+}
+
 TEST(ShapeCollide, TMaxCutsAtTheTime) {
   const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
   const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Every pair of shapes, and of a mesh and a shape, in random motions against dense
-// sampling by other code.
+// sampling by other code. The report fcl_ccd_shapes does the same for 200 motions.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ bool overlapAt(double t, Body& a, Body& b) {
   b.place(t);
   for (const PosedShape& x : a.parts)
     for (const PosedShape& y : b.parts)
-      if (overlap(x, y)) return true;
+      if (!areFar(x, y) && overlap(x, y)) return true;
   return false;
 }
 
@@ -135,7 +135,8 @@ TEST_P(ShapePairs, AgreeWithDenseSampling) {
   request.query = ContinuousQuery::kFirst;
   request.enable_contact = true;
   request.num_max_contacts = 1000;
-  for (int i = 0; i < 8; ++i) {
+  const bool has_mesh = pair.kind[0] == "mesh" || pair.kind[1] == "mesh";
+  for (int i = 0; i < (has_mesh ? 16 : 32); ++i) {
     SCOPED_TRACE(i);
     Body a = randomBody(pair.kind[0], random), b = randomBody(pair.kind[1], random);
     ContinuousContactResult<double> result;

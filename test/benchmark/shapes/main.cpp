@@ -100,16 +100,6 @@ Body randomBody(const std::string& kind, Random& random) {
   return body;
 }
 
-/// Whether the balls around two parts are apart; most triangles are.
-bool areFar(const PosedShape& a, const PosedShape& b) {
-  if (a.kind != "triangle" || b.isFlat()) return false;
-  const Vector3<double> from = b.pose.translation();
-  double nearest = HUGE_VAL;
-  for (const Vector3<double>& p : a.points)
-    nearest = std::min(nearest, (a.pose * p - from).norm());
-  return nearest > 1.5;
-}
-
 bool overlapAt(double t, Body& a, Body& b) {
   a.place(t);
   b.place(t);
