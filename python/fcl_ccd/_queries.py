@@ -287,7 +287,7 @@ def collide(
         Only contacts until this time are reported, in [0, 1].
     min_distance : float
         The distance at which features are in contact, in the unit of the vertices. 0:
-        features that touch. Above 0 all paths of two meshes must be straight.
+        features that touch.
     ignore_initially_closer : bool
         Whether pairs that are nearer than min_distance at t = 0 are in contact only when
         they come nearer than they are then. If false, they are contacts at t = 0. Not with
@@ -426,8 +426,7 @@ def candidates(
     block : int
         A block has at least this number of candidates, except the last one.
     min_distance : float
-        Above 0: every pair that comes within this distance is among the candidates. All
-        paths must be straight then.
+        Above 0: every pair that comes within this distance is among the candidates.
 
     Fields of candidate_dtype: kind, first_on_o1, vertices ((4,) int32), b1 and b2 as in
     Result.contacts; window_lo, window_hi (float64): the features do not touch before

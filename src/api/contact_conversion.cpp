@@ -67,13 +67,14 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const PreparedMotion& a, const PreparedMotion& b,
-                                         bool with_geometry) {
+                                         bool with_geometry, bool at_distance) {
   ContinuousContact<S> out = toNumbers<S>(contact);
   const auto path_of = [&](bool on_a, std::uint32_t id) {
     return (on_a ? a : b).tangentAt(id, contact.toc_lo);
   };
-  out.within_tolerance = contact.toc_hi == contact.toc_lo;
-  if (with_geometry) addGeometry(contact, path_of, 0, false, out);
+  out.within_tolerance =
+      contact.toc_hi == contact.toc_lo && !(at_distance && contact.toc_lo == 0);
+  if (with_geometry) addGeometry(contact, path_of, 0, at_distance, out);
   return out;
 }
 
@@ -161,16 +162,16 @@ S roundTimeUp(double t) {
   return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                      \
-  template ContinuousContact<S> toContinuousContact(                                \
-      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool, bool); \
-  template ContinuousContact<S> toContinuousContact(                                \
-      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool);   \
-  template ContinuousContact<S> toContinuousContact(                                \
-      const Crossing&, const MeshInstance&, const MeshInstance&, bool);             \
-  template ContinuousContact<S> toContinuousContact(const ShapeContact&, bool);     \
-  template Contact<S> toContact(const ContinuousContact<S>&);                       \
-  template S roundTimeDown<S>(double);                                              \
+#define FCL_CCD_INSTANTIATE(S)                                                          \
+  template ContinuousContact<S> toContinuousContact(                                    \
+      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool, bool);     \
+  template ContinuousContact<S> toContinuousContact(                                    \
+      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool, bool); \
+  template ContinuousContact<S> toContinuousContact(                                    \
+      const Crossing&, const MeshInstance&, const MeshInstance&, bool);                 \
+  template ContinuousContact<S> toContinuousContact(const ShapeContact&, bool);         \
+  template Contact<S> toContact(const ContinuousContact<S>&);                           \
+  template S roundTimeDown<S>(double);                                                  \
   template S roundTimeUp<S>(double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

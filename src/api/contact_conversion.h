@@ -28,7 +28,7 @@ ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
 template <typename S>
 ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
                                          const PreparedMotion& a, const PreparedMotion& b,
-                                         bool with_geometry);
+                                         bool with_geometry, bool at_distance = false);
 
 /// @brief A crossing at t = 0 as the public type, without o1 and o2. Its position is the
 /// point where the edge crosses the plane of the face.

@@ -76,12 +76,13 @@ PreparedMotion preparedMotion(const PlacedGeometry<S>& placed, const char* name)
 /// The candidates of two meshes, one of which turns.
 template <typename S>
 bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                      const CandidateSink& sink) {
+                      const CandidateSink& sink, double min_distance) {
   const PreparedMotion motion1 = preparedMotion(o1, "o1"),
                        motion2 = preparedMotion(o2, "o2");
   return handOut(sink, [&](const auto& inner) {
     const deformable::DefaultFloatingPoint mode;
-    return deformable::candidatesOfMotions(motion1.body(), motion2.body(), inner);
+    return deformable::candidatesOfMotions(motion1.body(), motion2.body(), inner,
+                                           min_distance);
   });
 }
 
@@ -131,10 +132,8 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                         : " is not a triangle mesh, and candidates need two triangle "
                           "meshes. Give a mesh of its surface"));
   }
-  if (answerer == Answerer::kCurvedPaths) {
-    requireNoDistance(min_distance, "min_distance", placed1, placed2);
-    return motionCandidates(placed1, placed2, sink);
-  }
+  if (answerer == Answerer::kCurvedPaths)
+    return motionCandidates(placed1, placed2, sink, min_distance);
   const PreparedMesh mesh1 = prepared(placed1, "o1"), mesh2 = prepared(placed2, "o2");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesPair(mesh1.instance(), mesh2.instance(), inner,

@@ -181,16 +181,17 @@ template <typename S>
 class MotionConverter {
  public:
   MotionConverter(const PreparedMotion& motion1, const PreparedMotion& motion2,
-                  bool with_geometry)
+                  const QuerySettings& settings)
       : motion1_(motion1),
         motion2_(motion2),
         beginning1_(motion1.beginning()),
         beginning2_(motion2.beginning()),
-        with_geometry_(with_geometry) {}
+        with_geometry_(settings.enable_contact),
+        at_distance_(settings.min_distance > 0) {}
 
   ContinuousContact<S> operator()(const deformable::FeatureContact& contact) const {
-    return deformable::toContinuousContact<S>(contact, motion1_, motion2_,
-                                              with_geometry_);
+    return deformable::toContinuousContact<S>(contact, motion1_, motion2_, with_geometry_,
+                                              at_distance_);
   }
   ContinuousContact<S> operator()(const deformable::Crossing& crossing) const {
     return deformable::toContinuousContact<S>(crossing, beginning1_, beginning2_,
@@ -202,6 +203,7 @@ class MotionConverter {
   const PreparedMotion& motion2_;
   deformable::MeshInstance beginning1_, beginning2_;
   bool with_geometry_;
+  bool at_distance_;
 };
 
 /// Answers two meshes, one of which turns. Threads are used only to make trees.
@@ -209,7 +211,6 @@ template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                    QueryOptions options, const QuerySettings& settings,
                    QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
-  requireNoDistance(options.min_distance, "request.min_distance", o1, o2);
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
@@ -220,7 +221,7 @@ void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
     return queryMotionContacts(motion1.body(), motion2.body(), options);
   });
   if (contacts) {
-    const MotionConverter<S> converter(motion1, motion2, settings.enable_contact);
+    const MotionConverter<S> converter(motion1, motion2, settings);
     const auto convert = [&](const auto& contact) {
       auto out = converter(contact);
       out.o1 = &o1.geometry();
@@ -286,8 +287,9 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
   if (options.ignores_initially_closer)
     throw Exception(
-        "request.ignore_initially_closer is for two meshes that go straight. Give a mesh "
-        "of the surface of the shape");
+        "request.ignore_initially_closer is for two meshes. Give a mesh of the surface "
+        "of "
+        "the shape");
   // The first contact that is found is the first of all.
   if (!settings.with_contacts) options.query = ContinuousQuery::kAny;
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);

@@ -25,10 +25,11 @@ inline void require(const void* argument, const char* name) {
 }
 
 template <typename S>
-void requireMesh(const CollisionGeometry<S>& o, const char* function) {
+void requireMesh(const CollisionGeometry<S>& o, const char* function,
+                 const char* name = "o") {
   if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
-    throw Exception(std::string(function) +
-                    ": o is not a triangle mesh. Give a BVHModel or a DeformableBVHModel "
+    throw Exception(std::string(function) + ": " + name +
+                    " is not a triangle mesh. Give a BVHModel or a DeformableBVHModel "
                     "with triangles");
 }
 
@@ -138,18 +139,6 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
   }
   return o1.isKnown() && o2.isKnown() ? Answerer::kCurvedPaths : Answerer::kFcl;
-}
-
-/// A distance is only for straight paths.
-template <typename S>
-void requireNoDistance(double distance, const char* name, const PlacedGeometry<S>& o1,
-                       const PlacedGeometry<S>&) {
-  if (!(distance > 0)) return;
-  throw Exception(std::string(name) + " needs straight paths, and " +
-                  (o1.goesStraight() ? "o2" : "o1") +
-                  " turns or follows a curve. Give parts of its path one after the "
-                  "other, as the two frames "
-                  "of a DeformableBVHModel");
 }
 
 /// Runs a query. A vertex that is not finite becomes FCL's exception.

@@ -105,9 +105,57 @@ struct TurningDirection {
 /// a product: 8 units in the last place.
 constexpr double kDown = 1 - 0x1p-50, kUp = 1 + 0x1p-50;
 
-/// The first time at which gap + rate tau + bend tau^2 is 0, for gap > 0; infinity
-/// without one. It is the root of a polynomial whose coefficients differ by less than 8
-/// units in the last place.
+}  // namespace
+
+Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
+                   const NearestPoint& near, int attempt) {
+  const bool is_corner = near.corner >= 0, is_inside = !is_corner && near.side < 0;
+  Vec n = near.point;
+  if (is_inside && attempt == 0)
+    n = (dot(near.normal, near.point) < 0 ? -1. : 1.) * near.normal;
+  const double length = is_inside && attempt == 0 ? std::sqrt(dot(n, n)) : near.distance;
+  if (!(length > 0)) return {0, 0, 0};
+  n = (1 / length) * n;
+  const int last = polygon.count() - 1;
+  if (last > 1 && (attempt == 4 || (is_inside && attempt > 0)))
+    return perpendicular(n, corners[1] - corners[0], corners[last] - corners[0]);
+  if (is_inside || (is_corner && attempt < 2)) return n;
+  const Vec& base = corners[is_corner ? near.corner : near.side];
+  const Vec side = is_corner ? Vec{0, 0, 0} : corners[polygon.next(near.side)] - base;
+  if (!is_corner) n = perpendicular(n, side);
+  if (attempt == 0) return n;
+  if (!is_corner) n = perpendicular(n, side);
+  if (attempt == 1) return n;
+  int lowest = 0;
+  for (int k = 1; k <= last; ++k)
+    if (dot(n, corners[k]) < dot(n, corners[lowest])) lowest = k;
+  const Vec other = corners[lowest] - base;
+  if (attempt == 2) return perpendicular(n, side, other);
+  // The side from the end of this one to the lowest corner.
+  return perpendicular(perpendicular(n, near.along < 0.5 ? other : other - side),
+                       near.along < 0.5 ? other : other - side);
+}
+
+Vec turnApart(const DifferencePolygon& polygon, const Vec* corners, const Vec* velocities,
+              const NearestPoint& near, const Vec& n) {
+  const auto across = [&n](const Vec& v) { return v - dot(v, n) * n; };
+  if (near.corner >= 0) return (1 / near.distance) * across(velocities[near.corner]);
+  if (near.side >= 0) {
+    const int next = polygon.next(near.side);
+    const Vec side = corners[next] - corners[near.side], from = velocities[near.side],
+              change = velocities[next] - from;
+    const Vec beside = cross(side, n), moved = from + near.along * change;
+    const double square = dot(side, side);
+    return (-dot(n, change) / square) * side +
+           (dot(beside, moved) / (square * near.distance)) * beside;
+  }
+  const int last = polygon.count() - 1;
+  const Vec v = corners[1] - corners[0], w = corners[last] - corners[0],
+            dv = velocities[1] - velocities[0], dw = velocities[last] - velocities[0];
+  const double length = dot(near.normal, n);
+  return (1 / length) * across(cross(dv, w) + cross(v, dw));
+}
+
 double firstRoot(double gap, double rate, double bend) {
   const double discriminant = rate * rate - 4 * gap * bend;
   if (!(discriminant >= 0)) return kInfinity;
@@ -118,147 +166,6 @@ double firstRoot(double gap, double rate, double bend) {
   return divisor > 0 ? 2 * gap / divisor : kInfinity;
 }
 
-/// The features of one query, as a polygon, and proofs that they are apart.
-///
-/// A fixed direction n: the corners are linear functions of t along n. A product with a
-/// corner is off by 5 u L, and n is below 1 + 5 u: the margin needs 16 u (d + L).
-///
-/// A direction that turns, while it turns by less than its length: (n + tau m) . (c + tau
-/// c') for each corner, at most d |n + tau m| <= d (1 + tau n . m + tau^2 m^2 / 2) (1 + 8
-/// u) + rest, since the root of 1 + x is at most 1 + x / 2. The term with n . m is
-/// rounding as a rule, but not in slivers, where m is a quotient by a small area. With c
-/// 8 u L off and c', below 2 L, 4 u L off, the three coefficients are off by 11 u L, 24 u
-/// L and 12 u L + 4 u d, if times tau. The root adds 8 u of each, 48 u L + 8 u d, the
-/// length of the direction 12 u d, the time 4 u L: below 100 u (d + L).
-class AdvancingPair {
- public:
-  AdvancingPair(ContinuousContactKind kind, const FeaturePoints& x) : polygon_(kind, x) {}
-
-  double size() const { return polygon_.size(); }
-
-  NearestPoint nearestAt(double t) {
-    for (int k = 0; k < polygon_.count(); ++k) corners_[k] = polygon_.at(k, t);
-    return nearestPoint(polygon_, corners_);
-  }
-
-  /// A unit direction from one feature to the other, at the time of nearestAt(). The
-  /// first attempt is the plain one. Pairs of nearly parallel edges, slivers and
-  /// distances far below the size of the features may need others: rounding hides which
-  /// corners are at the height of the nearest point.
-  Vec direction(const NearestPoint& near, int attempt) const {
-    const bool is_corner = near.corner >= 0, is_inside = !is_corner && near.side < 0;
-    Vec n = near.point;
-    if (is_inside && attempt == 0)
-      n = (dot(near.normal, near.point) < 0 ? -1. : 1.) * near.normal;
-    const double length =
-        is_inside && attempt == 0 ? std::sqrt(dot(n, n)) : near.distance;
-    if (!(length > 0)) return {0, 0, 0};
-    n = (1 / length) * n;
-    const int last = polygon_.count() - 1;
-    if (last > 1 && (attempt == 4 || (is_inside && attempt > 0)))
-      return perpendicular(n, corners_[1] - corners_[0], corners_[last] - corners_[0]);
-    if (is_inside || (is_corner && attempt < 2)) return n;
-    const Vec& base = corners_[is_corner ? near.corner : near.side];
-    const Vec side = is_corner ? Vec{0, 0, 0} : corners_[polygon_.next(near.side)] - base;
-    if (!is_corner) n = perpendicular(n, side);
-    if (attempt == 0) return n;
-    if (!is_corner) n = perpendicular(n, side);
-    if (attempt == 1) return n;
-    int lowest = 0;
-    for (int k = 1; k <= last; ++k)
-      if (dot(n, corners_[k]) < dot(n, corners_[lowest])) lowest = k;
-    const Vec other = corners_[lowest] - base;
-    if (attempt == 2) return perpendicular(n, side, other);
-    // The side from the end of this one to the lowest corner.
-    return perpendicular(perpendicular(n, near.along < 0.5 ? other : other - side),
-                         near.along < 0.5 ? other : other - side);
-  }
-
-  /// The longest step that a direction of the nearest points proves.
-  /// @param least  d and the margin
-  Step longestStep(const NearestPoint& near, double d, double least, double t,
-                   double t_max) const {
-    Step best{t, 0};
-    for (int attempt = 0; attempt < kAttempts; ++attempt) {
-      const Vec n = direction(near, attempt);
-      best = fixedStep(n, least, t);
-      if (best.until > t_max) return best;
-      const Step turned = turningStep(turning(near, n), d, least, t);
-      if (turned.until > best.until) best = turned;
-      if (best.until > t) return best;
-    }
-    return best;
-  }
-
- private:
-  static constexpr int kAttempts = 5;
-
-  Vec velocity(int corner) const { return polygon_.t1(corner) - polygon_.t0(corner); }
-
-  /// The direction as it turns with the features. Any turn would be right.
-  TurningDirection turning(const NearestPoint& near, const Vec& n) const {
-    const auto across = [&n](const Vec& v) { return v - dot(v, n) * n; };
-    if (near.corner >= 0) return {n, (1 / near.distance) * across(velocity(near.corner))};
-    if (near.side >= 0) {
-      const int next = polygon_.next(near.side);
-      const Vec side = corners_[next] - corners_[near.side], from = velocity(near.side),
-                change = velocity(next) - from;
-      const Vec beside = cross(side, n), moved = from + near.along * change;
-      const double square = dot(side, side);
-      return {n, (-dot(n, change) / square) * side +
-                     (dot(beside, moved) / (square * near.distance)) * beside};
-    }
-    const int last = polygon_.count() - 1;
-    const Vec v = corners_[1] - corners_[0], w = corners_[last] - corners_[0],
-              dv = velocity(1) - velocity(0), dw = velocity(last) - velocity(0);
-    const double length = dot(near.normal, n);
-    return {n, (1 / length) * across(cross(dv, w) + cross(v, dw))};
-  }
-
-  Step fixedStep(const Vec& n, double least, double t) const {
-    Step step{kInfinity, 0};
-    for (int k = 0; k < polygon_.count(); ++k) {
-      const double a = dot(n, polygon_.t0(k)) - least, b = dot(n, polygon_.t1(k)) - least;
-      if (a > 0 && b > 0) continue;
-      if (!(a > 0) && !(b > 0)) return {-kInfinity, 0};
-      const double at = a / (a - b);
-      if (!(a > 0)) {
-        if (!(at * kUp <= t)) return {-kInfinity, 0};
-      } else if (at * kDown < step.until) {
-        step = {at * kDown, a - b};
-      }
-    }
-    return step;
-  }
-
-  /// The same of a direction that turns, at the time of nearestAt().
-  Step turningStep(const TurningDirection& direction, double d, double least,
-                   double t) const {
-    const auto& [n, turn] = direction;
-    const double square = dot(turn, turn);
-    // While it turns by less than its length.
-    double longest = 1 / std::sqrt(square), rate = 0;
-    if (!(longest > 0)) return {-kInfinity, 0};
-    for (int k = 0; k < polygon_.count(); ++k) {
-      const Vec c = corners_[k], change = velocity(k);
-      const double gap = dot(n, c) - least,
-                   closing = dot(n, change) + dot(turn, c) - d * dot(n, turn),
-                   bend = dot(turn, change) - 0.5 * d * square;
-      if (!(gap > 0)) return {-kInfinity, 0};
-      const double root = firstRoot(gap, closing, bend);
-      if (root < longest) {
-        longest = root;
-        rate = -closing;
-      }
-    }
-    return {t + longest * kDown, rate};
-  }
-
-  DifferencePolygon polygon_;
-  Vec corners_[DifferencePolygon::kMaxCorners];
-};
-
-/// The features that the nearest point of a polygon belongs to.
 void setNearest(ContinuousContactKind kind, const NearestPoint& near,
                 const int (&number)[4], DistanceContact& out) {
   const auto set = [&](ContinuousContactKind part, int i, int j, int k) {
@@ -285,6 +192,100 @@ void setNearest(ContinuousContactKind kind, const NearestPoint& near,
   const int other = near.side % 2 == 0 ? 2 : 0;
   set(ContinuousContactKind::kVertexEdge, kVertex[near.side], other, other + 1);
 }
+
+namespace {
+
+/// The features of one query, as a polygon, and proofs that they are apart.
+///
+/// A fixed direction n: the corners are linear functions of t along n. A product with a
+/// corner is off by 5 u L, and n is below 1 + 5 u: the margin needs 16 u (d + L).
+///
+/// A direction that turns, while it turns by less than its length: (n + tau m) . (c + tau
+/// c') for each corner, at most d |n + tau m| <= d (1 + tau n . m + tau^2 m^2 / 2) (1 + 8
+/// u) + rest, since the root of 1 + x is at most 1 + x / 2. The term with n . m is
+/// rounding as a rule, but not in slivers, where m is a quotient by a small area. With c
+/// 8 u L off and c', below 2 L, 4 u L off, the three coefficients are off by 11 u L, 24 u
+/// L and 12 u L + 4 u d, if times tau. The root adds 8 u of each, 48 u L + 8 u d, the
+/// length of the direction 12 u d, the time 4 u L: below 100 u (d + L).
+class AdvancingPair {
+ public:
+  AdvancingPair(ContinuousContactKind kind, const FeaturePoints& x) : polygon_(kind, x) {
+    for (int k = 0; k < polygon_.count(); ++k)
+      velocities_[k] = polygon_.t1(k) - polygon_.t0(k);
+  }
+
+  double size() const { return polygon_.size(); }
+
+  NearestPoint nearestAt(double t) {
+    for (int k = 0; k < polygon_.count(); ++k) corners_[k] = polygon_.at(k, t);
+    return nearestPoint(polygon_, corners_);
+  }
+
+  Vec direction(const NearestPoint& near, int attempt) const {
+    return directionApart(polygon_, corners_, near, attempt);
+  }
+
+  /// The longest step that a direction of the nearest points proves.
+  /// @param least  d and the margin
+  Step longestStep(const NearestPoint& near, double d, double least, double t,
+                   double t_max) const {
+    Step best{t, 0};
+    for (int attempt = 0; attempt < kDirectionAttempts; ++attempt) {
+      const Vec n = direction(near, attempt);
+      best = fixedStep(n, least, t);
+      if (best.until > t_max) return best;
+      const Step turned = turningStep(
+          {n, turnApart(polygon_, corners_, velocities_, near, n)}, d, least, t);
+      if (turned.until > best.until) best = turned;
+      if (best.until > t) return best;
+    }
+    return best;
+  }
+
+ private:
+  Step fixedStep(const Vec& n, double least, double t) const {
+    Step step{kInfinity, 0};
+    for (int k = 0; k < polygon_.count(); ++k) {
+      const double a = dot(n, polygon_.t0(k)) - least, b = dot(n, polygon_.t1(k)) - least;
+      if (a > 0 && b > 0) continue;
+      if (!(a > 0) && !(b > 0)) return {-kInfinity, 0};
+      const double at = a / (a - b);
+      if (!(a > 0)) {
+        if (!(at * kUp <= t)) return {-kInfinity, 0};
+      } else if (at * kDown < step.until) {
+        step = {at * kDown, a - b};
+      }
+    }
+    return step;
+  }
+
+  /// The same of a direction that turns, at the time of nearestAt().
+  Step turningStep(const TurningDirection& direction, double d, double least,
+                   double t) const {
+    const auto& [n, turn] = direction;
+    const double square = dot(turn, turn);
+    // While it turns by less than its length.
+    double longest = 1 / std::sqrt(square), rate = 0;
+    if (!(longest > 0)) return {-kInfinity, 0};
+    for (int k = 0; k < polygon_.count(); ++k) {
+      const Vec c = corners_[k], change = velocities_[k];
+      const double gap = dot(n, c) - least,
+                   closing = dot(n, change) + dot(turn, c) - d * dot(n, turn),
+                   bend = dot(turn, change) - 0.5 * d * square;
+      if (!(gap > 0)) return {-kInfinity, 0};
+      const double root = firstRoot(gap, closing, bend);
+      if (root < longest) {
+        longest = root;
+        rate = -closing;
+      }
+    }
+    return {t + longest * kDown, rate};
+  }
+
+  DifferencePolygon polygon_;
+  Vec corners_[DifferencePolygon::kMaxCorners];
+  Vec velocities_[DifferencePolygon::kMaxCorners];
+};
 
 /// Ascending numbers, and of two edges or vertices the first pair's first.
 void order(ContinuousContactKind kind, DistanceContact& out) {

@@ -93,6 +93,35 @@ DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoint
 void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                       double (&position)[3], double (&normal)[3]);
 
+// Parts of the advancement, for features on other paths.
+
+/// @brief The number of directions that directionApart() proposes.
+constexpr int kDirectionAttempts = 5;
+
+/// @brief A unit direction from the first feature to the second at one time; zero if
+/// there is none. The first attempt is the plain one. Pairs of nearly parallel edges,
+/// slivers and distances far below the size of the features may need others: rounding
+/// hides which corners are at the height of the nearest point.
+/// @param corners  of the polygon, at this time
+Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
+                   const NearestPoint& near, int attempt);
+
+/// @brief How the direction n of the nearest points turns with the features, by time. For
+/// a proof any turn would be right.
+/// @param velocities  of the corners
+Vec turnApart(const DifferencePolygon& polygon, const Vec* corners, const Vec* velocities,
+              const NearestPoint& near, const Vec& n);
+
+/// @brief The first time at which gap + rate tau + bend tau^2 is 0, for gap > 0; infinity
+/// without one. It is the root of a polynomial whose coefficients differ by less than 8
+/// units in the last place.
+double firstRoot(double gap, double rate, double bend);
+
+/// @brief Sets the features that the nearest point of a polygon belongs to.
+/// @param number  of the points of the pair
+void setNearest(ContinuousContactKind kind, const NearestPoint& near,
+                const int (&number)[4], DistanceContact& out);
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -84,8 +84,10 @@ Name nameOf(const FeatureCandidate& candidate) {
 
 class CandidateList {
  public:
-  CandidateList(const MotionBody& a, const MotionBody& b)
-      : a_(a), b_(b), margin_(MotionTolerance(a, b, 0).touching) {}
+  CandidateList(const MotionBody& a, const MotionBody& b, double min_distance)
+      : a_(a),
+        b_(b),
+        margin_(min_distance + MotionTolerance(a, b, min_distance).touching) {}
 
   void add(const NearTriangles& near) {
     const BodyTriangle a = a_.triangle(near.place[0]), b = b_.triangle(near.place[1]);
@@ -134,11 +136,11 @@ class CandidateList {
 }  // namespace
 
 bool candidatesOfMotions(const MotionBody& a, const MotionBody& b,
-                         const CandidateSink& sink) {
+                         const CandidateSink& sink, double min_distance) {
   constexpr std::size_t kBlock = 1024;
   const BodiesNearOrigin near(a, b);
-  CandidateList list(near.a, near.b);
-  for (const NearTriangles& triangles : nearTriangles(near.a, near.b))
+  CandidateList list(near.a, near.b, min_distance);
+  for (const NearTriangles& triangles : nearTriangles(near.a, near.b, min_distance))
     list.add(triangles);
   const std::vector<FeatureCandidate> all = list.take();
   for (std::size_t i = 0; i < all.size(); i += kBlock)

@@ -9,14 +9,15 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Hands the pairs of features of two bodies that may touch during t in [0, 1] to
-/// the sink: those that no box keeps apart. Each pair comes once, in ascending order of
-/// its vertices, VF first. All are collected before the first is handed out.
+/// @brief Hands the pairs of features of two bodies that may touch, or come within a
+/// distance, during t in [0, 1] to the sink: those that no box keeps apart. Each pair
+/// comes once, in ascending order of its vertices, VF first. All are collected before the
+/// first is handed out.
 /// @pre the floating-point mode is the default one
 /// @return whether the sink took them all
 /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
 bool candidatesOfMotions(const MotionBody& a, const MotionBody& b,
-                         const CandidateSink& sink);
+                         const CandidateSink& sink, double min_distance = 0);
 
 }  // namespace deformable
 }  // namespace detail

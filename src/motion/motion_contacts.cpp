@@ -8,31 +8,21 @@
 
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
+#include "motion/feature_advance.h"
 #include "query/contact_sink.h"
+#include "query/distance_contact.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
 
-/// A feature of a triangle as a triangle without area: a vertex, or an edge whose second
-/// end is repeated.
-BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second) {
-  BodyTriangle out = triangle;
-  const unsigned corner[3] = {first, second, second};
-  for (int k = 0; k < 3; ++k) {
-    out.vertex[k] = triangle.vertex[corner[k]];
-    for (auto frame : {0, 1}) out.corner[frame][k] = triangle.corner[frame][corner[k]];
-  }
-  return out;
-}
-
 class FeatureContacts {
  public:
   FeatureContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options)
       : body_{&a, &b},
         options_(options),
-        tolerance_(a, b, 0),
+        tolerance_(a, b, options.min_distance),
         // Rigid meshes have no owners. Which contacts a first-contact query drops is
         // known at the end only.
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
@@ -113,6 +103,7 @@ class FeatureContacts {
 
   void addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
                double last) {
+    if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
     const FeaturePair pair = featurePair(bit);
     BodyTriangle x = a, y = b;
     if (pair.kind == ContinuousContactKind::kEdgeEdge) {
@@ -133,6 +124,17 @@ class FeatureContacts {
     put(a, b, bit, t,
         whole.proveContact(
             t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max)));
+  }
+
+  void addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
+                         double last) {
+    FeaturePairMotion motion(body_[0]->path(), a, body_[1]->path(), b, bit, t, last,
+                             tolerance_);
+    if (options_.ignores_initially_closer && t == 0) motion.ignoreInitiallyCloser();
+    if (motion.advance(t, counts_) == TrianglePairMotion::Answer::kApart) return;
+    const DistanceContact found = motion.contactAt(
+        t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
+    sink_.add(contactOf(idsOf(bit, a, b), found, false));
   }
 
   void put(const BodyTriangle& a, const BodyTriangle& b, int bit, double lo, double hi) {
@@ -172,44 +174,76 @@ void count(const MotionCounts& from, StageCounts& to) {
   to.triangle_pairs += from.triangle_pairs;
 }
 
+MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
+  MotionQueryOptions wanted;
+  wanted.toc_err = options.toc_err;
+  // The first contact of triangles may be one to ignore.
+  wanted.all = options.query == ContinuousQuery::kAll || options.ignores_initially_closer;
+  wanted.last = options.t_max;
+  wanted.distance = options.min_distance;
+  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
+  // Features are advanced by directions that turn, which takes fewer steps.
+  if (options.min_distance > 0) wanted.max_steps = 256;
+  return wanted;
+}
+
+/// The contacts of triangles that may be the first.
+MotionAnswer firstTriangles(const MotionBody& a, const MotionBody& b,
+                            MotionAnswer touching, MotionQueryOptions& wanted) {
+  wanted.all = true;
+  wanted.last = touching.contacts.front().toc_hi;
+  MotionAnswer first = queryMotions(a, b, wanted);
+  // A graze has a bracket without width, at whose end another division of the step
+  // may see nothing yet. Then the first contact found stands alone.
+  return first.contacts.empty() ? touching : first;
+}
+
+/// Adds the contacts of features, and crossings, of triangles in contact until a time.
+void addFeatures(const MotionAnswer& triangles, double last, const QueryOptions& options,
+                 const FeatureContacts& unmoved, FeatureContacts& features,
+                 QueryAnswer& answer) {
+  for (const MotionContact& contact : triangles.contacts) {
+    if (contact.toc_lo == 0 && (options.all_crossings || answer.crossings.empty()))
+      unmoved.addCrossings(contact, answer.crossings);
+    features.add(contact, last);
+  }
+  if (options.all_crossings) sortCrossings(answer.crossings);
+}
+
+/// Adds the contacts of features, and crossings, of two bodies.
+/// @param wanted  what gave the triangles
+void addFeatures(const MotionBody& a, const MotionBody& b, MotionAnswer triangles,
+                 MotionQueryOptions wanted, const QueryOptions& options,
+                 FeatureContacts& features, QueryAnswer& answer) {
+  if (!wanted.all) triangles = firstTriangles(a, b, std::move(triangles), wanted);
+  const FeatureContacts unmoved(a, b, options);
+  addFeatures(triangles, wanted.last, options, unmoved, features, answer);
+  if (!features.sink().contacts().empty() || answer.hasCrossing()) return;
+  // Features that pass at the distance of the tolerance may round differently than
+  // their triangles.
+  if (!(options.min_distance > 0)) return features.addNearest(triangles.contacts.front());
+  // Triangles that were given up may be apart.
+  if (wanted.last == options.t_max) return;
+  wanted.last = options.t_max;
+  addFeatures(queryMotions(a, b, wanted), wanted.last, options, unmoved, features,
+              answer);
+}
+
 }  // namespace
 
 QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
                                 const QueryOptions& options) {
-  MotionQueryOptions wanted;
-  wanted.toc_err = options.toc_err;
-  wanted.all = options.query == ContinuousQuery::kAll;
-  wanted.last = options.t_max;
-  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
+  const MotionQueryOptions wanted = motionOptionsOf(options);
   MotionAnswer touching = queryMotions(a, b, wanted);
   QueryAnswer answer;
   count(touching.counts, answer.counts);
   if (touching.contacts.empty()) return answer;
   const BodiesNearOrigin near(a, b);
   FeatureContacts features(near.a, near.b, options);
-  if (options.stop_at_crossing) {
+  if (options.stop_at_crossing)
     features.addNearest(touching.contacts.front());
-  } else {
-    if (!wanted.all) {
-      wanted.all = true;
-      wanted.last = touching.contacts.front().toc_hi;
-      MotionAnswer first = queryMotions(a, b, wanted);
-      // A graze has a bracket without width, at whose end another division of the step
-      // may see nothing yet. Then the first contact found stands alone.
-      if (!first.contacts.empty()) touching = std::move(first);
-    }
-    FeatureContacts unmoved(a, b, options);
-    for (const MotionContact& contact : touching.contacts) {
-      if (contact.toc_lo == 0 && (options.all_crossings || answer.crossings.empty()))
-        unmoved.addCrossings(contact, answer.crossings);
-      features.add(contact, wanted.last);
-    }
-    if (options.all_crossings) sortCrossings(answer.crossings);
-    // Features that pass at the distance of the tolerance may round differently than
-    // their triangles.
-    if (features.sink().contacts().empty() && answer.crossings.empty())
-      features.addNearest(touching.contacts.front());
-  }
+  else
+    addFeatures(a, b, std::move(touching), wanted, options, features, answer);
   const double first_hi = features.sink().firstHi();
   answer.cut = features.sink().isCut();
   std::vector<std::deque<FeatureContact>> lists(1, features.sink().takeContacts());

@@ -16,6 +16,10 @@ namespace deformable {
 /// time is found within toc_err. Features touch only where their triangles touch, so that
 /// triangles are found first. Crossings at t = 0 are decided by signs of the vertices
 /// posed there, as for straight paths.
+///
+/// With a distance in the options features are in contact when they come within it, and a
+/// contact is that of the nearest parts, as for straight paths (distance_advance.h).
+/// toc_hi is then a time at which the features provably are within it.
 /// @param options  with stop_at_crossing the answer is the first contact of triangles,
 /// with the pair of features that is nearest at that time
 /// @pre the floating-point mode is the default one

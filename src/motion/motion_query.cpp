@@ -483,8 +483,11 @@ MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
   return MotionTraversal(near.a, near.b, options).run();
 }
 
-std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b) {
-  return MotionTraversal(a, b, MotionQueryOptions()).nearTriangles();
+std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b,
+                                         double distance) {
+  MotionQueryOptions options;
+  options.distance = distance;
+  return MotionTraversal(a, b, options).nearTriangles();
 }
 
 }  // namespace deformable

@@ -63,10 +63,12 @@ struct NearTriangles {
   double t0, t1;
 };
 
-/// @brief The pairs of triangles that no box keeps apart. A pair may come several times,
-/// with other spans. Outside of these the triangles do not touch.
+/// @brief The pairs of triangles that no box keeps apart by more than a distance. A pair
+/// may come several times, with other spans. Outside of these the triangles are further
+/// apart.
 /// @pre the floating-point mode is the default one
-std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b);
+std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b,
+                                         double distance = 0);
 
 }  // namespace deformable
 }  // namespace detail

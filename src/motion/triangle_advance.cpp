@@ -248,11 +248,9 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
   return most[0] + most[1];
 }
 
-/// The step during which the direction separates the triangles, at most to the end of the
-/// span; negative if it does not separate them now. The bound on the acceleration is that
-/// of all directions. For a step of at most H it is also the present acceleration along
-/// this direction plus H times the bound on the third derivative. H is doubled as long as
-/// the step allows it.
+/// The bound on the acceleration is that of all directions. For a step of at most H it is
+/// also the present acceleration along this direction plus H times the bound on the third
+/// derivative. H is doubled as long as the step allows it.
 double TrianglePairMotion::step(double t, const State& state,
                                 const Vec& direction) const {
   const Projection along(state, direction);

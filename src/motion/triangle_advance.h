@@ -70,6 +70,12 @@ struct MotionCounts {
 /// @brief Two triangles in a span of time.
 class TrianglePairMotion {
  public:
+  /// Positions and velocities of the corners at a time.
+  struct State {
+    Vec p[2][3];
+    Vec v[2][3];
+  };
+
   TrianglePairMotion(const MotionPath& path_a, const BodyTriangle& a,
                      const MotionPath& path_b, const BodyTriangle& b, double t0,
                      double t1, const MotionTolerance& tolerance);
@@ -95,20 +101,24 @@ class TrianglePairMotion {
   /// such time is found.
   double proveContact(double t, double width) const;
 
+  State at(double t) const;
+
+  /// @brief The step during which the direction provably keeps the triangles further
+  /// apart than the distance, at most to the end of the span; negative if it does not at
+  /// t.
+  double step(double t, const State& state, const Vec& direction) const;
+
+  /// @brief Bound on the relative acceleration of two vertices.
+  double acceleration() const { return acceleration_; }
+
   /// @brief How long after the time t of a contact a proof is looked for.
   static double bracketWidth(double t, double toc_err, double last) {
     return std::min(toc_err, last - t);
   }
 
  private:
-  struct State {
-    Vec p[2][3];
-    Vec v[2][3];
-  };
   /// Positions, velocities and accelerations of the corners along a direction.
   struct Projection;
-  State at(double t) const;
-  double step(double t, const State& state, const Vec& direction) const;
   double greatestApproach(double t, const Vec& direction) const;
   static bool isCrossingAt(const State& state);
   bool provesCrossing(const State& state) const;

@@ -24,6 +24,7 @@
 #include <fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <fcl/narrowphase/distance.h>
+#include <fcl/narrowphase/safe_displacements.h>
 
 namespace {
 
@@ -70,6 +71,7 @@ class Checks {
     ownMotion();
     contacts();
     candidates();
+    safeDisplacements();
     features();
     node();
     discrete();
@@ -255,6 +257,15 @@ class Checks {
                                 return true;
                               });
     check(total > 0, "continuousCandidates");
+  }
+
+  void safeDisplacements() {
+    const auto rest = makeSquare<Model>(), above = makeSquare<Model>();
+    check(fcl::safeSelfDisplacements(rest.get(), 1)[0] == 1, "safeSelfDisplacements");
+    const fcl::SafeDisplacements bounds = fcl::safeDisplacements(
+        rest.get(), at<S>(0, 0, 0), above.get(), at<S>(0, 0, 3), 9, 1);
+    check(std::abs(bounds.of_o1[0] - 1) < 1e-6 && std::abs(bounds.of_o2[0] - 1) < 1e-6,
+          "safeDisplacements");
   }
 
   void features() {

@@ -82,9 +82,9 @@ using ContinuousCandidateSink =
 /// @throws fcl::Exception when an argument or the sink is null, min_distance is negative
 /// or not finite, a geometry is not a triangle mesh, a motion class is neither FCL's nor
 /// a BoundedMotion, a mesh is not built or is in the middle of an update, a coordinate or
-/// a transform is not finite, or a triangle index is out of range; when min_distance is
-/// above 0 and a mesh turns. The exception of a vertex that is not finite may come after
-/// candidates were handed out.
+/// a transform is not finite, or a triangle index is out of range.
+/// The exception of a vertex that is not finite may come after candidates were handed
+/// out.
 /// @{
 
 /// @brief The candidates of a mesh with itself.

@@ -170,8 +170,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// features lie on an edge or at a vertex at the time of contact, the contact is that
   /// of these parts (VE or VV). It is listed once, at the earliest of such times.
   /// Features that share a vertex are no contact. A discrete collide() finds nothing at
-  /// the poses of a contact. The paths of two meshes must be straight: the query throws
-  /// if one of them turns.
+  /// the poses of a contact. If a mesh turns, a contact comes within d and the tolerance
+  /// of such a query.
   ///
   /// With a shape or an octree it acts on every path: d is the distance from the surface
   /// of the solid. Each triangle of the mesh, or the other shape, is a contact at the

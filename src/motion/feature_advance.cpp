@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/feature_advance.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mesh/feature_pairs.h"
+#include "motion/posed_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUnitRounding = 0x1p-53;
+/// Steps after which features that are still apart probably move along each other at
+/// nearly the distance, and after which they are given up.
+constexpr int kPlainSteps = 64, kMostSteps = 10000;
+
+/// A feature of one side of a pair. The ends of an edge are in the order of their ids.
+BodyTriangle sideOf(const FeaturePair& pair, const BodyTriangle& triangle, bool is_a) {
+  if (pair.kind == ContinuousContactKind::kVertexFace)
+    return pair.first_on_a == is_a ? featureOf(triangle, pair.first, pair.first)
+                                   : triangle;
+  unsigned first = is_a ? pair.first : pair.second, second = (first + 1) % 3;
+  if (static_cast<std::uint32_t>(triangle.vertex[second]) <
+      static_cast<std::uint32_t>(triangle.vertex[first]))
+    std::swap(first, second);
+  return featureOf(triangle, first, second);
+}
+
+/// Where a point of FeaturePoints is: the body, and the corner of its feature.
+struct PointPlace {
+  int body, corner;
+};
+
+PointPlace placeOf(ContinuousContactKind kind, bool first_on_a, int point) {
+  if (kind == ContinuousContactKind::kEdgeEdge) return {point / 2, point % 2};
+  const bool on_a = (point == 0) == first_on_a;
+  return {on_a ? 0 : 1, std::max(point - 1, 0)};
+}
+
+}  // namespace
+
+BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second) {
+  BodyTriangle out = triangle;
+  const unsigned corner[3] = {first, second, second};
+  for (int k = 0; k < 3; ++k) {
+    out.vertex[k] = triangle.vertex[corner[k]];
+    for (auto frame : {0, 1}) out.corner[frame][k] = triangle.corner[frame][corner[k]];
+  }
+  return out;
+}
+
+struct FeaturePairMotion::Moment {
+  TrianglePairMotion::State state;
+  /// Of the points at this time.
+  DifferencePolygon polygon;
+  Vec corners[DifferencePolygon::kMaxCorners];
+  Vec velocities[DifferencePolygon::kMaxCorners];
+  NearestPoint near;
+
+  Moment(const FeaturePairMotion& pair, double t)
+      : state(pair.motion_.at(t)), polygon(polygonOf(pair, state)) {
+    const auto velocity = [&](int point) {
+      const PointPlace at = placeOf(pair.kind_, pair.first_on_a_, point);
+      return state.v[at.body][at.corner];
+    };
+    for (int k = 0; k < polygon.count(); ++k) {
+      const CornerPoints points = DifferencePolygon::pointsOf(pair.kind_, k);
+      corners[k] = polygon.t0(k);
+      velocities[k] = velocity(points.second) - velocity(points.first);
+    }
+    near = nearestPoint(polygon, corners);
+  }
+
+ private:
+  static DifferencePolygon polygonOf(const FeaturePairMotion& pair,
+                                     const TrianglePairMotion::State& state) {
+    VertexPath x[4];
+    for (int i = 0; i < 4; ++i) {
+      const PointPlace at = placeOf(pair.kind_, pair.first_on_a_, i);
+      const Vec& p = state.p[at.body][at.corner];
+      x[i] = {{p.x, p.y, p.z}, {p.x, p.y, p.z}};
+    }
+    return DifferencePolygon(pair.kind_, {{&x[0], &x[1], &x[2], &x[3]}});
+  }
+};
+
+FeaturePairMotion::FeaturePairMotion(const MotionPath& path_a, const BodyTriangle& a,
+                                     const MotionPath& path_b, const BodyTriangle& b,
+                                     int pair, double t0, double t1,
+                                     const MotionTolerance& tolerance)
+    : kind_(featurePair(pair).kind),
+      first_on_a_(featurePair(pair).first_on_a),
+      tolerance_(tolerance),
+      a_(sideOf(featurePair(pair), a, true)),
+      b_(sideOf(featurePair(pair), b, false)),
+      motion_(path_a, a_, path_b, b_, t0, t1, tolerance_),
+      t1_(t1) {}
+
+// The position of the tolerance bounds what posed points are off along a unit direction.
+// While a direction turns it is at most 1.5 long. The rest is that of straight paths: see
+// AdvancingPair in distance_advance.cpp.
+double FeaturePairMotion::margin(double size) const {
+  return 1.5 * tolerance_.position + 128 * kUnitRounding * (tolerance_.distance + size);
+}
+
+// More than the margin, what a direction loses to rounding, and once more the position,
+// so that a step has a gap to use. The true distance is within the position and 64 u size
+// of the computed one.
+double FeaturePairMotion::touching(double size) const {
+  return 3 * tolerance_.position +
+         DistanceTolerance::kTouching * (tolerance_.distance + size);
+}
+
+void FeaturePairMotion::ignoreInitiallyCloser() {
+  const Moment start(*this, 0);
+  const double most = touching(start.polygon.size());
+  if (start.near.distance > tolerance_.distance * (1 + DistanceTolerance::kShare) + most)
+    return;
+  const double own = start.near.distance * (1 - 2 * DistanceTolerance::kShare) - 2 * most;
+  if (own > 0) tolerance_.distance = own;
+}
+
+FeaturePairMotion::Answer FeaturePairMotion::advance(double& t,
+                                                     MotionCounts& counts) const {
+  for (int steps = 0;; ++steps) {
+    const Moment moment(*this, t);
+    ++counts.steps;
+    const double d = tolerance_.distance,
+                 share = steps < kPlainSteps ? 0 : DistanceTolerance::kShare;
+    if (moment.near.distance <= d + (share * d + touching(moment.polygon.size())))
+      return Answer::kContact;
+    if (steps == kMostSteps) return Answer::kGivenUp;
+    const double h = longestStep(t, moment);
+    if (h >= t1_ - t) return Answer::kApart;
+    // Rounded down by more than the rounding of the step. The tolerance includes the
+    // rounding of the time.
+    const double next = t + h * (1 - 0x1p-48);
+    if (!(next > t)) return Answer::kGivenUp;
+    t = next;
+  }
+}
+
+double FeaturePairMotion::longestStep(double t, const Moment& moment) const {
+  const double longest = t1_ - t;
+  double best = -1;
+  for (int attempt = 0; attempt < kDirectionAttempts && !(best > 0); ++attempt) {
+    const Vec n = directionApart(moment.polygon, moment.corners, moment.near, attempt);
+    best = std::max(best, motion_.step(t, moment.state, first_on_a_ ? n : -1. * n));
+    if (best >= longest) return best;
+    const Vec turn =
+        turnApart(moment.polygon, moment.corners, moment.velocities, moment.near, n);
+    best = std::max(best, turningStep(moment, n, turn, longest));
+  }
+  return best;
+}
+
+// A direction n + h m that turns, for h |m| <= 1/2. For each corner c with the velocity
+// c'
+//   (n + h m) . c(t + h) >= (n + h m) . (c + h c') - |n + h m| M h^2 / 2,
+// and it proves a distance above d while this is more than
+//   d |n + h m| <= d (1 + h n . m + h^2 m^2 / 2),
+// since the root of 1 + x is at most 1 + x / 2. |n + h m| is at most 1.5. Products with n
+// and with h m round by less than 8 u L and 4 u d, and the root by 8 u of each term: less
+// than 128 u (d + L) together, but for the parts with c', which twice the rate bounds.
+double FeaturePairMotion::turningStep(const Moment& moment, const Vec& n, const Vec& turn,
+                                      double longest) const {
+  constexpr double kMostTurn = 0.5, kMostLength = 1.5;
+  const double d = tolerance_.distance, square = dot(turn, turn);
+  double h = std::min(longest, kMostTurn / std::sqrt(square));
+  if (!(h > 0)) return -1;
+  const double least = d + margin(moment.polygon.size());
+  for (int k = 0; k < moment.polygon.count(); ++k) {
+    const Vec &c = moment.corners[k], &change = moment.velocities[k];
+    const double gap = dot(n, c) - least,
+                 rate = dot(n, change) + dot(turn, c) - d * dot(n, turn) -
+                        2 * tolerance_.rate,
+                 bend = dot(turn, change) - 0.5 * d * square -
+                        0.5 * kMostLength * motion_.acceleration();
+    if (!(gap > 0)) return -1;
+    h = std::min(h, firstRoot(gap, rate, bend));
+  }
+  return h;
+}
+
+DistanceContact FeaturePairMotion::contactAt(double t, double width) const {
+  constexpr int kNumber[] = {0, 1, 2, 3};
+  const Moment moment(*this, t);
+  DistanceContact out;
+  out.is_contact = true;
+  setNearest(kind_, moment.near, kNumber, out);
+  out.toc_lo = out.toc_hi = t;
+  // A contact at the beginning has exactly the time 0.
+  if (t > 0) out.toc_hi = proveWithin(t, width);
+  return out;
+}
+
+/// A time in (t, t + width] at which the features provably are within d; t if none is
+/// found.
+double FeaturePairMotion::proveWithin(double t, double width) const {
+  const Moment moment(*this, t);
+  double speed = 0;
+  for (int k = 0; k < moment.polygon.count(); ++k)
+    speed = std::max(speed, norm(moment.velocities[k]));
+  const double longest = std::min(width, 1 - t), factor = 4;
+  // A double has fewer than 1100 doublings.
+  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
+       h *= factor) {
+    const double time = std::min(t + std::min(h, longest), 1.);
+    if (!(time > t)) return t;
+    const Moment later(*this, time);
+    const double error =
+        DistanceTolerance(tolerance_.distance, later.polygon.size()).distance_error;
+    if (later.near.distance + error + tolerance_.position <= tolerance_.distance)
+      return time;
+    if (h >= longest) return t;
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

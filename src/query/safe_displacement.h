@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// How far each vertex may move from its place at t = 1 before any two features can come
+// within a distance.
+#ifndef FCL_CCD_QUERY_SAFE_DISPLACEMENT_H
+#define FCL_CCD_QUERY_SAFE_DISPLACEMENT_H
+
+#include <vector>
+
+#include "elementary/feature_points.h"
+#include "tree/mesh_instance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A proved lower bound on the distance of two features; 0 if nothing is proved.
+/// @param kind  kVertexFace, kEdgeEdge, kVertexEdge or kVertexVertex
+/// @param x  paths whose both ends are the same
+double leastDistance(ContinuousContactKind kind, const FeaturePoints& x);
+
+/// @brief Lowers the bounds of the vertices so that, if no vertex moves further than its
+/// bound, all VF and EE pairs stay further apart than min_distance. Vertices of a pair
+/// that may be as near already get 0.
+/// @param a, b  one object twice: the pairs of a mesh with itself
+/// @param most  finite, above 0: bounds that are larger are not needed
+/// @param bounds_a, bounds_b  one for each vertex, at most `most`; a single vector for
+/// one mesh
+/// @pre a and b have owners
+/// @throws NonFiniteVertex
+void lowerToSafe(const MeshInstance& a, const MeshInstance& b, double min_distance,
+                 double most, std::vector<double>& bounds_a,
+                 std::vector<double>& bounds_b);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif
