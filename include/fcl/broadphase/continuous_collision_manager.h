@@ -212,7 +212,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// request.
   void setFilter(Object* object, const ContinuousFilter& filter);
   /// @brief Sets whether queries of all objects that take a request look for contacts of
-  /// the object with itself. It must be a mesh.
+  /// the object with itself, whatever its group and mask are; groups and masks of its
+  /// triangles act. It must be a mesh.
   void setSelfCollision(Object* object, bool enabled);
 
   /// @brief The objects, in the order of their registration.
