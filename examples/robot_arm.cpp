@@ -1,77 +1,79 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// A robot arm of three links among boxes: first contact of all, with the pair named. Each
-// link goes from its pose at the beginning of the step to that at the end. Neighbours
-// touch in their joint, so links are in a group that does not collide with itself.
+// A robot arm of two meshes and a capsule, a soft pad and a sensor map: first contact of
+// all, with the pair named. Links touch in joints: their group does not meet itself.
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include <fcl/broadphase/continuous_collision_manager.h>
-#include <fcl/math/bv/OBBRSS.h>
-#include <fcl/math/motion/interp_motion.h>
+#include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/geometry/geometric_shape_to_BVH_model.h>
+#include <fcl/geometry/octree/octree.h>
+#include <fcl/math/motion/screw_motion.h>
+#include <fcl/math/motion/translation_motion.h>
 
-namespace {
+using namespace fcl;
+using Geometry = std::shared_ptr<CollisionGeometryd>;
 
-using fcl::Vector3d;
-using Object = fcl::ContinuousCollisionObjectd;
-constexpr int kLinks = 3;
-
-/// The surface of a box from `low` to `high`.
-std::shared_ptr<fcl::BVHModel<fcl::OBBRSSd>> makeBox(Vector3d low, Vector3d high) {
-  const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                           {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  const auto corner = [&](int i) {
-    return Vector3d(i & 1 ? high.x() : low.x(), i & 2 ? high.y() : low.y(),
-                    i & 4 ? high.z() : low.z());
-  };
-  auto mesh = std::make_shared<fcl::BVHModel<fcl::OBBRSSd>>();
-  mesh->beginModel();
-  for (const auto& f : faces)
-    for (int k = 1; k < 3; ++k)
-      mesh->addTriangle(corner(f[0]), corner(f[k]), corner(f[k + 1]));
-  mesh->endModel();
-  return mesh;
+/// A square around (2.5, 0.5, 0), at right angles to y. It bulges towards the arm.
+Geometry makePad() {
+  const auto pad = std::make_shared<DeformableBVHModel<>>();
+  std::vector<Vector3d> p{{2.5, .5, 0}};
+  for (int i = 0; i < 4; ++i) p.emplace_back(i & 2 ? 2.8 : 2.2, .5, i & 1 ? .3 : -.3);
+  pad->beginModel();
+  pad->addSubModel(p, {{0, 1, 2}, {0, 2, 4}, {0, 4, 3}, {0, 3, 1}});
+  pad->endModel();
+  p[0].y() = .4;
+  pad->beginUpdateModel();
+  pad->updateSubModel(p);
+  pad->endUpdateModel();
+  return pad;
 }
 
-/// The motion of a link when each joint turns from the angle 0 to `angle`.
-std::shared_ptr<fcl::MotionBased> linkMotion(int link, double angle) {
-  Vector3d from(link, 0, 0), to(0, 0, 0);
-  for (int k = 1; k <= link; ++k)
-    to += Vector3d(std::cos(k * angle), std::sin(k * angle), 0);
-  const fcl::AngleAxisd turn((link + 1) * angle, Vector3d::UnitZ());
-  return std::make_shared<fcl::InterpMotion<double>>(
-      fcl::Matrix3d::Identity(), from, turn.matrix(), to, Vector3d(0, 0, 0));
+/// A shelf of 20 x 2 x 20 occupied cells of 5 cm, from (2, 0.8, -0.5) on.
+Geometry makeMap() {
+  const auto map = std::make_shared<octomap::OcTree>(.05);
+  for (int i = 0; i < 800; ++i)
+    map->updateNode(2.025 + .05 * (i % 20), .825 + .05 * (i / 400),
+                    -.475 + .05 * (i / 20 % 20), true);
+  return std::make_shared<OcTreed>(map);
 }
 
-}  // namespace
+/// Each joint turns by 0.5 radians. The geometry has the pose in the frame of its link.
+std::shared_ptr<MotionBased> linkMotion(int link, const Transform3d& pose) {
+  const AngleAxisd turn(.5, Vector3d::UnitZ());
+  Transform3d from = Translation3d(link, 0, 0) * pose, to(turn);
+  for (int k = 0; k < link; ++k) to = to * Translation3d(1, 0, 0) * turn;
+  return std::make_shared<ScrewMotion<double>>(from, to * pose);
+}
 
 int main() {
-  const char* names[] = {"link 1", "link 2", "link 3", "shelf", "wall"};
-  std::vector<std::shared_ptr<Object>> objects;
-  for (int i = 0; i < kLinks; ++i)
-    objects.push_back(
-        std::make_shared<Object>(makeBox({0, -.1, -.1}, {1, .1, .1}), linkMotion(i, .5)));
-  const auto rest = linkMotion(0, 0);
-  objects.push_back(std::make_shared<Object>(makeBox({2, .8, -1}, {3, 2, 1}), rest));
-  objects.push_back(std::make_shared<Object>(makeBox({-3, -1, -1}, {-2, 1, 1}), rest));
-
-  fcl::ContinuousCollisionManagerd manager;
-  fcl::ContinuousFilter links{1, 2, {}, {}}, scene{2, 1, {}, {}};  // groups 1 and 2
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    objects[i]->setUserData(const_cast<char*>(names[i]));
-    manager.registerObject(objects[i].get());
-    manager.setFilter(objects[i].get(), i < kLinks ? links : scene);
+  const Transform3d here(Translation3d(0, 0, 0)), along_x(Translation3d(.5, 0, 0));
+  const auto link = std::make_shared<BVHModel<OBBRSSd>>();
+  generateBVHModel(*link, Boxd(1, .2, .2), along_x);
+  const AngleAxisd z_to_x(std::acos(0.), Vector3d::UnitY());
+  const auto rest = std::make_shared<TranslationMotion<double>>(here, here);
+  const auto capsule = std::make_shared<Capsuled>(.1, .8);
+  ContinuousCollisionObjectd objects[] = {{link, linkMotion(0, here)},
+                                          {link, linkMotion(1, here)},
+                                          {capsule, linkMotion(2, along_x * z_to_x)},
+                                          {makePad(), rest},
+                                          {makeMap(), rest}};
+  const char* names[] = {"link 1", "link 2", "link 3", "pad", "map"};
+  const ContinuousFilter arm{1, 2, {}, {}}, others{2, 1, {}, {}};  // groups 1 and 2
+  ContinuousCollisionManagerd manager;
+  for (int i = 0; i < 5; ++i) {
+    manager.registerObject(&objects[i]);
+    manager.setFilter(&objects[i], i < 3 ? arm : others);
   }
-  fcl::ContinuousContactRequestd request;
-  request.query = fcl::ContinuousQuery::kFirst;
-  fcl::ContinuousManagerResultd result;
+  ContinuousContactRequestd request;
+  request.query = ContinuousQuery::kFirst;
+  ContinuousManagerResultd result;
   manager.collide(request, result);
-  if (!result.is_collide) return 1;
-  const std::string one = static_cast<const char*>(result.pairs[0].o1->getUserData()),
-                    two = static_cast<const char*>(result.pairs[0].o2->getUserData());
-  std::printf("%s and %s: %.4f\n", one.c_str(), two.c_str(), result.time_of_contact);
-  return one == "link 3" && two == "shelf" ? 0 : 1;
+  const auto& first = result.pairs.at(0);
+  std::printf("%s and %s: %.4f\n", names[first.o1 - objects], names[first.o2 - objects],
+              result.time_of_contact);
+  return first.o1 == &objects[2] && first.o2 == &objects[3] ? 0 : 1;
 }
