@@ -138,8 +138,6 @@ Scene makeScene(const Kind& kind, std::size_t count) {
   return scene;
 }
 
-bool isMesh(const Object* object) { return object->getObjectType() == fcl::OT_BVH; }
-
 bool isInContact(const Object* o1, const Object* o2) {
   fcl::ContinuousContactRequest<double> request;
   request.query = fcl::ContinuousQuery::kFirst;
@@ -149,7 +147,7 @@ bool isInContact(const Object* o1, const Object* o2) {
   return result.is_collide;
 }
 
-/// The pairs of meshes in contact, found by sorting the sweeps along x.
+/// The pairs in contact, found by sorting the sweeps along x.
 std::set<ObjectPair> sortedPairsInContact(const Scene& scene) {
   std::vector<std::size_t> order(scene.objects.size());
   for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
@@ -164,7 +162,7 @@ std::set<ObjectPair> sortedPairsInContact(const Scene& scene) {
       if (b[1] > a[4] || a[1] > b[4] || b[2] > a[5] || a[2] > b[5]) continue;
       Object *one = scene.objects[std::min(order[i], order[k])],
              *two = scene.objects[std::max(order[i], order[k])];
-      if (isMesh(one) && isMesh(two) && isInContact(one, two)) out.emplace(one, two);
+      if (isInContact(one, two)) out.emplace(one, two);
     }
   return out;
 }
@@ -175,7 +173,7 @@ bool collect(Object* o1, Object* o2, void* pairs) {
 }
 
 bool collectContact(Object* o1, Object* o2, void* pairs) {
-  if (isMesh(o1) && isMesh(o2) && isInContact(o1, o2)) collect(o1, o2, pairs);
+  if (isInContact(o1, o2)) collect(o1, o2, pairs);
   return false;
 }
 
@@ -199,8 +197,7 @@ PairTimes measurePairs(const Scene& scene, const Manager& manager,
   out.alone = medianOf(runs, [&] {
     meet = 0;
     for (const ObjectPair& pair : box_pairs)
-      if (isMesh(pair.first) && isMesh(pair.second))
-        meet += isInContact(pair.first, pair.second);
+      meet += isInContact(pair.first, pair.second);
   });
   const std::set<ObjectPair> truth = sortedPairsInContact(scene),
                              found(contacts.begin(), contacts.end());
