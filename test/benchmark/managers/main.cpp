@@ -196,8 +196,7 @@ PairTimes measurePairs(const Scene& scene, const Manager& manager,
   std::size_t meet = 0;
   out.alone = medianOf(runs, [&] {
     meet = 0;
-    for (const ObjectPair& pair : box_pairs)
-      meet += isInContact(pair.first, pair.second);
+    for (const ObjectPair& pair : box_pairs) meet += isInContact(pair.first, pair.second);
   });
   const std::set<ObjectPair> truth = sortedPairsInContact(scene),
                              found(contacts.begin(), contacts.end());
