@@ -27,22 +27,48 @@ OctreeCellNumber childOf(const OctreeCellNumber& parent, unsigned i) {
   return child;
 }
 
+/// The number of levels below the children of an opened node that its boxes come from.
+/// More of them make the boxes tighter, and read nodes that the query may not need.
+constexpr int kLevelsAhead = 2;
+
 }  // namespace
+
+OctreeCells::Bounds OctreeCells::Bounds::of(const OctreeCellNumber& name) {
+  Bounds bounds;
+  const unsigned width = 1U << (OctreeCellNumber::kDepth - name.depth);
+  for (int k = 0; k < 3; ++k) {
+    const unsigned first = name.key[k] & ~(width - 1);
+    bounds.lower[k] = static_cast<std::uint16_t>(first);
+    bounds.upper[k] = static_cast<std::uint16_t>(first + width - 1);
+  }
+  return bounds;
+}
+
+OctreeCells::Bounds OctreeCells::Bounds::none() {
+  return {{0xffff, 0xffff, 0xffff}, {0, 0, 0}};
+}
+
+void OctreeCells::Bounds::add(const Bounds& other) {
+  for (int k = 0; k < 3; ++k) {
+    lower[k] = std::min(lower[k], other.lower[k]);
+    upper[k] = std::max(upper[k], other.upper[k]);
+  }
+}
 
 OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size)
     : nodes_(std::move(nodes)), root_size_(root_size) {
   constexpr std::uint16_t kMiddle = 1U << (OctreeCellNumber::kDepth - 1);
   if (const void* root = nodes_->root()) add(root, {{kMiddle, kMiddle, kMiddle}, 0});
-  findBounds();
+  openUpperNodes();
 }
 
 void OctreeCells::add(const void* node, const OctreeCellNumber& name) {
   if (table_.size() >= std::numeric_limits<std::int32_t>::max())
     throw Exception("an octree has more cells near the other object than 2^31");
-  table_.push_back({node, name, 0, -1, -1, nodes_->isLeaf(node)});
+  table_.push_back({node, name, Bounds::of(name), 0, -1, -1, 0, nodes_->isLeaf(node)});
 }
 
-OctreeCells::Children OctreeCells::open(std::int32_t node) {
+OctreeCells::Children OctreeCells::addChildren(std::int32_t node) {
   const Node parent = at(node);
   if (parent.num_children >= 0) return {parent.first_child, parent.num_children};
   const auto first = static_cast<std::int32_t>(table_.size());
@@ -52,43 +78,59 @@ OctreeCells::Children OctreeCells::open(std::int32_t node) {
     for (unsigned i = 0; i < 8; ++i)
       if (children[i]) add(children[i], childOf(parent.name, i));
   }
-  Node& opened = table_[static_cast<std::size_t>(node)];
+  Node& opened = at(node);
   opened.first_child = first;
   opened.num_children = static_cast<std::int32_t>(table_.size()) - first;
   return {first, opened.num_children};
 }
 
-/// Opens the upper nodes of the octree, level by level. The boxes below these are within
-/// the bounds. The root itself is far too large: 65,536 cells wide.
-void OctreeCells::findBounds() {
+OctreeCells::Children OctreeCells::open(std::int32_t node) {
+  lookBelow(node, 1 + kLevelsAhead);
+  return {at(node).first_child, at(node).num_children};
+}
+
+void OctreeCells::lookBelow(std::int32_t node, int levels) {
+  if (at(node).is_leaf || at(node).levels >= levels) return;
+  const Children children = addChildren(node);
+  for (std::int32_t i = children.first; levels > 1 && i < children.first + children.count;
+       ++i)
+    lookBelow(i, levels - 1);
+  fit(node);
+  at(node).levels = static_cast<std::int8_t>(levels);
+}
+
+void OctreeCells::fit(std::int32_t node) {
+  const Node& parent = at(node);
+  Bounds bounds = Bounds::none();
+  for (std::int32_t i = 0; i < parent.num_children; ++i)
+    bounds.add(at(parent.first_child + i).bounds);
+  at(node).bounds = bounds;
+}
+
+/// Opens the upper nodes of the octree, level by level. The root itself is far too large:
+/// 65,536 cells wide.
+void OctreeCells::openUpperNodes() {
   constexpr int kMostOpened = 256;
-  std::fill(lower_, lower_ + 3, 0.5 * root_size_);
-  std::fill(upper_, upper_ + 3, -0.5 * root_size_);
   int num_opened = 0;
-  // Opening adds to the table.
-  for (std::int32_t i = 0; static_cast<std::size_t>(i) < table_.size(); ++i) {
-    if (!at(i).is_leaf && num_opened++ < kMostOpened) {
-      open(i);
-      continue;
-    }
-    is_empty_ = false;
-    const OctreeCellNumber& name = at(i).name;
-    const double size = name.size(root_size_);
-    for (int k = 0; k < 3; ++k) {
-      lower_[k] = std::min(lower_[k], name.index(k) * size);
-      upper_[k] = std::max(upper_[k], (name.index(k) + 1) * size);
-    }
-  }
+  // Opening adds to the table, below.
+  for (std::int32_t i = 0; static_cast<std::size_t>(i) < table_.size(); ++i)
+    if (!at(i).is_leaf && num_opened++ < kMostOpened)
+      addChildren(i);
+    else
+      is_empty_ = false;
+  for (auto i = static_cast<std::int32_t>(table_.size()) - 1; i >= 0; --i)
+    if (at(i).num_children >= 0) fit(i);
 }
 
 MotionBox OctreeCells::box(std::int32_t node) const {
-  const OctreeCellNumber& name = at(node).name;
-  const double size = name.size(root_size_);
+  const Bounds& bounds = at(node).bounds;
+  constexpr double kMiddle = 1U << (OctreeCellNumber::kDepth - 1);
+  const double unit = root_size_ / (2 * kMiddle);
   MotionBox box{};
   double far = 0, square = 0;
   for (int k = 0; k < 3; ++k) {
-    const double lower = std::max(name.index(k) * size, lower_[k]),
-                 upper = std::min((name.index(k) + 1) * size, upper_[k]);
+    const double lower = (bounds.lower[k] - kMiddle) * unit,
+                 upper = (bounds.upper[k] + 1 - kMiddle) * unit;
     box.center[k] = 0.5 * (lower + upper);
     box.extent[k] = std::max(0.5 * (upper - lower), 0.);
     box.axis[k][k] = 1;

@@ -71,7 +71,7 @@ class OctreeCells {
   /// @param root_size  the side of the root, whose center is the origin
   OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size);
 
-  /// @brief Whether no cell is occupied, as far as the bounds were looked for.
+  /// @brief Whether no cell is occupied, as far as the upper nodes tell.
   bool isEmpty() const { return is_empty_; }
 
   bool isLeaf(std::int32_t node) const { return at(node).is_leaf; }
@@ -79,7 +79,9 @@ class OctreeCells {
   /// @brief A box around the occupied cells of a node.
   MotionBox box(std::int32_t node) const;
 
-  /// @brief The occupied children of a node have consecutive numbers.
+  /// @brief The occupied children of a node have consecutive numbers. Opening a node
+  /// looks a few levels further down, so that the boxes of its children are near to their
+  /// cells.
   struct Children {
     std::int32_t first;
     int count;
@@ -94,26 +96,42 @@ class OctreeCells {
   std::int64_t number(std::int32_t leaf) const { return at(leaf).name.toNumber(); }
 
  private:
+  /// The first and the last cell of the greatest depth along each axis, as far as is
+  /// known.
+  struct Bounds {
+    std::uint16_t lower[3], upper[3];
+
+    static Bounds of(const OctreeCellNumber& name);
+    static Bounds none();
+    void add(const Bounds& other);
+  };
   struct Node {
     const void* node;
     OctreeCellNumber name;
+    Bounds bounds;
     std::int32_t first_child;
     /// -1: not opened yet.
     std::int32_t num_children;
     /// -1: no shape yet.
     std::int32_t shape;
+    /// The number of levels below it that its bounds come from.
+    std::int8_t levels;
     bool is_leaf;
   };
   const Node& at(std::int32_t node) const {
     return table_[static_cast<std::size_t>(node)];
   }
+  Node& at(std::int32_t node) { return table_[static_cast<std::size_t>(node)]; }
   void add(const void* node, const OctreeCellNumber& name);
-  void findBounds();
+  Children addChildren(std::int32_t node);
+  void lookBelow(std::int32_t node, int levels);
+  /// The least bounds around the children.
+  void fit(std::int32_t node);
+  void openUpperNodes();
 
   std::unique_ptr<const OctreeNodes> nodes_;
   double root_size_;
   bool is_empty_{true};
-  double lower_[3]{}, upper_[3]{};
   std::vector<Node> table_;
   std::deque<ConvexShape> shapes_;
 };

@@ -391,6 +391,16 @@ TEST(OctreeCollision, FewBoxesAreTested) {
   const Result apart = ask({mesh, at(-8, 0, 1), at(8, 0, 1)}, still(octree));
   EXPECT_FALSE(apart.is_collide);
   EXPECT_LT(apart.counts.node_pairs, num_cells / 10);
+  // A flat sheet above a thousand cells stops there. The boxes of nodes are as flat as
+  // their cells.
+  const Geometry sheet = makeModel<BVHModel<OBBRSS<double>>>(makeSheet(20, 20));
+  const auto wide = std::make_shared<Box<double>>(4, 4, 0.01);
+  for (const Geometry& flat : {sheet, Geometry(wide)}) {
+    const Result above =
+        ask({flat, at(-.5, -.5, 1), at(-.5, -.5, kResolution + 0.02)}, still(octree));
+    EXPECT_FALSE(above.is_collide);
+    EXPECT_LT(above.counts.node_pairs, 500u);
+  }
 }
 
 TEST(OctreeCollision, BroadPhaseBoxesContainTheCells) {
