@@ -6,6 +6,10 @@
 #                                this; CI=true means the same)
 #   bash cmake/test.sh --doors   only every way to link the package (test/consumer), with
 #                                gcc and clang and each set of flags: half an hour or more
+#   bash cmake/test.sh --compilers [COMPILER ...]
+#                                only library, program, examples, some tests and two ways to
+#                                link, with g++ 11 and 12 and clang++ 14, 16 and 19, or those
+#                                given, in C++17 and C++20: about 10 minutes each time
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/dependencies.sh
@@ -13,13 +17,45 @@ source cmake/dependencies.sh
 
 all=false
 doors=false
+compilers=()
 case "${1-}" in
   --all) all=true ;;
   --doors) doors=true ;;
+  --compilers)
+    compilers=(g++-11 g++-12 clang++-14 clang++-16 clang++-19)
+    if [ $# -gt 1 ]; then compilers=("${@:2}"); fi
+    ;;
   "") ;;
-  *) echo "usage: bash cmake/test.sh [--all | --doors]" >&2; exit 2 ;;
+  *) echo "usage: bash cmake/test.sh [--all | --doors | --compilers [COMPILER ...]]" >&2; exit 2 ;;
 esac
-if [ "${CI-}" = true ] && ! $doors; then all=true; fi
+if [ "${CI-}" = true ] && ! $doors && [ ${#compilers[@]} -eq 0 ]; then all=true; fi
+
+# try_compiler COMPILER STANDARD: what a compiler can fail in, without optimisation.
+try_compiler() {
+  local compiler=$1 standard=$2 dir=build/compilers/$1-c++$2
+  local tests=(test_fcl_elementary test_fcl_kernels test_fcl_continuous_contact
+    test_fcl_motion_collision test_fcl_ccd_tool)
+  echo "== $compiler, C++$standard ($((SECONDS / 60)) min so far)"
+  cmake -G Ninja -B "$dir" -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_CXX_STANDARD="$standard" \
+    -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DFCL_CCD_WERROR=ON \
+    -DFCL_CCD_BUILD_BENCHMARKS=OFF -DFCL_CCD_BUILD_PYTHON=OFF >"$dir.log" ||
+    { cat "$dir.log"; return 1; }
+  cmake --build "$dir" --target fcl_ccd fcl-ccd examples/all fcl_ccd_test_oracle "${tests[@]}"
+  local test
+  for test in "${tests[@]}"; do "$dir/test/unit/$test" --gtest_brief=1; done
+  ctest --test-dir "$dir" -L examples --output-on-failure
+  bash test/consumer/run.sh "$dir" "$compiler" "$dir/doors" cmake_target standards
+}
+
+if [ ${#compilers[@]} -gt 0 ]; then
+  # A package has the name of the compiler without the version of the language.
+  fcl_ccd_install_dependencies test "${compilers[@]/clang++/clang}"
+  mkdir -p build/compilers
+  for compiler in "${compilers[@]}"; do
+    for standard in 17 20; do try_compiler "$compiler" "$standard"; done
+  done
+  exit
+fi
 
 if $all || $doors; then
   fcl_ccd_install_dependencies all

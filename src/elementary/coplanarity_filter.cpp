@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "base/shuffle.h"
 #include "elementary/accurate_pair.h"
 #include "elementary/pair_table.h"
 #include "numerics/error_bounds.h"
@@ -15,7 +16,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-FramePair swapped(const FramePair& a) { return __builtin_shufflevector(a, a, 1, 0); }
+FramePair swapped(const FramePair& a) { return shuffle<1, 0>(a, a); }
 FramePair max(const FramePair& a, const FramePair& b) { return a > b ? a : b; }
 FramePair abs(const FramePair& a) {
   typedef std::int64_t Bits __attribute__((vector_size(16)));
@@ -31,8 +32,7 @@ struct DifferencePair {
   void restrict(const FramePair& window) {
     const FramePair rest = 1 - window;
     for (FramePair* c : {&x, &y, &z})
-      *c = rest * __builtin_shufflevector(*c, *c, 0, 0) +
-           window * __builtin_shufflevector(*c, *c, 1, 1);
+      *c = rest * shuffle<0, 0>(*c, *c) + window * shuffle<1, 1>(*c, *c);
   }
 };
 
@@ -57,8 +57,7 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
   const FramePair a = part(p, 0) - part(q, 0), b = part(p, 1) - part(q, 1),
                   c = part(p, 2) - part(q, 2);
   most = max(most, max(max(abs(a), abs(b)), abs(c)));
-  return {__builtin_shufflevector(a, b, 0, 3), __builtin_shufflevector(a, c, 1, 2),
-          __builtin_shufflevector(b, c, 0, 3)};
+  return {shuffle<0, 3>(a, b), shuffle<1, 2>(a, c), shuffle<0, 3>(b, c)};
 }
 
 /// coplanarityInDoubles() in a form that this file can inline. Both frames are computed

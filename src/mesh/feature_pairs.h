@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstdint>
 
+#include "base/shuffle.h"
 #include "fcl/narrowphase/stage_counts.h"
 #include "mesh/mesh_triangle.h"
 #include "mesh/moving_kdop.h"
@@ -68,9 +69,8 @@ constexpr unsigned product(unsigned rows, unsigned columns) {
 
 /// @brief Whether one of the vertices of a is one of b's.
 inline bool doShareVertex(const ThreeIds& a, const ThreeIds& b) {
-  const auto equal = (a == __builtin_shufflevector(b, b, 0, 0, 0, 0)) |
-                     (a == __builtin_shufflevector(b, b, 1, 1, 1, 1)) |
-                     (a == __builtin_shufflevector(b, b, 2, 2, 2, 2));
+  const auto equal = (a == shuffle<0, 0, 0, 0>(b, b)) | (a == shuffle<1, 1, 1, 1>(b, b)) |
+                     (a == shuffle<2, 2, 2, 2>(b, b));
   return isAny(equal & Mask4{-1, -1, -1, 0});
 }
 

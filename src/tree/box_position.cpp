@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/shuffle.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -24,7 +26,7 @@ Float4 roundUp(DoublePair a, DoublePair b, float pad) {
   const auto narrowed = [&least](DoublePair x) {
     return __builtin_convertvector(least > x ? least : x, Float2);
   };
-  const Float4 f = __builtin_shufflevector(narrowed(a), narrowed(b), 0, 1, 2, 3);
+  const Float4 f = shuffle<0, 1, 2, 3>(narrowed(a), narrowed(b));
   const Float4 up = f + (larger(f, -f) * kOutward + (pad + FLT_MIN));
   return up == up ? up : Float4{} + std::numeric_limits<float>::infinity();
 }
