@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Continuous collision detection of triangle meshes that deform or move, and of shapes.
+"""Continuous collision detection of triangle meshes that deform or move, of shapes and maps.
 
 A step goes from t = 0 to t = 1. A contact is a vertex and a face, or two edges, that touch
 during the step; or a triangle and a shape, or two shapes. No contact is missed, and no time
@@ -19,8 +19,8 @@ is late.
         print(result.contacts["pos"])                     # (k, 3): a structured array
 
 Meshes: DeformableMesh, RigidMesh. Shapes: Box, Sphere, Capsule, Ellipsoid, Cone, Cylinder,
-Convex, Plane, Halfspace, TriangleP. Motions of a mesh or a shape: a pose, two poses,
-LinearMotion, ScrewMotion, SplineMotion. Queries: collide(), self_collide(), which take a
+Convex, Plane, Halfspace, TriangleP. Maps of occupied cells: OcTree. Motions: a pose, two
+poses, LinearMotion, ScrewMotion, SplineMotion, and your own as a BoundedMotion. Queries: collide(), self_collide(), which take a
 Filter and give a Result. Many objects: CollisionManager. With min_distance features are in
 contact at a distance. For your own solver: candidates(), self_candidates(); vertex_face(),
 edge_edge(), vertex_edge() and vertex_vertex() on arrays.
@@ -32,7 +32,8 @@ RuntimeError for an update of a mesh while a query of it runs.
 from ._core import version as __version__
 from ._manager import CollisionManager, ManagerResult, Pair
 from ._meshes import DeformableMesh, RigidMesh
-from ._motions import LinearMotion, Motion, ScrewMotion, SplineMotion
+from ._motions import BoundedMotion, LinearMotion, Motion, ScrewMotion, SplineMotion
+from ._octrees import OcTree, octree_cell_dtype
 from ._queries import (
     Filter,
     Kind,
@@ -63,6 +64,7 @@ from ._shapes import (
 )
 
 __all__ = [
+    "BoundedMotion",
     "Box",
     "Capsule",
     "CollisionManager",
@@ -77,6 +79,7 @@ __all__ = [
     "LinearMotion",
     "ManagerResult",
     "Motion",
+    "OcTree",
     "Pair",
     "Plane",
     "Result",
@@ -91,6 +94,7 @@ __all__ = [
     "contact_dtype",
     "edge_edge",
     "feature_test_dtype",
+    "octree_cell_dtype",
     "self_candidates",
     "self_collide",
     "vertex_edge",

@@ -38,6 +38,10 @@ def triangles(values: ArrayLike, name: str = "triangles") -> NDArray[np.int64]:
     return _array(values, name, "i", (None, 3))
 
 
+def integers(values: ArrayLike, name: str) -> NDArray[np.int64]:
+    return _array(values, name, "i", (None,))
+
+
 def feature_points(values: ArrayLike, name: str, num_points: int) -> NDArray[np.float64]:
     return _array(values, name, "f", (None, num_points, 3))
 
@@ -63,6 +67,14 @@ def size(value: float, name: str) -> float:
     out = number(value, name)
     if out < 0:
         raise ValueError(f"{name} is {out}. A size is not negative")
+    return out
+
+
+def bound(value: float, name: str) -> float:
+    """What a function of the user gives as a bound."""
+    out = number(value, name)
+    if out < 0:
+        raise ValueError(f"{name} is {out}. A bound is not negative")
     return out
 
 

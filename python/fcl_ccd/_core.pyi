@@ -1,4 +1,4 @@
-from typing import Any, Callable, Dict, Hashable, Optional, Sequence
+from typing import Any, Callable, Dict, Hashable, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,6 +7,7 @@ version: str
 contact_dtype: np.dtype[np.void]
 candidate_dtype: np.dtype[np.void]
 feature_test_dtype: np.dtype[np.void]
+octree_cell_dtype: np.dtype[np.void]
 
 class Geometry: ...
 class Mesh(Geometry): ...
@@ -119,6 +120,14 @@ class TriangleP(Geometry):
     @property
     def c(self) -> NDArray[np.float64]: ...
 
+class OcTree(Geometry):
+    def __init__(self, points: NDArray[np.float64], resolution: float) -> None: ...
+    @property
+    def resolution(self) -> float: ...
+    @property
+    def num_cells(self) -> int: ...
+    def _cells(self, numbers: NDArray[np.int64]) -> NDArray[np.void]: ...
+
 class Motion:
     @staticmethod
     def straight(begin: NDArray[np.float64], end: NDArray[np.float64], name: str) -> Motion: ...
@@ -133,6 +142,13 @@ class Motion:
     def screw(begin: NDArray[np.float64], end: NDArray[np.float64], name: str) -> Motion: ...
     @staticmethod
     def spline(translation: NDArray[np.float64], rotation: NDArray[np.float64]) -> Motion: ...
+    @staticmethod
+    def bounded(
+        pose: Callable[[float], NDArray[np.float64]],
+        rate: Callable[[float], NDArray[np.float64]],
+        acceleration: Callable[[Tuple[float, float, float], float, float, float], float],
+        angular_speed: Callable[[float, float], float],
+    ) -> Motion: ...
 
 class Filter:
     def __init__(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Optional, Union
+from typing import TYPE_CHECKING, Callable, Optional, Tuple, Union
 
 import numpy as np
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Motion:
-    """The path of a mesh or a shape during a step: LinearMotion, ScrewMotion or SplineMotion."""
+    """The path of an object during a step: Linear-, Screw-, Spline- or BoundedMotion."""
 
     _path: _core.Motion
 
@@ -70,6 +70,61 @@ class SplineMotion(Motion):
         )
 
 
+class BoundedMotion(Motion):
+    """A motion of your own: functions that tell the pose, and bounds that make it certain.
+
+    Between two poses anything may happen. So a query asks how fast the motion bends. It
+    follows the functions as it follows the other motions: never late, no contact missed.
+
+    pose : function(t) -> (4, 4) array
+        The pose at t in [0, 1]: a point x of the object is at R(t) x + T(t). R is a
+        rotation up to 2^-40, so compute it in double precision.
+    rate : function(t) -> (4, 4) array
+        The derivative of pose by t. Its last row is 0 0 0 0.
+    acceleration_bound : function(center, radius, t0, t1) -> float
+        A bound on |R''(t) x + T''(t)| during [t0, t1] of all points x within radius of
+        center, three numbers in the frame of the object. If |R''| is at most A and |T''|
+        at most B, it may give A (|center| + radius) + B. For a turn by the angle a(t)
+        about an axis, A is the largest |a''| + a'^2.
+    angular_speed_bound : function(t0, t1) -> float
+        A bound on the angular speed during [t0, t1], in radians a step.
+
+    With a bound that is too small contacts may be missed. With one that is too large
+    queries are slower. pose and rate must belong together up to rounding, and each call
+    with the same arguments must give the same answer.
+
+    A query calls the functions often: a call takes some microseconds, and Python's lock.
+    They may come from several threads. An exception from them ends the query and reaches
+    the caller.
+
+    Raises ValueError if a function gives another shape, no rotation, a number that is not
+    finite or a negative bound, here or in a query, and TypeError for another type.
+    """
+
+    def __init__(
+        self,
+        pose: Callable[[float], ArrayLike],
+        rate: Callable[[float], ArrayLike],
+        acceleration_bound: Callable[[Tuple[float, float, float], float, float, float], float],
+        angular_speed_bound: Callable[[float, float], float],
+    ) -> None:
+        given = {
+            "pose": pose,
+            "rate": rate,
+            "acceleration_bound": acceleration_bound,
+            "angular_speed_bound": angular_speed_bound,
+        }
+        for name, function in given.items():
+            if not callable(function):
+                raise TypeError(f"{name} is of type {type(function).__name__}. Give a function")
+        self._path = _core.Motion.bounded(
+            lambda t: _arguments.pose(pose(t), "pose(t)"),
+            lambda t: _arguments.numbers(rate(t), "rate(t)", 4, 4),
+            lambda *ball: _arguments.bound(acceleration_bound(*ball), "acceleration_bound()"),
+            lambda *span: _arguments.bound(angular_speed_bound(*span), "angular_speed_bound()"),
+        )
+
+
 MotionLike = Optional[Union[Motion, "ArrayLike", "Sequence[ArrayLike]"]]
 
 _AT_ORIGIN = _core.Motion.straight(np.eye(4), np.eye(4), "identity")
@@ -91,5 +146,5 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
         )
     raise ValueError(
         f"{name} has the shape {poses.shape}. Give a pose of shape (4, 4), a pair of poses, or a "
-        "LinearMotion, ScrewMotion or SplineMotion"
+        "LinearMotion, ScrewMotion, SplineMotion or BoundedMotion"
     )

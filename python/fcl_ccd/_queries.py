@@ -88,7 +88,8 @@ class Result:
                                  shape, one for each triangle that touches, and named for
                                  the feature that is nearest: Kind.VERTEX_SHAPE,
                                  Kind.EDGE_SHAPE or Kind.FACE_SHAPE. Two shapes: Kind.SHAPES
-        b1, b2       int64       triangles of o1 and o2 that have the features; -1 for a shape
+        b1, b2       int64       triangles of o1 and o2 that have the features; -1 for a
+                                 shape; of an OcTree a number for its cells()
         vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
                                  CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
                                  VERTEX_VERTEX: v of o1, v of o2. With a shape: the
@@ -263,11 +264,11 @@ def collide(
     accepts_triangles: Optional[Callable[[int, int], bool]] = None,
     num_threads: int = 1,
 ) -> Result:
-    """The contacts of two meshes, two shapes, or a mesh and a shape, during the step.
+    """The contacts of two objects during the step.
 
     Parameters
     ----------
-    o1, o2 : DeformableMesh, RigidMesh, or a shape, for example Box
+    o1, o2 : DeformableMesh, RigidMesh, a shape, for example Box, or an OcTree
         Shapes are solid; Plane and TriangleP are surfaces.
     motion1, motion2 : how each of them moves
         None             at rest, vertices are in the world frame
@@ -276,7 +277,7 @@ def collide(
                          speed about the origin of its frame, which goes straight. Each vertex of a
                          mesh that deforms goes straight from begin * previous to
                          end * current.
-        a LinearMotion, ScrewMotion or SplineMotion
+        a LinearMotion, ScrewMotion, SplineMotion or BoundedMotion
     query : "all", "first" or "any"
         "all": all contacts. "first": the contacts that may be the first; later ones are
         skipped. "any": at most one contact; the query stops at the first proof.
@@ -301,7 +302,8 @@ def collide(
     filter1, filter2 : Filter, optional
         Which triangles of o1 and of o2 can be in contact.
     accepts_triangles : function(b1, b2) -> bool, optional
-        Called with a triangle of o1 and one of o2 that the filters accept; -1 for a shape.
+        Called with a triangle of o1 and one of o2 that the filters accept; -1 for a
+        shape or an OcTree.
         False rejects the two. It must always give the same answer for the same triangles.
         An exception from it ends the query and reaches the caller. A call takes about a
         microsecond, and threads wait for each other: prefer filters.

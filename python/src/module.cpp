@@ -8,6 +8,7 @@
 #include "fcl/common/exception.h"
 #include "meshes.h"
 #include "motions.h"
+#include "octrees.h"
 #include "queries.h"
 #include "shapes.h"
 
@@ -24,6 +25,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("version") = FCL_CCD_VERSION;
   python::bindMeshes(module);
   python::bindShapes(module);
+  python::bindOctrees(module);
   python::bindMotions(module);
   python::bindCollisions(module);
   python::bindManager(module);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
@@ -27,29 +28,44 @@ double determinant(const double (&r)[9]) {
          r[2] * (r[3] * r[7] - r[4] * r[6]);
 }
 
-bool isRotation(const double (&r)[9]) {
+/// What BoundedMotion asks for.
+constexpr double kMostDeviationOfOwn = 0x1p-40;
+
+bool isRotation(const double (&r)[9], double most_deviation) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k) {
       const double product =
           r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
-      if (std::abs(product - (i == k)) > kMostDeviation) return false;
+      if (std::abs(product - (i == k)) > most_deviation) return false;
     }
   return determinant(r) > 0;
 }
 
-/// @param matrix  4 x 4, row by row
-/// @param name  what an exception calls it
-PoseNumbers<double> toPose(const double* matrix, const std::string& name) {
-  if (!std::all_of(matrix, matrix + 16, [](double x) { return std::isfinite(x); }))
-    throw py::value_error(name + " has a number that is not finite");
-  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
-    throw py::value_error(name + ": the last row of a pose is 0 0 0 1");
+/// The rotation and the translation of a matrix.
+PoseNumbers<double> partsOf(const double* matrix) {
   PoseNumbers<double> pose;
   for (int row = 0; row < 3; ++row) {
     std::copy_n(matrix + 4 * row, 3, pose.rotation + 3 * row);
     pose.translation[row] = matrix[4 * row + 3];
   }
-  if (!isRotation(pose.rotation))
+  return pose;
+}
+
+/// @param matrix  4 x 4, row by row
+/// @param name  what an exception calls it
+PoseNumbers<double> toPose(const double* matrix, const std::string& name,
+                           double most_deviation = kMostDeviation) {
+  if (!std::all_of(matrix, matrix + 16, [](double x) { return std::isfinite(x); }))
+    throw py::value_error(name + " has a number that is not finite");
+  if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
+    throw py::value_error(name + ": the last row of a pose is 0 0 0 1");
+  const PoseNumbers<double> pose = partsOf(matrix);
+  if (isRotation(pose.rotation, kMostDeviation) &&
+      !isRotation(pose.rotation, most_deviation))
+    throw py::value_error(name +
+                          " is a rotation only up to more than 2^-40. Compute it in "
+                          "double precision");
+  if (!isRotation(pose.rotation, most_deviation))
     throw py::value_error(name +
                           " is not a rotation and a translation. Scale or mirror the "
                           "vertices instead");
@@ -100,10 +116,91 @@ Motion spline(const Doubles& translation, const Doubles& rotation) {
   return out;
 }
 
+Motion bounded(const py::function& pose, const py::function& rate,
+               const py::function& acceleration, const py::function& angular_speed) {
+  Motion motion{};
+  motion.own = std::make_shared<PythonMotion>(pose, rate, acceleration, angular_speed);
+  motion.path.path = PathKind::kBounded;
+  motion.path.motion = motion.own.get();
+  for (const int end : {0, 1}) {
+    const auto at = motion.own->placementAt(end);
+    std::copy_n(at.rotation, 9, motion.path.pose[end].rotation);
+    std::copy_n(at.translation, 3, motion.path.pose[end].translation);
+  }
+  // Wrong functions are found here as far as this is possible, not in a query.
+  for (const double t : {0., 1.}) motion.own->rateAt(t);
+  motion.own->accelerationBound({0, 0, 0}, 1, 0, 1);
+  motion.own->angularSpeedBound(0, 1);
+  return motion;
+}
+
+fcl::BoundedMotion::Placement toPlacement(const PoseNumbers<double>& parts) {
+  fcl::BoundedMotion::Placement placement;
+  std::copy_n(parts.rotation, 9, placement.rotation);
+  std::copy_n(parts.translation, 3, placement.translation);
+  return placement;
+}
+
+[[noreturn]] void throwNotAsked() {
+  throw std::logic_error("FCL does not follow a motion of Python");
+}
+
 }  // namespace
+
+PythonMotion::PythonMotion(py::function pose, py::function rate,
+                           py::function acceleration, py::function angular_speed)
+    : pose_(std::move(pose)),
+      rate_(std::move(rate)),
+      acceleration_(std::move(acceleration)),
+      angular_speed_(std::move(angular_speed)) {}
+
+fcl::BoundedMotion::Placement PythonMotion::placementAt(double t) const {
+  const py::gil_scoped_acquire acquire;
+  const auto matrix = py::cast<Doubles>(pose_(t));
+  requireSize(matrix, 16, "pose(t)");
+  return toPlacement(toPose(matrix.data(), "pose(t)", kMostDeviationOfOwn));
+}
+
+fcl::BoundedMotion::Placement PythonMotion::rateAt(double t) const {
+  const py::gil_scoped_acquire acquire;
+  const auto matrix = py::cast<Doubles>(rate_(t));
+  requireSize(matrix, 16, "rate(t)");
+  if (!std::all_of(matrix.data() + 12, matrix.data() + 16,
+                   [](double x) { return x == 0; }))
+    throw py::value_error("rate(t): the last row of the derivative of a pose is 0 0 0 0");
+  return toPlacement(partsOf(matrix.data()));
+}
+
+double PythonMotion::accelerationBound(const double (&center)[3], double radius,
+                                       double t0, double t1) const {
+  const py::gil_scoped_acquire acquire;
+  return py::cast<double>(
+      acceleration_(py::make_tuple(center[0], center[1], center[2]), radius, t0, t1));
+}
+
+double PythonMotion::angularSpeedBound(double t0, double t1) const {
+  const py::gil_scoped_acquire acquire;
+  return py::cast<double>(angular_speed_(t0, t1));
+}
+
+bool PythonMotion::integrate(double) const { throwNotAsked(); }
+double PythonMotion::computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const {
+  throwNotAsked();
+}
+double PythonMotion::computeMotionBound(
+    const fcl::TriangleMotionBoundVisitor<double>&) const {
+  throwNotAsked();
+}
+void PythonMotion::getCurrentTransform(fcl::Transform3<double>&) const {
+  throwNotAsked();
+}
+void PythonMotion::getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&) const {
+  throwNotAsked();
+}
 
 std::shared_ptr<fcl::MotionBase<double>> toFclMotion(const Motion& motion, bool deforms) {
   const auto& path = motion.path;
+  if (motion.own) return motion.own;
   if (path.path == PathKind::kSpline) {
     const auto at = [&](int of, int i) { return Vector3d(path.control[of][i]); };
     return std::make_shared<fcl::SplineMotion<double>>(
@@ -139,7 +236,8 @@ void bindMotions(py::module_& module) {
       .def_static("straight", &straight)
       .def_static("turn", &turn)
       .def_static("screw", &screw)
-      .def_static("spline", &spline);
+      .def_static("spline", &spline)
+      .def_static("bounded", &bounded);
 }
 
 }  // namespace python

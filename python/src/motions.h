@@ -12,9 +12,39 @@
 namespace fcl_ccd {
 namespace python {
 
+/// A motion that functions of Python tell. FCL's functions of a motion are not there:
+/// this library answers all pairs that follow it.
+class PythonMotion : public fcl::MotionBase<double>, public fcl::BoundedMotion {
+ public:
+  /// @param pose, rate  functions of t that give 4x4 arrays
+  /// @param acceleration  function of center, radius, t0, t1
+  /// @param angular_speed  function of t0, t1
+  PythonMotion(py::function pose, py::function rate, py::function acceleration,
+               py::function angular_speed);
+
+  /// Queries call these without the GIL. An exception of Python reaches their caller.
+  Placement placementAt(double t) const override;
+  Placement rateAt(double t) const override;
+  double accelerationBound(const double (&center)[3], double radius, double t0,
+                           double t1) const override;
+  double angularSpeedBound(double t0, double t1) const override;
+
+  bool integrate(double t) const override;
+  double computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const override;
+  double computeMotionBound(
+      const fcl::TriangleMotionBoundVisitor<double>&) const override;
+  void getCurrentTransform(fcl::Transform3<double>&) const override;
+  void getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&) const override;
+
+ private:
+  py::function pose_, rate_, acceleration_, angular_speed_;
+};
+
 /// A path without the object that follows it.
 struct Motion {
   fcl::detail::MovingGeometry<double> path;
+  /// If the path is one of Python.
+  std::shared_ptr<PythonMotion> own;
 
   fcl::detail::MovingGeometry<double> of(
       const fcl::CollisionGeometry<double>& mesh) const {

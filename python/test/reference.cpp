@@ -4,6 +4,7 @@
 // prints each answer as numbers, one line an element. Floating-point numbers are
 // hexadecimal, so that nothing is rounded. test_answers.py writes the commands.
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <iostream>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/geometry/octree/octree.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cone.h>
@@ -27,6 +29,7 @@
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/geometry/shape/triangle_p.h>
 #include <fcl/math/bv/OBBRSS.h>
+#include <fcl/math/motion/bounded_motion.h>
 #include <fcl/math/motion/interp_motion.h>
 #include <fcl/math/motion/screw_motion.h>
 #include <fcl/math/motion/spline_motion.h>
@@ -139,10 +142,22 @@ std::unique_ptr<Geometry> readTriangle() {
   return std::make_unique<fcl::TriangleP<double>>(corners[0], corners[1], corners[2]);
 }
 
+std::unique_ptr<Geometry> readOctree() {
+  const double resolution = readNumber();
+  const auto map = std::make_shared<octomap::OcTree>(resolution);
+  for (const Vector3d& x : readVectors(readInt()))
+    map->setNodeValue(octomap::point3d(static_cast<float>(x[0]), static_cast<float>(x[1]),
+                                       static_cast<float>(x[2])),
+                      map->getClampingThresMaxLog());
+  map->prune();
+  return std::make_unique<fcl::OcTree<double>>(map);
+}
+
 using Reader = std::unique_ptr<Geometry> (*)();
 const std::map<std::string, Reader> kGeometries = {
     {"deformable", &readDeformable},
     {"rigid", &readRigid},
+    {"OcTree", &readOctree},
     {"Box", &readShape<fcl::Boxd, 3>},
     {"Sphere", &readShape<fcl::Sphered, 1>},
     {"Capsule", &readShape<fcl::Capsuled, 2>},
@@ -192,8 +207,55 @@ Request readRequest() {
   return request;
 }
 
+/// Swings about z by the angle a sin(t) while it falls by b t^2. The test has the same
+/// functions in Python.
+class Swing : public fcl::MotionBased, public fcl::BoundedMotion {
+ public:
+  Swing(double a, double b) : a_(a), b_(b) {}
+
+  Placement placementAt(double t) const override {
+    const double angle = a_ * std::sin(t), c = std::cos(angle), s = std::sin(angle);
+    return {{c, -s, 0, s, c, 0, 0, 0, 1}, {0, 0, -b_ * t * t}};
+  }
+  Placement rateAt(double t) const override {
+    const double angle = a_ * std::sin(t), speed = a_ * std::cos(t);
+    const double c = speed * std::cos(angle), s = speed * std::sin(angle);
+    return {{-s, -c, 0, c, -s, 0, 0, 0, 0}, {0, 0, -2 * b_ * t}};
+  }
+  double accelerationBound(const double (&center)[3], double radius, double,
+                           double) const override {
+    const double square =
+        center[0] * center[0] + center[1] * center[1] + center[2] * center[2];
+    return (a_ + a_ * a_) * (std::sqrt(square) + radius) + 2 * b_;
+  }
+  double angularSpeedBound(double, double) const override { return a_; }
+
+  // What only FCL would ask for.
+  bool integrate(double) const override { throw std::logic_error("FCL follows it"); }
+  double computeMotionBound(const fcl::BVMotionBoundVisitor<double>&) const override {
+    throw std::logic_error("FCL follows it");
+  }
+  double computeMotionBound(
+      const fcl::TriangleMotionBoundVisitor<double>&) const override {
+    throw std::logic_error("FCL follows it");
+  }
+  void getCurrentTransform(Transform3d&) const override {
+    throw std::logic_error("FCL follows it");
+  }
+  void getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&) const override {
+    throw std::logic_error("FCL follows it");
+  }
+
+ private:
+  double a_, b_;
+};
+
 std::unique_ptr<fcl::MotionBased> readMotion() {
   const std::string kind = readWord();
+  if (kind == "swing") {
+    const double a = readNumber();
+    return std::make_unique<Swing>(a, readNumber());
+  }
   if (kind == "spline") {
     const auto t = readVectors(4), r = readVectors(4);
     return std::make_unique<fcl::SplineMotion<double>>(t[0], t[1], t[2], t[3], r[0], r[1],

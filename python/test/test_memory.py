@@ -17,6 +17,15 @@ def resident_bytes():
         return 4096 * int(file.read().split()[1])
 
 
+def bounded(i):
+    return fcl_ccd.BoundedMotion(
+        lambda t: pose((0.5, 0.5, 0.1 + 1e-6 * i)),
+        lambda t: np.zeros((4, 4)),
+        lambda center, radius, t0, t1: 0,
+        lambda t0, t1: 0,
+    )
+
+
 def one_step(mesh, ball, i):
     """Every call of the module, some of which fail."""
     mesh.update(PREVIOUS, CURRENT)
@@ -27,6 +36,9 @@ def one_step(mesh, ball, i):
     filter1 = fcl_ccd.Filter(triangle_groups=np.ones(len(TRIANGLES), int))
     fcl_ccd.collide(mesh, ball, None, pose((0.5, 0.5, 0.1)), filter1=filter1, enable_crossings=True)
     fcl_ccd.collide(mesh, fcl_ccd.Sphere(0.2 + 1e-6 * i), None, pose((0.5, 0.5, 0.1)))
+    if i % 10 == 5:
+        fcl_ccd.collide(ball, fcl_ccd.OcTree(PREVIOUS[:5] + 1e-6 * i, 0.1)).contacts.copy()
+        fcl_ccd.collide(mesh, ball, None, bounded(i))
     manager = fcl_ccd.CollisionManager()
     manager.register("mesh", mesh, self_collision=True)
     manager.register("ball", ball, pose((0.5, 0.5, 0.1)))
