@@ -38,7 +38,7 @@ def one_step(mesh, ball, i):
     fcl_ccd.collide(mesh, fcl_ccd.Sphere(0.2 + 1e-6 * i), None, pose((0.5, 0.5, 0.1)))
     if i % 10 == 5:
         fcl_ccd.collide(ball, fcl_ccd.OcTree(PREVIOUS[:5] + 1e-6 * i, 0.1)).contacts.copy()
-        fcl_ccd.collide(mesh, ball, None, bounded(i))
+        fcl_ccd.collide(fcl_ccd.Sphere(0.2), ball, None, bounded(i), query="any")
     manager = fcl_ccd.CollisionManager()
     manager.register("mesh", mesh, self_collision=True)
     manager.register("ball", ball, pose((0.5, 0.5, 0.1)))
