@@ -71,17 +71,31 @@ class ShapeContacts {
         setFeature(set[side].triangle, gap.corners[side], contact);
       }
     }
-    setGeometry(gap, contact);
+    setPosition(gap, contact);
+    contact.normal = normalBefore(pair, gap, found.toc_lo);
     return contact;
   }
 
  private:
-  /// The position is half-way between the surfaces, or inside of both. Sets that overlap
-  /// have no normal.
-  void setGeometry(const ConvexGap& gap, ShapeContact& contact) const {
+  /// The direction that parts the bodies at a time of contact. Round surfaces that nearly
+  /// touch may have none within rounding; then it is that of a time just before. Bodies
+  /// that overlap at t = 0 have none.
+  Vec normalBefore(const ConvexPairMotion& pair, const ConvexGap& gap,
+                   double time) const {
+    constexpr double kFirstShare = 0x1p-40, kLastShare = 0x1p-10, kGrowth = 0x1p5;
+    const double radii = radiusOf(*body_[0]) + radiusOf(*body_[1]);
+    if (gap.gap + tolerance_.touching > radii) return gap.direction;
+    if (time == 0) return {0, 0, 0};
+    for (double share = kFirstShare; share <= kLastShare; share *= kGrowth) {
+      const ConvexGap before = pair.gapAt((1 - share) * time);
+      if (before.gap > radii) return before.direction;
+    }
+    return {0, 0, 0};
+  }
+
+  /// The position is half-way between the surfaces, or inside of both.
+  void setPosition(const ConvexGap& gap, ShapeContact& contact) const {
     const double radius[2] = {radiusOf(*body_[0]), radiusOf(*body_[1])};
-    if (gap.gap + tolerance_.touching > radius[0] + radius[1])
-      contact.normal = gap.direction;
     Vec way = gap.point[1] - gap.point[0];
     if (gap.distance > 0) way = (1 / gap.distance) * way;
     double along = 0.5 * (gap.distance + radius[0] - radius[1]);

@@ -96,8 +96,7 @@ namespace fcl {
 /// - Motions: the reference point of an InterpMotion is not finite, or so large that its
 ///   rounding exceeds toc_err; a path that turns has coordinates beyond 2^200.
 /// - The request: toc_err is negative or NaN, num_max_contacts is 0, num_threads is
-///   negative, t_max is not in [0, 1]; min_distance is negative or not finite, or above 0
-///   for two meshes of which one turns.
+///   negative, t_max is not in [0, 1]; min_distance is negative or not finite.
 /// - FCL checks nothing in what it answers.
 /// @return the time of contact, never later than the true one; 0 when the surfaces cross
 /// at t = 0; 1 without collision
