@@ -106,7 +106,9 @@ int expectBounds(Random& random, const std::vector<V>& x, const std::vector<Pair
     for (std::size_t i = 0; i < x.size(); ++i)
       moved[i] += bounds[i] * (round == 0 ? towards[i] : V(random.point(1).normalized()));
     for (const Pair& pair : pairs)
-      if (pair.distance(x) > d) EXPECT_GT(pair.distance(moved), d - 1e-15);
+      if (pair.distance(x) > d) {
+        EXPECT_GT(pair.distance(moved), d - 1e-15);
+      }
   }
   return low;
 }
