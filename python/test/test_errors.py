@@ -175,10 +175,11 @@ def test_objects_that_are_no_meshes():
 
 def test_candidates():
     mesh, turns = fcl_ccd.RigidMesh(VERTICES, TRIANGLES), (np.eye(4), pose(angle=1))
-    with pytest.raises(ValueError, match="min_distance"):
-        fcl_ccd.candidates(mesh, mesh, None, turns, min_distance=0.1)
-    with pytest.raises(ValueError, match="min_distance"):
-        fcl_ccd.collide(mesh, mesh, None, turns, min_distance=0.1)
+    for min_distance in (-0.1, INF):
+        with pytest.raises(ValueError, match="min_distance"):
+            fcl_ccd.candidates(mesh, mesh, None, turns, min_distance=min_distance)
+        with pytest.raises(ValueError, match="min_distance"):
+            fcl_ccd.collide(mesh, mesh, None, turns, min_distance=min_distance)
     with pytest.raises(ValueError, match="min_distance"):
         fcl_ccd.self_candidates(mesh, min_distance=INF)
     with pytest.raises(ValueError, match="block is -1"):
