@@ -261,7 +261,9 @@ class Checks {
 
   void safeDisplacements() {
     const auto rest = makeSquare<Model>(), above = makeSquare<Model>();
-    check(fcl::safeSelfDisplacements(rest.get(), 1)[0] == 1, "safeSelfDisplacements");
+    // A corner and the triangle across are a diagonal's half, the root of 2, apart.
+    check(std::abs(fcl::safeSelfDisplacements(rest.get(), 9)[0] - std::sqrt(0.5)) < 1e-6,
+          "safeSelfDisplacements");
     const fcl::SafeDisplacements bounds = fcl::safeDisplacements(
         rest.get(), at<S>(0, 0, 0), above.get(), at<S>(0, 0, 3), 9, 1);
     check(std::abs(bounds.of_o1[0] - 1) < 1e-6 && std::abs(bounds.of_o2[0] - 1) < 1e-6,
