@@ -562,7 +562,7 @@ TEST(FCL_EMBEDDED_REGIONS, haveNoContact) {
           !test::bruteForceSelfContacts({mesh.t0, mesh.t1, mesh.triangles}).empty();
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(large, test::rounds(300U));
+  EXPECT_GT(large, test::rounds(240U));
   EXPECT_GT(whole, test::rounds(200U));
   EXPECT_GT(with_contacts, test::rounds(100U));
 }
