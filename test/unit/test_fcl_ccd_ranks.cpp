@@ -18,10 +18,34 @@
 #include <vector>
 
 #include "ccd_sequence.h"
+#include "step_share.h"
 
 namespace {
 
 using namespace fcl::test;
+
+TEST(StepShare, SharesAreAPartOfTheStepsInOrder) {
+  for (std::size_t num_ranks = 1; num_ranks <= 5; ++num_ranks)
+    for (std::size_t end = 0; end < 50; ++end) {
+      constexpr std::size_t kFirst = 3;
+      std::vector<int> owners(50, -1);
+      for (std::size_t rank = 0; rank < num_ranks; ++rank) {
+        const fcl_ccd::StepShare share{kFirst, end, rank, num_ranks};
+        for (std::size_t i = 0; i < share.size(); ++i) {
+          ASSERT_LT(share[i], end);
+          ASSERT_TRUE(share.has(share[i]));
+          ASSERT_EQ(owners[share[i]], -1);
+          owners[share[i]] = static_cast<int>(rank);
+          if (i > 0) {
+            ASSERT_LT(share[i - 1], share[i]);
+          }
+        }
+        ASSERT_GE(share[share.size()], end);
+      }
+      for (std::size_t step = 0; step < 50; ++step)
+        ASSERT_EQ(owners[step] >= 0, step >= kFirst && step < end);
+    }
+}
 
 #ifdef FCL_CCD_USE_MPI
 constexpr const char* kTool = FCL_CCD_TOOL;
@@ -96,10 +120,12 @@ class CcdRanks : public CcdSequence {
 
 TEST_F(CcdRanks, GiveTheBytesOfOneProcess) {
   fs::create_directory(path("f"));
-  for (std::size_t frame = 0; frame < 12; ++frame) writeLargeFrame(frame);
+  // So many that the eighth rank has steps.
+  constexpr std::size_t kSteps = 7 * fcl_ccd::StepShare::kBlock + 2;
+  for (std::size_t frame = 0; frame <= kSteps; ++frame) writeLargeFrame(frame);
   const Results one = resultsOf(std::string("'") + kTool + "' run f --jobs 1");
-  EXPECT_EQ(linesOf(one.steps).size(), 1u + 11u + 1u);
-  EXPECT_EQ(linesOf(one.table).size(), 1u + 11u + 2u) << one.table;
+  EXPECT_EQ(linesOf(one.steps).size(), 1 + kSteps + 1);
+  EXPECT_EQ(linesOf(one.table).size(), 1 + kSteps + 2) << one.table;
   EXPECT_GT(one.painted.size(), 100'000u);
   for (const int count : {2, 3, 8})
     EXPECT_TRUE(resultsOf(onRanks(count, "run f")) == one) << count;

@@ -11,9 +11,8 @@
 namespace fcl_ccd {
 namespace {
 
-/// Steps that wait for other ranks. Steps of different ranks take different times: with
-/// more of them a rank waits less, and more memory is used.
-constexpr std::size_t kMostWaiting = 4;
+/// Steps that wait for other ranks: a block is taken while the next one is made.
+constexpr std::size_t kMostWaiting = 2 * StepShare::kBlock;
 
 }  // namespace
 
@@ -45,11 +44,10 @@ void OwnSteps::stop() {
 void OwnSteps::run() { put(makeAll()); }
 
 StepOutcome OwnSteps::makeAll() {
-  const StepShare& share = maker_.share();
   try {
     inOrder<StepRecord>(
-        0, share.size(), maker_.numJobs(),
-        [&](std::size_t i, std::size_t worker) { return maker_.make(share[i], worker); },
+        0, maker_.share().size(), maker_.numJobs(),
+        [&](std::size_t i, std::size_t worker) { return maker_.make(i, worker); },
         [&](std::size_t, StepRecord record) {
           put({std::move(record), 0, ""});
         },

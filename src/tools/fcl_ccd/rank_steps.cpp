@@ -69,10 +69,10 @@ void RankGatherer::refuse() {
 }
 
 StepOutcome RankGatherer::take(
-    OwnSteps& own, std::size_t begin, std::size_t end,
+    OwnSteps& own, const StepShare& share,
     const std::function<void(std::size_t, const StepRecord&)>& take) {
-  for (std::size_t step = begin; step < end; ++step) {
-    const std::size_t rank = (step - begin) % has_ended_.size();
+  for (std::size_t step = share.first; step < share.end; ++step) {
+    const std::size_t rank = share.rankOf(step);
     StepOutcome outcome = rank == 0 ? nextOwn(ranks_, own)
                                     : outcomeOf(ranks_.receive(static_cast<int>(rank)));
     if (!outcome.record) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The steps of one run on several ranks. Rank r makes the steps r, r + size, ... and
-// sends them to rank 0 in this order. Rank 0 makes its own, and has the outputs.
+// The steps of one run on several ranks. Each rank makes the steps of its StepShare and
+// sends them to rank 0 in order. Rank 0 makes its own, and has the outputs.
 //
 // Messages. Each rank but 0: a Readiness; then, if rank 0 begins, a StepOutcome for each
 // of its steps and one for their end. Rank 0: to all others the first step, or nothing if
@@ -43,10 +43,11 @@ class RankGatherer {
   /// @brief Instead of begin(): no rank begins.
   void refuse();
 
-  /// @brief Takes the steps [begin, end) of all ranks in order.
+  /// @brief Takes the steps of all ranks in order.
+  /// @param share  of rank 0.
   /// @return the end that came instead of a step; an end without a cause if all were
   /// taken.
-  StepOutcome take(OwnSteps& own, std::size_t begin, std::size_t end,
+  StepOutcome take(OwnSteps& own, const StepShare& share,
                    const std::function<void(std::size_t, const StepRecord&)>& take);
 
   /// @brief Stops the steps of all ranks and waits for their ends.

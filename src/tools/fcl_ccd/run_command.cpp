@@ -285,16 +285,16 @@ int runAlone(const RunOptions& options) {
   Preparation run;
   prepare(options, true, run);
   report(run.notes);
-  const StepShare all{run.resume_point.step, run.paths.numSteps(), 1};
+  const StepShare all{run.resume_point.step, run.paths.numSteps()};
   StepMaker maker(options, run.paths, *run.inputs, run.parallelism, all);
   const auto source = [&](const StepTaker& take) {
     std::size_t num_done = all.first;
     inOrder<StepRecord>(
-        all.first, all.end, maker.numJobs(),
-        [&](std::size_t step, std::size_t worker) { return maker.make(step, worker); },
-        [&](std::size_t step, const StepRecord& record) {
-          take(step, record);
-          num_done = step + 1;
+        0, all.size(), maker.numJobs(),
+        [&](std::size_t i, std::size_t worker) { return maker.make(i, worker); },
+        [&](std::size_t i, const StepRecord& record) {
+          take(all[i], record);
+          num_done = all[i] + 1;
         },
         [] { return stopSignal() == 0; });
     return num_done < all.end ? endBySignal() : StepOutcome();
@@ -312,15 +312,15 @@ int runFirstRank(const RunOptions& options, Ranks& ranks, const std::string& com
     gatherer.refuse();
     throw;
   }
-  const std::size_t first = run.resume_point.step, end = run.paths.numSteps();
-  gatherer.begin({command, end, ""}, first);
+  const StepShare share{run.resume_point.step, run.paths.numSteps(), 0,
+                        static_cast<std::size_t>(ranks.size())};
+  gatherer.begin({command, share.end, ""}, share.first);
   report(run.notes);
-  StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
-                  {first, end, static_cast<std::size_t>(ranks.size())});
+  StepMaker maker(options, run.paths, *run.inputs, run.parallelism, share);
   OwnSteps own(maker);
   const int code =
       Run(options, run.growing, run.resume_point).run([&](const StepTaker& take) {
-        return gatherer.take(own, first, end, take);
+        return gatherer.take(own, share, take);
       });
   try {
     gatherer.end(own);
@@ -343,7 +343,7 @@ int runOtherRank(const RunOptions& options, Ranks& ranks, const std::string& com
   const std::optional<std::size_t> first = awaitBegin(ranks, readiness);
   if (!first) return 0;
   StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
-                  {*first + static_cast<std::size_t>(ranks.rank()), run.paths.numSteps(),
+                  {*first, run.paths.numSteps(), static_cast<std::size_t>(ranks.rank()),
                    static_cast<std::size_t>(ranks.size())});
   OwnSteps own(maker);
   sendSteps(ranks, own);

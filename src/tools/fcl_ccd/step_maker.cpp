@@ -23,8 +23,9 @@ StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
   if (inputs.b) frames_b_.emplace(*inputs.b, share);
 }
 
-StepRecord StepMaker::make(std::size_t step, std::size_t worker) {
-  announce(step);
+StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
+  announce(i);
+  const std::size_t step = share_[i];
   const FrameStore::Pair a = frames_a_.take(step);
   FrameStore::Pair b;
   if (frames_b_) b = frames_b_->take(step);
@@ -39,15 +40,15 @@ StepRecord StepMaker::make(std::size_t step, std::size_t worker) {
   return record(report, to);
 }
 
-void StepMaker::announce(std::size_t step) const {
-  const std::size_t later = step + 2 * numJobs() * share_.stride;
+void StepMaker::announce(std::size_t i) const {
+  const std::size_t later = share_[i + 2 * numJobs()];
   const auto announceFrame = [this](std::size_t frame) {
     if (frame >= paths_.a.size()) return;
     inputs_.a.announce(frame);
     if (paths_.b.size() > 1) inputs_.b->announce(frame);
   };
-  // With a stride of 1 the step before has announced this one.
-  if (share_.stride > 1) announceFrame(later);
+  // Else the step before has announced this frame.
+  if (later > 0 && !share_.has(later - 1)) announceFrame(later);
   announceFrame(later + 1);
 }
 

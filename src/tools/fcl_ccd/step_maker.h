@@ -28,15 +28,16 @@ class StepMaker {
   StepMaker(const RunOptions& options, const FramePaths& paths, const RunInputs& inputs,
             const Parallelism& parallelism, const StepShare& share);
 
+  /// @param i       of the share: its i-th step.
   /// @param worker  the calling thread, below the number of jobs.
   /// @throws std::runtime_error that names the frames and the cause.
-  StepRecord make(std::size_t step, std::size_t worker);
+  StepRecord make(std::size_t i, std::size_t worker);
 
   const StepShare& share() const { return share_; }
   std::size_t numJobs() const { return scenes_.size(); }
 
  private:
-  void announce(std::size_t step) const;
+  void announce(std::size_t i) const;
   StepResult query(const SceneFrame& from, const SceneFrame& to,
                    std::unique_ptr<Scene>& scene, std::size_t step) const;
   StepRecord record(const StepReport& report, const SceneFrame& to) const;
