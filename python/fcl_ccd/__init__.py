@@ -18,12 +18,13 @@ is late.
         print(result.time_of_contact)                     # in fractions of the step
         print(result.contacts["pos"])                     # (k, 3): a structured array
 
-Meshes: DeformableMesh, RigidMesh. Shapes: Box, Sphere, Capsule, Ellipsoid, Cone, Cylinder,
-Convex, Plane, Halfspace, TriangleP. Maps of occupied cells: OcTree. Motions: a pose, two
-poses, LinearMotion, ScrewMotion, SplineMotion, and your own as a BoundedMotion. Queries: collide(), self_collide(), which take a
-Filter and give a Result. Many objects: CollisionManager. With min_distance features are in
-contact at a distance. For your own solver: candidates(), self_candidates(); vertex_face(),
-edge_edge(), vertex_edge() and vertex_vertex() on arrays.
+Meshes: DeformableMesh, RigidMesh; weld_vertices() for triangle soup. Shapes: Box, Sphere,
+Capsule, Ellipsoid, Cone, Cylinder, Convex, Plane, Halfspace, TriangleP. Maps of occupied
+cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, SplineMotion, and your
+own as a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a
+Result. Many objects: CollisionManager. With min_distance features are in contact at a
+distance. For your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(),
+vertex_edge() and vertex_vertex() on arrays.
 
 Errors: ValueError with the words of the library, TypeError for arguments of another type,
 RuntimeError for an update of a mesh while a query of it runs.
@@ -31,7 +32,7 @@ RuntimeError for an update of a mesh while a query of it runs.
 
 from ._core import version as __version__
 from ._manager import CollisionManager, ManagerResult, Pair
-from ._meshes import DeformableMesh, RigidMesh
+from ._meshes import DeformableMesh, RigidMesh, weld_vertices
 from ._motions import BoundedMotion, LinearMotion, Motion, ScrewMotion, SplineMotion
 from ._octrees import OcTree, octree_cell_dtype
 from ._queries import (
@@ -100,4 +101,5 @@ __all__ = [
     "vertex_edge",
     "vertex_face",
     "vertex_vertex",
+    "weld_vertices",
 ]

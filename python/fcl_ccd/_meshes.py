@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Optional, overload
+from typing import TYPE_CHECKING, Optional, Sequence, overload
 
 from . import _arguments, _core
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
 
 
 class DeformableMesh(_core.DeformableMesh):
@@ -125,3 +126,30 @@ class RigidMesh(_core.RigidMesh):
         if not self._is_built:
             return "RigidMesh(not built)"
         return f"RigidMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"
+
+
+def weld_vertices(frames: Sequence[ArrayLike], *, eps: float = 0.0) -> NDArray[np.int64]:
+    """Find the vertices that coincide in all frames of a mesh.
+
+    In a triangle soup (STL files, exports with split vertices) no two triangles have a
+    common vertex, so that neighbours touch in every step. Build the mesh with the joined
+    triangles and with all vertices; contacts have the numbers of the file then:
+
+        joined = fcl_ccd.weld_vertices([previous, current])
+        mesh = fcl_ccd.DeformableMesh(previous, joined[triangles])
+
+    Parameters
+    ----------
+    frames : list of (n, 3) arrays
+        At least one frame. One is enough for a mesh that only moves rigidly.
+    eps : float
+        Vertices are joined if no coordinate differs by more than eps, in every frame.
+
+    Returns an (n,) array: for each vertex the number of the vertex that replaces it, or its
+    own. Raises ValueError for no frame, frames of different size, a position that is not
+    finite, or a negative eps.
+    """
+    return _core.weld_vertices(
+        [_arguments.points(frame, f"frame {i}") for i, frame in enumerate(frames)],
+        _arguments.size(eps, "eps"),
+    )

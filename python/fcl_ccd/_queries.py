@@ -114,6 +114,9 @@ class Result:
         Such an edge and triangle, of kind Kind.CROSSING.
     crossings : structured array of contact_dtype
         All of them, if enable_crossings asks for them.
+    is_triangle_soup : bool
+        In a self-collision: whether no two triangles have a common vertex, so that
+        neighbours are contacts. weld_vertices() joins them.
     counts : dict, how many candidates each stage of the query saw and removed
     times : dict, wall time of the parts of the query in seconds
     contact_tf1, contact_tf2 : (4, 4) float64
@@ -128,6 +131,7 @@ class Result:
     initially_crossing: bool
     crossing: NDArray[np.void]
     crossings: NDArray[np.void]
+    is_triangle_soup: bool
     counts: Dict[str, int]
     times: Dict[str, float]
     contact_tf1: NDArray[np.float64]

@@ -67,6 +67,7 @@ py::dict fieldsOf(const Outcome& outcome, Contacts&& contacts) {
                   "initially_crossing"_a = contacts.initially_crossing,
                   "crossing"_a = toArray(std::move(crossing)),
                   "crossings"_a = toArray(std::move(contacts.crossings)),
+                  "is_triangle_soup"_a = contacts.is_triangle_soup,
                   "counts"_a = countsOf(contacts.counts),
                   "times"_a = py::dict("update"_a = contacts.times.update,
                                        "traverse"_a = contacts.times.traverse,

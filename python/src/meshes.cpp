@@ -7,6 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "fcl/geometry/bvh/weld_vertices.h"
+
 namespace fcl_ccd {
 namespace python {
 namespace {
@@ -80,6 +82,24 @@ auto readModel(Read&& read) {
   };
 }
 
+/// The map of the vertices, from frames of the same number of vertices.
+Integers weldVertices(const std::vector<Doubles>& frames, double eps) {
+  std::vector<const double*> data;
+  for (const Doubles& frame : frames) {
+    requireSize(frame, static_cast<std::size_t>(frames[0].size()), "frames");
+    data.push_back(frame.data());
+  }
+  const std::size_t num_vertices = frames.empty() ? 0 : numPoints(frames[0]);
+  std::vector<int> map;
+  {
+    const py::gil_scoped_release release;
+    map = fcl::weldVertices(data, num_vertices, eps);
+  }
+  Integers out(static_cast<py::ssize_t>(map.size()));
+  std::copy(map.begin(), map.end(), out.mutable_data());
+  return out;
+}
+
 }  // namespace
 
 std::vector<Vector3d> toVertices(const Doubles& array) {
@@ -143,6 +163,7 @@ RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
 }
 
 void bindMeshes(py::module_& module) {
+  module.def("weld_vertices", &weldVertices, py::arg("frames"), py::arg("eps"));
   py::class_<Geometry>(module, "Geometry");
   py::class_<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;

@@ -44,6 +44,43 @@ def cloth():
     return mesh
 
 
+def features(contacts, numbers):
+    """The pairs of features of contacts, with other numbers of the vertices."""
+    pairs = set()
+    for kind, vertices in zip(contacts["kind"], contacts["vertices"]):
+        size = 1 if kind == fcl_ccd.Kind.VERTEX_FACE else 2
+        ids = numbers[vertices[:4]].tolist()
+        pairs.add(frozenset([frozenset(ids[:size]), frozenset(ids[size:])]))
+    assert len(pairs) == len(contacts)
+    return pairs
+
+
+def test_a_triangle_soup_is_noticed_and_joined():
+    corners = TRIANGLES.ravel()
+    previous, current = PREVIOUS[corners], CURRENT[corners]
+    triangles = np.arange(len(corners)).reshape(-1, 3)
+    soup = fcl_ccd.DeformableMesh(previous, triangles)
+    soup.update(previous, current)
+    result = fcl_ccd.self_collide(soup)
+    expected = fcl_ccd.self_collide(cloth())
+    assert result.is_triangle_soup and not expected.is_triangle_soup
+    assert len(result.contacts) > len(expected.contacts)
+
+    joined = fcl_ccd.weld_vertices([previous, current])
+    first = {v: i for i, v in reversed(list(enumerate(corners)))}
+    assert joined.tolist() == [first[v] for v in corners]
+    mesh = fcl_ccd.DeformableMesh(previous, joined[triangles])
+    mesh.update(previous, current)
+    result = fcl_ccd.self_collide(mesh)
+    assert not result.is_triangle_soup
+    assert features(result.contacts, corners) == features(expected.contacts, np.arange(len(PREVIOUS)))
+    # The corners of a sheet's neighbours part when they move.
+    apart = current.copy()
+    apart[0] += 1
+    assert fcl_ccd.weld_vertices([previous, apart])[1:].min() > 0
+    assert fcl_ccd.weld_vertices([previous, apart], eps=2.0)[0] == 0
+
+
 def test_self_collide():
     commands = [reference.deformable(PREVIOUS, CURRENT, TRIANGLES)]
     commands += [f"self 0 {reference.request(**options)}" for options in REQUESTS]

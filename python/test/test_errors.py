@@ -161,6 +161,21 @@ def test_motions(make, text):
         fcl_ccd.collide(mesh, mesh, make())
 
 
+@pytest.mark.parametrize(
+    "frames, eps, text",
+    [
+        ([], 0, "frame"),
+        ([np.zeros((3, 2))], 0, "frame 0"),
+        ([np.zeros((3, 3)), np.zeros((2, 3))], 0, "frames"),
+        ([np.full((3, 3), np.nan)], 0, "not finite"),
+        ([np.zeros((3, 3))], -1.0, "eps"),
+    ],
+)
+def test_welding(frames, eps, text):
+    with pytest.raises(ValueError, match=text):
+        fcl_ccd.weld_vertices(frames, eps=eps)
+
+
 def test_objects_that_are_no_meshes():
     mesh = mesh_at_rest()
     for call in (
