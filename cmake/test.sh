@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release and runs the tests.
 #   bash cmake/test.sh           the test suite: 20 to 25 minutes on two cores
-#   bash cmake/test.sh --all     also sanitizers, clang with -Werror, clang-tidy, the
+#   bash cmake/test.sh --all     also clang with -Werror and sanitizers, clang-tidy, the
 #                                reference, and a build without vectors and threads (CI runs
 #                                this; CI=true means the same)
 #   bash cmake/test.sh --doors   only every way to link the package (test/consumer), with
@@ -86,13 +86,15 @@ fi
 
 # The Release run comes last, so that its summary is at the end of the output.
 if $all; then
-  build clang-werror
-  echo "== clang-tidy"
+  build asan-ubsan
+  echo "== clang-tidy ($((SECONDS / 60)) min so far)"
   command -v clang-tidy-14 >/dev/null ||
     { echo "clang-tidy-14 is missing. Install the package clang-tidy-14" >&2; exit 1; }
   # Its stderr only counts findings in headers of other projects.
   find src -name '*.cpp' -print0 |
-    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/clang-werror 2>/dev/null
+    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/asan-ubsan 2>/dev/null
+  echo "== asan-ubsan: unit tests ($((SECONDS / 60)) min so far)"
+  ctest --preset asan-ubsan -j "$jobs"
   echo "== reference"
   doxygen doc/Doxyfile
   bash cmake/check_reference.sh
@@ -102,9 +104,6 @@ if $all; then
   cmake --preset plain
   cmake --build --preset plain --target "${plain_tests[@]}"
   for test in "${plain_tests[@]}"; do "build/plain/test/unit/$test" --gtest_brief=1; done
-  build asan-ubsan
-  echo "== asan-ubsan: unit tests"
-  ctest --preset asan-ubsan -j "$jobs"
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON
