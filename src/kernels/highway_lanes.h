@@ -224,6 +224,40 @@ HWY_INLINE void loadTwoEach(const float* from, Lanes<double, kEight>& first,
   }
 }
 
+#if HWY_TARGET == HWY_AVX2
+/// For each set of eight lanes, their numbers in ascending order, four bits each.
+struct LaneOrders {
+  std::uint32_t of[256];
+
+  constexpr LaneOrders() : of{} {
+    for (unsigned set = 0; set < 256; ++set)
+      for (unsigned lane = 0, next = 0; lane < 8; ++lane)
+        if (set >> lane & 1U) of[set] |= lane << (4 * next++);
+  }
+};
+
+/// The lanes whose bit is set, in their order; any numbers behind them. Highway's
+/// Compress() copies a table of 1 KB to the stack in each call (1.0.3, GCC 12).
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> compressed(Tag tag, const hn::Vec<Tag>& v, unsigned mask) {
+  static_assert(hn::MaxLanes(Tag()) == 8);
+  static constexpr LaneOrders kOrders;
+  const auto order =
+      hn::Shr(hn::Set(tag, kOrders.of[mask & 255]), hn::ShiftLeft<2>(hn::Iota(tag, 0)));
+  return hn::TableLookupLanes(v,
+                              hn::IndicesFromVec(tag, hn::And(order, hn::Set(tag, 7))));
+}
+#else
+/// The lanes whose bit is set, in their order; any numbers behind them.
+template <typename Tag>
+HWY_INLINE hn::Vec<Tag> compressed(Tag tag, const hn::Vec<Tag>& v, unsigned mask) {
+  // Eight may be read.
+  const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(mask),
+                                 static_cast<std::uint8_t>(mask >> 8)};
+  return hn::Compress(v, hn::LoadMaskBits(tag, bytes));
+}
+#endif
+
 /// Copies those of 16 numbers whose bit is set, in their order. Up to 16 are written.
 /// @param numbers  numbers(tag, i): as many as the tag has lanes, from number i on
 template <typename Numbers>
@@ -231,10 +265,7 @@ HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32
   const hn::CappedTag<std::uint32_t, kSixteen> tag;
   constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
   for (std::size_t i = 0; i < kSixteen; i += kWidth) {
-    // Eight may be read.
-    const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(mask >> i),
-                                   static_cast<std::uint8_t>(mask >> i >> 8)};
-    hn::StoreU(hn::Compress(numbers(tag, i), hn::LoadMaskBits(tag, bytes)), tag, to);
+    hn::StoreU(compressed(tag, numbers(tag, i), mask >> i), tag, to);
     to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
   }
 }

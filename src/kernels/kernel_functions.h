@@ -47,6 +47,9 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
+EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
+                    const TreeVertex* vertices, const TreeTriangle* triangles,
+                    std::size_t count);
 EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
                                          const TrianglePair* pairs,
                                          const std::uint32_t* codes,

@@ -177,6 +177,16 @@ constexpr int kAxes[kNumAxes][3] = {
     {1, 0, 0}, {0, 1, 0},  {0, 0, 1}, {1, 1, 0},  {1, -1, 0}, {1, 0, 1},  {1, 0, -1},
     {0, 1, 1}, {0, 1, -1}, {1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {1, -1, -1}};
 
+/// @brief What a moving point sees of up to eight triangles, a bit each.
+struct EightViews {
+  /// The triangles that provably wind to the left, or to the right, as seen from the
+  /// point at every time of the step: the volume of the point, as the origin, and the
+  /// triangle is positive, or negative.
+  unsigned left, right;
+  /// Those of them that a ray from the point provably misses at t = 0.
+  unsigned missed;
+};
+
 struct Kernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
@@ -263,6 +273,14 @@ struct Kernels {
   /// @param count  1 to 8
   std::uint32_t (*facedDirections)(const TreeVertex* vertices,
                                    const TreeTriangle* triangles, std::size_t count);
+
+  /// Finds how up to eight triangles look from a moving point.
+  /// @param point  its path; the rest is not read
+  /// @param ray  a direction, for EightViews::missed
+  /// @param count  1 to 8
+  EightViews (*viewFrom)(const TreeVertex& point, const double (&ray)[3],
+                         const TreeVertex* vertices, const TreeTriangle* triangles,
+                         std::size_t count);
 
   /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() kept, in
   /// [windowLo(), min(windowHi(), latest)].

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The directions in which triangles face.
+// The directions in which triangles face, and the sides that a point sees of them.
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -80,6 +80,67 @@ std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* tr
   return facedAlongAll(
       {n, broadcast<kEight>(kFanBound) * size, broadcast<kEight>(-kFanBound) * size},
       std::make_index_sequence<kNumAxes>());
+}
+
+/// The signs of the volume of three moving vectors, for eight of them: lanes in which it
+/// is certainly positive (negative) during the whole step.
+struct VolumeSigns {
+  unsigned positive, negative;
+};
+
+/// @param size  the product of their norms, in the range of the bounds
+HWY_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& n,
+                                   const Doubles& size) {
+  // Bernstein coefficients; the inner ones are times 3, and have a larger bound.
+  const Doubles outer0 = dot(u.t0, n.first), outer1 = dot(u.t1, n.last),
+                inner0 = dot(u.t1, n.first) + dot(u.t0, n.middle),
+                inner1 = dot(u.t1, n.middle) + dot(u.t0, n.last);
+  const Doubles outer = broadcast<kEight>(kOuterBound) * size,
+                inner = broadcast<kEight>(kInnerBound) * size;
+  const Doubles zero = broadcast<kEight>(0.);
+  return {bits((outer0 > outer) & (outer1 > outer) & (inner0 > inner) & (inner1 > inner)),
+          bits((outer0 < zero - outer) & (outer1 < zero - outer) &
+               (inner0 < zero - inner) & (inner1 < zero - inner))};
+}
+
+/// The same vector eight times.
+HWY_INLINE Vectors vectorsOf(const double* x) {
+  return {broadcast<kEight>(x[0]), broadcast<kEight>(x[1]), broadcast<kEight>(x[2])};
+}
+
+EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
+                    const TreeVertex* vertices, const TreeTriangle* triangles,
+                    std::size_t count) {
+  const TreeVertex* x[3][kEight];
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+  const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
+                      u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
+                      w = loadPaths(x[2]) - center;
+  const Doubles u_norm = max(maxNorm(u.t0), maxNorm(u.t1)),
+                v_norm = max(maxNorm(v.t0), maxNorm(v.t1)),
+                w_norm = max(maxNorm(w.t0), maxNorm(w.t1));
+  const Doubles size = u_norm * (v_norm * w_norm);
+  const VolumeSigns signs = volumeSigns(u, cross(v, w), size);
+  const unsigned known =
+      bits(isInRange(size) & isInRange(v_norm * w_norm)) & ((1U << count) - 1);
+  EightViews views{signs.positive & known, signs.negative & known, 0};
+
+  // In terms of the corners the ray is a sum whose weights are volumes of the ray and two
+  // corners, divided by the volume of all corners. It misses if one of them is negative.
+  const Vectors r = vectorsOf(ray);
+  const Doubles most = max(max(u_norm, v_norm), w_norm),
+                ray_size = maxNorm(r) * (most * most),
+                bound = broadcast<kEight>(kVolumeBound) * ray_size,
+                minus_bound = broadcast<kEight>(0.) - bound;
+  const Doubles a = dot(r, cross(v.t0, w.t0)), b = dot(r, cross(w.t0, u.t0)),
+                c = dot(r, cross(u.t0, v.t0));
+  const unsigned below = bits((a < minus_bound) | (b < minus_bound) | (c < minus_bound)),
+                 above = bits((a > bound) | (b > bound) | (c > bound));
+  views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
+                 ((views.left & below) | (views.right & above));
+  return views;
 }
 
 }  // namespace HWY_NAMESPACE

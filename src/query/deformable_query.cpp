@@ -11,6 +11,7 @@
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "query/distance_contact.h"
+#include "self_culling/embedded_bodies.h"
 #include "self_culling/embedded_fans.h"
 #include "self_culling/embedded_regions.h"
 #include "self_culling/regions_apart.h"
@@ -106,8 +107,8 @@ class Part {
            !leaves_.isDone();
          ++next) {
       const NodePair work = open_[next];
-      const double latest = leaves_.latest();
-      if (work.earliest <= lastBeginning(latest)) step(work, latest);
+      setLatest(leaves_.latest());
+      if (work.earliest <= last_beginning_) step(work);
     }
     finish();
     if (!leaves_.isDone()) works.assign(open_.data() + next, open_.data() + open_.size());
@@ -122,9 +123,9 @@ class Part {
       const std::size_t first = open_.size() - 1;
       const NodePair& last = open_[first];
       open_.cut(first);
-      const double latest = leaves_.latest();
-      if (last.earliest > lastBeginning(latest)) continue;
-      step(last, latest);
+      setLatest(leaves_.latest());
+      if (last.earliest > last_beginning_) continue;
+      step(last);
       if (schedule_.in_order)
         sortLatestFirst(open_.data() + first, open_.data() + open_.size());
     }
@@ -132,9 +133,14 @@ class Part {
   }
 
  private:
-  void step(const NodePair& work, double latest) {
-    if (latest != latest_) traversal_.leaveOutAfter(latest, pose_displacement_);
+  void setLatest(double latest) {
+    if (latest == latest_) return;
+    traversal_.leaveOutAfter(latest, pose_displacement_);
+    last_beginning_ = lastBeginning(latest);
     latest_ = latest;
+  }
+
+  void step(const NodePair& work) {
     traversal_.step(work, open_, [this](int a, int b, float earliest) {
       assert(count_ < block_.size());
       LeafPair& pair = block_[count_++];
@@ -142,7 +148,7 @@ class Part {
       pair.b = b;
       pair.earliest = earliest;
     });
-    if (count_ >= blockFor(latest)) visitBlocks(false);
+    if (count_ >= blockFor(latest_)) visitBlocks(false);
   }
 
   std::size_t blockFor(double latest) const {
@@ -182,8 +188,9 @@ class Part {
   Traversal<kSelf, TreeA, TreeB> traversal_;
   /// The sum of MeshInstance::poseDisplacement() of both meshes.
   double pose_displacement_;
-  /// Leaves::latest() in the last step.
+  /// Leaves::latest() in the last step, and its lastBeginning().
   double latest_{1};
+  float last_beginning_{lastBeginning(1)};
   const Schedule& schedule_;
   Leaves& leaves_;
   double test_time_{0};
@@ -275,7 +282,8 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
   }
   std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (with_regions) {
-    EmbeddedRegions regions = findEmbeddedRegions(tree, kernels(), num_threads);
+    EmbeddedRegions regions = findEmbeddedBodies(tree, kernels(), num_threads);
+    addEmbeddedRegions(tree, kernels(), num_threads, regions);
     proofs.regions = std::move(regions.nodes);
     interior = std::move(regions.interior);
   }

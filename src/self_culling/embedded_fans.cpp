@@ -81,9 +81,11 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
     FanQueue queue(tree, kernels, embedded);
     for (; i < last; ++i) {
-      __builtin_prefetch(&tree.vertices()[std::min(i + kAhead, count - 1)]);
+      const std::size_t ahead = std::min(i + kAhead, count - 1);
+      if (!left_out[ahead]) __builtin_prefetch(&tree.vertices()[ahead]);
+      if (left_out[i]) continue;
       const VertexFan fan = tree.fans()[i];
-      if (!left_out[i] && fan.count > 0) queue.add(static_cast<std::uint32_t>(i), fan);
+      if (fan.count > 0) queue.add(static_cast<std::uint32_t>(i), fan);
     }
     queue.finish();
   });

@@ -79,7 +79,7 @@ struct BorderSearch {
 
 class RegionSearch {
  public:
-  /// @param found  has the tree's size, all entries 0
+  /// @param found  nodes that are proved already, to which others are added
   RegionSearch(const MovingKdopTree& tree, const Kernels& kernels,
                std::uint32_t least_triangles, EmbeddedRegions& found)
       : tree_(tree),
@@ -87,8 +87,10 @@ class RegionSearch {
         faced_(tree, kernels),
         found_(found) {}
 
-  OpenNode root() const {
-    return {0, static_cast<std::uint32_t>(tree_.triangles().size())};
+  /// The nodes at which the search begins: the root, if it is not proved already.
+  std::vector<OpenNode> roots() const {
+    if (found_.nodes[0]) return {};
+    return {{0, static_cast<std::uint32_t>(tree_.triangles().size())}};
   }
 
   /// Finds the largest region among a node, its first part, the first part of that and so
@@ -111,15 +113,15 @@ class RegionSearch {
       out.embedded = region.last - region.first;
       out.in_vain = 0;
     }
-    for (std::size_t i = 0; i < largest; ++i) {
-      const std::vector<OpenNode> parts = partsOf(chain[i]);
-      if (!parts.empty()) out.rest.insert(out.rest.end(), parts.begin() + 1, parts.end());
-    }
+    for (std::size_t i = 0; i < largest; ++i)
+      for (const OpenNode& part : partsOf(chain[i]))
+        if (i + 1 == chain.size() || part.node != chain[i + 1].node)
+          out.rest.push_back(part);
     return out;
   }
 
  private:
-  /// The children that have enough triangles.
+  /// The children that have enough triangles and are not proved already.
   std::vector<OpenNode> partsOf(const OpenNode& open) const {
     std::vector<OpenNode> parts;
     const MovingKdopNode& node = tree_.node(open.node);
@@ -127,7 +129,9 @@ class RegionSearch {
     for (int lane = node.count; lane-- > 0;) {
       if (node.isTriangle(lane)) continue;
       const std::uint32_t first = tree_.firstTriangle(node.child[lane]);
-      if (last - first >= least_triangles_) parts.push_back({node.child[lane], last});
+      if (last - first >= least_triangles_ &&
+          !found_.nodes[static_cast<std::size_t>(node.child[lane])])
+        parts.push_back({node.child[lane], last});
       last = first;
     }
     return parts;
@@ -177,9 +181,14 @@ class RegionSearch {
 
 EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                                     int num_threads, std::uint32_t least_triangles) {
-  EmbeddedRegions found{std::vector<std::uint8_t>(tree.numNodes(), 0),
-                        std::vector<std::uint8_t>(tree.vertices().size(), 0),
-                        std::vector<std::uint8_t>(tree.numNodes(), 0)};
+  EmbeddedRegions found(tree);
+  addEmbeddedRegions(tree, kernels, num_threads, found, least_triangles);
+  return found;
+}
+
+void addEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
+                        int num_threads, EmbeddedRegions& found,
+                        std::uint32_t least_triangles) {
   assert(tree.numNodes() > 0 && least_triangles > 0);
   RegionSearch regions(tree, kernels, least_triangles, found);
   // Two open nodes have no common triangle, and no vertex is written for both.
@@ -187,8 +196,10 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
   // The open nodes are from all parts of the mesh. If most of them are tested in vain,
   // the search stops.
   const std::size_t spare = 16 * std::size_t{least_triangles};
-  std::size_t embedded = 0, in_vain = 0;
-  std::vector<OpenNode> open{regions.root()};
+  const auto known = std::count(found.interior.begin(), found.interior.end(), 1);
+  // A closed surface has about twice as many triangles as vertices.
+  std::size_t embedded = 2 * static_cast<std::size_t>(known), in_vain = 0;
+  std::vector<OpenNode> open = regions.roots();
   while (!open.empty() && in_vain <= spare + 2 * embedded) {
     std::vector<Searched> searched(open.size());
     parallelForBlocks(open.size(), open.size() / kTasks + 1, num_threads,
@@ -204,7 +215,6 @@ EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& k
       in_vain += s.in_vain;
     }
   }
-  return found;
 }
 
 }  // namespace deformable

@@ -28,6 +28,12 @@ struct EmbeddedRegions {
   std::vector<std::uint8_t> interior;
   /// For each node that is a root, the bit of the direction (kAxes) of the proof.
   std::vector<std::uint8_t> directions;
+
+  /// @brief No region.
+  explicit EmbeddedRegions(const MovingKdopTree& tree)
+      : nodes(tree.numNodes(), 0),
+        interior(tree.vertices().size(), 0),
+        directions(tree.numNodes(), 0) {}
 };
 
 /// @brief Least number of triangles of a region. To find regions of 64 triangles takes
@@ -43,6 +49,12 @@ constexpr std::uint32_t kLeastRegion = 128;
 EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                                     int num_threads,
                                     std::uint32_t least_triangles = kLeastRegion);
+
+/// @brief The same, added to what is known.
+/// @param[in,out] found  nodes that are proved already. They are not searched
+void addEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
+                        int num_threads, EmbeddedRegions& found,
+                        std::uint32_t least_triangles = kLeastRegion);
 
 }  // namespace deformable
 }  // namespace detail

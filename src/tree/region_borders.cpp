@@ -12,6 +12,8 @@ std::size_t RegionBorders::memUsage() const {
       bytes += sizeof(*border) + (border->points.capacity() + border->begins.capacity() +
                                   border->paths.capacity()) *
                                      sizeof(std::uint32_t);
+  if (const auto* closed = closed_.load(std::memory_order_acquire))
+    bytes += sizeof(*closed) + closed->capacity() * sizeof(ClosedNode);
   return bytes;
 }
 

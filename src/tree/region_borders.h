@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The borders of regions of a tree. They depend on the structure alone, and are kept with
-// it.
+// The borders of regions of a tree, and its closed parts. They depend on the structure
+// alone, and are kept with it.
 #ifndef FCL_CCD_TREE_REGION_BORDERS_H
 #define FCL_CCD_TREE_REGION_BORDERS_H
 
@@ -34,11 +34,17 @@ struct RegionBorder {
   std::uint32_t to(std::size_t edge) const { return points[begins[edge] + 1]; }
 };
 
-/// @brief The borders of a tree's nodes. Each is found when a query first asks for it,
-/// and kept, since the next query asks for most of them again.
+/// @brief A node whose triangles are a closed surface, and the end of its triangles.
+struct ClosedNode {
+  std::int32_t node;
+  std::uint32_t last;
+};
+
+/// @brief The borders of a tree's nodes, and its closed nodes. Each border is found when
+/// a query first asks for it, and kept, since the next query asks for most of them again.
 ///
-/// Any number of threads may use it at the same time. If two find the same border, one of
-/// the results is kept.
+/// Any number of threads may use it at the same time. If two find the same, one of the
+/// results is kept.
 class RegionBorders {
  public:
   explicit RegionBorders(std::size_t num_nodes) : borders_(num_nodes) {
@@ -46,6 +52,7 @@ class RegionBorders {
   }
   ~RegionBorders() {
     for (auto& border : borders_) delete border.load(std::memory_order_relaxed);
+    delete closed_.load(std::memory_order_relaxed);
   }
   RegionBorders(const RegionBorders&) = delete;
   RegionBorders& operator=(const RegionBorders&) = delete;
@@ -54,19 +61,30 @@ class RegionBorders {
   template <typename Find>
   const RegionBorder& of(std::int32_t node, Find&& find) {
     assert(node >= 0 && static_cast<std::size_t>(node) < borders_.size());
-    std::atomic<const RegionBorder*>& kept = borders_[static_cast<std::size_t>(node)];
-    const RegionBorder* border = kept.load(std::memory_order_acquire);
-    if (border) return *border;
-    auto found = std::make_unique<const RegionBorder>(find());
-    if (!kept.compare_exchange_strong(border, found.get(), std::memory_order_acq_rel))
-      return *border;
-    return *found.release();
+    return kept(borders_[static_cast<std::size_t>(node)], find);
+  }
+
+  /// @param find  find() returns the closed nodes of the tree
+  template <typename Find>
+  const std::vector<ClosedNode>& closedNodes(Find&& find) {
+    return kept(closed_, find);
   }
 
   std::size_t memUsage() const;
 
  private:
+  template <typename T, typename Find>
+  static const T& kept(std::atomic<const T*>& at, const Find& find) {
+    const T* known = at.load(std::memory_order_acquire);
+    if (known) return *known;
+    auto found = std::make_unique<const T>(find());
+    if (!at.compare_exchange_strong(known, found.get(), std::memory_order_acq_rel))
+      return *known;
+    return *found.release();
+  }
+
   std::vector<std::atomic<const RegionBorder*>> borders_;
+  std::atomic<const std::vector<ClosedNode>*> closed_{nullptr};
 };
 
 }  // namespace deformable

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernel of regions: the directions that triangles face during the whole step.
+// The kernels of regions and bodies: the directions that triangles face during the whole
+// step, and the sides that a point sees of them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -114,6 +115,115 @@ TEST(FCL_KERNELS, directionsThatTrianglesFace) {
   }
   for (const int n : met) EXPECT_GT(n, 500);
   EXPECT_GT(none, 1000);
+}
+
+/// Numbers that are all positive (negative), by more than a margin or at all.
+struct Signs {
+  bool positive{true}, negative{true}, clearly_positive{true}, clearly_negative{true};
+
+  void add(long double x, long double margin) {
+    positive = positive && x > 0;
+    negative = negative && x < 0;
+    clearly_positive = clearly_positive && x > margin;
+    clearly_negative = clearly_negative && x < -margin;
+  }
+};
+
+using LongVector = Eigen::Matrix<long double, 3, 1>;
+
+long double volume(const LongVector& a, const LongVector& b, const LongVector& c) {
+  return a.dot(b.cross(c));
+}
+
+// Whatever is claimed is true, and what is clearly true is claimed.
+TEST(FCL_KERNELS, trianglesSeenFromAPoint) {
+  constexpr std::uint64_t kSeed = 86;
+  Random random(kSeed);
+  int left = 0, right = 0, missed = 0, hit = 0, open = 0;
+  for (int i = 0; i < 5000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t count = 1 + random.index(8);
+    const double step = random.uniform(0, 1);
+    const int exponent = static_cast<int>(random.index(200)) - 100;
+    std::vector<TreeVertex> vertices(3 * count + 1);
+    std::vector<TreeTriangle> triangles(count);
+    for (TreeVertex& x : vertices) {
+      const Vector3<double> p = random.point(1), q = p + random.point(step);
+      for (int c = 0; c < 3; ++c) {
+        // On a grid some volumes are zero.
+        x.t0[c] = std::ldexp(i % 4 ? p[c] : std::round(p[c]), exponent);
+        x.t1[c] = std::ldexp(i % 4 ? q[c] : std::round(q[c]), exponent);
+      }
+    }
+    for (std::size_t k = 0; k < 3 * count; ++k)
+      triangles[k / 3].place[k % 3] = static_cast<std::uint32_t>(k);
+    const TreeVertex& point = vertices.back();
+    const Vector3<double> direction = random.point(1);
+    const double ray[3] = {direction[0], direction[1], direction[2]};
+    const EightViews views =
+        kernels().viewFrom(point, ray, vertices.data(), triangles.data(), count);
+    for (const Kernels* k : allSets()) {
+      const EightViews other =
+          k->viewFrom(point, ray, vertices.data(), triangles.data(), count);
+      EXPECT_EQ(other.left, views.left) << k->name;
+      EXPECT_EQ(other.right, views.right) << k->name;
+      EXPECT_EQ(other.missed, views.missed) << k->name;
+    }
+    EXPECT_EQ((views.left | views.right | views.missed) >> count, 0U);
+    for (std::size_t k = 0; k < count; ++k) {
+      LongVector a[2][3];
+      for (int frame = 0; frame < 2; ++frame)
+        for (std::size_t corner = 0; corner < 3; ++corner)
+          for (int c = 0; c < 3; ++c) {
+            const TreeVertex& x = vertices[3 * k + corner];
+            a[frame][corner][c] =
+                static_cast<long double>(frame == 0 ? x.t0[c] : x.t1[c]) -
+                (frame == 0 ? point.t0[c] : point.t1[c]);
+          }
+      const auto &p = a[0], &q = a[1];
+      const long double margin = std::ldexp(1e-12L, 3 * exponent);
+      Signs volumes;
+      volumes.add(volume(p[0], p[1], p[2]), margin);
+      volumes.add(
+          volume(q[0], p[1], p[2]) + volume(p[0], q[1], p[2]) + volume(p[0], p[1], q[2]),
+          margin);
+      volumes.add(
+          volume(p[0], q[1], q[2]) + volume(q[0], p[1], q[2]) + volume(q[0], q[1], p[2]),
+          margin);
+      volumes.add(volume(q[0], q[1], q[2]), margin);
+      const bool is_left = views.left >> k & 1U, is_right = views.right >> k & 1U,
+                 is_missed = views.missed >> k & 1U;
+      EXPECT_TRUE(volumes.positive || !is_left);
+      EXPECT_TRUE(volumes.negative || !is_right);
+      EXPECT_TRUE(is_left || !volumes.clearly_positive);
+      EXPECT_TRUE(is_right || !volumes.clearly_negative);
+      if (is_left || is_right) {
+        // It is hit if all weights have the sign of the volume, or are zero.
+        const LongVector r(ray[0], ray[1], ray[2]);
+        const long double sign = is_left ? 1 : -1,
+                          weights[3] = {sign * volume(r, p[1], p[2]),
+                                        sign * volume(p[0], r, p[2]),
+                                        sign * volume(p[0], p[1], r)};
+        const long double least = *std::min_element(weights, weights + 3);
+        EXPECT_TRUE(least < 0 || !is_missed);
+        EXPECT_TRUE(is_missed || least > -std::ldexp(1e-12L, 2 * exponent));
+      }
+      EXPECT_TRUE(is_left || is_right || !is_missed);
+      left += is_left;
+      right += is_right;
+      open += !is_left && !is_right;
+      missed += is_missed;
+      hit += (is_left || is_right) && !is_missed;
+    }
+    vertices[random.index(3 * count)].t1[1] = std::numeric_limits<double>::quiet_NaN();
+    for (const Kernels* k : allSets()) {
+      const EightViews bad =
+          k->viewFrom(point, ray, vertices.data(), triangles.data(), count);
+      EXPECT_NE(bad.left | bad.right, (1U << count) - 1) << k->name;
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  for (const int n : {left, right, missed, hit, open}) EXPECT_GT(n, 300);
 }
 
 }  // namespace

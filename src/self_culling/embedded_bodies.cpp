@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "self_culling/embedded_bodies.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cstddef>
+#include <vector>
+
+#include "base/parallel.h"
+#include "tree/border_finder.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// Whether the triangles of a region are a closed surface: around each of their vertices
+/// they form a closed fan, with all triangles that the mesh has there. So each edge has
+/// two triangles with the same orientation.
+bool isClosed(const MovingKdopTree& tree, const Region& region) {
+  // Most nodes are a part of a component, and soon have a vertex of a triangle before
+  // them.
+  const auto begin = tree.triangles().begin();
+  const auto isFirst = [&](const TreeTriangle& t) {
+    return std::min({t.place[0], t.place[1], t.place[2]}) >= region.first_place;
+  };
+  if (!std::all_of(begin + region.first, begin + region.last, isFirst)) return false;
+  // All corners of the region are at the vertices below. If these have as many corners in
+  // the mesh, none of them is outside of the region.
+  std::size_t corners = 3 * std::size_t{region.last - region.first};
+  for (std::uint32_t v = region.first_place; v < region.last_place; ++v) {
+    const VertexFan fan = tree.fans()[v];
+    if (!fan.is_closed || fan.count > corners) return false;
+    corners -= fan.count;
+  }
+  return corners == 0;
+}
+
+/// The centers of a node's boxes in both frames.
+TreeVertex centerOf(const MovingKdopTree& tree, std::int32_t i) {
+  const MovingKdopNode& node = tree.node(i);
+  double center[2][3];
+  for (int frame = 0; frame < 2; ++frame)
+    for (int k = 0; k < 3; ++k) {
+      const float(&lower)[8] = (frame == 0 ? node.t0 : node.t1)[2 * k],
+            (&upper)[8] = (frame == 0 ? node.t0 : node.t1)[2 * k + 1];
+      const double low = -double{*std::max_element(lower, lower + node.count)},
+                   high = double{*std::max_element(upper, upper + node.count)};
+      center[frame][k] = tree.origin(frame)[k] + 0.5 * (low + high);
+    }
+  TreeVertex point{};
+  point.setPath(center[0], center[1]);
+  return point;
+}
+
+/// Whether a closed surface stays star-shaped.
+/// @param center  the point to try
+bool isStarShaped(const MovingKdopTree& tree, const Region& region,
+                  const TreeVertex& center, const Kernels& kernels) {
+  // A closed surface has about twice as many triangles as vertices, and these are in the
+  // order of the triangles. So this number of vertices is prefetched for a block.
+  constexpr std::size_t kAhead = 48, kEach = 5;
+  const TreeVertex* vertices = tree.vertices().data();
+  const TreeTriangle* triangles = tree.triangles().data();
+  // The ray goes through the middle of the first triangle.
+  double ray[3] = {0, 0, 0};
+  for (int k = 0; k < 3; ++k)
+    for (const std::uint32_t place : triangles[region.first].place)
+      ray[k] += vertices[place].t0[k] - center.t0[k];
+  bool left = true, right = true;
+  unsigned hit = 0;
+  for (std::size_t i = region.first; i < region.last; i += 8) {
+    const std::size_t count = std::min<std::size_t>(8, region.last - i);
+    const unsigned all = (1U << count) - 1;
+    const std::size_t ahead = region.first_place + (i - region.first) / 2 + kAhead;
+    for (std::size_t k = ahead; k < ahead + kEach && k < region.last_place; ++k)
+      __builtin_prefetch(&vertices[k]);
+    const EightViews views =
+        kernels.viewFrom(center, ray, vertices, triangles + i, count);
+    left = left && views.left == all;
+    right = right && views.right == all;
+    hit += static_cast<unsigned>(__builtin_popcount(all & ~views.missed));
+    if (!(left || right) || hit > 1) return false;
+  }
+  return true;
+}
+
+/// The children that have enough triangles.
+std::vector<ClosedNode> partsOf(const MovingKdopTree& tree, const ClosedNode& open) {
+  std::vector<ClosedNode> parts;
+  const MovingKdopNode& node = tree.node(open.node);
+  std::uint32_t last = open.last;
+  for (int lane = node.count; lane-- > 0;) {
+    if (node.isTriangle(lane)) continue;
+    const std::uint32_t first = tree.firstTriangle(node.child[lane]);
+    if (last - first >= kLeastBody) parts.push_back({node.child[lane], last});
+    last = first;
+  }
+  return parts;
+}
+
+/// The nodes that are closed surfaces, parents first.
+std::vector<ClosedNode> closedNodes(const MovingKdopTree& tree) {
+  std::vector<ClosedNode> closed;
+  std::vector<ClosedNode> open{{0, static_cast<std::uint32_t>(tree.triangles().size())}};
+  while (!open.empty()) {
+    const ClosedNode node = open.back();
+    open.pop_back();
+    if (isClosed(tree, regionOf(tree, node.node, node.last))) closed.push_back(node);
+    for (const ClosedNode& part : partsOf(tree, node)) open.push_back(part);
+  }
+  return closed;
+}
+
+}  // namespace
+
+EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& kernels,
+                                   int num_threads) {
+  EmbeddedRegions found(tree);
+  const std::vector<ClosedNode>& closed =
+      tree.regionBorders().closedNodes([&] { return closedNodes(tree); });
+  std::vector<std::uint8_t> is_body(closed.size());
+  constexpr std::size_t kTasks = 64;
+  parallelForBlocks(closed.size(), closed.size() / kTasks + 1, num_threads,
+                    [&](std::size_t i, std::size_t last) {
+                      for (; i < last; ++i)
+                        is_body[i] = isStarShaped(
+                            tree, regionOf(tree, closed[i].node, closed[i].last),
+                            centerOf(tree, closed[i].node), kernels);
+                    });
+  for (std::size_t i = 0; i < closed.size(); ++i) {
+    const Region region = regionOf(tree, closed[i].node, closed[i].last);
+    // A body in another one would be the same triangles.
+    if (!is_body[i] || found.interior[region.first_place]) continue;
+    found.nodes[static_cast<std::size_t>(closed[i].node)] = 1;
+    std::fill(found.interior.begin() + region.first_place,
+              found.interior.begin() + region.last_place, std::uint8_t{1});
+  }
+  return found;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
