@@ -43,8 +43,9 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
     : options_(options),
       kernels_(kernels()),
       batch_(a, b, shift, kernels_, options.min_distance > 0),
+      may_repeat_(!a.hasOwners() || !b.hasOwners()),
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
-            !a.hasOwners() || !b.hasOwners()),
+            may_repeat_),
       progress_(progress),
       task_(task) {
   assert(options.toc_err > 0 && options.max_contacts > 0);
@@ -287,12 +288,22 @@ void NarrowPhase::testDistance(const FeatureCandidate& candidate) {
   add(contactOf(pair, found, batch_.isSelf()));
 }
 
-void NarrowPhase::solve(const FeatureCandidate& candidate) {
+/// The decision of one pair. A pair that is met again is decided once.
+ElementaryResult NarrowPhase::decideOnce(const FeatureCandidate& candidate) {
+  const double t_stop = latest();
+  if (may_repeat_)
+    if (const ElementaryResult* known = decided_.find(candidate, t_stop)) return *known;
   const CandidatePoints paths(candidate);
-  const FeaturePoints points = paths.get();
   const ElementaryResult result =
-      decide(candidate.kind, points, candidate.window_lo, candidate.window_hi,
-             options_.toc_err, latest(), options_.t_max);
+      decide(candidate.kind, paths.get(), candidate.window_lo, candidate.window_hi,
+             options_.toc_err, t_stop, options_.t_max);
+  if (may_repeat_ && result.decided_by == DecidedBy::kExact)
+    decided_.add(candidate, t_stop, result);
+  return result;
+}
+
+void NarrowPhase::solve(const FeatureCandidate& candidate) {
+  const ElementaryResult result = decideOnce(candidate);
   if (result.decided_by == DecidedBy::kExact) ++counts_.exact_tests;
   if (result.answer == Answer::kNo) {
     ++(result.decided_by == DecidedBy::kExact ? counts_.exact_culled

@@ -12,6 +12,7 @@
 #include "fcl/narrowphase/stage_counts.h"
 #include "query/contact_sink.h"
 #include "query/crossing.h"
+#include "query/decided_pairs.h"
 #include "query/feature_batch.h"
 #include "query/leading_contact.h"
 #include "query/pair_filter.h"
@@ -188,6 +189,7 @@ class NarrowPhase {
   template <typename OnNo, typename OnOpen>
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
+  ElementaryResult decideOnce(const FeatureCandidate& candidate);
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);
   void testDistances(ContinuousContactKind kind);
@@ -203,6 +205,9 @@ class NarrowPhase {
   /// Parts of windows: those to solve next, those that are no plain cases, and the second
   /// parts of divided windows.
   std::vector<Piece> pieces_, open_, second_parts_;
+  /// Whether a pair of features may be met more than once.
+  bool may_repeat_;
+  DecidedPairs decided_;
   ContactSink sink_;
   FirstBracket first_;
   QueryProgress* progress_;
