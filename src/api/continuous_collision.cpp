@@ -92,7 +92,8 @@ RequestFilter filterOf(const QuerySettings& settings, const CollisionGeometry<S>
 bool isTriangleSoup(const deformable::MeshInstance& mesh, std::size_t num_triangles) {
   const std::size_t num_vertices = mesh.frames.size();
   return mesh.tree
-             ? deformable::isTriangleSoup(mesh.tree->triangles(), num_vertices)
+             ? deformable::isTriangleSoup(mesh.tree->triangles(), num_vertices,
+                                          mesh.tree->freeLeaves().count())
              : deformable::isTriangleSoup(mesh.triangles, num_triangles, num_vertices);
 }
 

@@ -116,7 +116,17 @@ int DeformableBVHModel<BV>::setNumThreads(int num_threads) {
 
 template <typename BV>
 bool DeformableBVHModel<BV>::isFclTreeUpToDate() const {
-  return this->getNumBVs() > 0 && !isFclTreeBehind();
+  return this->getNumBVs() > 0 && !hasFree() && !isFclTreeBehind();
+}
+
+template <typename BV>
+Primitive DeformableBVHModel<BV>::primitive(std::intptr_t b) const {
+  auto index = static_cast<std::size_t>(b);
+  const auto num_triangles = static_cast<std::size_t>(this->num_tris);
+  if (index < num_triangles) return {PrimitiveKind::kTriangle, index};
+  index -= num_triangles;
+  if (index < numFreeEdges()) return {PrimitiveKind::kFreeEdge, index};
+  return {PrimitiveKind::kFreePoint, index - numFreeEdges()};
 }
 
 template <typename BV>

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/mesh_topology.h"
 #include "mesh/vertex_frames.h"
 
 namespace fcl {
@@ -87,14 +88,48 @@ int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
 }
 
 template <typename BV>
+int DeformableBVHModel<BV>::beginModel(int num_tris, int num_vertices) {
+  dropFree();
+  return Base::beginModel(num_tris, num_vertices);
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addEdge(const Vector3<S>& p1, const Vector3<S>& p2) {
+  return addSubModel({p1, p2}, {}, {FreeEdge{{0, 1}}});
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addPoint(const Vector3<S>& p) {
+  return addSubModel({p}, {}, {}, {0});
+}
+
+template <typename BV>
+int DeformableBVHModel<BV>::addSubModel(const std::vector<Vector3<S>>& ps,
+                                        const std::vector<Triangle>& ts,
+                                        const std::vector<FreeEdge>& edges,
+                                        const std::vector<std::size_t>& points) {
+  if (const int code = checkFree(edges, points, ps.size())) return code;
+  reserveFree(edges.size(), points.size());
+  const auto first = static_cast<std::size_t>(this->num_vertices);
+  const auto add = [&] {
+    return ts.empty() ? Base::addSubModel(ps) : Base::addSubModel(ps, ts);
+  };
+  if (const int code = grow(add)) return code;
+  addFree(edges, points, first);
+  return accept();
+}
+
+template <typename BV>
 int DeformableBVHModel<BV>::endModel(FclTree fcl_tree) {
   if (const int code = checkInConstruction()) return code;
   const auto count = static_cast<std::size_t>(this->num_vertices),
              num_triangles = static_cast<std::size_t>(this->num_tris);
   if (const int code = checkTriangles(this->tri_indices, num_triangles, count))
     return code;
+  if (const int code = checkFree(count)) return code;
   if (const int code = checkFinite(this->vertices->data(), count, "first")) return code;
 
+  if (hasFree()) fcl_tree = FclTree::kSkip;
   state_.beginBuild();
   std::unique_ptr<Vector3<S>[]> previous(new Vector3<S>[count]);
   std::copy(this->vertices, this->vertices + count, previous.get());
@@ -222,7 +257,8 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
   std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
   advance(previous, fcl_tree, true, true);
   finish();
-  if (fcl_tree == FclTree::kUpdate && state_.fclTree() == FclTreeIs::kMissing)
+  if (fcl_tree == FclTree::kUpdate && state_.fclTree() == FclTreeIs::kMissing &&
+      !hasFree())
     return updateFclTree();
   return accept();
 }
@@ -233,6 +269,9 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
                                            const S* previous, const S* current,
                                            std::size_t num_vertices, FclTree fcl_tree) {
   if (const int code = checkSteppable("updateTopology")) return code;
+  if (hasFree())
+    return refuse(BVH_ERR_UNSUPPORTED_FUNCTION,
+                  "updateTopology() of a model with free edges or points. Give them too");
   if (!previous || !current)
     return refuse(BVH_ERR_INCORRECT_DATA,
                   "updateTopology() with a null frame. Give the previous and the current "
@@ -274,6 +313,43 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
   refitChangedTree(frames());
   computeLocalAABB();
   seal();
+  return accept();
+}
+
+/// Everything is made in another model, whose parts then take the place of this one's.
+template <typename BV>
+int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangles,
+                                           const std::vector<FreeEdge>& edges,
+                                           const std::vector<std::size_t>& points,
+                                           const S* previous, const S* current,
+                                           std::size_t num_vertices) {
+  if (const int code = checkSteppable("updateTopology")) return code;
+  if (!previous || !current)
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  "updateTopology() with a null frame. Give the previous and the current "
+                  "frame");
+  std::string too_many = detail::deformable::findTooMany(
+      triangles.size() + edges.size() + points.size(), num_vertices);
+  if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
+  if (const int code = checkFrames(previous, current, num_vertices)) return code;
+
+  std::vector<Vector3<S>> vertices(num_vertices);
+  std::memcpy(static_cast<void*>(vertices.data()), previous,
+              3 * num_vertices * sizeof(S));
+  DeformableBVHModel next;
+  static_cast<CollisionGeometry<S>&>(next) = *this;
+  next.bv_splitter = this->bv_splitter;
+  next.bv_fitter = this->bv_fitter;
+  next.setNumThreads(numThreads());
+  int code =
+      next.beginModel(static_cast<int>(triangles.size()), static_cast<int>(num_vertices));
+  if (code != BVH_OK) return refuse(code, "FCL has no memory for the mesh");
+  code = next.addSubModel(vertices, triangles, edges, points);
+  if (code == BVH_OK) code = next.endModel(FclTree::kSkip);
+  if (code == BVH_OK) code = next.updateFrames(previous, current, num_vertices);
+  if (code != BVH_OK) return refuse(code, next.lastError());
+  swapBase(next);
+  detail::DeformableMesh::operator=(std::move(static_cast<DeformableMesh&>(next)));
   return accept();
 }
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <string>
@@ -28,6 +29,13 @@ std::string notFinite(const S* coordinates, std::size_t count, const char* frame
   return "vertex " + std::to_string(bad) + " of the " + frame + " frame is not finite";
 }
 
+/// Twice the room each time, so that adding one by one takes linear time.
+template <typename T>
+void reserveMore(std::size_t count, std::vector<T>& list) {
+  if (list.capacity() - list.size() < count)
+    list.reserve(std::max(2 * list.size(), list.size() + count));
+}
+
 }  // namespace
 
 DeformableMesh::DeformableMesh()
@@ -41,7 +49,9 @@ DeformableMesh::DeformableMesh(const DeformableMesh& other)
       tree_(std::make_unique<deformable::MovingKdopTree>(*other.tree_)),
       num_threads_(other.num_threads_),
       num_restructurings_(other.num_restructurings_),
-      is_deforming_(other.is_deforming_) {}
+      is_deforming_(other.is_deforming_),
+      free_edges_(other.free_edges_),
+      free_points_(other.free_points_) {}
 
 DeformableMesh& DeformableMesh::operator=(DeformableMesh&& other) noexcept = default;
 
@@ -62,6 +72,34 @@ bool DeformableMesh::isFclTreeBehind() const {
       // The base class keeps its tree up to date.
       return false;
   }
+}
+
+void DeformableMesh::reserveFree(std::size_t num_edges, std::size_t num_points) {
+  reserveMore(num_edges, free_edges_);
+  reserveMore(num_points, free_points_);
+}
+
+void DeformableMesh::addFree(const std::vector<FreeEdge>& edges,
+                             const std::vector<std::size_t>& points, std::size_t first) {
+  for (const FreeEdge& edge : edges)
+    free_edges_.push_back({edge[0] + first, edge[1] + first});
+  for (const std::size_t point : points) free_points_.push_back(point + first);
+}
+
+void DeformableMesh::dropFree() {
+  free_edges_.clear();
+  free_points_.clear();
+}
+
+/// The triangles, and triangles that stand for free edges and points (MeshTriangle).
+std::vector<Triangle> DeformableMesh::leavesOf(const Triangle* triangles,
+                                               std::size_t num_triangles) const {
+  std::vector<Triangle> leaves;
+  leaves.reserve(num_triangles + free_edges_.size() + free_points_.size());
+  leaves.assign(triangles, triangles + num_triangles);
+  for (const FreeEdge& edge : free_edges_) leaves.emplace_back(edge[0], edge[1], edge[1]);
+  for (const std::size_t point : free_points_) leaves.emplace_back(point, point, point);
+  return leaves;
 }
 
 int DeformableMesh::refuse(int code, std::string why) {
@@ -105,11 +143,12 @@ int DeformableMesh::checkFinite(const double* coordinates, std::size_t count,
 
 int DeformableMesh::checkTriangles(const Triangle* triangles, std::size_t num_triangles,
                                    std::size_t num_vertices) {
-  if (num_triangles == 0 || num_vertices == 0)
+  const std::size_t num_leaves = num_triangles + free_edges_.size() + free_points_.size();
+  if (num_leaves == 0 || num_vertices == 0)
     return refuse(
         BVH_ERR_BUILD_EMPTY_MODEL,
         "the model has no triangles. Add some by addTriangle() or addSubModel()");
-  std::string too_many = deformable::findTooMany(num_triangles, num_vertices);
+  std::string too_many = deformable::findTooMany(num_leaves, num_vertices);
   if (!too_many.empty()) return refuse(BVH_ERR_INCORRECT_DATA, std::move(too_many));
   const std::size_t bad =
       deformable::findOutOfRange(triangles, num_triangles, num_vertices);
@@ -139,6 +178,28 @@ int DeformableMesh::checkOrigins(const std::vector<int>& origins,
   return BVH_OK;
 }
 
+int DeformableMesh::checkFree(const std::vector<FreeEdge>& edges,
+                              const std::vector<std::size_t>& points,
+                              std::size_t num_vertices) {
+  const auto refuseVertex = [&](const char* what, std::size_t i, std::size_t vertex) {
+    return refuse(BVH_ERR_INCORRECT_DATA,
+                  what + std::to_string(i) + " refers to vertex " +
+                      std::to_string(vertex) + " of " + std::to_string(num_vertices) +
+                      " vertices, which are numbered from 0");
+  };
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    for (const std::size_t vertex : edges[i])
+      if (vertex >= num_vertices) return refuseVertex("free edge ", i, vertex);
+    if (edges[i][0] == edges[i][1])
+      return refuse(BVH_ERR_INCORRECT_DATA,
+                    "free edge " + std::to_string(i) + " joins vertex " +
+                        std::to_string(edges[i][0]) + " to itself. Add a free point");
+  }
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i] >= num_vertices) return refuseVertex("free point ", i, points[i]);
+  return BVH_OK;
+}
+
 int DeformableMesh::checkInConstruction() {
   if (arrays().build_state != BVH_BUILD_STATE_BEGUN)
     return refuse(BVH_ERR_BUILD_OUT_OF_SEQUENCE,
@@ -164,6 +225,10 @@ int DeformableMesh::checkSteppable(const char* caller) {
 }
 
 int DeformableMesh::checkFclTreeUpdate() {
+  if (hasFree())
+    return refuse(BVH_ERR_UNSUPPORTED_FUNCTION,
+                  "updateFclTree() on a model with free edges or points, which FCL's own "
+                  "tree cannot hold");
   if (phase() == Phase::kHalfUpdated)
     return refuse(BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME,
                   "updateFclTree() on a model whose last update failed. Give both frames "
@@ -216,6 +281,11 @@ void DeformableMesh::checkDiscreteQuery(int num_bvs) const {
     throw Exception(
         "DeformableBVHModel: the model has grown since endModel(). Call endModel() "
         "again");
+  if (hasFree() && (isBuilt() || num_bvs > 0))
+    throw Exception(
+        "DeformableBVHModel: the model has free edges or points. FCL's own queries do "
+        "not know them, nor do functions of its base class. Use continuous queries of "
+        "straight paths, and the update functions of DeformableBVHModel itself");
   if (isFclTreeBehind())
     throw Exception(
         "DeformableBVHModel: this query needs FCL's own tree, which is out of date "
@@ -240,8 +310,15 @@ void DeformableMesh::checkCopy() const {
 void DeformableMesh::buildTree(const Triangle* triangles, std::size_t num_triangles,
                                const deformable::VertexFrames& frames) {
   const deformable::DefaultFloatingPoint mode;
+  std::vector<Triangle> leaves;
+  if (hasFree()) {
+    leaves = leavesOf(triangles, num_triangles);
+    triangles = leaves.data();
+    num_triangles = leaves.size();
+  }
   deformable::inArena(num_threads_, [&] {
-    tree_->build(triangles, num_triangles, frames, num_threads_);
+    tree_->build(triangles, num_triangles, frames, num_threads_,
+                 {free_edges_.size(), free_points_.size()});
   });
   num_restructurings_ = 0;
 }
@@ -272,7 +349,10 @@ void DeformableMesh::refitChangedTree(const deformable::VertexFrames& frames) {
   }
 }
 
-std::size_t DeformableMesh::treeMemUsage() const { return tree_->memUsage(); }
+std::size_t DeformableMesh::treeMemUsage() const {
+  return tree_->memUsage() + free_edges_.capacity() * sizeof(FreeEdge) +
+         free_points_.capacity() * sizeof(std::size_t);
+}
 
 }  // namespace detail
 }  // namespace fcl

@@ -82,8 +82,8 @@ BVHBuildState ModelState::builtState() const {
 }
 
 void ModelState::seal(const ModelArrays& now) {
-  assert(now.vertices && now.prev_vertices && now.tri_indices);
-  assert(now.num_vertices > 0 && now.num_tris > 0);
+  assert(now.vertices && now.prev_vertices && now.num_vertices > 0);
+  assert(now.tri_indices || now.num_tris == 0);
   assert(now.build_state == builtState());
   made_ = Made::kTree;
   made_for_ = now;

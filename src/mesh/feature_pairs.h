@@ -25,12 +25,20 @@ struct FeaturePair {
   unsigned second;
 };
 
+/// @brief The number of points of a pair of features: VF, EE, VE or VV.
+constexpr unsigned numVertices(ContinuousContactKind kind) {
+  return kind == ContinuousContactKind::kVertexVertex ? 2
+         : kind == ContinuousContactKind::kVertexEdge ? 3
+                                                      : 4;
+}
+
 /// @brief Two features of two meshes a and b, by ids.
 struct FeatureIds {
   ContinuousContactKind kind;
-  /// VF: the vertex belongs to mesh a and the face to mesh b, not the other way round.
+  /// VF and VE: the vertex belongs to mesh a and the face or edge to mesh b, not the
+  /// other way round.
   bool first_on_a;
-  /// VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
+  /// VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. VE: v, e0, e1. VV: v of a, v of b.
   std::uint32_t vertices[4];
   /// Triangle of mesh a and of mesh b.
   std::int32_t triangles[2];
@@ -42,6 +50,11 @@ struct FeatureIds {
 constexpr int kNumVertexFacePairs = 6;
 constexpr int kNumFeaturePairs = 15;
 
+/// @brief One bit more: of two free leaves, edge 0 of each, where a free point is an edge
+/// with equal ends. Only contact at a distance knows it. Of two free edges it is the same
+/// pair as bit 6.
+constexpr int kFreePair = 15;
+
 inline FeaturePair featurePair(int bit) {
   assert(bit >= 0 && bit < kNumFeaturePairs);
   const auto k = static_cast<unsigned>(bit);
@@ -52,10 +65,10 @@ inline FeaturePair featurePair(int bit) {
 
 /// @brief The four points of each pair of features, the vertices of a counted 0-2 and b's
 /// 3-5: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
-constexpr unsigned char kFeaturePoints[kNumFeaturePairs][4] = {
-    {0, 3, 4, 5}, {1, 3, 4, 5}, {2, 3, 4, 5}, {3, 0, 1, 2}, {4, 0, 1, 2},
-    {5, 0, 1, 2}, {0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3}, {1, 2, 3, 4},
-    {1, 2, 4, 5}, {1, 2, 5, 3}, {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}};
+constexpr unsigned char kFeaturePoints[kNumFeaturePairs + 1][4] = {
+    {0, 3, 4, 5}, {1, 3, 4, 5}, {2, 3, 4, 5}, {3, 0, 1, 2}, {4, 0, 1, 2}, {5, 0, 1, 2},
+    {0, 1, 3, 4}, {0, 1, 4, 5}, {0, 1, 5, 3}, {1, 2, 3, 4}, {1, 2, 4, 5}, {1, 2, 5, 3},
+    {2, 0, 3, 4}, {2, 0, 4, 5}, {2, 0, 5, 3}, {0, 1, 3, 4}};
 
 /// @brief Edges (three bits) that end in one of the vertices (three bits).
 inline unsigned edgesAt(unsigned vertices) {
@@ -83,20 +96,29 @@ inline unsigned sharedVertices(const std::uint32_t (&a)[3], const std::uint32_t 
 }
 
 /// @brief For each mask of MeshTriangle::owned, the pairs of features whose feature of a
-/// (or of b) is owned.
+/// (or of b) is owned. The edges that a (or b) owns, and those of the other one if it may
+/// have a face: bits 0-2 for edges of a, 3-5 for those of b.
 struct OwnedParts {
-  std::uint16_t of_a[kOwnsAll + 1];
-  std::uint16_t of_b[kOwnsAll + 1];
+  static constexpr unsigned kCount = 2 * kFreeLeaf;
+  std::uint16_t of_a[kCount];
+  std::uint16_t of_b[kCount];
+  std::uint8_t edges_of_a[kCount];
+  std::uint8_t edges_of_b[kCount];
 };
 
 constexpr OwnedParts makeOwnedParts() {
   OwnedParts parts{};
-  for (unsigned owned = 0; owned <= kOwnsAll; ++owned) {
+  for (unsigned owned = 0; owned < OwnedParts::kCount; ++owned) {
     const unsigned vertices = owned & 7U, edges = owned >> 3 & 7U, face = owned >> 6 & 1U;
-    parts.of_a[owned] =
-        static_cast<std::uint16_t>(vertices | face * 7U << 3 | product(edges, 7U) << 6);
-    parts.of_b[owned] =
-        static_cast<std::uint16_t>(face * 7U | vertices << 3 | product(7U, edges) << 6);
+    const bool is_free = (owned & kFreeLeaf) != 0;
+    const unsigned free = unsigned{is_free && (owned & kOwnsAll) != 0} << kFreePair,
+                   others = is_free ? 0U : 7U;
+    parts.of_a[owned] = static_cast<std::uint16_t>(vertices | face * 7U << 3 |
+                                                   product(edges, 7U) << 6 | free);
+    parts.of_b[owned] = static_cast<std::uint16_t>(face * 7U | vertices << 3 |
+                                                   product(7U, edges) << 6 | free);
+    parts.edges_of_a[owned] = static_cast<std::uint8_t>(edges | others << 3);
+    parts.edges_of_b[owned] = static_cast<std::uint8_t>(edges << 3 | others);
   }
   return parts;
 }
@@ -105,7 +127,7 @@ constexpr OwnedParts kOwnedParts = makeOwnedParts();
 
 /// @brief The pairs of features that two triangles own (masks of MeshTriangle::owned).
 inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b) {
-  assert(owned_a <= kOwnsAll && owned_b <= kOwnsAll);
+  assert(owned_a < OwnedParts::kCount && owned_b < OwnedParts::kCount);
   return kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
 }
 
@@ -120,9 +142,10 @@ inline unsigned pairsAt(unsigned shared) {
   return pairs;
 }
 
-/// @brief The edges that two triangles own, bits 0-2 for a's, 3-5 for b's.
+/// @brief The edges that two triangles own, bits 0-2 for a's, 3-5 for b's; without those
+/// that face a free leaf, through which nothing passes.
 inline unsigned ownedEdges(unsigned owned_a, unsigned owned_b) {
-  return (owned_a >> 3 & 7U) | (owned_b >> 3 & 7U) << 3;
+  return kOwnedParts.edges_of_a[owned_a] & kOwnedParts.edges_of_b[owned_b];
 }
 
 /// @brief The edges of two triangles that have a vertex of the other one.

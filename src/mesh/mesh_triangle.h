@@ -15,11 +15,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Vertex ids of a triangle and the features that it owns.
+/// @brief Vertex ids of a triangle and the features that it owns. A free edge is the
+/// triangle v, w, w, and a free point the triangle v, v, v, both without a face.
 struct MeshTriangle {
   std::uint32_t v[3];
   /// One bit for each feature that the triangle owns: bit k for vertex k; bit 3 + k for
-  /// edge k, which joins vertices k and (k + 1) % 3; bit 6 for the face.
+  /// edge k, which joins vertices k and (k + 1) % 3; bit 6 for the face. kFreeLeaf.
   std::uint32_t owned;
 };
 
@@ -28,6 +29,20 @@ typedef std::uint32_t ThreeIds __attribute__((vector_size(16)));
 
 /// All six border features and the face.
 constexpr std::uint32_t kOwnsAll = 0x7f;
+
+/// @brief Set for a free edge and a free point, whatever they own. A free edge owns edge
+/// 0 or nothing, a free point vertex 0 or nothing: what triangles have belongs to them.
+constexpr std::uint32_t kFreeLeaf = 0x80;
+constexpr std::uint32_t kOwnsFirstEdge = 0x08;
+
+/// @brief How many leaves of a tree are free edges and free points. They follow the
+/// triangles, edges first.
+struct FreeLeaves {
+  std::size_t edges{0};
+  std::size_t points{0};
+
+  std::size_t count() const { return edges + points; }
+};
 
 /// @brief The vertex ids of a triangle, which are below 2^32; FCL's operator[] is a call
 /// into its library for each.

@@ -11,16 +11,18 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// @param idsOf  gives the three ids of a triangle. The loop ends at the first triangle
-/// that shares a vertex. In a mesh that is no soup it is one of the first as a rule.
+/// @param idsOf  gives the three ids of a triangle; false for a free leaf. The loop ends
+/// at the first triangle that shares a vertex. In a mesh that is no soup it is one of the
+/// first as a rule.
 template <typename IdsOf>
-bool standAlone(std::size_t num_triangles, std::size_t num_vertices, IdsOf&& idsOf) {
-  if (num_triangles < 2) return false;
+bool standAlone(std::size_t num_triangles, std::size_t num_free, std::size_t num_vertices,
+                IdsOf&& idsOf) {
+  if (num_triangles < num_free + 2) return false;
   constexpr std::uint32_t kNone = ~std::uint32_t{0};
   std::vector<std::uint32_t> triangle_of(num_vertices, kNone);
   for (std::uint32_t i = 0; i < num_triangles; ++i) {
     std::uint32_t ids[3];
-    idsOf(i, ids);
+    if (!idsOf(i, ids)) continue;
     for (const std::uint32_t id : ids) {
       if (id >= num_vertices) return false;
       if (triangle_of[id] != kNone && triangle_of[id] != i) return false;
@@ -34,16 +36,19 @@ bool standAlone(std::size_t num_triangles, std::size_t num_vertices, IdsOf&& ids
 
 bool isTriangleSoup(const Triangle* triangles, std::size_t num_triangles,
                     std::size_t num_vertices) {
-  return standAlone(
-      num_triangles, num_vertices,
-      [&](std::uint32_t i, std::uint32_t(&ids)[3]) { vertexIds(triangles[i], ids); });
+  return standAlone(num_triangles, 0, num_vertices,
+                    [&](std::uint32_t i, std::uint32_t(&ids)[3]) {
+                      vertexIds(triangles[i], ids);
+                      return true;
+                    });
 }
 
-bool isTriangleSoup(const std::vector<TreeTriangle>& triangles,
-                    std::size_t num_vertices) {
-  return standAlone(triangles.size(), num_vertices,
+bool isTriangleSoup(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices,
+                    std::size_t num_free) {
+  return standAlone(triangles.size(), num_free, num_vertices,
                     [&](std::uint32_t i, std::uint32_t(&ids)[3]) {
                       std::copy(triangles[i].place, triangles[i].place + 3, ids);
+                      return (triangles[i].owned & kFreeLeaf) == 0;
                     });
 }
 

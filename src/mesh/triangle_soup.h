@@ -18,7 +18,9 @@ bool isTriangleSoup(const Triangle* triangles, std::size_t num_triangles,
                     std::size_t num_vertices);
 
 /// @brief The same for triangles in a tree, in terms of their places.
-bool isTriangleSoup(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices);
+/// @param num_free  how many of them are free leaves, which do not count
+bool isTriangleSoup(const std::vector<TreeTriangle>& triangles, std::size_t num_vertices,
+                    std::size_t num_free = 0);
 
 }  // namespace deformable
 }  // namespace detail

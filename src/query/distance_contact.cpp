@@ -53,7 +53,7 @@ FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
   FeatureContact contact{pair, found.toc_lo, found.toc_hi};
   contact.kind = found.kind;
   if (!isPart(found.kind)) return contact;
-  const int num_first = pair.kind == ContinuousContactKind::kVertexFace ? 1 : 2;
+  const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
   for (int i = 0; i < 4; ++i)
     contact.vertices[i] = found.points[i] < 0 ? kUnused : pair.vertices[found.points[i]];
   bool is_first = found.points[0] < num_first;

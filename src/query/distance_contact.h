@@ -24,7 +24,7 @@ void enlarge(double reach, KdopShift& shift);
 
 /// @brief The contact of a pair: of the features that are nearest at its time. Their
 /// vertices have ascending ids; those that are not used have the largest number.
-/// @param pair  a VF or EE pair and the triangles that the contact names
+/// @param pair  a pair and the triangles that the contact names
 /// @param is_self  a vertex and an edge are named with the vertex on mesh a, of two
 /// vertices the one with the lower id
 FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,

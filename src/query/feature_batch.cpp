@@ -18,6 +18,10 @@ namespace {
 /// Edges of two triangles.
 constexpr std::size_t kEdges = 6;
 
+bool hasFreePoints(const MeshInstance& mesh) {
+  return mesh.tree && mesh.tree->freeLeaves().points > 0;
+}
+
 bool isFinite(const TreeVertex& x) {
   double sum = 0;
   for (int k = 0; k < 3; ++k) sum += 0 * x.t0[k] + 0 * x.t1[k];
@@ -105,6 +109,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       reader_b_(b),
       self_(&a == &b),
       at_distance_(at_distance),
+      tests_points_(at_distance && (hasFreePoints(a) || hasFreePoints(b))),
       shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
@@ -215,12 +220,24 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   if (is_early) num_pairs_ = kept;
 }
 
+constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
+
+/// The bits of pairs that are listed as edges: those of free points only at a distance.
+/// Two free edges are then tested once.
+unsigned FeatureBatch::edgePairsToTest() {
+  constexpr unsigned kFree = 1U << kFreePair, kEePairs = (kFree - 1) & ~kVfPairs;
+  if (!tests_points_) return kEePairs;
+  for (std::size_t i = 0; i < num_pairs_; ++i)
+    if ((pairs_[i].a->owned & pairs_[i].b->owned & kOwnsFirstEdge) != 0)
+      owned_[i] &= static_cast<std::uint16_t>(~kFree);
+  return kEePairs | kFree;
+}
+
 void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& counts) {
   List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
-  constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_,
-      kind == ContinuousContactKind::kVertexFace ? kVfPairs : ~kVfPairs,
+      kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
       list.codes.get());
   list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
                                     roundUp(latest, 0.f),
@@ -285,15 +302,16 @@ struct OrderedEdge {
 /// evaluation. In a self-collision the vertex of a VF pair always belongs to mesh a.
 void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
                                 FeatureCandidate& out) const {
-  assert(code / 16 < num_pairs_ && code % 16 < kNumFeaturePairs && !window.isEmpty());
+  assert(code / 16 < num_pairs_ && !window.isEmpty());
   const TrianglePair& triangles = pairs_[code / 16];
-  const FeaturePair pair = featurePair(static_cast<int>(code % 16));
-  out.kind = pair.kind;
-  out.first_on_a = pair.first_on_a;
   out.window_lo = windowLo(window);
   out.window_hi = windowHi(window);
   out.triangles[0] = static_cast<std::int32_t>(triangles.a->index);
   out.triangles[1] = static_cast<std::int32_t>(triangles.b->index);
+  if (code % 16 == kFreePair) return setFreePair(triangles, out);
+  const FeaturePair pair = featurePair(static_cast<int>(code % 16));
+  out.kind = pair.kind;
+  out.first_on_a = pair.first_on_a;
   const auto set = [&](int i, bool on_a, unsigned k) {
     out.vertices[i] = (on_a ? triangles.a : triangles.b)->id[k];
     out.x[i] = triangles.x[on_a ? k : 3 + k];
@@ -319,6 +337,33 @@ void FeatureBatch::setCandidate(std::uint32_t code, const TimeWindow& window,
     out.x[2 * i] = triangles.x[edges[i].corners >> 4];
     out.x[2 * i + 1] = triangles.x[edges[i].corners & 15];
   }
+}
+
+/// A free point and a free edge, or two free points. In a self-collision the point
+/// belongs to mesh a, and of two points the one with the lower id.
+void FeatureBatch::setFreePair(const TrianglePair& pair, FeatureCandidate& out) const {
+  constexpr std::uint32_t kUnused = ~std::uint32_t{0};
+  const bool edge_on_a = (pair.a->owned & kOwnsFirstEdge) != 0,
+             edge_on_b = (pair.b->owned & kOwnsFirstEdge) != 0;
+  assert(!(edge_on_a && edge_on_b));
+  const bool has_edge = edge_on_a || edge_on_b,
+             is_turned =
+                 edge_on_a || (self_ && !has_edge && pair.b->id[0] < pair.a->id[0]);
+  const TreeTriangle &first = is_turned ? *pair.b : *pair.a,
+                     &second = is_turned ? *pair.a : *pair.b;
+  const unsigned begin = is_turned ? 3 : 0, end = 3 - begin,
+                 low = second.id[1] < second.id[0] ? 1 : 0;
+  out.kind = has_edge ? ContinuousContactKind::kVertexEdge
+                      : ContinuousContactKind::kVertexVertex;
+  out.first_on_a = self_ || !is_turned;
+  if (self_ && is_turned) std::swap(out.triangles[0], out.triangles[1]);
+  out.vertices[0] = first.id[0];
+  out.vertices[1] = second.id[low];
+  out.vertices[2] = has_edge ? second.id[1 - low] : kUnused;
+  out.vertices[3] = kUnused;
+  out.x[0] = pair.x[begin];
+  out.x[1] = pair.x[end + low];
+  out.x[2] = out.x[3] = pair.x[end + 1 - low];
 }
 
 }  // namespace deformable

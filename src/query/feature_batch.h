@@ -109,7 +109,8 @@ class TriangleReader {
 struct FeatureCandidate : FeatureIds {
   double window_lo;
   double window_hi;
-  /// The vertices, in the order of the ids. Valid until FeatureBatch::clear().
+  /// The vertices, in the order of the ids; the last one repeated where there are fewer.
+  /// Valid until FeatureBatch::clear().
   const TreeVertex* x[4];
 };
 
@@ -207,10 +208,14 @@ class FeatureBatch {
   /// distance the proof does not hold.
   bool leavesOutApart(double latest) const { return !at_distance_ && isEarly(latest); }
   void leaveOutApart(double latest, StageCounts& counts);
+  unsigned edgePairsToTest();
+  void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
   bool at_distance_;
+  /// Whether free points come near free edges or each other.
+  bool tests_points_;
   const KdopShift* shift_;
   KdopShift turned_shift_;
   const Kernels& kernels_;

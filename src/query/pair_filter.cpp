@@ -52,11 +52,10 @@ bool PairFilter::find(const HeldFeature& a, const HeldFeature& b,
 }
 
 bool PairFilter::find(const FeatureIds& pair, std::int32_t (&triangles)[2]) const {
-  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
-  const unsigned num_first = vf ? 1 : 2;
+  const unsigned num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
   const HeldFeature first{pair.vertices, num_first,
                           pair.triangles[pair.first_on_a ? 0 : 1]},
-      second{pair.vertices + num_first, 4 - num_first,
+      second{pair.vertices + num_first, numVertices(pair.kind) - num_first,
              pair.triangles[pair.first_on_a ? 1 : 0]};
   return pair.first_on_a ? find(first, second, triangles)
                          : find(second, first, triangles);

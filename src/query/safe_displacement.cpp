@@ -46,11 +46,12 @@ class SafeBounds {
   void lower(const FeatureCandidate& pair) {
     // Boxes that are apart at the end keep more than the needed distance.
     if (pair.window_hi < 1) return;
-    const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+    const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1,
+              count = static_cast<int>(numVertices(pair.kind));
     VertexPath x[4];
     double* bound[4];
     double size = most_;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < count; ++i) {
       const int side = (i < num_first) == pair.first_on_a ? 0 : 1;
       mesh_[side]->frames.at(1, pair.vertices[i], x[i].t0);
       std::copy(x[i].t0, x[i].t0 + 3, x[i].t1);
@@ -63,7 +64,7 @@ class SafeBounds {
       points = {{&x[2], &x[3], &x[0], &x[1]}};
     const double least = leastDistance(pair.kind, points);
     const double safe = halfOf(least - min_distance_, size);
-    for (double* b : bound) *b = std::min(*b, safe);
+    for (int i = 0; i < count; ++i) *bound[i] = std::min(*bound[i], safe);
   }
 
  private:

@@ -51,11 +51,28 @@ void prefetchRows(const MovingKdopNode& node) {
 }  // namespace
 
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
-                           const VertexFrames& frames, int num_threads) {
-  assert(num_triangles > 0 &&
+                           const VertexFrames& frames, int num_threads, FreeLeaves free) {
+  assert(num_triangles > 0 && free.count() <= num_triangles &&
          findOutOfRange(triangles, num_triangles, frames.size()) == 3 * num_triangles);
-  arrange(splitTriangles(triangles, num_triangles, frames, num_threads), triangles,
+  arrange(splitTriangles(triangles, num_triangles, frames, num_threads, free), triangles,
           frames.size(), num_threads);
+  free_ = free;
+  markFreeLeaves();
+}
+
+/// A free leaf has no face, and what it shares with triangles is theirs: their numbers
+/// are lower.
+void MovingKdopTree::markFreeLeaves() {
+  if (free_.count() == 0) return;
+  const std::size_t num_faces = triangles_.size() - free_.count();
+  constexpr std::uint32_t kNoFace = 0x3f;
+  for (TreeTriangle& triangle : triangles_) {
+    if (triangle.index < num_faces) continue;
+    triangle.owned = (triangle.owned & kNoFace) | kFreeLeaf;
+    // Else pairs of the leaf with triangles around a vertex would be culled.
+    for ([[maybe_unused]] const std::uint32_t place : triangle.place)
+      assert(fans_[place].count == 0);
+  }
 }
 
 void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
@@ -70,6 +87,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
     return out;
   };
   arrange(inWalkOrder(num_triangles, children), triangles, num_vertices, num_threads);
+  free_ = {};
 }
 
 /// Takes over a structure, and finds fans and owners.
@@ -377,7 +395,9 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   // themselves.
   blur_ = roundUp(reach_ * 0x1p-13, 0.f);
   fit(frames, num_threads);
-  if (sizes_[0].blurred <= triangles_.size() / 2) return;
+  // A free point has no extent: it tells nothing about the rounding.
+  const std::size_t num_points = free_.points;
+  if (sizes_[0].blurred - num_points <= (triangles_.size() - num_points) / 2) return;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k) origin_[frame][k] = medianOf(frames, frame, k);
   setReach(bounds);

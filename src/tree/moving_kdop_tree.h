@@ -39,8 +39,9 @@ class MovingKdopTree {
   /// halved, so that the lowest nodes are full.
   /// @param triangles  at least one, indices below frames.size() (not checked here)
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
+  /// @param free  how many of the triangles, at their end, are free edges and free points
   void build(const Triangle* triangles, std::size_t num_triangles,
-             const VertexFrames& frames, int num_threads = 1);
+             const VertexFrames& frames, int num_threads = 1, FreeLeaves free = {});
 
   /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
   /// node i (the right child follows it), links[i] < 0 is leaf ~links[i].
@@ -71,7 +72,7 @@ class MovingKdopTree {
   /// 0. Empty: each triangle was the one of the same number, if there was one. It is a
   /// hint: no answer depends on it
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
-  /// @pre refit() has set the boxes
+  /// @pre refit() has set the boxes; there are no free leaves
   void changeTopology(const Triangle* triangles, std::size_t num_triangles,
                       const std::vector<int>& origins, const VertexFrames& frames,
                       int num_threads = 1);
@@ -89,6 +90,8 @@ class MovingKdopTree {
 
   /// @brief Number of vertices that the triangles before triangle i have.
   std::uint32_t placesBefore(std::size_t i) const;
+
+  const FreeLeaves& freeLeaves() const { return free_; }
 
   /// @brief Triangles and vertices in the tree's order.
   const std::vector<TreeTriangle>& triangles() const { return triangles_; }
@@ -136,6 +139,7 @@ class MovingKdopTree {
                             const std::vector<NodeSize>& sizes, std::size_t num_leaves,
                             std::vector<NodeSize>& first_sizes);
   void adopt(const Restructuring& restructuring);
+  void markFreeLeaves();
   void arrange(const TreeStructure& structure, const Triangle* triangles,
                std::size_t num_vertices, int num_threads);
   void place(const TreeStructure& structure, const Triangle* triangles,
@@ -162,6 +166,7 @@ class MovingKdopTree {
   /// placesBefore() of every eighth triangle.
   std::vector<std::uint32_t> places_before_;
   std::vector<TreeTriangle> triangles_;
+  FreeLeaves free_;
   UninitializedVector<TreeVertex> vertices_;
   /// The user's id of each vertex.
   std::vector<std::uint32_t> vertex_ids_;

@@ -65,15 +65,19 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
   return items;
 }
 
-/// The component of each triangle, named by a vertex.
+/// The component of each triangle, named by a vertex. Free leaves have the name
+/// num_vertices: no part of a surface has them.
 std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
                                         std::size_t num_triangles,
-                                        std::size_t num_vertices) {
+                                        std::size_t num_vertices,
+                                        const FreeLeaves& free) {
+  const std::size_t num_faces = num_triangles - free.count();
   const std::vector<std::uint32_t> component_of = findComponents(
-      num_vertices, num_triangles,
+      num_vertices, num_faces,
       [triangles](std::size_t i, std::uint32_t(&v)[3]) { vertexIds(triangles[i], v); });
-  std::vector<std::uint32_t> components(num_triangles);
-  for (std::size_t i = 0; i < num_triangles; ++i) {
+  std::vector<std::uint32_t> components(num_triangles,
+                                        static_cast<std::uint32_t>(num_vertices));
+  for (std::size_t i = 0; i < num_faces; ++i) {
     std::uint32_t v[3];
     vertexIds(triangles[i], v);
     components[i] = component_of[v[0]];
@@ -84,7 +88,8 @@ std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
 }  // namespace
 
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
-                             const VertexFrames& frames, int num_threads) {
+                             const VertexFrames& frames, int num_threads,
+                             FreeLeaves free) {
   // The largest number of triangles in a task.
   constexpr std::size_t kMaxTask = 8192;
   constexpr std::size_t kWidth = MovingKdopNode::kWidth;
@@ -93,8 +98,8 @@ TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangle
   UninitializedVector<TreeItem> items =
       itemsOf(triangles, num_triangles, frames, num_threads);
   std::vector<std::size_t> ends =
-      groupItems(componentsOf(triangles, num_triangles, frames.size()), frames.size(),
-                 kLeastComponent, items);
+      groupItems(componentsOf(triangles, num_triangles, frames.size(), free),
+                 frames.size() + 1, kLeastComponent, items);
   Splitter splitter(std::move(items), std::move(ends));
   std::vector<TreeChildren> top(1);
   const std::vector<OpenItems> roots = splitRange(splitter, {{0, num_triangles}, 0, 0, 0},

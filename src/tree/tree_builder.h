@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "fcl/math/triangle.h"
+#include "mesh/mesh_triangle.h"
 #include "mesh/vertex_frames.h"
 #include "tree/tree_structure.h"
 
@@ -13,10 +14,12 @@ namespace detail {
 namespace deformable {
 
 /// @brief Splits the triangles into a tree by their centroids in frame 0, as splitItems()
-/// does. The components are its groups.
+/// does. The components are its groups. All free leaves are one group.
 /// @param num_threads  as in parallelFor(); the tree does not depend on it
+/// @param free  how many of the triangles, at their end, are free leaves
 TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
-                             const VertexFrames& frames, int num_threads);
+                             const VertexFrames& frames, int num_threads,
+                             FreeLeaves free = {});
 
 }  // namespace deformable
 }  // namespace detail

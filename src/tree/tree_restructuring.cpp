@@ -227,6 +227,7 @@ bool MovingKdopTree::restructure() {
 void MovingKdopTree::adopt(const Restructuring& restructuring) {
   MovingKdopTree next;
   const TreeStructure structure = restructuring.structure(next.first_sizes_);
+  next.free_ = free_;
   next.triangles_.resize(triangles_.size());
   for (std::size_t i = 0; i < triangles_.size(); ++i)
     next.triangles_[i] = triangles_[structure.leaves[i]];

@@ -20,14 +20,16 @@ namespace fcl {
 /// @brief A VF or EE pair without a common vertex that may touch during t in [0, 1]. It
 /// is not tested yet. Kind, triangles and vertex ids are as in a ContinuousContact.
 struct ContinuousCandidate {
-  /// @brief kVertexFace or kEdgeEdge.
+  /// @brief kVertexFace or kEdgeEdge. With min_distance also kVertexEdge, of a free point
+  /// and a free edge, and kVertexVertex, of two free points.
   ContinuousContactKind kind{ContinuousContactKind::kVertexFace};
 
   /// @brief True: the vertex (VF) belongs to o1, the face to o2. False: the reverse. EE:
   /// edge a always belongs to o1.
   bool first_on_o1{true};
 
-  /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1.
+  /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. VE: v, e0, e1. VV: v
+  /// of o1, v of o2. Unused entries are -1.
   std::array<int, 4> vertices{{-1, -1, -1, -1}};
 
   /// @brief Numbers of the triangles of o1 and of o2 that have the features.

@@ -29,8 +29,10 @@ struct ContinuousContact {
   const CollisionGeometry<S>* o2{nullptr};
 
   /// @brief Numbers of the triangles of o1 and of o2 that have the features, as in
-  /// fcl::Contact. -1 for a shape. For an octree the number of the cell: octreeCell()
-  /// (octree_cell.h) gives its center, size and key.
+  /// fcl::Contact. Free edges and free points of a DeformableBVHModel are numbered after
+  /// its triangles: DeformableBVHModel::primitive() tells which it is. -1 for a shape.
+  /// For an octree the number of the cell: octreeCell() (octree_cell.h) gives its center,
+  /// size and key.
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
@@ -132,7 +134,8 @@ struct ContinuousFilter {
   std::uint32_t mask{~std::uint32_t{0}};
 
   /// @brief The groups and masks of the triangles. They replace those of the object.
-  /// Empty, or one entry for each triangle of the mesh.
+  /// Empty, or one entry for each triangle of the mesh, then for each free edge, then for
+  /// each free point.
   std::vector<std::uint32_t> triangle_groups;
   std::vector<std::uint32_t> triangle_masks;
 };

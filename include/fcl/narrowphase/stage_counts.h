@@ -49,7 +49,8 @@ struct StageCounts {
   /// triangle pairs that a plane separates until the latest time that still matters; only
   /// once the contacts found so far leave no more than the beginning of the step
   std::uint64_t plane_culled{0};
-  /// VF and EE pairs without a common vertex that the remaining triangle pairs own
+  /// VF and EE pairs without a common vertex that the remaining triangle pairs own; with
+  /// min_distance also pairs of free points with free edges and with each other
   std::uint64_t feature_pairs{0};
   /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};

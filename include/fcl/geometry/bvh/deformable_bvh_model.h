@@ -6,7 +6,9 @@
 #error "DeformableBVHModel needs C++17: compile with -std=c++17 or later"
 #endif
 
+#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +20,18 @@
 #include "fcl/math/bv/utility.h"
 
 namespace fcl {
+
+/// @brief Two vertices that an edge without a triangle joins: a piece of a cable or rod.
+using FreeEdge = std::array<std::size_t, 2>;
+
+/// @brief What a contact's b1 or b2 stands for; see DeformableBVHModel::primitive().
+enum class PrimitiveKind { kTriangle, kFreeEdge, kFreePoint };
+
+/// @brief A triangle, a free edge or a free point, by its number among its kind.
+struct Primitive {
+  PrimitiveKind kind;
+  std::size_t index;
+};
 
 namespace detail {
 
@@ -110,6 +124,15 @@ class DeformableMesh {
   /// @brief Whether a vertex differs between the two frames.
   bool isDeforming() const { return is_deforming_; }
 
+  /// @brief The number of free edges and points; see DeformableBVHModel::addEdge().
+  std::size_t numFreeEdges() const { return free_edges_.size(); }
+  std::size_t numFreePoints() const { return free_points_.size(); }
+
+  /// @brief The vertices of a free edge, and the vertex of a free point, in the order in
+  /// which they were added.
+  const FreeEdge& freeEdge(std::size_t i) const { return free_edges_[i]; }
+  std::size_t freePoint(std::size_t i) const { return free_points_[i]; }
+
   /// @brief The number given to setNumThreads(); 1 by default.
   int numThreads() const { return num_threads_; }
 
@@ -143,6 +166,15 @@ class DeformableMesh {
   /// @brief Whether FCL's tree is missing, or belongs to other frames or triangles.
   bool isFclTreeBehind() const;
 
+  /// @brief Whether the model has free edges or points, which FCL's tree cannot hold.
+  bool hasFree() const { return !free_edges_.empty() || !free_points_.empty(); }
+  /// @brief Room for more of them, so that addFree() allocates nothing.
+  void reserveFree(std::size_t num_edges, std::size_t num_points);
+  /// @param first  the id of vertex 0 of their submodel
+  void addFree(const std::vector<FreeEdge>& edges, const std::vector<std::size_t>& points,
+               std::size_t first);
+  void dropFree();
+
   /// @name Checks that return FCL's code and say for lastError() what is wrong
   /// @{
   int refuse(int code, std::string why);
@@ -154,6 +186,12 @@ class DeformableMesh {
   int checkTriangles(const Triangle* triangles, std::size_t num_triangles,
                      std::size_t num_vertices);
   int checkOrigins(const std::vector<int>& origins, std::size_t num_triangles);
+  int checkFree(const std::vector<FreeEdge>& edges,
+                const std::vector<std::size_t>& points, std::size_t num_vertices);
+  /// endModel() checks again: the base class may have begun another model.
+  int checkFree(std::size_t num_vertices) {
+    return checkFree(free_edges_, free_points_, num_vertices);
+  }
   /// endModel() needs an open model.
   int checkInConstruction();
   /// Whoever gives both frames needs a model that is built, with no update open.
@@ -194,8 +232,13 @@ class DeformableMesh {
  private:
   std::unique_ptr<deformable::MovingKdopTree> tree_;
   int num_threads_{1};
+  std::vector<Triangle> leavesOf(const Triangle* triangles,
+                                 std::size_t num_triangles) const;
+
   std::size_t num_restructurings_{0};
   bool is_deforming_{false};
+  std::vector<FreeEdge> free_edges_;
+  std::vector<std::size_t> free_points_;
 };
 
 }  // namespace detail
@@ -229,6 +272,18 @@ enum class FclTree {
 /// the next step restructures this part. That changes the time of queries and nothing
 /// else. numRestructurings() counts these steps.
 ///
+/// Cables, rods and points: a model may hold free edges and free points beside triangles
+/// or without them (addEdge(), addPoint(), addSubModel()). They are features as those of
+/// triangles: an edge with its ends, a point as a vertex. Where a triangle has the same
+/// edge or vertex, or another one was added before, it is one feature. Updates give their
+/// vertices with all others. In contacts b1 and b2 number the triangles first, then the
+/// free edges, then the free points; primitive() tells which it is. Continuous queries of
+/// straight paths know them: pairs, self-collision, candidates, safe displacements. With
+/// min_distance = 0 a point meets faces and edges meet edges; that a point meets an edge
+/// or a point exactly is not looked for. FCL's own tree does not hold them: it is never
+/// built (FclTree::kUpdate acts as kSkip), and queries that need it throw. So do queries
+/// in which a mesh turns, and queries with a shape or an octree.
+///
 /// Errors: functions return FCL's BVHReturnCode and print nothing; lastError() has the
 /// text. After an error the model is what it was before the call (before the begin...
 /// call, for a begin/end sequence). An exception (std::bad_alloc) in endModel() leaves
@@ -236,7 +291,7 @@ enum class FclTree {
 /// updated: every query and copy of it then throws fcl::Exception, and beginUpdateModel()
 /// is refused, until updateFrames(), updateTopology() or a replacement gives both frames.
 /// A begin... call while an update is open drops the vertices given so far. beginModel()
-/// is FCL's own: for a model that is built it prints, clears the model and returns an
+/// is that of FCL: for a model that is built it prints, clears the model and returns an
 /// error. A second call of it then begins the new model.
 ///
 /// Differences from BVHModel:
@@ -285,6 +340,9 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// Errors: a negative number (BVH_ERR_INCORRECT_DATA).
   int setNumThreads(int num_threads);
 
+  /// @brief As BVHModel::beginModel(). The model forgets its free edges and points.
+  int beginModel(int num_tris = 0, int num_vertices = 0);
+
   /// @name Add to a model that is open. A model that ended with FclTree::kSkip is opened
   /// again. Refused for any other model (BVH_ERR_BUILD_OUT_OF_SEQUENCE).
   /// @{
@@ -292,14 +350,29 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   int addTriangle(const Vector3<S>& p1, const Vector3<S>& p2, const Vector3<S>& p3);
   int addSubModel(const std::vector<Vector3<S>>& ps);
   int addSubModel(const std::vector<Vector3<S>>& ps, const std::vector<Triangle>& ts);
+  /// @brief Adds a free edge between two new vertices.
+  int addEdge(const Vector3<S>& p1, const Vector3<S>& p2);
+  /// @brief Adds a free point at a new vertex.
+  int addPoint(const Vector3<S>& p);
+  /// @brief Adds triangles, free edges and free points, by numbers of the vertices `ps`.
+  ///
+  /// Errors: a number that is not below ps.size(), an edge of a vertex with itself
+  /// (BVH_ERR_INCORRECT_DATA). Nothing is added then.
+  int addSubModel(const std::vector<Vector3<S>>& ps, const std::vector<Triangle>& ts,
+                  const std::vector<FreeEdge>& edges,
+                  const std::vector<std::size_t>& points = {});
   /// @}
+
+  /// @brief What number b of a contact stands for (ContinuousContact::b1, b2).
+  /// @pre 0 <= b < num_tris + numFreeEdges() + numFreePoints()
+  Primitive primitive(std::intptr_t b) const;
 
   /// @brief Ends the construction and builds the moving tree. FclTree says whether FCL's
   /// tree is built too.
   ///
-  /// Errors: no triangles (BVH_ERR_BUILD_EMPTY_MODEL); more than 2^29 triangles or
-  /// vertices, a coordinate that is not finite, a vertex index out of range
-  /// (BVH_ERR_INCORRECT_DATA); a model that has ended and not grown since
+  /// Errors: no triangles, free edges or free points (BVH_ERR_BUILD_EMPTY_MODEL); more
+  /// than 2^29 of them or of vertices, a coordinate that is not finite, a vertex index
+  /// out of range (BVH_ERR_INCORRECT_DATA); a model that has ended and not grown since
   /// (BVH_ERR_BUILD_OUT_OF_SEQUENCE). After the first two the model stays open: you may
   /// correct `vertices` and `tri_indices` in place, add more, and call endModel() again.
   int endModel(FclTree fcl_tree = FclTree::kUpdate);
@@ -352,16 +425,27 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
   /// of the call. Without it discrete queries throw until updateFclTree().
   ///
   /// Errors: those of endModel() and updateFrames(); also a wrong number of origins, or
-  /// one out of range (BVH_ERR_INCORRECT_DATA).
+  /// one out of range (BVH_ERR_INCORRECT_DATA); a model with free edges or points, which
+  /// needs the other overload (BVH_ERR_UNSUPPORTED_FUNCTION).
   int updateTopology(const std::vector<Triangle>& triangles,
                      const std::vector<int>& origins, const S* previous, const S* current,
                      std::size_t num_vertices, FclTree fcl_tree = FclTree::kSkip);
+
+  /// @brief The same for a mesh that has free edges or points, before or after the step:
+  /// gives all of them too, with vertex ids of the new frames. The moving tree is built
+  /// anew.
+  ///
+  /// Errors: those of addSubModel(), endModel() and updateFrames().
+  int updateTopology(const std::vector<Triangle>& triangles,
+                     const std::vector<FreeEdge>& edges,
+                     const std::vector<std::size_t>& points, const S* previous,
+                     const S* current, std::size_t num_vertices);
 
   /// @brief Brings FCL's own tree up to date. Builds it if there is none.
   ///
   /// Errors: the model is not built (BVH_ERR_BUILD_EMPTY_MODEL); an update is open
   /// (BVH_ERR_BUILD_OUT_OF_SEQUENCE) or has failed (BVH_ERR_BUILD_EMPTY_PREVIOUS_FRAME);
-  /// FCL's own codes.
+  /// free edges or points (BVH_ERR_UNSUPPORTED_FUNCTION); FCL's own codes.
   int updateFclTree();
 
   /// @brief Whether FCL's own tree is built and up to date. Discrete queries need that.
