@@ -38,6 +38,22 @@ def triangles(values: ArrayLike, name: str = "triangles") -> NDArray[np.int64]:
     return _array(values, name, "i", (None, 3))
 
 
+def free_edges(values: Optional[ArrayLike]) -> NDArray[np.int64]:
+    """Two vertices for each edge; None or empty: no edges."""
+    array = np.asarray([] if values is None else values)
+    if array.size == 0:
+        return np.empty((0, 2), dtype=np.int64)
+    return _array(array, "edges", "i", (None, 2))
+
+
+def free_points(values: Optional[ArrayLike]) -> NDArray[np.int64]:
+    return _array([] if values is None else values, "points", "i", (None,))
+
+
+def triangles_or_none(values: Optional[ArrayLike]) -> NDArray[np.int64]:
+    return np.empty((0, 3), dtype=np.int64) if values is None else triangles(values)
+
+
 def integers(values: ArrayLike, name: str) -> NDArray[np.int64]:
     return _array(values, name, "i", (None,))
 

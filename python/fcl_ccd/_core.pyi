@@ -14,7 +14,12 @@ class Mesh(Geometry): ...
 
 class DeformableMesh(Mesh):
     def __init__(
-        self, vertices: NDArray[np.float64], triangles: NDArray[np.int64], num_threads: int
+        self,
+        vertices: NDArray[np.float64],
+        triangles: NDArray[np.int64],
+        edges: NDArray[np.int64],
+        points: NDArray[np.int64],
+        num_threads: int,
     ) -> None: ...
     def _update(
         self, previous: Optional[NDArray[np.float64]], current: NDArray[np.float64]
@@ -25,11 +30,17 @@ class DeformableMesh(Mesh):
         previous: NDArray[np.float64],
         current: NDArray[np.float64],
         origins: Sequence[int],
+        edges: NDArray[np.int64],
+        points: NDArray[np.int64],
     ) -> None: ...
     @property
     def num_vertices(self) -> int: ...
     @property
     def num_triangles(self) -> int: ...
+    @property
+    def num_edges(self) -> int: ...
+    @property
+    def num_points(self) -> int: ...
     @property
     def num_restructurings(self) -> int: ...
     @property

@@ -22,19 +22,29 @@ class DeformableMesh(_core.DeformableMesh):
     vertices : (n, 3) array of float64
         Positions in any unit of length, which positions of contacts have too. Other
         numbers are converted.
-    triangles : (m, 3) array of integers
-        Vertex numbers, from 0. At least one triangle.
+    triangles : (m, 3) array of integers, or None
+        Vertex numbers, from 0. None: only edges and points.
+    edges : (e, 2) array of integers, optional
+        Free edges, by vertex numbers: pieces of cables and rods, without triangles.
+    points : (p,) array of integers, optional
+        Free points, by vertex number: points of a cloud. They meet faces; with
+        min_distance also edges and other points.
     num_threads : int
         Threads of the build and of updates. 0: all cores.
 
-    Raises ValueError for a vertex number out of range, a position that is not finite or
-    an array of another shape, and TypeError for elements of another type.
+    At least one triangle, edge or point. In contacts b1 and b2 number the triangles first,
+    then the edges, then the points. A mesh with free edges or points goes straight: queries
+    in which a mesh turns, or with a shape or an OcTree, raise ValueError.
+
+    Raises ValueError for a vertex number out of range, an edge of a vertex with itself, a
+    position that is not finite or an array of another shape, and TypeError for elements of
+    another type.
 
     Attributes (read-only)
     ----------------------
     previous, current : (n, 3) float64, copies of the two frames
     triangles : (m, 3) int64, a copy
-    num_vertices, num_triangles : int
+    num_vertices, num_triangles, num_edges, num_points : int
     is_deforming : bool, whether the frames differ
     num_restructurings : int, how many updates have made parts of the tree anew
 
@@ -44,10 +54,20 @@ class DeformableMesh(_core.DeformableMesh):
 
     _is_built = False  # Compiled attributes exist only after __init__.
 
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike, *, num_threads: int = 1) -> None:
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: Optional[ArrayLike],
+        *,
+        edges: Optional[ArrayLike] = None,
+        points: Optional[ArrayLike] = None,
+        num_threads: int = 1,
+    ) -> None:
         super().__init__(
             _arguments.points(vertices, "vertices"),
-            _arguments.triangles(triangles),
+            _arguments.triangles_or_none(triangles),
+            _arguments.free_edges(edges),
+            _arguments.free_points(points),
             _arguments.integer(num_threads, "num_threads"),
         )
         self._is_built = True
@@ -70,11 +90,13 @@ class DeformableMesh(_core.DeformableMesh):
 
     def update_topology(
         self,
-        triangles: ArrayLike,
+        triangles: Optional[ArrayLike],
         previous: ArrayLike,
         current: ArrayLike,
         *,
         origins: Optional[ArrayLike] = None,
+        edges: Optional[ArrayLike] = None,
+        points: Optional[ArrayLike] = None,
     ) -> None:
         """Give the next step of a mesh that has torn, broken, grown or lost parts.
 
@@ -88,18 +110,27 @@ class DeformableMesh(_core.DeformableMesh):
             For each triangle the number of the old triangle that it was, or was cut from;
             -1 for a new one. A hint that saves time and never changes an answer. None:
             triangle i was triangle i.
+        edges, points : arrays of integers, optional
+            All free edges and points of the new mesh. With them the tree is made anew.
         """
         self._update_topology(
-            _arguments.triangles(triangles),
+            _arguments.triangles_or_none(triangles),
             _arguments.points(previous, "previous"),
             _arguments.points(current, "current"),
             _arguments.origins(origins),
+            _arguments.free_edges(edges),
+            _arguments.free_points(points),
         )
 
     def __repr__(self) -> str:
         if not self._is_built:
             return "DeformableMesh(not built)"
-        return f"DeformableMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"
+        free = f", {self.num_edges} edges, {self.num_points} points"
+        has_free = self.num_edges > 0 or self.num_points > 0
+        return (
+            f"DeformableMesh({self.num_vertices} vertices, {self.num_triangles} triangles"
+            f"{free if has_free else ''})"
+        )
 
 
 class RigidMesh(_core.RigidMesh):

@@ -88,8 +88,9 @@ class Result:
                                  shape, one for each triangle that touches, and named for
                                  the feature that is nearest: Kind.VERTEX_SHAPE,
                                  Kind.EDGE_SHAPE or Kind.FACE_SHAPE. Two shapes: Kind.SHAPES
-        b1, b2       int64       triangles of o1 and o2 that have the features; -1 for a
-                                 shape; of an OcTree a number for its cells()
+        b1, b2       int64       triangles of o1 and o2 that have the features; free edges
+                                 and points are numbered after them; -1 for a shape; of an
+                                 OcTree a number for its cells()
         vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
                                  CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
                                  VERTEX_VERTEX: v of o1, v of o2. With a shape: the

@@ -13,6 +13,7 @@ namespace fcl_ccd {
 namespace python {
 namespace {
 
+using fcl::FreeEdge;
 using fcl::Triangle;
 using fcl::Vector3d;
 
@@ -46,6 +47,34 @@ std::vector<Triangle> toTriangles(const Integers& array, std::size_t num_vertice
                            static_cast<std::size_t>(t[2]));
   }
   return triangles;
+}
+
+/// The library tells which number is too large; FCL's have no sign.
+std::vector<std::size_t> toVertexIds(const Integers& array, const char* what,
+                                     std::size_t each) {
+  requireCount(array.size() / static_cast<py::ssize_t>(each), what);
+  const std::int64_t* ids = array.data();
+  std::vector<std::size_t> out(static_cast<std::size_t>(array.size()));
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    if (ids[i] < 0)
+      throw py::value_error(what + (" have vertex " + std::to_string(ids[i])) +
+                            ". Vertices are numbered from 0");
+    out[i] = static_cast<std::size_t>(ids[i]);
+  }
+  return out;
+}
+
+std::vector<FreeEdge> toEdges(const Integers& array) {
+  const std::vector<std::size_t> ids = toVertexIds(array, "free edges", 2);
+  std::vector<FreeEdge> edges;
+  edges.reserve(ids.size() / 2);
+  for (std::size_t i = 0; i + 1 < ids.size(); i += 2)
+    edges.push_back({ids[i], ids[i + 1]});
+  return edges;
+}
+
+std::vector<std::size_t> toPoints(const Integers& array) {
+  return toVertexIds(array, "free points", 1);
 }
 
 template <typename Model>
@@ -113,13 +142,15 @@ std::vector<Vector3d> toVertices(const Doubles& array) {
 }
 
 DeformableMesh::DeformableMesh(const Doubles& vertices, const Integers& triangles,
+                               const Integers& edges, const Integers& points,
                                int num_threads) {
   const py::gil_scoped_release release;
   requireOk(model_.setNumThreads(num_threads), model_);
-  const std::vector<Vector3d> points = toVertices(vertices);
-  const std::vector<Triangle> faces = toTriangles(triangles, points.size());
-  model_.beginModel(static_cast<int>(faces.size()), static_cast<int>(points.size()));
-  requireOk(model_.addSubModel(points, faces), model_);
+  const std::vector<Vector3d> positions = toVertices(vertices);
+  const std::vector<Triangle> faces = toTriangles(triangles, positions.size());
+  model_.beginModel(static_cast<int>(faces.size()), static_cast<int>(positions.size()));
+  requireOk(model_.addSubModel(positions, faces, toEdges(edges), toPoints(points)),
+            model_);
   requireOk(model_.endModel(fcl::FclTree::kSkip), model_);
 }
 
@@ -137,13 +168,20 @@ void DeformableMesh::update(const std::optional<Doubles>& previous,
 
 void DeformableMesh::updateTopology(const Integers& triangles, const Doubles& previous,
                                     const Doubles& current,
-                                    const std::vector<int>& origins) {
+                                    const std::vector<int>& origins,
+                                    const Integers& edges, const Integers& points) {
   const Writing writing(*this);
   const py::gil_scoped_release release;
   requireSize(previous, static_cast<std::size_t>(current.size()), "previous");
-  requireOk(model_.updateTopology(toTriangles(triangles, numPoints(current)), origins,
-                                  previous.data(), current.data(), numPoints(current)),
-            model_);
+  const std::size_t count = numPoints(current);
+  const std::vector<Triangle> faces = toTriangles(triangles, count);
+  const bool has_free = model_.numFreeEdges() + model_.numFreePoints() > 0;
+  requireOk(
+      has_free || edges.size() > 0 || points.size() > 0
+          ? model_.updateTopology(faces, toEdges(edges), toPoints(points),
+                                  previous.data(), current.data(), count)
+          : model_.updateTopology(faces, origins, previous.data(), current.data(), count),
+      model_);
 }
 
 RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
@@ -168,17 +206,26 @@ void bindMeshes(py::module_& module) {
   py::class_<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;
   py::class_<DeformableMesh, Mesh>(module, "DeformableMesh")
-      .def(py::init<const Doubles&, const Integers&, int>(), py::arg("vertices"),
-           py::arg("triangles"), py::arg("num_threads"))
+      .def(py::init<const Doubles&, const Integers&, const Integers&, const Integers&,
+                    int>(),
+           py::arg("vertices"), py::arg("triangles"), py::arg("edges"), py::arg("points"),
+           py::arg("num_threads"))
       .def("_update", &DeformableMesh::update, py::arg("previous"), py::arg("current"))
       .def("_update_topology", &DeformableMesh::updateTopology, py::arg("triangles"),
-           py::arg("previous"), py::arg("current"), py::arg("origins"))
+           py::arg("previous"), py::arg("current"), py::arg("origins"), py::arg("edges"),
+           py::arg("points"))
       .def_property_readonly(
           "num_vertices",
           readModel<DeformableMesh>([](const Deformable& m) { return m.num_vertices; }))
       .def_property_readonly(
           "num_triangles",
           readModel<DeformableMesh>([](const Deformable& m) { return m.num_tris; }))
+      .def_property_readonly(
+          "num_edges",
+          readModel<DeformableMesh>([](const Deformable& m) { return m.numFreeEdges(); }))
+      .def_property_readonly("num_points",
+                             readModel<DeformableMesh>(
+                                 [](const Deformable& m) { return m.numFreePoints(); }))
       .def_property_readonly("num_restructurings",
                              readModel<DeformableMesh>([](const Deformable& m) {
                                return m.numRestructurings();

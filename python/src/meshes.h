@@ -21,14 +21,18 @@ class DeformableMesh : public Mesh {
  public:
   using Model = fcl::DeformableBVHModel<>;
 
-  DeformableMesh(const Doubles& vertices, const Integers& triangles, int num_threads);
+  /// @param edges, points  numbers of vertices: two for each free edge, one for each free
+  /// point
+  DeformableMesh(const Doubles& vertices, const Integers& triangles,
+                 const Integers& edges, const Integers& points, int num_threads);
 
   const fcl::CollisionGeometry<double>& geometry() const override { return model_; }
   const Model& model() const { return model_; }
 
   void update(const std::optional<Doubles>& previous, const Doubles& current);
   void updateTopology(const Integers& triangles, const Doubles& previous,
-                      const Doubles& current, const std::vector<int>& origins);
+                      const Doubles& current, const std::vector<int>& origins,
+                      const Integers& edges, const Integers& points);
 
  private:
   Model model_;
