@@ -78,11 +78,6 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     mesh_.emplace(placed.geometry(), posed ? placed.beginning() : Pose(),
                   posed ? placed.end() : Pose(), name, num_threads);
     const MeshInstance& mesh = mesh_->instance();
-    if (mesh.tree && mesh.tree->freeLeaves().count() > 0)
-      throw Exception(name +
-                      " has free edges or points, which a query does not know if a mesh "
-                      "turns, or with a shape or an octree. Move them on straight paths, "
-                      "against meshes: give their positions as vertices of both frames");
     if (mesh.tree)
       body_.emplace(*mesh.tree, path);
     else

@@ -29,6 +29,15 @@ void* allocate(std::size_t size, std::size_t alignment) {
 void* operator new(std::size_t size) {
   return fcl::test::allocate(size, alignof(std::max_align_t));
 }
+// As the standard library has it. A sanitizer has its own, whose memory cannot be freed
+// below.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept {
+  try {
+    return operator new(size);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
+}
 void* operator new(std::size_t size, std::align_val_t alignment) {
   return fcl::test::allocate(size, static_cast<std::size_t>(alignment));
 }

@@ -10,8 +10,11 @@
 #include <string>
 
 #include "allocation_failures.h"
+#include "fcl/broadphase/continuous_collision_manager.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/motion/screw_motion.h"
+#include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/distance.h"
@@ -348,6 +351,36 @@ TEST(FCL_FREE_FEATURES, aCableThroughASheet) {
   EXPECT_EQ(meeting.contacts[0].kind, Kind::kEdgeEdge);
   EXPECT_FALSE(meeting.initially_crossing);
   EXPECT_NEAR(meeting.time_of_contact, 0.5, 1e-4);
+}
+
+/// A manager knows models with free edges and points, as long as they go straight.
+TEST(FCL_FREE_FEATURES, inAManager) {
+  FreeBody body;
+  body.t0 = body.t1 = {{0, -1, 1}, {0, 1, 1}};
+  body.edges = {{0, 1}};
+  const auto falling = freeModelOf<Model>(body);
+  body.t0 = body.t1 = {{-1, 0, 0}, {1, 0, 0}};
+  const auto lying = freeModelOf<Model>(body);
+  const auto rest = Transform3<double>::Identity();
+  Transform3<double> below = rest, turned = rest;
+  below.translation() = V(0, 0, -2);
+  turned.linear() = Eigen::AngleAxisd(1, V::UnitZ()).toRotationMatrix();
+  const auto straight = std::make_shared<TranslationMotion<double>>(rest, below),
+             still = std::make_shared<TranslationMotion<double>>(rest, rest);
+  ContinuousCollisionObject<double> a(falling, straight), b(lying, still),
+      screw(lying, std::make_shared<ScrewMotion<double>>(rest, turned)),
+      ball(std::make_shared<Sphere<double>>(0.5), still);
+  ContinuousCollisionManager<double> manager;
+  manager.registerObjects({&a, &b});
+  ContinuousManagerResult<double> result;
+  manager.collide(Request(), result);
+  EXPECT_TRUE(result.is_collide);
+  EXPECT_NEAR(result.time_of_contact, 0.5, 1e-4);
+  manager.registerObject(&screw);
+  expectRefused([&] { manager.collide(Request(), result); }, "has free edges");
+  manager.unregisterObject(&screw);
+  manager.registerObject(&ball);
+  expectRefused([&] { manager.collide(Request(), result); }, "has free edges");
 }
 
 /// Candidates are all pairs that come near, each once.
