@@ -100,30 +100,13 @@ ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name) {
                            0);
 }
 
-/// The part of a plane, or of the halfspace below it, that matters within a reach of the
-/// origin. Its corners round by up to 7 u of its size (MotionTolerance).
-ConvexShape slab(const Vec& normal, double offset, double reach, bool is_solid,
-                 const std::string& name) {
+ConvexShape flatShape(const Vec& normal, double offset, double reach, bool is_solid,
+                      const std::string& name) {
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(offset))
     throw Exception(name +
                     ": the normal of the plane is zero, or a number of it is not finite");
-  const Vec n = (1 / length) * normal;
-  const Vec helper = std::abs(n.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
-  Vec u = cross(n, helper);
-  u = (1 / std::sqrt(dot(u, u))) * u;
-  const Vec v = cross(n, u), foot = (offset / length) * n;
-  // The foot is the point of the plane nearest to the origin. What is within the reach of
-  // the origin is within it of the foot too, along the plane.
-  constexpr double kOutward = 1 + 0x1p-20;
-  const double side = kOutward * reach,
-               depth = kOutward * (reach + std::abs(offset / length));
-  std::vector<Vec> corners;
-  for (int below = 0; below < (is_solid ? 2 : 1); ++below)
-    for (int i = 0; i < 4; ++i)
-      corners.push_back(foot + ((i & 1) != 0 ? side : -side) * u +
-                        ((i & 2) != 0 ? side : -side) * v - (below * depth) * n);
-  return ConvexShape::hull(std::move(corners), 0, {u, v, n});
+  return ConvexShape::flat({(1 / length) * normal, offset / length, is_solid}, reach);
 }
 
 template <typename S>
@@ -181,12 +164,13 @@ ConvexShape convexShapeOf(const CollisionGeometry<S>& shape, const std::string& 
       return shapeOf(static_cast<const Convex<S>&>(shape), name);
     case GEOM_PLANE: {
       const auto& plane = static_cast<const Plane<S>&>(shape);
-      return slab(normalOf(plane.n), static_cast<double>(plane.d), reach, false, name);
+      return flatShape(normalOf(plane.n), static_cast<double>(plane.d), reach, false,
+                       name);
     }
     case GEOM_HALFSPACE: {
       const auto& halfspace = static_cast<const Halfspace<S>&>(shape);
-      return slab(normalOf(halfspace.n), static_cast<double>(halfspace.d), reach, true,
-                  name);
+      return flatShape(normalOf(halfspace.n), static_cast<double>(halfspace.d), reach,
+                       true, name);
     }
     default:
       return shapeOf(static_cast<const TriangleP<S>&>(shape), name);

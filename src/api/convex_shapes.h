@@ -19,8 +19,7 @@ bool isConvexShape(const CollisionGeometry<S>& geometry);
 template <typename S>
 bool isUnbounded(const CollisionGeometry<S>& shape);
 
-/// @brief One of FCL's shapes. A plane is a square, a halfspace a box, around the point
-/// of the plane that is nearest to the origin.
+/// @brief One of FCL's shapes.
 /// @param name  the name of the shape in errors, for example "o1"
 /// @param reach  of a plane or halfspace: how far from the origin of its frame the other
 /// object may come

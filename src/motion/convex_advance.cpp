@@ -17,13 +17,46 @@ double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);
   if (bound.isZero() && bound.per_displacement == 0) return 0;
   if (!set.shape) return accelerationOf(bound, set.triangle);
-  return bound.of(set.shape->center(), set.shape->box().radius) * kUpward;
+  const double radius = set.shape->flat() ? 0 : set.shape->box().radius;
+  return bound.of(set.shape->center(), radius) * kUpward;
+}
+
+int flatOf(const MovingConvex& a, const MovingConvex& b) {
+  if (a.shape && a.shape->flat()) return 0;
+  return b.shape && b.shape->flat() ? 1 : -1;
+}
+
+/// What is farthest along a direction: a point, the corners of a triangle that are as far
+/// up to a tolerance, and the middle of these.
+struct Extreme {
+  Vec point, middle;
+  unsigned corners;
+};
+
+Extreme extremeOf(const PosedConvex& set, const Vec& direction, double tolerance) {
+  int id;
+  Extreme out{set.support(direction, id), {0, 0, 0}, 0};
+  if (set.shape) {
+    out.middle = out.point;
+    return out;
+  }
+  int count = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (dot(direction, out.point - set.corner[k]) > tolerance) continue;
+    out.middle = out.middle + set.corner[k];
+    out.corners |= 1U << k;
+    ++count;
+  }
+  out.middle = (1. / count) * out.middle;
+  return out;
 }
 
 }  // namespace
 
 MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place) {
   MovingConvex out{&body.path(), body.shape(), {}, body.speed()};
+  if (body.shape() && body.shape()->flat())
+    out.speed = body.path().speed(norm(body.shape()->flat()->foot()) * kUpward);
   if (body.isMesh()) out.triangle = body.triangle(place);
   if (!body.octree()) return out;
   out.shape = &body.octree()->cell(place);
@@ -36,9 +69,13 @@ MovingConvex movingConvexOf(const MotionBody& body, std::int32_t place) {
 ConvexPairMotion::ConvexPairMotion(const MovingConvex& a, const MovingConvex& b,
                                    double t0, double t1, const MotionTolerance& tolerance)
     : set_{&a, &b},
+      flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
+      distance_(tolerance.distance),
+      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {
+  if (flat_ >= 0) distance_ *= set_[flat_]->path->stretch();
+}
 
 ConvexPairMotion::Side ConvexPairMotion::sideAt(int k, double t) const {
   const MovingConvex& set = *set_[k];
@@ -67,6 +104,12 @@ double ConvexPairMotion::Side::reachAfter(double h, const Vec& n,
                                 h * (dot(n, velocity[i]) + dot(change, now.corner[i])));
     return most;
   }
+  if (now.shape->flat()) {
+    const Vec foot = now.shape->flat()->foot(),
+              velocity_of_foot = rotated(rate.rotation, foot) + vecOf(rate.translation),
+              place = posed(now.pose, foot);
+    return dot(n, place) + h * (dot(n, velocity_of_foot) + dot(change, place));
+  }
   // As n . (R x + T) + h (n . (R' x + T') + n' . (R x + T)) for all points x of the core.
   const Vec later = n + h * change;
   const double(&r)[9] = now.pose.rotation;
@@ -85,7 +128,7 @@ Vec ConvexPairMotion::Side::center() const {
 }
 
 double ConvexPairMotion::Side::size() const {
-  if (now.shape) return 2 * now.shape->box().radius;
+  if (now.shape) return now.shape->flat() ? 0 : 2 * now.shape->box().radius;
   double square = 0;
   for (int i = 0; i < 3; ++i) {
     const Vec edge = now.corner[(i + 1) % 3] - now.corner[i];
@@ -101,22 +144,32 @@ ConvexPairMotion::Separator ConvexPairMotion::inWorld(const Vec& direction) cons
 // The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
 // the second derivative of n . z is n . z'' + 2 n' . z' + n'' . z, and r times the norm
 // of R'' is at most the bound on the acceleration of points within r of the origin.
+//
+// A flat is the plane through its foot with the normal n(t), where m is that in the body
+// frame. So its foot stands for all of its points. The height n . z is at most |n| times
+// the distance, and |n| is at most the stretch of R.
 ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const State& state,
                                                      const ConvexGap& gap) const {
   const MotionPath& path = *set_[k]->path;
   const double(&r)[9] = state.side[k].now.pose.rotation;
   const double(&v)[9] = state.side[k].rate.rotation;
   const Vec& n = gap.direction;
-  const Vec m = rotatedBack(r, n);
+  Vec m = rotatedBack(r, n);
+  if (flat_ >= 0) {
+    const Vec& normal = set_[k]->shape->flat()->normal;
+    m = dot(m, normal) < 0 ? -1. * normal : normal;
+  }
   const double stretch = path.stretch() * path.stretch(), turn = path.turnSpeed(),
                speed = set_[0]->speed + set_[1]->speed;
-  double apart = std::max(gap.distance, gap.gap) + speed * (t1_ - t);
+  double apart = std::max(gap.distance, gap.gap);
+  if (flat_ >= 0) apart = norm(state.side[1].center() - state.side[0].center());
+  apart += speed * (t1_ - t);
   for (int side = 0; side < 2; ++side)
     apart += state.side[side].size() * set_[side]->path->stretch();
   const double turning =
       2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
   return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * stretch * kUpward,
-          margin() * stretch * kUpward, 0.5 / turn};
+          flat_ >= 0 ? margin() : margin() * stretch * kUpward, 0.5 / turn};
 }
 
 /// The gap of the cores along a direction, `h` later, at least. It is concave in h, since
@@ -169,6 +222,7 @@ double ConvexPairMotion::step(double t, const State& state,
 /// large one does not shorten the step.
 double ConvexPairMotion::longestStep(double t, const State& state,
                                      const ConvexGap& gap) const {
+  if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap));
   double best = step(t, state, inWorld(gap.direction));
   for (int k = 0; k < 2; ++k) {
     if (best >= t1_ - t) return best;
@@ -178,7 +232,37 @@ double ConvexPairMotion::longestStep(double t, const State& state,
   return best;
 }
 
+/// The gap along the normal of a flat. Points of the other set that are lowest, or
+/// highest, up to rounding count as one feature.
+ConvexGap ConvexPairMotion::flatGap(const State& state) const {
+  const Side &flat = state.side[flat_], &other = state.side[1 - flat_];
+  const FlatShape& shape = *flat.now.shape->flat();
+  const Vec normal = rotated(flat.now.pose.rotation, shape.normal),
+            up = (1 / norm(normal)) * normal, foot = flat.center();
+  const Extreme low = extremeOf(other.now, -1. * up, tolerance_.position),
+                high = extremeOf(other.now, up, tolerance_.position);
+  const double lowest = dot(up, low.point - foot), highest = dot(up, high.point - foot);
+  const bool is_below = !shape.is_solid && -highest > lowest;
+  const Extreme& near = is_below ? high : low;
+  ConvexGap out{};
+  out.gap = is_below ? -highest : lowest;
+  out.direction = is_below == (flat_ == 0) ? -1. * up : up;
+  out.distance = std::max(out.gap, 0.);
+  out.depth = std::max(shape.is_solid ? -lowest : std::min(-lowest, highest), 0.);
+  Vec point = near.middle;
+  unsigned corners = near.corners;
+  if (!shape.is_solid && out.gap < 0) {
+    point = low.point + (-lowest / (highest - lowest)) * (high.point - low.point);
+    corners = low.corners | high.corners;
+  }
+  out.point[1 - flat_] = point;
+  out.point[flat_] = point - (is_below ? -out.distance : out.distance) * up;
+  out.corners[1 - flat_] = corners;
+  return out;
+}
+
 ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
+  if (flat_ >= 0) return flatGap(state);
   const Vec guess =
       maxNorm(guess_) > 0 ? guess_ : state.side[1].center() - state.side[0].center();
   return convexGap(state.side[0].now, state.side[1].now, guess, margin(), contact);
@@ -189,6 +273,7 @@ ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
 ConvexGap ConvexPairMotion::gapAt(double t) const {
   const State state = stateAt(t);
   ConvexGap gap = gapOf(state, 0);
+  if (flat_ >= 0) return gap;
   for (const Side& side : state.side) {
     Vec n = side.now.flatNormal(gap.direction);
     const double length = norm(n);
@@ -204,7 +289,7 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
 
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {
-  const double contact = tolerance_.distance + tolerance_.touching - tolerance_.position;
+  const double contact = distance_ + tolerance_.touching - tolerance_.position;
   while (true) {
     const State state = stateAt(t);
     ++counts.steps;

@@ -57,7 +57,7 @@ class ConvexPairMotion {
     double reachAfter(double h, const Vec& n, const Vec& change) const;
     /// A point inside.
     Vec center() const;
-    /// How far two points may be apart.
+    /// How far two points may be apart; 0 for a flat, of which only the foot counts.
     double size() const;
   };
   struct State {
@@ -66,6 +66,7 @@ class ConvexPairMotion {
   Side sideAt(int k, double t) const;
   State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
   ConvexGap gapOf(const State& state, double contact) const;
+  ConvexGap flatGap(const State& state) const;
   /// A direction that is fixed in the world, or in a body.
   struct Separator {
     Vec direction, change;
@@ -76,7 +77,7 @@ class ConvexPairMotion {
     double longest;
   };
   /// The gap that a step keeps. Its end may round by another half of the position error.
-  double margin() const { return 2 * tolerance_.position + tolerance_.distance; }
+  double margin() const { return 2 * tolerance_.position + distance_; }
   Separator inWorld(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
   double gapAfter(double h, const State& state, const Separator& separator) const;
@@ -84,8 +85,13 @@ class ConvexPairMotion {
   double longestStep(double t, const State& state, const ConvexGap& gap) const;
 
   const MovingConvex* set_[2];
+  /// The set that is a plane or a halfspace; -1: none. Then the sets are apart along its
+  /// normal or not at all.
+  int flat_;
   double t1_;
   const MotionTolerance& tolerance_;
+  /// The distance of contact; of a flat as a difference of heights, see inBody().
+  double distance_;
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
   /// The direction of the last gap; 0: there is none.

@@ -34,32 +34,41 @@ double circleReach(double radius, const Vec& d) {
 
 }  // namespace
 
-const Vec ConvexShape::kFrameAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-
-ConvexShape ConvexShape::hull(std::vector<Vec> points, double radius,
-                              const Vec (&axes)[3]) {
+ConvexShape ConvexShape::hull(std::vector<Vec> points, double radius) {
   ConvexShape shape(Kind::kHull, {0, 0, 0});
   shape.points_ = std::move(points);
   shape.radius_ = radius;
-  shape.setBox(axes);
+  shape.setBox();
   return shape;
 }
 
 ConvexShape ConvexShape::ellipsoid(const Vec& half_axes) {
   ConvexShape shape(Kind::kEllipsoid, half_axes);
-  shape.setBox(kFrameAxes);
+  shape.setBox();
   return shape;
 }
 
 ConvexShape ConvexShape::cone(double radius, double height) {
   ConvexShape shape(Kind::kCone, {radius, radius, 0.5 * height});
-  shape.setBox(kFrameAxes);
+  shape.setBox();
   return shape;
 }
 
 ConvexShape ConvexShape::cylinder(double radius, double height) {
   ConvexShape shape(Kind::kCylinder, {radius, radius, 0.5 * height});
-  shape.setBox(kFrameAxes);
+  shape.setBox();
+  return shape;
+}
+
+ConvexShape ConvexShape::flat(const FlatShape& flat, double reach) {
+  const Vec foot = flat.foot();
+  ConvexShape shape(Kind::kFlat, {0, 0, 0});
+  shape.flat_ = flat;
+  for (int i = 0; i < 3; ++i) shape.box_.axis[i][i] = 1;
+  shape.box_.center[0] = foot.x;
+  shape.box_.center[1] = foot.y;
+  shape.box_.center[2] = foot.z;
+  shape.box_.radius = (reach + std::sqrt(dot(foot, foot))) * kUpward;
   return shape;
 }
 
@@ -105,11 +114,12 @@ double ConvexShape::reach(const Vec& d) const {
   }
 }
 
-void ConvexShape::setBox(const Vec (&axes)[3]) {
+void ConvexShape::setBox() {
+  constexpr Vec kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Vec center = {0, 0, 0};
   double square = 0;
   for (int i = 0; i < 3; ++i) {
-    const Vec& axis = axes[i];
+    const Vec& axis = kAxes[i];
     const double upper = reach(axis), lower = -reach(-1. * axis);
     center = center + (0.5 * (upper + lower)) * axis;
     box_.axis[i][0] = axis.x;

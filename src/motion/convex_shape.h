@@ -13,21 +13,37 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// @brief A plane in the frame of its body, all x with normal . x = offset; or the
+/// halfspace below it. The normal is a unit vector, up to rounding.
+struct FlatShape {
+  Vec normal;
+  double offset;
+  bool is_solid;
+
+  /// The point of the plane that is nearest to the origin.
+  Vec foot() const { return offset * normal; }
+};
+
 /// @brief A convex solid in the frame of its body: all points within `radius` of a core.
 /// The core of a sphere is a point, that of a capsule an edge.
 class ConvexShape {
  public:
   /// @brief The hull of points.
-  /// @param axes  unit vectors at right angles, along which its box lies
   /// @pre there is a point; all are finite
-  static ConvexShape hull(std::vector<Vec> points, double radius,
-                          const Vec (&axes)[3] = kFrameAxes);
+  static ConvexShape hull(std::vector<Vec> points, double radius);
   /// @brief All points with (x / a)^2 + (y / b)^2 + (z / c)^2 <= 1.
   static ConvexShape ellipsoid(const Vec& half_axes);
   /// @brief Around the z axis, from the base at -height / 2 to the tip at height / 2.
   static ConvexShape cone(double radius, double height);
   /// @brief Around the z axis, from -height / 2 to height / 2.
   static ConvexShape cylinder(double radius, double height);
+  /// @brief A plane or a halfspace. It has no support function and no reach. Its box is
+  /// its foot; the ball around that contains the other object.
+  /// @param reach  how far from the origin of its frame the other object may come
+  static ConvexShape flat(const FlatShape& flat, double reach);
+
+  /// @brief Null: another shape.
+  const FlatShape* flat() const { return kind_ == Kind::kFlat ? &flat_ : nullptr; }
 
   /// @brief A point of the core that is farthest along a direction, up to rounding by
   /// 2^-50 of the size.
@@ -50,16 +66,16 @@ class ConvexShape {
   Vec center() const { return {box_.center[0], box_.center[1], box_.center[2]}; }
 
  private:
-  enum class Kind { kHull, kEllipsoid, kCone, kCylinder };
-  static const Vec kFrameAxes[3];
+  enum class Kind { kHull, kEllipsoid, kCone, kCylinder, kFlat };
 
   ConvexShape(Kind kind, const Vec& size) : kind_(kind), size_(size) {}
-  void setBox(const Vec (&axes)[3]);
+  void setBox();
   bool hasCornersOfBox() const;
 
   Kind kind_;
   /// Half axes; or radius, radius and half height.
   Vec size_;
+  FlatShape flat_{};
   std::vector<Vec> points_;
   double radius_{0};
   MotionBox box_{};

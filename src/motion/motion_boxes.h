@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_MOTION_MOTION_BOXES_H
 #define FCL_CCD_MOTION_MOTION_BOXES_H
 
+#include <algorithm>
 #include <cstdint>
 
 #include "mesh/vertex_frames.h"
@@ -71,6 +72,18 @@ struct MeetingWindows {
   double lo[MotionBoxes::kWidth];
   double hi[MotionBoxes::kWidth];
 };
+
+/// @brief Shortens a window to the part in which a gap may not be positive. The gap is at
+/// least the line between its values at the beginning and at the end of the span. Rounds
+/// outward.
+/// @return whether there is such a part
+inline bool narrowWindow(double first, double last, double& lo, double& hi) {
+  if (first > 0 && last > 0) return false;
+  const double root = first / (first - last);
+  if (first > 0) lo = std::max(lo, root * (1 - 0x1p-40));
+  if (last > 0) hi = std::min(hi, root * (1 + 0x1p-40));
+  return true;
+}
 
 struct MotionKernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.

@@ -56,7 +56,8 @@ double frobenius(const double (&m)[9]) {
   return std::sqrt(sum);
 }
 
-/// Bound on the spectral norm: the square is that of M^T M, at most its largest row.
+/// Bound on the spectral norm: the square is that of M^T M, at most its largest row. The
+/// root of a row rounds by less than 8 u.
 double spectralBound(const double (&m)[9]) {
   double most = 0;
   for (int i = 0; i < 3; ++i) {
@@ -65,7 +66,7 @@ double spectralBound(const double (&m)[9]) {
       row += std::abs(m[i] * m[j] + m[3 + i] * m[3 + j] + m[6 + i] * m[6 + j]);
     most = std::max(most, row);
   }
-  return std::sqrt(most) * kUpward;
+  return std::sqrt(most) * (1 + 0x1p-48);
 }
 
 /// Columns of [a] m.
@@ -322,7 +323,7 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
     throw Exception(
         "a rotation vector of a SplineMotion is longer than 2^20 radians or not finite. "
         "Divide the motion into steps with smaller rotations");
-  path.stretch_ = kUpward;
+  path.stretch_ = 1;
   path.turn_speed_ = largestDifference(rotation);
   path.translation_speed_ = largestDifference(translation);
   path.translation_size_ = path.translation_reach_ = largestPoint(translation);
@@ -537,9 +538,12 @@ AccelerationBound MotionPath::acceleration(double t0, double t1) const {
   }
 }
 
+double MotionPath::rotationError() const {
+  return (3 * rotation_error_ + 13) * stretch_ * kUnitRounding;
+}
+
 double MotionPath::positionError(double radius) const {
-  return ((3 * rotation_error_ + 13) * stretch_ * radius + 35 * translation_size_) *
-         kUnitRounding;
+  return rotationError() * radius + 35 * translation_size_ * kUnitRounding;
 }
 
 double MotionPath::rateError(double radius) const {

@@ -100,6 +100,9 @@ class MotionPath {
   /// @brief The largest factor by which a rotation makes a vector longer.
   double stretch() const { return stretch_; }
 
+  /// @brief Bound on the rounding of a unit vector that pose(t) rotates.
+  double rotationError() const;
+
   /// @brief Bound on the rounding, along any unit direction, of pose(t) applied to a
   /// point with |x| <= radius. It includes the sum of three products and the translation.
   double positionError(double radius) const;

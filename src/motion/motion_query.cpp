@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "motion/convex_advance.h"
+#include "motion/flat_windows.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
@@ -44,7 +45,11 @@ class PoseTable {
 /// The data of a body in a traversal.
 struct Side {
   explicit Side(const MotionBody& b)
-      : body(b), reader(b), poses(b.path()), goes_straight(goesStraight(b.path())) {}
+      : body(b),
+        flat(b.shape() ? b.shape()->flat() : nullptr),
+        reader(b),
+        poses(b.path()),
+        goes_straight(goesStraight(b.path())) {}
 
   /// Whether all points go straight, also those of a mesh that deforms.
   static bool goesStraight(const MotionPath& path) {
@@ -57,6 +62,8 @@ struct Side {
   }
 
   const MotionBody& body;
+  /// Null: the body is no plane or halfspace.
+  const FlatShape* flat;
   MotionBodyReader reader;
   PoseTable poses;
   bool goes_straight;
@@ -180,38 +187,62 @@ class MotionTraversal {
            bound.per_displacement * begin.displacement;
   }
 
-  PartSpan partSpan(int k, const BodyPart& part, double t0, double t1) const {
+  PartSpan partSpan(int k, const BodyPart& part, double t0, double t1) {
     const MotionBody& body = side_[k].body;
     const double dt = t1 - t0;
     PartSpan span;
     span.box[0] = boxAt(body, part, t0);
     span.box[1] = body.isRigid() ? span.box[0] : boxAt(body, part, t1);
     span.deviation = 0;
-    if (!side_[k].goes_straight)
+    if (side_[k].flat)
+      span.deviation = flatDeviation(k, t0, t1);
+    else if (!side_[k].goes_straight)
       span.deviation =
           0.125 * dt * dt *
           accelerationOf(body.path().acceleration(t0, t1), span.box[0], span.box[1]);
     return span;
   }
 
+  /// How far the height of a point above a flat deviates from a straight line, less what
+  /// the acceleration of the point adds: see ConvexPairMotion::inBody().
+  double flatDeviation(int k, double t0, double t1) {
+    Side &side = side_[k], &other = side_[1 - k];
+    const double dt = t1 - t0, middle = 0.5 * (t0 + t1);
+    const Vec foot = side.flat->foot();
+    const MotionBox root = boxAt(other.body, other.body.root(), middle);
+    const MotionPath& path = side.body.path();
+    const double speed = other.body.speed() + path.speed(norm(foot)),
+                 apart = norm(posed(other.poses.at(middle), vecOf(root.center)) -
+                              posed(side.poses.at(middle), foot)) +
+                         direction_bound_ * (root.radius + root.pad) + 0.5 * dt * speed;
+    const AccelerationBound bound = path.acceleration(t0, t1);
+    return 0.125 * dt * dt * direction_bound_ *
+           (bound.of(foot, 0) + bound.of({0, 0, 0}, apart) +
+            2 * path.turnSpeed() * speed);
+  }
+
   /// The radius of a part, with the margin around the core of a shape.
   double sizeOf(int k, const PartSpan& span) const {
+    if (side_[k].flat) return HUGE_VAL;
     const MotionBody& body = side_[k].body;
     return span.box[0].radius + (body.shape() ? body.shape()->radius() : 0);
   }
 
   /// Tests the pair in its span, and adds the parts that may overlap.
   void testAlone(const Work& work) {
-    const MotionBody& body = side_[1].body;
+    const int many = side_[1].flat ? 0 : 1;
+    const MotionBody& body = side_[many].body;
+    const BodyPart &part = many == 1 ? work.b : work.a,
+                   &other = many == 1 ? work.a : work.b;
     MotionNode node;
     node.count = 1;
     for (int frame = 0; frame < (body.isRigid() ? 1 : 2); ++frame) {
-      const MotionBox box = body.box(work.b, frame);
+      const MotionBox box = body.box(part, frame);
       for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
         node.box[frame].set(lane, box);
     }
-    std::fill(node.part, node.part + MotionBoxes::kWidth, work.b);
-    test(work, 1, node, partSpan(0, work.a, work.t0, work.t1));
+    std::fill(node.part, node.part + MotionBoxes::kWidth, part);
+    test(work, many, node, partSpan(1 - many, other, work.t0, work.t1));
   }
 
   /// The node's boxes at a time.
@@ -274,13 +305,17 @@ class MotionTraversal {
     setMargins(work, many, *boxes[0], *boxes[1], node.count,
                other.deviation + other.box[0].pad + box_margin_, margin);
     MeetingWindows windows;
-    motionKernels().meetingWindows(other.box, one.spanPoses(work.t0, work.t1), boxes,
-                                   many.spanPoses(work.t0, work.t1), margin, node.count,
-                                   windows);
+    const SpanPoses pose_one = one.spanPoses(work.t0, work.t1),
+                    pose_many = many.spanPoses(work.t0, work.t1);
+    if (one.flat)
+      flatWindows(*one.flat, pose_one, boxes, pose_many, margin, node.count, windows);
+    else
+      motionKernels().meetingWindows(other.box, pose_one, boxes, pose_many, margin,
+                                     node.count, windows);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      if (one.body.shape() && !one.body.shape()->fillsBox() &&
+      if (one.body.shape() && !one.flat && !one.body.shape()->fillsBox() &&
           !narrowByShape(opened, work, boxes, lane, margin[lane], windows))
         continue;
       Work child = work;
@@ -327,12 +362,7 @@ class MotionTraversal {
     const double first = gap(posedShape(poses[0].beginning),
                              posedBox(begin, poses[1].beginning)),
                  last = gap(posedShape(poses[0].end), posedBox(end, poses[1].end));
-    if (first > 0 && last > 0) return false;
-    // Rounded outward.
-    const double root = first / (first - last);
-    if (first > 0) windows.lo[lane] = std::max(windows.lo[lane], root * (1 - 0x1p-40));
-    if (last > 0) windows.hi[lane] = std::min(windows.hi[lane], root * (1 + 0x1p-40));
-    return true;
+    return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
   }
 
   /// The span of a work: that of its parent, cut to [start, end], with ends that are

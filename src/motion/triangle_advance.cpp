@@ -143,8 +143,9 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
 MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                                  double wanted_distance)
     : distance(wanted_distance) {
-  // A support function rounds by another 16 u of the size and of the speed, and the
-  // corners that stand for a plane by as much.
+  // A support function rounds by another 16 u of the size and of the speed. So does a
+  // height above a flat. The rounding of its normal, times the distance of a point from
+  // its foot, is part of its position error: see ConvexShape::flat().
   const double speed = a.speed() + b.speed(),
                roundings = a.shape() || b.shape() ? 48 : 16;
   position = (a.positionError() + b.positionError() +
@@ -152,6 +153,9 @@ MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                   (roundings * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
              kUpward;
   rate = (a.rateError() + b.rateError() + roundings * kUnitRounding * speed) * kUpward;
+  for (const MotionBody* body : {&a, &b})
+    if (body->shape() && body->shape()->flat())
+      rate += body->path().rotationError() * speed * kUpward;
   touching = 4 * position;
 }
 

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_MOTION_FLAT_WINDOWS_H
+#define FCL_CCD_MOTION_FLAT_WINDOWS_H
+
+#include "motion/convex_shape.h"
+#include "motion/motion_boxes.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief As MotionKernels::meetingWindows(), for boxes and a plane or a halfspace. The
+/// only direction is its normal, which turns with it.
+/// @param margin  a bound on how far the height of a point above the plane deviates from
+/// a straight line, with pads, requested distance and rounding
+void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
+                 const MotionBoxes* const (&boxes)[2], const SpanPoses& pose_boxes,
+                 const double (&margin)[MotionBoxes::kWidth], int count,
+                 MeetingWindows& out);
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Meshes against planes and halfspaces that turn: closed forms of the first time of each
+// triangle, and how much is looked at for it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "mesh_generators.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Pose = Transform3<double>;
+using Point = Vector3<double>;
+using Request = ContinuousContactRequest<double>;
+using Result = ContinuousContactResult<double>;
+using Geometry = std::shared_ptr<CollisionGeometry<double>>;
+
+constexpr double kTimeError = 1e-11;
+constexpr double kNever = 2;
+
+Pose turnedAboutZ(double angle) {
+  Pose pose = Pose::Identity();
+  pose.linear() = AngleAxis<double>(angle, Point::UnitZ()).toRotationMatrix();
+  return pose;
+}
+
+/// 5,000 triangles around a point, with bumps so that no two vertices touch at once.
+TestMesh bumpyBall(const Point& center) {
+  TestMesh mesh = makeUvSphere(50, 51, 0.5);
+  for (Point& p : mesh.vertices)
+    p = center + (1 + 0.1 * std::sin(9 * p[0] + 1) * std::sin(7 * p[1] + p[2])) * p;
+  return mesh;
+}
+
+Geometry modelOf(const TestMesh& mesh) {
+  auto model = std::make_shared<BVHModel<OBBRSS<double>>>();
+  model->beginModel();
+  model->addSubModel(mesh.vertices, mesh.triangles);
+  model->endModel();
+  return model;
+}
+
+Geometry flatOf(const std::string& kind, const Point& normal, double offset) {
+  if (kind == "plane") return std::make_shared<Plane<double>>(normal, offset);
+  return std::make_shared<Halfspace<double>>(normal, offset);
+}
+
+Request requestOf(ContinuousQuery query) {
+  Request request;
+  request.ccd_motion_type = CCDM_LINEAR;
+  request.toc_err = 1e-9;
+  request.query = query;
+  request.num_max_contacts = 100000;
+  return request;
+}
+
+double angleOf(const Point& p) { return std::atan2(p[1], p[0]); }
+double radiusOf(const Point& p) { return std::hypot(p[0], p[1]); }
+
+class MeshAndFlat : public testing::TestWithParam<std::string> {
+ protected:
+  /// Expects the first time of each triangle; kNever: none.
+  static void expectTimes(const Result& result, const std::vector<double>& times,
+                          bool mesh_is_first) {
+    std::vector<double> found(times.size(), kNever);
+    for (const auto& contact : result.contacts)
+      found[static_cast<std::size_t>(mesh_is_first ? contact.b1 : contact.b2)] =
+          contact.toc_lo;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      EXPECT_LE(found[i], times[i]);
+      EXPECT_NEAR(found[i], times[i], kTimeError);
+    }
+  }
+
+  template <typename TimeOf>
+  static std::vector<double> timesOf(const TestMesh& mesh, const TimeOf& time_of) {
+    std::vector<double> times;
+    for (const Triangle& t : mesh.triangles) {
+      double first = kNever;
+      for (int k = 0; k < 3; ++k) {
+        const double time = time_of(mesh.vertices[t[k]]);
+        if (time <= 1) first = std::min(first, time);
+      }
+      times.push_back(first);
+    }
+    return times;
+  }
+};
+
+// The plane y = 0 turns about z. The height of a point at the angle a and the distance r
+// from the axis is r sin(a - w t); it comes down to d at w t = a - asin(d / r).
+TEST_P(MeshAndFlat, AFlatTurnsIntoAMesh) {
+  constexpr double kTurn = 2;
+  const TestMesh mesh = bumpyBall({0.2, 1.3, 0});
+  const Geometry model = modelOf(mesh), flat = flatOf(GetParam(), Point::UnitY(), 0);
+  const Pose still = Pose::Identity();
+  for (const double distance : {0., 0.1}) {
+    Request request = requestOf(ContinuousQuery::kAll);
+    request.min_distance = distance;
+    const std::vector<double> times = timesOf(mesh, [&](const Point& p) {
+      return (angleOf(p) - std::asin(distance / radiusOf(p))) / kTurn;
+    });
+    Result all, first;
+    continuousCollide(flat.get(), still, turnedAboutZ(kTurn), model.get(), still, still,
+                      request, all);
+    EXPECT_EQ(all.contacts.size(), mesh.triangles.size());
+    expectTimes(all, times, false);
+    // The mesh turns the other way.
+    continuousCollide(model.get(), still, turnedAboutZ(-kTurn), flat.get(), still, still,
+                      request, all);
+    expectTimes(all, times, true);
+    request.query = ContinuousQuery::kFirst;
+    continuousCollide(flat.get(), still, turnedAboutZ(kTurn), model.get(), still, still,
+                      request, first);
+    EXPECT_NEAR(first.time_of_contact, *std::min_element(times.begin(), times.end()),
+                kTimeError);
+    EXPECT_LT(first.counts.node_pairs, 2000u);
+  }
+}
+
+// A mesh turns below the plane y = Y. Its vertices come to y = r sin(a + w t), at most r.
+TEST_P(MeshAndFlat, AMeshTurnsAndGrazesAFlat) {
+  constexpr double kTurn = 2.5;
+  const TestMesh mesh = bumpyBall({1.2, -0.4, 0});
+  const Geometry model = modelOf(mesh);
+  double top = 0;
+  for (const Point& p : mesh.vertices) top = std::max(top, radiusOf(p));
+  const Pose still = Pose::Identity();
+  for (const double share : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-9})
+    for (const bool touches : {false, true}) {
+      SCOPED_TRACE(touches ? -share : share);
+      const double height = top * (touches ? 1 - share : 1 + share);
+      const Geometry flat = flatOf(GetParam(), -Point::UnitY(), -height);
+      Result result;
+      continuousCollide(model.get(), still, turnedAboutZ(kTurn), flat.get(), still, still,
+                        requestOf(ContinuousQuery::kFirst), result);
+      EXPECT_EQ(result.is_collide, touches);
+      EXPECT_LT(result.counts.node_pairs, 10000u);
+      if (!touches) continue;
+      const std::vector<double> times = timesOf(mesh, [height](const Point& p) {
+        if (radiusOf(p) < height) return kNever;
+        return (std::asin(height / radiusOf(p)) - angleOf(p)) / kTurn;
+      });
+      const double time = *std::min_element(times.begin(), times.end());
+      EXPECT_LE(result.time_of_contact, time + 1e-15);
+      // A graze is early by at most sqrt(2 tau / kappa).
+      EXPECT_NEAR(result.time_of_contact, time, 1e-7);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(, MeshAndFlat, testing::Values("plane", "halfspace"),
+                         [](const testing::TestParamInfo<std::string>& info) {
+                           return info.param;
+                         });
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
