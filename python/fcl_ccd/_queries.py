@@ -296,8 +296,7 @@ def collide(
         features that touch.
     ignore_initially_closer : bool
         Whether pairs that are nearer than min_distance at t = 0 are in contact only when
-        they come nearer than they are then. If false, they are contacts at t = 0. Not with
-        shapes.
+        they come nearer than they are then. If false, they are contacts at t = 0.
     num_max_contacts : int, optional
         Keep at most this number of contacts, the earliest ones.
     enable_contact : bool

@@ -164,8 +164,6 @@ def test_what_shapes_cannot_do():
         fcl_ccd.self_collide(ball)
     with pytest.raises(TypeError, match="o2 is a shape. Give a DeformableMesh"):
         fcl_ccd.candidates(mesh, ball)
-    with pytest.raises(ValueError, match="ignore_initially_closer"):
-        fcl_ccd.collide(mesh, ball, ignore_initially_closer=True)
 
 
 @pytest.mark.parametrize("name", ["Box", "Convex", "DeformableMesh", "RigidMesh"])

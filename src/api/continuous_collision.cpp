@@ -286,11 +286,6 @@ template <typename S>
 void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   QueryOptions options, const QuerySettings& settings,
                   QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
-  if (options.ignores_initially_closer)
-    throw Exception(
-        "request.ignore_initially_closer is for two meshes. Give a mesh of the surface "
-        "of "
-        "the shape");
   // The first contact that is found is the first of all.
   if (!settings.with_contacts) options.query = ContinuousQuery::kAny;
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);

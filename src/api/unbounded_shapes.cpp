@@ -7,6 +7,7 @@
 
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
+#include "motion/convex_advance.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
@@ -69,6 +70,14 @@ struct FlatGap {
   }
 };
 
+/// The distance of contact of two flats, or what they have at t = 0 in its place: as
+/// ConvexPairMotion::ignoreInitiallyCloser().
+double distanceOf(double initial_gap, double tolerance, const QueryOptions& options) {
+  const double own = initial_gap * (1 - ConvexPairMotion::kNearerShare) - 2 * tolerance;
+  if (!options.ignores_initially_closer || !(own > 0)) return options.min_distance;
+  return std::min(options.min_distance, own);
+}
+
 }  // namespace
 
 template <typename S>
@@ -87,9 +96,10 @@ ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
                             maxNorm(cross(a.normal, b.normal)) <= kParallel;
   if (are_parallel) {
     const FlatGap gap(a, b);
-    const double tolerance = 128 * 0x1p-53 * (a.size + b.size);
-    const double begin = gap.at[0] - options.min_distance - tolerance,
-                 end = gap.at[1] - options.min_distance - tolerance;
+    const double tolerance = 128 * 0x1p-53 * (a.size + b.size),
+                 distance = distanceOf(gap.at[0], tolerance, options),
+                 begin = gap.at[0] - distance - tolerance,
+                 end = gap.at[1] - distance - tolerance;
     if (begin > 0) {
       if (end > 0) return answer;
       const double t = begin / (begin - end);

@@ -72,9 +72,23 @@ ConvexPairMotion::ConvexPairMotion(const MovingConvex& a, const MovingConvex& b,
       flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      distance_(tolerance.distance),
       acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {
+  setDistance(tolerance.distance);
+}
+
+void ConvexPairMotion::setDistance(double distance) {
+  tolerance_.distance = distance_ = distance;
   if (flat_ >= 0) distance_ *= set_[flat_]->path->stretch();
+}
+
+void ConvexPairMotion::ignoreInitiallyCloser() {
+  const ConvexGap gap = gapOf(stateAt(0), 0);
+  if (gap.distance > distance_ + tolerance_.touching) return;
+  double radii = 0;
+  for (const MovingConvex* set : set_)
+    if (set->shape) radii += set->shape->radius();
+  const double own = (gap.gap - radii) * (1 - kNearerShare) - 2 * tolerance_.touching;
+  if (own > 0) setDistance(radii + own);
 }
 
 ConvexPairMotion::Side ConvexPairMotion::sideAt(int k, double t) const {
@@ -195,6 +209,7 @@ double ConvexPairMotion::step(double t, const State& state,
   // too short. There the gap may be 0 and round to less; half of the margin is for that.
   const double least = -0.5 * tolerance_.position;
   constexpr int kRounds = 12;
+  constexpr double kFar = 16;
   for (int round = 0; round < kRounds; ++round) {
     const double chord = lower + (upper - lower) * (gap / (gap - beyond)),
                  at = gapAfter(chord, state, along);
@@ -203,8 +218,11 @@ double ConvexPairMotion::step(double t, const State& state,
     const double slope = (beyond - at) / (upper - chord);
     lower = chord;
     gap = at;
-    // Beyond a time at which the gap is negative it stays negative.
-    const double middle = std::min(0.5 * (lower + upper), lower - 2 * gap / slope),
+    // Beyond a time at which the gap is negative it stays negative. A long span has a
+    // chord that is far too steep: then only the order of magnitude is looked for.
+    const double middle = upper > kFar * lower
+                              ? std::sqrt(lower * upper)
+                              : std::min(0.5 * (lower + upper), lower - 2 * gap / slope),
                  there = gapAfter(middle, state, along);
     if (there >= 0) {
       lower = middle;

@@ -417,6 +417,7 @@ class MotionTraversal {
       const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
                                      b.isMesh() ? y.triangle.index : kNoTriangle};
       ConvexPairMotion pair(x, y, work.start, end, tolerance_);
+      if (options_.ignores_initially_closer) pair.ignoreInitiallyCloser();
       advance(work, index, end, pair);
       return;
     }

@@ -22,6 +22,9 @@ struct MotionQueryOptions {
   double last{1};
   /// Bodies are in contact at this distance; of a shape it is that of its core.
   double distance{0};
+  /// Whether pairs with a shape or a cell that are nearer than the distance at t = 0 have
+  /// their own one in its place: ConvexPairMotion::ignoreInitiallyCloser().
+  bool ignores_initially_closer{false};
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
   int max_steps{10000};

@@ -302,6 +302,12 @@ TEST(OctreeCollision, Options) {
   request = requestOf();
   request.min_distance = 0.1;
   EXPECT_NEAR(ask(ball, floor, request).time_of_contact, hit - 0.1 / 4, 1e-11);
+  // A ball that starts within the distance and moves away.
+  const Moving leaving{ball.geometry, at(0, 0, 0.55 + kResolution), at(0, 0, 2)};
+  EXPECT_EQ(ask(leaving, floor, request).time_of_contact, 0);
+  request.ignore_initially_closer = true;
+  EXPECT_FALSE(ask(leaving, floor, request).is_collide);
+  EXPECT_NEAR(ask(ball, floor, request).time_of_contact, hit - 0.1 / 4, 1e-11);
   request = requestOf();
   request.filter1.group = 2;
   request.filter2.mask = 5;

@@ -185,8 +185,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// @brief Whether pairs that are nearer than min_distance at t = 0 are in contact only
   /// when they come nearer than they are at t = 0. If false, they are contacts at t = 0.
   /// In both cases pairs that touch at t = 0 are contacts, and a crossing is reported.
-  /// For two meshes only: the query throws with a shape or an octree, and if
-  /// min_distance is 0.
+  /// Beside a shape or a cell of an octree a pair must come nearer by 1e-4 of its
+  /// distance. The query throws if min_distance is 0.
   bool ignore_initially_closer{false};
 
   /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be
