@@ -277,12 +277,16 @@ class GapSearch {
     }
   }
 
+  /// The weights of a thin simplex round so much that their sum is not 1, and a point of
+  /// it would be outside.
   void setPoints(double distance) {
+    double sum = 0;
+    for (int i = 0; i < simplex_.count; ++i) sum += simplex_.weight[i];
     for (int side = 0; side < 2; ++side) {
       Vec point{0, 0, 0};
       unsigned corners = 0;
       for (int i = 0; i < simplex_.count; ++i) {
-        point = point + simplex_.weight[i] * simplex_.vertex[i].point[side];
+        point = point + (simplex_.weight[i] / sum) * simplex_.vertex[i].point[side];
         corners |= 1U << simplex_.vertex[i].id[side];
       }
       out_.point[side] = point;
