@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Every pair of shapes, and of a mesh and a shape, in random motions against dense
-// sampling by other code. The report fcl_ccd_shapes does the same for 200 motions.
+// sampling by other code. The report fcl_ccd_shapes does the same for a finer mesh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "posed_shape.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -135,8 +136,7 @@ TEST_P(ShapePairs, AgreeWithDenseSampling) {
   request.query = ContinuousQuery::kFirst;
   request.enable_contact = true;
   request.num_max_contacts = 1000;
-  const bool has_mesh = pair.kind[0] == "mesh" || pair.kind[1] == "mesh";
-  for (int i = 0; i < (has_mesh ? 16 : 32); ++i) {
+  for (int i = 0; i < rounds(200); ++i) {
     SCOPED_TRACE(i);
     Body a = randomBody(pair.kind[0], random), b = randomBody(pair.kind[1], random);
     ContinuousContactResult<double> result;
