@@ -53,8 +53,8 @@ void parallelFor(std::size_t count, int num_threads,
         },
         tbb::simple_partitioner());
   };
-  // Isolated: while the caller waits, it does not start its own other tasks. They may
-  // need a lock that it holds.
+  // Isolated: while the caller waits, its thread does not begin other tasks of the
+  // caller. They may need a lock that it holds.
   if (threads == tbb::this_task_arena::max_concurrency())
     tbb::this_task_arena::isolate(run);
   else

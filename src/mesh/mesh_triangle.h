@@ -55,9 +55,10 @@ inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
   for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
 }
 
-/// @brief No mesh has more triangles, or vertices. Numbers of 32 bits then hold four for
-/// each triangle, and the spokes of all fans, of which there are six a triangle where no
-/// two share a vertex; numbers with a sign hold nodes and ~leaf.
+/// @brief The largest number of triangles, and of vertices, of a mesh. With it 32 bits
+/// are enough for four numbers a triangle, and for the number of the spokes of all fans
+/// (six a triangle in a mesh without common vertices). A signed number is enough for a
+/// node or ~leaf.
 constexpr std::size_t kMaxMeshSize = std::size_t{1} << 29;
 
 }  // namespace deformable

@@ -64,9 +64,9 @@ constexpr float kOutward = 0x1p-22f;
 /// infinity.
 constexpr float kLeastHalf = -0.5f * FLT_MAX;
 
-/// @brief A float not less than value + pad, pad >= 0, but for 2^-22 of the pad; FLT_MIN
-/// keeps it right where a float would be subnormal. Infinity for a NaN, never below
-/// kLeastHalf.
+/// @brief A float that is not less than value + pad, except for 2^-22 of the pad; pad >=
+/// 0. FLT_MIN keeps it right where a float would be subnormal. Infinity for a NaN; never
+/// below kLeastHalf.
 inline float roundUp(double value, float pad) {
   assert(pad >= 0);
   const auto f =
@@ -113,10 +113,12 @@ inline bool isAny(const Mask4& mask) {
 #endif
 }
 
-/// The loss of a window: rounded down by more than its own rounding, 2^-24 for each of
-/// the two sums and the difference of these in it, the quotient and this product.
+/// The part of the step that a window loses is multiplied by this. So it is rounded down
+/// by more than its rounding: 2^-24 for each of the two sums, their difference, the
+/// quotient and this product.
 constexpr float kLossDown = 1.f - 0x1p-21f;
-/// Minus the loss at the end: 1 and more than the rounding of the subtraction.
+/// A window ends at this number minus the part that is lost at the end. It is 1 plus more
+/// than the rounding of the subtraction.
 constexpr float kWindowEnd = 1.f + 0x1p-22f;
 
 /// @brief When boxes a and b, which move linearly, overlap in all 8 directions. Never

@@ -165,7 +165,8 @@ class Owned {
   static std::uint8_t bit(bool is_owned, std::uint32_t index) {
     return static_cast<std::uint8_t>(std::uint32_t{is_owned} << index);
   }
-  /// 4 * triangle + k of the edge to the next vertex, and of that from the last.
+  /// 4 * triangle + k of the edge to the next vertex, and of the edge from the last
+  /// vertex.
   static std::uint32_t nextEdge(const Corner& c) { return c.number; }
   static std::uint32_t lastEdge(const Corner& c) {
     return c.number % 4 == 0 ? c.number + 2 : c.number - 1;

@@ -27,8 +27,9 @@ struct alignas(16) Corner {
   std::uint32_t place;
 };
 
-/// @brief The corners at one vertex. Those of a fan are in order: each but the first, of
-/// a closed fan each, begins where the one before ends.
+/// @brief The corners at one vertex. Those of a fan are in order: each begins where the
+/// one before it ends. In an open fan the first has none before it; in a closed fan the
+/// last is before the first.
 struct CornersAtVertex {
   enum Kind : std::uint8_t { kNoFan, kOpenFan, kClosedFan };
 

@@ -78,7 +78,8 @@ void forEachNeighbour(const Cell& cell, int reach, Visit visit) {
 template <typename S>
 bool VertexWeld::refine(const S* coordinates) {
   bool changed = false;
-  // Of the vertices that have left a vertex, those that others of them are joined to.
+  // Vertices that have left the vertex to which they were joined, and to which others of
+  // these are joined.
   std::unordered_map<Cell, std::vector<int>, CellHash> heads;
   for (std::size_t i = 0; i < map_.size(); ++i) {
     const int left = map_[i], own = static_cast<int>(i);

@@ -64,27 +64,27 @@ constexpr double kInsideRounding = 74 * kUnit;
 constexpr double kSideBound = 32 * kUnit;
 // Normal . d for exact d: components of v x w as above, though its differences are
 // rounded once only; the middle one: three products of size 4 VWD, error (44 + 4) u, sums
-// of size 8 and 12: 164 u VWD. Of d of 1, 0 and -1 too, with sums in place of the
-// products.
+// of size 8 and 12: 164 u VWD. The bound also holds for a d with entries 1, 0 and -1,
+// where sums take the place of products.
 constexpr double kFanBound = 192 * kUnit;
 // u . (r x d) for exact r and d: components of the cross product of size 2 RD, error 4 u
 // RD; three products, error (4 + 2 + 2) u each, sums of size 4 and 6: 34 u URD.
 constexpr double kRayBound = 64 * kUnit;
-// Points in a plane: a coordinate is the sum of two differences to an origin from which
-// no vertex is further than R, 4 u R off, below 2 R in size. Differences of these below L
-// in size are 12 u R off.
+// Points in a plane. A coordinate is the sum of two differences to an origin. No vertex
+// is further than R from the origin. So a coordinate is below 2 R and has an error of 4 u
+// R. A difference of two coordinates that is below L has an error of 12 u R.
 //
-// A cross or dot product of two of them: four products at most, 28 u R L off together
-// with their own rounding (L is below 4 R), sums of sizes 2, 2 and 4 L^2, 32 u R L: 144 u
-// R L. What is above the bound has L > 40 u R: products of two errors, (12 u R)^2 each,
-// add less than 15 u R L.
+// A cross or dot product of two such differences: at most four products, each with an
+// error of 28 u R L that includes its own rounding (L is below 4 R), and sums of sizes 2,
+// 2 and 4 L^2 with 32 u R L: 144 u R L. A value above the bound has L > 40 u R. So
+// products of two errors, (12 u R)^2 each, add less than 15 u R L.
 constexpr double kBorderTurnBound = 192 * kUnit;
-// w . x for exact w of size W: products 4 + 2, sum 4: 16 u W R. The middle coefficient of
-// moving ones is the sum of two of these: 40 u W R, of size 8 W R; two of them are
-// compared.
+// w . x for exact w of size W: products 4 + 2, sum 4: 16 u W R. If both vectors move, the
+// middle coefficient is the sum of two such products: 40 u W R, of size 8 W R. Two of
+// these are compared.
 constexpr double kBorderSideBound = 96 * kUnit;
-// w x (2 p - a - b): the second is 32 u R off, 8 R in size; products (32 + 8) u W R, sum
-// 16: 96 u W R.
+// w x (2 p - a - b): the second vector has an error of 32 u R and the size 8 R; products
+// (32 + 8) u W R, sum 16: 96 u W R.
 constexpr double kBorderRayBound = 112 * kUnit;
 // (q - p) x (a + b - 2 p), of sizes 4 R and 8 R: products (12 * 8 + 4 * 32 + 32) u R^2,
 // sum 64: 576 u R^2.

@@ -30,7 +30,7 @@ double toDouble(const Integer& k, unsigned m, int direction) {
   return direction < 0 ? std::nextafter(value, 0.) : std::nextafter(value, 1.);
 }
 
-/// a / b <= 1 rounded likewise.
+/// a / b <= 1, rounded in the same way.
 double ratioToDouble(const Integer& a, const Integer& b, int direction) {
   assert(a >= 0 && b > 0 && a <= b);
   if (a.is_zero()) return 0;
@@ -158,7 +158,7 @@ Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) con
   if (!k.is_zero())
     for (std::size_t i = 0; i + 1 < n; ++i)
       for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1] * k;
-  // Those of (1 + x)^degree q(1 / (1 + x)), reversed.
+  // The coefficients of (1 + x)^degree q(1 / (1 + x)), in reverse order.
   std::reverse(q.begin(), q.end());
   for (std::size_t i = 0; i + 1 < n; ++i)
     for (std::size_t j = n - 1; j-- > i;) q[j] += q[j + 1];
@@ -354,7 +354,8 @@ int Root::compare(const Integer& numerator, const Integer& denominator) const {
   return sign_below_ * polynomial_.signAtFraction(numerator, denominator);
 }
 
-/// Sign of a line at the root: on which side of the root its own, a fraction, lies.
+/// Sign of a linear polynomial at the root. Its own root is a fraction, and the sign
+/// tells on which side of this root the fraction lies.
 int Root::signOfLine(const Polynomial& g) const {
   assert(g.degree() == 1 && !is_dyadic_);
   const int slope = g[1].sign();

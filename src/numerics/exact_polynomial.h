@@ -131,8 +131,9 @@ class Root {
 
   std::pair<double, double> bracketOnClock(double width, int clock_exponent);
   int signOfLine(const Polynomial& g) const;
-  /// Narrows the interval by 2^-bits if the root is where it seems to be, else to a half.
-  /// @return whether it was
+  /// Makes the interval shorter by a factor of 2^-bits if the root is where it seems to
+  /// be, and by a half if it is not.
+  /// @return whether the root was there
   bool narrow(unsigned bits);
   /// Sign at the inner point k / 2^m. If it is 0, this point becomes the root.
   int probe(const Integer& k, unsigned m);

@@ -41,9 +41,10 @@ struct MovingCross {
   double error;
 };
 
-/// @brief Where three vectors that move linearly from l to h for s from 0 to 1 are
-/// shortest together, and by how much s changes while they move as far as they are long
-/// there. In floating point; not finite if there is no such place.
+/// @brief Three vectors move linearly from l to h for s from 0 to 1. This is the s at
+/// which they are shortest together, and the change of s in which they move by their
+/// length there. It is computed in floating point, and is not finite if there is no such
+/// place.
 struct ClosestApproach {
   double s;
   double duration;
