@@ -23,7 +23,7 @@ HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
   const double part = double(rest) / n;
   for (int j = 0; j < HalfAxisBox::kSides; ++j) {
     const double to = bounds.boxes[place + 1].half[j];
-    // Equal ends also where they are infinite.
+    // Ends that are equal may be infinite, and have no difference then.
     if (box.half[j] != to) box.half[j] += (to - box.half[j]) * part;
   }
   return box;

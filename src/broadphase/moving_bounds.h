@@ -58,9 +58,9 @@ inline float widthOf(const LinearBox& box) {
 
 /// @brief Which pairs of linear boxes a traversal visits.
 struct LinearQuery {
-  /// Boxes count when they are within this distance along all axes.
+  /// Boxes count if they come within this distance along all axes,
   float distance;
-  /// And before this time.
+  /// before this time.
   float latest;
 
   LinearQuery(double distance, double latest);

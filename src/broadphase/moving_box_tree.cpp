@@ -48,8 +48,8 @@ void MovingBoxTree::fit(std::int32_t node) {
   n.height = 1 + std::max(x.height, y.height);
 }
 
-/// Goes down to a leaf, each time to the child that the box makes wider by less. Beside
-/// a leaf, so that heights grow by one at most.
+/// Finds the leaf beside which a box is inserted: goes down, each time to the child that
+/// the box makes wider by less. Beside a leaf the heights grow by one at most.
 std::int32_t MovingBoxTree::leafBeside(const LinearBox& box) const {
   std::int32_t node = root_;
   while (!at(node).isLeaf()) {
@@ -75,8 +75,9 @@ void MovingBoxTree::replaceChild(std::int32_t parent, std::int32_t from,
   at(to).parent = parent;
 }
 
-/// If one child is higher than the other by more than one, it takes the place of the
-/// node, which takes the lower grandchild. Returns the node that is in the place now.
+/// If one child is higher than the other by more than one, the higher child takes the
+/// place of the node, and the node takes the lower child of that child. Returns the node
+/// that is then in this place.
 std::int32_t MovingBoxTree::balance(std::int32_t node) {
   const int difference = at(at(node).child[1]).height - at(at(node).child[0]).height;
   if (difference >= -1 && difference <= 1) return node;

@@ -90,7 +90,8 @@ Vec perpendicular(Vec n, const Vec& v) {
 
 /// Until when a direction provably separates a pair.
 struct Step {
-  /// Not after the time of the step: the direction proves nothing.
+  /// If this is not after the time at which the step begins, the direction proves
+  /// nothing.
   double until;
   /// How fast the gap along the direction closes.
   double rate;
@@ -160,7 +161,7 @@ double firstRoot(double gap, double rate, double bend) {
   const double discriminant = rate * rate - 4 * gap * bend;
   if (!(discriminant >= 0)) return kInfinity;
   const double root = std::sqrt(discriminant);
-  // Of the two forms of the root, the one whose sum does not cancel.
+  // The root has two forms. The one is used whose sum does not cancel.
   if (rate > 0) return bend < 0 ? (root + rate) / (-2 * bend) : kInfinity;
   const double divisor = root - rate;
   return divisor > 0 ? 2 * gap / divisor : kInfinity;
@@ -259,7 +260,7 @@ class AdvancingPair {
     return step;
   }
 
-  /// The same of a direction that turns, at the time of nearestAt().
+  /// The same for a direction that turns, from the time of nearestAt() on.
   Step turningStep(const TurningDirection& direction, double d, double least,
                    double t) const {
     const auto& [n, turn] = direction;
@@ -287,7 +288,8 @@ class AdvancingPair {
   Vec velocities_[DifferencePolygon::kMaxCorners];
 };
 
-/// Ascending numbers, and of two edges or vertices the first pair's first.
+/// Puts the points of a part in ascending order. If the part is the whole pair, its
+/// points keep the numbers 0 to 3.
 void order(ContinuousContactKind kind, DistanceContact& out) {
   int* p = out.points;
   if (out.kind == ContinuousContactKind::kVertexEdge && p[2] < p[1])
@@ -347,7 +349,8 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
     const double reached = near.distance + tolerance.distance_error;
     if (out.steps == 0 && request.ignores_initially_closer &&
         reached <= d * (1 + DistanceTolerance::kShare) + tolerance.touching) {
-      // Half of the tolerance more than what would be a contact at t = 0.
+      // This is further from the distance at t = 0 than the tolerance. Otherwise each
+      // pair would be a contact at t = 0.
       d = reached * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance.touching;
       if (!(d > 0)) {
         // They touch, and may pass through each other without coming nearer.
@@ -392,12 +395,13 @@ double sizeOf(ContinuousContactKind kind, const FeaturePoints& x, double distanc
   return size;
 }
 
-/// The same of a pair of extreme size.
+/// The same for a pair whose size is extreme.
 DistanceContact advanceScaled(ContinuousContactKind kind, const OrderedPair& ordered,
                               const DistanceRequest& request) {
-  // All coordinates times a power of two. Where the size is not finite, the coordinates
-  // are near the largest number; where it is tiny, so are they, since differences of
-  // doubles are multiples of their units. What underflows is below 2^-850 of the size.
+  // Multiplies all coordinates by a power of two. If the size is not finite, the
+  // coordinates are near the largest number. If it is tiny, so are the coordinates, since
+  // differences of doubles are multiples of their units. What underflows is below 2^-850
+  // of the size.
   const double size = sizeOf(kind, ordered.x, request.distance);
   constexpr int kMostShift = 1000;
   const int shift = std::isfinite(size) ? -std::ilogb(size) : -kMostShift;

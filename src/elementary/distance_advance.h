@@ -37,8 +37,8 @@ struct DistanceRequest {
 /// A corner is a difference, rounded once: u L. A point of the polygon at a time t: a
 /// corner there is off by 4 u of both its ends, 8 u L. Two multiples of sides, which are
 /// 2 L long and 18 u L off: (18 + 2 + 2) u L each and sums of 2 and 3 L, if the multiples
-/// add up to 1; weights round by 2 u more. So the distance of a computed point is that of
-/// a point of the polygon but for 64 u L.
+/// add up to 1; weights round by 2 u more. So the distance of a computed point differs
+/// from that of a point of the polygon by at most 64 u L.
 struct DistanceTolerance {
   DistanceTolerance(double distance, double size)
       : distance_error(64 * kUnit * size),

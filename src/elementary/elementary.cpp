@@ -299,7 +299,7 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
     if (result.answer != Answer::kUnsure) return result;
   }
 
-  // After so many looks doubles alone are not expected to decide.
+  // After this many looks doubles alone are not expected to decide.
   constexpr int kAccurateLook = 6;
   std::optional<AccuratePair> accurate;
   const Pair pair(kind, x);
@@ -434,8 +434,8 @@ double scaleOf(const Vec& v) {
 double clamped(double value) { return std::max(0., std::min(1., value)); }
 
 /// Where two parallel edges meet. They begin at a distance u from each other and go along
-/// v and w. The result is the position of the second edge's begin or of its end on the
-/// first edge, whichever is nearer to the middle of the first.
+/// v and w. The result is the position on the first edge of the beginning of the second
+/// edge, or of its end: of the one that is nearer to the middle of the first edge.
 /// @return the positions on both edges, from 0 to 1
 std::pair<double, double> meetingOfParallels(const Vec& u, const Vec& v, const Vec& w) {
   const double along = dot(v, v), other = dot(w, w);

@@ -309,8 +309,8 @@ constexpr double kLeastPart = 0x1p-48;
 /// The place where u, v and w together are shortest, if they nearly vanish there.
 template <typename Pair>
 std::optional<Place> meetingPlace(const Pair& pair) {
-  // From farther away than so many times the distance at which the points pass each
-  // other, the points seem to meet.
+  // The points seem to meet if they are seen from more than this many times the distance
+  // at which they pass each other.
   constexpr double kFar = 8;
   const Segment &u = pair.u(), &v = pair.v(), &w = pair.w();
   const auto [s, duration] = ClosestApproach({u.l, v.l, w.l}, {u.h, v.h, w.h});
@@ -334,7 +334,8 @@ double ratioOfEnds(const Pair& pair) {
 /// A part around a root or an extremum of f that seems to have certain signs on both
 /// sides.
 Place placeOfRoot(const Cubic& f) {
-  // The part is so much wider, so that signs of derivatives are certain as well.
+  // The part is made wider by this factor, so that signs of derivatives are certain as
+  // well.
   constexpr double kWider = 8, kMostPart = 0x1p-7;
   double s = 0.5;
   if (f.sign(0) == 0)

@@ -32,8 +32,9 @@ NearestPoint nearestOnSide(const Vec& p, const Vec& q) {
   return near;
 }
 
-/// Moves the point of a sliver to where it is nearest: what its weights are off is
-/// relative to the width of the sliver, and what a sum is off only to its length.
+/// Moves the point of a sliver to where it is nearest. The error of the weights is
+/// relative to the width of the sliver, which is small. After this the error of the point
+/// is relative to its length only.
 void improve(const Vec& p, Vec v, Vec w, NearestPoint& near) {
   double along = near.along, across = near.across;
   const bool is_turned = dot(v, v) < dot(w, w);

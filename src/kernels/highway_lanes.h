@@ -61,7 +61,8 @@ FCL_CCD_BINARY(operator/, Div)
 // The larger and the smaller of two numbers, neither of which is a NaN.
 FCL_CCD_BINARY(larger, Max)
 FCL_CCD_BINARY(smaller, Min)
-// Negative where both are, and where one is, for numbers that are neither NaN nor -0.
+// Negative where both numbers are negative, and where at least one is. No number is NaN
+// or -0.
 FCL_CCD_BINARY(bothNegative, And)
 FCL_CCD_BINARY(eitherNegative, Or)
 #undef FCL_CCD_BINARY
@@ -187,8 +188,8 @@ HWY_INLINE bool isAll(const LaneMask<T, N>& mask) {
   return hn::AllTrue(typename Lanes<T, N>::Tag(), all);
 }
 
-/// Rounded to floats. Beyond their range the result is FLT_MAX or infinity, as the
-/// machine does it.
+/// Rounded to floats. Beyond their range the result is FLT_MAX or infinity, depending on
+/// the machine.
 template <std::size_t N>
 HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
   const typename Lanes<float, N>::Tag tag;
@@ -300,7 +301,7 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
 }
 
 #if HWY_TARGET != HWY_SCALAR
-/// Row i, of four numbers; in a vector of eight with row i + 4 behind it.
+/// Row i, which has four numbers. A vector of eight also has row i + 4, behind row i.
 template <typename Tag, typename Row>
 HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
   if constexpr (hn::MaxLanes(Tag()) == 4) {
@@ -350,7 +351,7 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
   }
 }
 
-/// The first three of them.
+/// The first three columns.
 template <typename Row, typename T, std::size_t N>
 HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
                             Lanes<T, N>& z) {

@@ -193,7 +193,7 @@ struct Kernels {
 
   /// Sets the boxes in one frame of up to eight vertices that lie at
   /// offsets[axis][vertex] from the origin: roundUp() with a pad of offsetPad().
-  /// @param count  1 to 8; so many vertices are written
+  /// @param count  1 to 8, the number of vertices that are written
   void (*fitPoints)(const double (&offsets)[3][8], int frame, std::size_t count,
                     TreeVertex* vertices);
 
