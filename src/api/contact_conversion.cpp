@@ -31,7 +31,7 @@ ContinuousContact<S> toNumbers(const FeatureContact& contact) {
   return out;
 }
 
-/// @param path_of  path_of(on_a, id): of a vertex of mesh a, or of b
+/// @param path_of  path_of(on_a, id) returns the path of a vertex of mesh a, or of b
 /// @param t  the time of contact on these paths
 template <typename S, typename PathOf>
 void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,

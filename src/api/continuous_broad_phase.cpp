@@ -154,7 +154,8 @@ StepBox ContinuousBroadPhase<S>::stepBox(const void* object, Read read) {
       below = std::max(below, box.half[k]);
       above = std::max(above, box.half[k + 3]);
     }
-    // One unit more, for a box in float.
+    // Each side moves outward by one unit in the last place of S, which covers the
+    // rounding to S.
     const auto step = [](double x, double to) {
       const S rounded = static_cast<S>(x);
       return static_cast<double>(std::nextafter(rounded, static_cast<S>(to)));

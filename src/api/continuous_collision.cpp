@@ -81,7 +81,8 @@ QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
           deformable::roundTimeUp<S>(answer.first.hi)};
 }
 
-/// The filter of a request for two meshes that are in order, or for one twice.
+/// The filter of a request for two meshes that have been checked, or for one mesh with
+/// itself.
 template <typename S>
 RequestFilter filterOf(const QuerySettings& settings, const CollisionGeometry<S>& o1,
                        const CollisionGeometry<S>& o2, bool is_self) {
@@ -103,7 +104,7 @@ QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
   return filter.rejectsAll() ? QueryAnswer() : answerOf(query);
 }
 
-/// @param convert  a FeatureContact or a Crossing into the public type
+/// @param convert  converts a FeatureContact or a Crossing into the public type
 /// @param update  seconds that boxes, owners and trees took
 template <typename S, typename Convert>
 void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,

@@ -40,8 +40,9 @@ const BVHModel<BV>& DeformableBVHModel<BV>::copyable(const DeformableBVHModel& m
   return model;
 }
 
-/// FCL's copy of a model that has begun has room for exactly the vertices that are there.
-/// It doubles this room when more come, and twice nothing is nothing.
+/// FCL's copy of a model that has begun has room for exactly the vertices that are there,
+/// and doubles this room when more come. A copy without vertices would never have room:
+/// it gets memory here.
 template <typename BV>
 void DeformableBVHModel<BV>::makeRoom() {
   delete[] std::exchange(this->vertices, nullptr);

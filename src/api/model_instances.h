@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The models that the library has: of each of FCL's bounding volumes, in both scalars.
-// FCL's part of them is compiled once, in fcl_models.cpp: libfcl has some of it, in
-// double. The members of ours are defined in two files, each of which compiles its own.
+// The models that the library has: one for each of FCL's bounding volumes, in both
+// scalars. FCL's part of them is compiled once, in fcl_models.cpp, since libfcl has only
+// some of it, in double. The members of this library's class are defined in two files.
+// Each file compiles those that it defines.
 #ifndef FCL_CCD_API_MODEL_INSTANCES_H
 #define FCL_CCD_API_MODEL_INSTANCES_H
 
@@ -13,8 +14,8 @@
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
 
-/// DO(S, BV) for each of them. KDOP's own comma makes two arguments of a BV: DO takes any
-/// number.
+/// Calls DO(S, BV) for each model. The name of a KDOP contains a comma, so that the
+/// preprocessor takes it for two arguments: DO accepts any number of them.
 #define FCL_CCD_FOR_VOLUMES_IN(S, DO) \
   DO(S, AABB<S>)                      \
   DO(S, OBB<S>)                       \
@@ -30,7 +31,7 @@
 
 #define FCL_CCD_INSTANTIATE_MODEL(S, ...) template class DeformableBVHModel<__VA_ARGS__>;
 
-/// What is used of FCL's model; the whole class does not compile.
+/// The members of FCL's model that are used. The whole class does not compile.
 #define FCL_CCD_MEMBERS_OF_FCL(TEMPLATE, S, ...)                                        \
   TEMPLATE class detail::BVFitter<__VA_ARGS__>;                                         \
   TEMPLATE class detail::BVSplitter<__VA_ARGS__>;                                       \

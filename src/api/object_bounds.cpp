@@ -35,7 +35,8 @@ double norm(const double (&v)[3]) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/// A body as its bounds are made: boxes in its frame, at t = 0 and t = 1.
+/// What the bounds of a body are made from: boxes in its frame, at t = 0 and t = 1, and
+/// its path.
 struct BoundedBody {
   MotionBox box[2];
   MotionPath path;

@@ -51,7 +51,7 @@ bool visitModel(const CollisionGeometry<S>& geometry, Visit&& visit) {
   }
 }
 
-/// Whether a model has a previous frame that counts.
+/// Whether a model is in FCL's updated state and has a previous frame.
 template <typename BV>
 bool isDeforming(const BVHModel<BV>& model) {
   return model.build_state == BVH_BUILD_STATE_UPDATED && model.prev_vertices;

@@ -12,8 +12,8 @@ FrameStore::Pair FrameStore::take(std::size_t step) {
     const Frame still(Frame(), &meshes_.firstVertices());
     return {still, still};
   }
-  // The later frame first: if another thread has the step before this one, it is reading
-  // the earlier frame already.
+  // Takes the later frame first: the thread that has the step before this one reads the
+  // earlier frame already.
   Frame to = get(step + 1);
   return {get(step), std::move(to)};
 }

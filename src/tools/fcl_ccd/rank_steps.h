@@ -21,7 +21,7 @@
 
 namespace fcl_ccd {
 
-/// @brief What a rank tells rank 0 before a run. All ranks must tell the same, but for
+/// @brief What a rank tells rank 0 before a run. All ranks must tell the same, except for
 /// the cause.
 struct Readiness {
   std::string command;       ///< the command line

@@ -57,7 +57,8 @@ int countOf(const std::string& bytes) {
 }
 
 /// @brief Waits until something holds. Ranks are some steps ahead, so that a pause delays
-/// nothing. Shorter ones take time from the steps (3% of it with pauses of 20 us).
+/// nothing. Shorter pauses would take processor time from the steps (3% with pauses of 20
+/// us).
 template <typename Holds>
 void await(Ranks& ranks, int other, Holds holds) {
   using Clock = std::chrono::steady_clock;

@@ -60,7 +60,7 @@ std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
     head["thickness"] = options.settings.min_distance;
     head["ignore_initially_closer"] = options.settings.ignore_initially_closer;
   }
-  // A later frame can part vertices that were joined in the steps before.
+  // A later frame can separate vertices that were joined in the steps before it.
   if (options.weld) head["frames"] = num_frames;
   return head.dump() + '\n';
 }

@@ -27,7 +27,8 @@ std::string withCommas(std::size_t number) {
 }
 
 void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
-  // Many frames at once: a check takes less time than the change to another thread.
+  // Many frames are checked in one task, since a check takes less time than the change to
+  // another thread.
   constexpr std::size_t kBlock = 32;
   inOrder<bool>(
       0, (meshes.size() + kBlock - 1) / kBlock, num_workers,
@@ -41,7 +42,8 @@ void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
   requireNoSignal();
 }
 
-/// Reads every frame, which also checks it; with a distance perhaps several times.
+/// Reads every frame, which also checks it. With a distance a frame may be read several
+/// times.
 void weldFrames(MeshSequence& meshes, double eps, std::vector<std::string>& notes) {
   fcl::detail::deformable::VertexWeld weld(meshes.firstVertices().size(), eps);
   weld.refineByAll(meshes.size(), [&](std::size_t frame) {
