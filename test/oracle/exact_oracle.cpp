@@ -492,7 +492,7 @@ OracleAnswer askDistanceOracle(ContinuousContactKind kind, const FeaturePoints& 
   if (isWithinAt(parts, start)) return answer(start);
   // Then the first time at which the distance is d is a root of the excess of the parts
   // that are nearest. Parts whose excess is always 0 begin or cease to be nearest where
-  // others are as near.
+  // others are just as near.
   std::vector<Algebraic> first;
   for (const FeatureParts& part : parts) {
     if (degreeOf(part.excess) < 1 || hasOneSignInUnitInterval(part.excess)) continue;

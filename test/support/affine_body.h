@@ -34,8 +34,8 @@ struct AffineBody {
   double radius{0};                // of the particle farthest from the centre, at rest, m
   Matrix3<double> inverse_moment;  // of the sum of mass * rest * rest^T, 1 / (kg m^2)
   double frequency{std::numeric_limits<double>::infinity()};  // see SolidOptions
-  AffineState begin;                                          // at the begin of the step
-  AffineState end;                                            // at the end of the step
+  AffineState begin;  // at the beginning of the step
+  AffineState end;    // at the end of the step
   AffineState velocity{Vector3<double>::Zero(), Matrix3<double>::Zero()};
   AffineState wanted_velocity;  // of a body that is slowed
   int held_with{-1};            // the body with which it moves in this step, or -1

@@ -335,9 +335,9 @@ class ClothSimulator {
   TopologyChange change_;
   double mean_edge_{0};
   double step_time_{0};
-  /// Speed of the fastest object at the begin of the step, plus that of gravity. Contacts
-  /// pass motion on and create none. But many pushes, each of them right, could add up to
-  /// more.
+  /// Speed of the fastest object at the beginning of the step, plus that of gravity.
+  /// Contacts pass motion on and create none. But many pushes, each of them right, could
+  /// add up to more.
   double fastest_{0};
   std::int64_t step_{0};
   std::int64_t stopped_steps_{0};

@@ -27,8 +27,8 @@ double smoothStep(double x) {
   return x * x * (3 - 2 * x);
 }
 
-/// A height over the plane that two layers have in common: where one lies over the other,
-/// their distance is that of the flat layers.
+/// A height over the plane, the same for both layers. So where one layer lies over the
+/// other, their distance is that of the flat layers.
 class Waves {
  public:
   explicit Waves(Random& random) {

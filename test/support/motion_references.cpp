@@ -68,7 +68,7 @@ double speedBound(const ReferenceMotion& motion, double reach) {
         (motion.end * motion.reference - motion.beginning * motion.reference).norm();
     return kUpward * (way + w * (reach + motion.reference.norm()));
   }
-  // A screw: its axis is half of the way across, over tan(w / 2), from the chord.
+  // A screw: a point goes along an arc around the axis, whose chord is the way across.
   const Vector3<double> way = motion.end.translation() - motion.beginning.translation();
   const double slide = motion.axis.dot(way), across = (way - slide * motion.axis).norm(),
                arc = w > 0 ? across * w / (2 * std::sin(w / 2)) : across;

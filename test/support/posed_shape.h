@@ -34,7 +34,8 @@ struct PosedShape {
 
   std::string kind;
   std::shared_ptr<CollisionGeometry<double>> geometry;
-  /// The hull of these, or radius and half height around the z axis, or half axes.
+  /// Depends on the kind: the points whose hull it is; or radius and half height around
+  /// the z axis; or half axes.
   std::vector<Point> points;
   Point size{Point::Zero()};
   /// Of spheres and capsules: how far it stands out from the hull.

@@ -157,8 +157,8 @@ MovingPair uniform(Random& random) {
   return pair;
 }
 
-/// Queries as of two neighbouring triangles of a scene: small features, smaller steps,
-/// floats.
+/// Queries like those of two neighbouring triangles of a scene: small features, smaller
+/// steps, floats.
 MovingPair sceneLike(Random& random) {
   const double size = 0.02;
   const MovingPair near = nearContactPair(random, random.uniform(0, 0.5));
@@ -408,8 +408,8 @@ MovingPair oneUlpAway(Random& random) {
   for (std::size_t count = 1 + random.index(3); count > 0; --count) {
     auto& p = pair.x[random.index(4)];
     double& c = (random.index(2) ? p.t0 : p.t1)[random.index(3)];
-    // The neighbours of 0 are subnormal, and the other coordinates are huge relative to
-    // them. So the ulp of 1 is used.
+    // The neighbours of 0 are subnormal, and all other coordinates are huge compared with
+    // them. So 0 moves by the ulp of 1.
     if (c == 0)
       c = random.index(2) ? 0x1p-52 : -0x1p-52;
     else

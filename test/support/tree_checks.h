@@ -159,7 +159,7 @@ inline void expectBounded(const VertexPath& path, double displacement, bool is_l
 }
 
 /// Every box of the tree contains the triangles below it, and the boxes of vertices
-/// contain these. No vertex below moves farther than the node's displacement.
+/// contain these. No vertex below moves further than the node's displacement.
 inline void expectContainment(const MovingKdopTree& tree,
                               const std::vector<MeshTriangle>& triangles,
                               const VertexFrames& frames) {

@@ -20,7 +20,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// many that the clock does not count.
 constexpr std::size_t kChunk = 1000;
 
-/// Loops are not repeated any more once they have taken so long; they are steady then.
+/// Loops are not repeated once they have taken this time: they are steady then.
 constexpr double kLoopBudget = 20e9;
 
 /// Enough for 50 queries beyond the 99.9th percentile.

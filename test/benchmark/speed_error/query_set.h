@@ -42,7 +42,8 @@ struct SceneFolder {
 
 /// @brief What reaches the filter in a self-collision of the scene: feature pairs whose
 /// moving boxes meet. Whether they touch is what true_pairs.csv.gz says.
-/// @param sample  keeps so many of them, drawn evenly, in the order of the traversal
+/// @param sample  the number of queries that are kept, drawn evenly, in the order of the
+/// traversal
 /// @throws std::runtime_error as above
 QuerySet collectScene(const SceneFolder& scene, std::size_t sample);
 

@@ -26,7 +26,7 @@ struct FilterFigures {
   Errors newton_errors{};
 };
 
-/// @param repeats  times are the least of so many
+/// @param repeats  times are the least of this number
 FilterFigures measureFilter(const QuerySet& pairs, int repeats);
 
 }  // namespace test

@@ -15,7 +15,8 @@ namespace test {
 /// one.
 class FrameFolder {
  public:
-  /// @param every  only each so many-th frame: frames 3, 6, 9, ... if it is 3
+  /// @param every  only each frame whose number is a multiple of this: frames 3, 6, 9,
+  /// ... if it is 3
   /// @throws std::runtime_error if there is no such frame
   FrameFolder(const std::string& path, int every);
 

@@ -14,7 +14,7 @@ int numLetters();
 /// @param letter  0, 1, ..., taken modulo numLetters()
 /// @param square  metres
 /// @param divisions  of a square along each side; 2 divisions^2 triangles a layer
-/// @param pieces  at most so many, of about the same size
+/// @param pieces  at most this number, of about the same size
 ShellDesign makeLetter(int letter, double square, int divisions, int pieces,
                        Random& random);
 
