@@ -551,10 +551,10 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
   out = std::move(result);
 }
 
-/// The bracket of a contact may depend on t_max: within toc_err, and the times of two
-/// pairs that are that near each other may change places. So pairs are tested up to 2
-/// toc_err after the best time. At the end those in that range are tested again, up to
-/// the request's t_max, and the answer does not depend on the order of the tests.
+/// The bracket of a contact may depend on t_max, by up to toc_err. So if the times of two
+/// pairs differ by less, their order may depend on it too. Therefore pairs are tested up
+/// to 2 toc_err after the best time. At the end those in this range are tested again, up
+/// to the request's t_max. So the answer does not depend on the order of the tests.
 template <typename S>
 void ContinuousCollisionManager<S>::answerFirst(const Pairs& pairs,
                                                 const ContinuousCollisionManager& other,

@@ -45,13 +45,14 @@ FCL_EXPORT void findSafeSelfDisplacements(const CollisionGeometry<S>* o,
 /// b is half of the least distance, less min_distance, of all pairs that have the vertex
 /// in one of their features, and at most max_displacement. This is the bound of offset
 /// geometric contact (Chen et al. 2025, "Offset Geometric Contact", ACM Trans. Graph.
-/// 44(4)), whose factor of less than 1/2 it replaces by bounds on rounding: distances are
-/// proved from below, and what a new position rounds is taken off.
+/// 44(4)), with a factor of exactly 1/2. Their factor of less than 1/2 leaves room for
+/// rounding. Here distances are proved from below, and the rounding of the new position
+/// is taken off.
 ///
 /// The larger max_displacement, the more pairs are looked at: those within min_distance +
 /// 2 max_displacement. Take the least bound of several calls, for example of one with the
-/// mesh itself and one with each obstacle. Surfaces that cross already have no bounds
-/// from that: only distances of VF and EE pairs count.
+/// mesh itself and one with each obstacle. Surfaces that cross already are not found:
+/// only distances of VF and EE pairs count.
 ///
 /// A DeformableBVHModel is read in its current frame. The motion from its previous frame
 /// makes the call slower: after updateFrames(x, x) there is none. Models and
