@@ -68,8 +68,8 @@ class ContactSink {
   /// it, and it has dropped others before.
   double latestKept() const { return cut_ ? (*order_.rbegin())->toc_lo : 1; }
 
-  /// @brief Whether a contact of the pair, or of parts of it, could be kept; it cannot if
-  /// more than enough at t = 0 come before it.
+  /// @brief Whether a contact of the pair at t = 0, or of parts of it, could be kept. It
+  /// could not if the sink is full of contacts at t = 0 that come before it.
   bool mayKeepAtStart(const FeatureIds& pair) const;
 
   /// @brief Moves the contacts out, in no order. Call clear() before the next add().

@@ -68,9 +68,9 @@ bool isEarlierWork(const NodePair& x, const NodePair& y) {
   return x.earliest < y.earliest;
 }
 
-/// The sort is stable. Most works overlap from t = 0 on, and these keep their order,
-/// whatever else is in the list. So what touches at t = 0 is found in the same order,
-/// whether or not other works are left out.
+/// The sort is stable. Most pieces of work overlap from t = 0 on, and these keep their
+/// order, whatever else is in the list. So what touches at t = 0 is found in the same
+/// order, whether or not other pieces are left out.
 void sortLatestFirst(NodePair* first, NodePair* last) {
   const auto isLater = [](const NodePair& x, const NodePair& y) {
     return isEarlierWork(y, x);
@@ -97,8 +97,9 @@ class Part {
   /// Seconds that the leaves have taken.
   double testTime() const { return test_time_; }
 
-  /// Begins the whole traversal, level by level, until there is a work for each task.
-  /// @param[out] works  the work that is left, one for each task
+  /// Begins the whole traversal, level by level, until there is a piece of work for each
+  /// task.
+  /// @param[out] works  the pieces of work that are left, one for each task
   void divide(std::vector<NodePair>& works) {
     std::size_t next = 0;
     open_.cut(0);
@@ -115,7 +116,7 @@ class Part {
     if (schedule_.in_order) std::stable_sort(works.begin(), works.end(), isEarlierWork);
   }
 
-  /// Does a work to its end, or until it has taken this number of steps.
+  /// Does a piece of work to its end, or until it has taken this number of steps.
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
     open_.cut(0);
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
@@ -295,9 +296,9 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
 }
 
 /// The number of steps that a first-contact query of a mesh with itself takes of each
-/// work before it does any work to its end. An early contact in any work then prunes the
-/// whole traversal. A work has about as many steps as triangles. If it has few, this does
-/// not pay: the number is 0.
+/// piece of work before it does any piece to its end. An early contact in any piece then
+/// prunes the whole traversal. A piece has about as many steps as triangles. If it has
+/// few, this does not pay: the number is 0.
 std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
                      ContinuousQuery query) {
   constexpr std::size_t kTrianglesPerStep = 32, kLeast = 32;
@@ -308,7 +309,8 @@ std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
 }
 
 /// A query for contacts. The traversal is divided into tasks. Task 0 is the beginning of
-/// the traversal, which divides it; each other task is one of the works that it leaves.
+/// the traversal, which divides it; each other task is one of the pieces of work that it
+/// leaves.
 class ContactQuery {
  public:
   ContactQuery(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
@@ -356,8 +358,9 @@ class ContactQuery {
     tasks_[0].take(leaves);
   }
 
-  /// Looks into each work for an early contact, see sampleOf(). The result and the counts
-  /// are not used, except for the time of the contact: the tasks find everything again.
+  /// Looks into each piece of work for an early contact, see sampleOf(). The result and
+  /// the counts are not used, except for the time of the contact: the tasks find
+  /// everything again.
   template <typename Part>
   void lookForEarlyContact(Part& part, NarrowPhase& leaves) {
     // After a contact that is earlier than this, little is left to prune.

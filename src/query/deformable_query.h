@@ -25,7 +25,8 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options);
 
 /// @brief Hands the candidates of mesh a with itself to the sink.
-/// @param min_distance  candidates are pairs that may come so near; 0: that may touch
+/// @param min_distance  candidates are pairs that may come within this distance; 0: pairs
+/// that may touch
 /// @pre a has owners
 /// @return whether the sink took them all
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,

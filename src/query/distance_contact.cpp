@@ -11,13 +11,13 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Where the boxes of a mesh are relative to.
+/// The origin of the boxes of a mesh.
 double originOf(const MeshInstance& mesh, int frame, int k) {
   return mesh.translation[frame][k] +
          (mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k]);
 }
 
-/// Bound on the difference of a coordinate of two vertices, but for rounding.
+/// Bound on the difference of a coordinate of two vertices, without rounding.
 double sizeOf(const MeshInstance& a, const MeshInstance& b) {
   double size = 0;
   for (int frame = 0; frame < 2; ++frame)

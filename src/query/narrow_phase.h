@@ -39,7 +39,7 @@ struct QueryOptions {
   bool all_crossings{false};
   /// The pairs that count; null: all.
   const PairFilter* filter{nullptr};
-  /// Features that come so near are in contact; 0: that touch.
+  /// Features that come within this distance are in contact; 0: features that touch.
   double min_distance{0};
   /// See DistanceRequest.
   bool ignores_initially_closer{false};

@@ -59,7 +59,8 @@ class SafeBounds {
       bound[i] = &(*bounds_[side])[pair.vertices[i]];
     }
     FeaturePoints points{{&x[0], &x[1], &x[2], &x[3]}};
-    // So that rounding does not depend on the order of the meshes.
+    // The two edges are put in order, so that rounding does not depend on the order of
+    // the meshes.
     if (num_first == 2 && isBefore(x[2], x[3], x[0], x[1]))
       points = {{&x[2], &x[3], &x[0], &x[1]}};
     const double least = leastDistance(pair.kind, points);

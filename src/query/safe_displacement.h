@@ -21,7 +21,7 @@ double leastDistance(ContinuousContactKind kind, const FeaturePoints& x);
 
 /// @brief Lowers the bounds of the vertices so that, if no vertex moves further than its
 /// bound, all VF and EE pairs stay further apart than min_distance. Vertices of a pair
-/// that may be as near already get 0.
+/// that may be within min_distance already get 0.
 /// @param a, b  one object twice: the pairs of a mesh with itself
 /// @param most  finite, above 0: bounds that are larger are not needed
 /// @param bounds_a, bounds_b  one for each vertex, at most `most`; a single vector for

@@ -17,7 +17,7 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A component with at least so many triangles is large, see groupItems(). These
+/// @brief A component with at least this many triangles is large, see groupItems(). These
 /// are eight of the lowest nodes.
 constexpr std::size_t kLeastComponent = 64;
 
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> findComponents(std::size_t num_vertices,
 /// component can be proved to be embedded where layers lie on each other, and its boxes
 /// stay small when components move apart. Small components stay together in one group.
 /// @param component_of  the component of each item, a number below num_components
-/// @param least  a component with at least so many items is large
+/// @param least  a component with at least this many items is large
 /// @param items  in the order of their indices
 /// @return the end of each group, with groups in an order in which neighbours are near
 /// each other; empty if there is only one group

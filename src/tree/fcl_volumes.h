@@ -58,7 +58,7 @@ OrientedBox orientedBoxOf(const kIOS<S>& bv) {
 }
 
 /// @brief The box around a rectangle swept by a sphere. FCL chooses the rectangle so that
-/// no point is farther than the radius outside of a side, and it sets a negative length
+/// no point is further than the radius outside of a side, and it sets a negative length
 /// to zero. So the box contains all points, even if a rounded corner of the volume does
 /// not.
 template <typename S>

@@ -176,12 +176,12 @@ class Splitter {
     return n;
   }
 
-  /// Ranges of at most so many triangles are halved. This is faster than a search for the
-  /// best cut, and fills the nodes. Larger ranges are split by area, which separates the
-  /// objects of a scene.
+  /// Ranges of at most this many triangles are halved. This is faster than a search for
+  /// the best cut, and fills the nodes. Larger ranges are split by area, which separates
+  /// the objects of a scene.
   static constexpr std::size_t kMaxHalved = 512;
 
-  /// The area is estimated from about so many triangles.
+  /// The area is estimated from about this many triangles.
   static constexpr std::size_t kMaxSample = 512;
 
   /// From this depth on all ranges are halved, so that no input makes a deep tree.

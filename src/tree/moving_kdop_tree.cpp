@@ -36,10 +36,10 @@ constexpr std::size_t kVertexBlock = 2048, kSubtreeBlock = 2, kSubtreeGroup = 64
 /// The size of a task in triangles while the tree is made.
 constexpr std::size_t kTriangleBlock = 8192;
 
-/// For one of so many triangles the number of places before it is stored.
+/// The number of places before a triangle is stored for every kPlacesBlock-th triangle.
 constexpr std::size_t kPlacesBlock = 8;
 
-/// Data in random order is prefetched so many steps before it is read.
+/// Data in random order is prefetched this many steps before it is read.
 constexpr std::size_t kAhead = 8;
 
 /// Prefetches a node's boxes, which will be written soon.

@@ -48,7 +48,7 @@ class Extents {
 
 /// Splits entries along their longest axis at the lowest cost: the sum over both parts of
 /// extents times number. No part has less than a quarter of the entries.
-/// @return the begin of the second part
+/// @return the beginning of the second part
 Entry* splitEntries(Entry* first, Entry* last) {
   Extents all;
   for (const Entry* e = first; e != last; ++e) all.add(*e);

@@ -16,7 +16,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A tree has aged if its nodes' boxes together are so many times as large as expected.
+/// A tree has aged if its nodes' boxes together are this many times as large as expected.
 /// The number of boxes that a query compares then grows by about the same factor, and the
 /// time of the query by half of that. Waves and folds stay below 1.03, any rotation below
 /// 1.1.

@@ -76,8 +76,8 @@ struct alignas(16) TreeItem {
   std::uint32_t index;
 };
 
-/// @brief A coordinate whose widths, sums, and products of a few cannot overflow. NaN
-/// becomes 0, in the middle.
+/// @brief The coordinate, limited so that widths, sums, and products of a few numbers
+/// cannot overflow. NaN becomes 0, in the middle.
 inline float clampedCoordinate(double coordinate) {
   constexpr double kFarthest = 1e37;
   return coordinate == coordinate
