@@ -162,10 +162,10 @@ double FeaturePairMotion::longestStep(double t, const Moment& moment) const {
 // c'
 //   (n + h m) . c(t + h) >= (n + h m) . (c + h c') - |n + h m| M h^2 / 2,
 // and it proves a distance above d while this is more than
-//   d |n + h m| <= d (1 + h n . m + h^2 m^2 / 2),
-// since the root of 1 + x is at most 1 + x / 2. |n + h m| is at most 1.5. Products with n
-// and with h m round by less than 8 u L and 4 u d, and the root by 8 u of each term: less
-// than 128 u (d + L) together, but for the parts with c', which twice the rate bounds.
+// d |n + h m| <= d (1 + h n . m + h^2 m^2 / 2), since the root of 1 + x is at most 1 + x
+// / 2. |n + h m| is at most 1.5. Products with n and with h m round by less than 8 u L
+// and 4 u d, and the root by 8 u of each term: less than 128 u (d + L) together, except
+// for the parts with c', which are below twice the rate.
 double FeaturePairMotion::turningStep(const Moment& moment, const Vec& n, const Vec& turn,
                                       double longest) const {
   constexpr double kMostTurn = 0.5, kMostLength = 1.5;

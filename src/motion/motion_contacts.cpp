@@ -193,8 +193,8 @@ MotionAnswer firstTriangles(const MotionBody& a, const MotionBody& b,
   wanted.all = true;
   wanted.last = touching.contacts.front().toc_hi;
   MotionAnswer first = queryMotions(a, b, wanted);
-  // A graze has a bracket without width, at whose end another division of the step
-  // may see nothing yet. Then the first contact found stands alone.
+  // A graze has a bracket without width. The query up to its end divides the step in
+  // another way, and may see nothing yet. Then the contact that was found is the answer.
   return first.contacts.empty() ? touching : first;
 }
 

@@ -78,9 +78,9 @@ struct Work {
   std::int32_t steps;
 };
 
-/// Works are sorted by start time. If the times are equal, for example t = 0, works
-/// deeper in the trees come first. The other comparisons make the order depend on the
-/// works alone.
+/// Pieces of work are sorted by start time. If the times are equal, for example t = 0,
+/// pieces deeper in the trees come first. The other comparisons make the order depend on
+/// the pieces alone.
 bool isLater(const Work& x, const Work& y) {
   if (x.start != y.start) return x.start > y.start;
   const std::int64_t x_depth = std::int64_t{x.a.box} + x.b.box,
@@ -293,7 +293,7 @@ class MotionTraversal {
   /// @param opened  the side whose children they are
   /// @param other  the part of the other side
   void test(const Work& work, int opened, const MotionNode& node, const PartSpan& other) {
-    // A node of an octree may be occupied, and none of its children.
+    // A node of an octree may be occupied while none of its children is.
     if (node.count == 0) return;
     Side& one = side_[1 - opened];
     Side& many = side_[opened];
@@ -365,8 +365,8 @@ class MotionTraversal {
     return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
   }
 
-  /// The span of a work: that of its parent, cut to [start, end], with ends that are
-  /// dyadic so that poses are used again.
+  /// The span of a piece of work: that of its parent, cut to [start, end], with ends that
+  /// are dyadic so that poses are used again.
   static void setSpan(double end, Work& work) {
     if (work.a.isTriangle() && work.b.isTriangle()) {
       work.t0 = work.start;

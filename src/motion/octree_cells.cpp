@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
 
-/// Child i of a cell. A key is that of the center of the cell, in cells of the greatest
-/// depth; of a cell of that depth it is its own.
+/// Child i of a cell. The key of a cell is that of the cell of the greatest depth at its
+/// center. A cell of the greatest depth has its own key.
 OctreeCellNumber childOf(const OctreeCellNumber& parent, unsigned i) {
   OctreeCellNumber child{{}, parent.depth + 1};
   const unsigned below = OctreeCellNumber::kDepth - child.depth;

@@ -34,7 +34,7 @@ struct MotionTolerance {
 enum class MotionCertainty {
   kCrossing,         ///< toc_hi is a time at which the surfaces provably cross
   kWithinTolerance,  ///< the surfaces come within the tolerance of each other
-  kGivenUp           ///< after too many steps neither proved apart nor found as near
+  kGivenUp           ///< after too many steps neither proved apart nor within touching
 };
 
 /// @brief The features of two triangles that are nearest to each other.
@@ -97,7 +97,7 @@ class TrianglePairMotion {
   const NearestFeatures& nearest() const { return nearest_; }
 
   /// @brief A time in (t, t + width] at which an edge provably passes through the other
-  /// triangle (with a requested distance: at which they provably are as near). t if no
+  /// triangle (with a requested distance: at which they provably are within it). t if no
   /// such time is found.
   double proveContact(double t, double width) const;
 
