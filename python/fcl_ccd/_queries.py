@@ -198,7 +198,8 @@ def mesh_of(o: Mesh, name: str) -> Mesh:
         return o
     if isinstance(o, _core.Geometry):
         raise TypeError(
-            f"{name} is a shape. Give a DeformableMesh or a RigidMesh, for example of its surface"
+            f"{name} is of type {type(o).__name__}, not a mesh. Give a DeformableMesh or a "
+            "RigidMesh, for example of its surface"
         )
     raise TypeError(f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh")
 
@@ -206,8 +207,8 @@ def mesh_of(o: Mesh, name: str) -> Mesh:
 def geometry_of(o: Geometry, name: str) -> Geometry:
     if not isinstance(o, _core.Geometry):
         raise TypeError(
-            f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh, or a "
-            "shape"
+            f"{name} is of type {type(o).__name__}. Give a DeformableMesh, a RigidMesh, a shape "
+            "or an OcTree"
         )
     return o
 
@@ -279,9 +280,9 @@ def collide(
         None             at rest, vertices are in the world frame
         (4, 4) array     at rest in this pose
         (begin, end)     two poses, (4, 4) each. A rigid mesh or a shape turns at constant
-                         speed about the origin of its frame, which goes straight. Each vertex of a
-                         mesh that deforms goes straight from begin * previous to
-                         end * current.
+                         speed about the origin of its frame, which goes straight. Each
+                         vertex of a mesh that deforms goes straight from begin * previous
+                         to end * current.
         a LinearMotion, ScrewMotion, SplineMotion or BoundedMotion
     query : "all", "first" or "any"
         "all": all contacts. "first": the contacts that may be the first; later ones are
