@@ -2,7 +2,7 @@
 //
 // The points of eight pairs of features, side by side.
 //
-// Included once for each of Highway's targets, hence no ordinary include guard.
+// Included once for each of Highway's targets. So it has no ordinary include guard.
 #include "elementary/pair_table.h"
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"

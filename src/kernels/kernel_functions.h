@@ -3,7 +3,7 @@
 // The functions to which the tables in dispatch.cpp point. Each is compiled for each
 // instruction set. kernels.h describes them.
 //
-// Included once for each of Highway's targets, hence no ordinary include guard.
+// Included once for each of Highway's targets. So it has no ordinary include guard.
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
 

@@ -49,9 +49,10 @@ struct OverlapRequest {
   float share{std::numeric_limits<float>::infinity()};
   float slack{0};
 
-  /// @brief Leaves out boxes that do not overlap until `latest`, if that isEarly(). A
-  /// direction has at most two coordinates, hence the factor 2. 2^-20 is more than the
-  /// rounding of the kernels: three operations and the sum of two half-axes, 2^-24 each.
+  /// @brief Leaves out boxes that do not overlap until `latest`, if that isEarly(). The
+  /// factor 2 is there because a direction has at most two coordinates. 2^-20 is more
+  /// than the rounding of the kernels: three operations and the sum of two half-axes,
+  /// 2^-24 each.
   /// @param pose_displacement  sum of the displacements of both poses
   void leaveOutAfter(double latest, double pose_displacement) {
     assert(latest >= 0 && pose_displacement >= 0);

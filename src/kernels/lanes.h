@@ -5,7 +5,7 @@
 // Every operation is an IEEE operation, lane by lane, and none is fused. So all machines
 // give the same bits.
 //
-// Included once for each of Highway's targets, hence no ordinary include guard.
+// Included once for each of Highway's targets. So it has no ordinary include guard.
 #if defined(FCL_CCD_USE_HIGHWAY)
 #include "hwy/highway.h"
 #else

@@ -2,7 +2,7 @@
 //
 // Vectors of three coordinates, eight side by side.
 //
-// Included once for each of Highway's targets, hence no ordinary include guard.
+// Included once for each of Highway's targets. So it has no ordinary include guard.
 #include <limits>
 
 #include "kernels/lanes.h"

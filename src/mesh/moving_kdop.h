@@ -21,7 +21,7 @@ namespace fcl {
 
 /// @brief Half-axis bounds: entries 0-7 are minus the lower, 8-15 the upper bound along
 /// x, y, z, x+y, x+z, y+z, x-y, x-z; relative to an origin that its owner knows; rounded
-/// outward, hence never below kLeastHalf; infinity where a float has no bound. No NaN.
+/// outward, so never below kLeastHalf; infinity where a float has no bound. No NaN.
 struct alignas(64) Kdop16 {
   float half[16];
 };

@@ -41,8 +41,9 @@ struct LeafPair {
   float earliest;
 };
 
-/// @brief A window begins after `latest` if its beginning is above this float. Beginnings
-/// are floats, which below FLT_MIN may be rounded to either side; hence the rounding up.
+/// @brief A window begins after `latest` if its beginning is above this float. It is
+/// rounded up because beginnings are floats, which may be rounded to either side below
+/// FLT_MIN.
 inline float lastBeginning(double latest) { return roundUp(latest, 0.f); }
 
 /// @brief The triangles and vertices of a moving tree, read without a copy.
