@@ -16,9 +16,9 @@ template <typename S>
 std::size_t findNotFinite(const S* coordinates, std::size_t num_vertices,
                           int num_threads);
 
-/// @brief The box around the vertices of both frames (without vertices from the largest
-/// number to its negative, as in FCL), its center, and the largest distance of a vertex
-/// from there.
+/// @brief The box around the vertices of both frames (without vertices it goes from the
+/// largest number to its negative, as in FCL), its center, and the largest distance of a
+/// vertex from there.
 template <typename S>
 struct FrameBounds {
   S lo[3], hi[3], center[3];

@@ -116,9 +116,10 @@ class Root {
   double lowerBound() const;
   double upperBound() const;
 
-  /// @brief Doubles [lo, hi] around t, the number in [0, 1] with 2^clock_exponent t / (1
-  /// - t) = s / (1 - s) for this root s: t = s for 0. hi - lo <= width or, where that is
-  /// less than a few units in the last place, as close as doubles get.
+  /// @brief Doubles [lo, hi] around t, the number in [0, 1] with
+  /// 2^clock_exponent t / (1 - t) = s / (1 - s) for this root s. If clock_exponent is 0,
+  /// t = s. hi - lo <= width or, where that is less than a few units in the last place,
+  /// as close as doubles get.
   std::pair<double, double> bracket(double width, int clock_exponent);
 
  private:
@@ -148,7 +149,8 @@ class Root {
 };
 
 /// @brief A double not above (direction -1) or not below (1) the time t in [0, 1] with
-/// 2^clock_exponent t / (1 - t) = s / (1 - s) for s = k / 2^m: t = s for 0.
+/// 2^clock_exponent t / (1 - t) = s / (1 - s) for s = k / 2^m. If clock_exponent is 0,
+/// t = s.
 double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction);
 
 /// @brief All roots of p (not zero) in [0, 1], in no order.

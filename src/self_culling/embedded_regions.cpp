@@ -160,8 +160,8 @@ class RegionSearch {
     return false;
   }
 
-  /// Records a node as a region, and its inside vertices: those that the region is the
-  /// first to have, that have a closed fan, and that no border passes.
+  /// Records a node as a region, and its inside vertices. These have a closed fan, no
+  /// border passes them, and no triangle before the region has them.
   void take(const OpenNode& open, BorderSearch& borders) {
     found_.nodes[static_cast<std::size_t>(open.node)] = 1;
     const Region region = regionOf(open);

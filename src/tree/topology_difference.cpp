@@ -30,8 +30,8 @@ TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
   dropTriangles(before, triangles);
 }
 
-/// A triangle is not the same if a triangle of a lower number has the same origin, or one
-/// of a higher number.
+/// A triangle is not the same if a triangle with a lower number has the same origin, or
+/// an origin with a higher number.
 void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
                                      std::size_t num_triangles,
                                      const std::vector<int>& origins) {
