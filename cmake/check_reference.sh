@@ -7,6 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tags=${1:-build/doc/fcl_ccd.tag}
+[ -f "$tags" ] || { echo "$tags is missing: run doxygen first" >&2; exit 1; }
 
 # Lines "count name": how often a function is declared.
 declared=$(
