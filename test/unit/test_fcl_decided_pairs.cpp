@@ -6,9 +6,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <map>
 #include <utility>
 
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
 #include "scene_data.h"

@@ -144,7 +144,8 @@ TEST(FCL_EMBEDDED_BODIES, provedBodiesHaveNoContact) {
   for (int i = 0; i < test::rounds(150); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh = still(windingSphere(8, 7, 1));
-    const double shake = random.uniform(0, 0.4), step = random.uniform(0, 0.4);
+    const double most = i % 2 ? 0.5 : 0.15;
+    const double shake = random.uniform(0, most), step = random.uniform(0, most);
     for (auto& p : mesh.t0) p += random.point(shake);
     for (std::size_t k = 0; k < mesh.t0.size(); ++k)
       mesh.t1[k] = mesh.t0[k] + random.point(step);
@@ -157,8 +158,8 @@ TEST(FCL_EMBEDDED_BODIES, provedBodiesHaveNoContact) {
     with_contacts += has_contact;
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(proved, test::rounds(20));
-  EXPECT_GT(with_contacts, test::rounds(40));
+  EXPECT_GT(proved, test::rounds(24));
+  EXPECT_GT(with_contacts, test::rounds(24));
 }
 
 /// Balls that meet, on a sheet.
