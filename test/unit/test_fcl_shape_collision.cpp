@@ -459,6 +459,42 @@ TEST(ShapeCollide, ShapesWithoutExtent) {
   }
 }
 
+// What doc/choosing.md says about tiny scenes.
+TEST(ShapeCollide, TinyScenes) {
+  for (const double size : {1e-60, 1e-75, 1e-90, 1e-150, 1e-200}) {
+    SCOPED_TRACE(size);
+    TestMesh sheet = makeSheet(
+        4, 4, [](double u, double v) { return Point(4 * u - 2, 4 * v - 2, 0); });
+    for (Point& p : sheet.vertices) p *= size;
+    auto mesh = std::make_shared<BVHModel<OBBRSS<double>>>();
+    mesh->beginModel();
+    mesh->addSubModel(sheet.vertices, sheet.triangles);
+    mesh->endModel();
+    const std::vector<Target> tiny = {
+        {"sphere", std::make_shared<Sphere<double>>(0.5 * size), 0.5},
+        {"box", std::make_shared<Box<double>>(size, 2 * size, 0.5 * size), 0.25},
+        {"ellipsoid",
+         std::make_shared<Ellipsoid<double>>(0.5 * size, 0.75 * size, 0.375 * size),
+         0.375},
+        {"cone", std::make_shared<Cone<double>>(0.5 * size, size), 0.5},
+        {"convex", octahedron(0.5 * size), 0.5},
+        {"plane", std::make_shared<Plane<double>>(Point(0, 0, 1), 0.25 * size), 0.25},
+        {"mesh", mesh, 0}};
+    for (const Target& target : tiny) {
+      SCOPED_TRACE(target.name);
+      const Result result = ask({std::make_shared<Sphere<double>>(0.25 * size),
+                                 at(0, 0, 2 * size), at(0, 0, -2 * size)},
+                                {target.geometry, at(0, 0, 0), at(0, 0, 0)});
+      const double time = (2 - 0.25 - target.top) / 4;
+      EXPECT_TRUE(result.is_collide);
+      EXPECT_LE(result.time_of_contact, time + 1e-15);
+      if (size >= 1e-75) {
+        EXPECT_NEAR(result.time_of_contact, time, 1e-11);
+      }
+    }
+  }
+}
+
 TEST(ShapeCollide, GrazingBallAndEdge) {
   // The ball passes at a height of its radius plus or minus a part of it.
   const double radius = 0.5;
