@@ -110,7 +110,7 @@ py::dict collidePair(const Geometry& o1, const Motion& motion1, const Geometry& 
   py::dict result =
       answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
         if (!fcl::detail::answerPair(moving1, moving2, settings, outcome, &contacts))
-          throw std::runtime_error("the motion of an object cannot be followed");
+          fcl::detail::refuseContacts(moving1, moving2);
         hi = outcome.is_collide ? outcome.toc_hi : 1;
       });
   const bool is_collide = py::cast<bool>(result["is_collide"]);

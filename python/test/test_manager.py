@@ -204,7 +204,7 @@ def test_wrong_calls_change_nothing():
         (lambda: manager.update({"ball": np.eye(3)}), ValueError, "motion of 'ball' has the shape"),
         (lambda: manager.update({"ball": place, "cloth": turn}), ValueError, "Linear"),
         (lambda: manager.update({"ball": place, "box": far}), ValueError, "not finite"),
-        (lambda: manager.set_self_collision("box", True), ValueError, "not a mesh"),
+        (lambda: manager.set_self_collision("box", True), ValueError, "not a triangle mesh"),
         (lambda: manager.set_filter("ball", 3), TypeError, "filter is of type int"),
         (lambda: manager.collide(BALL, name="ball"), ValueError, "name and other are given"),
         (lambda: manager.collide(motion=DOWN), ValueError, "motion is for a mesh"),

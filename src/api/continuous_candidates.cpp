@@ -73,6 +73,15 @@ PreparedMotion preparedMotion(const PlacedGeometry<S>& placed, const char* name)
   return PreparedMotion(placed, name, kTocErr, 1);
 }
 
+template <typename S>
+void requireSurface(const PlacedGeometry<S>& o, const char* name) {
+  if (!o.isMesh())
+    throw Exception(std::string("continuousCandidates: ") + name +
+                    " is not a triangle mesh but " + kindOf(o.geometry()) +
+                    ", and candidates need two triangle meshes. Give a mesh of its "
+                    "surface");
+}
+
 /// The candidates of two meshes, one of which turns.
 template <typename S>
 bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
@@ -122,15 +131,11 @@ bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const PlacedGeometry<S> placed1 = placed(o1), placed2 = placed(o2);
   const Answerer answerer = answererOf(placed1, placed2);
   if (answerer == Answerer::kFcl || answerer == Answerer::kShapes) {
-    const bool is_first_fit = placed1.isMesh() && placed1.isKnown();
-    const PlacedGeometry<S>& unfit = is_first_fit ? placed2 : placed1;
-    throw Exception(
-        std::string("continuousCandidates: ") + (&unfit == &placed1 ? "o1" : "o2") +
-        (unfit.isMesh() ? " follows a motion class of the program, whose path is not "
-                          "known. Give one of FCL's motions, or derive the class from "
-                          "BoundedMotion"
-                        : " is not a triangle mesh, and candidates need two triangle "
-                          "meshes. Give a mesh of its surface"));
+    requireSurface(placed1, "o1");
+    requireSurface(placed2, "o2");
+    throw Exception("continuousCandidates: " + whyFclAnswers(placed1, placed2) +
+                    ". Give one of FCL's motions, or derive the class from BoundedMotion "
+                    "too");
   }
   if (answerer == Answerer::kCurvedPaths)
     return motionCandidates(placed1, placed2, sink, min_distance);

@@ -351,6 +351,19 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
 }
 
 template <typename S>
+void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
+  const DefaultFloatingPoint mode;
+  const PlacedGeometry<S> placed1(o1), placed2(o2);
+  const PlacedGeometry<S>& unknown = placed1.isKnown() ? placed2 : placed1;
+  throw Exception(
+      whyFclAnswers(placed1, placed2) + ", so FCL answers this pair, without contacts. " +
+      (unknown.isMesh() || unknown.isRigid()
+           ? "Derive the motion class from BoundedMotion too, or give transforms"
+           : "Give an octree or a mesh in its place, or a ContinuousCollisionRequest: "
+             "FCL then takes meshes as they are in their current frame"));
+}
+
+template <typename S>
 void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
                 QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {
   require(o, "o");
@@ -383,13 +396,14 @@ bool isDeformableModel(const CollisionGeometry<S>& o) {
   return dynamic_cast<const DeformableMesh*>(&o) != nullptr;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                 \
-  template bool answerPair(const MovingGeometry<S>&, const MovingGeometry<S>&, \
-                           const QuerySettings&, QueryOutcome<S>&,             \
-                           ContinuousContacts<S>*);                            \
-  template void answerSelf(const CollisionGeometry<S>*, const QuerySettings&,  \
-                           QueryOutcome<S>&, ContinuousContacts<S>*);          \
-  template bool isDeformingMesh(const CollisionGeometry<S>&);                  \
+#define FCL_CCD_INSTANTIATE(S)                                                      \
+  template bool answerPair(const MovingGeometry<S>&, const MovingGeometry<S>&,      \
+                           const QuerySettings&, QueryOutcome<S>&,                  \
+                           ContinuousContacts<S>*);                                 \
+  template void refuseContacts(const MovingGeometry<S>&, const MovingGeometry<S>&); \
+  template void answerSelf(const CollisionGeometry<S>*, const QuerySettings&,       \
+                           QueryOutcome<S>&, ContinuousContacts<S>*);               \
+  template bool isDeformingMesh(const CollisionGeometry<S>&);                       \
   template bool isDeformableModel(const CollisionGeometry<S>&);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

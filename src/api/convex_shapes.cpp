@@ -31,7 +31,8 @@ double requireSize(S size, const std::string& name, const char* what) {
 template <typename S>
 Vec requirePoint(const Vector3<S>& p, const std::string& name, const char* what) {
   if (!p.allFinite())
-    throw Exception(name + ": a coordinate of the " + what + " is not finite");
+    throw Exception(name + ": a coordinate of the " + what +
+                    " is not finite. Correct it");
   return {static_cast<double>(p[0]), static_cast<double>(p[1]),
           static_cast<double>(p[2])};
 }
@@ -88,7 +89,7 @@ ConvexShape shapeOf(const Convex<S>& convex, const std::string& name) {
   std::vector<Vec> points;
   for (const Vector3<S>& p : convex.getVertices())
     points.push_back(requirePoint(p, name, "convex"));
-  if (points.empty()) throw Exception(name + ": the convex has no vertices");
+  if (points.empty()) throw Exception(name + ": the convex has no vertices. Give some");
   return ConvexShape::hull(std::move(points), 0);
 }
 
@@ -104,8 +105,9 @@ ConvexShape flatShape(const Vec& normal, double offset, double reach, bool is_so
                       const std::string& name) {
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(offset))
-    throw Exception(name +
-                    ": the normal of the plane is zero, or a number of it is not finite");
+    throw Exception(name + ": the normal of the " + (is_solid ? "halfspace" : "plane") +
+                    " is zero, or one of its numbers is not finite. Give a unit normal "
+                    "and a finite offset");
   return ConvexShape::flat({(1 / length) * normal, offset / length, is_solid}, reach);
 }
 

@@ -41,7 +41,7 @@ class BinaryView {
     const int child = node(b).child[firstLane(b)];
     if (child >= kMostNodes)
       throw Exception(
-          "the tree has more nodes than FCL's traversal can number. Use "
+          "a model's tree has more nodes than FCL's traversal can number. Use "
           "continuousCollide() or continuousSelfCollide(), which have no such limit");
     return 16 * child + 2;
   }

@@ -167,7 +167,7 @@ template <typename S>
 void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
   requireFinite(placed.beginning(), placed.end(), "object");
   const CollisionGeometry<S>& o = placed.geometry();
-  const MotionPath path = motionPathOf(placed);
+  const MotionPath path = motionPathOf(placed, "object");
   if (o.getNodeType() == GEOM_PLANE)
     return appendFlat(static_cast<const Plane<S>&>(o), true, path, list);
   if (o.getNodeType() == GEOM_HALFSPACE)
@@ -190,7 +190,7 @@ void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   requireFinite(placed.beginning(), placed.end(), "object");
   const PreparedMotion motion(placed, "object", kTocErr, 1);
   if (motion.isEmpty())
-    return appendBody({{MotionBox(), MotionBox()}, motionPathOf(placed)}, list);
+    return appendBody({{MotionBox(), MotionBox()}, motionPathOf(placed, "object")}, list);
   const MotionBody& body = motion.body();
   appendBody({{body.box(body.root(), 0), body.box(body.root(), 1)}, body.path()}, list);
 }

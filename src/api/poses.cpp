@@ -26,7 +26,8 @@ PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
   const deformable::DefaultFloatingPoint mode;
   const PlacedGeometry<S> placed(o);
   if (!placed.goesStraight())
-    return toNumbers<S>(deformable::motionPathOf(placed).pose(static_cast<double>(t)));
+    return toNumbers<S>(
+        deformable::motionPathOf(placed, "the object").pose(static_cast<double>(t)));
   Transform3<S> tf = toTransform(o.pose[0]);
   const Transform3<S> end = toTransform(o.pose[1]);
   tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();

@@ -68,7 +68,8 @@ template <typename S>
 void requireFinite(const Vector3<S>* vertices, int count, const std::string& what) {
   for (int i = 0; i < count; ++i)
     if (!vertices[i].allFinite())
-      throw Exception(what + ": vertex " + std::to_string(i) + " is not finite");
+      throw Exception(what + ": vertex " + std::to_string(i) +
+                      " is not finite. Correct it");
 }
 
 /// A finite vertex can leave the range of numbers when it is posed. Then its box is
@@ -115,7 +116,7 @@ void requireFinite(const Pose& beginning, const Pose& end, const std::string& na
   for (const Pose* pose : {&beginning, &end})
     if (!std::all_of(pose->rotation, pose->rotation + 9, isFinite) ||
         !std::all_of(pose->translation, pose->translation + 3, isFinite))
-      throw Exception(name + ": the transform is not finite");
+      throw Exception(name + ": the transform is not finite. Correct it");
 }
 
 template <typename S>
@@ -151,8 +152,10 @@ bool hasFreeLeaves(const CollisionGeometry<S>& geometry) {
 template <typename S>
 PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
                            const Pose& end, const std::string& name, int num_threads,
-                           FeatureOwners owners) {
+                           FeatureOwners owners)
+    : name_(name) {
   requireFinite(beginning, end, name);
+  instance_.name = name_.c_str();
   for (int k = 0; k < 3; ++k) {
     instance_.translation[0][k] = beginning.translation[k];
     instance_.translation[1][k] = end.translation[k];

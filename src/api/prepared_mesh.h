@@ -83,6 +83,7 @@ class PreparedMesh {
   template <typename Work>
   void measure(Work&& work);
 
+  const std::string name_;
   MeshInstance instance_;
   std::vector<MeshTriangle> owners_;
   MovingKdopTree tree_;

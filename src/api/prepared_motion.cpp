@@ -37,10 +37,9 @@ Vec applied(const double (&m)[9], const double (&x)[3]) {
           m[6] * x[0] + m[7] * x[1] + m[8] * x[2]};
 }
 
-}  // namespace
-
+/// @param name  in errors
 template <typename S>
-MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
+MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
   const MovingGeometry<S>& moving = placed.moving();
   const double origin[3] = {0, 0, 0};
   if (isPosed(placed)) return MotionPath::still(Pose());
@@ -48,9 +47,9 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
     return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
   switch (moving.path) {
     case PathKind::kBounded:
-      return MotionPath::bounded(*moving.motion);
+      return MotionPath::bounded(*moving.motion, name);
     case PathKind::kSpline:
-      return MotionPath::spline(moving.control[0], moving.control[1]);
+      return MotionPath::spline(moving.control[0], moving.control[1], name);
     case PathKind::kScrew:
       return MotionPath::screw(placed.beginning(), placed.end());
     case PathKind::kTurn:
@@ -61,10 +60,20 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed) {
   }
 }
 
+}  // namespace
+
+template <typename S>
+MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
+  MotionPath path = unnamedPathOf(placed, name);
+  path.setName(name);
+  return path;
+}
+
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
-                               double toc_err, int num_threads, double reach) {
-  const MotionPath path = motionPathOf(placed);
+                               double toc_err, int num_threads, double reach)
+    : name_(name) {
+  const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
     shape_.emplace(
         convexShapeOf(placed.geometry(), name, reach + path.translationReach()));
@@ -97,10 +106,10 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   if (placed.goesStraight()) return;
   if (moving.path == PathKind::kUndefined)
     throw Exception(
-        name +
-        ": request.ccd_motion_type does not define how an object turns between two "
-        "transforms. Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has "
-        "the control points of a spline");
+        name + ", " + kindOf(placed.geometry()) +
+        ": request.ccd_motion_type does not define how it turns between two transforms. "
+        "Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has the control "
+        "points of a spline");
   if (moving.path != PathKind::kTurn) return;
   double way[3];
   for (int k = 0; k < 3; ++k)
@@ -134,7 +143,8 @@ void PreparedMotion::requireFinite(const VertexFrames& frames,
     const VertexPath path = frames[i];
     for (int k = 0; k < 3; ++k)
       if (!std::isfinite(path.t0[k]) || !std::isfinite(path.t1[k]))
-        throw Exception(name + ": vertex " + std::to_string(i) + " is not finite");
+        throw Exception(name + ": vertex " + std::to_string(i) +
+                        " is not finite. Correct it");
   }
 }
 
@@ -168,7 +178,7 @@ MeshInstance PreparedMotion::beginning() const {
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                          \
-  template MotionPath motionPathOf(const PlacedGeometry<S>&);                           \
+  template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
                                           double, int, double);
 FCL_CCD_INSTANTIATE(double)

@@ -16,10 +16,11 @@ namespace detail {
 namespace deformable {
 
 /// @brief The path of a geometry that this library answers.
+/// @param name  the name of the geometry in errors; must live as long as the path
 /// @pre placed.isKnown()
 /// @throws fcl::Exception  when the rotation of a spline is too large
 template <typename S>
-MotionPath motionPathOf(const PlacedGeometry<S>& placed);
+MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name);
 
 /// @brief A mesh, a shape or an octree made ready for a query in which one of the objects
 /// turns or is no mesh. It owns what was computed for the query, as PreparedMesh does.
@@ -62,6 +63,7 @@ class PreparedMotion {
   void requireInRange(const std::string& name) const;
   void requireFinite(const VertexFrames& frames, const std::string& name) const;
 
+  const std::string name_;
   /// One of them is there.
   std::optional<PreparedMesh> mesh_;
   std::optional<ConvexShape> shape_;

@@ -24,13 +24,23 @@ inline void require(const void* argument, const char* name) {
   if (!argument) throw Exception(std::string(name) + " is null");
 }
 
+/// What a geometry is, for messages.
+template <typename S>
+const char* kindOf(const CollisionGeometry<S>& o) {
+  if (deformable::meshKindOf(o) != deformable::MeshKind::kNotAMesh)
+    return "a triangle mesh";
+  if (o.getObjectType() != OT_BVH) return kindOf(o.getNodeType());
+  return o.getNodeType() == BV_UNKNOWN ? "a model whose BV is none of FCL's"
+                                       : "a point cloud";
+}
+
 template <typename S>
 void requireMesh(const CollisionGeometry<S>& o, const char* function,
                  const char* name = "o") {
   if (deformable::meshKindOf(o) == deformable::MeshKind::kNotAMesh)
-    throw Exception(std::string(function) + ": " + name +
-                    " is not a triangle mesh. Give a BVHModel or a DeformableBVHModel "
-                    "with triangles");
+    throw Exception(std::string(function) + ": " + name + " is not a triangle mesh but " +
+                    kindOf(o) +
+                    ". Give a BVHModel or a DeformableBVHModel with triangles");
 }
 
 /// The width of the time bracket for the engine. The user's 0 becomes the smallest
@@ -154,6 +164,18 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
   requireNoFreeLeaves(o1, o2);
   return Answerer::kCurvedPaths;
+}
+
+/// Why FCL answers a pair: the first object that this library cannot follow.
+template <typename S>
+std::string whyFclAnswers(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  const bool is_first = !o1.isKnown();
+  const PlacedGeometry<S>& o = is_first ? o1 : o2;
+  const std::string name = is_first ? "o1" : "o2", kind = kindOf(o.geometry());
+  if (o.isMesh() || o.isRigid())
+    return name + ", " + kind +
+           ", follows a motion class that is neither FCL's nor a BoundedMotion";
+  return name + " is " + kind + ", not a triangle mesh, a shape or an octree";
 }
 
 /// Runs a query. A vertex that is not finite becomes FCL's exception.

@@ -268,13 +268,13 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
   for (int k = 0; k < 3; ++k) {
     const std::size_t id = triangles_[place][k];
     if (id >= frames_.size())
-      throw Exception("triangle " + std::to_string(place) +
+      throw Exception(std::string(path_.name()) + ": triangle " + std::to_string(place) +
                       " refers to a vertex that is not there. The model has " +
                       std::to_string(frames_.size()) + ", numbered from 0");
     double p[3];
     frames_.at(0, id, p);
     for (const double x : p)
-      if (!std::isfinite(x)) throw NonFiniteVertex(id);
+      if (!std::isfinite(x)) throw NonFiniteVertex(path_.name(), id);
     out.vertex[k] = static_cast<std::int32_t>(id);
     out.corner[0][k] = out.corner[1][k] = {p[0], p[1], p[2]};
   }

@@ -179,31 +179,34 @@ double largestDifference(const double (&points)[4][3]) {
 }
 
 /// A placement or a rate of the program, if it is one.
+/// @param function, name  of the program's function and of the object, for errors
 BoundedMotion::Placement checked(const BoundedMotion::Placement& placement,
-                                 const char* name) {
+                                 const char* function, const char* name) {
   const auto is_finite = [](double x) { return std::isfinite(x); };
   if (std::all_of(placement.rotation, placement.rotation + 9, is_finite) &&
       std::all_of(placement.translation, placement.translation + 3, is_finite))
     return placement;
-  throw Exception(std::string("BoundedMotion::") + name +
-                  " gives a number that is not finite");
+  throw Exception(std::string(name) + ": BoundedMotion::" + function +
+                  " gives a number that is not finite. Correct the function");
 }
 
 /// A bound of the program, if it is one.
-double checked(double bound, const char* name) {
+double checked(double bound, const char* function, const char* name) {
   if (bound >= 0 && std::isfinite(bound)) return bound * kUpward;
-  throw Exception(std::string("BoundedMotion::") + name +
-                  " gives a number that is negative or not finite");
+  throw Exception(std::string(name) + ": BoundedMotion::" + function +
+                  " gives a number that is negative or not finite. Correct the function");
 }
 
-double checkedAcceleration(const BoundedMotion& motion, const Vec& center, double radius,
-                           double t0, double t1) {
+double checkedAcceleration(const BoundedMotion& motion, const char* name,
+                           const Vec& center, double radius, double t0, double t1) {
   const double point[3] = {center.x, center.y, center.z};
-  return checked(motion.accelerationBound(point, radius, t0, t1), "accelerationBound()");
+  return checked(motion.accelerationBound(point, radius, t0, t1), "accelerationBound()",
+                 name);
 }
 
-double checkedAngularSpeed(const BoundedMotion& motion, double t0, double t1) {
-  return checked(motion.angularSpeedBound(t0, t1), "angularSpeedBound()");
+double checkedAngularSpeed(const BoundedMotion& motion, const char* name, double t0,
+                           double t1) {
+  return checked(motion.angularSpeedBound(t0, t1), "angularSpeedBound()", name);
 }
 
 /// sin(x) / x and cos(x).
@@ -215,7 +218,7 @@ SineCosine cardinalSineCosine(double x) {
 }  // namespace
 
 double AccelerationBound::of(const Vec& center, double radius) const {
-  if (motion) return checkedAcceleration(*motion, center, radius, t0, t1);
+  if (motion) return checkedAcceleration(*motion, name, center, radius, t0, t1);
   return (norm(times(turn, center) + vecOf(offset)) + per_radius * radius +
           per_distance * norm(center) + constant) *
          kUpward;
@@ -313,16 +316,16 @@ void MotionPath::setTurnBounds() {
 }
 
 MotionPath MotionPath::spline(const double (&translation)[4][3],
-                              const double (&rotation)[4][3]) {
+                              const double (&rotation)[4][3], const char* name) {
   MotionPath path;
   path.kind_ = Kind::kSpline;
   std::copy(&translation[0][0], &translation[0][0] + 12, &path.translation_points_[0][0]);
   std::copy(&rotation[0][0], &rotation[0][0] + 12, &path.rotation_points_[0][0]);
   const double most = largestPoint(rotation);
   if (!(most <= kMostAngle))
-    throw Exception(
-        "a rotation vector of a SplineMotion is longer than 2^20 radians or not finite. "
-        "Divide the motion into steps with smaller rotations");
+    throw Exception(std::string(name) +
+                    ": a rotation vector of the SplineMotion is longer than 2^20 radians "
+                    "or not finite. Divide the motion into steps with smaller rotations");
   path.stretch_ = 1;
   path.turn_speed_ = largestDifference(rotation);
   path.translation_speed_ = largestDifference(translation);
@@ -331,16 +334,17 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
   return path;
 }
 
-MotionPath MotionPath::bounded(const BoundedMotion& motion) {
-  const BoundedMotion::Placement rate = checked(motion.rateAt(0), "rateAt()");
+MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
+  const BoundedMotion::Placement rate = checked(motion.rateAt(0), "rateAt()", name);
   MotionPath path;
   path.kind_ = Kind::kBounded;
   path.motion_ = &motion;
+  path.name_ = name;
   path.stretch_ = 1 + 0x1p-39;
-  path.turn_speed_ = checkedAngularSpeed(motion, 0, 1);
-  path.translation_speed_ =
-      (norm(vecOf(rate.translation)) + checkedAcceleration(motion, {0, 0, 0}, 0, 0, 1)) *
-      kUpward;
+  path.turn_speed_ = checkedAngularSpeed(motion, name, 0, 1);
+  path.translation_speed_ = (norm(vecOf(rate.translation)) +
+                             checkedAcceleration(motion, name, {0, 0, 0}, 0, 0, 1)) *
+                            kUpward;
   path.rotation_error_ = 64;
   path.setBoundedReach();
   return path;
@@ -367,7 +371,8 @@ void MotionPath::shift(const double (&origin)[3]) {
 Pose MotionPath::pose(double t) const {
   if (kind_ == Kind::kSpline) return splinePose(t);
   if (kind_ == Kind::kBounded) {
-    const BoundedMotion::Placement at = checked(motion_->placementAt(t), "placementAt()");
+    const BoundedMotion::Placement at =
+        checked(motion_->placementAt(t), "placementAt()", name_);
     Pose out;
     std::copy(at.rotation, at.rotation + 9, out.rotation);
     for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k] - origin_[k];
@@ -390,7 +395,7 @@ Pose MotionPath::pose(double t) const {
 PoseRate MotionPath::rate(double t) const {
   if (kind_ == Kind::kSpline) return splineRate(t);
   if (kind_ == Kind::kBounded) {
-    const BoundedMotion::Placement at = checked(motion_->rateAt(t), "rateAt()");
+    const BoundedMotion::Placement at = checked(motion_->rateAt(t), "rateAt()", name_);
     PoseRate out;
     std::copy(at.rotation, at.rotation + 9, out.rotation);
     std::copy(at.translation, at.translation + 3, out.translation);
@@ -520,9 +525,10 @@ AccelerationBound MotionPath::splineAcceleration(double t0, double t1) const {
 AccelerationBound MotionPath::boundedAcceleration(double t0, double t1) const {
   AccelerationBound bound{};
   bound.motion = motion_;
+  bound.name = name_;
   bound.t0 = t0;
   bound.t1 = t1;
-  bound.per_displacement = 2 * checkedAngularSpeed(*motion_, t0, t1);
+  bound.per_displacement = 2 * checkedAngularSpeed(*motion_, name_, t0, t1);
   bound.jerk = HUGE_VAL;
   return bound;
 }

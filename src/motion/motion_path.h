@@ -18,10 +18,9 @@ struct PoseRate {
 
 /// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
 /// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
-/// per_distance |center| + constant, or what a motion of the program says. For points
-/// that move straight in the body frame from x0 to x1 during the step, add
-/// per_displacement |x1
-/// - x0|.
+/// per_distance |center| + constant, or what a motion of the program says. If a point
+/// moves straight in the body frame from x0 to x1 during the step,
+/// per_displacement |x1 - x0| is added.
 struct AccelerationBound {
   double turn[9];
   double offset[3];
@@ -32,8 +31,10 @@ struct AccelerationBound {
   /// |p'''(t)| of a point at rest in the body is at most this factor times the bound.
   /// Infinite: unknown.
   double jerk;
-  /// A motion of the program, and the span; null: the numbers above are the bound.
+  /// A motion of the program, its name in errors, and the span. Null: the numbers above
+  /// are the bound.
   const BoundedMotion* motion;
+  const char* name;
   double t0, t1;
 
   double of(const Vec& center, double radius) const;
@@ -70,13 +71,20 @@ class MotionPath {
   static MotionPath screw(const Pose& beginning, const Pose& end);
 
   /// @brief The control points of the translation and of the rotation vector.
+  /// @param name  the name of the object in errors
   /// @throws fcl::Exception  when a rotation vector is longer than kMostAngle
   static MotionPath spline(const double (&translation)[4][3],
-                           const double (&rotation)[4][3]);
+                           const double (&rotation)[4][3],
+                           const char* name = "the object");
 
   /// @brief A motion of the program. It must live as long as the path.
+  /// @param name  the name of the object in errors; must live as long, too
   /// @throws fcl::Exception  when a placement or a bound is not finite
-  static MotionPath bounded(const BoundedMotion& motion);
+  static MotionPath bounded(const BoundedMotion& motion, const char* name = "the object");
+
+  /// @brief The name of the object in errors. It must live as long as the path.
+  const char* name() const { return name_; }
+  void setName(const char* name) { name_ = name; }
 
   /// @brief Moves the path by -origin. Rounds by 2^-53 of the new coordinates.
   void shift(const double (&origin)[3]);
@@ -130,6 +138,7 @@ class MotionPath {
   Pose splinePose(double t) const;
   PoseRate splineRate(double t) const;
 
+  const char* name_{"the object"};
   Kind kind_{Kind::kTurn};
   // Members of a turn.
   double angle_{0};

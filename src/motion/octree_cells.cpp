@@ -64,7 +64,8 @@ OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_s
 
 void OctreeCells::add(const void* node, const OctreeCellNumber& name) {
   if (table_.size() >= std::numeric_limits<std::int32_t>::max())
-    throw Exception("an octree has more cells near the other object than 2^31");
+    throw Exception(
+        "an octree has more than 2^31 cells near the other object. Divide the map");
   table_.push_back({node, name, Bounds::of(name), 0, -1, -1, 0, nodes_->isLeaf(node)});
 }
 

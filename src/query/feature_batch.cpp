@@ -30,8 +30,10 @@ bool isFinite(const TreeVertex& x) {
 
 }  // namespace
 
-NonFiniteVertex::NonFiniteVertex(std::size_t vertex)
-    : std::domain_error("vertex " + std::to_string(vertex) + " is not finite"),
+NonFiniteVertex::NonFiniteVertex(const char* mesh, std::size_t vertex)
+    : std::domain_error(std::string(mesh) + ": vertex " + std::to_string(vertex) +
+                        " is not finite. Correct it"),
+      mesh_(mesh),
       vertex_(vertex) {}
 
 TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
@@ -61,8 +63,9 @@ void TriangleReader::readIntoStore(int i) {
       for (int k = 0; k < 3; ++k) {
         const std::size_t id = mesh_.triangles[index][k];
         if (id >= mesh_.frames.size())
-          throw Exception("triangle " + std::to_string(i) +
-                          " refers to a vertex that is not there");
+          throw Exception(std::string(mesh_.name) + ": triangle " + std::to_string(i) +
+                          " refers to a vertex that is not there. The model has " +
+                          std::to_string(mesh_.frames.size()) + ", numbered from 0");
         triangle.id[k] = static_cast<std::uint32_t>(id);
       }
       // As in assignFeatures(), an edge with two equal ids is not a feature.
@@ -75,7 +78,7 @@ void TriangleReader::readIntoStore(int i) {
     TreeVertex& x = vertices_[3 * next + k];
     pose(triangle.id[k], x);
     if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
-    if (!isFinite(x)) throw NonFiniteVertex(triangle.id[k]);
+    if (!isFinite(x)) throw NonFiniteVertex(mesh_.name, triangle.id[k]);
   }
   stored_ = next;
   index_ = i;

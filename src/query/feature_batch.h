@@ -26,11 +26,14 @@ namespace deformable {
 /// @brief The error for a vertex whose coordinates are not finite.
 class NonFiniteVertex : public std::domain_error {
  public:
-  explicit NonFiniteVertex(std::size_t vertex);
+  /// @param mesh  MeshInstance::name
+  NonFiniteVertex(const char* mesh, std::size_t vertex);
 
+  const char* mesh() const { return mesh_; }
   std::size_t vertex() const { return vertex_; }
 
  private:
+  const char* mesh_;
   std::size_t vertex_;
 };
 

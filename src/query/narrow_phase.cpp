@@ -62,7 +62,7 @@ void NarrowPhase::begin(std::size_t task) {
 
 void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
   if (error_ && error_->earliest <= earliest) return;
-  error_ = QueryError{earliest, error.vertex()};
+  error_ = QueryError{earliest, error.mesh(), error.vertex()};
   if (!progress_) return;
   QueryProgress::lower(progress_->first_hi, double{earliest});
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);

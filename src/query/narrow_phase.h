@@ -68,6 +68,7 @@ struct QueryProgress {
 /// from `earliest` on.
 struct QueryError {
   float earliest;
+  const char* mesh;
   std::size_t vertex;
 };
 

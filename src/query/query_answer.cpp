@@ -28,7 +28,7 @@ void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& option
         (!earliest || error->earliest < earliest->earliest))
       earliest = &*error;
   }
-  if (earliest) throw NonFiniteVertex(earliest->vertex);
+  if (earliest) throw NonFiniteVertex(earliest->mesh, earliest->vertex);
 }
 
 void addEffort(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {

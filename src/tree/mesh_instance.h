@@ -19,6 +19,9 @@ namespace deformable {
 /// @brief A mesh as one query uses it: a tree, the vertex paths in the world, and the
 /// triangles if there is no moving tree. Owns nothing.
 struct MeshInstance {
+  /// The name of the mesh in errors, for example "o1".
+  const char* name{"the mesh"};
+
   VertexFrames frames;
 
   /// The moving tree. Its boxes are in the object's coordinates and have to be moved by

@@ -344,10 +344,12 @@ TEST_F(BoundedMotions, RefuseWhatIsNoNumber) {
     collide<ContinuousContactRequest<double>>(*bar_, Wrong(what), *plate, result);
   };
   expectRefused([&] { ask(Wrong::What::kPlacement); }, "o1: the transform");
-  expectRefused([&] { ask(Wrong::What::kLater); }, "placementAt()");
-  expectRefused([&] { ask(Wrong::What::kRate); }, "rateAt()");
-  expectRefused([&] { ask(Wrong::What::kAcceleration); }, "accelerationBound()");
-  expectRefused([&] { ask(Wrong::What::kSpeed); }, "angularSpeedBound()");
+  expectRefused([&] { ask(Wrong::What::kLater); }, "o1: BoundedMotion::placementAt()");
+  expectRefused([&] { ask(Wrong::What::kRate); }, "o1: BoundedMotion::rateAt()");
+  expectRefused([&] { ask(Wrong::What::kAcceleration); },
+                "o1: BoundedMotion::accelerationBound()");
+  expectRefused([&] { ask(Wrong::What::kSpeed); },
+                "o1: BoundedMotion::angularSpeedBound()");
   EXPECT_THROW(ask(Wrong::What::kThrow), std::runtime_error);
 }
 

@@ -377,7 +377,7 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   };
   refused(none, o, here, "o1 is null");
   refused(o, none, here, "o2 is null");
-  refused(o, sphere.get(), here, "o2 is not a triangle mesh");
+  refused(o, sphere.get(), here, "o2 is not a triangle mesh but a sphere");
   expectRefused([&] { continuousSelfCandidates(none, sink); }, "o is null");
   expectRefused([&] { continuousSelfCandidates(sphere.get(), sink); },
                 "not a triangle mesh");
@@ -405,7 +405,7 @@ TEST(ContinuousCandidatesErrors, AreThoseOfTheQueries) {
   // Errors that are found during the query.
   rigid->vertices[5][2] = nan;
   expectRefused([&] { continuousSelfCandidates(rigid.get(), sink); },
-                "vertex 5 is not finite");
+                "o: vertex 5 is not finite");
   rigid->vertices[5][2] = 0;
   rigid->tri_indices[2][1] = 1000;
   refused(o, rigid.get(), here, "o2: triangle 2 refers to a vertex that is not there");

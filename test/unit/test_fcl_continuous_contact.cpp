@@ -464,11 +464,19 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
     void computeLocalAABB() override {}
   };
   const OwnGeometry own;
-  refused("o2 is neither a triangle mesh nor a shape nor an octree", o, &motion, &own,
-          &motion, request);
+  refused(
+      "o2 is a geometry that is none of FCL's, not a triangle mesh, a shape or an octree",
+      o, &motion, &own, &motion, request);
+  Plain cloud;
+  cloud.beginModel();
+  cloud.addSubModel(kSheet.vertices);
+  cloud.endModel();
+  refused("o1 is a point cloud, not", &cloud, &motion, o, &motion, request);
+  expectRefused([&] { continuousSelfCollide(&cloud, request, result); },
+                "o is not a triangle mesh but a point cloud");
   expectRefused([&] { continuousSelfCollide(none, request, result); }, "o is null");
   expectRefused([&] { continuousSelfCollide(sphere.get(), request, result); },
-                "not a triangle mesh");
+                "o is not a triangle mesh but a sphere");
   const CollisionObject<double>* no_object = nullptr;
   expectRefused(
       [&] { continuousCollide(no_object, here, no_object, here, request, result); },

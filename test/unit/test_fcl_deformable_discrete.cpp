@@ -266,7 +266,8 @@ TEST(DiscreteDistance, MeshMeshWithoutAFunctionIsRefused) {
   const auto box = makeModel<DeformableBVHModel<AABB<double>>>(sheet);
   const auto rss = makeModel<BVHModel<RSS<double>>>(sheet);
   const Pose here = Pose::Identity();
-  expectRefused([&] { distanceOf(*box, here, *rss, here); }, "no distance function");
+  expectRefused([&] { distanceOf(*box, here, *rss, here); },
+                "o1 is a model of AABBs and o2 is a model of RSSs. FCL has no distance");
 }
 
 template <typename BV>

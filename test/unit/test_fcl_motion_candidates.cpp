@@ -258,7 +258,8 @@ TEST_F(MotionCandidates, RefuseWhatIsNotKnown) {
                        const ContinuousCandidateSink& sink) {
     continuousCandidates(ball.get(), motion1, ball.get(), motion2, sink);
   };
-  expectRefused([&] { ask(&rest, &hop, take); }, "o2 follows a motion class");
+  expectRefused([&] { ask(&rest, &hop, take); },
+                "o2, a triangle mesh, follows a motion class");
   expectRefused([&] { ask(nullptr, &rest, take); }, "motion1 is null");
   expectRefused([&] { ask(&rest, &rest, nullptr); }, "sink is null");
 }

@@ -536,7 +536,9 @@ TEST_F(MotionCollision, WhatIsRefused) {
     continuousCollide(&o, kStill, to, square_.get(), kStill, kStill,
                       requestOf<Request>(type), result);
   };
-  expectRefused([&] { ask(*bar_, end, CCDM_SPLINE); }, "SplineMotion");
+  expectRefused(
+      [&] { ask(*bar_, end, CCDM_SPLINE); },
+      "o1, a triangle mesh: request.ccd_motion_type does not define how it turns");
   // Without a turn there is only one path.
   Pose translated = kStill;
   translated.translation()[0] = 1;
@@ -545,7 +547,7 @@ TEST_F(MotionCollision, WhatIsRefused) {
   TestMesh broken = makeBar();
   const auto bad = makeModel<Rigid<double>>(broken);
   for (int i = 0; i < bad->num_vertices; ++i) bad->vertices[i][1] = nan;
-  expectRefused([&] { ask(*bad, end, CCDM_LINEAR); }, "is not finite");
+  expectRefused([&] { ask(*bad, end, CCDM_LINEAR); }, "o1: vertex ");
   expectRefused([&] { ask(Rigid<double>(), end, CCDM_LINEAR); }, "o1: the model");
   Pose nowhere = end;
   nowhere.translation()[1] = nan;

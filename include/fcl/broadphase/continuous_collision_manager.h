@@ -439,7 +439,10 @@ void ContinuousCollisionManager<S>::setFilter(Object* object,
 template <typename S>
 void ContinuousCollisionManager<S>::setSelfCollision(Object* object, bool enabled) {
   if (enabled && object && object->getObjectType() != OT_BVH)
-    throw Exception("setSelfCollision: the object is not a mesh");
+    throw Exception("setSelfCollision: " + nameOf(object) +
+                    " is not a triangle mesh but " +
+                    detail::kindOf(object->getNodeType()) +
+                    ". Only a triangle mesh can be tested with itself");
   boxes_.setSelf(object, enabled);
 }
 

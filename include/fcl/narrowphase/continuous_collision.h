@@ -83,7 +83,8 @@ namespace fcl {
 /// motion object between concurrent calls if FCL answers, or if it is of a class of the
 /// program: reading its pose changes it.
 ///
-/// @throws fcl::Exception  The text names the object.
+/// @throws fcl::Exception  The text names the object (o1, o2, or o of a self-collision)
+/// or the field of the request.
 /// - For all pairs: an object or its motion is null. Of meshes, shapes and octrees: a
 ///   transform is not finite.
 /// - For pairs that are answered here, meshes: the mesh is not built, is in the middle of
@@ -175,7 +176,7 @@ float continuousSelfCollide(const CollisionGeometry<float>* o,
 
 /// @name With contacts
 /// Only pairs that are answered here have contacts. For a pair that FCL answers
-/// these throw fcl::Exception, whose text names the way out.
+/// these throw fcl::Exception. The text names the object, its kind and the way out.
 /// @{
 
 /// @brief The contacts of two geometries that follow motions.

@@ -5,6 +5,8 @@
 #ifndef FCL_NARROWPHASE_DISTANCE_OVERLAY_H
 #define FCL_NARROWPHASE_DISTANCE_OVERLAY_H
 
+#include <string>
+
 #include "fcl/ccd_version.h"
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -81,9 +83,10 @@ void requireDistanceFunction(const CollisionGeometry<S>& o1,
   const NODE_TYPE mesh = (is_first_the_mesh ? o1 : o2).getNodeType(),
                   other = (is_first_the_mesh ? o2 : o1).getNodeType();
   if (!hasDistanceFunction(mesh, other))
-    throw Exception(
-        "distance: FCL has no distance function for the types of these two objects. Use "
-        "two models of the same BV: AABB, RSS, kIOS or OBBRSS");
+    throw Exception(std::string("distance: o1 is ") + kindOf(o1.getNodeType()) +
+                    " and o2 is " + kindOf(o2.getNodeType()) +
+                    ". FCL has no distance function for these two. Use two models of the "
+                    "same BV: AABB, RSS, kIOS or OBBRSS");
 }
 
 }  // namespace detail

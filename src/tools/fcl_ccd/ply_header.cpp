@@ -37,7 +37,9 @@ PlyFormat parseFormat(const Tokens& tokens) {
     if (tokens[1] == "binary_little_endian") return PlyFormat::kLittleEndian;
     if (tokens[1] == "binary_big_endian") return PlyFormat::kBigEndian;
   }
-  throw std::runtime_error("unknown format");
+  throw std::runtime_error(
+      "unknown format; expected ascii, binary_little_endian or binary_big_endian, and "
+      "1.0");
 }
 
 PlyElement parseElement(const Tokens& tokens) {

@@ -197,10 +197,10 @@ S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
   requireNotNull(o2, "o2");
   requireNotNull(motion1, "motion1");
   requireNotNull(motion2, "motion2");
-  if (collideHere(movingGeometry(o1, motion1, o2), movingGeometry(o2, motion2, o1),
-                  request, result))
-    return result.time_of_contact;
-  return askFcl(o1, motion1, o2, motion2, request, result);
+  const MovingGeometry<S> moving1 = movingGeometry(o1, motion1, o2),
+                          moving2 = movingGeometry(o2, motion2, o1);
+  if (collideHere(moving1, moving2, request, result)) return result.time_of_contact;
+  return askFcl(moving1, motion1, moving2, motion2, request, result);
 }
 
 template <typename S, typename Request, typename Result>

@@ -6,7 +6,6 @@
 #define FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
 
 #include <memory>
-#include <string>
 
 #include "fcl/common/exception.h"
 #include "fcl/math/motion/interp_motion.h"
@@ -71,13 +70,13 @@ std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
 
 /// @brief FCL's answer about geometries that follow motions.
 template <typename S>
-S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
-         const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
+S askFcl(const MovingGeometry<S>& o1, const MotionBase<S>* motion1,
+         const MovingGeometry<S>& o2, const MotionBase<S>* motion2,
          const ContinuousCollisionRequest<S>& request,
          ContinuousCollisionResult<S>& result) {
-  return continuousCollide<S>(geometryForFcl(o1, o2, request).get(), motion1,
-                              geometryForFcl(o2, o1, request).get(), motion2, request,
-                              result);
+  return continuousCollide<S>(
+      geometryForFcl(o1.geometry, o2.geometry, request).get(), motion1,
+      geometryForFcl(o2.geometry, o1.geometry, request).get(), motion2, request, result);
 }
 
 /// @brief FCL's answer about geometries that go from one transform to another.
@@ -89,8 +88,7 @@ S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
     return makeFclMotion<S>(toTransform(o.pose[0]), toTransform(o.pose[1]),
                             request.ccd_motion_type);
   };
-  return askFcl(o1.geometry, motionOf(o1).get(), o2.geometry, motionOf(o2).get(), request,
-                result);
+  return askFcl(o1, motionOf(o1).get(), o2, motionOf(o2).get(), request, result);
 }
 
 /// @brief The same in float, where stock FCL does not compile. The library does it.
@@ -108,35 +106,19 @@ inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>
   return answer;
 }
 
-/// @brief Why there are no contacts of a pair that FCL answers, and the way out.
-template <typename S>
-std::string explainNoContacts(const CollisionGeometry<S>& o1,
-                              const CollisionGeometry<S>& o2) {
-  const auto has_contacts = [](const CollisionGeometry<S>& o) {
-    return o.getObjectType() == OT_BVH || o.getObjectType() == OT_GEOM ||
-           o.getObjectType() == OT_OCTREE;
-  };
-  if (!has_contacts(o1) || !has_contacts(o2))
-    return std::string(has_contacts(o1) ? "o2" : "o1") +
-           " is neither a triangle mesh nor a shape nor an octree, and only these have "
-           "contacts. Give a ContinuousCollisionRequest: FCL then answers, and takes "
-           "meshes as they are in their current frame";
-  return "there are no contacts of this pair: an object follows a motion class that is "
-         "neither FCL's nor a BoundedMotion, or a model has no triangles. Derive the "
-         "motion class from BoundedMotion too, or give transforms";
-}
-
 /// @brief FCL reports no contacts.
 template <typename S>
-S askFcl(const CollisionGeometry<S>* o1, const MotionBase<S>*,
-         const CollisionGeometry<S>* o2, const MotionBase<S>*,
-         const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
-  throw Exception(explainNoContacts(*o1, *o2));
+S askFcl(const MovingGeometry<S>& o1, const MotionBase<S>*, const MovingGeometry<S>& o2,
+         const MotionBase<S>*, const ContinuousContactRequest<S>&,
+         ContinuousContactResult<S>& result) {
+  refuseContacts(o1, o2);
+  return result.time_of_contact;
 }
 template <typename S>
 S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
-         const ContinuousContactRequest<S>&, ContinuousContactResult<S>&) {
-  throw Exception(explainNoContacts(*o1.geometry, *o2.geometry));
+         const ContinuousContactRequest<S>&, ContinuousContactResult<S>& result) {
+  refuseContacts(o1, o2);
+  return result.time_of_contact;
 }
 
 }  // namespace detail

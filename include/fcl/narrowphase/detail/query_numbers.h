@@ -112,6 +112,50 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
   return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}, nullptr};
 }
 
+/// @brief What a geometry of this type is, for messages.
+inline const char* kindOf(NODE_TYPE type) {
+  switch (type) {
+    case BV_AABB:
+      return "a model of AABBs";
+    case BV_OBB:
+      return "a model of OBBs";
+    case BV_RSS:
+      return "a model of RSSs";
+    case BV_kIOS:
+      return "a model of kIOSs";
+    case BV_OBBRSS:
+      return "a model of OBBRSSs";
+    case BV_KDOP16:
+    case BV_KDOP18:
+    case BV_KDOP24:
+      return "a model of KDOPs";
+    case GEOM_BOX:
+      return "a box";
+    case GEOM_SPHERE:
+      return "a sphere";
+    case GEOM_CAPSULE:
+      return "a capsule";
+    case GEOM_ELLIPSOID:
+      return "an ellipsoid";
+    case GEOM_CONE:
+      return "a cone";
+    case GEOM_CYLINDER:
+      return "a cylinder";
+    case GEOM_CONVEX:
+      return "a convex";
+    case GEOM_PLANE:
+      return "a plane";
+    case GEOM_HALFSPACE:
+      return "a halfspace";
+    case GEOM_TRIANGLE:
+      return "a TriangleP";
+    case GEOM_OCTREE:
+      return "an octree";
+    default:
+      return "a geometry that is none of FCL's";
+  }
+}
+
 /// @brief The request, as numbers.
 struct QuerySettings {
   double toc_err;
@@ -148,6 +192,11 @@ template <typename S>
 FCL_EXPORT bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                            const QuerySettings& settings, QueryOutcome<S>& outcome,
                            ContinuousContacts<S>* contacts);
+
+/// @brief Throws fcl::Exception, which tells why there are no contacts of a pair for
+/// which answerPair() returned false, and the way out.
+template <typename S>
+FCL_EXPORT void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2);
 
 /// @brief The continuous query of a mesh with itself.
 template <typename S>
