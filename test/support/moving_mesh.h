@@ -22,6 +22,20 @@ struct MovingMesh {
   std::size_t id(std::size_t i, int k) const { return triangles[i][k]; }
 };
 
+/// @brief A mesh at rest.
+inline MovingMesh still(const TestMesh& mesh) {
+  return {mesh.vertices, mesh.vertices, mesh.triangles};
+}
+
+/// @brief Adds a mesh with vertices of its own.
+inline void append(MovingMesh& mesh, const MovingMesh& other) {
+  const std::size_t first = mesh.t0.size();
+  mesh.t0.insert(mesh.t0.end(), other.t0.begin(), other.t0.end());
+  mesh.t1.insert(mesh.t1.end(), other.t1.begin(), other.t1.end());
+  for (const Triangle& t : other.triangles)
+    mesh.triangles.emplace_back(first + t[0], first + t[1], first + t[2]);
+}
+
 /// @brief The data of a mesh that a query needs, made by the functions of the stages. The
 /// mesh must stay at its address.
 class PreparedMovingMesh {

@@ -29,19 +29,6 @@ using test::Random;
 
 const double kPi = std::acos(-1.0);
 
-MovingMesh still(const test::TestMesh& mesh) {
-  return {mesh.vertices, mesh.vertices, mesh.triangles};
-}
-
-/// Adds a mesh with vertices of its own.
-void append(MovingMesh& mesh, const MovingMesh& other) {
-  const std::size_t first = mesh.t0.size();
-  mesh.t0.insert(mesh.t0.end(), other.t0.begin(), other.t0.end());
-  mesh.t1.insert(mesh.t1.end(), other.t1.begin(), other.t1.end());
-  for (const Triangle& t : other.triangles)
-    mesh.triangles.emplace_back(first + t[0], first + t[1], first + t[2]);
-}
-
 /// Turns, scales and moves the second frame.
 void move(MovingMesh& mesh, double angle, double scale, Random& random) {
   const AngleAxis<double> turn(angle, random.point(1).normalized());

@@ -137,19 +137,6 @@ void expectNoContact(const MovingMesh& mesh, const Found& found) {
   }
 }
 
-MovingMesh still(const test::TestMesh& mesh) {
-  return {mesh.vertices, mesh.vertices, mesh.triangles};
-}
-
-/// Adds a mesh with vertices of its own.
-void append(MovingMesh& mesh, const MovingMesh& other) {
-  const std::size_t first = mesh.t0.size();
-  mesh.t0.insert(mesh.t0.end(), other.t0.begin(), other.t0.end());
-  mesh.t1.insert(mesh.t1.end(), other.t1.begin(), other.t1.end());
-  for (const Triangle& t : other.triangles)
-    mesh.triangles.emplace_back(first + t[0], first + t[1], first + t[2]);
-}
-
 /// A flat strip around the z axis that climbs by `rise` a turn, and whose radius grows by
 /// `growth` a turn.
 test::TestMesh spiral(int nx, double turns, double rise, double growth = 0) {
