@@ -13,7 +13,7 @@ std::size_t RegionBorders::memUsage() const {
                                   border->paths.capacity()) *
                                      sizeof(std::uint32_t);
   if (const auto* closed = closed_.load(std::memory_order_acquire))
-    bytes += sizeof(*closed) + closed->capacity() * sizeof(ClosedNode);
+    bytes += sizeof(std::vector<ClosedNode>) + closed->capacity() * sizeof(ClosedNode);
   return bytes;
 }
 
