@@ -64,7 +64,7 @@ OctreeCells octreeCellsOf(const CollisionGeometry<S>& geometry, const std::strin
     throw Exception(name +
                     ": the resolution of the octree is not positive or not finite. Make "
                     "the map with a positive resolution");
-  return OctreeCells(std::make_unique<OctomapNodes<S>>(octree), root_size);
+  return OctreeCells(std::make_unique<OctomapNodes<S>>(octree), root_size, name);
 }
 
 #else

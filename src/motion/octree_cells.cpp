@@ -55,8 +55,9 @@ void OctreeCells::Bounds::add(const Bounds& other) {
   }
 }
 
-OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size)
-    : nodes_(std::move(nodes)), root_size_(root_size) {
+OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size,
+                         std::string name)
+    : nodes_(std::move(nodes)), root_size_(root_size), name_(std::move(name)) {
   constexpr std::uint16_t kMiddle = 1U << (OctreeCellNumber::kDepth - 1);
   if (const void* root = nodes_->root()) add(root, {{kMiddle, kMiddle, kMiddle}, 0});
   openUpperNodes();
@@ -64,8 +65,9 @@ OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_s
 
 void OctreeCells::add(const void* node, const OctreeCellNumber& name) {
   if (table_.size() >= std::numeric_limits<std::int32_t>::max())
-    throw Exception(
-        "an octree has more than 2^31 cells near the other object. Divide the map");
+    throw Exception(name_ +
+                    ": the octree has more than 2^31 nodes near the other object. Divide "
+                    "the map");
   table_.push_back({node, name, Bounds::of(name), 0, -1, -1, 0, nodes_->isLeaf(node)});
 }
 

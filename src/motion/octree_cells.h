@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "motion/convex_shape.h"
@@ -69,7 +70,9 @@ class OctreeNodes {
 class OctreeCells {
  public:
   /// @param root_size  the side of the root, whose center is the origin
-  OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size);
+  /// @param name  the name of the octree in errors
+  OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_size,
+              std::string name);
 
   /// @brief Whether no cell is occupied, as far as the upper nodes tell.
   bool isEmpty() const { return is_empty_; }
@@ -131,6 +134,7 @@ class OctreeCells {
 
   std::unique_ptr<const OctreeNodes> nodes_;
   double root_size_;
+  std::string name_;
   bool is_empty_{true};
   std::vector<Node> table_;
   std::deque<ConvexShape> shapes_;
