@@ -184,6 +184,7 @@ TYPED_TEST(ContinuousCollide, ModelsAndMotionsStayAsTheyAre) {
                               CCDC_RAY_SHOOTING, CCDC_POLYNOMIAL_SOLVER}) {
       request.ccd_solver_type = solver;
       for (int i = 0; i < 2; ++i) {
+        request.num_max_iterations = i == 0 ? 10 : 1000;
         ContinuousCollisionResult<S> result;
         continuousCollide(a.geometry.get(), &motion, b.geometry.get(), &still, request,
                           result);
@@ -197,6 +198,17 @@ TYPED_TEST(ContinuousCollide, ModelsAndMotionsStayAsTheyAre) {
     EXPECT_TRUE(vertices == pointsOf(model->vertices, model->num_vertices));
     EXPECT_TRUE(previous == pointsOf(model->prev_vertices, model->num_vertices));
   }
+}
+
+TYPED_TEST(ContinuousCollide, WithoutATurnAllMotionTypesAreOne) {
+  using S = typename TestFixture::S;
+  const Actor<S> b = this->actors(this->roof_, 0, 0)[0];
+  for (const Actor<S>& a : this->actors(this->flat_, 1, -3))
+    for (const auto type : {CCDM_TRANS, CCDM_LINEAR, CCDM_SCREW, CCDM_SPLINE}) {
+      ContinuousCollisionRequest<S> request;
+      request.ccd_motion_type = type;
+      this->expectTime(collideEveryWay(a, b, request), 0.25);
+    }
 }
 
 // A rigid model's own boxes are used, no matter how FCL made them.
