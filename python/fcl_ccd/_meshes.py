@@ -33,8 +33,7 @@ class DeformableMesh(_core.DeformableMesh):
         Threads of the build and of updates. 0: all cores.
 
     At least one triangle, edge or point. In contacts b1 and b2 number the triangles first,
-    then the edges, then the points. A mesh with free edges or points goes straight: queries
-    in which a mesh turns, or with a shape or an OcTree, raise ValueError.
+    then the edges, then the points.
 
     Raises ValueError for a vertex number out of range, an edge of a vertex with itself, a
     position that is not finite or an array of another shape, and TypeError for elements of

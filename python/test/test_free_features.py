@@ -90,6 +90,16 @@ def test_errors(arguments, error, text):
         fcl_ccd.DeformableMesh(PREVIOUS, None, **arguments)
 
 
-def test_what_does_not_know_them():
-    with pytest.raises(ValueError, match="free edges or points"):
-        fcl_ccd.collide(cables(), fcl_ccd.Sphere(1))
+def test_shapes_and_turns():
+    """A lying edge falls on a ball and on a cable that turns below it."""
+    lying = [[-1, 0, 1], [1, 0, 1]]
+    edge = fcl_ccd.DeformableMesh(lying, None, edges=[(0, 1)])
+    edge.update(np.asarray(lying) - [0, 0, 2])
+    on_ball = fcl_ccd.collide(edge, fcl_ccd.Sphere(0.5), query="all")
+    assert on_ball.time_of_contact == pytest.approx(0.25, abs=1e-4)
+    assert on_ball.contacts["kind"].tolist() == [fcl_ccd.Kind.EDGE_SHAPE]
+    below = fcl_ccd.DeformableMesh([[-1, 0, 0], [1, 0, 0]], None, edges=[(0, 1)])
+    turn = np.eye(4)
+    turn[:2, :2] = [[0, -1], [1, 0]]
+    on_cable = fcl_ccd.collide(edge, below, motion2=fcl_ccd.ScrewMotion(np.eye(4), turn))
+    assert on_cable.time_of_contact == pytest.approx(0.5, abs=1e-4)

@@ -359,8 +359,10 @@ void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
       whyFclAnswers(placed1, placed2) + ", so FCL answers this pair, without contacts. " +
       (unknown.isMesh() || unknown.isRigid()
            ? "Derive the motion class from BoundedMotion too, or give transforms"
-           : "Give an octree or a mesh in its place, or a ContinuousCollisionRequest: "
-             "FCL then takes meshes as they are in their current frame"));
+           : "Give a mesh, an octree or a DeformableBVHModel with free points in its "
+             "place, or a ContinuousCollisionRequest: FCL then takes meshes as they are "
+             "in "
+             "their current frame"));
 }
 
 template <typename S>

@@ -144,12 +144,6 @@ std::size_t numTrianglesOf(const CollisionGeometry<S>& geometry) {
 }
 
 template <typename S>
-bool hasFreeLeaves(const CollisionGeometry<S>& geometry) {
-  const auto* mesh = dynamic_cast<const DeformableMesh*>(&geometry);
-  return mesh && mesh->numFreeEdges() + mesh->numFreePoints() > 0;
-}
-
-template <typename S>
 PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beginning,
                            const Pose& end, const std::string& name, int num_threads,
                            FeatureOwners owners)
@@ -266,7 +260,6 @@ void PreparedMesh::refit(const std::string& name, int num_threads) {
 #define FCL_CCD_INSTANTIATE(S)                                                  \
   template MeshKind meshKindOf(const CollisionGeometry<S>&);                    \
   template std::size_t numTrianglesOf(const CollisionGeometry<S>&);             \
-  template bool hasFreeLeaves(const CollisionGeometry<S>&);                     \
   template PreparedMesh::PreparedMesh(const CollisionGeometry<S>&, const Pose&, \
                                       const Pose&, const std::string&, int,     \
                                       FeatureOwners);

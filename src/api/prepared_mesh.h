@@ -33,10 +33,6 @@ MeshKind meshKindOf(const CollisionGeometry<S>& geometry);
 template <typename S>
 std::size_t numTrianglesOf(const CollisionGeometry<S>& geometry);
 
-/// @brief Whether a geometry is a DeformableBVHModel with free edges or points.
-template <typename S>
-bool hasFreeLeaves(const CollisionGeometry<S>& geometry);
-
 /// @throws fcl::Exception when a number is not finite; the text names the geometry `name`
 void requireFinite(const Pose& beginning, const Pose& end, const std::string& name);
 

@@ -131,29 +131,16 @@ enum class Answerer {
   kFcl  ///< FCL: one is a point cloud, or follows a motion that is not known, for example
 };
 
-/// Only queries of straight paths of two meshes know free edges and points.
-template <typename S>
-void requireNoFreeLeaves(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
-  for (const PlacedGeometry<S>* o : {&o1, &o2})
-    if (deformable::hasFreeLeaves(o->geometry()))
-      throw Exception(std::string(o == &o1 ? "o1" : "o2") +
-                      " has free edges or points, which a query does not know if a mesh "
-                      "turns, or with a shape or an octree. Move them on straight paths, "
-                      "against meshes: give their positions as vertices of both frames");
-}
-
 /// Which method answers a pair.
 /// @throws fcl::Exception  when one of two meshes does not go straight and a pose is not
-/// finite, or when the method does not know free edges and points. (A rotation that is
-/// not finite is not constant. PreparedMesh checks the poses of straight paths. FCL gets
-/// other geometries as they are.)
+/// finite. (A rotation that is not finite is not constant. PreparedMesh checks the poses
+/// of straight paths. FCL gets other geometries as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   if (o1.isShape() || o2.isShape() || o1.isOctree() || o2.isOctree()) {
     if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
-    requireNoFreeLeaves(o1, o2);
     return Answerer::kShapes;
   }
   if (o1.goesStraight() && o2.goesStraight()) return Answerer::kStraightPaths;
@@ -162,7 +149,6 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
   }
   if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
-  requireNoFreeLeaves(o1, o2);
   return Answerer::kCurvedPaths;
 }
 

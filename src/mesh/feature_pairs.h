@@ -131,6 +131,15 @@ inline unsigned ownedPairs(unsigned owned_a, unsigned owned_b) {
   return kOwnedParts.of_a[owned_a] & kOwnedParts.of_b[owned_b];
 }
 
+/// @brief The same, without the pairs of free leaves that are not looked for: a free
+/// point meets a free edge or another free point at a distance only, and two free edges
+/// are one pair.
+inline unsigned wantedPairs(unsigned owned_a, unsigned owned_b, bool at_distance) {
+  const unsigned pairs = ownedPairs(owned_a, owned_b);
+  const bool are_edges = (owned_a & owned_b & kOwnsFirstEdge) != 0;
+  return at_distance && !are_edges ? pairs : pairs & ~(1U << kFreePair);
+}
+
 /// @brief The pairs of features of two triangles that share a vertex (sharedVertices()).
 inline unsigned pairsAt(unsigned shared) {
   unsigned pairs = 0;

@@ -41,8 +41,14 @@ Extreme extremeOf(const PosedConvex& set, const Vec& direction, double tolerance
     return out;
   }
   int count = 0;
+  const auto isRepeated = [&set](int k) {
+    // Corners of a free edge or point (MeshTriangle).
+    return std::any_of(set.corner, set.corner + k, [&](const Vec& other) {
+      return maxNorm(other - set.corner[k]) == 0;
+    });
+  };
   for (int k = 0; k < 3; ++k) {
-    if (dot(direction, out.point - set.corner[k]) > tolerance) continue;
+    if (dot(direction, out.point - set.corner[k]) > tolerance || isRepeated(k)) continue;
     out.middle = out.middle + set.corner[k];
     out.corners |= 1U << k;
     ++count;

@@ -18,16 +18,23 @@ constexpr double kUnitRounding = 0x1p-53;
 /// nearly the distance, and after which they are given up.
 constexpr int kPlainSteps = 64, kMostSteps = 10000;
 
-/// A feature of one side of a pair. The ends of an edge are in the order of their ids.
-BodyTriangle sideOf(const FeaturePair& pair, const BodyTriangle& triangle, bool is_a) {
-  if (pair.kind == ContinuousContactKind::kVertexFace)
-    return pair.first_on_a == is_a ? featureOf(triangle, pair.first, pair.first)
-                                   : triangle;
-  unsigned first = is_a ? pair.first : pair.second, second = (first + 1) % 3;
+/// An edge with its ends in the order of their ids.
+BodyTriangle edgeOf(const BodyTriangle& triangle, unsigned first) {
+  unsigned second = (first + 1) % 3;
   if (static_cast<std::uint32_t>(triangle.vertex[second]) <
       static_cast<std::uint32_t>(triangle.vertex[first]))
     std::swap(first, second);
   return featureOf(triangle, first, second);
+}
+
+/// A feature of one side of a pair.
+BodyTriangle sideOf(const FeaturePair& pair, const BodyTriangle& triangle, bool is_a) {
+  if (pair.kind == ContinuousContactKind::kEdgeEdge)
+    return edgeOf(triangle, is_a ? pair.first : pair.second);
+  const bool is_vertex =
+      pair.first_on_a == is_a || pair.kind == ContinuousContactKind::kVertexVertex;
+  if (is_vertex) return featureOf(triangle, pair.first, pair.first);
+  return pair.kind == ContinuousContactKind::kVertexFace ? triangle : edgeOf(triangle, 0);
 }
 
 /// Where a point of FeaturePoints is: the body, and the corner of its feature.
@@ -64,11 +71,11 @@ struct FeaturePairMotion::Moment {
   Moment(const FeaturePairMotion& pair, double t)
       : state(pair.motion_.at(t)), polygon(polygonOf(pair, state)) {
     const auto velocity = [&](int point) {
-      const PointPlace at = placeOf(pair.kind_, pair.first_on_a_, point);
+      const PointPlace at = placeOf(pair.pair_.kind, pair.pair_.first_on_a, point);
       return state.v[at.body][at.corner];
     };
     for (int k = 0; k < polygon.count(); ++k) {
-      const CornerPoints points = DifferencePolygon::pointsOf(pair.kind_, k);
+      const CornerPoints points = DifferencePolygon::pointsOf(pair.pair_.kind, k);
       corners[k] = polygon.t0(k);
       velocities[k] = velocity(points.second) - velocity(points.first);
     }
@@ -80,11 +87,11 @@ struct FeaturePairMotion::Moment {
                                      const TrianglePairMotion::State& state) {
     VertexPath x[4];
     for (int i = 0; i < 4; ++i) {
-      const PointPlace at = placeOf(pair.kind_, pair.first_on_a_, i);
+      const PointPlace at = placeOf(pair.pair_.kind, pair.pair_.first_on_a, i);
       const Vec& p = state.p[at.body][at.corner];
       x[i] = {{p.x, p.y, p.z}, {p.x, p.y, p.z}};
     }
-    return DifferencePolygon(pair.kind_, {{&x[0], &x[1], &x[2], &x[3]}});
+    return DifferencePolygon(pair.pair_.kind, {{&x[0], &x[1], &x[2], &x[3]}});
   }
 };
 
@@ -92,11 +99,10 @@ FeaturePairMotion::FeaturePairMotion(const MotionPath& path_a, const BodyTriangl
                                      const MotionPath& path_b, const BodyTriangle& b,
                                      int pair, double t0, double t1,
                                      const MotionTolerance& tolerance)
-    : kind_(featurePair(pair).kind),
-      first_on_a_(featurePair(pair).first_on_a),
+    : pair_(featurePair(pair, a, b)),
       tolerance_(tolerance),
-      a_(sideOf(featurePair(pair), a, true)),
-      b_(sideOf(featurePair(pair), b, false)),
+      a_(sideOf(pair_, a, true)),
+      b_(sideOf(pair_, b, false)),
       motion_(path_a, a_, path_b, b_, t0, t1, tolerance_),
       t1_(t1) {}
 
@@ -149,7 +155,7 @@ double FeaturePairMotion::longestStep(double t, const Moment& moment) const {
   double best = -1;
   for (int attempt = 0; attempt < kDirectionAttempts && !(best > 0); ++attempt) {
     const Vec n = directionApart(moment.polygon, moment.corners, moment.near, attempt);
-    best = std::max(best, motion_.step(t, moment.state, first_on_a_ ? n : -1. * n));
+    best = std::max(best, motion_.step(t, moment.state, pair_.first_on_a ? n : -1. * n));
     if (best >= longest) return best;
     const Vec turn =
         turnApart(moment.polygon, moment.corners, moment.velocities, moment.near, n);
@@ -191,7 +197,7 @@ DistanceContact FeaturePairMotion::contactAt(double t, double width) const {
   const Moment moment(*this, t);
   DistanceContact out;
   out.is_contact = true;
-  setNearest(kind_, moment.near, kNumber, out);
+  setNearest(pair_.kind, moment.near, kNumber, out);
   out.toc_lo = out.toc_hi = t;
   // A contact at the beginning has exactly the time 0.
   if (t > 0) out.toc_hi = proveWithin(t, width);

@@ -17,8 +17,8 @@ namespace deformable {
 /// @param first, second  corners
 BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned second);
 
-/// @brief A vertex and a face, or two edges, in a span of time. What TrianglePairMotion
-/// is for two triangles.
+/// @brief A vertex and a face, two edges, or free points and edges, in a span of time.
+/// What TrianglePairMotion is for two triangles.
 ///
 /// Properties: (1) kApart only with a proof that the features stay further apart than the
 /// distance d of the tolerance; (2) kContact only if they come within d (1 + 1e-9) +
@@ -63,8 +63,7 @@ class FeaturePairMotion {
   /// Features whose computed distance is at most d + this are in contact.
   double touching(double size) const;
 
-  ContinuousContactKind kind_;
-  bool first_on_a_;
+  FeaturePair pair_;
   MotionTolerance tolerance_;
   BodyTriangle a_, b_;
   TrianglePairMotion motion_;

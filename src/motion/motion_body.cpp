@@ -2,6 +2,7 @@
 #include "motion/motion_body.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -120,18 +121,41 @@ double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triang
   return most * kUpward;
 }
 
+FeaturePair featurePair(int pair, const BodyTriangle& a, const BodyTriangle& b) {
+  if (pair != kFreePair) return featurePair(pair);
+  assert(a.isFreePoint() || b.isFreePoint());
+  const bool are_points = a.isFreePoint() && b.isFreePoint();
+  return {are_points ? ContinuousContactKind::kVertexVertex
+                     : ContinuousContactKind::kVertexEdge,
+          a.isFreePoint(), 0, 0};
+}
+
 FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b) {
-  const FeaturePair features = featurePair(pair);
+  const FeaturePair features = featurePair(pair, a, b);
   FeatureIds ids{features.kind, features.first_on_a, {}, {a.index, b.index}};
-  for (int i = 0; i < 4; ++i) {
-    const unsigned corner = kFeaturePoints[pair][i];
-    ids.vertices[i] =
-        static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner] : b.vertex[corner - 3]);
+  const auto num_points = static_cast<int>(numVertices(ids.kind));
+  std::fill(ids.vertices, ids.vertices + 4, ~std::uint32_t{0});
+  if (pair == kFreePair) {
+    const BodyTriangle &first = ids.first_on_a ? a : b, &second = ids.first_on_a ? b : a;
+    ids.vertices[0] = static_cast<std::uint32_t>(first.vertex[0]);
+    for (int i = 1; i < num_points; ++i)
+      ids.vertices[i] = static_cast<std::uint32_t>(second.vertex[i - 1]);
+  } else {
+    for (int i = 0; i < num_points; ++i) {
+      const unsigned corner = kFeaturePoints[pair][i];
+      ids.vertices[i] = static_cast<std::uint32_t>(corner < 3 ? a.vertex[corner]
+                                                              : b.vertex[corner - 3]);
+    }
   }
-  if (ids.kind == ContinuousContactKind::kEdgeEdge)
-    for (int i = 0; i < 4; i += 2)
-      if (ids.vertices[i] > ids.vertices[i + 1])
-        std::swap(ids.vertices[i], ids.vertices[i + 1]);
+  const auto order = [&ids](int i) {
+    if (ids.vertices[i] > ids.vertices[i + 1])
+      std::swap(ids.vertices[i], ids.vertices[i + 1]);
+  };
+  if (ids.kind == ContinuousContactKind::kVertexEdge) order(1);
+  if (ids.kind == ContinuousContactKind::kEdgeEdge) {
+    order(0);
+    order(2);
+  }
   return ids;
 }
 

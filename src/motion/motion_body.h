@@ -41,7 +41,8 @@ struct MotionNode {
   int count;
 };
 
-/// @brief A triangle in the frame of its body: its corners at t = 0 and t = 1.
+/// @brief A triangle in the frame of its body: its corners at t = 0 and t = 1. It may
+/// stand for a free edge or a free point (MeshTriangle).
 struct BodyTriangle {
   Vec corner[2][3];
   std::int32_t index;
@@ -49,13 +50,20 @@ struct BodyTriangle {
   /// As MeshTriangle::owned. A rigid mesh has no owners: each triangle owns all its
   /// features.
   std::uint32_t owned;
+
+  bool isFree() const { return (owned & kFreeLeaf) != 0; }
+  bool isFreePoint() const { return isFree() && vertex[0] == vertex[1]; }
 };
 
 /// @brief Bound on the acceleration of the corners during the span of the bound.
 double accelerationOf(const AccelerationBound& bound, const BodyTriangle& triangle);
 
-/// @brief A pair of features of triangles of two bodies (feature_pairs.h), by ids. An
-/// edge is the same, in whichever of its triangles it is found.
+/// @brief A pair of features of triangles of two bodies (feature_pairs.h). kFreePair: VE
+/// or VV.
+FeaturePair featurePair(int pair, const BodyTriangle& a, const BodyTriangle& b);
+
+/// @brief The pair by ids. An edge is the same, in whichever of its triangles it is
+/// found.
 FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b);
 
 /// @brief A mesh, a shape or an octree that moves along a path, as a query reads it. It
@@ -93,6 +101,13 @@ class MotionBody {
   void open(const BodyPart& part, MotionNode& out) const;
   /// @brief The box of a part at t = 0 or t = 1.
   MotionBox box(const BodyPart& part, int frame) const;
+  /// @brief Whether a mesh has free edges or points. A rigid mesh has none.
+  bool hasFree() const { return tree_ && tree_->freeLeaves().count() > 0; }
+  /// @brief The number of triangles, free edges and free points.
+  /// @pre it is a mesh that deforms
+  std::int32_t numTriangles() const {
+    return static_cast<std::int32_t>(tree_->triangles().size());
+  }
   /// @throws NonFiniteVertex
   /// @throws fcl::Exception  an index out of range
   /// @pre it is a mesh

@@ -87,12 +87,14 @@ class CandidateList {
   CandidateList(const MotionBody& a, const MotionBody& b, double min_distance)
       : a_(a),
         b_(b),
+        at_distance_(min_distance > 0),
         margin_(min_distance + MotionTolerance(a, b, min_distance).touching) {}
 
   void add(const NearTriangles& near) {
     const BodyTriangle a = a_.triangle(near.place[0]), b = b_.triangle(near.place[1]);
     const SpannedPair spanned(a_, a, b_, b, near.t0, near.t1);
-    for (unsigned pairs = ownedPairs(a.owned, b.owned); pairs != 0; pairs &= pairs - 1) {
+    for (unsigned pairs = wantedPairs(a.owned, b.owned, at_distance_); pairs != 0;
+         pairs &= pairs - 1) {
       const int bit = __builtin_ctz(pairs);
       if (!spanned.areApart(bit, margin_)) add(bit, a, b, near);
     }
@@ -129,6 +131,7 @@ class CandidateList {
 
   const MotionBody& a_;
   const MotionBody& b_;
+  bool at_distance_;
   double margin_;
   std::vector<std::pair<Name, FeatureCandidate>> list_;
 };

@@ -2,7 +2,10 @@
 #include "motion/motion_contacts.h"
 
 #include <algorithm>
+#include <cassert>
+#include <cstdint>
 #include <deque>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -17,6 +20,35 @@ namespace detail {
 namespace deformable {
 namespace {
 
+/// Free edges that a triangle has, and free points that are vertices of triangles or free
+/// edges. They are no features of their own.
+class FreeParts {
+ public:
+  void find(const MotionBody& body) {
+    if (!body.hasFree()) return;
+    for (std::int32_t place = 0; place < body.numTriangles(); ++place) {
+      const BodyTriangle leaf = body.triangle(place);
+      if (leaf.isFreePoint()) continue;
+      for (int k = 0; k < 3; ++k) {
+        vertices_.insert(leaf.vertex[k]);
+        if (!leaf.isFree()) edges_.insert(edgeOf(leaf, k));
+      }
+    }
+  }
+  bool contains(const BodyTriangle& leaf) const {
+    if (leaf.isFreePoint()) return vertices_.count(leaf.vertex[0]) > 0;
+    return leaf.isFree() && edges_.count(edgeOf(leaf, 0)) > 0;
+  }
+
+ private:
+  using Edge = std::pair<std::int32_t, std::int32_t>;
+  static Edge edgeOf(const BodyTriangle& triangle, int k) {
+    return std::minmax({triangle.vertex[k], triangle.vertex[(k + 1) % 3]});
+  }
+  std::set<std::int32_t> vertices_;
+  std::set<Edge> edges_;
+};
+
 class FeatureContacts {
  public:
   FeatureContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options)
@@ -26,7 +58,10 @@ class FeatureContacts {
         // Rigid meshes have no owners. Which contacts a first-contact query drops is
         // known at the end only.
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
-              options.filter || a.isRigid() || b.isRigid()) {}
+              options.filter || a.isRigid() || b.isRigid()) {
+    if (options.filter && options.min_distance > 0)
+      for (auto k : {0, 1}) parts_[k].find(*body_[k]);
+  }
 
   /// The contacts of the features that two triangles own, from the time at which the
   /// triangles touch.
@@ -41,12 +76,7 @@ class FeatureContacts {
   void addNearest(const MotionContact& contact) {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
-    const NearestFeatures& near = contact.nearest;
-    const int bit = near.kind == NearestFeatures::Kind::kVertexOfA ? near.a
-                    : near.kind == NearestFeatures::Kind::kVertexOfB
-                        ? 3 + near.b
-                        : 6 + 3 * near.a + near.b;
-    put(a, b, bit, contact.toc_lo, contact.toc_hi);
+    put(a, b, pairOf(contact.nearest, a, b), contact.toc_lo, contact.toc_hi);
   }
 
   /// Adds the edges of one triangle that pass through the other at t = 0.
@@ -59,7 +89,7 @@ class FeatureContacts {
       for (int k = 0; k < 3; ++k) posed(pose, x[body].corner[0][k], p[body][k]);
     }
     for (int body = 0; body < 2; ++body)
-      for (int k = 0; k < 3; ++k) {
+      for (int k = 0; k < (x[body].isFree() ? 1 : 3); ++k) {
         const int end = (k + 1) % 3, other = 1 - body;
         if (!isCrossing(p[body][k], p[body][end], p[other][0], p[other][1], p[other][2]))
           continue;
@@ -90,15 +120,41 @@ class FeatureContacts {
   /// The pairs of features that two triangles own. With a filter the owners may be left
   /// out: then each triangle stands for all its features.
   unsigned pairsOf(const BodyTriangle& a, const BodyTriangle& b) const {
-    if (!options_.filter) return ownedPairs(a.owned, b.owned);
-    return ownedPairs(featuresOf(a), featuresOf(b));
+    const bool at_distance = tolerance_.distance > 0;
+    if (!options_.filter) return wantedPairs(a.owned, b.owned, at_distance);
+    const bool are_own = !parts_[0].contains(a) && !parts_[1].contains(b);
+    return wantedPairs(featuresOf(a), featuresOf(b), at_distance && are_own);
   }
 
   static std::uint32_t featuresOf(const BodyTriangle& triangle) {
+    constexpr std::uint32_t kFirst = 1, kFirstTwo = 3;
+    if (triangle.isFreePoint()) return kFreeLeaf | kFirst;
+    if (triangle.isFree()) return kFreeLeaf | kOwnsFirstEdge | kFirstTwo;
     std::uint32_t features = kOwnsAll;
     for (unsigned k = 0; k < 3; ++k)
       if (triangle.vertex[k] == triangle.vertex[(k + 1) % 3]) features &= ~(8U << k);
     return features;
+  }
+
+  /// The pair of features to which nearest ones belong, without a distance. A free leaf
+  /// has one edge or one vertex.
+  static int pairOf(const NearestFeatures& near, const BodyTriangle& a,
+                    const BodyTriangle& b) {
+    constexpr int kVertexOfA = 0, kVertexOfB = 3, kEdges = 6;
+    assert(!(a.isFreePoint() && b.isFree()) && !(b.isFreePoint() && a.isFree()));
+    if (a.isFreePoint()) return kVertexOfA;
+    if (b.isFreePoint()) return kVertexOfB;
+    const auto vertexOf = [](const BodyTriangle& triangle, int k) {
+      return triangle.isFree() ? std::min(k, 1) : k;
+    };
+    switch (near.kind) {
+      case NearestFeatures::Kind::kVertexOfA:
+        return kVertexOfA + vertexOf(a, near.a);
+      case NearestFeatures::Kind::kVertexOfB:
+        return kVertexOfB + vertexOf(b, near.b);
+      default:
+        return kEdges + 3 * (a.isFree() ? 0 : near.a) + (b.isFree() ? 0 : near.b);
+    }
   }
 
   void addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
@@ -145,6 +201,7 @@ class FeatureContacts {
   static constexpr int kMostSteps = 10000;
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MotionBody* body_[2];
+  FreeParts parts_[2];
   const QueryOptions& options_;
   MotionTolerance tolerance_;
   ContactSink sink_;

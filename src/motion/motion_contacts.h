@@ -10,12 +10,12 @@ namespace detail {
 namespace deformable {
 
 /// @brief Finds the contacts of two bodies, each pair of features once: a vertex and a
-/// face, or two edges, that come within the tolerance of each other
-/// (MotionAnswer::touching). toc_lo is not after the first time at which they touch.
-/// toc_hi is a time at which the two triangles provably cross; it is toc_lo if no such
-/// time is found within toc_err. Features touch only where their triangles touch, so that
-/// triangles are found first. Crossings at t = 0 are decided by signs of the vertices
-/// posed there, as for straight paths.
+/// face, two edges, or with a distance a free point and a free edge or point, that come
+/// within the tolerance of each other (MotionAnswer::touching). toc_lo is not after the
+/// first time at which they touch. toc_hi is a time at which the two triangles provably
+/// cross; it is toc_lo if no such time is found within toc_err. Features touch only where
+/// their triangles touch, so that triangles are found first. Crossings at t = 0 are
+/// decided by signs of the vertices posed there, as for straight paths.
 ///
 /// With a distance in the options features are in contact when they come within it, and a
 /// contact is that of the nearest parts, as for straight paths (distance_advance.h).

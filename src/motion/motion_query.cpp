@@ -110,12 +110,13 @@ class MotionTraversal {
       : side_{Side(a), Side(b)},
         options_(options),
         tolerance_(a, b, options.distance),
+        apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.last) {
     // A kernel adds up no more than a hundred roundings of the sizes, and a time is
     // rounded by a few u.
-    box_margin_ = options.distance + tolerance_.position +
-                  0x1p-44 * (a.size() + b.size()) +
-                  16 * kUnitRounding * (a.speed() + b.speed());
+    rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
+                16 * kUnitRounding * (a.speed() + b.speed());
+    box_margin_ = options.distance + rounding_;
     direction_bound_ = (1 + 0x1p-10) * std::max(a.path().stretch(), b.path().stretch());
   }
 
@@ -225,7 +226,8 @@ class MotionTraversal {
   double sizeOf(int k, const PartSpan& span) const {
     if (side_[k].flat) return HUGE_VAL;
     const MotionBody& body = side_[k].body;
-    return span.box[0].radius + (body.shape() ? body.shape()->radius() : 0);
+    return std::max(span.box[0].radius, span.box[1].radius) +
+           (body.shape() ? body.shape()->radius() : 0);
   }
 
   /// Tests the pair in its span, and adds the parts that may overlap.
@@ -379,18 +381,20 @@ class MotionTraversal {
   }
 
   void divide(Work& work) {
-    // A part may be a point.
-    constexpr double kShortest = 0x1p-30, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
+    // In the shortest span the deviation is 2^-43 of the acceleration.
+    constexpr double kShortest = 0x1p-20, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
                               partSpan(1, work.b, work.t0, work.t1)};
     const double radius[2] = {sizeOf(0, span[0]), sizeOf(1, span[1])};
     const int opened =
         work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
-    if (work.t1 - work.t0 > kShortest &&
-        span[0].deviation + span[1].deviation >
-            kMostDeviation *
-                std::max(std::min(radius[0], radius[1]), kLeastShare * radius[opened]))
+    // Small meshes that are within the distance still are in half of the span. Nothing is
+    // gained where rounding is larger than both parts.
+    const double least = std::max(std::min(radius[0], radius[1]),
+                                  kLeastShare * std::max(radius[opened], apart_));
+    if (work.t1 - work.t0 > kShortest && least > rounding_ &&
+        span[0].deviation + span[1].deviation > kMostDeviation * least)
       return halve(work);
     test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a),
          span[1 - opened]);
@@ -405,6 +409,11 @@ class MotionTraversal {
     half.t0 = middle;
     half.start = std::max(half.start, middle);
     testAlone(half);
+  }
+
+  /// Whether a free point meets a free edge or another one: they do at a distance only.
+  static bool areFreeOfTouch(const BodyTriangle& a, const BodyTriangle& b) {
+    return a.isFree() && b.isFree() && (a.isFreePoint() || b.isFreePoint());
   }
 
   /// Advances a pair of triangles, shapes or cells of an octree.
@@ -422,6 +431,7 @@ class MotionTraversal {
       return;
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
+    if (!(options_.distance > 0) && areFreeOfTouch(x, y)) return;
     TrianglePairMotion pair(a.path(), x, b.path(), y, work.start, end, tolerance_);
     MotionContact* contact = advance(work, {x.index, y.index}, end, pair);
     if (contact) contact->nearest = pair.nearest();
@@ -488,6 +498,10 @@ class MotionTraversal {
   Side side_[2];
   const MotionQueryOptions& options_;
   MotionTolerance tolerance_;
+  /// The distance at which meshes are in contact.
+  double apart_;
+  /// Bound on the rounding of the distance of two boxes.
+  double rounding_;
   double box_margin_;
   double direction_bound_;
   /// The latest time that matters.

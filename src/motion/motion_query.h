@@ -53,7 +53,8 @@ struct BodiesNearOrigin {
 constexpr std::int32_t kNoTriangle = -1;
 
 /// @brief The contacts of two bodies during t in [0, 1]. (1) It never misses: surfaces
-/// that come within the distance have a contact. (2) It is never late: toc_lo is not
+/// that come within the distance have a contact. (With a distance of 0 a free point meets
+/// neither free edges nor free points.) (2) It is never late: toc_lo is not
 /// after the first time at which they do. (3) A reported pair comes within distance +
 /// `touching`, unless it is marked kGivenUp.
 /// @pre the floating-point mode is the default one

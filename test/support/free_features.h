@@ -29,6 +29,56 @@ struct FreeBody : MovingMesh {
   std::vector<std::size_t> points;
 };
 
+/// @brief What a random body has.
+struct BodySize {
+  int sheet, cables, points;
+};
+
+enum class OnGrid { kNever, kHalf };
+
+/// @brief A sheet, cables of several edges, and points. Some edges are those of triangles
+/// or other edges, some points are their vertices.
+/// @param on_grid  whether half of the bodies are on a coarse grid, where features touch
+/// exactly
+inline FreeBody randomBody(Random& random, const BodySize& size, double step,
+                           OnGrid on_grid = OnGrid::kHalf) {
+  FreeBody body;
+  if (size.sheet > 0)
+    static_cast<MovingMesh&>(body) = crumpledSheet(random, size.sheet, step);
+  const std::size_t num_sheet = body.t0.size();
+  const auto add = [&](const Vector3<double>& from) {
+    body.t0.push_back(from);
+    body.t1.push_back(from + random.point(step));
+    return body.t0.size() - 1;
+  };
+  const auto anywhere = [&]() -> Vector3<double> {
+    return random.point(0.5) + Vector3<double>(0.5, 0.5, 0);
+  };
+  for (int i = 0; i < size.cables; ++i) {
+    // Some hang on the sheet.
+    std::size_t at =
+        num_sheet > 0 && i % 3 == 0 ? random.index(num_sheet) : add(anywhere());
+    for (int k = 0; k < 4; ++k) {
+      const std::size_t next = add(body.t0[at] + random.point(0.3));
+      body.edges.push_back({at, next});
+      at = next;
+    }
+  }
+  if (!body.edges.empty()) body.edges.push_back({body.edges[0][1], body.edges[0][0]});
+  if (num_sheet > 0) body.edges.push_back({body.id(0, 2), body.id(0, 1)});
+  for (int i = 0; i < size.points; ++i) body.points.push_back(add(anywhere()));
+  if (size.points > 0) body.points.push_back(random.index(body.t0.size()));
+  if (on_grid == OnGrid::kHalf && random.index(2) == 0)
+    for (auto* frame : {&body.t0, &body.t1})
+      for (Vector3<double>& p : *frame) p = (p * 8).array().round().matrix() / 8;
+  return body;
+}
+
+/// @brief Distances and bodies of many tests.
+inline constexpr double kDistances[] = {0, 0.01, 0.08, 0.3};
+inline constexpr BodySize kBodySizes[] = {{3, 4, 6}, {0, 6, 0}, {0, 0, 20}, {2, 0, 12},
+                                          {0, 5, 9}, {2, 5, 0}, {4, 8, 16}};
+
 template <typename Model>
 std::shared_ptr<Model> freeModelOf(const FreeBody& body) {
   using S = typename std::decay_t<decltype(*Model::vertices)>::Scalar;
@@ -152,6 +202,14 @@ class AllPairs {
     product(Kind::kEdgeEdge, 0, of[0].edges, of[1].edges);
     if (request_.distance > 0)
       product(Kind::kVertexVertex, 0, of[0].free_points, of[1].free_points);
+  }
+
+  /// @brief Whether a pair touches, or comes within the distance.
+  bool isContact(ContinuousContactKind kind, int side, const std::vector<int>& first,
+                 const std::vector<int>& second) const {
+    NamedContacts found;
+    test(kind, side, first, second, found);
+    return !found.empty();
   }
 
   NamedContacts find() const {

@@ -277,12 +277,12 @@ enum class FclTree {
 /// triangles: an edge with its ends, a point as a vertex. Where a triangle has the same
 /// edge or vertex, or another one was added before, it is one feature. Updates give their
 /// vertices with all others. In contacts b1 and b2 number the triangles first, then the
-/// free edges, then the free points; primitive() tells which it is. Continuous queries of
-/// straight paths know them: pairs, self-collision, candidates, safe displacements. With
-/// min_distance = 0 a point meets faces and edges meet edges; that a point meets an edge
-/// or a point exactly is not looked for. FCL's own tree does not hold them: it is never
-/// built (FclTree::kUpdate acts as kSkip), and queries that need it throw. So do queries
-/// in which a mesh turns, and queries with a shape or an octree.
+/// free edges, then the free points; primitive() tells which it is. Continuous queries
+/// know them: pairs under every motion, with meshes, shapes and octrees; self-collision;
+/// candidates; safe displacements. With min_distance = 0 a point meets faces and edges
+/// meet edges; that a point meets an edge or a point exactly is not looked for. FCL's own
+/// tree does not hold them: it is never built (FclTree::kUpdate acts as kSkip), and
+/// queries that need it throw.
 ///
 /// Errors: functions return FCL's BVHReturnCode and print nothing; lastError() has the
 /// text. After an error the model is what it was before the call (before the begin...
