@@ -407,8 +407,7 @@ LeafTimes firstTimes(const Result& result, const Model& model) {
     const Primitive p = model.primitive(b);
     if (p.kind == PrimitiveKind::kTriangle)
       for (int k = 0; k < 3; ++k)
-        ids.insert(
-            static_cast<int>(model.tri_indices[p.index][static_cast<std::size_t>(k)]));
+        ids.insert(static_cast<int>(model.tri_indices[p.index][k]));
     else if (p.kind == PrimitiveKind::kFreeEdge)
       for (const std::size_t id : model.freeEdge(p.index))
         ids.insert(static_cast<int>(id));
