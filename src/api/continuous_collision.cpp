@@ -361,8 +361,7 @@ void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
            ? "Derive the motion class from BoundedMotion too, or give transforms"
            : "Give a mesh, an octree or a DeformableBVHModel with free points in its "
              "place, or a ContinuousCollisionRequest: FCL then takes meshes as they are "
-             "in "
-             "their current frame"));
+             "in their current frame"));
 }
 
 template <typename S>

@@ -35,15 +35,11 @@ void sortByNames(const MotionBody& a, const MotionBody& b,
             });
 }
 
-/// The feature of a triangle whose corners hold the nearest point. Corners of a free edge
-/// or a free point may be one vertex.
+/// The feature of a triangle whose corners hold the nearest point.
 void setFeature(const BodyTriangle& triangle, unsigned corners, ShapeContact& contact) {
   int count = 0;
-  std::int32_t* const ids = contact.vertices;
   for (int k = 0; k < 3; ++k)
-    if ((corners >> k & 1U) != 0 &&
-        std::find(ids, ids + count, triangle.vertex[k]) == ids + count)
-      ids[count++] = triangle.vertex[k];
+    if ((corners >> k & 1U) != 0) contact.vertices[count++] = triangle.vertex[k];
   contact.kind = count == 1   ? ContinuousContactKind::kVertexShape
                  : count == 2 ? ContinuousContactKind::kEdgeShape
                               : ContinuousContactKind::kFaceShape;

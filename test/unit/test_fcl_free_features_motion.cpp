@@ -84,6 +84,14 @@ Result askStraight(const FreeBody& a, const FreeBody& b, double distance) {
                       requestAt(distance));
 }
 
+void expectSameContacts(const NamedContacts& found, const NamedContacts& truth) {
+  ASSERT_EQ(found.size(), truth.size());
+  for (auto p = found.begin(), q = truth.begin(); p != found.end(); ++p, ++q) {
+    EXPECT_EQ(p->first, q->first);
+    EXPECT_NEAR(p->second.first, q->second.first, 2 * kTocErr);
+  }
+}
+
 /// Two bodies that make the same turn have the relative motion of bodies without it.
 TEST(FCL_FREE_FEATURES_MOTION, commonTurn) {
   Random random(411);
@@ -637,11 +645,7 @@ TEST(FCL_FREE_FEATURES_MOTION, filters) {
       const NamedContacts truth = namedContacts(pairContacts(*a, *b, request), false),
                           found =
                               namedContacts(ask(*a, motion, *b, motion, request), false);
-      ASSERT_EQ(found.size(), truth.size());
-      for (auto p = found.begin(), q = truth.begin(); p != found.end(); ++p, ++q) {
-        EXPECT_EQ(p->first, q->first);
-        EXPECT_NEAR(p->second.first, q->second.first, 2 * kTocErr);
-      }
+      expectSameContacts(found, truth);
       contacts += found.size();
     }
   }
@@ -664,11 +668,7 @@ TEST(FCL_FREE_FEATURES_MOTION, rigidMeshesAndFloat) {
                               namedContacts(pairContacts(*model, *rigid, request), false),
                           found = namedContacts(
                               ask(*model, motion, *rigid, motion, request), false);
-      ASSERT_EQ(found.size(), truth.size());
-      for (auto p = found.begin(), q = truth.begin(); p != found.end(); ++p, ++q) {
-        EXPECT_EQ(p->first, q->first);
-        EXPECT_NEAR(p->second.first, q->second.first, 2 * kTocErr);
-      }
+      expectSameContacts(found, truth);
       contacts += found.size();
     }
   }
