@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "elementary/ordered_points.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -13,51 +15,11 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-bool isBefore(const VertexPath& p, const VertexPath& q) {
-  for (int k = 0; k < 3; ++k)
-    if (p.t0[k] != q.t0[k]) return p.t0[k] < q.t0[k];
-  for (int k = 0; k < 3; ++k)
-    if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k];
-  return false;
-}
-
-/// A pair whose points are in an order that depends on the points only.
-struct OrderedPair {
+/// A pair whose points are in order.
+struct OrderedPair : OrderedPoints<VertexPath> {
   FeaturePoints x;
-  int number[4]{0, 1, 2, 3};
-
-  OrderedPair(ContinuousContactKind kind, const FeaturePoints& points) : x(points) {
-    switch (kind) {
-      case ContinuousContactKind::kVertexFace:
-        sort(1, 2);
-        sort(2, 3);
-        sort(1, 2);
-        return;
-      case ContinuousContactKind::kEdgeEdge:
-        sort(0, 1);
-        sort(2, 3);
-        if (isBefore(x[2], x[0]) || (!isBefore(x[0], x[2]) && isBefore(x[3], x[1]))) {
-          swap(0, 2);
-          swap(1, 3);
-        }
-        return;
-      case ContinuousContactKind::kVertexEdge:
-        sort(1, 2);
-        return;
-      default:
-        sort(0, 1);
-        return;
-    }
-  }
-
- private:
-  void sort(int i, int j) {
-    if (isBefore(x[j], x[i])) swap(i, j);
-  }
-  void swap(int i, int j) {
-    std::swap(x.point[i], x.point[j]);
-    std::swap(number[i], number[j]);
-  }
+  OrderedPair(ContinuousContactKind kind, const FeaturePoints& points)
+      : OrderedPoints(kind, points.point), x{{point[0], point[1], point[2], point[3]}} {}
 };
 
 /// n, of length 1 or less, without its parts along v and w, and with length 1; the zero
@@ -101,10 +63,6 @@ struct Step {
 struct TurningDirection {
   Vec n, turn;
 };
-
-/// A time is a quotient of two differences, or of a product and a sum with a root, then
-/// a product: 8 units in the last place.
-constexpr double kDown = 1 - 0x1p-50, kUp = 1 + 0x1p-50;
 
 }  // namespace
 
@@ -194,6 +152,19 @@ void setNearest(ContinuousContactKind kind, const NearestPoint& near,
   set(ContinuousContactKind::kVertexEdge, kVertex[near.side], other, other + 1);
 }
 
+void setPart(ContinuousContactKind kind, const NearestPoint& near, const int (&number)[4],
+             DistanceContact& out) {
+  setNearest(kind, near, number, out);
+  int* p = out.points;
+  if (out.kind == ContinuousContactKind::kVertexEdge && p[2] < p[1])
+    std::swap(p[1], p[2]);
+  if (out.kind == ContinuousContactKind::kVertexVertex && p[1] < p[0])
+    std::swap(p[0], p[1]);
+  if (out.kind == kind)
+    for (int m = 0; m < 4; ++m)
+      if (p[m] >= 0) p[m] = m;
+}
+
 namespace {
 
 /// The features of one query, as a polygon, and proofs that they are apart.
@@ -252,9 +223,9 @@ class AdvancingPair {
       if (!(a > 0) && !(b > 0)) return {-kInfinity, 0};
       const double at = a / (a - b);
       if (!(a > 0)) {
-        if (!(at * kUp <= t)) return {-kInfinity, 0};
-      } else if (at * kDown < step.until) {
-        step = {at * kDown, a - b};
+        if (!(at * Advance::kUp <= t)) return {-kInfinity, 0};
+      } else if (at * Advance::kDown < step.until) {
+        step = {at * Advance::kDown, a - b};
       }
     }
     return step;
@@ -280,7 +251,7 @@ class AdvancingPair {
         rate = -closing;
       }
     }
-    return {t + longest * kDown, rate};
+    return {t + longest * Advance::kDown, rate};
   }
 
   DifferencePolygon polygon_;
@@ -288,27 +259,13 @@ class AdvancingPair {
   Vec velocities_[DifferencePolygon::kMaxCorners];
 };
 
-/// Puts the points of a part in ascending order. If the part is the whole pair, its
-/// points keep the numbers 0 to 3.
-void order(ContinuousContactKind kind, DistanceContact& out) {
-  int* p = out.points;
-  if (out.kind == ContinuousContactKind::kVertexEdge && p[2] < p[1])
-    std::swap(p[1], p[2]);
-  if (out.kind == ContinuousContactKind::kVertexVertex && p[1] < p[0])
-    std::swap(p[0], p[1]);
-  if (out.kind == kind)
-    for (int m = 0; m < 4; ++m)
-      if (p[m] >= 0) p[m] = m;
-}
-
 /// A time in (t, t + width] at which the features provably are within d; t if none is
 /// found.
 /// @param gap  above d, at t
 double proveWithin(AdvancingPair& pair, const DistanceTolerance& tolerance, double d,
                    double t, double width, double gap, double rate) {
   if (!(width > 0) || !(rate > 0)) return t;
-  constexpr double kFirst = 1.5, kFactor = 4;
-  for (double h = kFirst * gap / rate;; h *= kFactor) {
+  for (double h = Advance::kFirstGuess * gap / rate;; h *= Advance::kFactor) {
     double time = t + std::min(h, width);
     if (time - t > width) time = std::nextafter(time, t);
     if (time > t && pair.nearestAt(time).distance + tolerance.distance_error <= d)
@@ -328,13 +285,11 @@ constexpr int kMaxSteps = 10000;
 void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
                 const DistanceRequest& request, double d, double t, double reached,
                 double rate, DistanceContact& out) {
-  // A bracket is narrow beside its end, so that simulations can step by it.
-  constexpr double kShareOfTime = 0.125;
   out.is_contact = true;
   out.toc_lo = out.toc_hi = t;
   if (t == 0 || reached <= d) return;
   const double width =
-      std::min(std::min(request.toc_err, kShareOfTime * t), request.t_max - t);
+      std::min(std::min(request.toc_err, Advance::kShareOfTime * t), request.t_max - t);
   out.toc_hi = proveWithin(pair, tolerance, d, t, width, reached - d, rate);
 }
 
@@ -354,8 +309,7 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
       d = reached * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance.touching;
       if (!(d > 0)) {
         // They touch, and may pass through each other without coming nearer.
-        setNearest(kind, near, number, out);
-        order(kind, out);
+        setPart(kind, near, number, out);
         setBracket(pair, tolerance, request, request.distance, 0, reached, rate, out);
         return out;
       }
@@ -373,8 +327,7 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
       }
     }
     if (is_contact) {
-      setNearest(kind, near, number, out);
-      order(kind, out);
+      setPart(kind, near, number, out);
       setBracket(pair, tolerance, request, d, t, reached, rate, out);
       return out;
     }
@@ -383,9 +336,6 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
     rate = step.rate;
   }
 }
-
-/// Between these sizes no square and no product overflows or underflows.
-constexpr double kLeastSize = 0x1p-200, kMostSize = 0x1p200;
 
 double sizeOf(ContinuousContactKind kind, const FeaturePoints& x, double distance) {
   const DifferencePolygon polygon(kind, x);
@@ -446,10 +396,11 @@ DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoint
   const OrderedPair ordered(kind, x);
   AdvancingPair pair(kind, ordered.x);
   const double size = std::max(pair.size(), request.distance);
-  if (size >= kLeastSize && size <= kMostSize)
+  if (size >= Advance::kLeastSize && size <= Advance::kMostSize)
     return advance(kind, pair, ordered.number, request);
   return advanceScaled(kind, ordered, request);
 }
+
 void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                       double (&position)[3], double (&normal)[3]) {
   const OrderedPair ordered(kind, x);

@@ -78,6 +78,21 @@ struct DistanceContact {
   int steps{0};
 };
 
+/// @brief Numbers of the advancement, which its vector form has too
+/// (kernels/advance_kernels.cpp).
+struct Advance {
+  /// A time is a quotient of two differences, or of a product and a sum with a root, then
+  /// a product: 8 units in the last place.
+  static constexpr double kDown = 1 - 0x1p-50, kUp = 1 + 0x1p-50;
+  /// A bracket is narrow beside its end, so that simulations can step by it.
+  static constexpr double kShareOfTime = 0.125;
+  /// The upper end is sought at this multiple of the time in which the gap closes, then
+  /// this factor later each time.
+  static constexpr double kFirstGuess = 1.5, kFactor = 4;
+  /// Between these sizes no square and no product overflows or underflows.
+  static constexpr double kLeastSize = 0x1p-200, kMostSize = 0x1p200;
+};
+
 /// @brief Properties: (1) no contact only with a proof that the features stay further
 /// apart than d until t_max or t_stop; (2) a contact only if they come within d (1 +
 /// 1e-9) + touching, unless is_given_up; (3) the answer does not depend on the order of
@@ -121,6 +136,11 @@ double firstRoot(double gap, double rate, double bend);
 /// @param number  of the points of the pair
 void setNearest(ContinuousContactKind kind, const NearestPoint& near,
                 const int (&number)[4], DistanceContact& out);
+
+/// @brief The same, with the points of a part in ascending order. If the part is the
+/// whole pair, its points keep the numbers 0 to 3.
+void setPart(ContinuousContactKind kind, const NearestPoint& near, const int (&number)[4],
+             DistanceContact& out);
 
 }  // namespace deformable
 }  // namespace detail

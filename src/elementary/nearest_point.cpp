@@ -79,7 +79,6 @@ bool isNearestInside(const Vec* corners, int count, NearestPoint& near, bool& is
   near.across = across / square;
   near.point = p + near.along * v + near.across * w;
   near.square = dot(near.point, near.point);
-  constexpr double kSliver = 0x1p-20;
   is_sure = square > kSliver * (dot(v, v) * dot(w, w));
   if (is_sure) return true;
   improve(p, v, w, near);

@@ -65,6 +65,10 @@ struct NearestPoint {
   Vec normal;
 };
 
+/// A polygon with a square of its area below this share of those of its sides is a
+/// sliver: rounding is large there.
+constexpr double kSliver = 0x1p-20;
+
 /// @param corners  at one time
 NearestPoint nearestPoint(const DifferencePolygon& polygon, const Vec* corners);
 

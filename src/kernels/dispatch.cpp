@@ -38,6 +38,7 @@ extern const Kernels kKernels = {targetName(),
                                  &viewFrom,
                                  &coplanarityOfFeatures,
                                  &mayComeWithinOfFeatures,
+                                 &approachOfEight,
                                  &solveEight,
                                  &divideEight};
 

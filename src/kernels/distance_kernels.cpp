@@ -22,14 +22,6 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE Vectors operator*(const Doubles& s, const Vectors& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-
-HWY_INLINE Vectors select(const DoubleMask& mask, const Vectors& a, const Vectors& b) {
-  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
-}
-
 /// The shortest of some vectors so far.
 struct Shortest {
   Vectors vector;

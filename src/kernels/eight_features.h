@@ -45,18 +45,20 @@ class EightFeatures {
 struct Points {
   Vectors t0[4], t1[4];
 
-  HWY_INLINE explicit Points(const EightPairs& pairs)
-      : Points([&pairs](std::size_t i, std::size_t lane)
-                   HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; }) {}
+  HWY_INLINE explicit Points(const EightPoints& pairs) {
+    load([&pairs](std::size_t i, std::size_t lane)
+             HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; });
+  }
 
-  HWY_INLINE explicit Points(const EightFeatures& features)
-      : Points([&features](std::size_t i, std::size_t lane)
-                   HWY_ATTR -> const TreeVertex& { return features.point(i, lane); }) {}
+  HWY_INLINE explicit Points(const EightFeatures& features) {
+    load([&features](std::size_t i, std::size_t lane)
+             HWY_ATTR -> const TreeVertex& { return features.point(i, lane); });
+  }
 
  private:
   /// @param vertex  vertex(i, lane) is point i of the pair in a lane
   template <typename Vertex>
-  HWY_INLINE explicit Points(const Vertex& vertex) {
+  HWY_INLINE void load(const Vertex& vertex) {
     for (std::size_t i = 0; i < 4; ++i) {
       const TreeVertex* x[kEight];
       for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);

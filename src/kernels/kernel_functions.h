@@ -44,6 +44,7 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
                                  std::size_t count, double latest, double distance);
+EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "elementary/axis_window.h"
+#include "elementary/distance_advance.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/tree_nodes.h"
 
@@ -124,18 +125,27 @@ inline void crossingPoints(const TrianglePair* pairs, std::uint32_t code,
 inline double windowLo(const TimeWindow& w) { return std::max(w.lo - kWindowMargin, 0.); }
 inline double windowHi(const TimeWindow& w) { return std::min(w.hi + kWindowMargin, 1.); }
 
-/// @brief Eight pairs of features, of one kind: their points and windows.
-struct EightPairs {
+/// @brief The points of eight pairs of features, of one kind.
+struct EightPoints {
   /// Point i of pair k is x[i][k].
   const TreeVertex* x[4][8];
+  ContinuousContactKind kind;
+
+  void set(std::size_t lane, const TreeVertex* const (&points)[4]) {
+    assert(lane < 8);
+    for (std::size_t i = 0; i < 4; ++i) x[i][lane] = points[i];
+  }
+};
+
+/// @brief The same, with their windows.
+struct EightPairs : EightPoints {
   double lo[8];
   double hi[8];
-  ContinuousContactKind kind;
 
   void set(std::size_t lane, const TreeVertex* const (&points)[4], double window_lo,
            double window_hi) {
-    assert(lane < 8 && 0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
-    for (std::size_t i = 0; i < 4; ++i) x[i][lane] = points[i];
+    assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
+    EightPoints::set(lane, points);
     lo[lane] = window_lo;
     hi[lane] = window_hi;
   }
@@ -161,6 +171,20 @@ struct EightAnswers {
   unsigned no, yes;
   double toc_lo[8];
   double toc_hi[8];
+};
+
+/// @brief The answers of advanceToDistance() for eight pairs, a bit each. Pairs in
+/// neither set are not in contact.
+struct EightApproaches {
+  /// Those that need more than plain steps, and have no answer.
+  unsigned open;
+  unsigned yes;
+  /// The brackets of the contacts, and what of each polygon is nearest then: as
+  /// NearestPoint has it.
+  double toc_lo[8];
+  double toc_hi[8];
+  int side[8];
+  int corner[8];
 };
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
@@ -298,6 +322,10 @@ struct Kernels {
   unsigned (*mayComeWithin)(ContinuousContactKind kind, const TrianglePair* pairs,
                             const std::uint32_t* codes, const TimeWindow* windows,
                             std::size_t count, double latest, double distance);
+
+  /// advanceToDistance() of eight VF or EE pairs whose points are in the order of
+  /// OrderedPoints.
+  EightApproaches (*approach)(const EightPoints& pairs, const DistanceRequest& request);
 
   /// Solves the plain cases of solveCoplanarity(): a pair whose volume has one sign or
   /// changes it once, clearly inside or outside. Proved lanes have the properties (1) and

@@ -41,6 +41,12 @@ HWY_INLINE Vectors operator+(const Vectors& a, const Vectors& b) {
 HWY_INLINE Vectors operator-(const Vectors& a, const Vectors& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+HWY_INLINE Vectors operator*(const Doubles& s, const Vectors& a) {
+  return {s * a.x, s * a.y, s * a.z};
+}
+HWY_INLINE Vectors select(const DoubleMask& mask, const Vectors& a, const Vectors& b) {
+  return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
+}
 HWY_INLINE Doubles dot(const Vectors& a, const Vectors& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

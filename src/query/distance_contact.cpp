@@ -2,9 +2,12 @@
 #include "query/distance_contact.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "elementary/ordered_points.h"
 
 namespace fcl {
 namespace detail {
@@ -74,6 +77,32 @@ FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
   }
   contact.first_on_a = true;
   std::swap(contact.triangles[0], contact.triangles[1]);
+  return contact;
+}
+
+EightOrdered::EightOrdered(const std::vector<FeatureCandidate>& pairs) {
+  assert(!pairs.empty() && pairs.size() <= 8);
+  points_.kind = pairs.front().kind;
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    const FeatureCandidate& pair = pairs[std::min(lane, pairs.size() - 1)];
+    assert(pair.kind == points_.kind && !isPart(pair.kind));
+    const OrderedPoints<TreeVertex> ordered(pair.kind, pair.x);
+    points_.set(lane, ordered.point);
+    std::copy(ordered.number, ordered.number + 4, number_[lane]);
+  }
+}
+
+DistanceContact EightOrdered::contact(const EightApproaches& found,
+                                      std::size_t lane) const {
+  assert(lane < 8 && (found.yes >> lane & 1U));
+  NearestPoint near;
+  near.side = found.side[lane];
+  near.corner = found.corner[lane];
+  DistanceContact contact;
+  contact.is_contact = true;
+  contact.toc_lo = found.toc_lo[lane];
+  contact.toc_hi = found.toc_hi[lane];
+  setPart(points_.kind, near, number_[lane], contact);
   return contact;
 }
 

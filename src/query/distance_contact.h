@@ -5,7 +5,11 @@
 #ifndef FCL_CCD_QUERY_DISTANCE_CONTACT_H
 #define FCL_CCD_QUERY_DISTANCE_CONTACT_H
 
+#include <cstddef>
+#include <vector>
+
 #include "elementary/distance_advance.h"
+#include "kernels/kernels.h"
 #include "mesh/moving_kdop.h"
 #include "query/contact_sink.h"
 #include "query/feature_batch.h"
@@ -29,6 +33,23 @@ void enlarge(double reach, KdopShift& shift);
 /// vertices the one with the lower id
 FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
                          bool is_self);
+
+/// @brief One to eight VF or EE pairs of one kind, for Kernels::approach().
+class EightOrdered {
+ public:
+  /// @param pairs  the last one fills up the eight
+  explicit EightOrdered(const std::vector<FeatureCandidate>& pairs);
+
+  const EightPoints& points() const { return points_; }
+  /// @brief The contact of a pair, as advanceToDistance() has it.
+  /// @param found  the answers for points(), with this lane in `yes`
+  DistanceContact contact(const EightApproaches& found, std::size_t lane) const;
+
+ private:
+  EightPoints points_;
+  /// The numbers of the points before they were put in order.
+  int number_[8][4];
+};
 
 }  // namespace deformable
 }  // namespace detail

@@ -250,6 +250,7 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);
   const double latest = this->latest();
+  candidates_.clear();
   for (std::size_t first = 0; first < size && !isDone(); first += 8) {
     const std::size_t count = std::min<std::size_t>(8, size - first);
     unsigned left =
@@ -258,30 +259,59 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
     counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
     for (; left != 0 && !isDone(); left &= left - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));
-      FeatureCandidate candidate;
+      FeatureCandidate& candidate = candidates_.emplace_back();
       batch_.setCandidate(codes[i], windows[i], candidate);
       // Many pairs may be near at t = 0, of which a few are wanted.
-      if (sink_.mayKeepAtStart(candidate))
-        testDistance(candidate);
-      else
+      if (!sink_.mayKeepAtStart(candidate)) {
         ++counts_.box_culled;
+        candidates_.pop_back();
+      } else if (isPart(candidate.kind)) {
+        testDistance(candidate);
+        candidates_.pop_back();
+      } else if (candidates_.size() == 8) {
+        testEightDistances();
+      }
     }
   }
+  if (!candidates_.empty()) testEightDistances();
 }
 
-void NarrowPhase::testDistance(const FeatureCandidate& candidate) {
+DistanceRequest NarrowPhase::distanceRequest() const {
   DistanceRequest request;
   request.distance = options_.min_distance;
   request.toc_err = options_.toc_err;
   request.t_max = options_.t_max;
   request.t_stop = latest();
   request.ignores_initially_closer = options_.ignores_initially_closer;
-  const DistanceContact found =
-      advanceToDistance(candidate.kind, CandidatePoints(candidate).get(), request);
-  if (!found.is_contact) {
-    ++counts_.solver_culled;
-    return;
+  return request;
+}
+
+/// Tests up to eight candidates of one kind, and removes them.
+void NarrowPhase::testEightDistances() {
+  const EightOrdered eight(candidates_);
+  const EightApproaches found = kernels_.approach(eight.points(), distanceRequest());
+  for (std::size_t i = 0; i < candidates_.size() && !isDone(); ++i) {
+    if (found.open >> i & 1U)
+      testDistance(candidates_[i]);
+    else if (found.yes >> i & 1U)
+      addNear(candidates_[i], eight.contact(found, i));
+    else
+      ++counts_.solver_culled;
   }
+  candidates_.clear();
+}
+
+void NarrowPhase::testDistance(const FeatureCandidate& candidate) {
+  const DistanceContact found = advanceToDistance(
+      candidate.kind, CandidatePoints(candidate).get(), distanceRequest());
+  if (found.is_contact)
+    addNear(candidate, found);
+  else
+    ++counts_.solver_culled;
+}
+
+void NarrowPhase::addNear(const FeatureCandidate& candidate,
+                          const DistanceContact& found) {
   ++counts_.contacts;
   FeatureIds pair = candidate;
   if (options_.filter) options_.filter->find(pair, pair.triangles);

@@ -194,7 +194,10 @@ class NarrowPhase {
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);
   void testDistances(ContinuousContactKind kind);
+  DistanceRequest distanceRequest() const;
+  void testEightDistances();
   void testDistance(const FeatureCandidate& candidate);
+  void addNear(const FeatureCandidate& candidate, const DistanceContact& found);
   void add(const FeatureContact& contact);
   bool isLeading(const TimeBracket& bracket) const;
 

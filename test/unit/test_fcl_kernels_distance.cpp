@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernel of the distance filter, against the scalar test that follows it.
+// The kernels of contact at a distance, against the scalar test: the filter before it and
+// the advancement of eight pairs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "elementary/distance_advance.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
+#include "query/distance_contact.h"
 #include "windowed_pairs.h"
 
 namespace fcl {
@@ -164,6 +168,146 @@ TEST(FCL_KERNELS, distanceFilterOfAllSizes) {
                                block.windows, 8, 1, 1e-3),
               0xffU)
         << k->name;
+}
+
+/// What the advancement of eight pairs has found, and how many pairs it left open.
+struct Advanced {
+  int contacts{0}, moving_contacts{0}, brackets{0}, apart{0}, open{0};
+
+  void operator+=(const Advanced& other) {
+    contacts += other.contacts;
+    moving_contacts += other.moving_contacts;
+    brackets += other.brackets;
+    apart += other.apart;
+    open += other.open;
+  }
+};
+
+void expectSameContact(const DistanceContact& found, const DistanceContact& expected) {
+  EXPECT_EQ(std::memcmp(&found.toc_lo, &expected.toc_lo, sizeof(double)), 0)
+      << found.toc_lo << " " << expected.toc_lo;
+  EXPECT_EQ(std::memcmp(&found.toc_hi, &expected.toc_hi, sizeof(double)), 0)
+      << found.toc_hi << " " << expected.toc_hi;
+  EXPECT_EQ(found.kind, expected.kind);
+  EXPECT_EQ(std::vector<int>(found.points, found.points + 4),
+            std::vector<int>(expected.points, expected.points + 4));
+}
+
+/// Each instruction set gives the answers of the scalar test, to the bit, or leaves the
+/// same pairs open.
+Advanced expectSameAdvance(const MovingPair (&queries)[8],
+                           const DistanceRequest& request) {
+  std::vector<TreeVertex> vertices(32);
+  std::vector<FeatureCandidate> candidates(8);
+  for (std::size_t lane = 0; lane < 8; ++lane) {
+    candidates[lane].kind = queries[lane].kind;
+    for (std::size_t i = 0; i < 4; ++i) {
+      TreeVertex& x = vertices[4 * lane + i];
+      x.setPath(queries[lane].x[i].t0, queries[lane].x[i].t1);
+      candidates[lane].x[i] = &x;
+    }
+  }
+  const EightOrdered eight(candidates);
+  Advanced sum;
+  for (const Kernels* k : allSets()) {
+    const EightApproaches found = k->approach(eight.points(), request);
+    EXPECT_EQ(found.open, allSets().front()->approach(eight.points(), request).open)
+        << k->name;
+    EXPECT_EQ(found.open & found.yes, 0U);
+    sum = {};
+    for (unsigned lane = 0; lane < 8; ++lane) {
+      SCOPED_TRACE(std::string(k->name) + " lane " + std::to_string(lane));
+      if (found.open >> lane & 1U) {
+        ++sum.open;
+        continue;
+      }
+      const DistanceContact expected =
+          advanceToDistance(queries[lane].kind, queries[lane].points(), request);
+      EXPECT_FALSE(expected.is_given_up);
+      EXPECT_EQ(found.yes >> lane & 1U, unsigned{expected.is_contact});
+      if (!expected.is_contact || !(found.yes >> lane & 1U)) {
+        ++sum.apart;
+        continue;
+      }
+      ++sum.contacts;
+      sum.moving_contacts += expected.toc_lo > 0;
+      sum.brackets += expected.toc_hi > expected.toc_lo;
+      expectSameContact(eight.contact(found, lane), expected);
+    }
+  }
+  return sum;
+}
+
+DistanceRequest randomRequest(Random& random, double distance) {
+  DistanceRequest request;
+  request.distance = distance;
+  request.toc_err = random.index(2) ? 1e-4 : std::pow(10, random.uniform(-12, 0));
+  request.t_max = random.index(3) ? 1 : random.uniform(0, 1);
+  request.t_stop = random.index(3) ? 1 : random.uniform(0, 1);
+  request.ignores_initially_closer = random.index(3) == 0;
+  return request;
+}
+
+/// The plain steps are enough for nearly all pairs.
+TEST(FCL_KERNELS, advancesAsTheScalarTest) {
+  Random random(74);
+  Advanced sum;
+  for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    MovingPair queries[8];
+    for (MovingPair& pair : queries) pair = scatteredPair(random, kind);
+    sum += expectSameAdvance(queries,
+                             randomRequest(random, std::pow(10, random.uniform(-6, 0))));
+  }
+  EXPECT_GT(sum.moving_contacts, 2000);
+  EXPECT_GT(sum.brackets, 1000);
+  EXPECT_GT(sum.apart, 3000);
+  EXPECT_LT(sum.open, 6000 * 8 / 20);
+}
+
+/// Features without length or area, flat pairs and pairs at rest.
+TEST(FCL_KERNELS, advancesDegeneratePairsAsTheScalarTest) {
+  Random random(75);
+  Advanced sum;
+  for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    MovingPair queries[8];
+    for (MovingPair& pair : queries) {
+      pair = scatteredPair(random, kind);
+      // A part of the pair is flat, has no length, or does not move.
+      auto& p = pair.x[random.index(4)];
+      const auto& q = pair.x[random.index(4)];
+      if (random.index(2)) std::copy(q.t0, q.t0 + 3, p.t0);
+      if (random.index(2)) std::copy(q.t1, q.t1 + 3, p.t1);
+      const int axis = static_cast<int>(random.index(3));
+      if (random.index(3) == 0)
+        for (auto& x : pair.x) x.t0[axis] = x.t1[axis] = 0.25;
+      if (random.index(4) == 0)
+        for (auto& x : pair.x) std::copy(x.t0, x.t0 + 3, x.t1);
+    }
+    sum += expectSameAdvance(queries,
+                             randomRequest(random, std::pow(10, random.uniform(-9, 0))));
+  }
+  EXPECT_GT(sum.contacts, 5000);
+  EXPECT_GT(sum.apart, 2000);
+}
+
+/// Sizes over all of double's range: the scalar test scales those that are extreme.
+TEST(FCL_KERNELS, advancesAllSizesAsTheScalarTest) {
+  Random random(76);
+  Advanced sum;
+  for (int exponent = -1074; exponent <= 1023; exponent += 3) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    MovingPair queries[8];
+    for (MovingPair& pair : queries) {
+      pair = scatteredPair(random, kind);
+      scale(pair, std::ldexp(1, exponent));
+    }
+    sum += expectSameAdvance(
+        queries, randomRequest(random, std::ldexp(random.uniform(0.01, 0.5), exponent)));
+  }
+  EXPECT_GT(sum.contacts, 100);
+  EXPECT_GT(sum.open, 2000);
 }
 
 }  // namespace

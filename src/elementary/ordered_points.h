@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The order in which the points of a pair are tested at a distance. It depends on the
+// points only, so that the answer does not depend on the order in which they are given.
+#ifndef FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
+#define FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
+
+#include <utility>
+
+#include "fcl/narrowphase/stage_counts.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief The points of a pair in order, and the numbers that they had before.
+/// @tparam Point  VertexPath or TreeVertex
+template <typename Point>
+class OrderedPoints {
+ public:
+  OrderedPoints(ContinuousContactKind kind, const Point* const (&points)[4])
+      : point{points[0], points[1], points[2], points[3]} {
+    switch (kind) {
+      case ContinuousContactKind::kVertexFace:
+        sort(1, 2);
+        sort(2, 3);
+        sort(1, 2);
+        return;
+      case ContinuousContactKind::kEdgeEdge:
+        sort(0, 1);
+        sort(2, 3);
+        if (isBefore(2, 0) || (!isBefore(0, 2) && isBefore(3, 1))) {
+          swap(0, 2);
+          swap(1, 3);
+        }
+        return;
+      case ContinuousContactKind::kVertexEdge:
+        sort(1, 2);
+        return;
+      default:
+        sort(0, 1);
+        return;
+    }
+  }
+
+  const Point* point[4];
+  int number[4]{0, 1, 2, 3};
+
+ private:
+  bool isBefore(int i, int j) const {
+    const Point &p = *point[i], &q = *point[j];
+    for (int k = 0; k < 3; ++k)
+      if (p.t0[k] != q.t0[k]) return p.t0[k] < q.t0[k];
+    for (int k = 0; k < 3; ++k)
+      if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k];
+    return false;
+  }
+  void sort(int i, int j) {
+    if (isBefore(j, i)) swap(i, j);
+  }
+  void swap(int i, int j) {
+    std::swap(point[i], point[j]);
+    std::swap(number[i], number[j]);
+  }
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

@@ -1,0 +1,398 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The advancement of eight pairs to a distance, step by step as advanceToDistance() does
+// it: every number has the same bits. A lane that needs more than the plain steps is left
+// open.
+#if defined(FCL_CCD_USE_HIGHWAY)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "kernels/advance_kernels.cpp"
+#include "hwy/foreach_target.h"
+#endif
+
+#include "elementary/distance_advance.h"
+#include "kernels/eight_features.h"
+#include "kernels/kernel_functions.h"
+#include "kernels/lanes.h"
+#include "kernels/vectors.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+HWY_INLINE Doubles number(double x) { return broadcast<kEight>(x); }
+
+/// What of the polygon is nearest, as a number: side k is k, corner k is kCorner + k.
+constexpr double kCorner = 4, kInside = 8;
+
+/// NearestPoint of eight polygons.
+struct NearestPoints {
+  Vectors point, normal;
+  Doubles square, distance;
+  Doubles part, along;
+  /// The lanes whose nearest point is not inside of a sliver.
+  DoubleMask is_sure;
+
+  HWY_INLINE DoubleMask isInside() const { return part == number(kInside); }
+  HWY_INLINE DoubleMask isSide() const { return part < number(kCorner); }
+};
+
+/// Eight DifferencePolygons, of VF or EE pairs.
+struct Polygons {
+  Vectors t0[4], t1[4], velocity[4];
+  Doubles size;
+  int count;
+
+  HWY_INLINE Polygons(ContinuousContactKind kind, const Points& x)
+      : size(number(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
+    for (int k = 0; k < count; ++k) {
+      const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
+      t0[k] = x.t0[p.second] - x.t0[p.first];
+      t1[k] = x.t1[p.second] - x.t1[p.first];
+      velocity[k] = t1[k] - t0[k];
+      size = larger(size, larger(dot(t0[k], t0[k]), dot(t1[k], t1[k])));
+    }
+    size = squareRoot(size) * number(1 + 0x1p-50);
+  }
+
+  HWY_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
+
+  HWY_INLINE void cornersAt(const Doubles& t, Vectors (&corner)[4]) const {
+    for (int k = 0; k < count; ++k) corner[k] = at(t0[k], t1[k], t);
+  }
+};
+
+/// The nearest points of the sides.
+HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
+                          NearestPoints& best) {
+  const Doubles zero = number(0), one = number(1);
+  for (int k = 0; k < x.count; ++k) {
+    const int l = x.next(k);
+    const Vectors &p = corner[k], &q = corner[l], way = q - p;
+    const Doubles length = dot(way, way), along = zero - dot(p, way);
+    const DoubleMask is_behind = along > zero, is_before = along < length;
+    const Doubles share = select(is_behind, select(is_before, along / length, one), zero);
+    const Vectors point = select(is_behind, select(is_before, p + share * way, q), p);
+    const Doubles square = dot(point, point);
+    const DoubleMask is_shorter = square < best.square;
+    const Doubles part = select(share == zero, number(kCorner + k),
+                                select(share == one, number(kCorner + l), number(k)));
+    best.point = select(is_shorter, point, best.point);
+    best.square = select(is_shorter, square, best.square);
+    best.part = select(is_shorter, part, best.part);
+    best.along = select(is_shorter, share, best.along);
+  }
+}
+
+/// nearestPoint().
+HWY_INLINE NearestPoints nearestPoints(const Polygons& x, const Vectors (&corner)[4]) {
+  const Doubles zero = number(0);
+  const Vectors &p = corner[0], v = corner[1] - p, w = corner[x.count - 1] - p;
+  NearestPoints sides, near;
+  near.normal = cross(v, w);
+  const Doubles square = dot(near.normal, near.normal),
+                along = dot(cross(w, p), near.normal),
+                across = dot(cross(p, v), near.normal);
+  const DoubleMask is_inside =
+      (along > zero) & (across > zero) &
+      (x.count == 3 ? along + across < square : (along < square) & (across < square));
+  const Doubles share = along / square;
+  const Vectors point = p + share * v + (across / square) * w;
+  // No number is shorter than one of a lane that is inside.
+  sides.square = select(is_inside, number(0), number(HUGE_VAL));
+  sides.part = number(kInside);
+  sides.along = share;
+  sides.point = point;
+  takeSides(x, corner, sides);
+  near.point = sides.point;
+  near.square = select(is_inside, dot(point, point), sides.square);
+  near.part = sides.part;
+  near.along = sides.along;
+  near.distance = squareRoot(near.square);
+  near.is_sure = (near.part < number(kInside)) |
+                 (square > number(kSliver) * (dot(v, v) * dot(w, w)));
+  return near;
+}
+
+/// The corner or the side that is nearest, and how it moves.
+struct NearestSides {
+  /// The corner, or where the side begins; and where it ends.
+  Vectors from, to, from_velocity, to_velocity;
+
+  HWY_INLINE NearestSides(const Polygons& x, const Vectors (&corner)[4],
+                          const NearestPoints& near)
+      : from(corner[0]),
+        to(corner[1]),
+        from_velocity(x.velocity[0]),
+        to_velocity(x.velocity[1]) {
+    for (int k = 1; k < x.count; ++k) {
+      const DoubleMask is_it =
+          (near.part == number(k)) | (near.part == number(kCorner + k));
+      from = select(is_it, corner[k], from);
+      to = select(is_it, corner[x.next(k)], to);
+      from_velocity = select(is_it, x.velocity[k], from_velocity);
+      to_velocity = select(is_it, x.velocity[x.next(k)], to_velocity);
+    }
+  }
+};
+
+/// directionApart(), its first attempt. Lanes without a direction are not finite.
+HWY_INLINE Vectors directionsApart(const NearestPoints& near, const NearestSides& sides) {
+  const Doubles one = number(1);
+  const Doubles sign = select(dot(near.normal, near.point) < number(0), number(-1), one);
+  const Vectors normal = sign * near.normal;
+  const DoubleMask is_inside = near.isInside();
+  const Doubles length =
+      select(is_inside, squareRoot(dot(normal, normal)), near.distance);
+  const Vectors n = (one / length) * select(is_inside, normal, near.point);
+  const Vectors side = sides.to - sides.from;
+  const Vectors across = n - (dot(n, side) / dot(side, side)) * side;
+  const Doubles rest = squareRoot(dot(across, across));
+  return select(near.isSide(), (one / rest) * across, n);
+}
+
+HWY_INLINE Vectors without(const Vectors& v, const Vectors& n) {
+  return v - dot(v, n) * n;
+}
+
+/// turnApart().
+HWY_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
+                              const NearestPoints& near, const NearestSides& sides,
+                              const Vectors& n) {
+  const Doubles one = number(1);
+  const Vectors of_corner = (one / near.distance) * without(sides.from_velocity, n);
+
+  const Vectors side = sides.to - sides.from,
+                change = sides.to_velocity - sides.from_velocity, beside = cross(side, n),
+                moved = sides.from_velocity + near.along * change;
+  const Doubles square = dot(side, side);
+  const Vectors of_side = ((number(0) - dot(n, change)) / square) * side +
+                          (dot(beside, moved) / (square * near.distance)) * beside;
+
+  const int last = x.count - 1;
+  const Vectors v = corner[1] - corner[0], w = corner[last] - corner[0],
+                dv = x.velocity[1] - x.velocity[0], dw = x.velocity[last] - x.velocity[0];
+  const Vectors of_inside =
+      (one / dot(near.normal, n)) * without(cross(dv, w) + cross(v, dw), n);
+  return select(near.isInside(), of_inside, select(near.isSide(), of_side, of_corner));
+}
+
+/// firstRoot().
+HWY_INLINE Doubles firstRoots(const Doubles& gap, const Doubles& rate,
+                              const Doubles& bend) {
+  const Doubles zero = number(0), discriminant = rate * rate - number(4) * gap * bend;
+  const Doubles root = squareRoot(discriminant), divisor = root - rate;
+  const DoubleMask opens = rate > zero;
+  const DoubleMask closes = (opens & (bend < zero)) | ((rate <= zero) & (divisor > zero));
+  const Doubles time = select(opens, root + rate, number(2) * gap) /
+                       select(opens, number(-2) * bend, divisor);
+  return select((discriminant >= zero) & closes, time, number(HUGE_VAL));
+}
+
+/// Until when directions separate pairs, and how fast the gap closes.
+struct Steps {
+  Doubles until, rate;
+};
+
+/// A lane of the mask fails: its direction proves nothing.
+HWY_INLINE Steps where(const DoubleMask& proves, const Steps& steps) {
+  return {select(proves, steps.until, number(-HUGE_VAL)),
+          select(proves, steps.rate, number(0))};
+}
+
+/// AdvancingPair::fixedStep().
+HWY_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& least,
+                            const Doubles& t) {
+  const Doubles zero = number(0);
+  Steps steps{number(HUGE_VAL), zero};
+  DoubleMask proves = zero == zero;
+  for (int k = 0; k < x.count; ++k) {
+    const Doubles a = dot(n, x.t0[k]) - least, b = dot(n, x.t1[k]) - least;
+    const DoubleMask starts = a > zero, ends = b > zero;
+    const Doubles time = a / (a - b), down = time * number(Advance::kDown);
+    proves = proves & (starts | (ends & (time * number(Advance::kUp) <= t)));
+    const DoubleMask is_first = starts & (b <= zero) & (down < steps.until);
+    steps.until = select(is_first, down, steps.until);
+    steps.rate = select(is_first, a - b, steps.rate);
+  }
+  return where(proves, steps);
+}
+
+/// AdvancingPair::turningStep().
+HWY_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
+                              const Vectors& n, const Vectors& turn, const Doubles& d,
+                              const Doubles& least, const Doubles& t) {
+  const Doubles zero = number(0), square = dot(turn, turn);
+  Doubles longest = number(1) / squareRoot(square), rate = zero;
+  DoubleMask proves = longest > zero;
+  for (int k = 0; k < x.count; ++k) {
+    const Vectors &c = corner[k], &change = x.velocity[k];
+    const Doubles gap = dot(n, c) - least,
+                  closing = dot(n, change) + dot(turn, c) - d * dot(n, turn),
+                  bend = dot(turn, change) - number(0.5) * d * square;
+    const Doubles root = firstRoots(gap, closing, bend);
+    proves = proves & (gap > zero);
+    const DoubleMask is_first = root < longest;
+    longest = select(is_first, root, longest);
+    rate = select(is_first, zero - closing, rate);
+  }
+  return where(proves, {t + longest * number(Advance::kDown), rate});
+}
+
+/// AdvancingPair::longestStep(), its first attempt.
+HWY_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
+                              const NearestPoints& near, const Doubles& d,
+                              const Doubles& least, const Doubles& t, double last) {
+  const NearestSides sides(x, corner, near);
+  const Vectors n = directionsApart(near, sides);
+  const Steps fixed = fixedSteps(x, n, least, t);
+  const DoubleMask is_enough = fixed.until > number(last);
+  if (isAll(is_enough)) return fixed;
+  const Steps turning =
+      turningSteps(x, corner, n, turnsApart(x, corner, near, sides, n), d, least, t);
+  const DoubleMask is_longer =
+      (fixed.until <= number(last)) & (turning.until > fixed.until);
+  return {select(is_longer, turning.until, fixed.until),
+          select(is_longer, turning.rate, fixed.rate)};
+}
+
+/// DistanceTolerance of eight pairs.
+struct Tolerances {
+  Doubles distance_error, margin, touching;
+
+  HWY_INLINE Tolerances(const Doubles& d, const Doubles& size)
+      : distance_error(number(64 * DistanceTolerance::kUnit) * size),
+        margin(number(128 * DistanceTolerance::kUnit) * (d + size)),
+        touching(number(DistanceTolerance::kTouching) * (d + size)) {}
+};
+
+/// Eight pairs on their way to the distance.
+class AdvancingPairs {
+ public:
+  HWY_INLINE AdvancingPairs(const Polygons& x, const DistanceRequest& request)
+      : x_(x),
+        request_(request),
+        last_(request.t_stop < request.t_max ? request.t_stop : request.t_max),
+        d_(number(request.distance)),
+        t_(number(0)),
+        rate_(number(0)) {
+    const Doubles size = max(x.size, d_);
+    open_ = ~bits((size >= number(Advance::kLeastSize)) &
+                  (size <= number(Advance::kMostSize)));
+    advance();
+  }
+
+  /// The lanes that need more than plain steps.
+  HWY_INLINE unsigned open() const { return open_; }
+  HWY_INLINE unsigned contacts() const { return bits(is_contact_); }
+  /// Until when the features are further apart than d; the first time of contact.
+  HWY_INLINE const Doubles& time() const { return t_; }
+  HWY_INLINE const Doubles& nearestPart() const { return near_.part; }
+
+  /// The upper ends of the brackets: setBracket() in distance_advance.cpp.
+  HWY_INLINE Doubles upperEnds() {
+    const Doubles gap = reached_ - d_,
+                  distance_error = Tolerances(d_, x_.size).distance_error;
+    const Doubles width =
+        min(min(number(request_.toc_err), number(Advance::kShareOfTime) * t_),
+            number(request_.t_max) - t_);
+    Doubles hi = t_, h = number(Advance::kFirstGuess) * gap / rate_;
+    DoubleMask is_left = is_contact_ & (t_ > number(0)) & (reached_ > d_) &
+                         (width > number(0)) & (rate_ > number(0));
+    for (unsigned left = bits(is_left) & ~open_; left != 0; left &= bits(is_left)) {
+      const Doubles time = t_ + min(h, width);
+      Vectors corner[4];
+      x_.cornersAt(time, corner);
+      const NearestPoints there = nearestPoints(x_, corner);
+      // A sum that is rounded up to more than the width, and a sliver.
+      open_ |= left & ~bits((time - t_ <= width) & there.is_sure);
+      const DoubleMask is_within =
+          is_left & (time > t_) & (there.distance + distance_error <= d_);
+      hi = select(is_within, time, hi);
+      is_left = is_left & (hi == t_) & (h < width);
+      left &= ~open_;
+      h = h * number(Advance::kFactor);
+    }
+    return hi;
+  }
+
+ private:
+  HWY_INLINE void advance() {
+    // Most pairs take two or three.
+    constexpr int kMostSteps = 12;
+    Tolerances tolerance(d_, x_.size);
+    for (int step = 0;; ++step) {
+      Vectors corner[4];
+      x_.cornersAt(t_, corner);
+      near_ = nearestPoints(x_, corner);
+      open_ |= ~bits(near_.is_sure);
+      reached_ = near_.distance + tolerance.distance_error;
+      if (step == 0 && request_.ignores_initially_closer) {
+        ignoreInitiallyCloser(tolerance);
+        tolerance = Tolerances(d_, x_.size);
+      }
+      is_contact_ = reached_ <= d_ + tolerance.touching;
+      unsigned left = ~(open_ | bits(is_contact_)) & kAllOfEight;
+      if (left == 0) return;
+      const Steps next =
+          longestSteps(x_, corner, near_, d_, d_ + tolerance.margin, t_, last_);
+      open_ |= left & ~bits(next.until > t_);
+      const DoubleMask is_soon = next.until <= number(last_);
+      left &= ~open_ & bits(is_soon);
+      if (step == kMostSteps) open_ |= left;
+      if (left == 0 || step == kMostSteps) return;
+      const DoubleMask moves =
+          (reached_ > d_ + tolerance.touching) & (next.until > t_) & is_soon;
+      t_ = select(moves, next.until, t_);
+      rate_ = select(moves, next.rate, rate_);
+    }
+  }
+
+  /// Sets the distance of each pair that is nearer than it at t = 0.
+  HWY_INLINE void ignoreInitiallyCloser(const Tolerances& tolerance) {
+    constexpr double kShare = DistanceTolerance::kShare;
+    const DoubleMask is_closer = reached_ <= d_ * number(1 + kShare) + tolerance.touching;
+    const Doubles less =
+        reached_ * number(1 - 2 * kShare) - number(2) * tolerance.touching;
+    d_ = select(is_closer, less, d_);
+    // They touch.
+    open_ |= ~bits(d_ > number(0));
+  }
+
+  static constexpr unsigned kAllOfEight = (1U << kEight) - 1;
+
+  const Polygons& x_;
+  const DistanceRequest& request_;
+  const double last_;
+  Doubles d_, t_, rate_, reached_;
+  NearestPoints near_;
+  DoubleMask is_contact_;
+  unsigned open_;
+};
+
+EightApproaches approachOfEight(const EightPoints& pairs,
+                                const DistanceRequest& request) {
+  const Points points(pairs);
+  const Polygons x(pairs.kind, points);
+  AdvancingPairs advancing(x, request);
+  EightApproaches out;
+  store(advancing.time(), out.toc_lo);
+  store(advancing.upperEnds(), out.toc_hi);
+  out.open = advancing.open() & ((1U << kEight) - 1);
+  out.yes = advancing.contacts() & ~out.open;
+  double part[kEight];
+  store(advancing.nearestPart(), part);
+  for (std::size_t lane = 0; lane < kEight; ++lane) {
+    const int k = static_cast<int>(part[lane]);
+    out.side[lane] = k < kCorner ? k : -1;
+    out.corner[lane] = kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1;
+  }
+  return out;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
