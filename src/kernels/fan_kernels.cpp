@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The proof that fans stay embedded.
+// The proof that fans stay embedded, and that their features stay apart.
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/fan_kernels.cpp"
@@ -83,8 +83,42 @@ HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
   return {bits(g > bound), bits(g < minus_bound)};
 }
 
+/// Finds the fans in which each height of each triangle, seen along d, stays above a
+/// distance. The area seen is at least the least of its Bernstein coefficients, and a
+/// side is never longer than at its ends.
+/// @param norm  of the spokes
+/// @param turned  bound on the rounding of a product of a normal and d
 template <typename Fans>
-HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) {
+HWY_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const Vectors& d,
+                              const Doubles& norm, const Doubles& turned,
+                              double distance) {
+  // More than the rounding of a product, a root and a quotient.
+  constexpr double kUp = 1 + 0x1p-40;
+  // The rim is a difference of differences: 2^-51 of the norm in a coordinate, and it is
+  // below 4 norms long.
+  const Doubles rounding = broadcast<kEight>(0x1p-46) * norm * norm;
+  const Doubles length = dot(d, d),
+                least = broadcast<kEight>(distance * kUp) * squareRoot(length);
+  const auto longest = [](const MovingVectors& side) HWY_ATTR {
+    return max(dot(side.t0, side.t0), dot(side.t1, side.t1));
+  };
+  DoubleMask high = isInRange(length);
+  for (std::size_t i = 0; i < num_triangles; ++i) {
+    const MovingVectors p = fans.spoke(i), q = fans.spoke(i + 1);
+    const MovingNormals normal = fans.normal(i);
+    const Doubles area =
+        min(min(dot(normal.first, d), broadcast<kEight>(0.5) * dot(normal.middle, d)),
+            dot(normal.last, d)) -
+        turned;
+    const Doubles side = max(max(longest(p), longest(q)), longest(q - p)) + rounding;
+    high = high & (area > least * squareRoot(side));
+  }
+  return high;
+}
+
+template <typename Fans>
+HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed,
+                                double distance) {
   Doubles u_norm = broadcast<kEight>(kLeastNorm);
   for (std::size_t i = 0; i < count; ++i) {
     const MovingVectors spoke = fans.spoke(i);
@@ -107,6 +141,8 @@ HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) 
     facing = facing & (dot(normal.first, d) > turned) & (dot(normal.middle, d) > turned) &
              (dot(normal.last, d) > turned);
   }
+  if (distance > 0)
+    facing = facing & areHigh(fans, num_triangles, d, u_norm, turned, distance);
   const unsigned left = bits(facing);
   if (left == 0) return 0;
 
@@ -158,10 +194,13 @@ HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed) 
   return left & in_range & free;
 }
 
-unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans) {
+unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
+                         double distance) {
+  // The ends of an open fan may come near each other through the gap.
+  if (distance > 0 && !fans.is_closed) return 0;
   if (fans.count <= VertexFans::kShort)
-    return areEmbedded(ShortFans(vertices, fans), fans.count, fans.is_closed);
-  return areEmbedded(LongFans(vertices, fans), fans.count, fans.is_closed);
+    return areEmbedded(ShortFans(vertices, fans), fans.count, fans.is_closed, distance);
+  return areEmbedded(LongFans(vertices, fans), fans.count, fans.is_closed, distance);
 }
 
 }  // namespace HWY_NAMESPACE

@@ -45,7 +45,8 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                                  const std::uint32_t* codes, const TimeWindow* windows,
                                  std::size_t count, double latest, double distance);
 EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
-unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans);
+unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
+                         double distance);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
 EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],

@@ -291,7 +291,18 @@ struct Kernels {
   /// The total angle of a closed fan cannot change with t, and at t = 0 it is one circle,
   /// since a ray lies in one sector only. The sectors of an open fan never cover a fixed
   /// ray. So no two sectors overlap.
-  unsigned (*areFansEmbedded)(const TreeVertex* vertices, const EightFans& fans);
+  ///
+  /// With a distance: features of two triangles of the fan that have no common vertex
+  /// also stay further apart than this. No open fan is proved then. Seen along d, two
+  /// such features do not meet, so a vertex of one of them is nearest to a point q of the
+  /// other. From an outer vertex a, with the spokes next to it, q is behind the rays of
+  /// the two spokes beside that of a, and these are as far from a as the heights of the
+  /// triangles over them. If the vertex is the middle of the fan, q is on an edge
+  /// opposite to it or behind it. So the distance is at least the least height of the
+  /// triangles.
+  /// @param distance  0: only embedded
+  unsigned (*areFansEmbedded)(const TreeVertex* vertices, const EightFans& fans,
+                              double distance);
 
   /// Finds the directions d that all of up to eight triangles provably face at every time
   /// of the step, n(t) . d > 0, a bit each.

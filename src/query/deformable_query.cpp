@@ -272,16 +272,17 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
   if (&mesh != &other || !mesh.tree || !mesh.isInPlace()) return proofs;
   const auto start = Clock::now();
   const MovingKdopTree& tree = *mesh.tree;
+  std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (min_distance > 0) {
     // What is proved not to touch may come near.
+    const double reach = reachOf(mesh, mesh, min_distance);
     if (with_regions)
       proofs.nodes_in_fans =
-          findNodesApart(tree, findEmbeddedRegions(tree, kernels(), num_threads),
-                         reachOf(mesh, mesh, min_distance));
+          findNodesApart(tree, findEmbeddedRegions(tree, kernels(), num_threads), reach);
+    proofs.fans = findEmbeddedFans(tree, interior, kernels(), num_threads, reach);
     times.traverse += secondsSince(start);
     return proofs;
   }
-  std::vector<std::uint8_t> interior(tree.vertices().size(), 0);
   if (with_regions) {
     EmbeddedRegions regions = findEmbeddedBodies(tree, kernels(), num_threads);
     addEmbeddedRegions(tree, kernels(), num_threads, regions);

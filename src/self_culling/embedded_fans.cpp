@@ -14,9 +14,9 @@ namespace {
 /// Collects vertices whose fans have the same form, until there are eight of them.
 class FanQueue {
  public:
-  FanQueue(const MovingKdopTree& tree, const Kernels& kernels,
+  FanQueue(const MovingKdopTree& tree, const Kernels& kernels, double distance,
            std::vector<std::uint8_t>& embedded)
-      : tree_(tree), kernels_(kernels), embedded_(embedded) {}
+      : tree_(tree), kernels_(kernels), distance_(distance), embedded_(embedded) {}
 
   void add(std::uint32_t vertex, const VertexFan& fan) {
     const bool is_short = fan.count <= VertexFans::kShort;
@@ -54,7 +54,8 @@ class FanQueue {
       eight.count = fan.count;
       eight.is_closed = fan.is_closed;
     }
-    const unsigned proved = kernels_.areFansEmbedded(tree_.vertices().data(), eight);
+    const unsigned proved =
+        kernels_.areFansEmbedded(tree_.vertices().data(), eight, distance_);
     for (std::uint32_t i = 0; i < alike.size; ++i)
       embedded_[alike.vertices[i]] = proved >> i & 1U;
     alike.size = 0;
@@ -62,6 +63,7 @@ class FanQueue {
 
   const MovingKdopTree& tree_;
   const Kernels& kernels_;
+  double distance_;
   std::vector<std::uint8_t>& embedded_;
   /// Short fans by kind (open, closed) and number of spokes.
   Alike short_[2][VertexFans::kShort + 1];
@@ -73,13 +75,14 @@ class FanQueue {
 
 std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
                                            const std::vector<std::uint8_t>& left_out,
-                                           const Kernels& kernels, int num_threads) {
+                                           const Kernels& kernels, int num_threads,
+                                           double distance) {
   constexpr std::size_t kBlock = 4096, kAhead = 64;
   const std::size_t count = tree.vertices().size();
   assert(left_out.size() == count);
   std::vector<std::uint8_t> embedded(count, 0);
   parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
-    FanQueue queue(tree, kernels, embedded);
+    FanQueue queue(tree, kernels, distance, embedded);
     for (; i < last; ++i) {
       const std::size_t ahead = std::min(i + kAhead, count - 1);
       if (!left_out[ahead]) __builtin_prefetch(&tree.vertices()[ahead]);

@@ -21,10 +21,12 @@ namespace deformable {
 /// proved
 /// @param kernels  the answer is the same for all
 /// @param num_threads  as in parallelFor(); the answer does not depend on it
+/// @param distance  above 0: only fans whose features also stay further apart than this
 /// @pre the tree has been refit
 std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
                                            const std::vector<std::uint8_t>& left_out,
-                                           const Kernels& kernels, int num_threads);
+                                           const Kernels& kernels, int num_threads,
+                                           double distance = 0);
 
 /// @brief For each node of the tree, a vertex whose embedded fan contains all triangles
 /// below the node, or MovingKdopNode::kNoPlace if there is none. Empty: no node has one.

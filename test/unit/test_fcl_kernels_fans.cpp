@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
@@ -64,29 +65,46 @@ struct RandomFan {
 
   /// Whether features of the triangles that share no vertex touch at some time.
   bool doTouch() const {
+    return isAny([](ContinuousContactKind kind, const VertexPath(&x)[4]) {
+      return elementaryTest(kind, x, 0, 1, 1e-6).answer != Answer::kNo;
+    });
+  }
+
+  /// Whether some of them come within a distance.
+  bool doComeWithin(double distance) const {
+    DistanceRequest request;
+    request.distance = distance;
+    return isAny([&](ContinuousContactKind kind, const VertexPath(&x)[4]) {
+      return advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request).is_contact;
+    });
+  }
+
+ private:
+  /// Whether test(kind, points) is true of a pair of features that share no vertex.
+  template <typename Test>
+  bool isAny(const Test& test) const {
     std::vector<Triangle> triangles;
     const std::size_t n = spokes.size();
     for (std::size_t i = 0; i + (is_closed ? 0 : 1) < n; ++i)
       triangles.emplace_back(n, i, (i + 1) % n);
     const auto mesh = assignFeatures(triangles.data(), triangles.size(), n + 1);
-    bool touch = false;
+    bool is_any = false;
     for (std::size_t i = 0; i < mesh.size(); ++i)
       for (std::size_t j = i + 1; j < mesh.size(); ++j)
         forEachFeaturePair<true>(mesh[i], mesh[j], [&](const FeaturePair& f) {
           const MeshTriangle &a = f.first_on_a ? mesh[i] : mesh[j],
                              &b = f.first_on_a ? mesh[j] : mesh[i];
-          if (touch) return;
+          if (is_any) return;
           const bool vf = f.kind == ContinuousContactKind::kVertexFace;
           const VertexPath x[4] = {path(a.v[f.first]),
                                    path(vf ? b.v[0] : a.v[(f.first + 1) % 3]),
                                    path(vf ? b.v[1] : b.v[f.second]),
                                    path(vf ? b.v[2] : b.v[(f.second + 1) % 3])};
-          touch = elementaryTest(f.kind, x, 0, 1, 1e-6).answer != Answer::kNo;
+          is_any = test(f.kind, x);
         });
-    return touch;
+    return is_any;
   }
 
- private:
   VertexPath path(std::uint32_t i) const {
     const TreeVertex& x = vertices[i];
     return {{x.t0[0], x.t0[1], x.t0[2]}, {x.t1[0], x.t1[1], x.t1[2]}};
@@ -95,7 +113,7 @@ struct RandomFan {
 
 /// The answers for up to eight fans of the same form, a bit each, equal on every
 /// instruction set.
-unsigned areEmbedded(const std::vector<RandomFan>& fans) {
+unsigned areEmbedded(const std::vector<RandomFan>& fans, double distance = 0) {
   // The vertices of all fans follow each other, those of the first fan last.
   std::vector<TreeVertex> vertices;
   std::vector<std::uint32_t> spokes[8];
@@ -114,15 +132,18 @@ unsigned areEmbedded(const std::vector<RandomFan>& fans) {
     eight.center[i] = &vertices[centers[i]];
     eight.spokes[i] = spokes[i].data();
   }
-  const unsigned found = allSets().front()->areFansEmbedded(vertices.data(), eight);
+  const unsigned found =
+      allSets().front()->areFansEmbedded(vertices.data(), eight, distance);
   for (const Kernels* k : allSets())
-    EXPECT_EQ(k->areFansEmbedded(vertices.data(), eight), found) << k->name;
+    EXPECT_EQ(k->areFansEmbedded(vertices.data(), eight, distance), found) << k->name;
   const bool last = found >> (fans.size() - 1) & 1U;
   for (std::size_t i = fans.size(); i < 8; ++i) EXPECT_EQ(found >> i & 1U, last) << i;
   return found;
 }
 
-bool isEmbedded(const RandomFan& fan) { return areEmbedded({fan}) & 1U; }
+bool isEmbedded(const RandomFan& fan, double distance = 0) {
+  return areEmbedded({fan}, distance) & 1U;
+}
 
 TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
   constexpr std::uint64_t kSeed = 78;
@@ -155,6 +176,38 @@ TEST(FCL_KERNELS, embeddedFansDoNotTouch) {
   EXPECT_GT(touching, 200);
 }
 
+// Fans of triangles that are low over one of their vertices, and of which a spoke is much
+// shorter than its neighbours, so that these come near each other outside of the fan.
+TEST(FCL_KERNELS, featuresOfFansThatAreHighStayApart) {
+  constexpr std::uint64_t kSeed = 80;
+  Random random(kSeed);
+  int proved = 0, not_proved = 0, near = 0;
+  for (int i = 0; i < 4000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t count = i % 8 ? 3 + random.index(6) : 9 + random.index(16);
+    RandomFan fan(random, count, true, 1, 0.3 * std::pow(random.uniform(0, 1), 2));
+    if (random.index(2)) {
+      TreeVertex& spoke = fan.vertices[random.index(count)];
+      const double shorter = random.uniform(0.02, 1);
+      for (int k = 0; k < 3; ++k) {
+        spoke.t0[k] += (1 - shorter) * (fan.vertices.back().t0[k] - spoke.t0[k]);
+        spoke.t1[k] += (1 - shorter) * (fan.vertices.back().t1[k] - spoke.t1[k]);
+      }
+    }
+    const double distance = std::pow(10, random.uniform(-3, 0.3));
+    const bool is_proved = isEmbedded(fan, distance),
+               is_near = fan.doComeWithin(distance);
+    EXPECT_FALSE(is_proved && is_near) << distance;
+    EXPECT_FALSE(is_proved && !isEmbedded(fan));
+    proved += is_proved;
+    not_proved += isEmbedded(fan) && !is_proved;
+    near += is_near;
+  }
+  EXPECT_GT(proved, 500);
+  EXPECT_GT(not_proved, 500);
+  EXPECT_GT(near, 500);
+}
+
 // A flat fan is embedded. A fan that goes around twice is not. For every number of
 // spokes.
 TEST(FCL_KERNELS, flatFans) {
@@ -179,6 +232,21 @@ RandomFan flatFan(const std::vector<std::array<double, 2>>& spokes, bool closed)
       fan.vertices[i].t0[k] = fan.vertices[i].t1[k] =
           i < spokes.size() && k < 2 ? spokes[i][k] : 0;
   return fan;
+}
+
+// Six equal triangles with sides of 1 and a height of 0.866. The ends of an open fan may
+// come near each other.
+TEST(FCL_KERNELS, heightsOfARegularFan) {
+  std::vector<std::array<double, 2>> spokes;
+  for (int i = 0; i < 6; ++i)
+    spokes.push_back({std::cos(i * M_PI / 3), std::sin(i * M_PI / 3)});
+  const RandomFan closed = flatFan(spokes, true), open = flatFan(spokes, false);
+  for (const double distance : {1e-300, 0.1, 0.5, 0.866}) {
+    EXPECT_TRUE(isEmbedded(closed, distance)) << distance;
+    EXPECT_FALSE(isEmbedded(open, distance)) << distance;
+  }
+  for (const double distance : {0.8661, 1., 1e300, HUGE_VAL})
+    EXPECT_FALSE(isEmbedded(closed, distance)) << distance;
 }
 
 // The ray goes through the middle of the first sector. If a spoke lies on the ray, the

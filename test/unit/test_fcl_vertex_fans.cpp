@@ -481,7 +481,7 @@ bool isEmbedded(const MovingKdopTree& tree, std::size_t vertex) {
   std::fill(eight.spokes, eight.spokes + 8, fan.spokes);
   eight.count = fan.count;
   eight.is_closed = fan.is_closed;
-  return kernels().areFansEmbedded(tree.vertices().data(), eight) & 1U;
+  return kernels().areFansEmbedded(tree.vertices().data(), eight, 0) & 1U;
 }
 
 // Fans of all kinds, tested eight at a time in blocks of vertices, have the same answers
