@@ -184,6 +184,7 @@ std::vector<OptionRow> measureOptions(const SpeedScene& scene, const Effort& eff
   rows.push_back(measureTMax(query, effort));
   addMarks(scene, query, effort, rows);
   rows.push_back(measureCrossings(scene, query, effort));
+  addDistances(scene, query, effort, rows);
   return rows;
 }
 

@@ -73,8 +73,8 @@ std::vector<BaselineRow> measureBaselines(const SpeedScene& scene, const Effort&
 
 /// @brief Times of the library without and with each option of a request, on one thread,
 /// and the errors of the answers with it; of two meshes only the tolerance. Errors are
-/// against answers without the option, of which the rows know which ones are to stay,
-/// and against brute force (crossings).
+/// against answers without the option, of which the rows know which ones are to stay, and
+/// against answers found without the library (crossings, contact at a distance).
 std::vector<OptionRow> measureOptions(const SpeedScene& scene, const Effort& effort);
 
 /// @brief All self-contacts in every step of a sequence, with a model that is updated
