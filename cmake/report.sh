@@ -1,7 +1,7 @@
 # shellcheck shell=bash
-# The parts that the reports have in common. speed.sh, speed_error.sh and paper.sh source this
-# file. The program fcl_ccd_NAME writes the report NAME. The scripts of its tables and pictures
-# are in test/benchmark/NAME or test/reproduction/NAME.
+# The parts that the reports have in common. The scripts of the reports source this file. The
+# program fcl_ccd_NAME writes the report NAME. The scripts of its tables and pictures are in
+# test/benchmark/NAME or test/reproduction/NAME.
 
 # fcl_ccd_build_report NAME [TARGET ...]
 #
@@ -56,4 +56,24 @@ fcl_ccd_end_report() {
     echo "Not everything was measured: doc/results stays as it is."
   fi
   echo "Tables and pictures: $out/$1"
+}
+
+# fcl_ccd_record_table NAME DURATION [OPTION ...]
+#
+# For a report that is one table. Goes to the project's folder, installs missing packages
+# (Debian), builds in Release and measures. The table goes to build/NAME; without options it
+# also replaces that in doc/results.
+fcl_ccd_record_table() {
+  local name=$1 duration=$2
+  shift 2
+  cd "$(dirname "${BASH_SOURCE[0]}")/.." || return
+  # shellcheck source=cmake/dependencies.sh
+  source cmake/dependencies.sh
+  fcl_ccd_install_dependencies build
+  echo "== Building (about ten minutes on two cores the first time)"
+  cmake --preset release
+  cmake --build --preset release --target "fcl_ccd_$name"
+  echo "== Measuring (everything takes $duration)"
+  "build/release/test/fcl_ccd_$name" "build/$name" "$@"
+  if [ $# -eq 0 ]; then cp "build/$name/$name.csv" doc/results/; fi
 }

@@ -6,13 +6,6 @@
 # Options are passed to fcl_ccd_shapes: --queries 20.
 # Measuring everything takes about ten minutes, mostly for FCL's conservative advancement.
 set -euo pipefail
-cd "$(dirname "$0")/.."
-# shellcheck source=cmake/dependencies.sh
-source cmake/dependencies.sh
-fcl_ccd_install_dependencies build
-echo "== Building (about ten minutes on two cores the first time)"
-cmake --preset release
-cmake --build --preset release --target fcl_ccd_shapes
-echo "== Measuring (everything takes about ten minutes)"
-build/release/test/fcl_ccd_shapes build/shapes "$@"
-if [ $# -eq 0 ]; then cp build/shapes/shapes.csv doc/results/; fi
+# shellcheck source=cmake/report.sh
+source "$(dirname "$0")/report.sh"
+fcl_ccd_record_table shapes 'about ten minutes' "$@"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Runs the report of speed against error on a tiny set. Its error figures must be those
-// that are promised, and it must read outside solvers correctly.
+// Runs the reports of speed against error on tiny sets. Their error figures must be those
+// that are promised, and outside solvers must be read correctly.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -184,6 +184,31 @@ TEST_F(FCL_SPEED_ERROR, aSolverThatFailsIsNamed) {
   }
   EXPECT_EQ(run("--solver nothing"), 1);
   EXPECT_NE(errors().find("NAME=COMMAND"), std::string::npos);
+}
+
+TEST(FCL_DISTANCES, figuresAreThosePromised) {
+  const std::string folder = FCL_CCD_BINARY_DIR "/distances";
+  const std::string command =
+      "'" FCL_CCD_DISTANCES "' '" + folder + "' --queries 20 --repeats 1";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  std::map<std::string, int> rows_of;
+  for (CsvRow row : readCsv(folder + "/distances.csv",
+                            "set,method,setting,queries,contacts,false_negatives,"
+                            "false_positives,false_positives_far,max_late,max_early,"
+                            "ns_mean,machine")) {
+    SCOPED_TRACE(row["set"] + ", " + row["method"] + ", " + row["setting"]);
+    ++rows_of[row["method"]];
+    EXPECT_EQ(row["queries"], "20");
+    EXPECT_GT(std::stoi(row["contacts"]), 0);
+    EXPECT_GT(std::stod(row["ns_mean"]), 0);
+    if (row["method"] != "ours") continue;
+    EXPECT_EQ(row["false_negatives"], "0");
+    EXPECT_EQ(row["false_positives_far"], "0");
+    EXPECT_EQ(row["max_late"], "0");
+  }
+  const std::map<std::string, int> expected{
+      {"ours", 4}, {"inclusion", 4}, {"additive", 4}};
+  EXPECT_EQ(rows_of, expected);
 }
 
 }  // namespace

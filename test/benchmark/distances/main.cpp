@@ -2,12 +2,14 @@
 //
 // Speed against error of elementary tests at a distance. The truth is the oracle's
 // (oracle/exact_oracle.h). doc/thickness.md explains the table.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -119,9 +121,10 @@ void writeRow(std::FILE* out, const DistanceMethod& method, const QuerySet& set,
   std::fflush(out);
 }
 
-void run(const char* path, std::size_t count, int repeats) {
-  std::FILE* out = std::fopen(path, "w");
-  if (!out) throw std::runtime_error(std::string(path) + ": cannot be written");
+void run(const std::string& folder, std::size_t count, int repeats) {
+  std::filesystem::create_directories(folder);
+  std::FILE* out = std::fopen((folder + "/distances.csv").c_str(), "w");
+  if (!out) throw std::runtime_error(folder + ": cannot be written to");
   std::fputs(
       "set,method,setting,queries,contacts,false_negatives,false_positives,"
       "false_positives_far,max_late,max_early,ns_mean,machine\n",
@@ -136,16 +139,18 @@ void run(const char* path, std::size_t count, int repeats) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 4) {
-    std::fprintf(stderr,
-                 "usage: %s TABLE.csv [COUNT [REPEATS]]\n"
-                 "Speed against error at a distance; COUNT queries of each set (4000).\n",
-                 argv[0]);
-    return 2;
-  }
+  CLI::App app{
+      "Speed against error of elementary tests at a distance; writes distances.csv."};
+  std::string folder;
+  std::size_t count = 1000;
+  int repeats = 5;
+  app.add_option("out", folder, "Folder for the table")->required();
+  app.add_option("--queries", count, "Of each set")->check(CLI::PositiveNumber);
+  app.add_option("--repeats", repeats, "Each time is the least of so many")
+      ->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
   try {
-    run(argv[1], argc > 2 ? std::stoul(argv[2]) : 4000,
-        argc > 3 ? std::stoi(argv[3]) : 5);
+    run(folder, count, repeats);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s: %s\n", argv[0], error.what());
     return 1;
