@@ -9,6 +9,11 @@ function(fcl_ccd_compile_options target)
   if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
     # FCL's indices are int. clang's -Wconversion warns about signs, gcc's does not.
     target_compile_options(${target} PRIVATE -Wno-sign-conversion)
+    # In libstdc++ 12 std::stable_sort() calls a function that is deprecated, of which clang
+    # warns from version 17 on.
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 17)
+      target_compile_options(${target} PRIVATE -Wno-deprecated-declarations)
+    endif()
   else()
     # gcc 12 gives false alarms in code that it inlines from FCL, Eigen and Boost.
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)

@@ -299,6 +299,7 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   static bool isEarlier(const PairResult& x, const PairResult& y) {
     return x.result.time_of_contact < y.result.time_of_contact;
   }
+  static void sortByTime(std::vector<PairResult>& pairs);
   void answerFirst(const Pairs& pairs, const ContinuousCollisionManager& other,
                    const Request& request, Result& result) const;
   static void callBack(const Pairs& pairs, void* cdata,
@@ -546,12 +547,26 @@ void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
       result.pairs.push_back(std::move(tested));
       if (asked.query == ContinuousQuery::kAny) break;
     }
-    std::stable_sort(result.pairs.begin(), result.pairs.end(), &isEarlier);
+    sortByTime(result.pairs);
   }
   result.is_collide = !result.pairs.empty();
   if (result.is_collide)
     result.time_of_contact = result.pairs.front().result.time_of_contact;
   out = std::move(result);
+}
+
+/// Pairs at the same time keep their order. std::stable_sort() would do it, but in
+/// libstdc++ 12 it calls a deprecated function, of which clang 19 warns in the program.
+template <typename S>
+void ContinuousCollisionManager<S>::sortByTime(std::vector<PairResult>& pairs) {
+  std::vector<std::pair<S, std::size_t>> order;
+  for (const PairResult& pair : pairs)
+    order.emplace_back(pair.result.time_of_contact, order.size());
+  std::sort(order.begin(), order.end());
+  std::vector<PairResult> sorted;
+  sorted.reserve(pairs.size());
+  for (const auto& place : order) sorted.push_back(std::move(pairs[place.second]));
+  pairs = std::move(sorted);
 }
 
 /// The bracket of a contact may depend on t_max, by up to toc_err. So if the times of two
