@@ -53,6 +53,9 @@ class ConvexPairMotion {
   /// @brief As TrianglePairMotion::proveContact().
   double proveContact(double t, double width) const;
 
+  /// @brief As TrianglePairMotion::directionAt().
+  Vec directionAt(double t) const { return gapAt(t).direction; }
+
   /// @brief The gap of the cores at a time.
   ConvexGap gapAt(double t) const;
 

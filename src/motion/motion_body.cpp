@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "fcl/common/exception.h"
 #include "query/feature_batch.h"
@@ -247,6 +248,38 @@ MotionBox MotionBody::box(const BodyPart& part, int frame) const {
   if (octree_) return octree_->box(part.box);
   if (!tree_) return rigidBox(part.box);
   return part.box == BodyPart::kRoot ? movingRoot(frame) : movingBox(part.box, frame);
+}
+
+double MotionBody::reach(const BodyPart& part, double t, const Vec& direction,
+                         std::int64_t& room) const {
+  if (isMesh()) return reachOfMesh(part, t, direction, room);
+  --room;
+  return shape_ ? shape_->reach(direction) : octree_->reach(part.box, direction);
+}
+
+double MotionBody::reachOfMesh(const BodyPart& part, double t, const Vec& direction,
+                               std::int64_t& room) const {
+  double most = -HUGE_VAL;
+  std::vector<std::int32_t> left{part.child};
+  while (!left.empty() && room >= 0) {
+    const std::int32_t child = left.back();
+    left.pop_back();
+    if (child < 0) {
+      --room;
+      const BodyTriangle at = triangle(~child);
+      for (int k = 0; k < 3; ++k)
+        most = std::max(most,
+                        dot(direction, (1 - t) * at.corner[0][k] + t * at.corner[1][k]));
+    } else if (tree_) {
+      const MovingKdopNode& node = tree_->node(child);
+      left.insert(left.end(), node.child, node.child + node.count);
+    } else {
+      const int first = rigid_->link(child);
+      for (int i = first; i < first + 2; ++i)
+        left.push_back(rigid_->link(i) < 0 ? rigid_->link(i) : i);
+    }
+  }
+  return most;
 }
 
 void MotionBody::openOctree(std::int32_t node, MotionNode& out) const {

@@ -101,6 +101,14 @@ class MotionBody {
   void open(const BodyPart& part, MotionNode& out) const;
   /// @brief The box of a part at t = 0 or t = 1.
   MotionBox box(const BodyPart& part, int frame) const;
+
+  /// @brief The largest coordinate of the points of a part along a direction of the body
+  /// frame, at a time. Of an octree these are points of the box around the part's cells.
+  /// @param[in,out] room  in: how many triangles may be looked at; out: less those that
+  /// were. The answer counts only if it is not negative.
+  /// @pre it is no plane or halfspace
+  double reach(const BodyPart& part, double t, const Vec& direction,
+               std::int64_t& room) const;
   /// @brief Whether a mesh has free edges or points. A rigid mesh has none.
   bool hasFree() const { return tree_ && tree_->freeLeaves().count() > 0; }
   /// @brief The number of triangles, free edges and free points.
@@ -129,6 +137,8 @@ class MotionBody {
 
  private:
   void openOctree(std::int32_t node, MotionNode& out) const;
+  double reachOfMesh(const BodyPart& part, double t, const Vec& direction,
+                     std::int64_t& room) const;
   MotionBox rigidBox(int node) const;
   MotionBox movingBox(std::int32_t box, int frame) const;
   MotionBox movingRoot(int frame) const;

@@ -8,6 +8,8 @@
 
 #include "motion/convex_advance.h"
 #include "motion/flat_windows.h"
+#include "motion/motion_work.h"
+#include "motion/parting_direction.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
@@ -69,27 +71,6 @@ struct Side {
   bool goes_straight;
 };
 
-/// Two parts in a span of time.
-struct Work {
-  /// From t0 to this time the parts are provably apart.
-  double start;
-  double t0, t1;
-  BodyPart a, b;
-  std::int32_t steps;
-};
-
-/// Pieces of work are sorted by start time. If the times are equal, for example t = 0,
-/// pieces deeper in the trees come first. The other comparisons make the order depend on
-/// the pieces alone.
-bool isLater(const Work& x, const Work& y) {
-  if (x.start != y.start) return x.start > y.start;
-  const std::int64_t x_depth = std::int64_t{x.a.box} + x.b.box,
-                     y_depth = std::int64_t{y.a.box} + y.b.box;
-  if (x_depth != y_depth) return x_depth < y_depth;
-  if (x.a.box != y.a.box) return x.a.box < y.a.box;
-  return x.t0 > y.t0;
-}
-
 bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
   if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
   if (x.triangle[0] != y.triangle[0]) return x.triangle[0] < y.triangle[0];
@@ -110,8 +91,10 @@ class MotionTraversal {
       : side_{Side(a), Side(b)},
         options_(options),
         tolerance_(a, b, options.distance),
+        parting_(a, b, tolerance_),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
-        latest_(options.last) {
+        latest_(options.last),
+        works_(!options.all) {
     // A kernel adds up no more than a hundred roundings of the sizes, and a time is
     // rounded by a few u.
     rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
@@ -121,13 +104,13 @@ class MotionTraversal {
   }
 
   MotionAnswer run() {
-    traverse([this](const Work& work) { advance(work); });
+    traverse([this](const MotionWork& work) { advance(work); });
     return finish();
   }
 
   std::vector<NearTriangles> nearTriangles() {
     std::vector<NearTriangles> near;
-    traverse([&near](const Work& work) {
+    traverse([&near](const MotionWork& work) {
       near.push_back({{~work.a.child, ~work.b.child}, work.t0, work.t1});
     });
     return near;
@@ -137,14 +120,11 @@ class MotionTraversal {
   /// Calls visit(work) for pairs of triangles, in the order of their starts.
   template <typename Visit>
   void traverse(Visit&& visit) {
-    testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0});
-    while (!works_.empty()) {
-      std::pop_heap(works_.begin(), works_.end(), isLater);
-      Work work = works_.back();
-      works_.pop_back();
-      if (work.start > latest_) break;
-      // Nothing can be earlier than the contact that was found.
-      if (!options_.all && !contacts_.empty() && work.start == latest_) break;
+    testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0});
+    while (!works_.isEmpty()) {
+      MotionWork work = works_.pop();
+      if (isTooLate(work)) break;
+      if (areKeptApart(work)) continue;
       if (work.a.isTriangle() && work.b.isTriangle())
         visit(work);
       else
@@ -152,10 +132,14 @@ class MotionTraversal {
     }
   }
 
-  void push(const Work& work) {
-    if (work.start > latest_) return;
-    works_.push_back(work);
-    std::push_heap(works_.begin(), works_.end(), isLater);
+  /// Whether nothing in it can be earlier than a contact that was found.
+  bool isTooLate(const MotionWork& work) const {
+    if (options_.all || contacts_.empty()) return work.start > latest_;
+    return work.start >= latest_;
+  }
+
+  void push(const MotionWork& work) {
+    if (!isTooLate(work)) works_.push(work);
   }
 
   /// The box of a part at a time.
@@ -231,7 +215,7 @@ class MotionTraversal {
   }
 
   /// Tests the pair in its span, and adds the parts that may overlap.
-  void testAlone(const Work& work) {
+  void testAlone(const MotionWork& work) {
     const int many = side_[1].flat ? 0 : 1;
     const MotionBody& body = side_[many].body;
     const BodyPart &part = many == 1 ? work.b : work.a,
@@ -278,7 +262,7 @@ class MotionTraversal {
   /// The margins of a node's boxes: how far the points of both bodies deviate from
   /// straight lines, with padding and rounding.
   /// @param own  the part of this of the other side
-  void setMargins(const Work& work, const Side& side, const MotionBoxes& begin,
+  void setMargins(const MotionWork& work, const Side& side, const MotionBoxes& begin,
                   const MotionBoxes& end, int count, double own,
                   double (&margin)[MotionBoxes::kWidth]) const {
     for (int lane = 0; lane < count; ++lane)
@@ -294,7 +278,8 @@ class MotionTraversal {
   /// Tests the children of one side's part against the other side's part.
   /// @param opened  the side whose children they are
   /// @param other  the part of the other side
-  void test(const Work& work, int opened, const MotionNode& node, const PartSpan& other) {
+  void test(const MotionWork& work, int opened, const MotionNode& node,
+            const PartSpan& other) {
     // A node of an octree may be occupied while none of its children is.
     if (node.count == 0) return;
     Side& one = side_[1 - opened];
@@ -320,7 +305,7 @@ class MotionTraversal {
       if (one.body.shape() && !one.flat && !one.body.shape()->fillsBox() &&
           !narrowByShape(opened, work, boxes, lane, margin[lane], windows))
         continue;
-      Work child = work;
+      MotionWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
       child.start = std::max(work.start, work.t0 + windows.lo[lane] * dt);
       const double end = std::min(work.t1, work.t0 + windows.hi[lane] * dt);
@@ -339,8 +324,9 @@ class MotionTraversal {
   /// Shortens the window of a box that may overlap the box of a shape, by the direction
   /// that parts the shape itself from the box in the middle of the span.
   /// @return whether they may overlap
-  bool narrowByShape(int opened, const Work& work, const MotionBoxes* const (&boxes)[2],
-                     int lane, double margin, MeetingWindows& windows) {
+  bool narrowByShape(int opened, const MotionWork& work,
+                     const MotionBoxes* const (&boxes)[2], int lane, double margin,
+                     MeetingWindows& windows) {
     const SpanPoses poses[2] = {side_[1 - opened].spanPoses(work.t0, work.t1),
                                 side_[opened].spanPoses(work.t0, work.t1)};
     const MotionBox begin = boxes[0]->get(lane), end = boxes[1]->get(lane);
@@ -369,7 +355,7 @@ class MotionTraversal {
 
   /// The span of a piece of work: that of its parent, cut to [start, end], with ends that
   /// are dyadic so that poses are used again.
-  static void setSpan(double end, Work& work) {
+  static void setSpan(double end, MotionWork& work) {
     if (work.a.isTriangle() && work.b.isTriangle()) {
       work.t0 = work.start;
       work.t1 = end;
@@ -380,7 +366,7 @@ class MotionTraversal {
     work.t1 = std::min(work.t1, std::ceil(end / unit) * unit);
   }
 
-  void divide(Work& work) {
+  void divide(MotionWork& work) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
     constexpr double kShortest = 0x1p-20, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
@@ -400,9 +386,9 @@ class MotionTraversal {
          span[1 - opened]);
   }
 
-  void halve(const Work& work) {
+  void halve(const MotionWork& work) {
     const double middle = 0.5 * (work.t0 + work.t1);
-    Work half = work;
+    MotionWork half = work;
     half.t1 = middle;
     if (half.start < middle) testAlone(half);
     half = work;
@@ -416,8 +402,34 @@ class MotionTraversal {
     return a.isFree() && b.isFree() && (a.isFreePoint() || b.isFreePoint());
   }
 
+  /// Whether the direction of the contact that was found keeps the parts apart until
+  /// then. The points and cells of a part may be apart where its box, which is padded by
+  /// more than the tolerance, is not.
+  bool areKeptApart(const MotionWork& work) {
+    if (options_.all || contacts_.empty() || !works_.isLong()) return false;
+    const double end = std::min(work.t1, latest_);
+    double gap[2];
+    if (!parting_.areApart(work.a, work.b, {work.start, end}, gap)) return false;
+    const double deviation = partSpan(0, work.a, work.start, end).deviation +
+                             partSpan(1, work.b, work.start, end).deviation;
+    return staysPositive(gap, direction_bound_ * deviation);
+  }
+
+  /// Takes the direction of a contact. Other pairs may touch at the same time in another
+  /// direction, so now and then that of a pair that does not touch earlier.
+  template <typename Pair>
+  void setPartingDirection(const Pair& pair, TrianglePairMotion::Answer answer,
+                           double t) {
+    constexpr int kOften = 4;
+    if (options_.all) return;
+    if (answer != TrianglePairMotion::Answer::kContact &&
+        (contacts_.empty() || !works_.isLong() || ++num_apart_ % kOften != 0))
+      return;
+    parting_.set(pair.directionAt(t));
+  }
+
   /// Advances a pair of triangles, shapes or cells of an octree.
-  void advance(const Work& work) {
+  void advance(const MotionWork& work) {
     const MotionBody &a = side_[0].body, &b = side_[1].body;
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
@@ -439,13 +451,15 @@ class MotionTraversal {
 
   /// @return the contact, if there is one; valid until the next call
   template <typename Pair>
-  MotionContact* advance(Work work, const std::int32_t (&index)[2], double end,
+  MotionContact* advance(MotionWork work, const std::int32_t (&index)[2], double end,
                          Pair& pair) {
     if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
-    const double last = options_.all || works_.empty() ? end : works_.front().start;
+    const double last =
+        options_.all || work.dive > 0 || works_.isEmpty() ? end : works_.nextStart();
     int left = options_.max_steps - work.steps;
     const auto answer = pair.advance(work.start, last, left, counts_);
+    setPartingDirection(pair, answer, work.start);
     if (answer == TrianglePairMotion::Answer::kApart) return nullptr;
     if (answer == TrianglePairMotion::Answer::kOpen && left > 0) {
       work.steps = options_.max_steps - left;
@@ -468,6 +482,7 @@ class MotionTraversal {
                               : MotionCertainty::kWithinTolerance;
     }
     contacts_.push_back(contact);
+    if (work.dive > 0) works_.endDive();
     if (!options_.all) latest_ = std::min(latest_, contact.toc_lo);
     return &contacts_.back();
   }
@@ -498,6 +513,7 @@ class MotionTraversal {
   Side side_[2];
   const MotionQueryOptions& options_;
   MotionTolerance tolerance_;
+  PartingDirection parting_;
   /// The distance at which meshes are in contact.
   double apart_;
   /// Bound on the rounding of the distance of two boxes.
@@ -506,7 +522,9 @@ class MotionTraversal {
   double direction_bound_;
   /// The latest time that matters.
   double latest_;
-  std::vector<Work> works_;
+  MotionWorkQueue works_;
+  /// The number of pairs that did not touch earlier than the contact that was found.
+  int num_apart_{0};
   std::vector<MotionContact> contacts_;
   MotionCounts counts_;
 };
@@ -531,6 +549,7 @@ MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
 std::vector<NearTriangles> nearTriangles(const MotionBody& a, const MotionBody& b,
                                          double distance) {
   MotionQueryOptions options;
+  options.all = true;
   options.distance = distance;
   return MotionTraversal(a, b, options).nearTriangles();
 }

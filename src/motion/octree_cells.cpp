@@ -146,6 +146,17 @@ MotionBox OctreeCells::box(std::int32_t node) const {
   return box;
 }
 
+double OctreeCells::reach(std::int32_t node, const Vec& direction) const {
+  const Bounds& bounds = at(node).bounds;
+  constexpr double kMiddle = 1U << (OctreeCellNumber::kDepth - 1);
+  const double unit = root_size_ / (2 * kMiddle);
+  const auto corner = [&](int k, double along) {
+    return ((along < 0 ? bounds.lower[k] : bounds.upper[k] + 1) - kMiddle) * unit;
+  };
+  return dot(direction,
+             Vec{corner(0, direction.x), corner(1, direction.y), corner(2, direction.z)});
+}
+
 const ConvexShape& OctreeCells::cell(std::int32_t leaf) {
   Node& node = table_[static_cast<std::size_t>(leaf)];
   if (node.shape >= 0) return shapes_[static_cast<std::size_t>(node.shape)];

@@ -82,6 +82,10 @@ class OctreeCells {
   /// @brief A box around the occupied cells of a node.
   MotionBox box(std::int32_t node) const;
 
+  /// @brief The largest coordinate of that box along a direction. It has no pad: what
+  /// lies on its sides rounds as the corners of cells do.
+  double reach(std::int32_t node, const Vec& direction) const;
+
   /// @brief The occupied children of a node have consecutive numbers. Opening a node
   /// looks a few levels further down, so that the boxes of its children are near to their
   /// cells.

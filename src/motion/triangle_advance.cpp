@@ -138,8 +138,8 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
 
 // A distance is the difference of two posed points, projected on a direction that is
 // rounded too. Its error is that of the points and 16 u of their size. A time is rounded
-// by u. A pair is touching if its computed distance is at most `touching`, and a step may
-// leave a gap as large as the error. So `touching` is four times the error.
+// by u. A pair is touching if its computed distance is at most `touching` less the error,
+// and a step leaves a gap of twice the error. So `touching` is four times the error.
 MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
                                  double wanted_distance)
     : distance(wanted_distance) {
@@ -258,7 +258,7 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
 double TrianglePairMotion::step(double t, const State& state,
                                 const Vec& direction) const {
   const Projection along(state, direction);
-  const double margin = tolerance_.position + tolerance_.distance, longest = t1_ - t;
+  const double margin = 2 * tolerance_.position + tolerance_.distance, longest = t1_ - t;
   double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
   if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
   // Its rounding is far less than this part of the bound.
@@ -315,6 +315,20 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
     t = next;
     if (t > last) return Answer::kOpen;
   }
+}
+
+Vec TrianglePairMotion::directionAt(double t) const {
+  const State state = at(t);
+  const auto &a = state.p[0], &b = state.p[1];
+  const NearestFeatures near = nearestFeatures(a, b);
+  Vec direction = {0, 0, 0};
+  double gap = 0;
+  tryDirection(normal(a), a, b, direction, gap);
+  tryDirection(normal(b), a, b, direction, gap);
+  gap += tolerance_.position;
+  tryDirection(directionOf(near, a, b), a, b, direction, gap);
+  tryDirection(near.between, a, b, direction, gap);
+  return direction;
 }
 
 /// Whether an edge of one triangle passes through the other, for these points.

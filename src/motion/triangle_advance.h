@@ -96,6 +96,10 @@ class TrianglePairMotion {
 
   const NearestFeatures& nearest() const { return nearest_; }
 
+  /// @brief A unit direction from a to b that parts the triangles at a time; if they have
+  /// parallel sides that of the sides. 0: there is none.
+  Vec directionAt(double t) const;
+
   /// @brief A time in (t, t + width] at which an edge provably passes through the other
   /// triangle (with a requested distance: at which they provably are within it). t if no
   /// such time is found.

@@ -182,8 +182,11 @@ TEST_F(BoundedMotions, MeetAtTheTimeOfTheClosedForm) {
     EXPECT_LE(found, time * (1 + 1e-15));
     EXPECT_FALSE(result.contacts.empty());
     ContinuousCollisionResult<double> plain;
-    EXPECT_EQ(collide<ContinuousCollisionRequest<double>>(*bar_, pendulum, *plate, plain),
-              found);
+    // Other triangles of the side meet the edge at the same time, up to rounding.
+    const double first =
+        collide<ContinuousCollisionRequest<double>>(*bar_, pendulum, *plate, plain);
+    EXPECT_NEAR(first, found, 1e-12);
+    EXPECT_LE(first, time * (1 + 1e-15));
     ContinuousContactRequest<double> request;
     request.toc_err = 1e-6;
     ContinuousContactResult<double> swapped;

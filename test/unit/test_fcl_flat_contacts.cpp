@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Flat sides that come to lie on flat sides: hundreds of pairs of triangles, shapes and
+// cells touch at the same time, up to rounding. Against closed forms, and against the
+// query for all contacts, which decides each pair.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/geometry/octree/octree.h"
+#include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/cylinder.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "motion/parting_direction.h"
+#include "test_models.h"
+#include "turning_bodies.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Point = Vector3<double>;
+using Geometry = std::shared_ptr<CollisionGeometry<double>>;
+using Pose = Transform3<double>;
+using Request = ContinuousContactRequest<double>;
+using Result = ContinuousContactResult<double>;
+
+constexpr double kResolution = 0.125;
+/// Sheets are lowered from z = 1 to z = -1 on grounds whose top is at z = 0.
+constexpr double kWay = 2;
+
+Pose at(double z, double turn) {
+  Pose pose = Pose::Identity();
+  pose.translation() << 0.013, 0.017, z;
+  pose.linear() = AngleAxis<double>(turn, Point::UnitZ()).toRotationMatrix();
+  return pose;
+}
+
+/// A flat sheet of 1152 triangles with one vertex that is lower by a depth.
+TestMesh sheetWithBump(double depth, std::size_t vertex, double z = 0) {
+  TestMesh sheet = makeSheet(
+      24, 24, [z](double u, double v) { return Point(2 * u - 1, 2 * v - 1, z); });
+  sheet.vertices[vertex][2] -= depth;
+  return sheet;
+}
+
+Geometry rigid(const TestMesh& mesh) { return makeModel<BVHModel<OBBRSS<double>>>(mesh); }
+
+/// Each cell has another weight, so that nothing is pruned.
+Geometry floorOfCells() {
+  const auto map = std::make_shared<octomap::OcTree>(kResolution);
+  for (int x = -12; x < 12; ++x)
+    for (int y = -12; y < 12; ++y) {
+      const octomap::OcTreeKey key(static_cast<std::uint16_t>(32768 + x),
+                                   static_cast<std::uint16_t>(32768 + y), 32767);
+      map->setNodeValue(key, 1 + 0.01f * static_cast<float>((x + y) & 7), true);
+    }
+  map->updateInnerOccupancy();
+  return std::make_shared<OcTree<double>>(std::shared_ptr<const octomap::OcTree>(map));
+}
+
+struct Ground {
+  const char* name;
+  Geometry geometry;
+  double top;
+};
+
+std::vector<Ground> grounds() {
+  return {{"cells", floorOfCells(), 0},
+          {"box", std::make_shared<Box<double>>(3, 3, 1), 0.5},
+          {"cylinder", std::make_shared<Cylinder<double>>(2, 1), 0.5},
+          {"halfspace", std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0), 0},
+          {"plane", std::make_shared<Plane<double>>(Point(0, 0, -1), 0), 0},
+          {"sheet", rigid(sheetWithBump(0, 0)), 0}};
+}
+
+struct Scene {
+  Geometry sheet;
+  Pose begin, end;
+  const Ground& ground;
+
+  Result ask(const Request& request, bool is_swapped = false) const {
+    Pose place = Pose::Identity();
+    place.translation()[2] = -ground.top;
+    Result result;
+    if (is_swapped)
+      continuousCollide(ground.geometry.get(), place, place, sheet.get(), begin, end,
+                        request, result);
+    else
+      continuousCollide(sheet.get(), begin, end, ground.geometry.get(), place, place,
+                        request, result);
+    return result;
+  }
+};
+
+Request requestOf(ContinuousQuery query, double distance = 0) {
+  Request request;
+  request.query = query;
+  request.ccd_motion_type = CCDM_LINEAR;
+  request.min_distance = distance;
+  return request;
+}
+
+/// @return the number of pairs that were decided one by one
+std::uint64_t expectFirst(const Scene& scene, double time, double distance = 0) {
+  std::uint64_t num_pairs = 0;
+  for (const bool is_swapped : {false, true}) {
+    const Result any = scene.ask(requestOf(ContinuousQuery::kAny, distance), is_swapped);
+    EXPECT_TRUE(any.is_collide);
+    EXPECT_LE(any.time_of_contact, time + 1e-15);
+    EXPECT_NEAR(any.time_of_contact, time, 1e-11);
+    num_pairs = std::max(num_pairs, any.counts.triangle_pairs);
+  }
+  Request all = requestOf(ContinuousQuery::kAll, distance);
+  all.t_max = std::min(1., time + 1e-6);
+  EXPECT_NEAR(scene.ask(all).time_of_contact, time, 1e-11);
+  return num_pairs;
+}
+
+// The bump touches first, however small it is. What the other pairs would give is late.
+TEST(FlatContacts, TheLowestVertexIsFirst) {
+  Random random(1);
+  for (const Ground& ground : grounds())
+    for (const double turn : {0., 1.})
+      for (const double depth : {1e-3, 1e-6, 1e-9, 1e-11, 0.}) {
+        // Sheets that do not turn are decided exactly.
+        if (turn == 0 && ground.name == std::string("sheet")) continue;
+        SCOPED_TRACE(std::string(ground.name) + ", turn " + std::to_string(turn) +
+                     ", depth " + std::to_string(depth));
+        const std::size_t vertex = 25 * (3 + random.index(18)) + 3 + random.index(18);
+        const Scene scene{rigid(sheetWithBump(depth, vertex)), at(1, 0), at(-1, turn),
+                          ground};
+        EXPECT_LT(expectFirst(scene, (1 - depth) / kWay), 400u);
+        expectFirst(scene, (1 - depth - 0.01) / kWay, 0.01);
+      }
+}
+
+TEST(FlatContacts, SheetsThatDeform) {
+  Random random(2);
+  for (const Ground& ground : grounds())
+    for (const double depth : {1e-3, 1e-6, 1e-9, 0.}) {
+      SCOPED_TRACE(std::string(ground.name) + ", depth " + std::to_string(depth));
+      const std::size_t vertex = 25 * (3 + random.index(18)) + 3 + random.index(18);
+      const auto cloth = makeModel<DeformableBVHModel<KDOP<double, 16>>>(
+          sheetWithBump(0, vertex, 1.1), sheetWithBump(depth, vertex, -0.9));
+      // It turns as well, or else two meshes are decided exactly.
+      const Scene scene{cloth, at(0, 0), at(0, 0.5), ground};
+      EXPECT_LT(expectFirst(scene, 1.1 / (2 + depth)), 400u);
+    }
+}
+
+using detail::deformable::ConvexShape;
+using detail::deformable::FlatShape;
+using detail::deformable::MotionBody;
+using detail::deformable::MotionTolerance;
+using detail::deformable::PartingDirection;
+using detail::deformable::Vec;
+
+/// A turn of about a radian near a place.
+ReferenceMotion turnNear(const Point& place, Random& random) {
+  ReferenceMotion motion;
+  motion.turn(random.point(1) + Point(0, 0, 2), random.uniform(0.5, 1.5));
+  motion.end.translation() = random.point(0.5);
+  motion.move(place);
+  return motion;
+}
+
+/// The least and the greatest coordinate of the vertices along a direction.
+std::array<double, 2> rangeOf(const Body& body, const RealPose& pose,
+                              const RealVector& direction) {
+  Real least = HUGE_VAL, most = -HUGE_VAL;
+  for (const Point& x : body.mesh.vertices) {
+    const Real along = direction.dot(pose * x);
+    least = std::min(least, along);
+    most = std::max(most, along);
+  }
+  return {static_cast<double>(least), static_cast<double>(most)};
+}
+
+/// Sets a direction so often that all triangles may be looked at.
+void setDirection(const Point& direction, PartingDirection& parting) {
+  const Point n = direction.normalized();
+  for (int i = 0; i < 100; ++i) parting.set({n[0], n[1], n[2]});
+}
+
+TEST(FlatContacts, GapsOfMeshes) {
+  Random random(4);
+  const Body ball(makeIcosphere(2, 0.5));
+  const ReferenceMotion motion_a = turnNear(Point(0, 0, 0), random),
+                        motion_b = turnNear(Point(0, 0, 5), random);
+  const MovingBody a(ball, motion_a.path()), b(ball, motion_b.path());
+  const MotionTolerance tolerance(a.body, b.body, 0.25);
+  PartingDirection parting(a.body, b.body, tolerance);
+  Point direction;
+  for (int i = 0; i < 2000; ++i) {
+    if (i % 500 == 0) {
+      direction = (random.point(0.3) + Point(0, 0, 1)).normalized();
+      setDirection(direction, parting);
+    }
+    const double t[2] = {random.uniform(0, 1), 0.5};
+    double gap[2];
+    ASSERT_TRUE(parting.areApart(a.body.root(), b.body.root(), t, gap));
+    for (auto end : {0, 1}) {
+      const RealVector n = direction.cast<Real>();
+      const double expected = rangeOf(ball, motion_b.at(t[end]), n)[0] -
+                              rangeOf(ball, motion_a.at(t[end]), n)[1];
+      EXPECT_NEAR(gap[end], expected - 0.25, 1e-11);
+    }
+  }
+}
+
+TEST(FlatContacts, GapsBesidePlanes) {
+  Random random(5);
+  const Body ball(makeIcosphere(1, 0.5));
+  int num_apart = 0;
+  for (const double side : {1., -1.})
+    for (const bool is_first : {false, true}) {
+      const ReferenceMotion motion = turnNear(Point(0, 0, 4 * side), random),
+                            turn = turnNear(Point(0, 0, 0), random);
+      const MovingBody moving(ball, motion.path());
+      const ConvexShape plane = ConvexShape::flat({Vec{0, 0, 1}, 0.5, false}, 9);
+      const MotionBody flat(plane, turn.path());
+      const MotionBody &a = is_first ? flat : moving.body,
+                       &b = is_first ? moving.body : flat;
+      PartingDirection parting(a, b, MotionTolerance(a, b, 0));
+      setDirection(Point(0, 0, is_first ? side : -side), parting);
+      for (int i = 0; i < 100; ++i) {
+        const double t[2] = {random.uniform(0, 0.3), random.uniform(0, 0.3)};
+        double gap[2];
+        if (!parting.areApart(a.root(), b.root(), t, gap)) continue;
+        ++num_apart;
+        for (auto end : {0, 1}) {
+          const RealPose pose = turn.at(t[end]);
+          const RealVector up = pose.rotation * RealVector(0, 0, 1);
+          const auto range = rangeOf(ball, motion.at(t[end]), up);
+          const auto foot = static_cast<double>(up.dot(pose * Point(0, 0, 0.5)));
+          EXPECT_NEAR(gap[end], side > 0 ? range[0] - foot : foot - range[1], 1e-11);
+        }
+      }
+    }
+  EXPECT_GT(num_apart, 300);
+}
+
+// The gap of two parts is at least a parabola.
+TEST(FlatContacts, GapsThatStayPositive) {
+  Random random(3);
+  for (int i = 0; i < 1000; ++i) {
+    const double gap[2] = {std::pow(10, random.uniform(-12, 0)),
+                           std::pow(10, random.uniform(-12, 0))},
+                 deviation = std::pow(10, random.uniform(-12, 0));
+    double least = std::min(gap[0], gap[1]);
+    for (double s = 0; s <= 1; s += 1e-4)
+      least =
+          std::min(least, (1 - s) * gap[0] + s * gap[1] - 4 * deviation * s * (1 - s));
+    const bool stays = detail::deformable::staysPositive(gap, deviation);
+    if (least < 0) {
+      EXPECT_FALSE(stays);
+    }
+    if (stays) {
+      EXPECT_GT(least, 0);
+    }
+    EXPECT_TRUE(detail::deformable::staysPositive(gap, std::min(gap[0], gap[1]) / 2));
+  }
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
