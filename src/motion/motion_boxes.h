@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "mesh/vertex_frames.h"
+#include "numerics/moving_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -85,6 +86,14 @@ inline bool narrowWindow(double first, double last, double& lo, double& hi) {
   return true;
 }
 
+/// @brief A direction along which points deviate less from straight lines than along
+/// others.
+struct CalmDirection {
+  /// Null: there is none.
+  const Vec* direction;
+  double margin[MotionBoxes::kWidth];
+};
+
 struct MotionKernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
@@ -93,14 +102,16 @@ struct MotionKernels {
   /// direction a point deviates by at most `margin` from the straight line between its
   /// positions at both ends of the span. So boxes are apart while the gap between them,
   /// interpolated between both ends, is larger than that. The directions are the axes of
-  /// both boxes in the middle of the span and the line between the centers.
+  /// both boxes in the middle of the span, the line between the centers, and the calm
+  /// directions, which have margins of their own.
   /// @param a, b  boxes at both ends
   /// @param margin  for each pair: deviation from straight lines, pads, requested
   /// distance and rounding, for unit directions; 0 for unused pairs
   /// @param count  the number of used pairs
   void (*meetingWindows)(const MotionBox (&a)[2], const SpanPoses& pose_a,
                          const MotionBoxes* const (&b)[2], const SpanPoses& pose_b,
-                         const double (&margin)[8], int count, MeetingWindows& out);
+                         const double (&margin)[8], const CalmDirection (&calm)[2],
+                         int count, MeetingWindows& out);
 };
 
 /// @brief The kernels for this machine.

@@ -101,9 +101,11 @@ HWY_INLINE void addLosses(const Projection& p0, const Projection& p1,
 
 void meetingWindows(const MotionBox (&a)[2], const SpanPoses& pose_a,
                     const MotionBoxes* const (&b)[2], const SpanPoses& pose_b,
-                    const double (&margin)[8], int count, MeetingWindows& out) {
+                    const double (&margin)[8], const CalmDirection (&calm)[2], int count,
+                    MeetingWindows& out) {
   const WorldBox a0 = inWorld(a[0], pose_a.beginning), a1 = inWorld(a[1], pose_a.end);
-  const Doubles margins = load<kEight>(margin), zero = all(0), one = all(1);
+  const Doubles zero = all(0), one = all(1);
+  Doubles margins = load<kEight>(margin);
   Losses losses{zero, zero, zero > zero};
   const auto tryDirection = [&](const Vectors& d) HWY_ATTR {
     addLosses(project(a0, *b[0], pose_b.beginning, d), project(a1, *b[1], pose_b.end, d),
@@ -122,6 +124,14 @@ void meetingWindows(const MotionBox (&a)[2], const SpanPoses& pose_a,
   const Doubles length = squareRoot(dot(between, between));
   tryDirection(scaled(one / max(length, all(0x1p-500)), between));
   out.mask = left();
+  for (const CalmDirection& from : calm) {
+    if (!from.direction || out.mask == 0) continue;
+    margins = load<kEight>(from.margin);
+    tryDirection(
+        {all(from.direction->x), all(from.direction->y), all(from.direction->z)});
+    out.mask = left();
+  }
+  margins = load<kEight>(margin);
   for (int i = 0; i < 3 && out.mask != 0; ++i) {
     const Vectors axis = all(a[0].axis[i]);
     tryDirection(rotated(pose_a.middle.rotation, axis));

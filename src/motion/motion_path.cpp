@@ -413,6 +413,12 @@ PoseRate MotionPath::rate(double t) const {
   return out;
 }
 
+// Columns of C and D, P and Q are products with the axis, which round by a few u, and w^2
+// is at most 10. What is left of (R x)'' is 2 E x'.
+double MotionPath::axisAcceleration(double displacement) const {
+  return 2 * frobenius(linear_rotation_) * displacement * kUpward;
+}
+
 PoseRate MotionPath::turnAccelerationAt(double t) const {
   const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
   const double square = angle_ * angle_, sine = -square * at.sine,

@@ -99,6 +99,17 @@ class MotionPath {
   /// @brief Bound on the acceleration during [t0, t1].
   AccelerationBound acceleration(double t0, double t1) const;
 
+  /// @brief The axis of a turn, a unit vector of the world; null: another path. Points
+  /// are hardly accelerated along it.
+  const Vec* axis() const {
+    return kind_ == Kind::kTurn && angle_ > 0 ? &axis_ : nullptr;
+  }
+
+  /// @brief Bound on the acceleration along the axis, up to 256 u of the size of the path
+  /// and the point.
+  /// @param displacement  how far the point moves in the body frame
+  double axisAcceleration(double displacement) const;
+
   /// @brief Whether the rotation is the same at all times.
   bool isTranslation() const { return kind_ == Kind::kTurn && angle_ == 0; }
 

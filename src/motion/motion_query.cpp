@@ -51,7 +51,9 @@ struct Side {
         flat(b.shape() ? b.shape()->flat() : nullptr),
         reader(b),
         poses(b.path()),
-        goes_straight(goesStraight(b.path())) {}
+        goes_straight(goesStraight(b.path())),
+        axis(b.path().axis()),
+        axis_acceleration(axis ? b.path().axisAcceleration(b.displacement()) : 0) {}
 
   /// Whether all points go straight, also those of a mesh that deforms.
   static bool goesStraight(const MotionPath& path) {
@@ -69,6 +71,10 @@ struct Side {
   MotionBodyReader reader;
   PoseTable poses;
   bool goes_straight;
+  /// About which the body turns; null: there is none.
+  const Vec* axis;
+  /// Bound on the acceleration of a point along it.
+  double axis_acceleration;
 };
 
 bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
@@ -92,6 +98,7 @@ class MotionTraversal {
         options_(options),
         tolerance_(a, b, options.distance),
         parting_(a, b, tolerance_),
+        axes_share_(shareAlong(side_[0].axis, side_[1])),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.last),
         works_(!options.all) {
@@ -259,20 +266,52 @@ class MotionTraversal {
                     begin.radius[lane]);
   }
 
-  /// The margins of a node's boxes: how far the points of both bodies deviate from
-  /// straight lines, with padding and rounding.
-  /// @param own  the part of this of the other side
-  void setMargins(const MotionWork& work, const Side& side, const MotionBoxes& begin,
-                  const MotionBoxes& end, int count, double own,
-                  double (&margin)[MotionBoxes::kWidth]) const {
-    for (int lane = 0; lane < count; ++lane)
-      margin[lane] = direction_bound_ * (own + begin.pad[lane]);
-    if (side.goes_straight) return;
-    const double dt = work.t1 - work.t0, share = 0.125 * dt * dt;
-    const AccelerationBound bound = side.body.path().acceleration(work.t0, work.t1);
-    for (int lane = 0; lane < count; ++lane)
-      margin[lane] +=
-          direction_bound_ * share * laneAcceleration(bound, begin, end, lane);
+  /// How far the points of both bodies may be from straight lines, with padding and
+  /// rounding: along all directions, and along the axes about which the bodies turn.
+  struct Margins {
+    double all[MotionBoxes::kWidth];
+    CalmDirection axis[2];
+  };
+
+  /// The share of a body's deviation that it has along a unit direction: all of its
+  /// acceleration is at right angles to the axis about which it turns.
+  static double shareAlong(const Vec* direction, const Side& side) {
+    if (!direction || !side.axis) return 1;
+    return std::min(norm(cross(*direction, *side.axis)) + 0x1p-48, 1.);
+  }
+
+  /// The same along the normal of a flat, which may turn.
+  static double shareAlongFlat(const MotionWork& work, Side& flat, const Side& side) {
+    const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
+    if (!side.axis || turn > 1) return 1;
+    const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
+    return std::min(shareAlong(&normal, side) + turn, 1.);
+  }
+
+  /// Sets the margins of a node's boxes.
+  /// @param other  the part of the other side
+  void setMargins(const MotionWork& work, Side& one, const PartSpan& other, Side& many,
+                  const MotionBoxes* const (&boxes)[2], int count, Margins& out) {
+    out = {};
+    out.axis[0].direction = one.axis;
+    out.axis[1].direction = many.axis;
+    const double dt = work.t1 - work.t0, share = direction_bound_ * 0.125 * dt * dt,
+                 of_other = direction_bound_ * other.deviation;
+    const double axis_one = share * one.axis_acceleration,
+                 axis_many = share * many.axis_acceleration,
+                 flat_share = one.flat ? shareAlongFlat(work, one, many) : 1;
+    AccelerationBound bound{};
+    if (!many.goes_straight) bound = many.body.path().acceleration(work.t0, work.t1);
+    for (int lane = 0; lane < count; ++lane) {
+      const double still =
+          direction_bound_ * (other.box[0].pad + box_margin_ + boxes[0]->pad[lane]);
+      double deviation = 0;
+      if (!many.goes_straight)
+        deviation = share * laneAcceleration(bound, *boxes[0], *boxes[1], lane);
+      out.axis[0].margin[lane] = still + axis_one + (axes_share_ * deviation + axis_many);
+      out.axis[1].margin[lane] = still + axis_many + (axes_share_ * of_other + axis_one);
+      out.all[lane] = still + (of_other + (flat_share * deviation + axis_many));
+    }
   }
 
   /// Tests the children of one side's part against the other side's part.
@@ -288,22 +327,21 @@ class MotionTraversal {
     MotionBoxes scratch[2];
     const MotionBoxes* boxes[2] = {boxesAt(many.body, node, work.t0, scratch[0]),
                                    boxesAt(many.body, node, work.t1, scratch[1])};
-    double margin[MotionBoxes::kWidth] = {};
-    setMargins(work, many, *boxes[0], *boxes[1], node.count,
-               other.deviation + other.box[0].pad + box_margin_, margin);
+    Margins margin;
+    setMargins(work, one, other, many, boxes, node.count, margin);
     MeetingWindows windows;
     const SpanPoses pose_one = one.spanPoses(work.t0, work.t1),
                     pose_many = many.spanPoses(work.t0, work.t1);
     if (one.flat)
-      flatWindows(*one.flat, pose_one, boxes, pose_many, margin, node.count, windows);
+      flatWindows(*one.flat, pose_one, boxes, pose_many, margin.all, node.count, windows);
     else
-      motionKernels().meetingWindows(other.box, pose_one, boxes, pose_many, margin,
-                                     node.count, windows);
+      motionKernels().meetingWindows(other.box, pose_one, boxes, pose_many, margin.all,
+                                     margin.axis, node.count, windows);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       if (one.body.shape() && !one.flat && !one.body.shape()->fillsBox() &&
-          !narrowByShape(opened, work, boxes, lane, margin[lane], windows))
+          !narrowByShape(opened, work, boxes, lane, margin.all[lane], windows))
         continue;
       MotionWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
@@ -514,6 +552,8 @@ class MotionTraversal {
   const MotionQueryOptions& options_;
   MotionTolerance tolerance_;
   PartingDirection parting_;
+  /// The share of a body's deviation that it has along the axis of the other one.
+  double axes_share_;
   /// The distance at which meshes are in contact.
   double apart_;
   /// Bound on the rounding of the distance of two boxes.

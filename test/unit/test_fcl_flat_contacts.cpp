@@ -158,6 +158,59 @@ TEST(FlatContacts, SheetsThatDeform) {
     }
 }
 
+/// Turns about an axis that is tilted from the vertical.
+Pose tilted(double z, double tilt, double turn) {
+  Pose pose = Pose::Identity();
+  pose.translation()[2] = z;
+  pose.linear() =
+      (AngleAxis<double>(tilt, Point::UnitY()) * AngleAxis<double>(turn, Point::UnitZ()))
+          .toRotationMatrix();
+  return pose;
+}
+
+// Nothing is accelerated along the axis of a turn.
+TEST(FlatContacts, SheetsThatTurnAboveAGround) {
+  const Geometry sheet = rigid(sheetWithBump(0, 0)),
+                 cloth = makeModel<DeformableBVHModel<KDOP<double, 16>>>(
+                     sheetWithBump(0, 0, 0.1), sheetWithBump(0, 0, 0));
+  for (const Ground& ground : grounds())
+    for (const Geometry& mesh : {sheet, cloth})
+      for (const double tilt : {0., 1e-5}) {
+        SCOPED_TRACE(ground.name);
+        const Scene scene{mesh, tilted(1e-3, tilt, -1), tilted(1e-3, tilt, 1), ground};
+        const Result result = scene.ask(requestOf(ContinuousQuery::kFirst));
+        EXPECT_FALSE(result.is_collide);
+        EXPECT_LT(result.counts.node_pairs, 300u);
+      }
+}
+
+// A bar turns about its end. The axis is tilted, so that the other end comes down.
+TEST(FlatContacts, BarsThatTurnAboutATiltedAxis) {
+  constexpr double kHalfWidth = 0.01, kFrom = -2, kTurn = 1.5;
+  const auto frame = [](double z) {
+    return makeSheet(
+        20, 1, [z](double u, double v) { return Point(u, kHalfWidth * (2 * v - 1), z); });
+  };
+  const Geometry bar = rigid(frame(0));
+  for (const Ground& ground : grounds())
+    for (const double tilt : {1e-1, 1e-2, 1e-3, 1e-5})
+      for (const double share : {0.1, 0.5, 0.8}) {
+        SCOPED_TRACE(std::string(ground.name) + ", tilt " + std::to_string(tilt));
+        // The corner ahead is at the height z - r sin(tilt) cos(angle).
+        const double ahead = std::atan(kHalfWidth), radius = std::hypot(1, kHalfWidth),
+                     z = share * radius * std::sin(tilt),
+                     time = (-kFrom - ahead - std::acos(share)) / kTurn;
+        const Scene scene{bar, tilted(z, tilt, kFrom), tilted(z, tilt, kFrom + kTurn),
+                          ground};
+        const Result first = scene.ask(requestOf(ContinuousQuery::kFirst));
+        EXPECT_TRUE(first.is_collide);
+        // The height rounds, and so does the time.
+        const double rounding = 1e-15 / tilt;
+        EXPECT_LE(first.time_of_contact, time + rounding);
+        EXPECT_NEAR(first.time_of_contact, time, 1e-11 + 400 * rounding);
+      }
+}
+
 using detail::deformable::ConvexShape;
 using detail::deformable::FlatShape;
 using detail::deformable::MotionBody;

@@ -52,7 +52,8 @@ struct Projection {
 class ScalarWindow {
  public:
   ScalarWindow(const MotionBox (&a)[2], const SpanPoses& pose_a, const MotionBox (&b)[2],
-               const SpanPoses& pose_b, double margin)
+               const SpanPoses& pose_b, double margin, const Vec& calm,
+               double calm_margin)
       : a_(a), b_(b), pose_a_(pose_a), pose_b_(pose_b), margin_(margin) {
     const auto centerAt = [&a](int end, const Pose& pose) {
       return rotated(pose.rotation, vecOf(a[end].center)) + vecOf(pose.translation);
@@ -62,6 +63,9 @@ class ScalarWindow {
     const Vec between = rotated(pose_b.middle.rotation, from) +
                         (vecOf(pose_b.middle.translation) - center_a);
     tryDirection((1 / std::max(std::sqrt(dot(between, between)), 0x1p-500)) * between);
+    margin_ = calm_margin;
+    tryDirection(calm);
+    margin_ = margin;
     for (int i = 0; i < 3; ++i)
       tryDirection(rotated(pose_a.middle.rotation, vecOf(a[0].axis[i])));
     for (int i = 0; i < 3; ++i)
@@ -160,10 +164,18 @@ TEST(MotionKernels, EqualScalarCode) {
       margin[lane] = random.index(4) == 0 ? 0 : random.uniform(0, 0.05);
     }
     const MotionBoxes* const ends[2] = {&boxes[0], &boxes[1]};
+    const Vector3<double> unit = randomUnit(random);
+    const Vec calm = {unit[0], unit[1], unit[2]};
+    CalmDirection calms[2] = {};
+    CalmDirection& used = calms[random.index(2)];
+    used.direction = &calm;
+    for (int lane = 0; lane < 8; ++lane) used.margin[lane] = 0.5 * margin[lane];
     MeetingWindows windows;
-    motionKernels().meetingWindows(a, pose_a, ends, pose_b, margin, count, windows);
+    motionKernels().meetingWindows(a, pose_a, ends, pose_b, margin, calms, count,
+                                   windows);
     for (int lane = 0; lane < count; ++lane) {
-      const ScalarWindow scalar(a, pose_a, b[lane], pose_b, margin[lane]);
+      const ScalarWindow scalar(a, pose_a, b[lane], pose_b, margin[lane], calm,
+                                used.margin[lane]);
       ASSERT_EQ((windows.mask >> lane & 1U) != 0, scalar.mayMeet());
       (scalar.mayMeet() ? met : apart) += 1;
       if (!scalar.mayMeet()) continue;

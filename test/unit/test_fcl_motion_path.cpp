@@ -97,6 +97,45 @@ TEST(FCL_MOTION_PATH, reachesItsEnds) {
   }
 }
 
+// Points that move straight in the frame of a turn, whose end need not be a rotation.
+// Second differences along the axis, and along other directions, against their bounds.
+TEST(FCL_MOTION_PATH, isCalmAlongItsAxis) {
+  Random random(4);
+  double worst_along = 0, worst_across = 0;
+  int num_turns = 0;
+  for (int i = 0; i < 20000; ++i) {
+    ReferenceMotion motion = randomMotion(random, 1);
+    if (i % 2) motion.end.linear() *= random.uniform(0.9, 1.1);
+    const MotionPath path = motion.path();
+    if (!path.axis()) continue;
+    ++num_turns;
+    const Vector3<double> axis(path.axis()->x, path.axis()->y, path.axis()->z),
+        x0 = random.point(1), x1 = i % 3 ? x0 : random.point(1),
+        n = randomDirection(random);
+    const double t0 = random.uniform(0, 0.5), half = random.uniform(0.05, 0.25);
+    const auto at = [&](double t) {
+      return applied(path.pose(t), (1 - t) * x0 + t * x1);
+    };
+    const Vector3<double> bend = at(t0) - 2 * at(t0 + half) + at(t0 + 2 * half);
+    const AccelerationBound bound = path.acceleration(t0, t0 + 2 * half);
+    const auto vec = [](const Vector3<double>& v) { return Vec{v[0], v[1], v[2]}; };
+    const double displacement = (x1 - x0).norm(), square = half * half,
+                 along = square * path.axisAcceleration(displacement),
+                 whole = square * (bound.between(vec(x0), vec(x1), 0) +
+                                   bound.per_displacement * displacement),
+                 across = n.cross(axis).norm() * whole;
+    EXPECT_LE(std::abs(bend.dot(axis)), along + 1e-13);
+    EXPECT_LE(std::abs(bend.dot(n)), across + along + 1e-13);
+    if (along > 1e-6)
+      worst_along = std::max(worst_along, std::abs(bend.dot(axis)) / along);
+    worst_across = std::max(worst_across, std::abs(bend.dot(n)) / (across + along));
+  }
+  EXPECT_GT(num_turns, 5000);
+  // The bounds are nearly reached.
+  EXPECT_GE(worst_along, 0.4);
+  EXPECT_GE(worst_across, 0.9);
+}
+
 TEST(FCL_MOTION_PATH, farFromTheOrigin) {
   Random random(5);
   for (int i = 0; i < 2000; ++i) {
