@@ -299,6 +299,7 @@ void MotionBody::open(const BodyPart& part, MotionNode& out) const {
   std::int32_t nodes[kWidth], children[kWidth];
   out.count = openBinary(part.child, nodes, children,
                          [this](std::int32_t i) { return rigid_->link(i); });
+  for (int lane = 0; lane < out.count; ++lane) rigid_->prefetch(nodes[lane]);
   for (int lane = 0; lane < kWidth; ++lane) {
     const int from = std::min(lane, out.count - 1);
     out.part[lane] = {children[from], nodes[from]};

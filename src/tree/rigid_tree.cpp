@@ -115,12 +115,6 @@ void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
 
 }  // namespace
 
-inline const BVNodeBase* RigidTree::at(int node) const {
-  return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
-                                             static_cast<std::size_t>(node) *
-                                                 volumes_.stride);
-}
-
 int RigidTree::link(int node) const { return at(node)->first_child; }
 
 template <typename BV>

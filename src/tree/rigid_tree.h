@@ -49,6 +49,14 @@ class RigidTree {
   }
   double slack() const { return volumes_.slack; }
 
+  /// @brief Starts to load the volume of a node into the cache.
+  void prefetch(int node) const {
+    constexpr std::size_t kCacheLine = 64;
+    const char* const from = reinterpret_cast<const char*>(at(node));
+    for (std::size_t i = kCacheLine; i < volumes_.stride; i += kCacheLine)
+      __builtin_prefetch(from + i);
+  }
+
   /// @brief The left child of one of FCL's nodes (the right child follows it), or
   /// ~triangle of a leaf.
   int link(int node) const;
@@ -89,7 +97,11 @@ class RigidTree {
   void roundOutward(float rounding, MovingKdopNode& out) const;
   void rotate(OrientedBox& box) const;
 
-  const BVNodeBase* at(int node) const;
+  const BVNodeBase* at(int node) const {
+    return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
+                                               static_cast<std::size_t>(node) *
+                                                   volumes_.stride);
+  }
 
   const BVNodeBase* nodes_{nullptr};
   Volumes volumes_{};
