@@ -76,7 +76,10 @@ class FeatureContacts {
   void addNearest(const MotionContact& contact) {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
-    put(a, b, pairOf(contact.nearest, a, b), contact.toc_lo, contact.toc_hi);
+    const double t = contact.toc_lo, hi = contact.toc_hi > t
+                                              ? contact.toc_hi
+                                              : provedTime(a, b, t, options_.t_max);
+    put(a, b, pairOf(contact.nearest, a, b), t, hi);
   }
 
   /// Adds the edges of one triangle that pass through the other at t = 0.
@@ -176,10 +179,16 @@ class FeatureContacts {
     if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
       return;
     if (t > last) return;
-    const TrianglePairMotion whole(path_a, a, path_b, b, t, last, tolerance_);
-    put(a, b, bit, t,
-        whole.proveContact(
-            t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max)));
+    put(a, b, bit, t, provedTime(a, b, t, last));
+  }
+
+  /// A time after t at which the triangles provably cross; t if none is found.
+  double provedTime(const BodyTriangle& a, const BodyTriangle& b, double t,
+                    double last) const {
+    const TrianglePairMotion pair(body_[0]->path(), a, body_[1]->path(), b, t, last,
+                                  tolerance_);
+    return pair.proveContact(
+        t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
   }
 
   void addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
@@ -236,6 +245,8 @@ MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
   wanted.toc_err = options.toc_err;
   // The first contact of triangles may be one to ignore.
   wanted.all = options.query == ContinuousQuery::kAll || options.ignores_initially_closer;
+  // The contacts of features are proved.
+  wanted.proves_contacts = !wanted.all;
   wanted.last = options.t_max;
   wanted.distance = options.min_distance;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
@@ -248,6 +259,7 @@ MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
 MotionAnswer firstTriangles(const MotionBody& a, const MotionBody& b,
                             MotionAnswer touching, MotionQueryOptions& wanted) {
   wanted.all = true;
+  wanted.proves_contacts = false;
   wanted.last = touching.contacts.front().toc_hi;
   MotionAnswer first = queryMotions(a, b, wanted);
   // A graze has a bracket without width. The query up to its end divides the step in

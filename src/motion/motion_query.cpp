@@ -512,9 +512,10 @@ class MotionTraversal {
     contact.toc_lo = contact.toc_hi = work.start;
     contact.certainty = MotionCertainty::kGivenUp;
     if (answer == TrianglePairMotion::Answer::kContact) {
-      contact.toc_hi = pair.proveContact(
-          work.start,
-          TrianglePairMotion::bracketWidth(work.start, options_.toc_err, options_.last));
+      if (options_.proves_contacts)
+        contact.toc_hi = pair.proveContact(
+            work.start, TrianglePairMotion::bracketWidth(work.start, options_.toc_err,
+                                                         options_.last));
       contact.certainty = contact.toc_hi > contact.toc_lo
                               ? MotionCertainty::kCrossing
                               : MotionCertainty::kWithinTolerance;

@@ -18,6 +18,9 @@ struct MotionQueryOptions {
   bool all{false};
   /// Width of a contact's time bracket.
   double toc_err{1e-4};
+  /// Whether a time is looked for at which the triangles provably cross. If not, brackets
+  /// have no width.
+  bool proves_contacts{true};
   /// The latest time that matters.
   double last{1};
   /// Bodies are in contact at this distance; of a shape it is that of its core.

@@ -181,6 +181,15 @@ TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTrian
   }
 }
 
+void TrianglePairMotion::cornersAt(double t, Vec (&p)[2][3]) const {
+  for (int body = 0; body < 2; ++body) {
+    const Pose pose = path_[body]->pose(t);
+    for (int i = 0; i < 3; ++i)
+      p[body][i] = posed(
+          pose, lerp(triangle_[body]->corner[0][i], triangle_[body]->corner[1][i], t));
+  }
+}
+
 TrianglePairMotion::State TrianglePairMotion::at(double t) const {
   State state;
   for (int body = 0; body < 2; ++body) {
@@ -348,12 +357,12 @@ bool TrianglePairMotion::isCrossingAt(const State& state) {
   return false;
 }
 
-bool TrianglePairMotion::provesCrossing(const State& state) const {
+bool TrianglePairMotion::provesCrossing(const Vec (&p)[2][3]) const {
   double x[2][3][3];
   double size = 0;
   for (int body = 0; body < 2; ++body)
     for (int i = 0; i < 3; ++i) {
-      const Vec from = state.p[body][i] - state.p[0][0];
+      const Vec from = p[body][i] - p[0][0];
       x[body][i][0] = from.x;
       x[body][i][1] = from.y;
       x[body][i][2] = from.z;
@@ -396,9 +405,10 @@ double TrianglePairMotion::proveContact(double t, double width) const {
        h *= 2) {
     const double time = std::min(t + std::min(h, longest), 1.);
     if (!(time > t)) return t;
-    const State later = at(time);
+    Vec later[2][3];
+    cornersAt(time, later);
     if (tolerance_.distance > 0) {
-      const NearestFeatures near = nearestFeatures(later.p[0], later.p[1]);
+      const NearestFeatures near = nearestFeatures(later[0], later[1]);
       if (std::sqrt(near.square) + tolerance_.position <= tolerance_.distance)
         return time;
     } else if (provesCrossing(later)) {

@@ -125,7 +125,8 @@ class TrianglePairMotion {
   struct Projection;
   double greatestApproach(double t, const Vec& direction) const;
   static bool isCrossingAt(const State& state);
-  bool provesCrossing(const State& state) const;
+  void cornersAt(double t, Vec (&p)[2][3]) const;
+  bool provesCrossing(const Vec (&p)[2][3]) const;
 
   const MotionPath* path_[2];
   const BodyTriangle* triangle_[2];
