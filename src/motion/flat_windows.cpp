@@ -39,11 +39,11 @@ struct Heights {
 }  // namespace
 
 void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
-                 const MotionBoxes* const (&boxes)[2], const SpanPoses& pose_boxes,
+                 const MotionBoxes* const (&boxes)[3], const SpanPoses& pose_boxes,
                  const double (&margin)[MotionBoxes::kWidth], int count,
                  MeetingWindows& out) {
   const Heights h0(flat, pose_flat.beginning, *boxes[0], pose_boxes.beginning),
-      h1(flat, pose_flat.end, *boxes[1], pose_boxes.end);
+      h1(flat, pose_flat.end, *boxes[2], pose_boxes.end);
   out.mask = 0;
   for (int lane = 0; lane < count; ++lane) {
     const double reach0 = h0.reach[lane] + margin[lane],

@@ -11,10 +11,11 @@ namespace deformable {
 
 /// @brief As MotionKernels::meetingWindows(), for boxes and a plane or a halfspace. The
 /// only direction is its normal, which turns with it.
+/// @param boxes  those at both ends of the span are used
 /// @param margin  a bound on how far the height of a point above the plane deviates from
 /// a straight line, with pads, requested distance and rounding
 void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
-                 const MotionBoxes* const (&boxes)[2], const SpanPoses& pose_boxes,
+                 const MotionBoxes* const (&boxes)[3], const SpanPoses& pose_boxes,
                  const double (&margin)[MotionBoxes::kWidth], int count,
                  MeetingWindows& out);
 

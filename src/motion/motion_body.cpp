@@ -342,6 +342,20 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
   return out;
 }
 
+void MotionBody::setTriangles(const MotionNode& node, MotionTriangles& out) const {
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (!node.part[lane].isTriangle()) continue;
+    const BodyTriangle from = triangle(~node.part[lane].child);
+    for (int frame = 0; frame < (isRigid() ? 1 : 2); ++frame)
+      for (int i = 0; i < 3; ++i) {
+        const Vec& x = from.corner[frame][i];
+        out.corner[frame][i][0][lane] = x.x;
+        out.corner[frame][i][1][lane] = x.y;
+        out.corner[frame][i][2][lane] = x.z;
+      }
+  }
+}
+
 // The interpolation of a vertex of a mesh that deforms rounds by 3 u of its coordinates.
 // Its velocity has the additional term R x', where x' is a difference that rounds once.
 double MotionBody::positionError() const {

@@ -120,6 +120,9 @@ class MotionBody {
   /// @throws fcl::Exception  an index out of range
   /// @pre it is a mesh
   BodyTriangle triangle(std::int32_t place) const;
+  /// @brief The triangles among the children of a node, in their lanes.
+  /// @throws what triangle() throws
+  void setTriangles(const MotionNode& node, MotionTriangles& out) const;
 
   /// @brief Bound on the distance of the body from the origin of the body frame, in both
   /// frames.
@@ -161,7 +164,7 @@ class MotionBodyReader {
   static constexpr int kSlots = 64;
 
   explicit MotionBodyReader(const MotionBody& body) : body_(body) {
-    for (auto& key : key_) key = -1;
+    for (int slot = 0; slot < kSlots; ++slot) key_[slot] = triangles_key_[slot] = -1;
   }
 
   /// @brief The children of a node; valid until the next call.
@@ -173,12 +176,27 @@ class MotionBodyReader {
     }
     return node_[slot];
   }
+
+  /// @brief The triangles among the children of a node, in their lanes; valid until the
+  /// next call. The other lanes have any values.
+  /// @throws what MotionBody::triangle() throws
+  /// @pre the body is a mesh
+  const MotionTriangles& triangles(const BodyPart& part) {
+    const int slot = part.child % kSlots;
+    if (triangles_key_[slot] != part.child) {
+      body_.setTriangles(open(part), triangles_[slot]);
+      triangles_key_[slot] = part.child;
+    }
+    return triangles_[slot];
+  }
   const MotionBody& body() const { return body_; }
 
  private:
   const MotionBody& body_;
   std::int32_t key_[kSlots];
+  std::int32_t triangles_key_[kSlots];
   MotionNode node_[kSlots];
+  MotionTriangles triangles_[kSlots];
 };
 
 }  // namespace deformable

@@ -60,6 +60,19 @@ struct alignas(64) MotionBoxes {
   }
 };
 
+/// @brief Up to eight triangles in the frame of their body, stored by coordinate. A rigid
+/// body has one frame.
+struct alignas(64) MotionTriangles {
+  /// By frame, corner and coordinate.
+  double corner[2][3][3][MotionBoxes::kWidth];
+};
+
+/// @brief The corners of a triangle in the world, at the beginning, in the middle and at
+/// the end of a span.
+struct SpanTriangle {
+  double corner[3][3][3];
+};
+
 /// @brief The poses of a body at the beginning, in the middle and at the end of a span.
 struct SpanPoses {
   Pose beginning, middle, end;
@@ -72,6 +85,26 @@ struct MeetingWindows {
   unsigned mask;
   double lo[MotionBoxes::kWidth];
   double hi[MotionBoxes::kWidth];
+};
+
+/// @brief What is known of the triangles of a node beside a triangle of the other side.
+struct TriangleHalves {
+  /// A bit for each triangle that was tested.
+  unsigned tested{0};
+  /// A bit for each of these that may meet the other one in a half of the span.
+  unsigned meeting[2]{0, 0};
+
+  unsigned left() const { return ~tested | meeting[0] | meeting[1]; }
+
+  void narrow(MeetingWindows& windows) const {
+    windows.mask &= left();
+    for (unsigned bits = windows.mask & tested; bits != 0; bits &= bits - 1) {
+      const int lane = __builtin_ctz(bits);
+      double &lo = windows.lo[lane], &hi = windows.hi[lane];
+      if ((meeting[0] >> lane & 1U) == 0) lo = std::max(lo, 0.5);
+      if ((meeting[1] >> lane & 1U) == 0) hi = std::min(hi, 0.5);
+    }
+  }
 };
 
 /// @brief Shortens a window to the part in which a gap may not be positive. The gap is at
@@ -99,19 +132,35 @@ struct MotionKernels {
   const char* name;
 
   /// Computes the windows of eight boxes of body b against one of body a. Along a fixed
-  /// direction a point deviates by at most `margin` from the straight line between its
-  /// positions at both ends of the span. So boxes are apart while the gap between them,
-  /// interpolated between both ends, is larger than that. The directions are the axes of
-  /// both boxes in the middle of the span, the line between the centers, and the calm
-  /// directions, which have margins of their own.
-  /// @param a, b  boxes at both ends
-  /// @param margin  for each pair: deviation from straight lines, pads, requested
-  /// distance and rounding, for unit directions; 0 for unused pairs
+  /// direction a point deviates by at most `margin` from the straight lines between its
+  /// positions at the beginning, in the middle and at the end of the span. So boxes are
+  /// apart while the gap between them, interpolated between these times, is larger than
+  /// that. The directions are the axes of both boxes in the middle of the span, the line
+  /// between the centers, and the calm directions, which have margins of their own.
+  /// @param a, b  boxes at these times
+  /// @param margin  for each pair: deviation from straight lines in a half of the span,
+  /// pads, requested distance and rounding, for unit directions; 0 for unused pairs
   /// @param count  the number of used pairs
-  void (*meetingWindows)(const MotionBox (&a)[2], const SpanPoses& pose_a,
-                         const MotionBoxes* const (&b)[2], const SpanPoses& pose_b,
+  void (*meetingWindows)(const MotionBox* const (&a)[3], const SpanPoses& pose_a,
+                         const MotionBoxes* const (&b)[3], const SpanPoses& pose_b,
                          const double (&margin)[8], const CalmDirection (&calm)[2],
                          int count, MeetingWindows& out);
+
+  /// Tests eight triangles of body b against one of body a in both halves of a span.
+  /// Along a direction the gap of two corners is at least the line between its values at
+  /// both ends of the half, less 4 deviation s (1 - s) at the fraction s of the half. The
+  /// triangles are apart if this is above the margin for all nine pairs of corners. The
+  /// directions are those at right angles to a triangle, and to a triangle's normal and
+  /// one of its edges, in the middle of the span.
+  /// @param times  of the span: for corners of b that move in its frame; null: b is rigid
+  /// @param deviation  the largest deviation of each pair from straight lines in a half
+  /// @param margin  requested distance and rounding, for unit directions
+  /// @param tested  a bit for each triangle of b that is tested
+  /// @param meeting  gets a bit for each of these that may meet a in a half
+  void (*meetingHalves)(const SpanTriangle& a, const MotionTriangles& b,
+                        const double* times, const SpanPoses& pose_b,
+                        const double (&deviation)[8], double margin, unsigned tested,
+                        unsigned (&meeting)[2]);
 };
 
 /// @brief The kernels for this machine.

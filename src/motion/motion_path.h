@@ -110,6 +110,9 @@ class MotionPath {
   /// @param displacement  how far the point moves in the body frame
   double axisAcceleration(double displacement) const;
 
+  /// @brief Whether that bound is the same for all spans.
+  bool hasConstantAcceleration() const { return kind_ == Kind::kTurn; }
+
   /// @brief Whether the rotation is the same at all times.
   bool isTranslation() const { return kind_ == Kind::kTurn && angle_ == 0; }
 

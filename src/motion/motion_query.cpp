@@ -3,11 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <cstring>
 
 #include "motion/convex_advance.h"
 #include "motion/flat_windows.h"
+#include "motion/motion_side.h"
 #include "motion/motion_work.h"
 #include "motion/parting_direction.h"
 #include "motion/posed_vector.h"
@@ -18,64 +17,6 @@ namespace deformable {
 namespace {
 
 constexpr double kUnitRounding = 0x1p-53;
-
-/// Stores the poses of a body, since the same times are needed again.
-class PoseTable {
- public:
-  explicit PoseTable(const MotionPath& path) : path_(path) {
-    std::fill(time_, time_ + kSlots, -1.);
-  }
-  const Pose& at(double t) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &t, sizeof(bits));
-    const std::size_t slot = (bits * 0x9e3779b97f4a7c15u) >> (64 - kBits);
-    if (time_[slot] != t) {
-      pose_[slot] = path_.pose(t);
-      time_[slot] = t;
-    }
-    return pose_[slot];
-  }
-
- private:
-  static constexpr int kBits = 7;
-  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
-  const MotionPath& path_;
-  double time_[kSlots];
-  Pose pose_[kSlots];
-};
-
-/// The data of a body in a traversal.
-struct Side {
-  explicit Side(const MotionBody& b)
-      : body(b),
-        flat(b.shape() ? b.shape()->flat() : nullptr),
-        reader(b),
-        poses(b.path()),
-        goes_straight(goesStraight(b.path())),
-        axis(b.path().axis()),
-        axis_acceleration(axis ? b.path().axisAcceleration(b.displacement()) : 0) {}
-
-  /// Whether all points go straight, also those of a mesh that deforms.
-  static bool goesStraight(const MotionPath& path) {
-    const AccelerationBound bound = path.acceleration(0, 1);
-    return bound.isZero() && bound.per_displacement == 0;
-  }
-
-  SpanPoses spanPoses(double t0, double t1) {
-    return {poses.at(t0), poses.at(0.5 * (t0 + t1)), poses.at(t1)};
-  }
-
-  const MotionBody& body;
-  /// Null: the body is no plane or halfspace.
-  const FlatShape* flat;
-  MotionBodyReader reader;
-  PoseTable poses;
-  bool goes_straight;
-  /// About which the body turns; null: there is none.
-  const Vec* axis;
-  /// Bound on the acceleration of a point along it.
-  double axis_acceleration;
-};
 
 bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
   if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
@@ -94,14 +35,15 @@ class MotionTraversal {
  public:
   MotionTraversal(const MotionBody& a, const MotionBody& b,
                   const MotionQueryOptions& options)
-      : side_{Side(a), Side(b)},
+      : side_{MotionSide(a), MotionSide(b)},
         options_(options),
         tolerance_(a, b, options.distance),
         parting_(a, b, tolerance_),
-        axes_share_(shareAlong(side_[0].axis, side_[1])),
+        axes_share_(side_[0].axis ? side_[1].shareAlong(*side_[0].axis) : 1),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.last),
-        works_(!options.all) {
+        works_(options.all ? MotionWorkQueue::Order::kAny
+                           : MotionWorkQueue::Order::kEarliestFirst) {
     // A kernel adds up no more than a hundred roundings of the sizes, and a time is
     // rounded by a few u.
     rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
@@ -124,13 +66,12 @@ class MotionTraversal {
   }
 
  private:
-  /// Calls visit(work) for pairs of triangles, in the order of their starts.
+  /// Calls visit(work) for pairs of triangles.
   template <typename Visit>
   void traverse(Visit&& visit) {
     testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0});
     while (!works_.isEmpty()) {
       MotionWork work = works_.pop();
-      if (isTooLate(work)) break;
       if (areKeptApart(work)) continue;
       if (work.a.isTriangle() && work.b.isTriangle())
         visit(work);
@@ -139,14 +80,11 @@ class MotionTraversal {
     }
   }
 
-  /// Whether nothing in it can be earlier than a contact that was found.
-  bool isTooLate(const MotionWork& work) const {
-    if (options_.all || contacts_.empty()) return work.start > latest_;
-    return work.start >= latest_;
-  }
-
+  /// Nothing that starts at the time of a contact can be earlier than it.
   void push(const MotionWork& work) {
-    if (!isTooLate(work)) works_.push(work);
+    const bool is_late =
+        options_.all || contacts_.empty() ? work.start > latest_ : work.start >= latest_;
+    if (!is_late) works_.push(work);
   }
 
   /// The box of a part at a time.
@@ -166,39 +104,31 @@ class MotionTraversal {
 
   /// A part of a body during a span.
   struct PartSpan {
-    /// At both ends.
-    MotionBox box[2];
+    /// At t = 0 and t = 1. Of a rigid body only the first one is set.
+    MotionBox frame[2];
     /// The largest deviation of its points from straight lines.
     double deviation;
   };
 
-  static double accelerationOf(const AccelerationBound& bound, const MotionBox& begin,
-                               const MotionBox& end) {
-    return bound.between(vecOf(begin.center), vecOf(end.center),
-                         std::max(begin.radius, end.radius)) +
-           bound.per_displacement * begin.displacement;
-  }
-
   PartSpan partSpan(int k, const BodyPart& part, double t0, double t1) {
-    const MotionBody& body = side_[k].body;
+    MotionSide& side = side_[k];
     const double dt = t1 - t0;
     PartSpan span;
-    span.box[0] = boxAt(body, part, t0);
-    span.box[1] = body.isRigid() ? span.box[0] : boxAt(body, part, t1);
+    span.frame[0] = side.body.box(part, 0);
+    if (!side.body.isRigid()) span.frame[1] = side.body.box(part, 1);
     span.deviation = 0;
-    if (side_[k].flat)
+    if (side.flat)
       span.deviation = flatDeviation(k, t0, t1);
-    else if (!side_[k].goes_straight)
+    else if (!side.goes_straight)
       span.deviation =
-          0.125 * dt * dt *
-          accelerationOf(body.path().acceleration(t0, t1), span.box[0], span.box[1]);
+          0.125 * dt * dt * side.accelerationOf(span.frame[0], span.frame[1], t0, t1);
     return span;
   }
 
   /// How far the height of a point above a flat deviates from a straight line, less what
   /// the acceleration of the point adds: see ConvexPairMotion::inBody().
   double flatDeviation(int k, double t0, double t1) {
-    Side &side = side_[k], &other = side_[1 - k];
+    MotionSide &side = side_[k], &other = side_[1 - k];
     const double dt = t1 - t0, middle = 0.5 * (t0 + t1);
     const Vec foot = side.flat->foot();
     const MotionBox root = boxAt(other.body, other.body.root(), middle);
@@ -207,7 +137,7 @@ class MotionTraversal {
                  apart = norm(posed(other.poses.at(middle), vecOf(root.center)) -
                               posed(side.poses.at(middle), foot)) +
                          direction_bound_ * (root.radius + root.pad) + 0.5 * dt * speed;
-    const AccelerationBound bound = path.acceleration(t0, t1);
+    const AccelerationBound& bound = side.acceleration(t0, t1);
     return 0.125 * dt * dt * direction_bound_ *
            (bound.of(foot, 0) + bound.of({0, 0, 0}, apart) +
             2 * path.turnSpeed() * speed);
@@ -217,8 +147,10 @@ class MotionTraversal {
   double sizeOf(int k, const PartSpan& span) const {
     if (side_[k].flat) return HUGE_VAL;
     const MotionBody& body = side_[k].body;
-    return std::max(span.box[0].radius, span.box[1].radius) +
-           (body.shape() ? body.shape()->radius() : 0);
+    const double radius = body.isRigid()
+                              ? span.frame[0].radius
+                              : std::max(span.frame[0].radius, span.frame[1].radius);
+    return radius + (body.shape() ? body.shape()->radius() : 0);
   }
 
   /// Tests the pair in its span, and adds the parts that may overlap.
@@ -235,7 +167,7 @@ class MotionTraversal {
         node.box[frame].set(lane, box);
     }
     std::fill(node.part, node.part + MotionBoxes::kWidth, part);
-    test(work, many, node, partSpan(1 - many, other, work.t0, work.t1));
+    test(work, many, node, nullptr, partSpan(1 - many, other, work.t0, work.t1));
   }
 
   /// The node's boxes at a time.
@@ -257,91 +189,143 @@ class MotionTraversal {
     return &scratch;
   }
 
-  /// The acceleration of a box of a node. Both ends are the same if the body is rigid.
-  static double laneAcceleration(const AccelerationBound& bound, const MotionBoxes& begin,
-                                 const MotionBoxes& end, int lane) {
-    if (&begin != &end || bound.motion)
-      return accelerationOf(bound, begin.get(lane), end.get(lane));
-    return bound.of({begin.center[0][lane], begin.center[1][lane], begin.center[2][lane]},
-                    begin.radius[lane]);
-  }
-
-  /// How far the points of both bodies may be from straight lines, with padding and
-  /// rounding: along all directions, and along the axes about which the bodies turn.
+  /// What the gaps between the boxes of a node and another part are reduced by.
   struct Margins {
-    double all[MotionBoxes::kWidth];
-    CalmDirection axis[2];
+    /// How far the points of both deviate from straight lines during the span.
+    double deviation[MotionBoxes::kWidth]{};
+    /// The same along the axis about which a side turns, of the other part and the node.
+    double along_axis[2][MotionBoxes::kWidth]{};
+    /// Pads, requested distance and rounding.
+    double fixed[MotionBoxes::kWidth]{};
+
+    double with(double part_of_deviation, int lane) const {
+      return fixed[lane] + part_of_deviation * deviation[lane];
+    }
+    double alongAxis(int k, double part_of_deviation, int lane) const {
+      return fixed[lane] + part_of_deviation * along_axis[k][lane];
+    }
   };
 
-  /// The share of a body's deviation that it has along a unit direction: all of its
-  /// acceleration is at right angles to the axis about which it turns.
-  static double shareAlong(const Vec* direction, const Side& side) {
-    if (!direction || !side.axis) return 1;
-    return std::min(norm(cross(*direction, *side.axis)) + 0x1p-48, 1.);
-  }
-
-  /// The same along the normal of a flat, which may turn.
-  static double shareAlongFlat(const MotionWork& work, Side& flat, const Side& side) {
-    const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
-    if (!side.axis || turn > 1) return 1;
-    const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
-    return std::min(shareAlong(&normal, side) + turn, 1.);
-  }
-
-  /// Sets the margins of a node's boxes.
-  /// @param other  the part of the other side
-  void setMargins(const MotionWork& work, Side& one, const PartSpan& other, Side& many,
-                  const MotionBoxes* const (&boxes)[2], int count, Margins& out) {
-    out = {};
-    out.axis[0].direction = one.axis;
-    out.axis[1].direction = many.axis;
+  /// @param acceleration  of the node's boxes
+  Margins marginsOf(const MotionWork& work, int opened, const MotionNode& node,
+                    const PartSpan& other,
+                    const double (&acceleration)[MotionBoxes::kWidth]) {
+    MotionSide &one = side_[1 - opened], &many = side_[opened];
     const double dt = work.t1 - work.t0, share = direction_bound_ * 0.125 * dt * dt,
-                 of_other = direction_bound_ * other.deviation;
-    const double axis_one = share * one.axis_acceleration,
+                 of_one = direction_bound_ * other.deviation,
+                 axis_one = share * one.axis_acceleration,
                  axis_many = share * many.axis_acceleration,
                  flat_share = one.flat ? shareAlongFlat(work, one, many) : 1;
-    AccelerationBound bound{};
-    if (!many.goes_straight) bound = many.body.path().acceleration(work.t0, work.t1);
-    for (int lane = 0; lane < count; ++lane) {
-      const double still =
-          direction_bound_ * (other.box[0].pad + box_margin_ + boxes[0]->pad[lane]);
-      double deviation = 0;
-      if (!many.goes_straight)
-        deviation = share * laneAcceleration(bound, *boxes[0], *boxes[1], lane);
-      out.axis[0].margin[lane] = still + axis_one + (axes_share_ * deviation + axis_many);
-      out.axis[1].margin[lane] = still + axis_many + (axes_share_ * of_other + axis_one);
-      out.all[lane] = still + (of_other + (flat_share * deviation + axis_many));
+    Margins out;
+    for (int lane = 0; lane < node.count; ++lane) {
+      const double of_many = share * acceleration[lane];
+      out.deviation[lane] = of_one + (flat_share * of_many + axis_many);
+      out.along_axis[0][lane] = axis_one + (axes_share_ * of_many + axis_many);
+      out.along_axis[1][lane] = axis_many + (axes_share_ * of_one + axis_one);
+      out.fixed[lane] =
+          direction_bound_ * (other.frame[0].pad + box_margin_ + node.box[0].pad[lane]);
     }
+    return out;
+  }
+
+  /// The share of a side's deviation along the normal of a flat, which may turn.
+  static double shareAlongFlat(const MotionWork& work, MotionSide& flat,
+                               const MotionSide& side) {
+    const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
+    if (turn > 1) return 1;
+    const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
+    return std::min(side.shareAlong(normal) + turn, 1.);
+  }
+
+  /// The windows in which the boxes of a node may overlap the part of the other side.
+  void setWindows(int opened, const MotionNode& node, const PartSpan& other,
+                  const SpanTimes& times, const Margins& margins,
+                  const MotionBoxes* const (&boxes)[3], MeetingWindows& windows) {
+    MotionSide &one = side_[1 - opened], &many = side_[opened];
+    const SpanPoses pose_one = one.spanPoses(times), pose_many = many.spanPoses(times);
+    double margin[MotionBoxes::kWidth] = {};
+    CalmDirection axes[2] = {{one.axis, {}}, {many.axis, {}}};
+    // Boxes are compared in the middle of the span too. In a half of it the deviation is
+    // a quarter.
+    const double part_of_deviation = one.flat ? 1 : 0.25;
+    for (int lane = 0; lane < node.count; ++lane) {
+      margin[lane] = margins.with(part_of_deviation, lane);
+      for (int k = 0; k < 2; ++k)
+        axes[k].margin[lane] = margins.alongAxis(k, part_of_deviation, lane);
+    }
+    if (one.flat)
+      return flatWindows(*one.flat, pose_one, boxes, pose_many, margin, node.count,
+                         windows);
+    MotionBox moving[3];
+    const MotionBox* others[3];
+    for (int k = 0; k < 3; ++k) {
+      others[k] = &other.frame[0];
+      if (one.body.isRigid()) continue;
+      moving[k] = other.frame[0];
+      interpolate(other.frame[1], times.at[k], moving[k]);
+      others[k] = &moving[k];
+    }
+    motionKernels().meetingWindows(others, pose_one, boxes, pose_many, margin, axes,
+                                   node.count, windows);
+  }
+
+  /// @param acceleration  of the node's boxes
+  TriangleHalves testTriangles(const MotionWork& work, int opened, const MotionNode& node,
+                               const BodyPart& part,
+                               const double (&acceleration)[MotionBoxes::kWidth]) {
+    TriangleHalves out;
+    const BodyPart& single = opened == 1 ? work.a : work.b;
+    MotionSide &one = side_[1 - opened], &many = side_[opened];
+    if (!one.body.isMesh() || !many.body.isMesh() || !single.isTriangle()) return out;
+    for (int lane = 0; lane < node.count; ++lane)
+      if (node.part[lane].isTriangle()) out.tested |= 1U << lane;
+    if (out.tested == 0) return out;
+    const BodyTriangle triangle = one.body.triangle(~single.child);
+    const double dt = work.t1 - work.t0, share = 0.125 * 0.25 * dt * dt,
+                 of_one =
+                     one.goes_straight
+                         ? 0
+                         : accelerationOf(one.acceleration(work.t0, work.t1), triangle);
+    double deviation[MotionBoxes::kWidth];
+    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
+      deviation[lane] = direction_bound_ * share * (of_one + acceleration[lane]);
+    const SpanTimes times(work.t0, work.t1);
+    motionKernels().meetingHalves(
+        one.spanTriangle(triangle, times), many.reader.triangles(part),
+        many.body.isRigid() ? nullptr : times.at, many.spanPoses(times), deviation,
+        direction_bound_ * box_margin_, out.tested, out.meeting);
+    return out;
   }
 
   /// Tests the children of one side's part against the other side's part.
   /// @param opened  the side whose children they are
+  /// @param part  the part of that side; null: the node is the part itself
   /// @param other  the part of the other side
   void test(const MotionWork& work, int opened, const MotionNode& node,
-            const PartSpan& other) {
+            const BodyPart* part, const PartSpan& other) {
     // A node of an octree may be occupied while none of its children is.
     if (node.count == 0) return;
-    Side& one = side_[1 - opened];
-    Side& many = side_[opened];
+    const MotionSide& one = side_[1 - opened];
+    MotionSide& many = side_[opened];
     const double dt = work.t1 - work.t0;
-    MotionBoxes scratch[2];
-    const MotionBoxes* boxes[2] = {boxesAt(many.body, node, work.t0, scratch[0]),
-                                   boxesAt(many.body, node, work.t1, scratch[1])};
-    Margins margin;
-    setMargins(work, one, other, many, boxes, node.count, margin);
-    MeetingWindows windows;
-    const SpanPoses pose_one = one.spanPoses(work.t0, work.t1),
-                    pose_many = many.spanPoses(work.t0, work.t1);
-    if (one.flat)
-      flatWindows(*one.flat, pose_one, boxes, pose_many, margin.all, node.count, windows);
-    else
-      motionKernels().meetingWindows(other.box, pose_one, boxes, pose_many, margin.all,
-                                     margin.axis, node.count, windows);
+    const SpanTimes times(work.t0, work.t1);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
+    const auto& acceleration = many.accelerations(part, node, work.t0, work.t1);
+    TriangleHalves halves;
+    if (part) halves = testTriangles(work, opened, node, *part, acceleration);
+    if ((halves.left() & ((1U << node.count) - 1)) == 0) return;
+    MotionBoxes moving[3];
+    const MotionBoxes* boxes[3];
+    for (int k = 0; k < 3; ++k)
+      boxes[k] = boxesAt(many.body, node, times.at[k], moving[k]);
+    const Margins margins = marginsOf(work, opened, node, other, acceleration);
+    MeetingWindows windows;
+    setWindows(opened, node, other, times, margins, boxes, windows);
+    halves.narrow(windows);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
       if (one.body.shape() && !one.flat && !one.body.shape()->fillsBox() &&
-          !narrowByShape(opened, work, boxes, lane, margin.all[lane], windows))
+          !narrowByShape(opened, work, boxes, lane, margins.with(1, lane), windows))
         continue;
       MotionWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
@@ -363,11 +347,12 @@ class MotionTraversal {
   /// that parts the shape itself from the box in the middle of the span.
   /// @return whether they may overlap
   bool narrowByShape(int opened, const MotionWork& work,
-                     const MotionBoxes* const (&boxes)[2], int lane, double margin,
+                     const MotionBoxes* const (&boxes)[3], int lane, double margin,
                      MeetingWindows& windows) {
-    const SpanPoses poses[2] = {side_[1 - opened].spanPoses(work.t0, work.t1),
-                                side_[opened].spanPoses(work.t0, work.t1)};
-    const MotionBox begin = boxes[0]->get(lane), end = boxes[1]->get(lane);
+    const SpanTimes times(work.t0, work.t1);
+    const SpanPoses poses[2] = {side_[1 - opened].spanPoses(times),
+                                side_[opened].spanPoses(times)};
+    const MotionBox begin = boxes[0]->get(lane), end = boxes[2]->get(lane);
     MotionBox middle = begin;
     interpolate(end, 0.5, middle);
     const ConvexShape* shape = side_[1 - opened].body.shape();
@@ -406,7 +391,10 @@ class MotionTraversal {
 
   void divide(MotionWork& work) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
-    constexpr double kShortest = 0x1p-20, kMostDeviation = 0.25, kLeastShare = 0x1p-6;
+    constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6;
+    // Directions of shapes are compared at both ends of a span only.
+    const double most_deviation =
+        side_[0].body.shape() || side_[1].body.shape() ? 0.25 : 0.5;
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
                               partSpan(1, work.b, work.t0, work.t1)};
@@ -418,10 +406,10 @@ class MotionTraversal {
     const double least = std::max(std::min(radius[0], radius[1]),
                                   kLeastShare * std::max(radius[opened], apart_));
     if (work.t1 - work.t0 > kShortest && least > rounding_ &&
-        span[0].deviation + span[1].deviation > kMostDeviation * least)
+        span[0].deviation + span[1].deviation > most_deviation * least)
       return halve(work);
-    test(work, opened, side_[opened].reader.open(opened == 1 ? work.b : work.a),
-         span[1 - opened]);
+    const BodyPart& part = opened == 1 ? work.b : work.a;
+    test(work, opened, side_[opened].reader.open(part), &part, span[1 - opened]);
   }
 
   void halve(const MotionWork& work) {
@@ -493,8 +481,7 @@ class MotionTraversal {
                          Pair& pair) {
     if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
-    const double last =
-        options_.all || work.dive > 0 || works_.isEmpty() ? end : works_.nextStart();
+    const double last = std::min(end, works_.nextTurn(work));
     int left = options_.max_steps - work.steps;
     const auto answer = pair.advance(work.start, last, left, counts_);
     setPartingDirection(pair, answer, work.start);
@@ -521,8 +508,10 @@ class MotionTraversal {
                               : MotionCertainty::kWithinTolerance;
     }
     contacts_.push_back(contact);
-    if (work.dive > 0) works_.endDive();
-    if (!options_.all) latest_ = std::min(latest_, contact.toc_lo);
+    if (!options_.all) {
+      latest_ = std::min(latest_, contact.toc_lo);
+      works_.keepEarlier(latest_);
+    }
     return &contacts_.back();
   }
 
@@ -549,7 +538,7 @@ class MotionTraversal {
     return answer;
   }
 
-  Side side_[2];
+  MotionSide side_[2];
   const MotionQueryOptions& options_;
   MotionTolerance tolerance_;
   PartingDirection parting_;

@@ -2,6 +2,7 @@
 #include "motion/motion_work.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fcl {
 namespace detail {
@@ -24,9 +25,11 @@ bool isLater(const MotionWork& x, const MotionWork& y) {
 }  // namespace
 
 void MotionWorkQueue::push(const MotionWork& work) {
-  works_.push_back(work);
-  if (work.dive > 0) ++works_.back().dive;
-  std::push_heap(works_.begin(), works_.end(), isLater);
+  if (order_ == Order::kAny || (work.dive == 0 && work.start < horizon_))
+    return ready_.push_back(work);
+  heap_.push_back(work);
+  if (work.dive > 0) ++heap_.back().dive;
+  std::push_heap(heap_.begin(), heap_.end(), isLater);
 }
 
 // Each dive begins at twice the number of pieces of the last one, and takes a fourth of
@@ -34,10 +37,15 @@ void MotionWorkQueue::push(const MotionWork& work) {
 MotionWork MotionWorkQueue::pop() {
   constexpr int kDepth = 8;
   if (++num_popped_ == end_of_dive_) endDive();
-  std::pop_heap(works_.begin(), works_.end(), isLater);
-  MotionWork work = works_.back();
-  works_.pop_back();
-  if (dives_ && num_popped_ == next_dive_) {
+  const bool dives = !heap_.empty() && heap_.front().dive > 0;
+  MotionWork work;
+  if (ready_.empty() || dives) {
+    work = popHeap();
+  } else {
+    work = ready_.back();
+    ready_.pop_back();
+  }
+  if (order_ == Order::kEarliestFirst && num_popped_ == next_dive_) {
     work.dive = 1;
     end_of_dive_ = next_dive_ + next_dive_ / 8 + kDepth;
     next_dive_ *= 2;
@@ -45,9 +53,37 @@ MotionWork MotionWorkQueue::pop() {
   return work;
 }
 
+// A ball that turns in a shell at a gap of 1e-3 takes 0.7 of the time without a contact,
+// 0.8 with one. With the half of a step in place of an eighth it is 0.5 and 1.3.
+MotionWork MotionWorkQueue::popHeap() {
+  constexpr std::size_t kMany = 4096;
+  constexpr double kPeriod = 0x1p-3;
+  std::pop_heap(heap_.begin(), heap_.end(), isLater);
+  const MotionWork work = heap_.back();
+  heap_.pop_back();
+  if (ready_.empty())
+    horizon_ =
+        heap_.size() > kMany ? (std::floor(work.start / kPeriod) + 1) * kPeriod : 0;
+  return work;
+}
+
+double MotionWorkQueue::nextTurn(const MotionWork& work) const {
+  if (order_ == Order::kAny || work.dive > 0) return HUGE_VAL;
+  if (!ready_.empty()) return horizon_;
+  return heap_.empty() ? HUGE_VAL : heap_.front().start;
+}
+
 void MotionWorkQueue::endDive() {
-  for (MotionWork& work : works_) work.dive = 0;
-  std::make_heap(works_.begin(), works_.end(), isLater);
+  for (MotionWork& work : heap_) work.dive = 0;
+  std::make_heap(heap_.begin(), heap_.end(), isLater);
+}
+
+void MotionWorkQueue::keepEarlier(double end) {
+  for (auto* works : {&ready_, &heap_})
+    works->erase(std::remove_if(works->begin(), works->end(),
+                                [end](const MotionWork& x) { return x.start >= end; }),
+                 works->end());
+  endDive();
 }
 
 }  // namespace deformable

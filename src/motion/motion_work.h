@@ -24,36 +24,56 @@ struct MotionWork {
   std::int32_t dive;
 };
 
-/// @brief Hands out work in the order of its start. Now and then it dives: it looks in
-/// the depth for a contact, which need not be the first one. Where thousands of pairs
-/// touch at nearly the same time, the order by start alone would look at all of them
-/// until just before that time, and find no contact whose direction may part the others.
-/// Dives take a quarter of the work at most.
+/// @brief Hands out work. Where one contact is enough, the earliest comes first, but for
+/// two cases.
+///
+/// Now and then it dives: it looks in the depth for a contact, which need not be the
+/// first one. Where thousands of pairs touch at nearly the same time, the order by start
+/// alone would look at all of them until just before that time, and find no contact whose
+/// direction may part the others. Dives take a quarter of the work at most.
+///
+/// If much work waits, pieces that come of one follow it as long as they start in the
+/// same eighth of the step, the last one first: what was found together needs the same
+/// nodes and poses, and a long heap is slow.
 class MotionWorkQueue {
  public:
-  /// @param dives  whether one contact is enough
-  explicit MotionWorkQueue(bool dives) : dives_(dives) {}
+  enum class Order {
+    kEarliestFirst,
+    /// The last one first.
+    kAny
+  };
+  explicit MotionWorkQueue(Order order) : order_(order) {}
 
-  bool isEmpty() const { return works_.empty(); }
-
-  /// @brief The start of the work that comes next.
-  double nextStart() const { return works_.front().start; }
+  bool isEmpty() const { return heap_.empty() && ready_.empty(); }
 
   void push(const MotionWork& work);
 
   /// @brief The work that comes next. Its parts belong to the same dive.
   MotionWork pop();
 
+  /// @brief The time at which other work has its turn, if it waits; else infinite.
+  /// @param work  the last that was handed out
+  double nextTurn(const MotionWork& work) const;
+
   /// @brief Whether so much work was handed out that many pairs may touch at one time.
   bool isLong() const { return num_popped_ >= kFirstDive; }
 
-  /// @brief Ends a dive that has found a contact.
-  void endDive();
+  /// @brief Drops work that starts at a time or later, when a contact was found then. A
+  /// dive ends with it.
+  void keepEarlier(double end);
 
  private:
+  void endDive();
+  MotionWork popHeap();
+
   static constexpr std::int64_t kFirstDive = 192;
-  std::vector<MotionWork> works_;
-  bool dives_;
+  Order order_;
+  /// Work that starts before the horizon, or all where the order does not matter. The
+  /// last one is taken first.
+  std::vector<MotionWork> ready_;
+  double horizon_{0};
+  /// The other work, and the parts of a dive.
+  std::vector<MotionWork> heap_;
   std::int64_t num_popped_{0};
   /// The numbers of the pieces of work at which a dive begins and ends.
   std::int64_t next_dive_{kFirstDive}, end_of_dive_{0};

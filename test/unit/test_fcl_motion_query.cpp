@@ -251,6 +251,29 @@ TEST(FCL_MOTION_QUERY, touchesAtTheBeginning) {
 }
 
 // The first of all contacts is the first contact, and each pair has its own first time.
+// A ball turns in a shell at a small gap, so that thousands of pairs wait. Some vertices
+// of the shell are in the way of the ball, so that there are contacts at many times.
+TEST(FCL_MOTION_QUERY, firstOfManyContactsInAShell) {
+  TestMesh shell = makeIcosphere(4, 1.0025);
+  for (std::size_t i = 7; i < shell.vertices.size(); i += 61) shell.vertices[i] *= 0.9982;
+  const Body ball(makeIcosphere(4, 1)), outer(shell);
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    ReferenceMotion turn, rest;
+    turn.beginning.linear() = randomRotation(random);
+    turn.turn(randomDirection(random), M_PI / 2);
+    rest.beginning.linear() = rest.end.linear() = randomRotation(random);
+    MotionQueryOptions all;
+    all.all = true;
+    const MotionAnswer every = ask(ball, turn.path(), outer, rest.path(), all);
+    ASSERT_GT(every.contacts.size(), 100u);
+    const double first = every.contacts.front().toc_lo;
+    EXPECT_GT(first, 0);
+    EXPECT_NEAR(timeOf(ask(ball, turn.path(), outer, rest.path())), first, 1e-9);
+  }
+}
+
 TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
   MotionQueryOptions all;
