@@ -45,11 +45,13 @@ MotionWork MotionWorkQueue::pop() {
     work = ready_.back();
     ready_.pop_back();
   }
-  if (order_ == Order::kEarliestFirst && num_popped_ == next_dive_) {
-    work.dive = 1;
+  if (num_popped_ == next_dive_) {
     end_of_dive_ = next_dive_ + next_dive_ / 8 + kDepth;
     next_dive_ *= 2;
   }
+  // Where the parts of one piece had no contact it goes on with another one.
+  if (order_ == Order::kEarliestFirst && num_popped_ < end_of_dive_)
+    work.dive = std::max(work.dive, 1);
   return work;
 }
 
@@ -74,6 +76,7 @@ double MotionWorkQueue::nextTurn(const MotionWork& work) const {
 }
 
 void MotionWorkQueue::endDive() {
+  end_of_dive_ = 0;
   for (MotionWork& work : heap_) work.dive = 0;
   std::make_heap(heap_.begin(), heap_.end(), isLater);
 }

@@ -30,7 +30,8 @@ struct MotionWork {
 /// Now and then it dives: it looks in the depth for a contact, which need not be the
 /// first one. Where thousands of pairs touch at nearly the same time, the order by start
 /// alone would look at all of them until just before that time, and find no contact whose
-/// direction may part the others. Dives take a quarter of the work at most.
+/// direction may part the others. A dive ends with a contact, or when it took as many
+/// pieces as it may: dives take a quarter of the work at most.
 ///
 /// If much work waits, pieces that come of one follow it as long as they start in the
 /// same eighth of the step, the last one first: what was found together needs the same
@@ -48,7 +49,7 @@ class MotionWorkQueue {
 
   void push(const MotionWork& work);
 
-  /// @brief The work that comes next. Its parts belong to the same dive.
+  /// @brief The work that comes next. Its parts belong to its dive.
   MotionWork pop();
 
   /// @brief The time at which other work has its turn, if it waits; else infinite.

@@ -13,6 +13,7 @@
 
 #include "fcl/narrowphase/collision.h"
 #include "motion/motion_contacts.h"
+#include "motion/motion_work.h"
 #include "reference_motion.h"
 #include "turning_bodies.h"
 
@@ -272,6 +273,56 @@ TEST(FCL_MOTION_QUERY, firstOfManyContactsInAShell) {
     EXPECT_GT(first, 0);
     EXPECT_NEAR(timeOf(ask(ball, turn.path(), outer, rest.path())), first, 1e-9);
   }
+}
+
+/// A piece of work of which only the start is known.
+MotionWork workAt(double start) {
+  MotionWork work{};
+  work.start = start;
+  return work;
+}
+
+TEST(FCL_MOTION_QUERY, earliestWorkFirst) {
+  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  for (double start : {0.5, 0.25, 0.75, 0.625}) queue.push(workAt(start));
+  const MotionWork first = queue.pop();
+  EXPECT_EQ(first.start, 0.25);
+  EXPECT_EQ(queue.nextTurn(first), 0.5);
+  queue.keepEarlier(0.625);
+  EXPECT_EQ(queue.pop().start, 0.5);
+  EXPECT_TRUE(queue.isEmpty());
+
+  MotionWorkQueue any(MotionWorkQueue::Order::kAny);
+  for (double start : {0.5, 0.25, 0.75}) any.push(workAt(start));
+  for (double start : {0.75, 0.25, 0.5}) EXPECT_EQ(any.pop().start, start);
+}
+
+TEST(FCL_MOTION_QUERY, divesGoOnUntilAContact) {
+  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  for (int i = 0; i < 1000; ++i) queue.push(workAt(i * 1e-4));
+  while (!queue.isLong()) {
+    const MotionWork work = queue.pop();
+    EXPECT_EQ(work.dive, queue.isLong() ? 1 : 0);
+  }
+  // The first piece had no parts.
+  MotionWork part = queue.pop();
+  EXPECT_EQ(part.dive, 1);
+  part.start = 0.9;
+  queue.push(part);
+  part = queue.pop();
+  EXPECT_EQ(part.start, 0.9);
+  EXPECT_EQ(part.dive, 2);
+  queue.keepEarlier(0.9);
+  EXPECT_EQ(queue.pop().dive, 0);
+}
+
+TEST(FCL_MOTION_QUERY, longQueueStaysAtOnePlace) {
+  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  for (int i = 0; i < 5000; ++i) queue.push(workAt(i * 1e-5));
+  const MotionWork first = queue.pop();
+  for (double start : {0.12, 0.06, 0.13}) queue.push(workAt(start));
+  EXPECT_EQ(queue.nextTurn(first), 0.125);
+  for (double start : {0.06, 0.12, 1e-5}) EXPECT_EQ(queue.pop().start, start);
 }
 
 TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
