@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release, and measures speed and errors of
-# queries of two meshes of which one turns; doc/numerics.md explains the report.
+# queries of two meshes of which one turns, or both; doc/numerics.md explains the report.
 #   bash cmake/motions.sh [OPTION ...]
 # Table, picture and page go to build/motions. Without options they also replace those in
 # doc/results. Options are passed to fcl_ccd_motions: --queries 20.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -266,6 +267,7 @@ double MotionBody::reachOfMesh(const BodyPart& part, double t, const Vec& direct
     left.pop_back();
     if (child < 0) {
       --room;
+      if (!isReadable(~child)) return HUGE_VAL;
       const BodyTriangle at = triangle(~child);
       for (int k = 0; k < 3; ++k)
         most = std::max(most,
@@ -342,10 +344,30 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
   return out;
 }
 
+/// Whether the vertices of a triangle are there and finite, so that triangle() does not
+/// throw. An error is for a pair that is advanced.
+bool MotionBody::isReadable(std::int32_t place) const {
+  if (tree_) return true;
+  for (int k = 0; k < 3; ++k) {
+    const std::size_t id = triangles_[place][k];
+    if (id >= frames_.size()) return false;
+    double p[3];
+    frames_.at(0, id, p);
+    if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2]))
+      return false;
+  }
+  return true;
+}
+
 void MotionBody::setTriangles(const MotionNode& node, MotionTriangles& out) const {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   for (int lane = 0; lane < node.count; ++lane) {
     if (!node.part[lane].isTriangle()) continue;
-    const BodyTriangle from = triangle(~node.part[lane].child);
+    BodyTriangle from;
+    for (auto& corners : from.corner)
+      for (Vec& x : corners) x = {kNaN, kNaN, kNaN};
+    const std::int32_t place = ~node.part[lane].child;
+    if (isReadable(place)) from = triangle(place);
     for (int frame = 0; frame < (isRigid() ? 1 : 2); ++frame)
       for (int i = 0; i < 3; ++i) {
         const Vec& x = from.corner[frame][i];

@@ -3,6 +3,7 @@
 #define FCL_CCD_MOTION_MOTION_BODY_H
 
 #include <cstdint>
+#include <vector>
 
 #include "fcl/math/triangle.h"
 #include "mesh/feature_pairs.h"
@@ -120,8 +121,8 @@ class MotionBody {
   /// @throws fcl::Exception  an index out of range
   /// @pre it is a mesh
   BodyTriangle triangle(std::int32_t place) const;
-  /// @brief The triangles among the children of a node, in their lanes.
-  /// @throws what triangle() throws
+  /// @brief The triangles among the children of a node, in their lanes. Those for which
+  /// triangle() would throw are NaN.
   void setTriangles(const MotionNode& node, MotionTriangles& out) const;
 
   /// @brief Bound on the distance of the body from the origin of the body frame, in both
@@ -140,6 +141,7 @@ class MotionBody {
 
  private:
   void openOctree(std::int32_t node, MotionNode& out) const;
+  bool isReadable(std::int32_t place) const;
   double reachOfMesh(const BodyPart& part, double t, const Vec& direction,
                      std::int64_t& room) const;
   MotionBox rigidBox(int node) const;
@@ -183,11 +185,12 @@ class MotionBodyReader {
   /// @pre the body is a mesh
   const MotionTriangles& triangles(const BodyPart& part) {
     const int slot = part.child % kSlots;
+    if (triangles_.empty()) triangles_.resize(kSlots);
     if (triangles_key_[slot] != part.child) {
-      body_.setTriangles(open(part), triangles_[slot]);
+      body_.setTriangles(open(part), triangles_[static_cast<std::size_t>(slot)]);
       triangles_key_[slot] = part.child;
     }
-    return triangles_[slot];
+    return triangles_[static_cast<std::size_t>(slot)];
   }
   const MotionBody& body() const { return body_; }
 
@@ -196,7 +199,8 @@ class MotionBodyReader {
   std::int32_t key_[kSlots];
   std::int32_t triangles_key_[kSlots];
   MotionNode node_[kSlots];
-  MotionTriangles triangles_[kSlots];
+  /// Empty until they are asked for: they take 74 KB.
+  std::vector<MotionTriangles> triangles_;
 };
 
 }  // namespace deformable

@@ -215,7 +215,7 @@ HWY_INLINE DoubleMask areApart(const Doubles (&a0)[3], const Doubles (&a1)[3],
 
 /// Tries a direction, or its opposite, whichever parts the triangles more in the middle.
 HWY_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
-                         const Doubles& four_deviations, double margin,
+                         const Doubles& four_deviations, double margin, unsigned tested,
                          ApartHalves& apart) {
   const Doubles zero = all(0);
   Doubles of_a[3][3], of_b[3][3];
@@ -227,10 +227,12 @@ HWY_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
                          HWY_ATTR { return min(min(x[0], x[1]), x[2]); };
   const auto most = [](const Doubles(&x)[3])
                         HWY_ATTR { return max(max(x[0], x[1]), x[2]); };
-  const Doubles along = least(of_b[1]) - most(of_a[1]),
-                against = least(of_a[1]) - most(of_b[1]);
+  // The least gaps in the middle, as areApart() rounds them.
+  const Doubles along = least(of_b[1]) - (most(of_a[1]) + all(margin)),
+                against =
+                    (zero - most(of_b[1])) - ((zero - least(of_a[1])) + all(margin));
   const DoubleMask is_opposite = against > along;
-  if (bits((along > all(margin)) | (against > all(margin))) == 0) return;
+  if ((bits((along > zero) | (against > zero)) & tested) == 0) return;
   const auto turned = [&](const Doubles& x)
                           HWY_ATTR { return select(is_opposite, zero - x, x); };
   d = {turned(d.x), turned(d.y), turned(d.z)};
@@ -259,7 +261,7 @@ void meetingHalves(const SpanTriangle& a, const MotionTriangles& b, const double
   const Doubles four_deviations = all(4) * load<kEight>(deviation), zero = all(0);
   ApartHalves apart{{zero > zero, zero > zero}};
   const auto isDecided = [&](const Vectors& d) HWY_ATTR {
-    addApart(a, corners, unit(d), four_deviations, margin, apart);
+    addApart(a, corners, unit(d), four_deviations, margin, tested, apart);
     for (int half = 0; half < 2; ++half) meeting[half] = tested & ~bits(apart.half[half]);
     return (meeting[0] | meeting[1]) == 0;
   };

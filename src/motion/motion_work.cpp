@@ -32,8 +32,8 @@ void MotionWorkQueue::push(const MotionWork& work) {
   std::push_heap(heap_.begin(), heap_.end(), isLater);
 }
 
-// Each dive begins at twice the number of pieces of the last one, and takes a fourth of
-// these and a few more, so that it reaches the triangles.
+// Each dive begins at twice the number of pieces of the last one, and takes an eighth of
+// its number and a few more, so that it reaches the triangles.
 MotionWork MotionWorkQueue::pop() {
   constexpr int kDepth = 8;
   if (++num_popped_ == end_of_dive_) endDive();

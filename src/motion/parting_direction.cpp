@@ -32,6 +32,10 @@ void PartingDirection::set(const Vec& direction) {
   if (!(maxNorm(direction) > 0)) return;
   direction_ = direction;
   room_ += kRoom;
+  forgetReaches();
+}
+
+void PartingDirection::forgetReaches() {
   for (auto& known : known_) known.clear();
 }
 
@@ -93,6 +97,10 @@ bool PartingDirection::areApart(const BodyPart& a, const BodyPart& b,
   const std::int64_t room = room_;
   Poses poses = posesAt(t[1]);
   const bool is_below = isBelowFlat(poses);
+  if (is_below != known_below_) {
+    forgetReaches();
+    known_below_ = is_below;
+  }
   gap[1] = gapAt(t[1], a, b, poses, directionAt(poses, is_below));
   if (!(gap[1] > 0) || room_ < 0) return false;
   poses = posesAt(t[0]);

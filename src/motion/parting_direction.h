@@ -46,6 +46,7 @@ class PartingDirection {
   double gapAt(double t, const BodyPart& a, const BodyPart& b, const Poses& poses,
                const Vec& direction);
   double reachOf(int k, const BodyPart& part, double t, const Vec& in_body);
+  void forgetReaches();
 
   const MotionBody* body_[2];
   /// The body that is a plane or a halfspace; -1: none.
@@ -64,9 +65,12 @@ class PartingDirection {
   };
   static constexpr int kSlotBits = 8, kSlots = 1 << kSlotBits;
   std::vector<Reach> known_[2];
+  /// The side of a plane for which they are known: see isBelowFlat().
+  bool known_below_{false};
 };
 
-/// @brief Whether a gap stays positive.
+/// @brief Whether a gap stays positive. The deviation must be larger than its bound by
+/// more than 2^-49 of it, for the rounding of this.
 /// @param gap  positive, at the beginning and at the end of a span
 /// @param deviation  the largest distance from a straight line, in the middle of the
 /// span, that a bound on its second derivative allows

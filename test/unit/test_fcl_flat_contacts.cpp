@@ -303,6 +303,36 @@ TEST(FlatContacts, GapsBesidePlanes) {
   EXPECT_GT(num_apart, 300);
 }
 
+// A plane turns over, so that its normal points to the ball first and away from it then.
+// What is known of the ball along the normal at a time is not used for the other side.
+TEST(FlatContacts, GapsBesideAPlaneThatTurnsOver) {
+  for (const double offset : {50., -50.})
+    for (const bool is_first : {false, true}) {
+      SCOPED_TRACE(offset);
+      TestMesh mesh = makeIcosphere(1, 0.5);
+      for (auto& x : mesh.vertices) x += Point(0, 0, offset);
+      const Body ball(mesh);
+      ReferenceMotion still, turn;
+      still.beginning.translation() = still.end.translation() = Point(0, 0, 4 - offset);
+      turn.turn(Point(1, 0, 0), 2.6);
+      const MovingBody moving(ball, still.path());
+      const ConvexShape plane = ConvexShape::flat({Vec{0, 0, 1}, 0.5, false}, 9);
+      const MotionBody flat(plane, turn.path());
+      const MotionBody &a = is_first ? flat : moving.body,
+                       &b = is_first ? moving.body : flat;
+      PartingDirection parting(a, b, MotionTolerance(a, b, 0));
+      setDirection(Point(0, 0, is_first ? 1 : -1), parting);
+      const double above[2] = {0, 0.2}, under[2] = {0.9, 1}, over[2] = {0, 1};
+      double gap[2];
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_TRUE(parting.areApart(a.root(), b.root(), above, gap));
+        EXPECT_NEAR(gap[0], 3, 1e-11);
+        EXPECT_FALSE(parting.areApart(a.root(), b.root(), over, gap)) << gap[0];
+        EXPECT_TRUE(parting.areApart(a.root(), b.root(), under, gap));
+      }
+    }
+}
+
 // The gap of two parts is at least a parabola.
 TEST(FlatContacts, GapsThatStayPositive) {
   Random random(3);
