@@ -21,8 +21,6 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE Doubles number(double x) { return broadcast<kEight>(x); }
-
 /// What of the polygon is nearest, as a number: side k is k, corner k is kCorner + k.
 constexpr double kCorner = 4, kInside = 8;
 
@@ -34,8 +32,8 @@ struct NearestPoints {
   /// The lanes whose nearest point is not inside of a sliver.
   DoubleMask is_sure;
 
-  HWY_INLINE DoubleMask isInside() const { return part == number(kInside); }
-  HWY_INLINE DoubleMask isSide() const { return part < number(kCorner); }
+  HWY_INLINE DoubleMask isInside() const { return part == all(kInside); }
+  HWY_INLINE DoubleMask isSide() const { return part < all(kCorner); }
 };
 
 /// Eight DifferencePolygons, of VF or EE pairs.
@@ -45,7 +43,7 @@ struct Polygons {
   int count;
 
   HWY_INLINE Polygons(ContinuousContactKind kind, const Points& x)
-      : size(number(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
+      : size(all(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
     for (int k = 0; k < count; ++k) {
       const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
       t0[k] = x.t0[p.second] - x.t0[p.first];
@@ -53,7 +51,7 @@ struct Polygons {
       velocity[k] = t1[k] - t0[k];
       size = larger(size, larger(dot(t0[k], t0[k]), dot(t1[k], t1[k])));
     }
-    size = squareRoot(size) * number(1 + 0x1p-50);
+    size = squareRoot(size) * all(1 + 0x1p-50);
   }
 
   HWY_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
@@ -66,7 +64,7 @@ struct Polygons {
 /// The nearest points of the sides.
 HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
                           NearestPoints& best) {
-  const Doubles zero = number(0), one = number(1);
+  const Doubles zero = all(0), one = all(1);
   for (int k = 0; k < x.count; ++k) {
     const int l = x.next(k);
     const Vectors &p = corner[k], &q = corner[l], way = q - p;
@@ -76,8 +74,8 @@ HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
     const Vectors point = select(is_behind, select(is_before, p + share * way, q), p);
     const Doubles square = dot(point, point);
     const DoubleMask is_shorter = square < best.square;
-    const Doubles part = select(share == zero, number(kCorner + k),
-                                select(share == one, number(kCorner + l), number(k)));
+    const Doubles part = select(share == zero, all(kCorner + k),
+                                select(share == one, all(kCorner + l), all(k)));
     best.point = select(is_shorter, point, best.point);
     best.square = select(is_shorter, square, best.square);
     best.part = select(is_shorter, part, best.part);
@@ -87,7 +85,7 @@ HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
 
 /// nearestPoint().
 HWY_INLINE NearestPoints nearestPoints(const Polygons& x, const Vectors (&corner)[4]) {
-  const Doubles zero = number(0);
+  const Doubles zero = all(0);
   const Vectors &p = corner[0], v = corner[1] - p, w = corner[x.count - 1] - p;
   NearestPoints sides, near;
   near.normal = cross(v, w);
@@ -100,8 +98,8 @@ HWY_INLINE NearestPoints nearestPoints(const Polygons& x, const Vectors (&corner
   const Doubles share = along / square;
   const Vectors point = p + share * v + (across / square) * w;
   // No number is shorter than one of a lane that is inside.
-  sides.square = select(is_inside, number(0), number(HUGE_VAL));
-  sides.part = number(kInside);
+  sides.square = select(is_inside, all(0), all(HUGE_VAL));
+  sides.part = all(kInside);
   sides.along = share;
   sides.point = point;
   takeSides(x, corner, sides);
@@ -110,8 +108,8 @@ HWY_INLINE NearestPoints nearestPoints(const Polygons& x, const Vectors (&corner
   near.part = sides.part;
   near.along = sides.along;
   near.distance = squareRoot(near.square);
-  near.is_sure = (near.part < number(kInside)) |
-                 (square > number(kSliver) * (dot(v, v) * dot(w, w)));
+  near.is_sure =
+      (near.part < all(kInside)) | (square > all(kSliver) * (dot(v, v) * dot(w, w)));
   return near;
 }
 
@@ -127,8 +125,7 @@ struct NearestSides {
         from_velocity(x.velocity[0]),
         to_velocity(x.velocity[1]) {
     for (int k = 1; k < x.count; ++k) {
-      const DoubleMask is_it =
-          (near.part == number(k)) | (near.part == number(kCorner + k));
+      const DoubleMask is_it = (near.part == all(k)) | (near.part == all(kCorner + k));
       from = select(is_it, corner[k], from);
       to = select(is_it, corner[x.next(k)], to);
       from_velocity = select(is_it, x.velocity[k], from_velocity);
@@ -139,8 +136,8 @@ struct NearestSides {
 
 /// directionApart(), its first attempt. Lanes without a direction are not finite.
 HWY_INLINE Vectors directionsApart(const NearestPoints& near, const NearestSides& sides) {
-  const Doubles one = number(1);
-  const Doubles sign = select(dot(near.normal, near.point) < number(0), number(-1), one);
+  const Doubles one = all(1);
+  const Doubles sign = select(dot(near.normal, near.point) < all(0), all(-1), one);
   const Vectors normal = sign * near.normal;
   const DoubleMask is_inside = near.isInside();
   const Doubles length =
@@ -160,14 +157,14 @@ HWY_INLINE Vectors without(const Vectors& v, const Vectors& n) {
 HWY_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
                               const NearestPoints& near, const NearestSides& sides,
                               const Vectors& n) {
-  const Doubles one = number(1);
+  const Doubles one = all(1);
   const Vectors of_corner = (one / near.distance) * without(sides.from_velocity, n);
 
   const Vectors side = sides.to - sides.from,
                 change = sides.to_velocity - sides.from_velocity, beside = cross(side, n),
                 moved = sides.from_velocity + near.along * change;
   const Doubles square = dot(side, side);
-  const Vectors of_side = ((number(0) - dot(n, change)) / square) * side +
+  const Vectors of_side = ((all(0) - dot(n, change)) / square) * side +
                           (dot(beside, moved) / (square * near.distance)) * beside;
 
   const int last = x.count - 1;
@@ -181,13 +178,13 @@ HWY_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
 /// firstRoot().
 HWY_INLINE Doubles firstRoots(const Doubles& gap, const Doubles& rate,
                               const Doubles& bend) {
-  const Doubles zero = number(0), discriminant = rate * rate - number(4) * gap * bend;
+  const Doubles zero = all(0), discriminant = rate * rate - all(4) * gap * bend;
   const Doubles root = squareRoot(discriminant), divisor = root - rate;
   const DoubleMask opens = rate > zero;
   const DoubleMask closes = (opens & (bend < zero)) | ((rate <= zero) & (divisor > zero));
-  const Doubles time = select(opens, root + rate, number(2) * gap) /
-                       select(opens, number(-2) * bend, divisor);
-  return select((discriminant >= zero) & closes, time, number(HUGE_VAL));
+  const Doubles time =
+      select(opens, root + rate, all(2) * gap) / select(opens, all(-2) * bend, divisor);
+  return select((discriminant >= zero) & closes, time, all(HUGE_VAL));
 }
 
 /// Until when directions separate pairs, and how fast the gap closes.
@@ -197,21 +194,21 @@ struct Steps {
 
 /// A lane of the mask fails: its direction proves nothing.
 HWY_INLINE Steps where(const DoubleMask& proves, const Steps& steps) {
-  return {select(proves, steps.until, number(-HUGE_VAL)),
-          select(proves, steps.rate, number(0))};
+  return {select(proves, steps.until, all(-HUGE_VAL)),
+          select(proves, steps.rate, all(0))};
 }
 
 /// AdvancingPair::fixedStep().
 HWY_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& least,
                             const Doubles& t) {
-  const Doubles zero = number(0);
-  Steps steps{number(HUGE_VAL), zero};
+  const Doubles zero = all(0);
+  Steps steps{all(HUGE_VAL), zero};
   DoubleMask proves = zero == zero;
   for (int k = 0; k < x.count; ++k) {
     const Doubles a = dot(n, x.t0[k]) - least, b = dot(n, x.t1[k]) - least;
     const DoubleMask starts = a > zero, ends = b > zero;
-    const Doubles time = a / (a - b), down = time * number(Advance::kDown);
-    proves = proves & (starts | (ends & (time * number(Advance::kUp) <= t)));
+    const Doubles time = a / (a - b), down = time * all(Advance::kDown);
+    proves = proves & (starts | (ends & (time * all(Advance::kUp) <= t)));
     const DoubleMask is_first = starts & (b <= zero) & (down < steps.until);
     steps.until = select(is_first, down, steps.until);
     steps.rate = select(is_first, a - b, steps.rate);
@@ -223,21 +220,21 @@ HWY_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& 
 HWY_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
                               const Vectors& n, const Vectors& turn, const Doubles& d,
                               const Doubles& least, const Doubles& t) {
-  const Doubles zero = number(0), square = dot(turn, turn);
-  Doubles longest = number(1) / squareRoot(square), rate = zero;
+  const Doubles zero = all(0), square = dot(turn, turn);
+  Doubles longest = all(1) / squareRoot(square), rate = zero;
   DoubleMask proves = longest > zero;
   for (int k = 0; k < x.count; ++k) {
     const Vectors &c = corner[k], &change = x.velocity[k];
     const Doubles gap = dot(n, c) - least,
                   closing = dot(n, change) + dot(turn, c) - d * dot(n, turn),
-                  bend = dot(turn, change) - number(0.5) * d * square;
+                  bend = dot(turn, change) - all(0.5) * d * square;
     const Doubles root = firstRoots(gap, closing, bend);
     proves = proves & (gap > zero);
     const DoubleMask is_first = root < longest;
     longest = select(is_first, root, longest);
     rate = select(is_first, zero - closing, rate);
   }
-  return where(proves, {t + longest * number(Advance::kDown), rate});
+  return where(proves, {t + longest * all(Advance::kDown), rate});
 }
 
 /// AdvancingPair::longestStep(), its first attempt.
@@ -247,12 +244,11 @@ HWY_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
   const NearestSides sides(x, corner, near);
   const Vectors n = directionsApart(near, sides);
   const Steps fixed = fixedSteps(x, n, least, t);
-  const DoubleMask is_enough = fixed.until > number(last);
+  const DoubleMask is_enough = fixed.until > all(last);
   if (isAll(is_enough)) return fixed;
   const Steps turning =
       turningSteps(x, corner, n, turnsApart(x, corner, near, sides, n), d, least, t);
-  const DoubleMask is_longer =
-      (fixed.until <= number(last)) & (turning.until > fixed.until);
+  const DoubleMask is_longer = (fixed.until <= all(last)) & (turning.until > fixed.until);
   return {select(is_longer, turning.until, fixed.until),
           select(is_longer, turning.rate, fixed.rate)};
 }
@@ -262,9 +258,9 @@ struct Tolerances {
   Doubles distance_error, margin, touching;
 
   HWY_INLINE Tolerances(const Doubles& d, const Doubles& size)
-      : distance_error(number(64 * DistanceTolerance::kUnit) * size),
-        margin(number(128 * DistanceTolerance::kUnit) * (d + size)),
-        touching(number(DistanceTolerance::kTouching) * (d + size)) {}
+      : distance_error(all(64 * DistanceTolerance::kUnit) * size),
+        margin(all(128 * DistanceTolerance::kUnit) * (d + size)),
+        touching(all(DistanceTolerance::kTouching) * (d + size)) {}
 };
 
 /// Eight pairs on their way to the distance.
@@ -274,12 +270,11 @@ class AdvancingPairs {
       : x_(x),
         request_(request),
         last_(request.t_stop < request.t_max ? request.t_stop : request.t_max),
-        d_(number(request.distance)),
-        t_(number(0)),
-        rate_(number(0)) {
+        d_(all(request.distance)),
+        t_(all(0)),
+        rate_(all(0)) {
     const Doubles size = max(x.size, d_);
-    open_ = ~bits((size >= number(Advance::kLeastSize)) &
-                  (size <= number(Advance::kMostSize)));
+    open_ = ~bits((size >= all(Advance::kLeastSize)) & (size <= all(Advance::kMostSize)));
     advance();
   }
 
@@ -294,12 +289,11 @@ class AdvancingPairs {
   HWY_INLINE Doubles upperEnds() {
     const Doubles gap = reached_ - d_,
                   distance_error = Tolerances(d_, x_.size).distance_error;
-    const Doubles width =
-        min(min(number(request_.toc_err), number(Advance::kShareOfTime) * t_),
-            number(request_.t_max) - t_);
-    Doubles hi = t_, h = number(Advance::kFirstGuess) * gap / rate_;
-    DoubleMask is_left = is_contact_ & (t_ > number(0)) & (reached_ > d_) &
-                         (width > number(0)) & (rate_ > number(0));
+    const Doubles width = min(min(all(request_.toc_err), all(Advance::kShareOfTime) * t_),
+                              all(request_.t_max) - t_);
+    Doubles hi = t_, h = all(Advance::kFirstGuess) * gap / rate_;
+    DoubleMask is_left = is_contact_ & (t_ > all(0)) & (reached_ > d_) &
+                         (width > all(0)) & (rate_ > all(0));
     for (unsigned left = bits(is_left) & ~open_; left != 0; left &= bits(is_left)) {
       const Doubles time = t_ + min(h, width);
       Vectors corner[4];
@@ -312,7 +306,7 @@ class AdvancingPairs {
       hi = select(is_within, time, hi);
       is_left = is_left & (hi == t_) & (h < width);
       left &= ~open_;
-      h = h * number(Advance::kFactor);
+      h = h * all(Advance::kFactor);
     }
     return hi;
   }
@@ -338,7 +332,7 @@ class AdvancingPairs {
       const Steps next =
           longestSteps(x_, corner, near_, d_, d_ + tolerance.margin, t_, last_);
       open_ |= left & ~bits(next.until > t_);
-      const DoubleMask is_soon = next.until <= number(last_);
+      const DoubleMask is_soon = next.until <= all(last_);
       left &= ~open_ & bits(is_soon);
       if (step == kMostSteps) open_ |= left;
       if (left == 0 || step == kMostSteps) return;
@@ -352,12 +346,11 @@ class AdvancingPairs {
   /// Sets the distance of each pair that is nearer than it at t = 0.
   HWY_INLINE void ignoreInitiallyCloser(const Tolerances& tolerance) {
     constexpr double kShare = DistanceTolerance::kShare;
-    const DoubleMask is_closer = reached_ <= d_ * number(1 + kShare) + tolerance.touching;
-    const Doubles less =
-        reached_ * number(1 - 2 * kShare) - number(2) * tolerance.touching;
+    const DoubleMask is_closer = reached_ <= d_ * all(1 + kShare) + tolerance.touching;
+    const Doubles less = reached_ * all(1 - 2 * kShare) - all(2) * tolerance.touching;
     d_ = select(is_closer, less, d_);
     // They touch.
-    open_ |= ~bits(d_ > number(0));
+    open_ |= ~bits(d_ > all(0));
   }
 
   static constexpr unsigned kAllOfEight = (1U << kEight) - 1;

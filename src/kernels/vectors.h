@@ -30,6 +30,9 @@ HWY_INLINE Floats roundedUp(const Doubles& value, const Floats& pad) {
   return select(up == up, up, broadcast<kEight>(std::numeric_limits<float>::infinity()));
 }
 
+/// The same number in eight lanes.
+HWY_INLINE Doubles all(double x) { return broadcast<kEight>(x); }
+
 /// Three coordinates of eight vectors.
 struct Vectors {
   Doubles x, y, z;

@@ -344,8 +344,7 @@ BodyTriangle MotionBody::triangle(std::int32_t place) const {
   return out;
 }
 
-/// Whether the vertices of a triangle are there and finite, so that triangle() does not
-/// throw. An error is for a pair that is advanced.
+/// Its vertices are there and finite. An error is for a pair that is advanced.
 bool MotionBody::isReadable(std::int32_t place) const {
   if (tree_) return true;
   for (int k = 0; k < 3; ++k) {

@@ -121,6 +121,8 @@ class MotionBody {
   /// @throws fcl::Exception  an index out of range
   /// @pre it is a mesh
   BodyTriangle triangle(std::int32_t place) const;
+  /// @brief Whether triangle() does not throw.
+  bool isReadable(std::int32_t place) const;
   /// @brief The triangles among the children of a node, in their lanes. Those for which
   /// triangle() would throw are NaN.
   void setTriangles(const MotionNode& node, MotionTriangles& out) const;
@@ -141,7 +143,6 @@ class MotionBody {
 
  private:
   void openOctree(std::int32_t node, MotionNode& out) const;
-  bool isReadable(std::int32_t place) const;
   double reachOfMesh(const BodyPart& part, double t, const Vec& direction,
                      std::int64_t& room) const;
   MotionBox rigidBox(int node) const;
@@ -181,7 +182,6 @@ class MotionBodyReader {
 
   /// @brief The triangles among the children of a node, in their lanes; valid until the
   /// next call. The other lanes have any values.
-  /// @throws what MotionBody::triangle() throws
   /// @pre the body is a mesh
   const MotionTriangles& triangles(const BodyPart& part) {
     const int slot = part.child % kSlots;

@@ -18,13 +18,9 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE Doubles all(double x) { return broadcast<kEight>(x); }
 HWY_INLINE Vectors all(const double (&v)[3]) { return {all(v[0]), all(v[1]), all(v[2])}; }
 HWY_INLINE Vectors loadVectors(const double (&v)[3][8]) {
   return {load<kEight>(v[0]), load<kEight>(v[1]), load<kEight>(v[2])};
-}
-HWY_INLINE Vectors scaled(const Doubles& s, const Vectors& v) {
-  return {s * v.x, s * v.y, s * v.z};
 }
 
 HWY_INLINE Vectors rotated(const double (&r)[9], const Vectors& v) {
@@ -146,7 +142,7 @@ void meetingWindows(const MotionBox* const (&a)[3], const SpanPoses& pose_a,
   const Vectors between = rotated(pose_b.middle.rotation, loadVectors(b[1]->center)) +
                           (all(pose_b.middle.translation) - all(am.center));
   const Doubles length = squareRoot(dot(between, between));
-  tryDirection(scaled(one / max(length, all(0x1p-500)), between));
+  tryDirection((one / max(length, all(0x1p-500))) * between);
   out.mask = left();
   for (const CalmDirection& from : calm) {
     if (!from.direction || out.mask == 0) continue;
@@ -182,8 +178,7 @@ HWY_INLINE SpanCorners inWorld(const MotionTriangles& b, const double* times,
     for (int i = 0; i < 3; ++i) {
       Vectors x = loadVectors(b.corner[0][i]);
       if (times)
-        x = scaled(all(1 - times[at]), x) +
-            scaled(all(times[at]), loadVectors(b.corner[1][i]));
+        x = all(1 - times[at]) * x + all(times[at]) * loadVectors(b.corner[1][i]);
       out.corner[at][i] = rotated(pose[at]->rotation, x) + all(pose[at]->translation);
     }
   return out;
@@ -251,7 +246,7 @@ HWY_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
 }
 
 HWY_INLINE Vectors unit(const Vectors& v) {
-  return scaled(all(1) / max(squareRoot(dot(v, v)), all(0x1p-500)), v);
+  return (all(1) / max(squareRoot(dot(v, v)), all(0x1p-500))) * v;
 }
 
 void meetingHalves(const SpanTriangle& a, const MotionTriangles& b, const double* times,

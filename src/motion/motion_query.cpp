@@ -280,6 +280,7 @@ class MotionTraversal {
     for (int lane = 0; lane < node.count; ++lane)
       if (node.part[lane].isTriangle()) out.tested |= 1U << lane;
     if (out.tested == 0) return out;
+    if (!one.body.isReadable(~single.child)) return {};
     const BodyTriangle triangle = one.body.triangle(~single.child);
     const double dt = work.t1 - work.t0, share = 0.125 * 0.25 * dt * dt,
                  of_one =

@@ -15,6 +15,14 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// @brief A slot of a table of 2^bits slots for a time and a number.
+inline std::size_t slotOf(double t, std::int32_t number, int bits) {
+  std::uint64_t key;
+  std::memcpy(&key, &t, sizeof(key));
+  key += static_cast<std::uint64_t>(number);
+  return (key * 0x9e3779b97f4a7c15u) >> (64 - bits);
+}
+
 /// @brief Stores the poses of a body, since the same times are needed again.
 class PoseTable {
  public:
@@ -22,9 +30,7 @@ class PoseTable {
     std::fill(time_, time_ + kSlots, -1.);
   }
   const Pose& at(double t) {
-    std::uint64_t bits;
-    std::memcpy(&bits, &t, sizeof(bits));
-    const std::size_t slot = (bits * 0x9e3779b97f4a7c15u) >> (64 - kBits);
+    const std::size_t slot = slotOf(t, 0, kBits);
     if (time_[slot] != t) {
       pose_[slot] = path_.pose(t);
       time_[slot] = t;

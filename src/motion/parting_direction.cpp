@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
+#include "motion/motion_side.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
@@ -44,11 +44,7 @@ double PartingDirection::reachOf(int k, const BodyPart& part, double t,
   if (part.child < 0 || !body_[k]->isMesh())
     return body_[k]->reach(part, t, in_body, room_);
   if (known_[k].empty()) known_[k].assign(kSlots, {-1, 0, 0});
-  std::uint64_t bits;
-  std::memcpy(&bits, &t, sizeof(bits));
-  bits += static_cast<std::uint64_t>(part.child);
-  const std::size_t slot = (bits * 0x9e3779b97f4a7c15u) >> (64 - kSlotBits);
-  Reach& known = known_[k][slot];
+  Reach& known = known_[k][slotOf(t, part.child, kSlotBits)];
   if (known.node != part.child || known.t != t) {
     const double reach = body_[k]->reach(part, t, in_body, room_);
     known = {room_ < 0 ? -1 : part.child, t, reach};

@@ -275,6 +275,45 @@ TEST(FCL_MOTION_QUERY, firstOfManyContactsInAShell) {
   }
 }
 
+/// Visits all nodes below a part.
+template <typename Visit>
+void forEachNode(MotionBodyReader& reader, const BodyPart& part, const Visit& visit) {
+  if (part.isTriangle()) return;
+  const MotionNode node = reader.open(part);
+  visit(part, node);
+  for (int lane = 0; lane < node.count; ++lane)
+    forEachNode(reader, node.part[lane], visit);
+}
+
+// A triangle that cannot be read is an error when a pair with it is advanced. Before that
+// it is compared as one that is nowhere apart.
+TEST(FCL_MOTION_QUERY, trianglesThatCannotBeRead) {
+  const Body sphere(makeIcosphere(2, 1));
+  const std::size_t missing = 17, infinite = 43;
+  sphere.model->tri_indices[missing][1] = sphere.mesh.vertices.size() + 7;
+  sphere.model->vertices[sphere.mesh.triangles[infinite][0]][2] = HUGE_VAL;
+  const MovingBody moving(sphere, MotionPath::still(Pose()));
+  EXPECT_FALSE(moving.body.isReadable(missing));
+  EXPECT_FALSE(moving.body.isReadable(infinite));
+  std::size_t num_readable = 0, num_not = 0;
+  MotionBodyReader reader(moving.body);
+  forEachNode(reader, moving.body.root(),
+              [&](const BodyPart& part, const MotionNode& node) {
+                const MotionTriangles& triangles = reader.triangles(part);
+                for (int lane = 0; lane < node.count; ++lane) {
+                  if (!node.part[lane].isTriangle()) continue;
+                  const bool is_readable = moving.body.isReadable(~node.part[lane].child);
+                  ++(is_readable ? num_readable : num_not);
+                  EXPECT_EQ(std::isnan(triangles.corner[0][2][1][lane]), !is_readable);
+                }
+              });
+  EXPECT_EQ(num_readable + num_not, sphere.mesh.triangles.size());
+  // One, and those around a vertex.
+  EXPECT_GE(num_not, 6u);
+  std::int64_t room = 1000;
+  EXPECT_EQ(moving.body.reach(moving.body.root(), 0, {0, 0, -1}, room), HUGE_VAL);
+}
+
 /// A piece of work of which only the start is known.
 MotionWork workAt(double start) {
   MotionWork work{};
