@@ -49,8 +49,8 @@ def test_queries_of_one_mesh_side_by_side():
             require_equal(job.result().contacts, contacts)
 
 
-LARGE = crumpled(150)
-QUERIES = np.random.default_rng(1).normal(size=(2, 200000, 4, 3))
+LARGE = crumpled(300)
+QUERIES = np.random.default_rng(1).normal(size=(2, 600000, 4, 3))
 
 
 def large_cloth():
