@@ -88,7 +88,7 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
                   posed ? placed.end() : Pose(), name, num_threads);
     const MeshInstance& mesh = mesh_->instance();
     if (mesh.tree)
-      body_.emplace(*mesh.tree, path);
+      body_.emplace(*mesh.tree, mesh.frames, path);
     else
       body_.emplace(mesh.rigid, mesh.frames, mesh.triangles, path);
   }

@@ -168,8 +168,9 @@ MotionBody::MotionBody(const RigidTree& tree, const VertexFrames& frames,
   radius_ = (norm(whole.center) + whole.radius) * kUpward;
 }
 
-MotionBody::MotionBody(const MovingKdopTree& tree, const MotionPath& path)
-    : tree_(&tree), path_(path) {
+MotionBody::MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
+                       const MotionPath& path)
+    : tree_(&tree), frames_(frames), path_(path) {
   for (int frame = 0; frame < 2; ++frame) {
     const MotionBox whole = movingRoot(frame);
     radius_ = std::max(radius_, (norm(whole.center) + whole.radius) * kUpward);
@@ -307,6 +308,26 @@ void MotionBody::open(const BodyPart& part, MotionNode& out) const {
     out.part[lane] = {children[from], nodes[from]};
     out.box[0].set(lane, rigidBox(nodes[from]));
   }
+}
+
+MeshInstance MotionBody::meshInBodyFrame() const {
+  assert(isMesh());
+  MeshInstance mesh;
+  mesh.name = path_.name();
+  mesh.frames = frames_;
+  mesh.tree = tree_;
+  if (rigid_) mesh.rigid = *rigid_;
+  mesh.triangles = triangles_;
+  return mesh;
+}
+
+std::vector<std::int32_t> MotionBody::placesOfTriangles() const {
+  if (!tree_) return {};
+  const auto& triangles = tree_->triangles();
+  std::vector<std::int32_t> places(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    places[triangles[i].index] = static_cast<std::int32_t>(i);
+  return places;
 }
 
 BodyTriangle MotionBody::triangle(std::int32_t place) const {

@@ -13,6 +13,7 @@
 #include "motion/motion_path.h"
 #include "motion/octree_cells.h"
 #include "numerics/moving_vector.h"
+#include "tree/mesh_instance.h"
 #include "tree/moving_kdop_tree.h"
 #include "tree/rigid_tree.h"
 
@@ -79,7 +80,9 @@ class MotionBody {
 
   /// @brief A mesh that deforms in the frame that moves.
   /// @param tree  refit in the body frame
-  MotionBody(const MovingKdopTree& tree, const MotionPath& path);
+  /// @param frames  in the body frame
+  MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
+             const MotionPath& path);
 
   /// @brief A convex shape. It has one part, which counts as a triangle.
   MotionBody(const ConvexShape& shape, const MotionPath& path);
@@ -117,6 +120,15 @@ class MotionBody {
   std::int32_t numTriangles() const {
     return static_cast<std::int32_t>(tree_->triangles().size());
   }
+  /// @pre it is a mesh
+  std::size_t numVertices() const { return frames_.size(); }
+  /// @brief The mesh in the body frame: a deforming one goes straight there.
+  /// @pre it is a mesh
+  MeshInstance meshInBodyFrame() const;
+  /// @brief For each triangle of the mesh its place in the tree; empty: they are the
+  /// same.
+  /// @pre it is a mesh
+  std::vector<std::int32_t> placesOfTriangles() const;
   /// @throws NonFiniteVertex
   /// @throws fcl::Exception  an index out of range
   /// @pre it is a mesh

@@ -6,11 +6,13 @@
 #include <cstdint>
 #include <deque>
 #include <set>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
+#include "motion/chord_pairs.h"
 #include "motion/feature_advance.h"
 #include "query/contact_sink.h"
 #include "query/distance_contact.h"
@@ -49,16 +51,20 @@ class FreeParts {
   std::set<Edge> edges_;
 };
 
+/// For each triangle its place in the tree; empty: they are the same.
+using Places = std::vector<std::int32_t>;
+
 class FeatureContacts {
  public:
-  FeatureContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options)
+  /// @param may_repeat  whether add() may get the same pair of features more than once
+  FeatureContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options,
+                  bool may_repeat)
       : body_{&a, &b},
         options_(options),
         tolerance_(a, b, options.min_distance),
-        // Rigid meshes have no owners. Which contacts a first-contact query drops is
-        // known at the end only.
+        // Which contacts a first-contact query drops is known at the end only.
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
-              options.filter || a.isRigid() || b.isRigid()) {
+              may_repeat) {
     if (options.filter && options.min_distance > 0)
       for (auto k : {0, 1}) parts_[k].find(*body_[k]);
   }
@@ -70,6 +76,26 @@ class FeatureContacts {
                        b = body_[1]->triangle(contact.place[1]);
     for (unsigned pairs = pairsOf(a, b); pairs != 0; pairs &= pairs - 1)
       addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, last);
+  }
+
+  /// The contacts of pairs of features that come near during a span, except for those of
+  /// which earlier spans have the first contact.
+  void add(const ChordSearch::Span& span, const Places (&places)[2]) {
+    const double last = std::min(span.t1, options_.t_max);
+    for (const FeatureContact& pair : span.near.contacts) {
+      const ContactSink::PairKey key = ContactSink::keyOf(pair);
+      if (in_contact_.count(key) > 0) continue;
+      const auto triangleOf = [&](int k) {
+        const std::int32_t id = pair.triangles[k];
+        return body_[k]->triangle(
+            places[k].empty() ? id : places[k][static_cast<std::size_t>(id)]);
+      };
+      const BodyTriangle a = triangleOf(0), b = triangleOf(1);
+      // The tolerance includes the rounding of a time.
+      const double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
+      if (addPair(a, b, numberOf(pair, a, b), t, last) && span.t1 < 1)
+        in_contact_.insert(key);
+    }
   }
 
   /// A contact of the features that are nearest when two triangles touch.
@@ -160,7 +186,24 @@ class FeatureContacts {
     }
   }
 
-  void addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
+  /// The number of a pair of features of two triangles.
+  static int numberOf(const FeatureIds& pair, const BodyTriangle& a,
+                      const BodyTriangle& b) {
+    const auto vertexOf = [&pair](const BodyTriangle& triangle, int i) {
+      const auto id = static_cast<std::int32_t>(pair.vertices[i]);
+      return triangle.vertex[0] == id ? 0 : triangle.vertex[1] == id ? 1 : 2;
+    };
+    const auto edgeOf = [&](const BodyTriangle& triangle, int i) {
+      const int first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
+      return (first + 1) % 3 == second ? first : second;
+    };
+    if (pair.kind == ContinuousContactKind::kEdgeEdge)
+      return 6 + 3 * edgeOf(a, 0) + edgeOf(b, 2);
+    return pair.first_on_a ? vertexOf(a, 0) : 3 + vertexOf(b, 0);
+  }
+
+  /// @return whether it has a contact
+  bool addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
                double last) {
     if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
     const FeaturePair pair = featurePair(bit);
@@ -177,9 +220,10 @@ class FeatureContacts {
     TrianglePairMotion motion(path_a, x, path_b, y, t, last, tolerance_);
     int steps = kMostSteps;
     if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
-      return;
-    if (t > last) return;
+      return false;
+    if (t > last) return false;
     put(a, b, bit, t, provedTime(a, b, t, last));
+    return true;
   }
 
   /// A time after t at which the triangles provably cross; t if none is found.
@@ -191,15 +235,16 @@ class FeatureContacts {
         t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
   }
 
-  void addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
+  bool addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
                          double last) {
     FeaturePairMotion motion(body_[0]->path(), a, body_[1]->path(), b, bit, t, last,
                              tolerance_);
     if (options_.ignores_initially_closer && t == 0) motion.ignoreInitiallyCloser();
-    if (motion.advance(t, counts_) == TrianglePairMotion::Answer::kApart) return;
+    if (motion.advance(t, counts_) == TrianglePairMotion::Answer::kApart) return false;
     const DistanceContact found = motion.contactAt(
         t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
     sink_.add(contactOf(idsOf(bit, a, b), found, false));
+    return true;
   }
 
   void put(const BodyTriangle& a, const BodyTriangle& b, int bit, double lo, double hi) {
@@ -214,6 +259,7 @@ class FeatureContacts {
   const QueryOptions& options_;
   MotionTolerance tolerance_;
   ContactSink sink_;
+  std::unordered_set<ContactSink::PairKey, ContactSink::KeyHash> in_contact_;
   MotionCounts counts_;
 };
 
@@ -238,6 +284,23 @@ bool keepWanted(const QueryOptions& options, double first_hi,
 void count(const MotionCounts& from, StageCounts& to) {
   to.node_pairs += from.box_tests;
   to.triangle_pairs += from.triangle_pairs;
+}
+
+void count(const StageCounts& from, StageCounts& to) {
+  to.node_pairs += from.node_pairs;
+  to.triangle_pairs += from.triangle_pairs;
+}
+
+/// Moves the contacts that the query wants into the answer.
+void complete(const QueryOptions& options, ContactSink& sink, QueryAnswer& answer) {
+  const double first_hi = sink.firstHi();
+  answer.cut = sink.isCut();
+  std::vector<std::deque<FeatureContact>> lists(1, sink.takeContacts());
+  answer.cut |= keepWanted(options, first_hi, lists.front());
+  answer.contacts = SortedContacts(std::move(lists));
+  if (!answer.contacts.empty())
+    answer.first = {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
+  answer.counts.contacts = answer.contacts.size();
 }
 
 MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
@@ -285,7 +348,7 @@ void addFeatures(const MotionBody& a, const MotionBody& b, MotionAnswer triangle
                  MotionQueryOptions wanted, const QueryOptions& options,
                  FeatureContacts& features, QueryAnswer& answer) {
   if (!wanted.all) triangles = firstTriangles(a, b, std::move(triangles), wanted);
-  const FeatureContacts unmoved(a, b, options);
+  const FeatureContacts unmoved(a, b, options, false);
   addFeatures(triangles, wanted.last, options, unmoved, features, answer);
   if (!features.sink().contacts().empty() || answer.hasCrossing()) return;
   // Features that pass at the distance of the tolerance may round differently than
@@ -298,29 +361,52 @@ void addFeatures(const MotionBody& a, const MotionBody& b, MotionAnswer triangle
               answer);
 }
 
+/// A query that needs no more takes less time than to begin with chords.
+constexpr std::uint64_t kFewBoxTests = 512;
+
+/// All contacts of two meshes that come near each other.
+QueryAnswer contactsBy(ChordSearch& chords, const MotionBody& a, const MotionBody& b,
+                       const QueryOptions& options) {
+  QueryAnswer answer;
+  const BodiesNearOrigin near(a, b);
+  // A pair may come near in several spans.
+  FeatureContacts features(near.a, near.b, options, true);
+  const Places places[2] = {a.placesOfTriangles(), b.placesOfTriangles()};
+  for (int i = 0; i < chords.numSpans(); ++i) {
+    ChordSearch::Span span = chords.find(i);
+    if (i == 0) answer.crossings = std::move(span.near.crossings);
+    count(span.near.counts, answer.counts);
+    features.add(span, places);
+  }
+  complete(options, features.sink(), answer);
+  return answer;
+}
+
 }  // namespace
 
 QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
                                 const QueryOptions& options) {
-  const MotionQueryOptions wanted = motionOptionsOf(options);
+  MotionQueryOptions wanted = motionOptionsOf(options);
+  if (ChordSearch::isFor(a, b, options)) wanted.most_box_tests = kFewBoxTests;
   MotionAnswer touching = queryMotions(a, b, wanted);
+  if (touching.is_cut) {
+    ChordSearch chords(a, b, options);
+    wanted.most_box_tests = chords.boxTestsBefore();
+    if (wanted.most_box_tests > kFewBoxTests) touching = queryMotions(a, b, wanted);
+    if (touching.is_cut) return contactsBy(chords, a, b, options);
+  }
   QueryAnswer answer;
   count(touching.counts, answer.counts);
   if (touching.contacts.empty()) return answer;
   const BodiesNearOrigin near(a, b);
-  FeatureContacts features(near.a, near.b, options);
+  // Rigid meshes have no owners.
+  FeatureContacts features(near.a, near.b, options,
+                           options.filter || a.isRigid() || b.isRigid());
   if (options.stop_at_crossing)
     features.addNearest(touching.contacts.front());
   else
     addFeatures(a, b, std::move(touching), wanted, options, features, answer);
-  const double first_hi = features.sink().firstHi();
-  answer.cut = features.sink().isCut();
-  std::vector<std::deque<FeatureContact>> lists(1, features.sink().takeContacts());
-  answer.cut |= keepWanted(options, first_hi, lists.front());
-  answer.contacts = SortedContacts(std::move(lists));
-  if (!answer.contacts.empty())
-    answer.first = {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
-  answer.counts.contacts = answer.contacts.size();
+  complete(options, features.sink(), answer);
   return answer;
 }
 

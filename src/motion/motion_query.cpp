@@ -70,7 +70,7 @@ class MotionTraversal {
   template <typename Visit>
   void traverse(Visit&& visit) {
     testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0});
-    while (!works_.isEmpty()) {
+    while (!works_.isEmpty() && !isCut()) {
       MotionWork work = works_.pop();
       if (areKeptApart(work)) continue;
       if (work.a.isTriangle() && work.b.isTriangle())
@@ -79,6 +79,8 @@ class MotionTraversal {
         divide(work);
     }
   }
+
+  bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
 
   /// Nothing that starts at the time of a contact can be earlier than it.
   void push(const MotionWork& work) {
@@ -522,6 +524,7 @@ class MotionTraversal {
     MotionAnswer answer;
     answer.counts = counts_;
     answer.touching = tolerance_.touching;
+    answer.is_cut = isCut();
     const auto isLess = [](const MotionContact& x, const MotionContact& y) {
       if (x.triangle[0] != y.triangle[0]) return x.triangle[0] < y.triangle[0];
       if (x.triangle[1] != y.triangle[1]) return x.triangle[1] < y.triangle[1];

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_MOTION_MOTION_QUERY_H
 #define FCL_CCD_MOTION_MOTION_QUERY_H
 
+#include <cstdint>
 #include <vector>
 
 #include "motion/motion_body.h"
@@ -31,6 +32,8 @@ struct MotionQueryOptions {
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
   int max_steps{10000};
+  /// After this number of tests of boxes the query is given up.
+  std::uint64_t most_box_tests{~std::uint64_t{0}};
   /// Selects the triangle pairs that count; null: all of them.
   const PairRules* rules{nullptr};
 };
@@ -41,6 +44,8 @@ struct MotionAnswer {
   MotionCounts counts;
   /// Largest distance of a reported pair, less the requested distance.
   double touching{0};
+  /// Whether the query was given up. The contacts are then some of those that there are.
+  bool is_cut{false};
 };
 
 /// @brief The bodies in a frame whose origin is in the middle between them, where

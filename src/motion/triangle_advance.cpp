@@ -98,7 +98,8 @@ Vec directionOf(const NearestFeatures& near, const Vec (&a)[3], const Vec (&b)[3
 
 }  // namespace
 
-NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
+NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3],
+                                const NumCorners& count) {
   NearestFeatures best{};
   best.square = HUGE_VAL;
   const auto keep = [&best](const Vec& on_a, const Vec& on_b) {
@@ -113,17 +114,17 @@ NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]) {
   };
   Vec foot;
   for (int k = 0; k < 3; ++k) {
-    if (nearestOnFace(a[k], b, foot) && keep(a[k], foot)) {
+    if (k < count.a && count.b == 3 && nearestOnFace(a[k], b, foot) && keep(a[k], foot)) {
       best.kind = NearestFeatures::Kind::kVertexOfA;
       best.a = k;
     }
-    if (nearestOnFace(b[k], a, foot) && keep(foot, b[k])) {
+    if (k < count.b && count.a == 3 && nearestOnFace(b[k], a, foot) && keep(foot, b[k])) {
       best.kind = NearestFeatures::Kind::kVertexOfB;
       best.b = k;
     }
   }
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
+  for (int i = 0; i < NumCorners::edgesOf(count.a); ++i)
+    for (int j = 0; j < NumCorners::edgesOf(count.b); ++j) {
       double s, t;
       nearestOnEdges(a[i], edge(a, i), b[j], edge(b, j), s, t);
       if (!keep(lerp(a[i], a[(i + 1) % 3], s), lerp(b[j], b[(j + 1) % 3], t))) continue;
@@ -165,6 +166,7 @@ TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTrian
                                        const MotionTolerance& tolerance)
     : path_{&path_a, &path_b},
       triangle_{&a, &b},
+      count_(a, b),
       t1_(t1),
       tolerance_(tolerance),
       acceleration_(0),
@@ -184,9 +186,11 @@ TrianglePairMotion::TrianglePairMotion(const MotionPath& path_a, const BodyTrian
 void TrianglePairMotion::cornersAt(double t, Vec (&p)[2][3]) const {
   for (int body = 0; body < 2; ++body) {
     const Pose pose = path_[body]->pose(t);
-    for (int i = 0; i < 3; ++i)
+    const int count = count_.of(body);
+    for (int i = 0; i < count; ++i)
       p[body][i] = posed(
           pose, lerp(triangle_[body]->corner[0][i], triangle_[body]->corner[1][i], t));
+    for (int i = count; i < 3; ++i) p[body][i] = p[body][count - 1];
   }
 }
 
@@ -195,12 +199,17 @@ TrianglePairMotion::State TrianglePairMotion::at(double t) const {
   for (int body = 0; body < 2; ++body) {
     const Pose pose = path_[body]->pose(t);
     const PoseRate rate = path_[body]->rate(t);
-    for (int i = 0; i < 3; ++i) {
+    const int count = count_.of(body);
+    for (int i = 0; i < count; ++i) {
       const Vec from = triangle_[body]->corner[0][i], to = triangle_[body]->corner[1][i];
       const Vec x = lerp(from, to, t), moving = to - from;
       state.p[body][i] = posed(pose, x);
       state.v[body][i] = rotated(rate.rotation, x) + rotated(pose.rotation, moving) +
                          vecOf(rate.translation);
+    }
+    for (int i = count; i < 3; ++i) {
+      state.p[body][i] = state.p[body][count - 1];
+      state.v[body][i] = state.v[body][count - 1];
     }
   }
   return state;
@@ -208,23 +217,24 @@ TrianglePairMotion::State TrianglePairMotion::at(double t) const {
 
 /// Positions and velocities of the corners along a direction, relative to a's first.
 struct TrianglePairMotion::Projection {
-  Projection(const State& state, const Vec& direction) {
+  Projection(const State& state, const Vec& direction, const NumCorners& num)
+      : count(num) {
     for (int body = 0; body < 2; ++body)
-      for (int i = 0; i < 3; ++i) {
+      for (int i = 0; i < count.of(body); ++i) {
         along[body][i] = dot(direction, state.p[body][i] - state.p[0][0]);
         speed[body][i] = dot(direction, state.v[body][i]);
       }
   }
 
-  /// The largest step, at most the longest one, during which all nine pairs of vertices
+  /// The largest step, at most the longest one, during which all pairs of vertices
   /// are provably further apart than the margin; negative if they are not now. The gap of
   /// a pair is at least g + v h - M h^2 / 2. This is concave in h: if it is positive at
   /// the end of a step, it is positive before.
   double advance(double margin, double rate_margin, double most_approach,
                  double longest) const {
     double h = longest;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) {
+    for (int i = 0; i < count.a; ++i)
+      for (int j = 0; j < count.b; ++j) {
         const double gap = along[1][j] - along[0][i] - margin,
                      rate = speed[1][j] - speed[0][i] - rate_margin;
         if (!(gap > 0)) return -1;
@@ -236,6 +246,7 @@ struct TrianglePairMotion::Projection {
     return h;
   }
 
+  const NumCorners& count;
   double along[2][3];
   double speed[2][3];
 };
@@ -255,7 +266,7 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
                        r[2] * n.x + r[5] * n.y + r[8] * n.z};
     const double all =
         n.x * bend.translation[0] + n.y * bend.translation[1] + n.z * bend.translation[2];
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < count_.of(body); ++i)
       most[body] = std::max(most[body], dot(along, triangle_[body]->corner[0][i]) + all);
   }
   return most[0] + most[1];
@@ -266,7 +277,7 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
 /// derivative. H is doubled as long as the step allows it.
 double TrianglePairMotion::step(double t, const State& state,
                                 const Vec& direction) const {
-  const Projection along(state, direction);
+  const Projection along(state, direction, count_);
   const double margin = 2 * tolerance_.position + tolerance_.distance, longest = t1_ - t;
   double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
   if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
@@ -291,7 +302,7 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
   while (true) {
     const State state = at(t);
     ++counts.steps;
-    nearest_ = nearestFeatures(state.p[0], state.p[1]);
+    nearest_ = nearestFeatures(state.p[0], state.p[1], count_);
     const double distance = std::sqrt(nearest_.square);
     if (distance + tolerance_.position <= tolerance_.distance + tolerance_.touching)
       return Answer::kContact;
@@ -329,7 +340,7 @@ TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, i
 Vec TrianglePairMotion::directionAt(double t) const {
   const State state = at(t);
   const auto &a = state.p[0], &b = state.p[1];
-  const NearestFeatures near = nearestFeatures(a, b);
+  const NearestFeatures near = nearestFeatures(a, b, count_);
   Vec direction = {0, 0, 0};
   double gap = 0;
   tryDirection(normal(a), a, b, direction, gap);
@@ -400,15 +411,16 @@ double TrianglePairMotion::proveContact(double t, double width) const {
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
   const double longest = std::min(width, 1 - t);
-  // The width is doubled each time. A double has fewer than 1100 doublings.
+  // A double has fewer than 1100 doublings.
+  const double factor = 4;
   for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
-       h *= 2) {
+       h *= factor) {
     const double time = std::min(t + std::min(h, longest), 1.);
     if (!(time > t)) return t;
     Vec later[2][3];
     cornersAt(time, later);
     if (tolerance_.distance > 0) {
-      const NearestFeatures near = nearestFeatures(later[0], later[1]);
+      const NearestFeatures near = nearestFeatures(later[0], later[1], count_);
       if (std::sqrt(near.square) + tolerance_.position <= tolerance_.distance)
         return time;
     } else if (provesCrossing(later)) {

@@ -67,6 +67,25 @@ struct MotionCounts {
   std::uint64_t all_directions{0};
 };
 
+/// @brief The number of corners of two triangles, of which one or both may stand for an
+/// edge, whose second end is repeated, or for a point.
+struct NumCorners {
+  NumCorners() = default;
+  NumCorners(const BodyTriangle& of_a, const BodyTriangle& of_b)
+      : a(cornersOf(of_a)), b(cornersOf(of_b)) {}
+
+  int of(int body) const { return body == 0 ? a : b; }
+  static int edgesOf(int corners) { return corners == 3 ? 3 : 1; }
+
+  int a{3}, b{3};
+
+ private:
+  static int cornersOf(const BodyTriangle& triangle) {
+    const std::int32_t(&v)[3] = triangle.vertex;
+    return v[1] != v[2] ? 3 : v[0] != v[1] ? 2 : 1;
+  }
+};
+
 /// @brief Two triangles in a span of time.
 class TrianglePairMotion {
  public:
@@ -130,6 +149,7 @@ class TrianglePairMotion {
 
   const MotionPath* path_[2];
   const BodyTriangle* triangle_[2];
+  NumCorners count_;
   double t1_;
   const MotionTolerance& tolerance_;
   /// Bound on the relative acceleration of two vertices.
@@ -141,7 +161,8 @@ class TrianglePairMotion {
 
 /// @brief The nearest points of two closed triangles, up to rounding. The distance of
 /// triangles that cross is not 0.
-NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3]);
+NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3],
+                                const NumCorners& count = {});
 
 }  // namespace deformable
 }  // namespace detail

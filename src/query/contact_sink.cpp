@@ -30,7 +30,7 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
   return key(x) < key(y);
 }
 
-ContactSink::PairKey ContactSink::keyOf(const FeatureContact& c) {
+ContactSink::PairKey ContactSink::keyOf(const FeatureIds& c) {
   const std::uint32_t tag =
       2 * static_cast<std::uint32_t>(c.kind) + (c.first_on_a ? 1U : 0U);
   PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};

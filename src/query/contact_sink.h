@@ -78,8 +78,9 @@ class ContactSink {
   /// @brief Forgets all contacts.
   void clear();
 
- private:
+  /// @brief Names a pair of features.
   using PairKey = std::array<std::uint32_t, 5>;
+  static PairKey keyOf(const FeatureIds& pair);
   struct KeyHash {
     /// After FNV-1a, by words.
     std::size_t operator()(const PairKey& key) const {
@@ -88,12 +89,13 @@ class ContactSink {
       return static_cast<std::size_t>(hash ^ (hash >> 32));
     }
   };
+
+ private:
   struct Earlier {
     bool operator()(const FeatureContact* x, const FeatureContact* y) const {
       return isEarlier(*x, *y);
     }
   };
-  static PairKey keyOf(const FeatureContact& contact);
   void cut();
   void replace(FeatureContact& kept, const FeatureContact& contact);
   bool mayRepeat(const FeatureContact& contact) const;

@@ -442,7 +442,7 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k) {
       position.origin[frame][k] =
-          mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k];
+          mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin(frame)[k];
       position.translation[frame][k] = mesh.translation[frame][k];
     }
   position.reach = mesh.tree ? 0 : mesh.rigid.reach();

@@ -17,7 +17,7 @@ namespace {
 /// The origin of the boxes of a mesh.
 double originOf(const MeshInstance& mesh, int frame, int k) {
   return mesh.translation[frame][k] +
-         (mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin()[k]);
+         (mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin(frame)[k]);
 }
 
 /// Bound on the difference of a coordinate of two vertices, without rounding.

@@ -92,17 +92,19 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   // here. Adding and subtracting it each round by 2^-53 of the numbers, and so do the
   // difference to the origin and a sum. Together this is less than 2^-50 of `size`. The
   // pad is twice that, since roundUp() may lose a part of it to rounding.
-  const auto fit = [&](const double* x, const double(&translation)[3], Kdop16& box) {
+  const auto fit = [&](const double* x, int frame, Kdop16& box) {
+    const double(&translation)[3] = mesh_.translation[frame];
+    const double(&origin)[3] = mesh_.rigid.origin(frame);
     double p[3], size = 0;
     for (int k = 0; k < 3; ++k) {
       p[k] = x[k] - translation[k];
-      size = std::max(size, std::abs(x[k]) + std::abs(translation[k]) +
-                                std::abs(mesh_.rigid.origin()[k]));
+      size =
+          std::max(size, std::abs(x[k]) + std::abs(translation[k]) + std::abs(origin[k]));
     }
-    fitPoint(p, mesh_.rigid.origin(), roundUp(size * 0x1p-49, 0.f), box);
+    fitPoint(p, origin, roundUp(size * 0x1p-49, 0.f), box);
   };
-  fit(out.t0, mesh_.translation[0], out.box.t0);
-  fit(out.t1, mesh_.translation[1], out.box.t1);
+  fit(out.t0, 0, out.box.t0);
+  fit(out.t1, 1, out.box.t1);
 }
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,

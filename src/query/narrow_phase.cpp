@@ -315,7 +315,10 @@ void NarrowPhase::addNear(const FeatureCandidate& candidate,
   ++counts_.contacts;
   FeatureIds pair = candidate;
   if (options_.filter) options_.filter->find(pair, pair.triangles);
-  add(contactOf(pair, found, batch_.isSelf()));
+  if (options_.names_parts)
+    add(contactOf(pair, found, batch_.isSelf()));
+  else
+    add(FeatureContact{pair, found.toc_lo, found.toc_hi});
 }
 
 /// The decision of one pair. A pair that is met again is decided once.

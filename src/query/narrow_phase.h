@@ -43,6 +43,9 @@ struct QueryOptions {
   double min_distance{0};
   /// See DistanceRequest.
   bool ignores_initially_closer{false};
+  /// With a distance: whether a contact is named after the parts of its features that are
+  /// nearest, or after the features.
+  bool names_parts{true};
 };
 
 /// @brief What the tasks of a query tell each other, so that none does work that cannot

@@ -25,8 +25,7 @@ struct MeshInstance {
   VertexFrames frames;
 
   /// The moving tree. Its boxes are in the object's coordinates and have to be moved by
-  /// `translation`. Null: the mesh only translates, FCL's tree is sound, and `rigid` is
-  /// used.
+  /// `translation`. Null: the mesh is rigid, FCL's tree is sound, and `rigid` is used.
   const MovingKdopTree* tree{nullptr};
   RigidTree rigid;
   double translation[2][3]{{0, 0, 0}, {0, 0, 0}};
@@ -56,9 +55,9 @@ struct MeshInstance {
     for (int k = 0; k < 3; ++k) {
       moved = std::max(moved, std::abs(translation[1][k] - translation[0][k]));
       for (int frame = 0; frame < 2; ++frame)
-        size = std::max(size,
-                        std::abs(translation[frame][k]) +
-                            std::abs(tree ? tree->origin(frame)[k] : rigid.origin()[k]));
+        size = std::max(
+            size, std::abs(translation[frame][k]) +
+                      std::abs(tree ? tree->origin(frame)[k] : rigid.origin(frame)[k]));
     }
     return moved + 0x1p-46 * size;
   }

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cfloat>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include "fcl/geometry/bvh/BVH_model.h"
@@ -95,7 +96,7 @@ double spreadOf(const OrientedBox& box) {
 
 /// Half-axes of 16-DOPs around the boxes, without rounding outward. Along a direction d a
 /// box reaches from its center by the sum of |d . half axis|.
-void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
+void fitBoxes(const EightBoxes& boxes, float (&rows)[16][MovingKdopNode::kWidth]) {
   for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
     const auto alongDirections = [q](const float(&v)[3][MovingKdopNode::kWidth],
                                      Float4(&d)[8]) {
@@ -107,8 +108,8 @@ void fitBoxes(const EightBoxes& boxes, MovingKdopNode& out) {
     for (int k = 0; k < 3; ++k) alongDirections(boxes.half_axis[k], axis[k]);
     for (int j = 0; j < 8; ++j) {
       const Float4 spread = abs(axis[0][j]) + abs(axis[1][j]) + abs(axis[2][j]);
-      store(spread - center[j], out.t0[2 * j] + q);
-      store(spread + center[j], out.t0[2 * j + 1] + q);
+      store(spread - center[j], rows[2 * j] + q);
+      store(spread + center[j], rows[2 * j + 1] + q);
     }
   }
 }
@@ -123,42 +124,60 @@ RigidTree::Volumes RigidTree::volumesOf() {
           &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
 }
 
+template <typename BV>
+RigidTree::RigidTree(const BVHModel<BV>& model, const Pose& pose)
+    : RigidTree(&model.getBV(0), volumesOf<BV>(), pose, pose) {}
+
+RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes,
+                     const Pose& beginning, const Pose& end)
+    : nodes_(nodes),
+      volumes_(volumes),
+      is_rotated_(!beginning.isTranslation() || !end.isTranslation()),
+      turns_(!std::equal(beginning.rotation, beginning.rotation + 9, end.rotation)) {
+  std::copy(beginning.rotation, beginning.rotation + 9, rotation_[0]);
+  std::copy(end.rotation, end.rotation + 9, rotation_[1]);
+  for (auto frame : {0, 1}) setOrigin(frame);
+  reach_ *= 1 + slack();
+  if (!turns_) return;
+  // The difference of both rotations, applied to any point.
+  double size = 0, square = 0;
+  for (int k = 0; k < 9; ++k) {
+    const double change = rotation_[1][k] - rotation_[0][k];
+    square += change * change;
+  }
+  for (const double x : origin_[0]) size += std::abs(x) + reach_;
+  displacement_ = roundUp(std::sqrt(square) * size, 0.f);
+}
+
 /// The origin is in the middle of the mesh. If one of its halves is tiny relative to the
 /// whole, the origin is in the middle of this half: a vertex may be far away from all
 /// others, and floats relative to the middle of the mesh would be rounding only (as in
 /// MovingKdopTree::refit()).
-template <typename BV>
-RigidTree::RigidTree(const BVHModel<BV>& model, const Pose& pose)
-    : RigidTree(&model.getBV(0), volumesOf<BV>(), pose) {}
-
-RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose)
-    : nodes_(nodes), volumes_(volumes), is_rotated_(!pose.isTranslation()) {
+void RigidTree::setOrigin(int frame) {
   constexpr double kSpeck = 0x1p-10;
-  std::copy(pose.rotation, pose.rotation + 9, rotation_);
+  double(&origin)[3] = origin_[frame];
   OrientedBox whole, part;
-  orientedBox(0, whole);
+  orientedBox(0, whole, frame);
   double least = kSpeck * spreadOf(whole);
-  std::copy(whole.center, whole.center + 3, origin_);
+  std::copy(whole.center, whole.center + 3, origin);
   for (int child = link(0); child >= 0 && child < link(0) + 2; ++child) {
-    orientedBox(child, part);
+    orientedBox(child, part, frame);
     if (!(spreadOf(part) < least)) continue;
     least = spreadOf(part);
-    std::copy(part.center, part.center + 3, origin_);
+    std::copy(part.center, part.center + 3, origin);
   }
   // Twice the size: together with a center relative to the origin it then bounds the
   // center itself.
-  origin_size_ = roundUp(
-      2 * (std::abs(origin_[0]) + std::abs(origin_[1]) + std::abs(origin_[2])), 0.f);
+  const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]);
+  origin_size_ = std::max(origin_size_, roundUp(2 * size, 0.f));
   for (int k = 0; k < 3; ++k)
-    reach_ = std::max(reach_, spreadOf(whole) + std::abs(whole.center[k] - origin_[k]));
-  reach_ *= 1 + slack();
+    reach_ = std::max(reach_, spreadOf(whole) + std::abs(whole.center[k] - origin[k]));
 }
 
-void RigidTree::rotate(OrientedBox& box) const {
-  const auto turn = [this](double(&v)[3]) {
+void RigidTree::rotate(int frame, OrientedBox& box) const {
+  const auto turn = [&r = rotation_[frame]](double(&v)[3]) {
     const double x = v[0], y = v[1], z = v[2];
-    for (int k = 0; k < 3; ++k)
-      v[k] = rotation_[3 * k] * x + rotation_[3 * k + 1] * y + rotation_[3 * k + 2] * z;
+    for (int k = 0; k < 3; ++k) v[k] = r[3 * k] * x + r[3 * k + 1] * y + r[3 * k + 2] * z;
   };
   turn(box.center);
   for (auto& axis : box.axis) turn(axis);
@@ -166,7 +185,7 @@ void RigidTree::rotate(OrientedBox& box) const {
 
 // For an AABB or a KDOP this is the box of the first three slabs.
 template <typename BV>
-void RigidTree::setBox(int node, OrientedBox& box) const {
+void RigidTree::setBox(int node, int frame, OrientedBox& box) const {
   const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
   if constexpr (kHasSlabs<BV>) {
     const Slabs slabs = slabsOf(bv);
@@ -179,62 +198,72 @@ void RigidTree::setBox(int node, OrientedBox& box) const {
     box = orientedBoxOf(bv);
     if (!isBox(box, volumes_.slack)) box = kUnbounded;
   }
-  if (is_rotated_) rotate(box);
+  if (is_rotated_) rotate(frame, box);
 }
 
 template <typename BV>
-void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const {
+void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], int frame,
+                        MovingKdopNode& out) const {
+  auto& rows = frame == 0 ? out.t0 : out.t1;
   if constexpr (kHasSlabs<BV>)
     if (!is_rotated_) {
       double origin[8];
-      kdopCoordinates(origin_, origin);
+      kdopCoordinates(origin_[frame], origin);
       for (int lane = 0; lane < kWidth; ++lane) {
         const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
         for (int j = 0; j < 8; ++j) {
-          out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
-          out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
+          rows[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
+          rows[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
         }
       }
       // The bounds along x, y, z are coordinates, without error. Bounds along other
       // directions are sums of two coordinates; the slack contains their rounding.
-      return roundOutward(0.f, out);
+      return roundOutward(0.f, rows);
     }
   EightBoxes boxes;
   for (int lane = 0; lane < kWidth; ++lane) {
     OrientedBox box;
-    setBox<BV>(nodes[lane], box);
+    setBox<BV>(nodes[lane], frame, box);
     for (int k = 0; k < 3; ++k) {
-      boxes.center[k][lane] = static_cast<float>(box.center[k] - origin_[k]);
+      boxes.center[k][lane] = static_cast<float>(box.center[k] - origin_[frame][k]);
       for (int i = 0; i < 3; ++i)
         boxes.half_axis[i][k][lane] = static_cast<float>(box.axis[i][k] * box.extent[i]);
     }
   }
-  fitBoxes(boxes, out);
+  fitBoxes(boxes, rows);
   // A half-axis is a sum of components of the center and of the half axes. Rounding them
   // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1. 3
   // more cover the rounding of the padding itself. The slack of the fit is far larger
   // than the few 2^-53 of the rotation and of the center.
-  roundOutward(8 * kFloatUnit, out);
+  roundOutward(8 * kFloatUnit, rows);
 }
 
-/// Completes rows whose half-axes at t = 0 are set. Pads them by `rounding`, relative to
-/// the sum of the components, and by the slack of the volumes' fit.
-void RigidTree::roundOutward(float rounding, MovingKdopNode& out) const {
+/// Pads rows whose half-axes are set: by `rounding`, relative to the sum of the
+/// components, and by the slack of the volumes' fit.
+void RigidTree::roundOutward(float rounding, float (&rows)[16][kWidth]) const {
   const auto slack = static_cast<float>(volumes_.slack);
   for (int q = 0; q < kWidth; q += 4) {
     // The sum over x, y and z of the center's distance from the origin and half the
     // width.
     Float4 size{};
     for (int r = 0; r < 6; r += 2)
-      size += larger(abs(load(out.t0[r] + q)), abs(load(out.t0[r + 1] + q)));
+      size += larger(abs(load(rows[r] + q)), abs(load(rows[r + 1] + q)));
     const Float4 pad = size * rounding + (size + origin_size_) * slack + FLT_MIN;
     for (int r = 0; r < 16; ++r) {
-      const Float4 half = load(out.t0[r] + q);
-      const Float4 up = bounded(half + (abs(half) * kOutward + pad));
-      store(up, out.t0[r] + q);
-      store(up, out.t1[r] + q);
+      const Float4 half = load(rows[r] + q);
+      store(bounded(half + (abs(half) * kOutward + pad)), rows[r] + q);
     }
   }
+}
+
+/// Fills the rows of both frames.
+void RigidTree::setAllRows(const std::int32_t (&nodes)[kWidth],
+                           MovingKdopNode& out) const {
+  (this->*volumes_.set_rows)(nodes, 0, out);
+  if (turns_)
+    (this->*volumes_.set_rows)(nodes, 1, out);
+  else
+    std::memcpy(out.t1, out.t0, sizeof(out.t0));
 }
 
 void RigidTree::open(int i, MovingKdopNode& out) const {
@@ -245,8 +274,8 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   std::fill(nodes, nodes + kWidth, i);
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
   out.markTriangles();
-  (this->*volumes_.set_rows)(nodes, out);
-  std::fill(out.displacement, out.displacement + kWidth, 0.f);
+  setAllRows(nodes, out);
+  std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
 }
 
@@ -254,7 +283,7 @@ MovingKdop RigidTree::box(int node) const {
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, node);
   MovingKdopNode out;
-  (this->*volumes_.set_rows)(nodes, out);
+  setAllRows(nodes, out);
   return out.box(0);
 }
 

@@ -21,9 +21,10 @@ struct BVNodeBase;
 namespace detail {
 namespace deformable {
 
-/// @brief FCL's own tree of a mesh that only translates, read as a tree of 16-DOPs. The
-/// box of a node is made from FCL's bounding volume when a traversal asks for it. So a
-/// query needs no time per vertex. Does not own the model.
+/// @brief FCL's own tree of a rigid mesh, read as a tree of 16-DOPs. The box of a node is
+/// made from FCL's bounding volume when a traversal asks for it. So a query needs no time
+/// per vertex. The mesh only translates, or each vertex goes straight from its place in
+/// the first pose to that in the last one. Does not own the model.
 class RigidTree {
  public:
   RigidTree() = default;
@@ -35,17 +36,22 @@ class RigidTree {
   template <typename BV>
   RigidTree(const BVHModel<BV>& model, const Pose& pose);
 
+  /// @brief The same tree with other rotations at t = 0 and t = 1.
+  RigidTree turned(const Pose& beginning, const Pose& end) const {
+    return RigidTree(nodes_, volumes_, beginning, end);
+  }
+
   /// @brief Makes a node with up to eight children from FCL's nodes below node i.
   void open(int i, MovingKdopNode& out) const;
 
-  /// @brief The box of one of FCL's nodes, the same in both frames.
+  /// @brief The box of one of FCL's nodes.
   MovingKdop box(int node) const;
 
-  /// @brief The oriented box of a node, in the rotated frame. The node's 16-DOP is made
-  /// from it, or from a volume inside of it. Points of the mesh stand out by at most
+  /// @brief The oriented box of a node at t = 0 or t = 1, rotated. The node's 16-DOP is
+  /// made from it, or from a volume inside of it. Points of the mesh stand out by at most
   /// slack() times the size of their coordinates.
-  void orientedBox(int node, OrientedBox& box) const {
-    (this->*volumes_.set_box)(node, box);
+  void orientedBox(int node, OrientedBox& box, int frame = 0) const {
+    (this->*volumes_.set_box)(node, frame, box);
   }
   double slack() const { return volumes_.slack; }
 
@@ -64,8 +70,8 @@ class RigidTree {
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
   bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
 
-  /// @brief The point (in the rotated frame) that the boxes are relative to.
-  const double (&origin() const)[3] { return origin_; }
+  /// @brief The point (rotated) that the boxes at t = 0 or t = 1 are relative to.
+  const double (&origin(int frame) const)[3] { return origin_[frame]; }
 
   /// @brief Bound on the distance of the mesh from the origin along an axis.
   double reach() const { return reach_; }
@@ -80,22 +86,25 @@ class RigidTree {
     double slack;
     /// Whether the volumes store bounds along our directions.
     bool has_slabs;
-    void (RigidTree::*set_box)(int node, OrientedBox& box) const;
-    /// Fills the rows with the 16-DOPs of FCL's nodes.
-    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth],
+    void (RigidTree::*set_box)(int node, int frame, OrientedBox& box) const;
+    /// Fills the rows of a frame with the 16-DOPs of FCL's nodes.
+    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth], int frame,
                                 MovingKdopNode& out) const;
   };
   template <typename BV>
   static Volumes volumesOf();
 
-  RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& pose);
+  RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& beginning,
+            const Pose& end);
+  void setOrigin(int frame);
 
   template <typename BV>
-  void setBox(int node, OrientedBox& box) const;
+  void setBox(int node, int frame, OrientedBox& box) const;
   template <typename BV>
-  void setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
-  void roundOutward(float rounding, MovingKdopNode& out) const;
-  void rotate(OrientedBox& box) const;
+  void setRows(const std::int32_t (&nodes)[kWidth], int frame, MovingKdopNode& out) const;
+  void setAllRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
+  void roundOutward(float rounding, float (&rows)[16][kWidth]) const;
+  void rotate(int frame, OrientedBox& box) const;
 
   const BVNodeBase* at(int node) const {
     return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
@@ -106,10 +115,14 @@ class RigidTree {
   const BVNodeBase* nodes_{nullptr};
   Volumes volumes_{};
   bool is_rotated_{false};
-  double rotation_[9]{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  double origin_[3]{0, 0, 0};
+  /// Whether the rotations differ.
+  bool turns_{false};
+  double rotation_[2][9]{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  double origin_[2][3]{};
   float origin_size_{0};
   double reach_{0};
+  /// Bound on the motion of a point along an axis that is due to the rotations.
+  float displacement_{0};
 };
 
 /// @brief A RigidTree as one traversal reads it, with eight children per node. A small

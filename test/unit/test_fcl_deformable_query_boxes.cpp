@@ -10,6 +10,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fcl/math/bv/OBBRSS.h"
@@ -46,15 +47,16 @@ std::vector<int> trianglesBelow(const std::vector<int>& links, int node) {
   return triangles;
 }
 
-/// Each node's box contains the vertices below it.
+/// Each node's box contains the vertices below it, in both poses.
 template <typename BV>
-void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& pose) {
+void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& beginning,
+                                     const Pose& end) {
   const auto model = test::makeModel<BVHModel<BV>>(mesh);
-  const RigidTree tree(*model, pose);
-  const double(&origin)[3] = tree.origin();
-  const auto rotated = [&pose](const Vector3<double>& p, int k) {
-    return pose.rotation[3 * k] * p[0] + pose.rotation[3 * k + 1] * p[1] +
-           pose.rotation[3 * k + 2] * p[2];
+  const RigidTree tree = RigidTree(*model, beginning).turned(beginning, end);
+  const Pose* const poses[2] = {&beginning, &end};
+  const auto rotated = [&poses](int frame, const Vector3<double>& p, int k) {
+    const double(&r)[9] = poses[frame]->rotation;
+    return r[3 * k] * p[0] + r[3 * k + 1] * p[1] + r[3 * k + 2] * p[2];
   };
   // A rotation and a sum in double, relative to the coordinates.
   double size = 0;
@@ -67,19 +69,25 @@ void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& pose) {
       return;
     }
     const MovingKdop box = tree.box(node);
+    MovingKdopNode opened;
+    tree.open(0, opened);
     const Triangle& triangle =
         mesh.triangles[static_cast<std::size_t>(model->getBV(below).primitiveId())];
     for (int i = 0; i < 3; ++i) {
       const Vector3<double>& p = mesh.vertices[triangle[i]];
-      double q[3], d[8];
-      for (int k = 0; k < 3; ++k) q[k] = rotated(p, k) - origin[k];
-      kdopCoordinates(q, d);
-      for (int j = 0; j < 8; ++j) {
-        for (const Kdop16* frame : {&box.t0, &box.t1}) {  // a NaN is unbounded
-          ASSERT_FALSE(double{frame->half[j]} < -d[j] - rounding) << node << " " << j;
-          ASSERT_FALSE(double{frame->half[j + 8]} < d[j] - rounding) << node << " " << j;
+      for (auto frame : {0, 1}) {
+        double q[3], d[8];
+        for (int k = 0; k < 3; ++k) q[k] = rotated(frame, p, k) - tree.origin(frame)[k];
+        kdopCoordinates(q, d);
+        const float(&half)[16] = frame == 0 ? box.t0.half : box.t1.half;
+        for (int j = 0; j < 8; ++j) {  // a NaN is unbounded
+          ASSERT_FALSE(double{half[j]} < -d[j] - rounding) << node << " " << j;
+          ASSERT_FALSE(double{half[j + 8]} < d[j] - rounding) << node << " " << j;
         }
       }
+      for (int k = 0; k < 3; ++k)
+        ASSERT_FALSE(double{opened.displacement[0]} <
+                     std::abs(rotated(1, p, k) - rotated(0, p, k)) - 2 * rounding);
     }
   };
   for (int node = 0; node < model->getNumBVs(); ++node) expectInside(node, node);
@@ -97,13 +105,15 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeContainTheirTriangles) {
       TestMesh mesh = test::bentSheet(6);
       const Vector3<double> far = random.point(away);
       for (auto& p : mesh.vertices) p = scale * (p + far);
-      for (const Pose& pose : {Pose(), turned}) {
-        expectBoxesAroundTheirTriangles<OBBRSS<double>>(mesh, pose);
-        expectBoxesAroundTheirTriangles<AABB<double>>(mesh, pose);
-        expectBoxesAroundTheirTriangles<KDOP<double, 16>>(mesh, pose);
-        expectBoxesAroundTheirTriangles<KDOP<double, 24>>(mesh, pose);
-        expectBoxesAroundTheirTriangles<kIOS<double>>(mesh, pose);
-        expectBoxesAroundTheirTriangles<RSS<double>>(mesh, pose);
+      const std::pair<Pose, Pose> poses[] = {
+          {Pose(), Pose()}, {turned, turned}, {Pose(), turned}, {turned, Pose()}};
+      for (const auto& [beginning, end] : poses) {
+        expectBoxesAroundTheirTriangles<OBBRSS<double>>(mesh, beginning, end);
+        expectBoxesAroundTheirTriangles<AABB<double>>(mesh, beginning, end);
+        expectBoxesAroundTheirTriangles<KDOP<double, 16>>(mesh, beginning, end);
+        expectBoxesAroundTheirTriangles<KDOP<double, 24>>(mesh, beginning, end);
+        expectBoxesAroundTheirTriangles<kIOS<double>>(mesh, beginning, end);
+        expectBoxesAroundTheirTriangles<RSS<double>>(mesh, beginning, end);
       }
     }
   }

@@ -495,8 +495,8 @@ TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
 /// A mesh that deforms in a frame that moves.
 struct DeformingBody {
   DeformingBody(const TestMesh& t0, const TestMesh& t1) : from(t0), to(t1) {
-    const VertexFrames frames(from.vertices[0].data(), to.vertices[0].data(),
-                              from.vertices.size());
+    frames = VertexFrames(from.vertices[0].data(), to.vertices[0].data(),
+                          from.vertices.size());
     tree.build(from.triangles.data(), from.triangles.size(), frames);
     tree.refit(frames);
   }
@@ -509,6 +509,7 @@ struct DeformingBody {
     return Body(mesh);
   }
   TestMesh from, to;
+  VertexFrames frames;
   MovingKdopTree tree;
 };
 
@@ -529,7 +530,7 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
                           motion_b = randomMotion(random, 0.8);
     const double* points = b.model->vertices->data();
     const RigidTree tree_b(*b.model, Pose());
-    const MotionBody moving_a(a.tree, motion_a.path()),
+    const MotionBody moving_a(a.tree, a.frames, motion_a.path()),
         moving_b(tree_b, VertexFrames(points, points, b.mesh.vertices.size()),
                  b.model->tri_indices, motion_b.path());
     const MotionAnswer answer = queryMotions(moving_a, moving_b, {});

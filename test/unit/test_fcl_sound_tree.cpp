@@ -90,7 +90,7 @@ void expectBounds(const BVHModel<BV>& model, const Pose& pose) {
   const RigidTree tree(model, pose);
   const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(
       pose.rotation);
-  const Vector3<double> origin(tree.origin()[0], tree.origin()[1], tree.origin()[2]);
+  const Vector3<double> origin(tree.origin(0)[0], tree.origin(0)[1], tree.origin(0)[2]);
   for (int node = 0; node < model.getNumBVs(); ++node) {
     const MovingKdop box = tree.box(node);
     OrientedBox oriented;

@@ -208,8 +208,8 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
   /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
   /// a mesh turns, or with a shape or an octree, only the trees that the query makes use
-  /// threads. The answer does not depend on this number. The StageCounts of a
-  /// first-contact query may depend on it.
+  /// threads, and a part of the search for all contacts. The answer does not depend on
+  /// this number. The StageCounts of a first-contact query may depend on it.
   int num_threads{1};
 };
 

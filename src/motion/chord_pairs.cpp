@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/chord_pairs.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+
+#include "motion/motion_side.h"
+#include "motion/posed_vector.h"
+#include "motion/triangle_advance.h"
+#include "query/deformable_query.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUpward = 1 + 0x1p-40;
+
+/// Bound on the deviation of the vertices from chords of the whole step.
+double deviationOf(const MotionBody& body) {
+  MotionSide side(body);
+  if (side.goes_straight) return 0;
+  const BodyPart root = body.root();
+  const MotionBox begin = body.box(root, 0),
+                  end = body.isRigid() ? begin : body.box(root, 1);
+  return 0.125 * side.accelerationOf(begin, end, 0, 1);
+}
+
+/// About the mean length of an edge of the mesh, from a few triangles.
+double sampledEdge(const MotionBody& body) {
+  constexpr int kSamples = 8;
+  double sum = 0;
+  MotionNode node;
+  for (int i = 0; i < kSamples; ++i) {
+    BodyPart part = body.root();
+    for (int depth = 0; !part.isTriangle(); ++depth) {
+      body.open(part, node);
+      part = node.part[(3 * i + 5 * depth) % node.count];
+    }
+    if (!body.isReadable(~part.child)) continue;
+    const BodyTriangle triangle = body.triangle(~part.child);
+    for (int k = 0; k < 3; ++k)
+      sum += norm(triangle.corner[0][(k + 1) % 3] - triangle.corner[0][k]);
+  }
+  return sum / (3 * kSamples);
+}
+
+/// The center of a body at a time, in the world, and the radius around it.
+Vec centerAt(const MotionBody& body, double t, double& radius) {
+  const BodyPart root = body.root();
+  const MotionBox begin = body.box(root, 0),
+                  end = body.isRigid() ? begin : body.box(root, 1);
+  radius = (begin.pad + end.pad) + std::max(begin.radius, end.radius);
+  return posed(body.path().pose(t),
+               (1 - t) * vecOf(begin.center) + t * vecOf(end.center));
+}
+
+}  // namespace
+
+bool ChordMesh::isRefit(double t0, double t1) const {
+  const MotionPath& path = body_.path();
+  const bool is_whole_step = t0 == 0 && t1 == 1;
+  return !body_.isRigid() &&
+         !(is_whole_step && path.isTranslation() && path.pose(0).isTranslation());
+}
+
+// At t = 0 the vertices are posed as by VertexFrames, so that crossings are decided as
+// those of meshes that go straight.
+const MeshInstance& ChordMesh::during(double t0, double t1, int num_threads) {
+  mesh_ = body_.meshInBodyFrame();
+  const MotionPath& path = body_.path();
+  const Pose pose[2] = {path.pose(t0), path.pose(t1)};
+  const auto setTranslation = [&] {
+    for (auto frame : {0, 1})
+      std::copy(pose[frame].translation, pose[frame].translation + 3,
+                mesh_.translation[frame]);
+  };
+  if (!isRefit(t0, t1)) {
+    // Where vertices are posed already, the path is the identity (PreparedMotion).
+    if (!mesh_.frames.isPosed()) mesh_.frames.setPoses(pose[0], pose[1]);
+    if (!mesh_.tree) mesh_.rigid = mesh_.rigid.turned(pose[0], pose[1]);
+    setTranslation();
+    return mesh_;
+  }
+  const VertexFrames& frames = mesh_.frames;
+  for (auto frame : {0, 1}) {
+    const double t = frame == 0 ? t0 : t1;
+    coordinates_[frame].resize(3 * frames.size());
+    double* out = coordinates_[frame].data();
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const VertexPath x = frames[i];
+      for (int k = 0; k < 3; ++k) *out++ = (1 - t) * x.t0[k] + t * x.t1[k];
+    }
+  }
+  mesh_.frames =
+      VertexFrames(coordinates_[0].data(), coordinates_[1].data(), frames.size());
+  mesh_.frames.setPoses(pose[0], pose[1]);
+  if (tree_.triangles().empty()) tree_ = *mesh_.tree;
+  tree_.refit(mesh_.frames, num_threads);
+  mesh_.tree = &tree_;
+  return mesh_;
+}
+
+bool ChordSearch::isFor(const MotionBody& a, const MotionBody& b,
+                        const QueryOptions& options) {
+  // A smaller mesh is compared quickly either way.
+  constexpr std::size_t kLeastVertices = 256;
+  return a.isMesh() && b.isMesh() && options.query == ContinuousQuery::kAll &&
+         !options.filter && !options.stop_at_crossing &&
+         !options.ignores_initially_closer &&
+         std::min(a.numVertices(), b.numVertices()) >= kLeastVertices && !a.hasFree() &&
+         !b.hasFree();
+}
+
+// In a span of length s the deviation is s^2 of that of the whole step. Spans are so
+// short that it is a small part of an edge: then few pairs come near that do not touch.
+// Measured with a cloth of 92,020 triangles on a body of 80,000 that turns by 0.1: four
+// spans take 1.35 times as long as two, with deviations below 1/64 and 1/16 of an edge.
+ChordSearch::ChordSearch(const MotionBody& a, const MotionBody& b,
+                         const QueryOptions& options)
+    : body_{&a, &b}, options_(options), mesh_{ChordMesh(a), ChordMesh(b)} {
+  constexpr double kMostOfEdge = 0x1p-4;
+  constexpr int kMostSpans = 16;
+  assert(isFor(a, b, options));
+  const double whole = (deviationOf(a) + deviationOf(b)) * kUpward,
+               most = kMostOfEdge * std::min(sampledEdge(a), sampledEdge(b));
+  int count = 1;
+  while (count <= kMostSpans && !(whole <= most * count * count)) count *= 2;
+  if (count > kMostSpans) return;
+  num_spans_ = count;
+  // What is within the tolerance counts as contact. A chord has the error of its ends.
+  const MotionTolerance tolerance(a, b, options.min_distance);
+  deviation_ =
+      (whole / (count * count) + tolerance.touching + tolerance.position) * kUpward;
+}
+
+// To interpolate, pose and refit takes about as long for a vertex as half a box test.
+std::uint64_t ChordSearch::boxTestsBefore() const {
+  if (num_spans_ == 0) return ~std::uint64_t{0};
+  std::uint64_t tests = 0;
+  for (auto k : {0, 1})
+    if (mesh_[k].isRefit(0, 1. / num_spans_))
+      tests += static_cast<std::uint64_t>(num_spans_) * body_[k]->numVertices() / 2;
+  return tests;
+}
+
+/// Whether balls around the bodies may come within the distance.
+bool ChordSearch::mayMeet(double t0, double t1) const {
+  const double middle = 0.5 * (t0 + t1);
+  double radius[2];
+  const Vec from = centerAt(*body_[0], middle, radius[0]),
+            to = centerAt(*body_[1], middle, radius[1]);
+  const double stretch = std::max(body_[0]->path().stretch(), body_[1]->path().stretch());
+  const double reach = stretch * (radius[0] + radius[1]) + options_.min_distance +
+                       deviation_ +
+                       0.5 * (t1 - t0) * (body_[0]->speed() + body_[1]->speed());
+  return !(norm(to - from) > reach * kUpward);
+}
+
+ChordSearch::Span ChordSearch::find(int i) {
+  assert(0 <= i && i < num_spans_);
+  Span span;
+  span.t0 = static_cast<double>(i) / num_spans_;
+  span.t1 = static_cast<double>(i + 1) / num_spans_;
+  if (span.t0 > options_.t_max || !mayMeet(span.t0, span.t1)) return span;
+  QueryOptions near = options_;
+  near.min_distance = (options_.min_distance + deviation_) * kUpward;
+  near.max_contacts = static_cast<std::size_t>(-1);
+  near.t_max = std::min(1., (options_.t_max - span.t0) * num_spans_ * kUpward);
+  near.all_crossings &= i == 0;
+  // Of a bracket only the lower end matters.
+  near.toc_err = 1;
+  near.names_parts = false;
+  span.near = queryPair(mesh_[0].during(span.t0, span.t1, options_.num_threads),
+                        mesh_[1].during(span.t0, span.t1, options_.num_threads), near);
+  if (i > 0) span.near.crossings.clear();
+  return span;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The pairs of features of two meshes that may touch, where many do. The step is divided
+// into spans. The chord of a vertex is the straight line from its place at the beginning
+// of a span to that at the end. Meshes whose vertices go along their chords are compared
+// as meshes that go straight (deformable_query.h), at the distance by which vertices may
+// deviate from the chords.
+#ifndef FCL_CCD_MOTION_CHORD_PAIRS_H
+#define FCL_CCD_MOTION_CHORD_PAIRS_H
+
+#include <cstdint>
+#include <vector>
+
+#include "motion/motion_body.h"
+#include "query/query_answer.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A mesh whose vertices go along their chords during a span.
+class ChordMesh {
+ public:
+  /// @param body  kept by reference
+  explicit ChordMesh(const MotionBody& body) : body_(body) {}
+  // The instance refers to the other members.
+  ChordMesh(const ChordMesh&) = delete;
+  ChordMesh& operator=(const ChordMesh&) = delete;
+
+  /// @brief Whether a span takes time for each triangle.
+  bool isRefit(double t0, double t1) const;
+
+  /// @brief The mesh of a span; valid until the next call.
+  const MeshInstance& during(double t0, double t1, int num_threads);
+
+ private:
+  const MotionBody& body_;
+  MeshInstance mesh_;
+  MovingKdopTree tree_;
+  std::vector<double> coordinates_[2];
+};
+
+/// @brief Finds the pairs of features of two meshes that may come within the distance of
+/// a query, span by span.
+class ChordSearch {
+ public:
+  /// @brief Whether there may be a search: not if the query is for another thing than all
+  /// contacts, or a mesh has free edges or points or is small.
+  static bool isFor(const MotionBody& a, const MotionBody& b,
+                    const QueryOptions& options);
+
+  /// @param a, b  kept by reference
+  /// @pre isFor(a, b, options)
+  ChordSearch(const MotionBody& a, const MotionBody& b, const QueryOptions& options);
+
+  /// @brief 0: there would be too many. Then the true paths have to be compared.
+  int numSpans() const { return num_spans_; }
+
+  /// @brief The number of box tests on the true paths that cost less than the meshes of
+  /// all spans: where there are few contacts, these may be enough.
+  std::uint64_t boxTestsBefore() const;
+
+  struct Span {
+    double t0, t1;
+    /// The times are fractions of the span. Before toc_lo the features of a pair are
+    /// further apart on the true paths; toc_hi has no meaning. Pairs that are not in the
+    /// list stay further apart.
+    QueryAnswer near;
+  };
+
+  /// @brief The pairs of a span; of the first one also the crossings at t = 0.
+  /// @pre 0 <= i < numSpans(), in ascending order; the floating-point mode is the default
+  /// one
+  /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of
+  /// range
+  Span find(int i);
+
+ private:
+  bool mayMeet(double t0, double t1) const;
+
+  const MotionBody* body_[2];
+  const QueryOptions& options_;
+  ChordMesh mesh_[2];
+  int num_spans_{0};
+  /// By which the distance of two features on the true paths may be less than on chords.
+  double deviation_{0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

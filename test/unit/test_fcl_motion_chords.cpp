@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// All contacts of meshes that turn, found along chords (motion/chord_pairs.h): they are
+// those that are found on the true paths from the beginning. A query with a callback
+// takes the true paths.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/math/bv/OBBRSS.h"
+#include "fcl/math/motion/interp_motion.h"
+#include "fcl/narrowphase/continuous_collision.h"
+#include "mesh_generators.h"
+#include "test_models.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using Rigid = BVHModel<OBBRSS<double>>;
+using Deforming = DeformableBVHModel<>;
+using Geometry = std::shared_ptr<CollisionGeometry<double>>;
+using Motion = InterpMotion<double>;
+using Request = ContinuousContactRequest<double>;
+using Result = ContinuousContactResult<double>;
+
+const Vector3<double> kOrigin = Vector3<double>::Zero();
+
+TestMesh bumpyBall(double phase) {
+  TestMesh mesh = makeGeodesicSphere(12, 1);
+  for (Vector3<double>& p : mesh.vertices)
+    p *= 1 + 0.05 * std::sin(7 * p[0] + phase) * std::sin(5 * p[1]) * std::sin(6 * p[2]);
+  return mesh;
+}
+
+/// A sheet of 800 triangles above the ball, in waves.
+TestMesh sheetAt(double height, double phase) {
+  return makeSheet(20, 20, [&](double u, double v) {
+    const double x = 2.4 * (u - 0.5), y = 2.4 * (v - 0.5);
+    return Vector3<double>(x, y,
+                           height - 0.3 * (x * x + y * y) +
+                               0.05 * std::sin(5 * x + phase) * std::sin(6 * y));
+  });
+}
+
+/// Two meshes and their motions. How far they turn is between 1e-4 and 2.
+struct Scene {
+  Geometry a, b;
+  Motion motion_a, motion_b;
+};
+
+Motion randomMotion(Random& random, double angle, const Vector3<double>& at,
+                    const Vector3<double>& way) {
+  const auto turn = [&random](double by) -> Matrix3<double> {
+    return AngleAxis<double>(by, random.point(1).normalized()).toRotationMatrix();
+  };
+  const Matrix3<double> begin = turn(1), end = turn(angle) * begin;
+  return {begin, at, end, at + way, kOrigin};
+}
+
+Scene randomScene(Random& random, int number) {
+  Scene scene;
+  const auto motionAt = [&](const Vector3<double>& at, const Vector3<double>& way) {
+    return randomMotion(random, std::pow(10, random.uniform(-4, 0.3)), at, way);
+  };
+  const double away = number % 5 == 4 ? 1e3 : 0;
+  const Vector3<double> far(away, -away, away);
+  scene.b = makeModel<Rigid>(bumpyBall(1));
+  scene.motion_b = motionAt(far, random.point(0.2));
+  const Matrix3<double> unit = Matrix3<double>::Identity();
+  // Most are just above the ball, some cross it at the beginning.
+  const double height = random.uniform(0.9, 1.4);
+  switch (number % 4) {
+    case 0:  // a sheet that deforms
+      scene.a = makeModel<Deforming>(sheetAt(height, 0),
+                                     sheetAt(height - 0.2, random.uniform(0, 1)));
+      scene.motion_a = Motion(unit, far, unit, far, kOrigin);
+      break;
+    case 1:  // one that is moved while it deforms
+      scene.a = makeModel<Deforming>(sheetAt(height, 0), sheetAt(height - 0.1, 1));
+      scene.motion_a = Motion(unit, far, unit, far - Vector3<double>(0, 0, 0.1), kOrigin);
+      break;
+    case 2:  // one that turns while it deforms
+      scene.a = makeModel<Deforming>(sheetAt(height, 0), sheetAt(height - 0.1, 1));
+      scene.motion_a = motionAt(far, random.point(0.1));
+      break;
+    default:  // two rigid meshes
+      scene.a = makeModel<Rigid>(bumpyBall(2));
+      scene.motion_a = motionAt(far + 1.02 * (1 + height) * random.point(1).normalized(),
+                                random.point(0.3));
+  }
+  return scene;
+}
+
+Result ask(const Scene& scene, const Request& request) {
+  Result result;
+  continuousCollide(scene.a.get(), &scene.motion_a, scene.b.get(), &scene.motion_b,
+                    request, result);
+  return result;
+}
+
+using Name = std::array<int, 6>;
+
+/// A contact by what it is, and its time. Of a vertex between two edges either may be
+/// named: they are equally near.
+std::map<Name, double> namesOf(const Result& result) {
+  std::map<Name, double> out;
+  for (const auto& contact : result.contacts) {
+    Name name{static_cast<int>(contact.kind), contact.first_on_o1, 0, 0, 0, 0};
+    for (int k = 0; k < 4; ++k) name[2 + k] = contact.vertices[k];
+    const int fixed = contact.kind == ContinuousContactKind::kVertexFace ? 3 : 6;
+    std::sort(name.begin() + fixed, name.end());
+    EXPECT_TRUE(out.emplace(name, contact.toc_lo).second) << "a contact comes twice";
+  }
+  return out;
+}
+
+/// @return whether the query without a callback took another way
+bool expectSame(const Scene& scene, Request request) {
+  const Result found = ask(scene, request);
+  request.accepts_triangles = [](std::intptr_t, std::intptr_t) { return true; };
+  const Result truth = ask(scene, request);
+  EXPECT_EQ(found.is_collide, truth.is_collide);
+  EXPECT_NEAR(found.time_of_contact, truth.time_of_contact, 1e-9);
+  EXPECT_EQ(found.initially_crossing, truth.initially_crossing);
+  EXPECT_EQ(found.crossings.size(), truth.crossings.size());
+  const auto found_names = namesOf(found), true_names = namesOf(truth);
+  EXPECT_EQ(found_names.size(), true_names.size());
+  for (const auto& [name, time] : true_names) {
+    const auto it = found_names.find(name);
+    if (it == found_names.end())
+      ADD_FAILURE() << "missed at " << time << ", kind " << name[0];
+    else
+      EXPECT_NEAR(it->second, time, 1e-9);
+  }
+  return found.counts.node_pairs != truth.counts.node_pairs;
+}
+
+TEST(FCL_MOTION_CHORDS, contactsAreThoseOfTheTruePaths) {
+  Random random(4711);
+  int num_contacts = 0, num_crossings = 0, num_other_way = 0;
+  constexpr int kScenes = 48;
+  for (int i = 0; i < kScenes; ++i) {
+    SCOPED_TRACE(i);
+    const Scene scene = randomScene(random, i);
+    Request request;
+    request.query = ContinuousQuery::kAll;
+    request.num_max_contacts = static_cast<std::size_t>(-1);
+    request.enable_crossings = i % 3 == 0;
+    if (i % 4 == 1) request.t_max = random.uniform(0.2, 0.9);
+    if (i % 6 >= 4) request.min_distance = 0.02;
+    num_other_way += expectSame(scene, request);
+    const Result result = ask(scene, request);
+    num_contacts += static_cast<int>(result.contacts.size());
+    num_crossings += static_cast<int>(result.crossings.size());
+  }
+  EXPECT_GT(num_contacts, 10000);
+  EXPECT_GT(num_crossings, 100);
+  EXPECT_GT(num_other_way, kScenes / 2);
+}
+
+/// The earliest ones are kept, and the answer does not depend on the number of threads.
+TEST(FCL_MOTION_CHORDS, fewerContactsAndMoreThreads) {
+  Random random(12);
+  int num_cut = 0;
+  for (int i = 0; i < 8; ++i) {
+    const Scene scene = randomScene(random, i);
+    Request request;
+    request.query = ContinuousQuery::kAll;
+    request.num_max_contacts = static_cast<std::size_t>(-1);
+    const Result all = ask(scene, request);
+    request.num_threads = 4;
+    const Result threads = ask(scene, request);
+    ASSERT_EQ(threads.contacts.size(), all.contacts.size());
+    for (std::size_t k = 0; k < all.contacts.size(); ++k) {
+      EXPECT_EQ(threads.contacts[k].toc_lo, all.contacts[k].toc_lo);
+      EXPECT_EQ(threads.contacts[k].toc_hi, all.contacts[k].toc_hi);
+      EXPECT_EQ(threads.contacts[k].vertices, all.contacts[k].vertices);
+    }
+    request.num_max_contacts = 5;
+    const Result few = ask(scene, request);
+    if (all.contacts.size() <= 5) continue;
+    ++num_cut;
+    EXPECT_TRUE(few.contacts_cut);
+    ASSERT_EQ(few.contacts.size(), 5U);
+    for (std::size_t k = 0; k < 5; ++k)
+      EXPECT_EQ(few.contacts[k].toc_lo, all.contacts[k].toc_lo);
+  }
+  EXPECT_GT(num_cut, 2);
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
