@@ -31,6 +31,8 @@ struct BoxView {
   std::size_t stride;
   /// As MovingKdopNode::displacement.
   float displacement;
+  /// What is added to row r of frame k is shift[k][r]; null: nothing.
+  const float (*shift)[16]{nullptr};
 };
 
 /// @brief Whether a query to which nothing after `latest` matters should first compare
@@ -231,7 +233,7 @@ struct Kernels {
 
   /// Finds the children of the node that overlap the box at some time, a bit each, and
   /// the times from which on they do: overlapWindow() of each, unless the request leaves
-  /// it out.
+  /// it out. With a shift some may be left out that do not overlap without rounding.
   unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
                               const OverlapRequest& request,
                               float (&earliest)[MovingKdopNode::kWidth]);
