@@ -163,14 +163,36 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
+/// The overlap depths of a box and the children of a node, along one half-axis in one
+/// frame. They are rounded outward: see shifted().
+template <std::size_t kStride, bool kShifted, int kFrame>
+HWY_INLINE Floats depthsAlong(const BoxView& box, const MovingKdopNode& node,
+                              std::size_t r) {
+  const float half = (kFrame == 0 ? box.t0 : box.t1)[r * kStride];
+  // Row r ^ 1 is the opposite half-axis.
+  return broadcast<kEight>(kShifted ? shifted(half, box.shift[kFrame][r]) : half) +
+         load<kEight>((kFrame == 0 ? node.t0 : node.t1)[r ^ 1]);
+}
+
+/// Numbers with the signs of these depths. With a shift they have the signs of the sums
+/// without rounding, or are above: the float nearest to the sum of two half-axes is not
+/// below minus the shift if the sum is not.
+template <std::size_t kStride, bool kShifted, int kFrame>
+HWY_INLINE Floats depthSigns(const BoxView& box, const MovingKdopNode& node,
+                             std::size_t r) {
+  const Floats sum = broadcast<kEight>((kFrame == 0 ? box.t0 : box.t1)[r * kStride]) +
+                     load<kEight>((kFrame == 0 ? node.t0 : node.t1)[r ^ 1]);
+  return kShifted ? sum + broadcast<kEight>(box.shift[kFrame][r]) : sum;
+}
+
 /// The children that the request does not leave out: they are near enough to the box at t
 /// = 0. Sets `apart` to those of them that do not overlap the box at t = 0.
-template <std::size_t kStride>
+template <std::size_t kStride, bool kShifted>
 HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
                                  const OverlapRequest& request, unsigned& apart) {
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
-    s[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
+    s[r] = depthsAlong<kStride, kShifted, 0>(box, node, r);
   const Floats least =
       fold(s, [](const Floats& a, const Floats& b) HWY_ATTR { return smaller(a, b); });
   const Floats displacement =
@@ -182,14 +204,14 @@ HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
   return near;
 }
 
-template <std::size_t kStride, bool kLeavesOut>
+template <std::size_t kStride, bool kShifted, bool kLeavesOut>
 HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
                                     const OverlapRequest& request,
                                     float (&earliest)[MovingKdopNode::kWidth]) {
   unsigned left = node.lanes();
   if (kLeavesOut) {
     unsigned open = 0;
-    left = nearChildren<kStride>(box, node, request, open);
+    left = nearChildren<kStride, kShifted>(box, node, request, open);
     if (open == 0) {
       store(broadcast<kEight>(0.f), earliest);
       return left;
@@ -199,9 +221,8 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
   Floats s0[kRows], s1[kRows];
   Floats apart = broadcast<kEight>(1.f), cut0 = apart, cut1 = apart;
   for (std::size_t r = 0; r < kRows; ++r) {
-    // Row r ^ 1 is the opposite half-axis.
-    s0[r] = broadcast<kEight>(box.t0[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
-    s1[r] = broadcast<kEight>(box.t1[r * kStride]) + load<kEight>(node.t1[r ^ 1]);
+    s0[r] = depthSigns<kStride, kShifted, 0>(box, node, r);
+    s1[r] = depthSigns<kStride, kShifted, 1>(box, node, r);
     apart = eitherNegative(apart, bothNegative(s0[r], s1[r]));
     cut0 = eitherNegative(cut0, s0[r]);
     cut1 = eitherNegative(cut1, s1[r]);
@@ -214,7 +235,13 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
     return left;
   }
   Floats before = broadcast<kEight>(0.f), after = before;
-  for (std::size_t r = 0; r < kRows; ++r) addLoss(s0[r], s1[r], before, after);
+  for (std::size_t r = 0; r < kRows; ++r) {
+    if (kShifted) {
+      s0[r] = depthsAlong<kStride, kShifted, 0>(box, node, r);
+      s1[r] = depthsAlong<kStride, kShifted, 1>(box, node, r);
+    }
+    addLoss(s0[r], s1[r], before, after);
+  }
   const Floats hi = broadcast<kEight>(kWindowEnd) - after;
   store(before, earliest);
   return left & bits(before <= hi);
@@ -224,11 +251,18 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                            const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kInNode = BoxView::kInNode;
-  if (request.leavesOut())
-    return box.stride == 1 ? overlapChildren<1, true>(box, node, request, earliest)
-                           : overlapChildren<kInNode, true>(box, node, request, earliest);
-  return box.stride == 1 ? overlapChildren<1, false>(box, node, request, earliest)
-                         : overlapChildren<kInNode, false>(box, node, request, earliest);
+  const bool is_single = box.stride == 1;
+  const auto overlap =
+      request.leavesOut()
+          ? (box.shift ? (is_single ? &overlapChildren<1, true, true>
+                                    : &overlapChildren<kInNode, true, true>)
+                       : (is_single ? &overlapChildren<1, false, true>
+                                    : &overlapChildren<kInNode, false, true>))
+          : (box.shift ? (is_single ? &overlapChildren<1, true, false>
+                                    : &overlapChildren<kInNode, true, false>)
+                       : (is_single ? &overlapChildren<1, false, false>
+                                    : &overlapChildren<kInNode, false, false>));
+  return overlap(box, node, request, earliest);
 }
 
 /// The triangles of node b that lie in an embedded fan with a triangle of node a.
@@ -257,21 +291,10 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
     // may be one node of a tree in two poses, and all pairs are compared.
     if ((!kShifted || leaves.is_self) && &a == &b) left &= ~((2U << lane) - 1);
     if (left == 0) continue;
-    if constexpr (kShifted) {
-      float moved[2][16];
-      for (std::size_t r = 0; r < 16; ++r) {
-        moved[0][r] = shifted(a.t0[r][lane], leaves.shift[0][r]);
-        moved[1][r] = shifted(a.t1[r][lane], leaves.shift[1][r]);
-      }
-      left &=
-          overlapChildren<1, kLeavesOut>({moved[0], moved[1], 1, a.displacement[lane]}, b,
-                                         leaves.request, out.earliest[lane]);
-    } else {
-      const BoxView box{&a.t0[0][lane], &a.t1[0][lane], BoxView::kInNode,
-                        a.displacement[lane]};
-      left &= overlapChildren<BoxView::kInNode, kLeavesOut>(box, b, leaves.request,
-                                                            out.earliest[lane]);
-    }
+    const BoxView box{&a.t0[0][lane], &a.t1[0][lane], BoxView::kInNode,
+                      a.displacement[lane], leaves.shift};
+    left &= overlapChildren<BoxView::kInNode, kShifted, kLeavesOut>(
+        box, b, leaves.request, out.earliest[lane]);
     if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
       fan_culled += static_cast<unsigned>(__builtin_popcount(fan));

@@ -52,6 +52,10 @@ std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* tr
 EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
                     const TreeVertex* vertices, const TreeTriangle* triangles,
                     std::size_t count);
+LeastSight leastSightFrom(const TreeVertex& point, const TreeVertex* vertices,
+                          const TreeTriangle* triangles, std::size_t count);
+std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
+                         const int (&direction)[3], double distance);
 EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
                                          const TrianglePair* pairs,
                                          const std::uint32_t* codes,

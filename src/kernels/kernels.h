@@ -31,6 +31,8 @@ struct BoxView {
   std::size_t stride;
   /// As MovingKdopNode::displacement.
   float displacement;
+  /// What is added to row r of frame k is shift[k][r]; null: nothing.
+  const float (*shift)[16]{nullptr};
 };
 
 /// @brief Whether a query to which nothing after `latest` matters should first compare
@@ -212,6 +214,16 @@ struct EightViews {
   unsigned missed;
 };
 
+/// @brief Lower bounds for triangles during a step, seen from a moving point; 0 where
+/// there is none.
+struct LeastSight {
+  /// The square of the distance of the point from the plane of a triangle.
+  double distance_square;
+  /// The square of the sine of the angle between a corner and the plane through the point
+  /// and the opposite edge.
+  double sine_square;
+};
+
 struct Kernels {
   /// The instruction set, as Highway calls it; "plain" without Highway.
   const char* name;
@@ -231,7 +243,7 @@ struct Kernels {
 
   /// Finds the children of the node that overlap the box at some time, a bit each, and
   /// the times from which on they do: overlapWindow() of each, unless the request leaves
-  /// it out.
+  /// it out. With a shift some may be left out that do not overlap without rounding.
   unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
                               const OverlapRequest& request,
                               float (&earliest)[MovingKdopNode::kWidth]);
@@ -317,6 +329,20 @@ struct Kernels {
   EightViews (*viewFrom)(const TreeVertex& point, const double (&ray)[3],
                          const TreeVertex* vertices, const TreeTriangle* triangles,
                          std::size_t count);
+
+  /// The least of the bounds of up to eight triangles.
+  /// @param point  its path; the rest is not read
+  /// @param count  1 to 8
+  LeastSight (*leastSightFrom)(const TreeVertex& point, const TreeVertex* vertices,
+                               const TreeTriangle* triangles, std::size_t count);
+
+  /// Finds the corners of a node's triangles over which the height of the triangle, seen
+  /// along a direction that it faces, is not proved to stay above a distance: bit 8 k + i
+  /// for corner k of child i.
+  /// @param direction  its entries are 1, 0 and -1
+  /// @pre the node has a triangle
+  std::uint32_t (*lowCorners)(const TreeVertex* vertices, const MovingKdopNode& node,
+                              const int (&direction)[3], double distance);
 
   /// coplanarityInDoubles() of up to eight pairs of features that cullFeatures() kept, in
   /// [windowLo(), min(windowHi(), latest)].

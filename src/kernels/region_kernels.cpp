@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The directions in which triangles face, and the sides that a point sees of them.
+// The directions in which triangles face, the sides that a point sees of them, and how
+// high they are.
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -82,6 +83,18 @@ std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* tr
       std::make_index_sequence<kNumAxes>());
 }
 
+/// The volume of three moving vectors, as Bernstein coefficients in t. The inner ones are
+/// times 3.
+struct MovingVolumes {
+  Doubles outer0, inner0, inner1, outer1;
+
+  HWY_INLINE MovingVolumes(const MovingVectors& u, const MovingNormals& n)
+      : outer0(dot(u.t0, n.first)),
+        inner0(dot(u.t1, n.first) + dot(u.t0, n.middle)),
+        inner1(dot(u.t1, n.middle) + dot(u.t0, n.last)),
+        outer1(dot(u.t1, n.last)) {}
+};
+
 /// The signs of the volume of three moving vectors, for eight of them: lanes in which it
 /// is certainly positive (negative) during the whole step.
 struct VolumeSigns {
@@ -91,10 +104,7 @@ struct VolumeSigns {
 /// @param size  the product of their norms, in the range of the bounds
 HWY_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& n,
                                    const Doubles& size) {
-  // Bernstein coefficients; the inner ones are times 3, and have a larger bound.
-  const Doubles outer0 = dot(u.t0, n.first), outer1 = dot(u.t1, n.last),
-                inner0 = dot(u.t1, n.first) + dot(u.t0, n.middle),
-                inner1 = dot(u.t1, n.middle) + dot(u.t0, n.last);
+  const auto [outer0, inner0, inner1, outer1] = MovingVolumes(u, n);
   const Doubles outer = broadcast<kEight>(kOuterBound) * size,
                 inner = broadcast<kEight>(kInnerBound) * size;
   const Doubles zero = broadcast<kEight>(0.);
@@ -141,6 +151,105 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
   views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
                  ((views.left & below) | (views.right & above));
   return views;
+}
+
+/// Sizes with squares in the range of the bounds.
+HWY_INLINE DoubleMask hasSquare(const Doubles& size) {
+  return (size >= all(0x1p-400)) & (size <= all(0x1p400));
+}
+
+/// More than the rounding of products and of lengths of differences.
+constexpr double kUp = 1 + 0x1p-40;
+
+HWY_INLINE Doubles squareOf(const Vectors& a) { return dot(a, a); }
+
+/// The largest square of a vector during the step.
+HWY_INLINE Doubles largestSquare(const MovingVectors& v) {
+  return max(squareOf(v.t0), squareOf(v.t1));
+}
+
+/// A bound on the square of a cross product during the step.
+/// @param rounding  of a component
+HWY_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& rounding) {
+  const Doubles most =
+      max(max(squareOf(n.first), all(0.25) * squareOf(n.middle)), squareOf(n.last));
+  const Doubles length = squareRoot(most) * all(kUp) + all(2) * rounding;
+  return length * length;
+}
+
+/// The volume of the point and a triangle is that of the vectors to its corners. Divided
+/// by the length of the normal it is the distance from the plane. Divided by the length
+/// of the cross product of two of the vectors it is the height of the third one over
+/// their plane.
+LeastSight leastSightFrom(const TreeVertex& point, const TreeVertex* vertices,
+                          const TreeTriangle* triangles, std::size_t count) {
+  const TreeVertex* x[3][kEight];
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+  const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
+                      u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
+                      w = loadPaths(x[2]) - center;
+  const Doubles most =
+      max(max(max(maxNorm(u.t0), maxNorm(u.t1)), max(maxNorm(v.t0), maxNorm(v.t1))),
+          max(maxNorm(w.t0), maxNorm(w.t1)));
+  const Doubles size = most * most * most;
+  const MovingNormals vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
+  const auto [outer0, inner0, inner1, outer1] = MovingVolumes(u, vw);
+  const Doubles third = all(1. / 3),
+                least =
+                    max(min(min(outer0, outer1), third * min(inner0, inner1)),
+                        all(0) - max(max(outer0, outer1), third * max(inner0, inner1))) -
+                    all(kInnerBound) * size;
+  const Doubles volume = select(hasSquare(size), max(least, all(0)), all(0)),
+                square = volume * volume;
+  // A component of a cross product is off by 20 u of the product of two norms, the middle
+  // one by 44 u.
+  const Doubles rounding = all(64 * kUnit) * (most * most);
+  const MovingNormals normal = {vw.first + wu.first + uv.first,
+                                vw.middle + wu.middle + uv.middle,
+                                vw.last + wu.last + uv.last};
+  const Doubles sines = max(max(largestSquare(u) * largestSquare(vw, rounding),
+                                largestSquare(v) * largestSquare(wu, rounding)),
+                            largestSquare(w) * largestSquare(uv, rounding));
+  const DoubleMask is_known = volume > all(0);
+  double distances[kEight], angles[kEight];
+  store(select(is_known, square / largestSquare(normal, all(4) * rounding), all(0)),
+        distances);
+  store(select(is_known, square / sines, all(0)), angles);
+  LeastSight sight{distances[0], angles[0]};
+  for (std::size_t i = 1; i < kEight; ++i) {
+    if (distances[i] < sight.distance_square) sight.distance_square = distances[i];
+    if (angles[i] < sight.sine_square) sight.sine_square = angles[i];
+  }
+  return sight;
+}
+
+std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
+                         const int (&direction)[3], double distance) {
+  const TreeVertex* x[3][kEight];
+  const auto first = static_cast<std::size_t>(__builtin_ctz(node.triangles));
+  for (std::size_t i = 0; i < kEight; ++i)
+    for (std::size_t k = 0; k < 3; ++k)
+      x[k][i] = &vertices[node.places[k][node.triangles >> i & 1U ? i : first]];
+  const MovingVectors a = loadPaths(x[0]), b = loadPaths(x[1]), c = loadPaths(x[2]),
+                      v = b - a, w = c - a;
+  const MovingNormals n = cross(v, w);
+  const double d[3] = {double(direction[0]), double(direction[1]), double(direction[2])};
+  const Vectors along = vectorsOf(d);
+  const Doubles size =
+      max(maxNorm(v.t0), maxNorm(v.t1)) * max(maxNorm(w.t0), maxNorm(w.t1));
+  const Doubles area =
+      min(min(dot(n.first, along), all(0.5) * dot(n.middle, along)), dot(n.last, along)) -
+      all(kFanBound) * size;
+  const Doubles square = area * area,
+                least = all(distance * distance * kUp *
+                            (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
+  const DoubleMask is_seen = hasSquare(size) & (area > all(0));
+  const auto lowOver = [&](const MovingVectors& side) HWY_ATTR {
+    return node.triangles & ~bits(is_seen & (square > least * largestSquare(side)));
+  };
+  return lowOver(c - b) | lowOver(w) << 8 | lowOver(v) << 16;
 }
 
 }  // namespace HWY_NAMESPACE

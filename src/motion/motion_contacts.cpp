@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <set>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -15,6 +14,7 @@
 #include "motion/chord_pairs.h"
 #include "motion/feature_advance.h"
 #include "query/contact_sink.h"
+#include "query/contact_table.h"
 #include "query/distance_contact.h"
 
 namespace fcl {
@@ -83,8 +83,7 @@ class FeatureContacts {
   void add(const ChordSearch::Span& span, const Places (&places)[2]) {
     const double last = std::min(span.t1, options_.t_max);
     for (const FeatureContact& pair : span.near.contacts) {
-      const ContactSink::PairKey key = ContactSink::keyOf(pair);
-      if (in_contact_.count(key) > 0) continue;
+      if (in_contact_.find(pair)) continue;
       const auto triangleOf = [&](int k) {
         const std::int32_t id = pair.triangles[k];
         return body_[k]->triangle(
@@ -93,8 +92,10 @@ class FeatureContacts {
       const BodyTriangle a = triangleOf(0), b = triangleOf(1);
       // The tolerance includes the rounding of a time.
       const double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
-      if (addPair(a, b, numberOf(pair, a, b), t, last) && span.t1 < 1)
-        in_contact_.insert(key);
+      if (addPair(a, b, numberOf(pair, a, b), t, last) && span.t1 < 1) {
+        pairs_.push_back(pair);
+        in_contact_.add(pairs_.back());
+      }
     }
   }
 
@@ -259,7 +260,9 @@ class FeatureContacts {
   const QueryOptions& options_;
   MotionTolerance tolerance_;
   ContactSink sink_;
-  std::unordered_set<ContactSink::PairKey, ContactSink::KeyHash> in_contact_;
+  /// Pairs that have a contact in an earlier span.
+  std::deque<FeatureIds> pairs_;
+  ContactTable<FeatureIds> in_contact_;
   MotionCounts counts_;
 };
 

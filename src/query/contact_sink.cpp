@@ -30,15 +30,6 @@ bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
   return key(x) < key(y);
 }
 
-ContactSink::PairKey ContactSink::keyOf(const FeatureIds& c) {
-  const std::uint32_t tag =
-      2 * static_cast<std::uint32_t>(c.kind) + (c.first_on_a ? 1U : 0U);
-  PairKey key{tag, c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]};
-  // Faces with the same vertices are one face, in whatever order the vertices are.
-  if (c.kind == ContinuousContactKind::kVertexFace) std::sort(key.begin() + 2, key.end());
-  return key;
-}
-
 /// With a distance, other features may have the same nearest parts.
 bool ContactSink::mayRepeat(const FeatureContact& contact) const {
   return may_repeat_ || isPart(contact.kind);
@@ -62,24 +53,24 @@ bool ContactSink::add(const FeatureContact& contact) {
   first_hi_ = std::min(first_hi_, contact.toc_hi);
   const bool may_repeat = mayRepeat(contact);
   if (may_repeat)
-    if (const auto seen = seen_.find(keyOf(contact)); seen != seen_.end()) {
-      FeatureContact& kept = *seen->second;
-      if (isPart(contact.kind) ? !isPreferred(contact, kept) : !isEarlier(contact, kept))
+    if (FeatureContact* kept = seen_.find(contact)) {
+      if (isPart(contact.kind) ? !isPreferred(contact, *kept)
+                               : !isEarlier(contact, *kept))
         return false;
-      replace(kept, contact);
+      replace(*kept, contact);
       return true;
     }
   if (contacts_.size() < capacity_) {
     contacts_.push_back(contact);
-    if (may_repeat) seen_.emplace(keyOf(contact), &contacts_.back());
+    if (may_repeat) seen_.add(contacts_.back());
     return true;
   }
   cut();
   FeatureContact& latest = **order_.rbegin();
   if (!isEarlier(contact, latest)) return false;
-  if (mayRepeat(latest)) seen_.erase(keyOf(latest));
+  if (mayRepeat(latest)) seen_.remove(latest);
   replace(latest, contact);
-  if (may_repeat) seen_.emplace(keyOf(contact), &latest);
+  if (may_repeat) seen_.add(latest);
   return true;
 }
 
@@ -96,16 +87,53 @@ void ContactSink::clear() {
   seen_.clear();
 }
 
+namespace {
+
+/// Numbers of buckets that ascend in the order of contacts, for as many buckets as there
+/// are contacts. Most buckets get one or two. Contacts at t = 0 have buckets by their
+/// kind and first vertex, the others by time.
+class Buckets {
+ public:
+  explicit Buckets(const std::vector<std::deque<FeatureContact>>& lists) {
+    for (const auto& list : lists) {
+      count_ += list.size();
+      for (const FeatureContact& c : list) {
+        if (c.toc_lo > 0) continue;
+        ++at_start_;
+        num_vertices_ = std::max(num_vertices_, c.vertices[0] + std::uint64_t{1});
+      }
+    }
+  }
+
+  std::size_t count() const { return count_; }
+
+  std::size_t operator()(const FeatureContact& c) const {
+    if (c.toc_lo > 0) {
+      const std::size_t later = count_ - at_start_;
+      return at_start_ +
+             std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(later)),
+                      later - 1);
+    }
+    // Four kinds of two sides.
+    const std::uint64_t group =
+        2 * static_cast<std::uint64_t>(c.kind) + (c.first_on_a ? 0 : 1);
+    const double share = static_cast<double>(group * num_vertices_ + c.vertices[0]) /
+                         (8 * static_cast<double>(num_vertices_));
+    return std::min(static_cast<std::size_t>(share * static_cast<double>(at_start_)),
+                    at_start_ - 1);
+  }
+
+ private:
+  std::size_t count_{0}, at_start_{0};
+  std::uint64_t num_vertices_{0};
+};
+
+}  // namespace
+
 SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     : lists_(std::move(lists)) {
-  std::size_t count = 0;
-  for (const auto& list : lists_) count += list.size();
-  // Bucket sort: as many buckets, of equal length in time, as contacts. Most buckets get
-  // one or two.
-  const auto bucketOf = [count](const FeatureContact& c) {
-    return std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(count)),
-                    count - 1);
-  };
+  const Buckets bucketOf(lists_);
+  const std::size_t count = bucketOf.count();
   std::vector<std::size_t> ends(count + 1, 0);
   for (const auto& list : lists_)
     for (const FeatureContact& c : list) ++ends[bucketOf(c) + 1];

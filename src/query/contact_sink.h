@@ -2,19 +2,18 @@
 #ifndef FCL_CCD_QUERY_CONTACT_SINK_H
 #define FCL_CCD_QUERY_CONTACT_SINK_H
 
-#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <iterator>
 #include <set>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "base/uninitialized_vector.h"
 #include "mesh/feature_pairs.h"
+#include "query/contact_table.h"
 
 namespace fcl {
 namespace detail {
@@ -78,18 +77,6 @@ class ContactSink {
   /// @brief Forgets all contacts.
   void clear();
 
-  /// @brief Names a pair of features.
-  using PairKey = std::array<std::uint32_t, 5>;
-  static PairKey keyOf(const FeatureIds& pair);
-  struct KeyHash {
-    /// After FNV-1a, by words.
-    std::size_t operator()(const PairKey& key) const {
-      std::uint64_t hash = 0xcbf29ce484222325;
-      for (const std::uint32_t word : key) hash = (hash ^ word) * 0x100000001b3;
-      return static_cast<std::size_t>(hash ^ (hash >> 32));
-    }
-  };
-
  private:
   struct Earlier {
     bool operator()(const FeatureContact* x, const FeatureContact* y) const {
@@ -109,11 +96,11 @@ class ContactSink {
   /// If cut_: the contacts, earliest first.
   std::set<FeatureContact*, Earlier> order_;
   /// The contacts whose pairs may come again.
-  std::unordered_map<PairKey, FeatureContact*, KeyHash> seen_;
+  ContactTable<FeatureContact> seen_;
 };
 
 /// @brief The contacts of several lists, earliest first. Only pointers are sorted, since
-/// there may be many contacts.
+/// there may be many contacts. With a distance a large part of them may be at t = 0.
 class SortedContacts {
  public:
   class Iterator {

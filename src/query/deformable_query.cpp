@@ -276,10 +276,15 @@ SelfProofs proveSelf(const MeshInstance& mesh, const MeshInstance& other,
   if (min_distance > 0) {
     // What is proved not to touch may come near.
     const double reach = reachOf(mesh, mesh, min_distance);
-    if (with_regions)
-      proofs.nodes_in_fans =
-          findNodesApart(tree, findEmbeddedRegions(tree, kernels(), num_threads), reach);
-    proofs.fans = findEmbeddedFans(tree, interior, kernels(), num_threads, reach);
+    RegionsApart apart{{}, std::move(interior)};
+    if (with_regions) {
+      EmbeddedRegions regions = findEmbeddedBodies(tree, kernels(), num_threads, reach);
+      addEmbeddedRegions(tree, kernels(), num_threads, regions);
+      apart = findRegionsApart(tree, regions, kernels(), reach);
+      proofs.nodes_in_fans = std::move(apart.nodes);
+    }
+    proofs.fans = findEmbeddedFans(tree, apart.fans, kernels(), num_threads, reach);
+    for (std::size_t i = 0; i < proofs.fans.size(); ++i) proofs.fans[i] |= apart.fans[i];
     times.traverse += secondsSince(start);
     return proofs;
   }

@@ -95,6 +95,10 @@ void BorderProof::project(int direction) {
   int d[3];
   directionOf(direction, d);
   const PlaneAxes plane(d);
+  const auto& [u, v] = plane.axes;
+  products_[0] = u[0] * u[0] + u[1] * u[1] + u[2] * u[2];
+  products_[1] = u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+  products_[2] = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
   points_.clear();
   for (const std::uint32_t place : border_->points) {
     const TreeVertex& vertex = tree_.vertices()[place];
@@ -175,21 +179,70 @@ void BorderProof::fitTree() {
   }
 }
 
-bool BorderProof::isSimple() {
-  fitTree();
+/// Calls visit(i, j) for the pairs of edges whose boxes overlap, until it is false.
+/// @param shift  added to boxes; null: none
+template <typename Visit>
+void BorderProof::visitPairs(const KdopShift* shift, Visit&& visit) const {
   Traversal<true, const BorderTree, const BorderTree> traversal(
-      boxes_, boxes_, nullptr, SelfCulling(), nullptr, kernels_, false);
-  bool simple = true;
+      boxes_, boxes_, shift, SelfCulling(), nullptr, kernels_, false);
+  bool goes_on = true;
   WorkList open;
   traversal.start(open);
-  while (open.size() > 0 && simple) {
+  while (open.size() > 0 && goes_on) {
     open.cut(open.size() - 1);
     traversal.step(*(open.data() + open.size()), open, [&](int i, int j, float) {
-      simple = simple && meetOnlyAtVertices(static_cast<std::size_t>(i),
-                                            static_cast<std::size_t>(j));
+      goes_on =
+          goes_on && visit(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
     });
   }
+}
+
+bool BorderProof::isSimple() {
+  fitTree();
+  bool simple = true;
+  visitPairs(nullptr, [&](std::size_t i, std::size_t j) {
+    return simple = meetOnlyAtVertices(i, j);
+  });
   return simple;
+}
+
+std::vector<BorderProof::EdgePair> BorderProof::findNear(const RegionBorder& border,
+                                                         int direction, double distance) {
+  assert(border.size() > 0);
+  border_ = &border;
+  direction_ = direction;
+  project(direction);
+  fitTree();
+  const KdopShift shift = shiftFor(distance);
+  std::vector<EdgePair> near;
+  visitPairs(&shift, [&](std::size_t i, std::size_t j) {
+    const bool has_common =
+        border.from(i) == border.from(j) || border.from(i) == border.to(j) ||
+        border.to(i) == border.from(j) || border.to(i) == border.to(j);
+    if (!has_common && !areApart(planarEdge(i), planarEdge(j), distance))
+      near.push_back({i, j});
+    return true;
+  });
+  return near;
+}
+
+/// The length of w, as a vector of space: its product with a point is that of w with the
+/// point's coordinates in the plane.
+double BorderProof::lengthOf(const Point& w) const {
+  return std::sqrt(products_[0] * w.x * w.x + 2 * products_[1] * w.x * w.y +
+                   products_[2] * w.y * w.y);
+}
+
+/// What enlarges boxes by a distance, by the length of each of their directions. The
+/// third coordinate is the same for all points.
+KdopShift BorderProof::shiftFor(double distance) const {
+  constexpr Point kDirections[8] = {{1, 0}, {0, 1}, {0, 0},  {1, 1},
+                                    {1, 0}, {0, 1}, {1, -1}, {1, 0}};
+  KdopShift shift;
+  for (int j = 0; j < 16; ++j)
+    shift.t0.half[j] = shift.t1.half[j] =
+        roundUp(distance * lengthOf(kDirections[j % 8]), 0.f);
+  return shift;
 }
 
 /// Whether it is proved that two edges never meet, except in a vertex that they share.
@@ -199,7 +252,7 @@ bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   const PlanarEdge x = planarEdge(i), y = planarEdge(j);
   const bool ff = from_i == from_j, ft = from_i == to_j, tf = to_i == from_j,
              tt = to_i == to_j;
-  if (ff + ft + tf + tt == 0) return areApart(x, y);
+  if (ff + ft + tf + tt == 0) return areApart(x, y, 0);
   if (ff + ft + tf + tt > 1) return false;
   // Vectors along both edges, away from the common vertex. They must never point the same
   // way.
@@ -223,8 +276,10 @@ bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
   return all_below(turn, 1) || all_below(turn, -1) || all_below(same, 1);
 }
 
-/// Whether a line separates two edges at all times. The line turns as the edges do.
-bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
+/// Whether a strip of this width separates two edges at all times. It turns as the edges
+/// do.
+bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
+                           double distance) const {
   Point across_e[2], across_f[2], between[2];
   for (int k = 0; k < 2; ++k) {
     const Point along_e = e.to.at[k] - e.from.at[k], along_f = f.to.at[k] - f.from.at[k];
@@ -232,18 +287,24 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f) const {
     across_f[k] = {-along_f.y, along_f.x};
     between[k] = (f.from.at[k] + f.to.at[k]) - (e.from.at[k] + e.to.at[k]);
   }
-  return areApart(e, f, across_e) || areApart(e, f, across_f) || areApart(e, f, between);
+  return areApart(e, f, across_e, distance) || areApart(e, f, across_f, distance) ||
+         areApart(e, f, between, distance);
 }
 
 /// Whether e stays on one side and f on the other along a direction. The direction is
 /// w[0] at t = 0 and w[1] at t = 1.
-bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
-                           const Point (&w)[2]) const {
+bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2],
+                           double distance) const {
   double size = 0;
   for (const Point& p : w) size = std::max(size, std::max(std::abs(p.x), std::abs(p.y)));
   size *= tree_.reach();
   if (!(size >= kTiny)) return false;
   const double bound = kBorderSideBound * size;
+  // A strip is as wide as its sides are apart along the direction. The length of this is
+  // largest at an end of the step. The factor is more than the rounding of the product.
+  const double width =
+      distance > 0 ? distance * (1 + 0x1p-40) * std::max(lengthOf(w[0]), lengthOf(w[1]))
+                   : 0;
   // Bernstein coefficients in t, the middle one twice.
   const auto along = [&w](const MovingPoint& p) -> std::array<double, 3> {
     return {dot(w[0], p.at[0]), dot(w[0], p.at[1]) + dot(w[1], p.at[0]),
@@ -252,8 +313,9 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f,
   const auto a = along(e.from), b = along(e.to), c = along(f.from), d = along(f.to);
   bool above = true, below = true;
   for (std::size_t k = 0; k < 3; ++k) {
-    above = above && std::min(a[k], b[k]) - std::max(c[k], d[k]) > bound;
-    below = below && std::min(c[k], d[k]) - std::max(a[k], b[k]) > bound;
+    const double least = bound + (k == 1 ? 2 : 1) * width;
+    above = above && std::min(a[k], b[k]) - std::max(c[k], d[k]) > least;
+    below = below && std::min(c[k], d[k]) - std::max(a[k], b[k]) > least;
   }
   return above || below;
 }

@@ -45,6 +45,18 @@ class BorderProof {
   /// @brief The bit of the direction of the last proof.
   int direction() const { return direction_; }
 
+  /// @brief Two edges of a border.
+  struct EdgePair {
+    std::size_t first, second;
+  };
+
+  /// @brief The pairs of edges without a common vertex that may come within a distance of
+  /// each other during the step, seen along a direction.
+  /// @param border  has at least one edge
+  /// @param direction  a bit of kAxes
+  std::vector<EdgePair> findNear(const RegionBorder& border, int direction,
+                                 double distance);
+
  private:
   struct Point {
     double x, y;
@@ -73,10 +85,15 @@ class BorderProof {
   }
   void fitPoints();
   void fitTree();
+  template <typename Visit>
+  void visitPairs(const KdopShift* shift, Visit&& visit) const;
   bool isSimple();
   bool meetOnlyAtVertices(std::size_t i, std::size_t j) const;
-  bool areApart(const PlanarEdge& e, const PlanarEdge& f) const;
-  bool areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2]) const;
+  bool areApart(const PlanarEdge& e, const PlanarEdge& f, double distance) const;
+  bool areApart(const PlanarEdge& e, const PlanarEdge& f, const Point (&w)[2],
+                double distance) const;
+  double lengthOf(const Point& w) const;
+  KdopShift shiftFor(double distance) const;
   bool windsOnce() const;
   bool windsOnceLeftOf(std::size_t i) const;
 
@@ -85,6 +102,9 @@ class BorderProof {
   /// The border that is tested, and its points in the plane.
   const RegionBorder* border_{nullptr};
   int direction_{0};
+  /// The products of the two vectors with which the plane's coordinates are made: of the
+  /// first with itself, of both, of the second with itself.
+  double products_[3]{};
   std::vector<MovingPoint> points_;
   BorderTree boxes_;
 };

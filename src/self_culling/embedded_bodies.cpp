@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -85,6 +86,23 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
   return true;
 }
 
+/// Whether the features of a surface that stays star-shaped stay apart.
+bool areFeaturesApart(const MovingKdopTree& tree, const Region& region,
+                      const TreeVertex& center, const Kernels& kernels, double distance) {
+  LeastSight least{HUGE_VAL, HUGE_VAL};
+  for (std::size_t i = region.first; i < region.last; i += 8) {
+    const LeastSight sight = kernels.leastSightFrom(
+        center, tree.vertices().data(), tree.triangles().data() + i,
+        std::min<std::size_t>(8, region.last - i));
+    least.distance_square = std::min(least.distance_square, sight.distance_square);
+    least.sine_square = std::min(least.sine_square, sight.sine_square);
+    if (!(least.distance_square * least.sine_square >
+          distance * distance * (1 + 0x1p-30)))
+      return false;
+  }
+  return true;
+}
+
 /// The children that have enough triangles.
 std::vector<ClosedNode> partsOf(const MovingKdopTree& tree, const ClosedNode& open) {
   std::vector<ClosedNode> parts;
@@ -115,19 +133,23 @@ std::vector<ClosedNode> closedNodes(const MovingKdopTree& tree) {
 }  // namespace
 
 EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& kernels,
-                                   int num_threads) {
+                                   int num_threads, double distance) {
   EmbeddedRegions found(tree);
   const std::vector<ClosedNode>& closed =
       tree.regionBorders().closedNodes([&] { return closedNodes(tree); });
   std::vector<std::uint8_t> is_body(closed.size());
   constexpr std::size_t kTasks = 64;
-  parallelForBlocks(closed.size(), closed.size() / kTasks + 1, num_threads,
-                    [&](std::size_t i, std::size_t last) {
-                      for (; i < last; ++i)
-                        is_body[i] = isStarShaped(
-                            tree, regionOf(tree, closed[i].node, closed[i].last),
-                            centerOf(tree, closed[i].node), kernels);
-                    });
+  parallelForBlocks(
+      closed.size(), closed.size() / kTasks + 1, num_threads,
+      [&](std::size_t i, std::size_t last) {
+        for (; i < last; ++i) {
+          const Region region = regionOf(tree, closed[i].node, closed[i].last);
+          const TreeVertex center = centerOf(tree, closed[i].node);
+          is_body[i] = isStarShaped(tree, region, center, kernels) &&
+                       (distance == 0 ||
+                        areFeaturesApart(tree, region, center, kernels, distance));
+        }
+      });
   for (std::size_t i = 0; i < closed.size(); ++i) {
     const Region region = regionOf(tree, closed[i].node, closed[i].last);
     // A body in another one would be the same triangles.

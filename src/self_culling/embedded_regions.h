@@ -24,16 +24,19 @@ namespace deformable {
 /// along it is embedded in the plane. So the region covers the plane at most once at
 /// every time (doc/pipeline.md has the proof).
 struct EmbeddedRegions {
+  static constexpr std::uint8_t kNoDirection = 255;
+
   std::vector<std::uint8_t> nodes;
   std::vector<std::uint8_t> interior;
-  /// For each node that is a root, the bit of the direction (kAxes) of the proof.
+  /// For each node that is a root, the bit of the direction (kAxes) of the proof, or
+  /// kNoDirection if it is a body (findEmbeddedBodies()).
   std::vector<std::uint8_t> directions;
 
   /// @brief No region.
   explicit EmbeddedRegions(const MovingKdopTree& tree)
       : nodes(tree.numNodes(), 0),
         interior(tree.vertices().size(), 0),
-        directions(tree.numNodes(), 0) {}
+        directions(tree.numNodes(), kNoDirection) {}
 };
 
 /// @brief Least number of triangles of a region. To find regions of 64 triangles takes

@@ -5,8 +5,6 @@
 #include <cassert>
 #include <cstddef>
 
-#include "numerics/error_bounds.h"
-#include "numerics/moving_vector.h"
 #include "self_culling/border_proof.h"
 
 namespace fcl {
@@ -16,92 +14,162 @@ namespace {
 
 constexpr std::uint32_t kNone = MovingKdopNode::kNoPlace;
 
-Vec difference(const double* p, const double* q) {
-  return {p[0] - q[0], p[1] - q[1], p[2] - q[2]};
-}
+/// Marks vertices of the borders of regions that may come within a distance of an edge of
+/// the border that does not have them.
+class BorderMarks {
+ public:
+  BorderMarks(const MovingKdopTree& tree, const Kernels& kernels, double distance,
+              std::vector<std::uint8_t>& is_apart)
+      : proof_(tree, kernels),
+        distance_(distance),
+        is_apart_(is_apart),
+        next_(tree.vertices().size()) {}
 
-double squaredLength(const TreeVertex& p, const TreeVertex& q) {
-  const Vec a = difference(p.t0, q.t0), b = difference(p.t1, q.t1);
-  return std::max(dot(a, a), dot(b, b));
-}
-
-/// A lower bound on the product of a triangle's normal and a direction of 1, 0 and -1
-/// during the step.
-double leastAreaSeen(const TreeVertex* const (&x)[3], const Vec& direction) {
-  const Vec v0 = difference(x[1]->t0, x[0]->t0), v1 = difference(x[1]->t1, x[0]->t1),
-            w0 = difference(x[2]->t0, x[0]->t0), w1 = difference(x[2]->t1, x[0]->t1);
-  const double first = dot(cross(v0, w0), direction),
-               middle = 0.5 * dot(cross(v0, w1) + cross(v1, w0), direction),
-               last = dot(cross(v1, w1), direction);
-  const double size =
-      std::max(maxNorm(v0), maxNorm(v1)) * std::max(maxNorm(w0), maxNorm(w1));
-  return isInRange(size) ? std::min(std::min(first, middle), last) - kFanBound * size : 0;
-}
-
-/// For each node, the root of the region that it is below, or kNone.
-std::vector<std::uint32_t> regionsOfNodes(const MovingKdopTree& tree,
-                                          const EmbeddedRegions& regions) {
-  std::vector<std::uint32_t> region(tree.numNodes(), kNone);
-  // Children come after their parents.
-  for (std::size_t i = 0; i < region.size(); ++i) {
-    if (regions.nodes[i]) region[i] = static_cast<std::uint32_t>(i);
-    const MovingKdopNode& node = tree.node(static_cast<int>(i));
-    for (int lane = 0; lane < node.count; ++lane)
-      if (!node.isTriangle(lane))
-        region[static_cast<std::size_t>(node.child[lane])] = region[i];
+  void mark(const RegionBorder& border, int direction) {
+    markShortLoops(border);
+    for (const BorderProof::EdgePair& pair :
+         proof_.findNear(border, direction, distance_))
+      for (const std::size_t edge : {pair.first, pair.second})
+        is_apart_[border.from(edge)] = is_apart_[border.to(edge)] = 0;
   }
-  return region;
-}
 
-/// Marks the vertices of a triangle over which its height may be no more than the
-/// distance as not apart.
-void markLow(const MovingKdopTree& tree, const MovingKdopNode& node, int lane,
-             const Vec& direction, double distance, std::vector<std::uint8_t>& is_apart) {
-  const std::uint32_t place[3] = {node.places[0][lane], node.places[1][lane],
-                                  node.places[2][lane]};
-  const TreeVertex* const x[3] = {&tree.vertices()[place[0]], &tree.vertices()[place[1]],
-                                  &tree.vertices()[place[2]]};
-  const double area = leastAreaSeen(x, direction);
-  // More than the rounding of the products below, and of the lengths.
-  constexpr double kUp = 1 + 0x1p-40;
-  const double least = distance * distance * dot(direction, direction) * kUp;
-  for (int k = 0; k < 3; ++k) {
-    const double opposite = squaredLength(*x[(k + 1) % 3], *x[(k + 2) % 3]);
-    if (!(area > 0 && area * area > least * opposite)) is_apart[place[k]] = 0;
+ private:
+  /// In place of a next vertex: there are several.
+  static constexpr std::uint32_t kSeveral = kNone - 1;
+
+  /// Marks the vertices of loops of three edges: they have no edge without a vertex of
+  /// the opposite one. Also marks vertices that the border passes more than once, which
+  /// may be in such a loop, and those next to them.
+  void markShortLoops(const RegionBorder& border) {
+    for (const std::uint32_t v : border.points) next_[v] = kNone;
+    for (std::size_t i = 0; i < border.size(); ++i) {
+      std::uint32_t& next = next_[border.from(i)];
+      next = next == kNone ? border.to(i) : kSeveral;
+    }
+    for (std::size_t i = 0; i < border.size(); ++i) {
+      const std::uint32_t from = border.from(i), to = border.to(i), third = next_[to];
+      if (next_[from] == kSeveral || third == kSeveral || next_[third] == from)
+        is_apart_[from] = is_apart_[to] = 0;
+    }
   }
-}
+
+  BorderProof proof_;
+  double distance_;
+  std::vector<std::uint8_t>& is_apart_;
+  /// The vertex to which the border's edge from a vertex leads.
+  std::vector<std::uint32_t> next_;
+};
+
+/// Regions, and which of their vertices are apart from all features without them.
+class RegionMarks {
+ public:
+  RegionMarks(const MovingKdopTree& tree, const EmbeddedRegions& regions,
+              const Kernels& kernels, double distance, RegionsApart& apart)
+      : tree_(tree),
+        regions_(regions),
+        kernels_(kernels),
+        distance_(distance),
+        apart_(apart),
+        is_apart_(tree.vertices().size(), 1) {}
+
+  /// Finds the region of each node. Marks the vertices over which triangles may be low,
+  /// and those whose fans have such a triangle.
+  void markLow() {
+    constexpr std::size_t kAhead = 8;
+    const std::size_t count = apart_.nodes.size();
+    int direction[3];
+    // Children come after their parents.
+    for (std::size_t i = 0; i < count; ++i) {
+      prefetch(std::min(i + kAhead, count - 1));
+      if (regions_.nodes[i]) apart_.nodes[i] = static_cast<std::uint32_t>(i);
+      const std::uint32_t region = apart_.nodes[i];
+      if (region == kNone) continue;
+      const MovingKdopNode& node = tree_.node(static_cast<int>(i));
+      for (int lane = 0; lane < node.count; ++lane)
+        if (!node.isTriangle(lane))
+          apart_.nodes[static_cast<std::size_t>(node.child[lane])] = region;
+      if (node.triangles == 0 || isBody(region)) continue;
+      directionOf(regions_.directions[region], direction);
+      markLow(node, direction);
+    }
+  }
+
+  void markBorders() {
+    BorderMarks borders(tree_, kernels_, distance_, is_apart_);
+    for (std::size_t i = 0; i < regions_.nodes.size(); ++i)
+      if (regions_.nodes[i] && !isBody(i))
+        borders.mark(tree_.regionBorders().known(static_cast<std::int32_t>(i)),
+                     regions_.directions[i]);
+  }
+
+  /// Keeps the region of those nodes that only have vertices without a mark.
+  void keepApart() {
+    std::vector<std::uint32_t>& nodes = apart_.nodes;
+    for (std::size_t i = nodes.size(); i-- > 0;) {
+      if (nodes[i] == kNone) continue;
+      const MovingKdopNode& node = tree_.node(static_cast<int>(i));
+      for (int lane = 0; lane < node.count && nodes[i] != kNone; ++lane)
+        if (!isApart(node, lane, nodes[i])) nodes[i] = kNone;
+    }
+  }
+
+ private:
+  bool isBody(std::size_t region) const {
+    return regions_.directions[region] == EmbeddedRegions::kNoDirection;
+  }
+
+  /// Prefetches what markLow() reads of a node.
+  void prefetch(std::size_t i) const {
+    const MovingKdopNode& node = tree_.node(static_cast<int>(i));
+    __builtin_prefetch(&node.places[0]);
+    __builtin_prefetch(&node.places[2]);
+    __builtin_prefetch(&node.count);
+  }
+
+  void markLow(const MovingKdopNode& node, const int (&direction)[3]) {
+    // New vertices come in the order of the triangles, about four with a node.
+    constexpr std::uint32_t kAhead = 24, kEach = 5;
+    const std::size_t size = is_apart_.size();
+    const std::uint32_t place = node.places[0][0] + kAhead;
+    for (std::uint32_t k = place; k < place + kEach && k < size; ++k)
+      __builtin_prefetch(&tree_.vertices()[k]);
+    for (std::uint32_t left =
+             kernels_.lowCorners(tree_.vertices().data(), node, direction, distance_);
+         left != 0; left &= left - 1) {
+      const int corner = __builtin_ctz(left), lane = corner % 8;
+      is_apart_[node.places[corner / 8][lane]] = 0;
+      for (const auto& places : node.places) apart_.fans[places[lane]] = 0;
+    }
+  }
+
+  bool isApart(const MovingKdopNode& node, int lane, std::uint32_t region) const {
+    if (!node.isTriangle(lane))
+      return apart_.nodes[static_cast<std::size_t>(node.child[lane])] == region;
+    return is_apart_[node.places[0][lane]] && is_apart_[node.places[1][lane]] &&
+           is_apart_[node.places[2][lane]];
+  }
+
+  const MovingKdopTree& tree_;
+  const EmbeddedRegions& regions_;
+  const Kernels& kernels_;
+  double distance_;
+  RegionsApart& apart_;
+  std::vector<std::uint8_t> is_apart_;
+};
 
 }  // namespace
 
-std::vector<std::uint32_t> findNodesApart(const MovingKdopTree& tree,
-                                          const EmbeddedRegions& regions,
-                                          double distance) {
+RegionsApart findRegionsApart(const MovingKdopTree& tree, const EmbeddedRegions& regions,
+                              const Kernels& kernels, double distance) {
   assert(regions.nodes.size() == tree.numNodes() &&
          regions.interior.size() == tree.vertices().size());
-  std::vector<std::uint32_t> nodes = regionsOfNodes(tree, regions);
-  std::vector<std::uint8_t> is_apart = regions.interior;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (nodes[i] == kNone) continue;
-    int d[3];
-    directionOf(regions.directions[nodes[i]], d);
-    const MovingKdopNode& node = tree.node(static_cast<int>(i));
-    for (int lane = 0; lane < node.count; ++lane)
-      if (node.isTriangle(lane))
-        markLow(tree, node, lane, {double(d[0]), double(d[1]), double(d[2])}, distance,
-                is_apart);
-  }
-  const auto isApart = [&](const MovingKdopNode& node, int lane, std::uint32_t region) {
-    if (!node.isTriangle(lane))
-      return nodes[static_cast<std::size_t>(node.child[lane])] == region;
-    return is_apart[node.places[0][lane]] && is_apart[node.places[1][lane]] &&
-           is_apart[node.places[2][lane]];
-  };
-  for (std::size_t i = nodes.size(); i-- > 0;) {
-    const MovingKdopNode& node = tree.node(static_cast<int>(i));
-    for (int lane = 0; lane < node.count && nodes[i] != kNone; ++lane)
-      if (!isApart(node, lane, nodes[i])) nodes[i] = kNone;
-  }
-  return nodes;
+  RegionsApart apart{std::vector<std::uint32_t>(tree.numNodes(), kNone),
+                     regions.interior};
+  RegionMarks marks(tree, regions, kernels, distance, apart);
+  marks.markLow();
+  marks.markBorders();
+  marks.keepApart();
+  return apart;
 }
 
 }  // namespace deformable

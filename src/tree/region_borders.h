@@ -64,6 +64,14 @@ class RegionBorders {
     return kept(borders_[static_cast<std::size_t>(node)], find);
   }
 
+  /// @pre of() has been called for this node
+  const RegionBorder& known(std::int32_t node) const {
+    const RegionBorder* border =
+        borders_[static_cast<std::size_t>(node)].load(std::memory_order_acquire);
+    assert(border);
+    return *border;
+  }
+
   /// @param find  find() returns the closed nodes of the tree
   template <typename Find>
   const std::vector<ClosedNode>& closedNodes(Find&& find) {

@@ -217,16 +217,9 @@ class Traversal {
       lanes &= ~triangles & node.lanes();
       if (lanes == 0) return;
     }
-    BoxView box{&parent.t0[0][lane], &parent.t1[0][lane], BoxView::kInNode,
-                parent.displacement[lane]};
-    float moved[2][16];
-    if (!kSelf || is_shifted_) {
-      for (std::size_t r = 0; r < 16; ++r) {
-        moved[0][r] = shifted(box.t0[r * box.stride], shift_[kSwapped][0][r]);
-        moved[1][r] = shifted(box.t1[r * box.stride], shift_[kSwapped][1][r]);
-      }
-      box = {moved[0], moved[1], 1, box.displacement};
-    }
+    const BoxView box{&parent.t0[0][lane], &parent.t1[0][lane], BoxView::kInNode,
+                      parent.displacement[lane],
+                      !kSelf || is_shifted_ ? shift_[kSwapped] : nullptr};
     pairs_.compared += static_cast<std::uint64_t>(node.count);
     float earliest[MovingKdopNode::kWidth];
     unsigned left = kernels_.overlapChildren(box, node, request_, earliest) & lanes;

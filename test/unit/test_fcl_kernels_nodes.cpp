@@ -391,6 +391,20 @@ struct ExpectedPair {
   float lo;
 };
 
+/// Whether boxes are apart along a half-axis at t = 0, or at both ends of the step, in
+/// numbers that do not round. The kernels may see that where shifted() has rounded.
+bool areApartExactly(const MovingKdop& a, const MovingKdop& b, const KdopShift& shift,
+                     bool at_start) {
+  const auto depth = [](const Kdop16& x, const Kdop16& y, const Kdop16& added, int j) {
+    return static_cast<long double>(x.half[j]) + y.half[j ^ 8] + added.half[j];
+  };
+  for (int j = 0; j < 16; ++j)
+    if (depth(a.t0, b.t0, shift.t0, j) < 0 &&
+        (at_start || depth(a.t1, b.t1, shift.t1, j) < 0))
+      return true;
+  return false;
+}
+
 // Two lowest nodes, or one with itself, with or without a shift, with and without fans.
 TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
   constexpr std::uint64_t kSeed = 83;
@@ -456,6 +470,15 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
           a,      b, lanes, has_shift ? rows : nullptr, has_fans ? table.data() : nullptr,
           request};
       k->overlapTriangles(leaves, pairs);
+      if (has_shift && k == allSets().front())
+        expected.erase(
+            std::remove_if(expected.begin(), expected.end(),
+                           [&](const ExpectedPair& pair) {
+                             return !(pairs.pairs >> (kWidth * pair.a + pair.b) & 1U) &&
+                                    areApartExactly(a.box(pair.a), b.box(pair.b), shift,
+                                                    false);
+                           }),
+            expected.end());
       std::uint64_t expected_bits = 0;
       for (const ExpectedPair& pair : expected)
         expected_bits |= std::uint64_t{1} << (kWidth * pair.a + pair.b);
@@ -475,7 +498,8 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
         const float earliest = pairs.earliest[pair.a][pair.b];
         if (request.timed)
           EXPECT_EQ(earliest, pair.lo) << k->name;
-        else
+        else if (!has_shift || earliest == 0 ||
+                 !areApartExactly(a.box(pair.a), b.box(pair.b), shift, true))
           expectUntimed(earliest, shifted(a.box(pair.a), has_shift ? &shift : nullptr),
                         b.box(pair.b), pair.lo);
         EXPECT_EQ(std::memcmp(&earliest, &first.earliest[pair.a][pair.b], sizeof(float)),

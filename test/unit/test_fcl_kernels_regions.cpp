@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The kernels of regions and bodies: the directions that triangles face during the whole
-// step, and the sides that a point sees of them.
+// step, the sides that a point sees of them, and how high they are.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -224,6 +224,154 @@ TEST(FCL_KERNELS, trianglesSeenFromAPoint) {
     ASSERT_FALSE(HasFailure());
   }
   for (const int n : {left, right, missed, hit, open}) EXPECT_GT(n, 300);
+}
+
+/// A few triangles that move as a whole and are bent while they do, and a point.
+struct MovingTriangles {
+  std::vector<TreeVertex> vertices;
+  std::vector<TreeTriangle> triangles;
+
+  MovingTriangles(Random& random, std::size_t count, double step, int exponent)
+      : vertices(3 * count + 1), triangles(count) {
+    const Vector3<double> away = random.point(1);
+    for (std::size_t k = 0; k < vertices.size(); ++k) {
+      Vector3<double> p = random.point(1);
+      // The point is below the triangles.
+      p[2] += k < 3 * count ? 2 : -2;
+      const Vector3<double> q = p + away + random.point(step);
+      for (int c = 0; c < 3; ++c) {
+        vertices[k].t0[c] = std::ldexp(p[c], exponent);
+        vertices[k].t1[c] = std::ldexp(q[c], exponent);
+      }
+      if (k < 3 * count) triangles[k / 3].place[k % 3] = static_cast<std::uint32_t>(k);
+    }
+  }
+
+  LongVector at(std::size_t vertex, long double t) const {
+    LongVector x;
+    for (int c = 0; c < 3; ++c)
+      x[c] = (1 - t) * vertices[vertex].t0[c] + t * vertices[vertex].t1[c];
+    return x;
+  }
+  /// Calls visit(corners) for triangle i at several times.
+  template <typename Visit>
+  void visitCorners(std::size_t i, Visit&& visit) const {
+    for (int k = 0; k <= 16; ++k) {
+      const long double t = k / 16.L;
+      const LongVector corners[4] = {at(3 * i, t), at(3 * i + 1, t), at(3 * i + 2, t),
+                                     at(vertices.size() - 1, t)};
+      visit(corners);
+    }
+  }
+};
+
+// The bounds are below what is there at any time, and not far below for triangles at
+// rest.
+TEST(FCL_KERNELS, leastSightFromAPoint) {
+  constexpr std::uint64_t kSeed = 89;
+  Random random(kSeed);
+  int bounded = 0, none = 0;
+  for (int i = 0; i < 4000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t count = 1 + random.index(8);
+    const double step = i % 3 ? random.uniform(0, 0.3) : 0;
+    const int exponent = static_cast<int>(random.index(200)) - 100;
+    MovingTriangles x(random, count, step, exponent);
+    const LeastSight sight = kernels().leastSightFrom(
+        x.vertices.back(), x.vertices.data(), x.triangles.data(), count);
+    for (const Kernels* k : allSets()) {
+      const LeastSight other = k->leastSightFrom(x.vertices.back(), x.vertices.data(),
+                                                 x.triangles.data(), count);
+      EXPECT_EQ(other.distance_square, sight.distance_square) << k->name;
+      EXPECT_EQ(other.sine_square, sight.sine_square) << k->name;
+    }
+    long double distance = HUGE_VALL, sine = HUGE_VALL;
+    for (std::size_t t = 0; t < count; ++t)
+      x.visitCorners(t, [&](const LongVector(&p)[4]) {
+        const LongVector a = p[0] - p[3], b = p[1] - p[3], c = p[2] - p[3];
+        const long double six = std::abs(volume(a, b, c));
+        distance = std::min(distance, six / (b - a).cross(c - a).norm());
+        sine = std::min(sine, six / (a.norm() * b.cross(c).norm()));
+        sine = std::min(sine, six / (b.norm() * c.cross(a).norm()));
+        sine = std::min(sine, six / (c.norm() * a.cross(b).norm()));
+      });
+    const long double almost = 1 + 1e-12L;
+    EXPECT_LE(sight.distance_square, distance * distance * almost);
+    EXPECT_LE(sight.sine_square, sine * sine * almost);
+    if (step == 0 && sine > 1e-3L) {
+      EXPECT_GE(sight.distance_square, distance * distance * (1 - 1e-9L));
+      EXPECT_GE(sight.sine_square, sine * sine * (1 - 1e-9L));
+    }
+    bounded += sight.sine_square > 0;
+    none += sight.sine_square == 0;
+    x.vertices[random.index(3 * count)].t1[1] = std::numeric_limits<double>::quiet_NaN();
+    for (const Kernels* k : allSets())
+      EXPECT_EQ(k->leastSightFrom(x.vertices.back(), x.vertices.data(),
+                                  x.triangles.data(), count)
+                    .sine_square,
+                0)
+          << k->name;
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(bounded, 1000);
+  EXPECT_GT(none, 300);
+}
+
+// A corner that is not low is higher than the distance at all times.
+TEST(FCL_KERNELS, lowCorners) {
+  constexpr std::uint64_t kSeed = 90;
+  Random random(kSeed);
+  int low = 0, high = 0;
+  for (int i = 0; i < 8000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const double step = i % 3 ? random.uniform(0, 0.3) : 0;
+    const int exponent = static_cast<int>(random.index(200)) - 100;
+    MovingTriangles x(random, 8, step, exponent);
+    MovingKdopNode node{};
+    node.count = 8;
+    for (int lane = 0; lane < 8; ++lane) {
+      node.child[lane] = random.index(4) ? ~lane : lane;
+      for (std::uint32_t k = 0; k < 3; ++k)
+        node.places[k][lane] = node.child[lane] < 0
+                                   ? 3 * static_cast<std::uint32_t>(lane) + k
+                                   : MovingKdopNode::kNoPlace;
+    }
+    node.markTriangles();
+    if (node.triangles == 0) continue;
+    const std::size_t axis = random.index(kNumAxes);
+    const int sign = random.index(2) ? 1 : -1,
+              direction[3] = {sign * kAxes[axis][0], sign * kAxes[axis][1],
+                              sign * kAxes[axis][2]};
+    const double distance = std::ldexp(random.uniform(0, 0.6), exponent);
+    const std::uint32_t found =
+        kernels().lowCorners(x.vertices.data(), node, direction, distance);
+    for (const Kernels* k : allSets())
+      EXPECT_EQ(k->lowCorners(x.vertices.data(), node, direction, distance), found)
+          << k->name;
+    const LongVector d =
+        LongVector(direction[0], direction[1], direction[2]).normalized();
+    for (std::size_t t = 0; t < 8; ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const bool is_low = found >> (8 * k + t) & 1U;
+        if (!(node.triangles >> t & 1U)) {
+          EXPECT_FALSE(is_low);
+          continue;
+        }
+        long double height = HUGE_VALL, bound = HUGE_VALL;
+        x.visitCorners(t, [&](const LongVector(&p)[4]) {
+          const LongVector side = p[(k + 2) % 3] - p[(k + 1) % 3];
+          const long double area = (p[1] - p[0]).cross(p[2] - p[0]).dot(d);
+          height = std::min(height, area / (side - side.dot(d) * d).norm());
+          bound = std::min(bound, area / side.norm());
+        });
+        EXPECT_TRUE(is_low || height > distance);
+        EXPECT_TRUE(step > 0 || !is_low || bound < distance * (1 + 1e-9L));
+        ++(is_low ? low : high);
+      }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(low, 3000);
+  EXPECT_GT(high, 3000);
 }
 
 }  // namespace

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The order of contacts, and the table of those whose pairs may come again.
+#include "query/contact_sink.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh_generators.h"
+#include "query/contact_table.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+using test::Random;
+
+FeatureContact randomContact(Random& random, std::size_t vertices, double at_start) {
+  FeatureContact contact{};
+  contact.kind = static_cast<ContinuousContactKind>(random.index(4));
+  contact.first_on_a = random.index(4) != 0;
+  for (std::uint32_t& v : contact.vertices)
+    v = static_cast<std::uint32_t>(random.index(vertices));
+  contact.toc_lo = random.uniform(0, 1) < at_start ? 0 : random.uniform(0, 1);
+  contact.toc_hi = contact.toc_lo;
+  return contact;
+}
+
+std::array<std::uint32_t, 5> nameOf(const FeatureContact& c) {
+  std::array<std::uint32_t, 5> name{
+      2 * static_cast<std::uint32_t>(c.kind) + (c.first_on_a ? 1U : 0U), c.vertices[0],
+      c.vertices[1], c.vertices[2], c.vertices[3]};
+  if (c.kind == ContinuousContactKind::kVertexFace)
+    std::sort(name.begin() + 2, name.end());
+  return name;
+}
+
+// None, few or all contacts at t = 0, of many vertices or of one.
+TEST(FCL_CONTACT_SINK, contactsAreInOrder) {
+  constexpr std::uint64_t kSeed = 395;
+  Random random(kSeed);
+  for (int i = 0; i < 400; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const double at_start[] = {0, 0.3, 1};
+    const std::size_t vertices = random.index(4) ? 1 + random.index(300) : 1;
+    std::vector<std::deque<FeatureContact>> lists(random.index(4));
+    std::vector<FeatureContact> expected;
+    for (auto& list : lists)
+      for (std::size_t k = random.index(200); k > 0; --k) {
+        list.push_back(randomContact(random, vertices, at_start[i % 3]));
+        expected.push_back(list.back());
+      }
+    std::sort(expected.begin(), expected.end(), isEarlier);
+    const SortedContacts sorted(std::move(lists));
+    ASSERT_EQ(sorted.size(), expected.size());
+    for (std::size_t k = 0; k < expected.size(); ++k) {
+      EXPECT_FALSE(isEarlier(sorted[k], expected[k]));
+      EXPECT_FALSE(isEarlier(expected[k], sorted[k]));
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+// Against a map, with contacts that are taken out again.
+TEST(FCL_CONTACT_SINK, tableOfContacts) {
+  constexpr std::uint64_t kSeed = 396;
+  Random random(kSeed);
+  std::size_t known = 0, removed = 0;
+  ContactTable<FeatureContact> table;
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    const std::size_t vertices = 2 + random.index(6);
+    std::deque<FeatureContact> contacts;
+    std::map<std::array<std::uint32_t, 5>, FeatureContact*> expected;
+    for (std::size_t k = random.index(2000); k > 0; --k) {
+      const FeatureContact contact = randomContact(random, vertices, 0);
+      const auto at = expected.find(nameOf(contact));
+      FeatureContact* found = table.find(contact);
+      ASSERT_EQ(found, at == expected.end() ? nullptr : at->second);
+      known += found != nullptr;
+      if (!found) {
+        contacts.push_back(contact);
+        table.add(contacts.back());
+        expected[nameOf(contact)] = &contacts.back();
+      } else if (random.index(2)) {
+        table.remove(*found);
+        expected.erase(at);
+        ++removed;
+      }
+    }
+    for (const auto& [name, contact] : expected) ASSERT_EQ(table.find(*contact), contact);
+    table.clear();
+    for (const auto& [name, contact] : expected) ASSERT_EQ(table.find(*contact), nullptr);
+  }
+  EXPECT_GT(known, 5000U);
+  EXPECT_GT(removed, 5000U);
+}
+
+}  // namespace
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
