@@ -25,6 +25,22 @@ struct PosedConvex {
   /// @param[out] id  of a triangle: the number of the corner
   Vec support(const Vec& direction, int& id) const;
 
+  /// @brief The piece of its support function along a direction: of a triangle a corner,
+  /// of a shape ConvexShape::pieceAt().
+  /// @pre it is no box
+  int pieceAt(const Vec& direction) const;
+
+  /// @brief The point of a piece that is farthest along a direction.
+  /// @pre it is no box
+  Vec supportOf(int piece, const Vec& direction) const;
+
+  /// @brief The second derivatives of a piece of the support function along two axes, as
+  /// the entries 00, 01 and 11 of a matrix.
+  void setCurvature(int piece, const Vec& direction, const Vec (&axis)[2],
+                    double (&out)[3]) const;
+
+  bool isCurved() const { return shape && shape->isCurved(); }
+
   /// @brief The largest coordinate along a direction.
   double reach(const Vec& direction) const;
 
@@ -50,6 +66,11 @@ struct ConvexGap {
   /// is none.
   double depth;
 };
+
+/// @brief How deep the origin is inside a tetrahedron, less what its faces round by; 0 if
+/// it is not inside by more.
+/// @param[out] weight  of the corners whose mean the origin is, if it is inside
+double depthInside(const Vec (&corner)[4], double (&weight)[4]);
 
 /// @brief Finds the gap of two convex sets.
 /// @param guess  a direction from a to b

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "motion/posed_vector.h"
@@ -13,6 +14,8 @@ namespace deformable {
 namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
+/// Pieces of a cone and of a cylinder.
+constexpr int kBase = 0, kTip = 1, kTop = 1;
 
 /// As norm(), also where squares are too small or too large for doubles.
 double anyNorm(const Vec& v) {
@@ -72,7 +75,29 @@ ConvexShape ConvexShape::flat(const FlatShape& flat, double reach) {
   return shape;
 }
 
-Vec ConvexShape::support(const Vec& d) const {
+int ConvexShape::pieceAt(const Vec& d) const {
+  switch (kind_) {
+    case Kind::kEllipsoid:
+      return 0;
+    case Kind::kCone:
+      return size_.z * d.z >= circleReach(size_.x, d) - size_.z * d.z ? kTip : kBase;
+    case Kind::kCylinder:
+      return d.z < 0 ? kBase : kTop;
+    default:
+      break;
+  }
+  std::size_t farthest = 0;
+  double most = dot(points_.front(), d);
+  for (std::size_t i = 1; i < points_.size(); ++i) {
+    const double along = dot(points_[i], d);
+    if (!(along > most)) continue;
+    most = along;
+    farthest = i;
+  }
+  return static_cast<int>(farthest);
+}
+
+Vec ConvexShape::supportOf(int piece, const Vec& d) const {
   switch (kind_) {
     case Kind::kEllipsoid: {
       const Vec scaled = {size_.x * d.x, size_.y * d.y, size_.z * d.z};
@@ -82,23 +107,29 @@ Vec ConvexShape::support(const Vec& d) const {
               size_.z * (scaled.z / length)};
     }
     case Kind::kCone:
-      if (size_.z * d.z >= circleReach(size_.x, d) - size_.z * d.z)
-        return {0, 0, size_.z};
+      if (piece == kTip) return {0, 0, size_.z};
       return onCircle(size_.x, -size_.z, d);
     case Kind::kCylinder:
-      return onCircle(size_.x, d.z < 0 ? -size_.z : size_.z, d);
+      return onCircle(size_.x, piece == kBase ? -size_.z : size_.z, d);
     default:
-      break;
+      return points_[static_cast<std::size_t>(piece)];
   }
-  const Vec* farthest = &points_.front();
-  double most = dot(*farthest, d);
-  for (const Vec& point : points_) {
-    const double along = dot(point, d);
-    if (!(along > most)) continue;
-    most = along;
-    farthest = &point;
-  }
-  return *farthest;
+}
+
+Vec ConvexShape::support(const Vec& d) const { return supportOf(pieceAt(d), d); }
+
+Vec ConvexShape::supportChange(int piece, const Vec& d, const Vec& change) const {
+  if (!isCurved() || (kind_ == Kind::kCone && piece == kTip)) return {0, 0, 0};
+  const bool is_ellipsoid = kind_ == Kind::kEllipsoid;
+  // The derivative of a unit vector, between two changes of scale.
+  const Vec scale = {size_.x, size_.y, is_ellipsoid ? size_.z : 0},
+            along = {scale.x * d.x, scale.y * d.y, scale.z * d.z},
+            moved = {scale.x * change.x, scale.y * change.y, scale.z * change.z};
+  const double length = anyNorm(along);
+  if (!(length > 0)) return {0, 0, 0};
+  const Vec n = (1 / length) * along, across = moved - dot(n, moved) * n;
+  return {scale.x * (across.x / length), scale.y * (across.y / length),
+          scale.z * (across.z / length)};
 }
 
 double ConvexShape::reach(const Vec& d) const {

@@ -49,6 +49,23 @@ class ConvexShape {
   /// 2^-50 of the size.
   Vec support(const Vec& direction) const;
 
+  /// @brief The support function is the largest of those of smooth pieces: the points of
+  /// a hull, all of an ellipsoid, the tip and the base of a cone, the ends of a cylinder.
+  /// This is the number of the piece along a direction.
+  int pieceAt(const Vec& direction) const;
+
+  /// @brief The point of a piece that is farthest along a direction. support() is that of
+  /// pieceAt().
+  Vec supportOf(int piece, const Vec& direction) const;
+
+  /// @brief The derivative of supportOf() along a change of the direction.
+  Vec supportChange(int piece, const Vec& direction, const Vec& change) const;
+
+  /// @brief Whether the derivative of a piece is not 0.
+  bool isCurved() const {
+    return kind_ == Kind::kEllipsoid || kind_ == Kind::kCone || kind_ == Kind::kCylinder;
+  }
+
   /// @brief The largest coordinate of the core along a direction that is not longer than
   /// 2, up to rounding by 2^-49 of the size.
   double reach(const Vec& direction) const;
