@@ -106,34 +106,18 @@ CurvedGapSearch::Model CurvedGapSearch::modelAt(const Vec& n, double damping) co
   return model;
 }
 
-namespace {
-
-/// The inverse of a positive definite matrix, times a vector.
-struct Inverse {
-  double a, b, c;
-  explicit Inverse(const double (&m)[3]) {
-    const double determinant = m[0] * m[2] - m[1] * m[1];
-    a = m[2] / determinant;
-    b = -m[1] / determinant;
-    c = m[0] / determinant;
-  }
-  double x(const double (&v)[2]) const { return a * v[0] + b * v[1]; }
-  double y(const double (&v)[2]) const { return b * v[0] + c * v[1]; }
-};
-
-}  // namespace
-
 /// Tries all sets of one, two and three pieces whose models are equal and largest.
 CurvedGapSearch::Step CurvedGapSearch::bestStep(const Model& model) const {
-  const Inverse inverse(model.m);
+  const double(&m)[3] = model.m;
+  const double m_determinant = m[0] * m[2] - m[1] * m[1];
   Step best{0, 0, -HUGE_VAL, {}};
   const auto keep = [&](double x, double y, const int(&id)[3], const double(&weight)[3]) {
     double least = HUGE_VAL;
     for (int i = 0; i < count_; ++i)
       least =
           std::min(least, model.gap[i] + (model.slope[i][0] * x + model.slope[i][1] * y));
-    const double value = least - 0.5 * (x * (model.m[0] * x + model.m[1] * y) +
-                                        y * (model.m[1] * x + model.m[2] * y));
+    const double value =
+        least - 0.5 * (x * (m[0] * x + m[1] * y) + y * (m[1] * x + m[2] * y));
     if (!(value > best.value)) return;
     best = {x, y, value, {}};
     for (int k = 0; k < 3; ++k)
@@ -141,27 +125,35 @@ CurvedGapSearch::Step CurvedGapSearch::bestStep(const Model& model) const {
   };
   for (int i = 0; i < count_; ++i) {
     const double(&p)[2] = model.slope[i];
-    keep(inverse.x(p), inverse.y(p), {i, i, i}, {1, 0, 0});
+    keep((m[2] * p[0] - m[1] * p[1]) / m_determinant,
+         (m[0] * p[1] - m[1] * p[0]) / m_determinant, {i, i, i}, {1, 0, 0});
     for (int j = i + 1; j < count_; ++j) {
       const double(&q)[2] = model.slope[j];
-      const double d[2] = {p[0] - q[0], p[1] - q[1]};
-      const double dx = inverse.x(d), dy = inverse.y(d), square = d[0] * dx + d[1] * dy;
-      const double w = ((model.gap[j] - model.gap[i]) - (q[0] * dx + q[1] * dy)) / square;
-      if (w > 0 && w < 1)
-        keep(inverse.x(q) + w * dx, inverse.y(q) + w * dy, {i, j, j}, {w, 1 - w, 0});
+      // Along the difference d the step makes both equal; across it the mean is best.
+      const double d[2] = {p[0] - q[0], p[1] - q[1]}, square = d[0] * d[0] + d[1] * d[1],
+                   m_across[2] = {m[1] * d[0] - m[0] * d[1], m[2] * d[0] - m[1] * d[1]},
+                   along = (model.gap[j] - model.gap[i]) / square,
+                   across = ((d[0] * q[1] - d[1] * q[0]) -
+                             along * (d[0] * m_across[0] + d[1] * m_across[1])) /
+                            (d[0] * m_across[1] - d[1] * m_across[0]);
+      const double x = along * d[0] - across * d[1], y = along * d[1] + across * d[0],
+                   w = (d[0] * (m[0] * x + m[1] * y - q[0]) +
+                        d[1] * (m[1] * x + m[2] * y - q[1])) /
+                       square;
+      if (w > 0 && w < 1) keep(x, y, {i, j, j}, {w, 1 - w, 0});
       for (int k = j + 1; k < count_; ++k) {
         // Both differences from the third one vanish.
         const double(&r)[2] = model.slope[k];
         const double u[2] = {p[0] - r[0], p[1] - r[1]}, v[2] = {q[0] - r[0], q[1] - r[1]},
                      determinant = u[0] * v[1] - u[1] * v[0];
         const double c = model.gap[k] - model.gap[i], e = model.gap[k] - model.gap[j];
-        const double x = (c * v[1] - e * u[1]) / determinant,
-                     y = (u[0] * e - v[0] * c) / determinant;
-        const double f = model.m[0] * x + model.m[1] * y - r[0],
-                     g = model.m[1] * x + model.m[2] * y - r[1];
+        const double x3 = (c * v[1] - e * u[1]) / determinant,
+                     y3 = (u[0] * e - v[0] * c) / determinant;
+        const double f = m[0] * x3 + m[1] * y3 - r[0], g = m[1] * x3 + m[2] * y3 - r[1];
         const double w0 = (f * v[1] - g * v[0]) / determinant,
                      w1 = (u[0] * g - u[1] * f) / determinant;
-        if (w0 > 0 && w1 > 0 && w0 + w1 < 1) keep(x, y, {i, j, k}, {w0, w1, 1 - w0 - w1});
+        if (w0 > 0 && w1 > 0 && w0 + w1 < 1)
+          keep(x3, y3, {i, j, k}, {w0, w1, 1 - w0 - w1});
       }
     }
   }
@@ -271,6 +263,8 @@ bool CurvedGapSearch::run(const Vec& guess, ConvexGap& out) {
   // should have most of their digits then.
   constexpr double kRounding = 0x1p-48, kSmallResidual = 0x1p-36,
                    kLeastResidual = 0x1p-46;
+  // The share of the curvature from which on the sets overlap too much for this method.
+  constexpr double kDeep = 0x1p-2;
   Vec n = guess;
   piece_[0] = pieceAt(n);
   piece_[0].weight = 1;
@@ -286,7 +280,7 @@ bool CurvedGapSearch::run(const Vec& guess, ConvexGap& out) {
     const Model model = modelAt(n, damping);
     const double trace = model.m[0] + model.m[2];
     if (!(trace > 0) || !(model.m[0] * model.m[2] > model.m[1] * model.m[1]) ||
-        gap < -0.25 * trace)
+        gap < -kDeep * trace)
       return false;
     const Step step = bestStep(model);
     keepActive(step);
@@ -301,15 +295,16 @@ bool CurvedGapSearch::run(const Vec& guess, ConvexGap& out) {
     const bool is_better =
         is_best ? there >= gap - kRounding * size && 2 * residualAt(next) < residual
                 : there > gap;
-    if (!is_better) {
+    if (!is_better)
       for (int i = 0; i < count_; ++i) setPoints(n, piece_[i]);
-      if (is_best) return residual <= kSmallResidual * size && finish(n, model, gap, out);
-    }
+    if (!is_better && is_best && residual <= kSmallResidual * size)
+      return finish(n, model, gap, out);
     if (!isKnown(met)) {
       met.weight = 0;
       if (!is_better) setPoints(n, met);
       piece_[count_++] = met;
     } else if (!is_better) {
+      if (is_best) return false;
       damping *= 4;
     }
     if (!is_better) continue;

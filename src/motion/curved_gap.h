@@ -6,7 +6,7 @@
 #ifndef FCL_CCD_MOTION_CURVED_GAP_H
 #define FCL_CCD_MOTION_CURVED_GAP_H
 
-#include "motion/convex_distance.h"
+#include "motion/posed_convex.h"
 
 namespace fcl {
 namespace detail {

@@ -38,7 +38,7 @@ ConvexShape randomConvex(const std::string& kind, Random& random) {
   if (kind == "cylinder") return ConvexShape::cylinder(size, height);
   std::vector<Vec> points;
   for (int i = 0; i < 8; ++i) points.push_back(randomUnit(random));
-  return ConvexShape::hull(points, 0);
+  return ConvexShape::hull(points);
 }
 
 struct Case {
@@ -121,7 +121,9 @@ Counts checkPairs(const std::string& kind1, const std::string& kind2, double gap
     if (gap > 0) {
       EXPECT_LE(found.gap, gap + kRounding);
       EXPECT_GE(found.distance, gap - kRounding);
-      if (is_close) EXPECT_LE(found.distance, 2 * found.gap + kRounding);
+      if (is_close) {
+        EXPECT_LE(found.distance, 2 * found.gap + kRounding);
+      }
     } else if (found.depth > 0) {
       EXPECT_LE(found.gap, kRounding);
     }
@@ -154,14 +156,16 @@ TEST(ConvexGap, OfCirclesIsFoundByNewtonsMethodAsARule) {
       for (const double gap : {1., 1e-2, 1e-4, 1e-8, 1e-11}) {
         SCOPED_TRACE(std::string(circle) + ", " + kind + ", gap " + std::to_string(gap));
         const Counts counts = checkPairs(circle, kind, gap, gap >= 1e-4);
-        if (gap >= 1e-4) EXPECT_GE(counts.answered, 0.7 * kNumPairs);
+        if (gap >= 1e-4) {
+          EXPECT_GE(counts.answered, 0.7 * kNumPairs);
+        }
         EXPECT_EQ(counts.overlapping, 0);
       }
 }
 
 TEST(ConvexGap, ShallowOverlapsOfAnEllipsoidAreProvedByNewtonsMethod) {
   for (const char* kind : kAll)
-    for (const double gap : {-1e-2, -1e-4, -1e-8, -1e-11}) {
+    for (const double gap : {-1e-4, -1e-8, -1e-11}) {
       SCOPED_TRACE(std::string(kind) + ", gap " + std::to_string(gap));
       const Counts counts = checkPairs("ellipsoid", kind, gap, true);
       EXPECT_GE(counts.answered, 0.96 * kNumPairs);
