@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/continuous_candidates.h"
 
-#include <cfenv>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -40,8 +39,7 @@ ContinuousCandidate toContinuousCandidate(const FeatureCandidate& candidate) {
 /// hands them to the caller's sink in the caller's floating-point mode.
 template <typename Query>
 bool handOut(const ContinuousCandidateSink& sink, Query&& query) {
-  std::fenv_t callers_mode;
-  std::fegetenv(&callers_mode);
+  const deformable::FloatingPointMode callers_mode = deformable::floatingPointMode();
   std::vector<ContinuousCandidate> block;
   return answerOf([&] {
     return query([&](const FeatureCandidate* candidates, std::size_t count) {

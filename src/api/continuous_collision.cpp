@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "api/contact_conversion.h"
+#include "api/overlapping_shapes.h"
 #include "api/prepared_mesh.h"
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
@@ -317,6 +318,11 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                 const QuerySettings& settings, QueryOutcome<S>& outcome,
                 ContinuousContacts<S>* contacts) {
   const DefaultFloatingPoint mode;
+  if (!settings.with_contacts && areOverlappingShapes(o1, o2)) {
+    requireTocErr(settings.toc_err, "request.toc_err");
+    outcome = {true, 0, 0};
+    return true;
+  }
   const PlacedGeometry<S> placed1(o1), placed2(o2);
   const Answerer answerer = answererOf(placed1, placed2);
   if (answerer == Answerer::kFcl) return false;

@@ -39,15 +39,15 @@ Vec requirePoint(const Vector3<S>& p, const std::string& name, const char* what)
 
 template <typename S>
 ConvexShape shapeOf(const Sphere<S>& sphere, const std::string& name) {
-  return ConvexShape::hull({{0, 0, 0}},
-                           requireSize(sphere.radius, name, "radius of the sphere"));
+  return ConvexShape::capsule(requireSize(sphere.radius, name, "radius of the sphere"),
+                              0);
 }
 
 template <typename S>
 ConvexShape shapeOf(const Capsule<S>& capsule, const std::string& name) {
   const double half = 0.5 * requireSize(capsule.lz, name, "length of the capsule");
-  return ConvexShape::hull({{0, 0, -half}, {0, 0, half}},
-                           requireSize(capsule.radius, name, "radius of the capsule"));
+  return ConvexShape::capsule(requireSize(capsule.radius, name, "radius of the capsule"),
+                              half);
 }
 
 template <typename S>
@@ -55,12 +55,7 @@ ConvexShape shapeOf(const Box<S>& box, const std::string& name) {
   double half[3];
   for (int k = 0; k < 3; ++k)
     half[k] = 0.5 * requireSize(box.side[k], name, "side of the box");
-  std::vector<Vec> corners;
-  for (unsigned i = 0; i < 8; ++i)
-    corners.push_back({(i & 1U) != 0 ? half[0] : -half[0],
-                       (i & 2U) != 0 ? half[1] : -half[1],
-                       (i & 4U) != 0 ? half[2] : -half[2]});
-  return ConvexShape::hull(std::move(corners), 0);
+  return ConvexShape::cuboid({half[0], half[1], half[2]});
 }
 
 template <typename S>
@@ -90,15 +85,14 @@ ConvexShape shapeOf(const Convex<S>& convex, const std::string& name) {
   for (const Vector3<S>& p : convex.getVertices())
     points.push_back(requirePoint(p, name, "convex"));
   if (points.empty()) throw Exception(name + ": the convex has no vertices. Give some");
-  return ConvexShape::hull(std::move(points), 0);
+  return ConvexShape::hull(std::move(points));
 }
 
 template <typename S>
 ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name) {
   return ConvexShape::hull({requirePoint(triangle.a, name, "triangle"),
                             requirePoint(triangle.b, name, "triangle"),
-                            requirePoint(triangle.c, name, "triangle")},
-                           0);
+                            requirePoint(triangle.c, name, "triangle")});
 }
 
 ConvexShape flatShape(const Vec& normal, double offset, double reach, bool is_solid,

@@ -84,8 +84,8 @@ void BroadPhase::join(SlotNumber i) {
   members.push_back(i);
 }
 
-void BroadPhase::leave(SlotNumber i) {
-  std::vector<SlotNumber>& members = members_[at(i).place];
+void BroadPhase::leave(SlotNumber i, Place place) {
+  std::vector<SlotNumber>& members = members_[place];
   members[at(i).member] = members.back();
   at(members.back()).member = at(i).member;
   members.pop_back();
@@ -114,9 +114,18 @@ std::vector<BroadPhase::SlotNumber> BroadPhase::find(void* const* objects,
                                                      std::size_t count) const {
   std::vector<SlotNumber> slots;
   slots.reserve(count);
+  // As a rule the order is that of the insertion.
+  std::size_t next = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const auto entry = slot_of_.find(objects[i]);
-    slots.push_back(entry == slot_of_.end() ? -1 : entry->second);
+    if (!objects[i] || next >= slots_.size() || slots_[next].object != objects[i]) {
+      const auto entry = slot_of_.find(objects[i]);
+      if (entry == slot_of_.end()) {
+        slots.push_back(-1);
+        continue;
+      }
+      next = static_cast<std::size_t>(entry->second);
+    }
+    slots.push_back(static_cast<SlotNumber>(next++));
   }
   return slots;
 }
@@ -132,15 +141,18 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
     Slot& slot = at(number);
     if (!are_new) {
       if (slot.rests) markStale(number);
-      leave(number);
       if (slot.place != kUnbounded) {
         is_touched[slot.place] = true;
         if (!is_rebuilt[slot.place]) tree_[slot.place].remove(number);
       }
     }
+    const Place before = slot.place;
     setBounds(bounds.at(i), slot);
     if (slot.rests) markStale(number);
-    join(number);
+    if (are_new || slot.place != before) {
+      if (!are_new) leave(number, before);
+      join(number);
+    }
     if (slot.place == kUnbounded) continue;
     is_touched[slot.place] = true;
     if (!is_rebuilt[slot.place]) tree_[slot.place].insert({slot.box, number});
@@ -167,7 +179,7 @@ void BroadPhase::remove(const void* object) {
   const SlotNumber i = entry->second;
   slot_of_.erase(entry);
   if (at(i).rests) markStale(i);
-  leave(i);
+  leave(i, at(i).place);
   if (at(i).place != kUnbounded) tree_[at(i).place].remove(i);
   at(i).object = nullptr;
   free_.push_back(i);

@@ -136,7 +136,7 @@ class BroadPhase {
   SlotNumber newSlot(void* object);
   void setBounds(const MovingBounds& bounds, Slot& slot);
   void join(SlotNumber i);
-  void leave(SlotNumber i);
+  void leave(SlotNumber i, Place place);
   void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
               bool are_new);
   void buildTree(Place place);

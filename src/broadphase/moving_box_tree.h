@@ -35,7 +35,7 @@ class MovingBoxTree {
   void remove(std::int32_t object);
   /// @brief A new tree of these leaves: halved at the median of the widest axis, nodes in
   /// the order of a traversal.
-  void build(const std::vector<Leaf>& leaves);
+  void build(const std::vector<Leaf>& unordered);
   void clear();
 
   /// @brief Calls visit(object) for each object that a box may meet.
@@ -80,6 +80,7 @@ class MovingBoxTree {
   void replaceChild(std::int32_t parent, std::int32_t from, std::int32_t to);
   std::int32_t balance(std::int32_t node);
   void refitAbove(std::int32_t node);
+  std::vector<Leaf> inThisOrder(const std::vector<Leaf>& leaves) const;
   std::int32_t buildPart(const std::vector<Leaf>& leaves, Middle* first, Middle* last,
                          std::int32_t parent);
   template <typename Visit>

@@ -4,22 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/curved_gap.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-/// The corner of a box that is farthest along a direction; without the pad.
-Vec supportOf(const MotionBox& box, const Vec& d) {
-  Vec corner = {box.center[0], box.center[1], box.center[2]};
-  for (int i = 0; i < 3; ++i) {
-    const Vec axis = {box.axis[i][0], box.axis[i][1], box.axis[i][2]};
-    corner = corner + (dot(axis, d) < 0 ? -box.extent[i] : box.extent[i]) * axis;
-  }
-  return corner;
-}
 
 /// A point of b minus a point of a.
 struct Difference {
@@ -101,28 +92,6 @@ Nearest onFace(const Simplex& s, int i, int j, int k) {
   return best;
 }
 
-/// How deep the origin is inside a tetrahedron, less what its faces round by; 0 if it is
-/// not inside by more. Sets the weights of the vertices.
-double depthInside(Simplex& s) {
-  constexpr double kRounding = 0x1p-48;
-  double least = HUGE_VAL;
-  for (int i = 0; i < 4; ++i) {
-    const Vec &a = s.vertex[(i + 1) % 4].between, u = s.vertex[(i + 2) % 4].between - a,
-              v = s.vertex[(i + 3) % 4].between - a, n = cross(u, v);
-    const double length = norm(n),
-                 error = kRounding * norm(u) * norm(v) * norm(a) / length;
-    if (!(error < HUGE_VAL)) return 0;
-    const Vec across = s.vertex[i].between - a;
-    const double opposite = dot(n, across) / length, origin = -dot(n, a) / length;
-    // A flat tetrahedron has no inside.
-    if (!(std::abs(opposite) > kRounding * norm(u) * norm(v) * norm(across) / length))
-      return 0;
-    least = std::min(least, (opposite > 0 ? origin : -origin) - error);
-    s.weight[i] = origin / opposite;
-  }
-  return std::max(least, 0.);
-}
-
 Nearest nearestTo(const Simplex& s) {
   switch (s.count) {
     case 1:
@@ -162,6 +131,7 @@ class GapSearch {
 
   ConvexGap run(const Vec& guess) {
     constexpr int kMostRounds = 200, kRoundsToFlats = 3;
+    if (searchCurved(guess)) return out_;
     if (!add(guess)) add({1, 0, 0});
     Nearest nearest = nearestTo(simplex_);
     for (int round = 0; round < kMostRounds; ++round) {
@@ -174,7 +144,7 @@ class GapSearch {
       if (isEnough()) return out_;
       if (!is_new) break;
       if (simplex_.count == 4) {
-        out_.depth = depthInside(simplex_);
+        out_.depth = depthOfSimplex();
         if (out_.depth > 0) {
           setPoints(0);
           return out_;
@@ -184,11 +154,35 @@ class GapSearch {
       if (!(next.square < nearest.square)) break;
       nearest = next;
     }
-    tryAll();
+    // Near the end it rounds by more than the other method.
+    if (!searchCurved(out_.direction)) tryAll();
     return out_;
   }
 
  private:
+  /// Newton's method. A box of a tree is far away or overlaps, as a rule, so that a few
+  /// rounds of the other method are enough.
+  /// @return whether there is an answer
+  bool searchCurved(const Vec& guess) {
+    const double length = norm(guess);
+    if (set_[0]->box || set_[1]->box || !(length > 0x1p-500) ||
+        !(set_[0]->isCurved() || set_[1]->isCurved()))
+      return false;
+    ConvexGap found = out_;
+    const bool is_found = CurvedGapSearch(*set_[0], *set_[1], enough_, contact_)
+                              .run((1 / length) * guess, found);
+    out_.direction = found.direction;
+    out_.gap = found.gap;
+    if (is_found) out_ = found;
+    return is_found;
+  }
+
+  double depthOfSimplex() {
+    Vec corner[4];
+    for (int i = 0; i < 4; ++i) corner[i] = simplex_.vertex[i].between;
+    return depthInside(corner, simplex_.weight);
+  }
+
   bool isEnough() const {
     return out_.gap - enough_ >= 0.5 * (out_.distance - enough_) && out_.gap > enough_;
   }
@@ -303,42 +297,6 @@ class GapSearch {
 };
 
 }  // namespace
-
-Vec PosedConvex::support(const Vec& direction, int& id) const {
-  id = 0;
-  if (shape || box) {
-    const Vec d = rotatedBack(pose.rotation, direction),
-              local = shape ? shape->support(d) : supportOf(*box, d);
-    return posed(pose, local);
-  }
-  double most = -HUGE_VAL;
-  for (int k = 0; k < 3; ++k) {
-    const double along = dot(corner[k], direction);
-    if (!(along > most)) continue;
-    most = along;
-    id = k;
-  }
-  return corner[id];
-}
-
-double PosedConvex::reach(const Vec& direction) const {
-  int id;
-  return dot(direction, support(direction, id));
-}
-
-Vec PosedConvex::flatNormal(const Vec& direction) const {
-  if (!shape && !box) return cross(corner[1] - corner[0], corner[2] - corner[0]);
-  Vec best = direction;
-  double most = -1;
-  for (const auto& axis : (shape ? shape->box() : *box).axis) {
-    const Vec n = rotated(pose.rotation, {axis[0], axis[1], axis[2]});
-    const double along = std::abs(dot(n, direction));
-    if (!(along > most)) continue;
-    most = along;
-    best = n;
-  }
-  return best;
-}
 
 ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
                     double enough, double contact) {

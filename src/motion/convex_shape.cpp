@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 #include "motion/posed_vector.h"
@@ -13,6 +14,8 @@ namespace deformable {
 namespace {
 
 constexpr double kUpward = 1 + 0x1p-40;
+/// Pieces of a cone, a cylinder and a capsule.
+constexpr int kBase = 0, kTip = 1, kTop = 1;
 
 /// As norm(), also where squares are too small or too large for doubles.
 double anyNorm(const Vec& v) {
@@ -34,29 +37,43 @@ double circleReach(double radius, const Vec& d) {
 
 }  // namespace
 
-ConvexShape ConvexShape::hull(std::vector<Vec> points, double radius) {
+ConvexShape ConvexShape::hull(std::vector<Vec> points) {
   ConvexShape shape(Kind::kHull, {0, 0, 0});
   shape.points_ = std::move(points);
+  shape.setBoxOfHull();
+  return shape;
+}
+
+ConvexShape ConvexShape::capsule(double radius, double half_length) {
+  ConvexShape shape(Kind::kCapsule, {0, 0, half_length});
   shape.radius_ = radius;
-  shape.setBox();
+  shape.setBox({0, 0, 0}, shape.size_);
+  shape.fills_box_ = true;
+  return shape;
+}
+
+ConvexShape ConvexShape::cuboid(const Vec& half_sides) {
+  ConvexShape shape(Kind::kCuboid, half_sides);
+  shape.setBox({0, 0, 0}, half_sides);
+  shape.fills_box_ = true;
   return shape;
 }
 
 ConvexShape ConvexShape::ellipsoid(const Vec& half_axes) {
   ConvexShape shape(Kind::kEllipsoid, half_axes);
-  shape.setBox();
+  shape.setBox({0, 0, 0}, half_axes);
   return shape;
 }
 
 ConvexShape ConvexShape::cone(double radius, double height) {
   ConvexShape shape(Kind::kCone, {radius, radius, 0.5 * height});
-  shape.setBox();
+  shape.setBox({0, 0, 0}, shape.size_);
   return shape;
 }
 
 ConvexShape ConvexShape::cylinder(double radius, double height) {
   ConvexShape shape(Kind::kCylinder, {radius, radius, 0.5 * height});
-  shape.setBox();
+  shape.setBox({0, 0, 0}, shape.size_);
   return shape;
 }
 
@@ -72,8 +89,39 @@ ConvexShape ConvexShape::flat(const FlatShape& flat, double reach) {
   return shape;
 }
 
-Vec ConvexShape::support(const Vec& d) const {
+int ConvexShape::pieceAt(const Vec& d) const {
   switch (kind_) {
+    case Kind::kCapsule:
+      return d.z > 0 ? kTop : kBase;
+    case Kind::kCuboid:
+      return (d.x > 0 ? 1 : 0) + (d.y > 0 ? 2 : 0) + (d.z > 0 ? 4 : 0);
+    case Kind::kEllipsoid:
+      return 0;
+    case Kind::kCone:
+      return size_.z * d.z >= circleReach(size_.x, d) - size_.z * d.z ? kTip : kBase;
+    case Kind::kCylinder:
+      return d.z < 0 ? kBase : kTop;
+    default:
+      break;
+  }
+  std::size_t farthest = 0;
+  double most = dot(points_.front(), d);
+  for (std::size_t i = 1; i < points_.size(); ++i) {
+    const double along = dot(points_[i], d);
+    if (!(along > most)) continue;
+    most = along;
+    farthest = i;
+  }
+  return static_cast<int>(farthest);
+}
+
+Vec ConvexShape::supportOf(int piece, const Vec& d) const {
+  switch (kind_) {
+    case Kind::kCapsule:
+      return {0, 0, piece == kBase ? -size_.z : size_.z};
+    case Kind::kCuboid:
+      return {piece % 2 == 0 ? -size_.x : size_.x,
+              piece / 2 % 2 == 0 ? -size_.y : size_.y, piece < 4 ? -size_.z : size_.z};
     case Kind::kEllipsoid: {
       const Vec scaled = {size_.x * d.x, size_.y * d.y, size_.z * d.z};
       const double length = anyNorm(scaled);
@@ -82,27 +130,37 @@ Vec ConvexShape::support(const Vec& d) const {
               size_.z * (scaled.z / length)};
     }
     case Kind::kCone:
-      if (size_.z * d.z >= circleReach(size_.x, d) - size_.z * d.z)
-        return {0, 0, size_.z};
+      if (piece == kTip) return {0, 0, size_.z};
       return onCircle(size_.x, -size_.z, d);
     case Kind::kCylinder:
-      return onCircle(size_.x, d.z < 0 ? -size_.z : size_.z, d);
+      return onCircle(size_.x, piece == kBase ? -size_.z : size_.z, d);
     default:
-      break;
+      return points_[static_cast<std::size_t>(piece)];
   }
-  const Vec* farthest = &points_.front();
-  double most = dot(*farthest, d);
-  for (const Vec& point : points_) {
-    const double along = dot(point, d);
-    if (!(along > most)) continue;
-    most = along;
-    farthest = &point;
-  }
-  return *farthest;
+}
+
+Vec ConvexShape::support(const Vec& d) const { return supportOf(pieceAt(d), d); }
+
+Vec ConvexShape::supportChange(int piece, const Vec& d, const Vec& change) const {
+  if (!isCurved() || (kind_ == Kind::kCone && piece == kTip)) return {0, 0, 0};
+  const bool is_ellipsoid = kind_ == Kind::kEllipsoid;
+  // The derivative of a unit vector, between two changes of scale.
+  const Vec scale = {size_.x, size_.y, is_ellipsoid ? size_.z : 0},
+            along = {scale.x * d.x, scale.y * d.y, scale.z * d.z},
+            moved = {scale.x * change.x, scale.y * change.y, scale.z * change.z};
+  const double length = anyNorm(along);
+  if (!(length > 0)) return {0, 0, 0};
+  const Vec n = (1 / length) * along, across = moved - dot(n, moved) * n;
+  return {scale.x * (across.x / length), scale.y * (across.y / length),
+          scale.z * (across.z / length)};
 }
 
 double ConvexShape::reach(const Vec& d) const {
   switch (kind_) {
+    case Kind::kCapsule:
+      return size_.z * std::abs(d.z);
+    case Kind::kCuboid:
+      return size_.x * std::abs(d.x) + size_.y * std::abs(d.y) + size_.z * std::abs(d.z);
     case Kind::kEllipsoid:
       return anyNorm({size_.x * d.x, size_.y * d.y, size_.z * d.z});
     case Kind::kCone:
@@ -114,28 +172,46 @@ double ConvexShape::reach(const Vec& d) const {
   }
 }
 
-void ConvexShape::setBox() {
-  constexpr Vec kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-  Vec center = {0, 0, 0};
-  double square = 0;
-  for (int i = 0; i < 3; ++i) {
-    const Vec& axis = kAxes[i];
-    const double upper = reach(axis), lower = -reach(-1. * axis);
-    center = center + (0.5 * (upper + lower)) * axis;
-    box_.axis[i][0] = axis.x;
-    box_.axis[i][1] = axis.y;
-    box_.axis[i][2] = axis.z;
-    box_.extent[i] = 0.5 * (upper - lower);
-    square += box_.extent[i] * box_.extent[i];
+double ConvexShape::innerRadius() const {
+  switch (kind_) {
+    case Kind::kCuboid:
+    case Kind::kEllipsoid:
+    case Kind::kCylinder:
+      return std::min({size_.x, size_.y, size_.z});
+    case Kind::kCone: {
+      // The distance of the line from the base to the tip.
+      const double length = std::sqrt(size_.x * size_.x + 4 * size_.z * size_.z);
+      return length > 0 ? size_.x * (size_.z / length) : 0;
+    }
+    default:
+      return 0;
   }
+}
+
+void ConvexShape::setBoxOfHull() {
+  constexpr Vec kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  double center[3], half_side[3];
+  for (int i = 0; i < 3; ++i) {
+    const double upper = reach(kAxes[i]), lower = -reach(-1. * kAxes[i]);
+    center[i] = 0.5 * (upper + lower);
+    half_side[i] = 0.5 * (upper - lower);
+  }
+  setBox(vecOf(center), vecOf(half_side));
+  fills_box_ = hasCornersOfBox();
+}
+
+void ConvexShape::setBox(const Vec& center, const Vec& half_sides) {
+  for (int i = 0; i < 3; ++i) box_.axis[i][i] = 1;
   box_.center[0] = center.x;
   box_.center[1] = center.y;
   box_.center[2] = center.z;
-  // Every number above rounds by less than this.
-  box_.pad = 0x1p-45 * (norm(center) + std::sqrt(square));
-  box_.radius = std::sqrt(square) * kUpward + box_.pad;
-  box_.displacement = 0;
-  fills_box_ = hasCornersOfBox();
+  box_.extent[0] = half_sides.x;
+  box_.extent[1] = half_sides.y;
+  box_.extent[2] = half_sides.z;
+  // Every number here rounds by less than this.
+  const double half = norm(half_sides);
+  box_.pad = 0x1p-45 * (norm(center) + half);
+  box_.radius = half * kUpward + box_.pad;
 }
 
 bool ConvexShape::hasCornersOfBox() const {

@@ -30,7 +30,12 @@ class ConvexShape {
  public:
   /// @brief The hull of points.
   /// @pre there is a point; all are finite
-  static ConvexShape hull(std::vector<Vec> points, double radius);
+  static ConvexShape hull(std::vector<Vec> points);
+  /// @brief The points within `radius` of the edge of the z axis from -half_length to
+  /// half_length.
+  static ConvexShape capsule(double radius, double half_length);
+  /// @brief From minus these sizes to these sizes.
+  static ConvexShape cuboid(const Vec& half_sides);
   /// @brief All points with (x / a)^2 + (y / b)^2 + (z / c)^2 <= 1.
   static ConvexShape ellipsoid(const Vec& half_axes);
   /// @brief Around the z axis, from the base at -height / 2 to the tip at height / 2.
@@ -49,6 +54,24 @@ class ConvexShape {
   /// 2^-50 of the size.
   Vec support(const Vec& direction) const;
 
+  /// @brief The support function is the largest of those of smooth pieces: the points of
+  /// a hull, the ends of a capsule, the corners of a box, all of an ellipsoid, the tip
+  /// and the base of a cone, the ends of a cylinder. This is the number of the piece
+  /// along a direction.
+  int pieceAt(const Vec& direction) const;
+
+  /// @brief The point of a piece that is farthest along a direction. support() is that of
+  /// pieceAt().
+  Vec supportOf(int piece, const Vec& direction) const;
+
+  /// @brief The derivative of supportOf() along a change of the direction.
+  Vec supportChange(int piece, const Vec& direction, const Vec& change) const;
+
+  /// @brief Whether the derivative of a piece is not 0.
+  bool isCurved() const {
+    return kind_ == Kind::kEllipsoid || kind_ == Kind::kCone || kind_ == Kind::kCylinder;
+  }
+
   /// @brief The largest coordinate of the core along a direction that is not longer than
   /// 2, up to rounding by 2^-49 of the size.
   double reach(const Vec& direction) const;
@@ -62,18 +85,23 @@ class ConvexShape {
   /// @brief Whether the core is its box, up to the box's pad.
   bool fillsBox() const { return fills_box_; }
 
+  /// @brief The radius of a ball around the center inside of the core; 0: none is known.
+  double innerRadius() const;
+
   /// @brief A point inside.
   Vec center() const { return {box_.center[0], box_.center[1], box_.center[2]}; }
 
  private:
-  enum class Kind { kHull, kEllipsoid, kCone, kCylinder, kFlat };
+  enum class Kind { kHull, kCapsule, kCuboid, kEllipsoid, kCone, kCylinder, kFlat };
 
   ConvexShape(Kind kind, const Vec& size) : kind_(kind), size_(size) {}
-  void setBox();
+  void setBox(const Vec& center, const Vec& half_sides);
+  void setBoxOfHull();
   bool hasCornersOfBox() const;
 
   Kind kind_;
-  /// Half axes; or radius, radius and half height.
+  /// Half sides; half axes; or radius, radius and half height. Of a capsule that of the
+  /// edge.
   Vec size_;
   FlatShape flat_{};
   std::vector<Vec> points_;

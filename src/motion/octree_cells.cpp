@@ -169,7 +169,7 @@ const ConvexShape& OctreeCells::cell(std::int32_t leaf) {
   corners.reserve(8);
   for (unsigned i = 0; i < 8; ++i)
     corners.push_back({corner(i, 0), corner(i, 1), corner(i, 2)});
-  shapes_.push_back(ConvexShape::hull(std::move(corners), 0));
+  shapes_.push_back(ConvexShape::hull(std::move(corners)));
   node.shape = static_cast<std::int32_t>(shapes_.size()) - 1;
   return shapes_.back();
 }

@@ -125,6 +125,21 @@ std::vector<Pair> allPairs() {
   return pairs;
 }
 
+/// What a request without contacts says, which looks at the beginning first.
+double timeAlone(const Body& a, const Body& b) {
+  ContinuousCollisionRequest<double> request;
+  request.ccd_motion_type = CCDM_LINEAR;
+  request.toc_err = 1e-6;
+  ContinuousCollisionResult<double> result;
+  continuousCollide(a.geometry.get(), a.begin, a.end, b.geometry.get(), b.begin, b.end,
+                    request, result);
+  if (result.is_collide && result.time_of_contact == 0) {
+    EXPECT_TRUE(result.contact_tf1.isApprox(a.begin));
+    EXPECT_TRUE(result.contact_tf2.isApprox(b.begin));
+  }
+  return result.is_collide ? result.time_of_contact : 2;
+}
+
 class ShapePairs : public testing::TestWithParam<Pair> {};
 
 TEST_P(ShapePairs, AgreeWithDenseSampling) {
@@ -142,6 +157,9 @@ TEST_P(ShapePairs, AgreeWithDenseSampling) {
     ContinuousContactResult<double> result;
     continuousCollide(a.geometry.get(), a.begin, a.end, b.geometry.get(), b.begin, b.end,
                       request, result);
+    const double alone = timeAlone(a, b);
+    EXPECT_EQ(alone == 0, result.is_collide && result.time_of_contact == 0);
+    EXPECT_EQ(alone == 0, timeAlone(b, a) == 0);
     const double first = firstOverlap(a, b);
     if (first <= 1) {
       EXPECT_TRUE(result.is_collide);

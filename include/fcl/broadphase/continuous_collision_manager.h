@@ -83,14 +83,16 @@ class FCL_EXPORT ContinuousBroadPhase {
  public:
   /// Reads the geometry and the motion of an object.
   using Read = MovingGeometry<S> (*)(const void* object);
+  /// Asks for the memory that a Read will need soon.
+  using Prefetch = void (*)(const void* object);
 
   ContinuousBroadPhase();
   ~ContinuousBroadPhase();
   ContinuousBroadPhase(const ContinuousBroadPhase&) = delete;
   ContinuousBroadPhase& operator=(const ContinuousBroadPhase&) = delete;
 
-  void insert(void* const* objects, std::size_t count, Read read);
-  void update(void* const* objects, std::size_t count, Read read);
+  void insert(void* const* objects, std::size_t count, Read read, Prefetch prefetch);
+  void update(void* const* objects, std::size_t count, Read read, Prefetch prefetch);
   void remove(const void* object);
   void rebuild();
   void clear();
@@ -120,6 +122,10 @@ class FCL_EXPORT ContinuousBroadPhase {
 /// nothing of a motion that the library does not know.
 template <typename S>
 MovingGeometry<S> readObject(const void* object);
+
+/// @brief Asks for the memory of the object's motion.
+template <typename S>
+void prefetchObject(const void* object);
 
 }  // namespace detail
 
@@ -327,6 +333,15 @@ void requireUsable(const ContinuousCollisionObject<S>* object) {
 }
 
 template <typename S>
+void prefetchObject(const void* object) {
+  // Those of FCL's motions that are read, without their polynomials.
+  constexpr int kLine = 64, kLines = 6;
+  const auto* motion = reinterpret_cast<const char*>(
+      static_cast<const ContinuousCollisionObject<S>*>(object)->getMotion());
+  for (int i = 0; i < kLines; ++i) __builtin_prefetch(motion + i * kLine);
+}
+
+template <typename S>
 MovingGeometry<S> readObject(const void* object) {
   const auto& o = *static_cast<const ContinuousCollisionObject<S>*>(object);
   const MotionBase<S>& motion = *o.getMotion();
@@ -380,7 +395,8 @@ std::vector<void*> ContinuousCollisionManager<S>::addressesOf(
 template <typename S>
 void ContinuousCollisionManager<S>::registerObjects(const std::vector<Object*>& objects) {
   const std::vector<void*> addresses = addressesOf(objects);
-  boxes_.insert(addresses.data(), addresses.size(), &detail::readObject<S>);
+  boxes_.insert(addresses.data(), addresses.size(), &detail::readObject<S>,
+                &detail::prefetchObject<S>);
 }
 
 template <typename S>
@@ -410,7 +426,8 @@ void ContinuousCollisionManager<S>::setup() {
 template <typename S>
 void ContinuousCollisionManager<S>::update() {
   const std::vector<void*> objects = boxes_.objects();
-  boxes_.update(objects.data(), objects.size(), &detail::readObject<S>);
+  boxes_.update(objects.data(), objects.size(), &detail::readObject<S>,
+                &detail::prefetchObject<S>);
 }
 
 template <typename S>
@@ -421,7 +438,8 @@ void ContinuousCollisionManager<S>::update(Object* object) {
 template <typename S>
 void ContinuousCollisionManager<S>::update(const std::vector<Object*>& objects) {
   const std::vector<void*> addresses = addressesOf(objects);
-  boxes_.update(addresses.data(), addresses.size(), &detail::readObject<S>);
+  boxes_.update(addresses.data(), addresses.size(), &detail::readObject<S>,
+                &detail::prefetchObject<S>);
 }
 
 template <typename S>

@@ -64,6 +64,15 @@ ContinuousContacts<S>* contactsOf(ContinuousContactResult<S>& result) {
   return &result;
 }
 
+/// The pose of an object where it touches.
+template <typename S>
+Transform3<S> contactPose(const MovingGeometry<S>& o, S t) {
+  // Other paths begin within rounding of the first pose only.
+  const bool begins_there = o.path == PathKind::kStraight || o.path == PathKind::kTurn ||
+                            o.path == PathKind::kScrew;
+  return toTransform(t == 0 && begins_there ? o.pose[0] : poseAt(o, t));
+}
+
 /// Fills the fields of FCL's own result.
 template <typename S>
 void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
@@ -75,8 +84,8 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
     result.contact_tf2 = toTransform(o2.pose[1]);
     return;
   }
-  result.contact_tf1 = toTransform(poseAt(o1, outcome.toc_hi));
-  result.contact_tf2 = toTransform(poseAt(o2, outcome.toc_hi));
+  result.contact_tf1 = contactPose(o1, outcome.toc_hi);
+  result.contact_tf2 = contactPose(o2, outcome.toc_hi);
 }
 
 /// The path between two transforms that a request asks for.

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "api/overlapping_shapes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "api/convex_shapes.h"
+#include "api/query_arguments.h"
+#include "motion/overlap_at_start.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+using deformable::ConvexShape;
+
+/// Paths of numbers up to this are in the range of PreparedMotion.
+constexpr double kMostSize = 0x1p40;
+
+template <typename S>
+bool isInRange(const PoseNumbers<S>& pose) {
+  bool is_in_range = true;
+  for (const S x : pose.rotation) is_in_range &= std::abs(x) <= S(kMostSize);
+  for (const S x : pose.translation) is_in_range &= std::abs(x) <= S(kMostSize);
+  return is_in_range;
+}
+
+/// Whether nothing about the path can be wrong: see PreparedMotion.
+template <typename S>
+bool isPlain(const MovingGeometry<S>& o) {
+  const bool turns = o.path == PathKind::kTurn;
+  if (!turns && o.path != PathKind::kStraight && o.path != PathKind::kScrew) return false;
+  if (turns && (o.reference[0] != 0 || o.reference[1] != 0 || o.reference[2] != 0))
+    return false;
+  return isInRange(o.pose[0]) && isInRange(o.pose[1]);
+}
+
+bool isInRange(const ConvexShape& shape) {
+  if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostSize;
+  return shape.box().radius + shape.radius() <= kMostSize;
+}
+
+}  // namespace
+
+template <typename S>
+bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
+  using deformable::isConvexShape;
+  using deformable::isUnbounded;
+  if (!isConvexShape(*o1.geometry) || !isConvexShape(*o2.geometry) ||
+      (isUnbounded(*o1.geometry) && isUnbounded(*o2.geometry)) || !isPlain(o1) ||
+      !isPlain(o2))
+    return false;
+  const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
+                    b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
+  return isInRange(a) && isInRange(b) &&
+         deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+}
+
+template bool areOverlappingShapes(const MovingGeometry<double>&,
+                                   const MovingGeometry<double>&);
+template bool areOverlappingShapes(const MovingGeometry<float>&,
+                                   const MovingGeometry<float>&);
+
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The gap of two convex sets that are placed so that it is known: the point of one set
+// that is farthest along a direction lies at a distance from the one of the other set
+// that is farthest in the opposite direction.
+#include "motion/convex_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "mesh_generators.h"
+#include "motion/curved_gap.h"
+#include "motion/posed_vector.h"
+#include "posed_shape.h"
+
+namespace fcl {
+namespace test {
+namespace {
+
+using namespace detail::deformable;
+
+constexpr double kRounding = 1e-14;
+constexpr int kNumPairs = 200;
+
+Vec randomUnit(Random& random) {
+  const Vector3<double> d = randomDirection(random);
+  return {d[0], d[1], d[2]};
+}
+
+ConvexShape randomConvex(const std::string& kind, Random& random) {
+  const double size = random.uniform(0.2, 1), height = random.uniform(0.2, 2);
+  if (kind == "ellipsoid") return ConvexShape::ellipsoid({size, height, 0.5});
+  if (kind == "cone") return ConvexShape::cone(size, height);
+  if (kind == "cylinder") return ConvexShape::cylinder(size, height);
+  std::vector<Vec> points;
+  for (int i = 0; i < 8; ++i) points.push_back(randomUnit(random));
+  return ConvexShape::hull(points);
+}
+
+struct Case {
+  ConvexShape shape[2];
+  PosedConvex set[2];
+  /// From the first set to the second one, and the gap along it.
+  Vec direction;
+  double gap;
+
+  PosedConvex moved(int k, const Vec& way) const {
+    PosedConvex out = set[k];
+    for (Vec& corner : out.corner) corner = corner + way;
+    const double add[3] = {way.x, way.y, way.z};
+    for (int i = 0; i < 3; ++i) out.pose.translation[i] += add[i];
+    return out;
+  }
+};
+
+Pose randomPose(Random& random) {
+  const Matrix3<double> turn =
+      AngleAxis<double>(random.uniform(0, 3), randomDirection(random)).toRotationMatrix();
+  Pose pose;
+  for (int i = 0; i < 9; ++i) pose.rotation[i] = turn(i / 3, i % 3);
+  return pose;
+}
+
+/// A direction, and the point of the set that is farthest along it. Of a triangle the
+/// middle of an edge, at right angles to the direction.
+Vec touchingPoint(const PosedConvex& set, Random& random, Vec& direction) {
+  int id;
+  if (set.shape) return set.support(direction, id);
+  const Vec edge = set.corner[1] - set.corner[0],
+            away = 0.5 * (set.corner[0] + set.corner[1]) - set.corner[2],
+            across = cross(edge, cross(away, edge));
+  direction = (1 / norm(across)) * across +
+              random.uniform(-1, 1) * (1 / norm(cross(edge, away))) * cross(edge, away);
+  direction = (1 / norm(direction)) * direction;
+  return 0.5 * (set.corner[0] + set.corner[1]);
+}
+
+void setCase(const std::string& kind, double gap, Random& random, Case& out) {
+  out.gap = gap;
+  for (int k = 0; k < 2; ++k)
+    out.set[k] = {&out.shape[k], nullptr, randomPose(random), {}};
+  if (kind == "triangle") {
+    out.set[1].shape = nullptr;
+    for (Vec& corner : out.set[1].corner) corner = randomUnit(random);
+  }
+  Vec back = randomUnit(random);
+  const Vec second = touchingPoint(out.set[1], random, back);
+  out.direction = -1. * back;
+  int id;
+  const Vec first = out.set[0].support(out.direction, id);
+  out.set[1] = out.moved(1, first - second + gap * out.direction);
+}
+
+struct Counts {
+  /// Of all pairs, by Newton's method alone; and those that are found to overlap.
+  int answered{0}, overlapping{0};
+};
+
+/// @param gap  negative: they overlap by that much along the direction
+/// @param is_close  whether the points are at most twice as far apart as the gap
+Counts checkPairs(const std::string& kind1, const std::string& kind2, double gap,
+                  bool is_close) {
+  Counts counts;
+  Random random(17);
+  for (int i = 0; i < kNumPairs; ++i) {
+    SCOPED_TRACE(i);
+    Case at{{randomConvex(kind1, random), randomConvex(kind2, random)}, {}, {}, 0};
+    setCase(kind2, gap, random, at);
+    const Vec guess = at.direction + 0.1 * randomUnit(random);
+    ConvexGap newton{};
+    newton.gap = -HUGE_VAL;
+    counts.answered += CurvedGapSearch(at.set[0], at.set[1], 0, 0)
+                           .run((1 / norm(guess)) * guess, newton);
+    const ConvexGap found = convexGap(at.set[0], at.set[1], guess, 0, 0);
+    counts.overlapping += found.depth > 0;
+    EXPECT_LE(found.depth, std::max(-gap, 0.) + kRounding);
+    if (gap > 0) {
+      EXPECT_LE(found.gap, gap + kRounding);
+      EXPECT_GE(found.distance, gap - kRounding);
+      if (is_close) {
+        EXPECT_LE(found.distance, 2 * found.gap + kRounding);
+      }
+    } else if (found.depth > 0) {
+      EXPECT_LE(found.gap, kRounding);
+    }
+    // The order of the sets does not matter.
+    const ConvexGap swapped = convexGap(at.set[1], at.set[0], -1. * guess, 0, 0);
+    EXPECT_EQ(found.gap, swapped.gap);
+    EXPECT_EQ(found.distance, swapped.distance);
+    EXPECT_EQ(found.depth, swapped.depth);
+  }
+  return counts;
+}
+
+const char* const kAll[] = {"ellipsoid", "cone", "cylinder", "hull", "triangle"};
+
+TEST(ConvexGap, OfAnEllipsoidIsFoundByNewtonsMethod) {
+  for (const char* kind : kAll)
+    for (const double gap : {1., 1e-2, 1e-4, 1e-8, 1e-11}) {
+      SCOPED_TRACE(std::string(kind) + ", gap " + std::to_string(gap));
+      const Counts counts = checkPairs("ellipsoid", kind, gap, true);
+      EXPECT_GE(counts.answered, kNumPairs - 1);
+      EXPECT_EQ(counts.overlapping, 0);
+    }
+}
+
+/// Where two tips are nearest to each other, the other method comes before this one, and
+/// its points have about half of their digits.
+TEST(ConvexGap, OfCirclesIsFoundByNewtonsMethodAsARule) {
+  for (const char* circle : {"cone", "cylinder"})
+    for (const char* kind : kAll)
+      for (const double gap : {1., 1e-2, 1e-4, 1e-8, 1e-11}) {
+        SCOPED_TRACE(std::string(circle) + ", " + kind + ", gap " + std::to_string(gap));
+        const Counts counts = checkPairs(circle, kind, gap, gap >= 1e-4);
+        if (gap >= 1e-4) {
+          EXPECT_GE(counts.answered, 0.7 * kNumPairs);
+        }
+        EXPECT_EQ(counts.overlapping, 0);
+      }
+}
+
+TEST(ConvexGap, ShallowOverlapsOfAnEllipsoidAreProvedByNewtonsMethod) {
+  for (const char* kind : kAll)
+    for (const double gap : {-1e-4, -1e-8, -1e-11}) {
+      SCOPED_TRACE(std::string(kind) + ", gap " + std::to_string(gap));
+      const Counts counts = checkPairs("ellipsoid", kind, gap, true);
+      EXPECT_GE(counts.answered, 0.96 * kNumPairs);
+      EXPECT_EQ(counts.overlapping, kNumPairs);
+    }
+}
+
+}  // namespace
+}  // namespace test
+}  // namespace fcl
