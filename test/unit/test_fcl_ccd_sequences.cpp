@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <regex>
 #include <set>
@@ -517,6 +519,99 @@ TEST(CcdTriangulate, ConvexPolygonsBecomeFans) {
   // A face without an ear becomes a fan, too.
   const Vertices point(5, {1, 1, 1});
   EXPECT_EQ(fcl_ccd::triangulate(point, polygon(5)).size(), 3u);
+}
+
+Eigen::Vector3d point(const Vertices& vertices, int id) {
+  return Eigen::Vector3d(vertices[static_cast<std::size_t>(id)].data());
+}
+
+double distanceToEdge(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                      const Eigen::Vector3d& b) {
+  const double along = (p - a).dot(b - a) / (b - a).squaredNorm();
+  return (p - a - std::clamp(along, 0.0, 1.0) * (b - a)).norm();
+}
+
+/// @brief Expects that triangles cover a polygon of this area once, and that no corner is
+/// near an edge of a triangle, except where it is an end of the edge.
+void expectConforming(const Vertices& shape, double area, double distance) {
+  const Triangles triangles = fcl_ccd::triangulate(shape, polygon(shape.size()));
+  EXPECT_EQ(triangles.size(), shape.size() - 2);
+  double covered = 0;
+  for (const auto& t : triangles) {
+    const Eigen::Vector3d a = point(shape, t[0]);
+    covered += 0.5 * (point(shape, t[1]) - a).cross(point(shape, t[2]) - a).norm();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int end0 = t[k], end1 = t[(k + 1) % 3];
+      for (int corner = 0; corner < static_cast<int>(shape.size()); ++corner)
+        if (corner != end0 && corner != end1) {
+          const double found = distanceToEdge(point(shape, corner), point(shape, end0),
+                                              point(shape, end1));
+          EXPECT_GT(found, distance);
+        }
+    }
+  }
+  EXPECT_NEAR(covered, area, 1e-4);
+}
+
+/// @brief Stairs up and down, with a corner at every unit of length.
+Vertices stairs(const std::vector<int>& heights) {
+  Vertices ends{{0, 0, 0}};
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    for (const std::size_t x : {i, i + 1})
+      ends.push_back({double(x), double(heights[i]), 0});
+  ends.push_back({double(heights.size()), 0, 0});
+  Vertices corners;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto &a = ends[i], &b = ends[(i + 1) % ends.size()];
+    const double length = std::abs(b[0] - a[0]) + std::abs(b[1] - a[1]);
+    for (double s = 0; s < length; ++s)
+      corners.push_back(
+          {a[0] + (b[0] - a[0]) * s / length, a[1] + (b[1] - a[1]) * s / length, 0});
+  }
+  return corners;
+}
+
+// Corners on straight runs, also straight up to the rounding to double and to six
+// decimals. Points of a grid of this size are at least 0.09 from a line through others.
+TEST(CcdTriangulate, NoCornerIsOnAnEdgeOfAnotherTriangle) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<int> heights(1 + random() % 6);
+    for (int& height : heights) height = 1 + static_cast<int>(random() % 4);
+    Vertices corners = stairs(heights);
+    if (i % 2 == 1) std::reverse(corners.begin(), corners.end());
+    std::rotate(corners.begin(),
+                corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()),
+                corners.end());
+    const double area = std::accumulate(heights.begin(), heights.end(), 0.0);
+    expectConforming(corners, area, 0.09);
+    const Eigen::Vector3d axis(number(random), number(random), number(random));
+    const Eigen::AngleAxisd rotation(3 * number(random), axis.normalized());
+    Vertices turned = corners, rounded = corners;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Eigen::Vector3d p = rotation * point(corners, static_cast<int>(k)) + axis;
+      turned[k] = {p[0], p[1], p[2]};
+      for (std::size_t j = 0; j < 3; ++j) rounded[k][j] = std::round(1e6 * p[j]) / 1e6;
+    }
+    expectConforming(turned, area, 0.09);
+    expectConforming(rounded, area, 0.09);
+  }
+}
+
+// The corners in the middle of the sides touched triangles of the fan.
+TEST_F(CcdSequence, StraightCornersOfAFaceAreNoContacts) {
+  const auto square = [](double z) {
+    std::string text;
+    for (const char* xy : {"0 0", "1 0", "2 0", "2 1", "2 2", "1 2", "0 2", "0 1"})
+      text += std::string("v ") + xy + ' ' + exactText(z) + '\n';
+    return text + "f 1 2 3 4 5 6 7 8\n";
+  };
+  writeText(path("a.obj"), square(0));
+  writeText(path("b.obj"), square(0.1));
+  const Outcome outcome = run("run a.obj b.obj --contacts c.csv");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
 }
 
 // The second frame alone would be divided along the other diagonal.

@@ -45,7 +45,7 @@ constexpr const char* kRunDetails = R"(Frames:
   All frames of a mesh have the same vertices and faces in the same order.
   Formats: OBJ, PLY (ascii and binary, float and double), OFF (text), STL (ascii and
   binary). Polygons are divided into triangles, in all frames as in the first. A convex
-  polygon becomes the fan of triangles around its first vertex.
+  polygon that turns at every corner becomes the fan of triangles around its first vertex.
   All files are checked before the first step. Positions in binary PLY files are checked
   in their step.
   Step i goes from frame i to frame i + 1, counted from 0. Vertices move on straight lines.
