@@ -337,6 +337,45 @@ TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
   }
 }
 
+/// @brief Sends SIGTERM to a run, and again after some time.
+/// @param repeat  each step is done so many times
+/// @return the exit status
+int terminateTwice(const fs::path& folder, const char* repeat,
+                   std::chrono::milliseconds between) {
+  const pid_t child = start(folder, {"fcl-ccd", "run", "f", "--repeat", repeat,
+                                     "--contacts", "c.csv", "--steps", "s.jsonl"});
+  while (linesOf(readText(folder / "s.jsonl")).empty())
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  kill(child, SIGTERM);
+  std::this_thread::sleep_for(between);
+  kill(child, SIGTERM);
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
+}
+
+// timeout(1) sends SIGTERM to the program, then to its group.
+TEST_F(CcdSequence, TwoSignalsAtOnceAreOne) {
+  writeFrames(20);
+  for (const int between : {0, 1, 20}) {
+    const int status =
+        terminateTwice(path(""), "50000", std::chrono::milliseconds(between));
+    ASSERT_TRUE(WIFEXITED(status)) << between;
+    EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+    EXPECT_NE(readText(path("err.txt")).find("of 19 steps"), std::string::npos);
+    fs::remove(path("s.jsonl"));
+  }
+}
+
+TEST_F(CcdSequence, ALaterSignalEndsTheProgramAtOnce) {
+  writeFrames(3);
+  // A step would take minutes.
+  const int status =
+      terminateTwice(path(""), "100000000", std::chrono::milliseconds(600));
+  ASSERT_TRUE(WIFSIGNALED(status)) << status;
+  EXPECT_EQ(WTERMSIG(status), SIGTERM);
+}
+
 // The moments are random: before the first step, between two, in the middle of one. Each
 // run is killed four times, and goes on each time from what was left.
 TEST_F(CcdSequence, RunsThatAreKilledAtTwentyMomentsAreResumed) {

@@ -78,8 +78,8 @@ Output:
   --contacts and --steps grow with each step. --json and --paint are written at the end.
 
 Stopping:
-  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. A second signal
-  ends the program at once.
+  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. Another signal,
+  half a second after the first or later, ends the program at once.
   --resume continues after the last whole step in the files of --contacts and --steps. At
   the end the files are as if the run had never stopped. There may be more frames than
   before, but not with --weld.
