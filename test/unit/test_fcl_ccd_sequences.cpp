@@ -73,6 +73,20 @@ TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
                 "A has 2 frames and B 3");
 }
 
+TEST_F(CcdSequence, NamesThatAreNotUtf8AreWrittenAndResumed) {
+  writeFrames(4);
+  fs::rename(path("f"), path("f\xff\xfe"));
+  const auto whole = outputsOf("run f\xff\xfe --json r.json");
+  ASSERT_EQ(linesOf(whole.second).size(), 5u);
+  for (const std::string& text : {whole.second, readText(path("r.json"))})
+    EXPECT_NE(text.find("\"f\xEF\xBF\xBD\xEF\xBF\xBD/tip0.ply\""), std::string::npos)
+        << text;
+  const std::vector<std::string> lines = linesOf(whole.second);
+  writeText(path("s.jsonl"), lines[0] + '\n' + lines[1] + '\n');
+  writeText(path("c.csv"), whole.first);
+  EXPECT_EQ(outputsOf("run f\xff\xfe --resume"), whole);
+}
+
 // All frames are checked before the first step.
 TEST_F(CcdSequence, NamesTheFileThatDiffers) {
   writeFrames(8);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <new>
 #include <optional>
@@ -174,7 +175,7 @@ class Run {
       return end(kBadFrame, "out of memory. Fewer --jobs need less");
     } catch (const RankLost& error) {
       return end(kRankLost, error.what());
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       return end(kBadFrame, error.what());
     }
     return end(last.end_code, last.cause);
