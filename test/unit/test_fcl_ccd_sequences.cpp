@@ -4,6 +4,7 @@
 // stopped and continued, and how faces and vertices are changed on the way.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -71,6 +72,29 @@ TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
   expectFailure("run f/tip0.ply f/tip2.ply --start 0", "named one by one");
   expectFailure("run f/tip0.ply f/tip2.ply --against f f/tip0.ply",
                 "A has 2 frames and B 3");
+}
+
+// A pipe would be waited for without end.
+TEST_F(CcdSequence, RefusesFramesThatAreNoRegularFiles) {
+  const std::string outputs = " --contacts c.csv --steps s.jsonl";
+  for (const std::size_t frame : {0u, 2u}) {
+    writeFrames(3);
+    fs::remove(path(frameName(frame)));
+    ASSERT_EQ(mkfifo(path(frameName(frame)).c_str(), 0600), 0);
+    expectFailure("run f" + outputs, frameName(frame) + ": cannot read: it is not a");
+    expectFailure("run f --weld" + outputs,
+                  frameName(frame) + ": cannot read: it is not a");
+    fs::remove(path(frameName(frame)));
+    fs::create_symlink("/dev/null", path(frameName(frame)));
+    expectFailure("run f" + outputs, frameName(frame) + ": cannot read: it is not a");
+    fs::remove(path(frameName(frame)));
+  }
+  writeText(path("a.obj"), toObj(floorAndTip(0)));
+  ASSERT_EQ(mkfifo(path("b.obj").c_str(), 0600), 0);
+  expectFailure("run a.obj b.obj" + outputs, "b.obj: cannot read: it is not a regular");
+  // A link to a regular file is one.
+  fs::create_symlink("a.obj", path("c.obj"));
+  EXPECT_EQ(run("run a.obj c.obj").exit_code, 0);
 }
 
 TEST_F(CcdSequence, NamesThatAreNotUtf8AreWrittenAndResumed) {
