@@ -67,11 +67,46 @@ TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
   expectFailure("run f --end 2", "f: has files 0 to 1, so that --end 2 is too high");
   expectFailure("run f --end 0", "A needs two frames or more");
   expectFailure("run 'f/no*.ply'", "f/no*.ply: no file matches");
+  for (const char* word : {"f", "'f/*.ply'", "f/tip%d.ply"})
+    for (const std::string option : {"--start -3", "--end -1"})
+      expectFailure("run " + (word + (" " + option)),
+                    option + ": frames are counted from 0");
+  for (const char* word : {"'?/tip*.ply'", "'?/tip%d.ply'", "'?/tip0.ply'"})
+    expectFailure("run " + std::string(word), "there is no folder ?. *, ? and [...]");
   expectFailure("run empty", "empty: the folder has no");
   expectFailure("run mixed", "mixed: the folder has .obj and .off files");
   expectFailure("run f/tip0.ply f/tip2.ply --start 0", "named one by one");
   expectFailure("run f/tip0.ply f/tip2.ply --against f f/tip0.ply",
                 "A has 2 frames and B 3");
+}
+
+TEST_F(CcdSequence, NotesNumbersThatAreMissing) {
+  const auto noteOn = [](const std::vector<std::string>& numbers) {
+    std::vector<std::string> frames;
+    for (const std::string& number : numbers)
+      frames.push_back("f2/a" + number + "_9.ply");
+    return fcl_ccd::noteOnGaps(frames);
+  };
+  const std::string missing =
+      "f2/a1_9.ply: the next file is f2/a3_9.ply; numbers between them are missing";
+  EXPECT_EQ(noteOn({"0", "1", "3", "4"}), missing);
+  EXPECT_EQ(noteOn({"0", "1", "3", "4", "5", "8"}),
+            missing + ". There are 2 such places");
+  EXPECT_NE(noteOn({"000", "010", "020", "040"}), "");
+  EXPECT_EQ(noteOn({"8", "9", "10", "11"}), "");
+  EXPECT_EQ(noteOn({"0", "10", "20"}), "");
+  EXPECT_EQ(noteOn({"0", "7", "11", "30"}), "");  // of no rule
+  EXPECT_EQ(noteOn({"1", "2", "1", "2"}), "");
+  EXPECT_EQ(noteOn({"a", "b", "c"}), "");
+  EXPECT_EQ(noteOn({"", "", ""}), "");
+
+  writeFrames(6);
+  fs::remove(path("f/tip4.ply"));
+  const Outcome outcome = run("run f");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "fcl-ccd: f/tip3.ply: the next file is f/tip5.ply; numbers between them are "
+            "missing\n");
 }
 
 // A pipe would be waited for without end.
