@@ -197,7 +197,7 @@ class Run {
     try {
       outputs_.rollBack();
       outputs_.finish(code == 0);
-      if (num_steps_ > 1) print(summaryLines(outputs_.summary()));
+      print(summaryLines(outputs_.summary()));
     } catch (const WriteError& error) {
       return endAfter(error);
     }

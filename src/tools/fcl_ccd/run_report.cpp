@@ -122,8 +122,9 @@ std::string tableRow(const StepReport& report) {
 
 std::string summaryLines(const RunSummary& summary) {
   std::string lines =
-      std::to_string(summary.steps) + " steps, " + std::to_string(summary.vf) +
-      (summary.at_distance ? " vf, " : " vf and ") + std::to_string(summary.ee) +
+      std::to_string(summary.steps) + (summary.steps == 1 ? " step, " : " steps, ") +
+      std::to_string(summary.vf) + (summary.at_distance ? " vf, " : " vf and ") +
+      std::to_string(summary.ee) +
       (summary.at_distance ? " ee, " + std::to_string(summary.ve) + " ve and " +
                                  std::to_string(summary.vv) + " vv contacts; "
                            : " ee contacts; ") +
