@@ -17,16 +17,23 @@ double turn(const Point2& a, const Point2& b, const Point2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// The sine of an angle below which three points count as points of a line. Rounded to
-/// six digits, the fewest that programs write, a point moves by up to 5e-6 of its
-/// coordinate, and as a float by 6e-8. Polygons with fewer than 400,000 corners on a
-/// circle turn by more at each.
-constexpr double kStraight = 1.5e-5;
+/// The sine of an angle below which three points count as points of a line: 0.06 degrees.
+/// Rounded to six digits, the fewest that programs write, a point moves by up to 5e-6 of
+/// its coordinate. This is the angle at an edge of 1/200 of the coordinate. A polygon of
+/// fewer than 6,000 corners on a circle turns by more at each.
+constexpr double kStraight = 1e-3;
+
+/// The angles with which ears are searched, each when there is no ear left with the one
+/// before. A thin face has only thin ears.
+constexpr double kStraightOfEars[] = {kStraight, 1e-6, 1e-9, 0};
 
 /// @brief The least turn() of three points that are not on a line, for this sine of an
 /// angle between b - a and c - b.
 double leastTurn(double sine, const Point2& a, const Point2& b, const Point2& c) {
-  return sine * std::hypot(b.x - a.x, b.y - a.y) * std::hypot(c.x - b.x, c.y - b.y);
+  const auto squared = [](const Point2& p, const Point2& q) {
+    return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
+  };
+  return sine * std::sqrt(squared(a, b)) * std::sqrt(squared(b, c));
 }
 
 /// @brief Twice the sum of the areas that the polygon covers in the planes yz, zx and xy.
@@ -91,7 +98,8 @@ class Ring {
       if (id == corners_[before] || id == corners_[i] || id == corners_[after]) continue;
       const Point2& p = points_[k];
       const auto isBeside = [&](const Point2& from, const Point2& to) {
-        return turn(from, to, p) >= -leastTurn(straight, from, to, p);
+        const double side = turn(from, to, p);
+        return side >= 0 || side >= -leastTurn(straight, from, to, p);
       };
       if (isBeside(a, b) && isBeside(b, c) && isBeside(c, a)) return false;
     }
@@ -129,14 +137,14 @@ void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
   std::vector<Point2> points = project(vertices, corners);
   if (isStrictlyConvex(points)) return addFan(corners, out);
   Ring ring(corners, std::move(points));
-  for (std::size_t i = 0; ring.size() > 3;) {
-    std::size_t ear = ring.findEar(i, kStraight);
-    // A thin face may have no other ears than thin ones.
-    if (ear == ring.size()) ear = ring.findEar(i, 0);
-    if (ear == ring.size()) break;
-    i = ear;
-    ring.cut(i, out);
-    i %= ring.size();
+  std::size_t i = 0;
+  for (const double straight : kStraightOfEars) {
+    while (ring.size() > 3) {
+      const std::size_t ear = ring.findEar(i, straight);
+      if (ear == ring.size()) break;
+      ring.cut(ear, out);
+      i = ear % ring.size();
+    }
   }
   addFan(ring.corners(), out);
 }
