@@ -4,12 +4,15 @@
 // stopped and continued, and how faces and vertices are changed on the way.
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/stat.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <numeric>
 #include <random>
 #include <regex>
 #include <set>
@@ -64,11 +67,83 @@ TEST_F(CcdSequence, RefusesListsOfFramesByNameAndCause) {
   expectFailure("run f --end 2", "f: has files 0 to 1, so that --end 2 is too high");
   expectFailure("run f --end 0", "A needs two frames or more");
   expectFailure("run 'f/no*.ply'", "f/no*.ply: no file matches");
+  for (const char* word : {"f", "'f/*.ply'", "f/tip%d.ply"})
+    for (const std::string option : {"--start -3", "--end -1"})
+      expectFailure("run " + (word + (" " + option)),
+                    option + ": frames are counted from 0");
+  for (const char* word : {"'?/tip*.ply'", "'?/tip%d.ply'", "'?/tip0.ply'"})
+    expectFailure("run " + std::string(word), "there is no folder ?. *, ? and [...]");
   expectFailure("run empty", "empty: the folder has no");
   expectFailure("run mixed", "mixed: the folder has .obj and .off files");
   expectFailure("run f/tip0.ply f/tip2.ply --start 0", "named one by one");
   expectFailure("run f/tip0.ply f/tip2.ply --against f f/tip0.ply",
                 "A has 2 frames and B 3");
+}
+
+TEST_F(CcdSequence, NotesNumbersThatAreMissing) {
+  const auto noteOn = [](const std::vector<std::string>& numbers) {
+    std::vector<std::string> frames;
+    for (const std::string& number : numbers)
+      frames.push_back("f2/a" + number + "_9.ply");
+    return fcl_ccd::noteOnGaps(frames);
+  };
+  const std::string missing =
+      "f2/a1_9.ply: the next file is f2/a3_9.ply; numbers between them are missing";
+  EXPECT_EQ(noteOn({"0", "1", "3", "4"}), missing);
+  EXPECT_EQ(noteOn({"0", "1", "3", "4", "5", "8"}),
+            missing + ". There are 2 such places");
+  EXPECT_NE(noteOn({"000", "010", "020", "040"}), "");
+  EXPECT_EQ(noteOn({"8", "9", "10", "11"}), "");
+  EXPECT_EQ(noteOn({"0", "10", "20"}), "");
+  EXPECT_EQ(noteOn({"0", "7", "11", "30"}), "");  // of no rule
+  EXPECT_EQ(noteOn({"1", "2", "1", "2"}), "");
+  EXPECT_EQ(noteOn({"a", "b", "c"}), "");
+  EXPECT_EQ(noteOn({"", "", ""}), "");
+
+  writeFrames(6);
+  fs::remove(path("f/tip4.ply"));
+  const Outcome outcome = run("run f");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(outcome.err,
+            "fcl-ccd: f/tip3.ply: the next file is f/tip5.ply; numbers between them are "
+            "missing\n");
+}
+
+// A pipe would be waited for without end.
+TEST_F(CcdSequence, RefusesFramesThatAreNoRegularFiles) {
+  const std::string outputs = " --contacts c.csv --steps s.jsonl";
+  for (const std::size_t frame : {0u, 2u}) {
+    writeFrames(3);
+    fs::remove(path(frameName(frame)));
+    ASSERT_EQ(mkfifo(path(frameName(frame)).c_str(), 0600), 0);
+    expectFailure("run f" + outputs, frameName(frame) + ": cannot read: it is not a");
+    expectFailure("run f --weld" + outputs,
+                  frameName(frame) + ": cannot read: it is not a");
+    fs::remove(path(frameName(frame)));
+    fs::create_symlink("/dev/null", path(frameName(frame)));
+    expectFailure("run f" + outputs, frameName(frame) + ": cannot read: it is not a");
+    fs::remove(path(frameName(frame)));
+  }
+  writeText(path("a.obj"), toObj(floorAndTip(0)));
+  ASSERT_EQ(mkfifo(path("b.obj").c_str(), 0600), 0);
+  expectFailure("run a.obj b.obj" + outputs, "b.obj: cannot read: it is not a regular");
+  // A link to a regular file is one.
+  fs::create_symlink("a.obj", path("c.obj"));
+  EXPECT_EQ(run("run a.obj c.obj").exit_code, 0);
+}
+
+TEST_F(CcdSequence, NamesThatAreNotUtf8AreWrittenAndResumed) {
+  writeFrames(4);
+  fs::rename(path("f"), path("f\xff\xfe"));
+  const auto whole = outputsOf("run f\xff\xfe --json r.json");
+  ASSERT_EQ(linesOf(whole.second).size(), 5u);
+  for (const std::string& text : {whole.second, readText(path("r.json"))})
+    EXPECT_NE(text.find("\"f\xEF\xBF\xBD\xEF\xBF\xBD/tip0.ply\""), std::string::npos)
+        << text;
+  const std::vector<std::string> lines = linesOf(whole.second);
+  writeText(path("s.jsonl"), lines[0] + '\n' + lines[1] + '\n');
+  writeText(path("c.csv"), whole.first);
+  EXPECT_EQ(outputsOf("run f\xff\xfe --resume"), whole);
 }
 
 // All frames are checked before the first step.
@@ -335,6 +410,45 @@ TEST_F(CcdSequence, SignalsLeaveTheStepsThatWereDone) {
   }
 }
 
+/// @brief Sends SIGTERM to a run, and again after some time.
+/// @param repeat  each step is done so many times
+/// @return the exit status
+int terminateTwice(const fs::path& folder, const char* repeat,
+                   std::chrono::milliseconds between) {
+  const pid_t child = start(folder, {"fcl-ccd", "run", "f", "--repeat", repeat,
+                                     "--contacts", "c.csv", "--steps", "s.jsonl"});
+  while (linesOf(readText(folder / "s.jsonl")).empty())
+    std::this_thread::sleep_for(std::chrono::microseconds(200));
+  kill(child, SIGTERM);
+  std::this_thread::sleep_for(between);
+  kill(child, SIGTERM);
+  int status = 0;
+  EXPECT_EQ(waitpid(child, &status, 0), child);
+  return status;
+}
+
+// timeout(1) sends SIGTERM to the program, then to its group.
+TEST_F(CcdSequence, TwoSignalsAtOnceAreOne) {
+  writeFrames(20);
+  for (const int between : {0, 1, 20}) {
+    const int status =
+        terminateTwice(path(""), "50000", std::chrono::milliseconds(between));
+    ASSERT_TRUE(WIFEXITED(status)) << between;
+    EXPECT_EQ(WEXITSTATUS(status), 128 + SIGTERM);
+    EXPECT_NE(readText(path("err.txt")).find("of 19 steps"), std::string::npos);
+    fs::remove(path("s.jsonl"));
+  }
+}
+
+TEST_F(CcdSequence, ALaterSignalEndsTheProgramAtOnce) {
+  writeFrames(3);
+  // A step would take minutes.
+  const int status =
+      terminateTwice(path(""), "100000000", std::chrono::milliseconds(600));
+  ASSERT_TRUE(WIFSIGNALED(status)) << status;
+  EXPECT_EQ(WTERMSIG(status), SIGTERM);
+}
+
 // The moments are random: before the first step, between two, in the middle of one. Each
 // run is killed four times, and goes on each time from what was left.
 TEST_F(CcdSequence, RunsThatAreKilledAtTwentyMomentsAreResumed) {
@@ -517,6 +631,99 @@ TEST(CcdTriangulate, ConvexPolygonsBecomeFans) {
   // A face without an ear becomes a fan, too.
   const Vertices point(5, {1, 1, 1});
   EXPECT_EQ(fcl_ccd::triangulate(point, polygon(5)).size(), 3u);
+}
+
+Eigen::Vector3d point(const Vertices& vertices, int id) {
+  return Eigen::Vector3d(vertices[static_cast<std::size_t>(id)].data());
+}
+
+double distanceToEdge(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                      const Eigen::Vector3d& b) {
+  const double along = (p - a).dot(b - a) / (b - a).squaredNorm();
+  return (p - a - std::clamp(along, 0.0, 1.0) * (b - a)).norm();
+}
+
+/// @brief Expects that triangles cover a polygon of this area once, and that no corner is
+/// near an edge of a triangle, except where it is an end of the edge.
+void expectConforming(const Vertices& shape, double area, double distance) {
+  const Triangles triangles = fcl_ccd::triangulate(shape, polygon(shape.size()));
+  EXPECT_EQ(triangles.size(), shape.size() - 2);
+  double covered = 0;
+  for (const auto& t : triangles) {
+    const Eigen::Vector3d a = point(shape, t[0]);
+    covered += 0.5 * (point(shape, t[1]) - a).cross(point(shape, t[2]) - a).norm();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int end0 = t[k], end1 = t[(k + 1) % 3];
+      for (int corner = 0; corner < static_cast<int>(shape.size()); ++corner)
+        if (corner != end0 && corner != end1) {
+          const double found = distanceToEdge(point(shape, corner), point(shape, end0),
+                                              point(shape, end1));
+          EXPECT_GT(found, distance);
+        }
+    }
+  }
+  EXPECT_NEAR(covered, area, 0.01);
+}
+
+/// @brief Stairs up and down, with a corner at every unit of length.
+Vertices stairs(const std::vector<int>& heights) {
+  Vertices ends{{0, 0, 0}};
+  for (std::size_t i = 0; i < heights.size(); ++i)
+    for (const std::size_t x : {i, i + 1})
+      ends.push_back({double(x), double(heights[i]), 0});
+  ends.push_back({double(heights.size()), 0, 0});
+  Vertices corners;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto &a = ends[i], &b = ends[(i + 1) % ends.size()];
+    const double length = std::abs(b[0] - a[0]) + std::abs(b[1] - a[1]);
+    for (double s = 0; s < length; ++s)
+      corners.push_back(
+          {a[0] + (b[0] - a[0]) * s / length, a[1] + (b[1] - a[1]) * s / length, 0});
+  }
+  return corners;
+}
+
+// Corners on straight runs, also straight up to the rounding to double and to four
+// decimals. Points of a grid of this size are at least 0.09 from a line through others.
+TEST(CcdTriangulate, NoCornerIsOnAnEdgeOfAnotherTriangle) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> number(-1, 1);
+  for (int i = 0; i < 200; ++i) {
+    std::vector<int> heights(1 + random() % 6);
+    for (int& height : heights) height = 1 + static_cast<int>(random() % 4);
+    Vertices corners = stairs(heights);
+    if (i % 2 == 1) std::reverse(corners.begin(), corners.end());
+    std::rotate(corners.begin(),
+                corners.begin() + static_cast<std::ptrdiff_t>(random() % corners.size()),
+                corners.end());
+    const double area = std::accumulate(heights.begin(), heights.end(), 0.0);
+    expectConforming(corners, area, 0.09);
+    const Eigen::Vector3d axis(number(random), number(random), number(random));
+    const Eigen::AngleAxisd rotation(3 * number(random), axis.normalized());
+    Vertices turned = corners, rounded = corners;
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      const Eigen::Vector3d p = rotation * point(corners, static_cast<int>(k)) + axis;
+      turned[k] = {p[0], p[1], p[2]};
+      for (std::size_t j = 0; j < 3; ++j) rounded[k][j] = std::round(1e4 * p[j]) / 1e4;
+    }
+    expectConforming(turned, area, 0.09);
+    expectConforming(rounded, area, 0.09);
+  }
+}
+
+// The corners in the middle of the sides touched triangles of the fan.
+TEST_F(CcdSequence, StraightCornersOfAFaceAreNoContacts) {
+  const auto square = [](double z) {
+    std::string text;
+    for (const char* xy : {"0 0", "1 0", "2 0", "2 1", "2 2", "1 2", "0 2", "0 1"})
+      text += std::string("v ") + xy + ' ' + exactText(z) + '\n';
+    return text + "f 1 2 3 4 5 6 7 8\n";
+  };
+  writeText(path("a.obj"), square(0));
+  writeText(path("b.obj"), square(0.1));
+  const Outcome outcome = run("run a.obj b.obj --contacts c.csv");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
 }
 
 // The second frame alone would be divided along the other diagonal.

@@ -3,10 +3,13 @@
 // Runs the program fcl-ccd as a user does, on meshes that are small enough to know the
 // answer. Runs its mesh reader on files of every format, complete and broken.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -18,6 +21,7 @@
 #include "ccd_tool.h"
 #include "csv_rows.h"
 #include "mesh_io.h"
+#include "output_file.h"
 
 namespace {
 
@@ -212,7 +216,9 @@ TEST_F(CcdTool, FindsAVertexFaceContact) {
       run("run tip0.obj tip1.obj --contacts c.csv --json r.json --toc-err 1e-6");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress line unless stderr is a terminal
-  EXPECT_EQ(linesOf(outcome.out).size(), 2u) << outcome.out;
+  const std::vector<std::string> table = linesOf(outcome.out);
+  ASSERT_EQ(table.size(), 5u) << outcome.out;
+  EXPECT_EQ(table[2], "1 step, 1 vf and 0 ee contacts; 0 steps began crossing");
   EXPECT_EQ(files(), (std::set<std::string>{"c.csv", "r.json", "tip0.obj", "tip1.obj"}));
 
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
@@ -491,6 +497,35 @@ TEST_F(CcdTool, BadOutputsAreRefusedAndNothingIsWritten) {
   EXPECT_FALSE(fs::exists(path("c.csv")));
 }
 
+// Tried as a user who may not write there; root may.
+TEST_F(CcdTool, NamesTheCauseIfAFileMayNotBeWritten) {
+  fs::create_directory(path("shut"));
+  writeText(path("shut/c.csv"), "old");
+  for (const char* name : {"shut", "shut/c.csv"})
+    fs::permissions(
+        path(name),
+        fs::perms::owner_write | fs::perms::group_write | fs::perms::others_write,
+        fs::perm_options::remove);
+  const auto tryAsOther = [&](const std::string& name) {
+    if (geteuid() == 0 && (setgid(65534) != 0 || setuid(65534) != 0)) _exit(2);
+    errno = 0;
+    try {
+      fcl_ccd::requireWritable(path(name).string());
+    } catch (const std::exception& error) {
+      std::fputs(error.what(), stderr);
+      _exit(1);
+    }
+    _exit(0);
+  };
+  for (const char* name : {"shut/c.csv", "shut/new.csv"})
+    EXPECT_EXIT(tryAsOther(name), ::testing::ExitedWithCode(1),
+                std::string(name) + ": cannot write: Permission denied");
+  EXPECT_EXIT(tryAsOther("no/c.csv"), ::testing::ExitedWithCode(1),
+              "no/c.csv: cannot write: No such file");
+  EXPECT_EXIT(tryAsOther("shut/c.csv/c.csv"), ::testing::ExitedWithCode(1),
+              "cannot write: Not a directory");
+}
+
 TEST_F(CcdTool, FailureLeavesAnExistingFileAlone) {
   writeTip();
   writeText(path("r.json"), "old");
@@ -530,7 +565,8 @@ TEST_F(CcdTool, WritesToStdoutInPlace) {
   const Outcome outcome = run("run tip0.obj tip1.obj --contacts /dev/stdout");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = linesOf(outcome.out);
-  ASSERT_EQ(lines.size(), 4u) << outcome.out;  // two of the table, two of the contacts
+  // Two of the table, two of the contacts, three of the summary.
+  ASSERT_EQ(lines.size(), 7u) << outcome.out;
   EXPECT_NE(std::find(lines.begin(), lines.end(), "step,kind,i0,i1,i2,i3,toc_lo,toc_hi"),
             lines.end());
 }

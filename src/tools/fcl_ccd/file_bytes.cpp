@@ -42,4 +42,11 @@ std::string readBytes(const std::string& path) {
   return bytes;
 }
 
+std::string readRegularFile(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+    throw std::runtime_error("cannot read: it is not a regular file");
+  return readBytes(path);
+}
+
 }  // namespace fcl_ccd

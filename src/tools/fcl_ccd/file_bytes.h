@@ -10,6 +10,10 @@ namespace fcl_ccd {
 /// @throws std::runtime_error with the cause (but not the file's name).
 std::string readBytes(const std::string& path);
 
+/// @brief readBytes() of a regular file. Anything else is an error: to read from a pipe
+/// can take forever.
+std::string readRegularFile(const std::string& path);
+
 }  // namespace fcl_ccd
 
 #endif

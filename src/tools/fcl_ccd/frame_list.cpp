@@ -20,6 +20,20 @@ namespace fs = std::filesystem;
 
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
 
+bool isPattern(const std::string& text) {
+  return text.find_first_of("*?[") != std::string::npos;
+}
+
+/// @brief Throws if a folder is named by a pattern.
+void requirePlainFolder(const std::string& word) {
+  const fs::path folder = fs::path(word).parent_path();
+  std::error_code error;
+  if (isPattern(folder.string()) && !fs::exists(folder, error))
+    throw std::runtime_error(
+        word + ": cannot open: there is no folder " + folder.string() +
+        ". *, ? and [...] stand for the name of a file, not for " + "that of a folder");
+}
+
 /// @brief The names of the files of a folder.
 std::vector<std::string> filesIn(const fs::path& folder) {
   std::error_code error;
@@ -82,16 +96,41 @@ struct NumberedName {
 
   /// The number of a file, if it has this name.
   std::optional<long long> numberOf(const std::string& name) const {
+    const std::optional<long long> number = numberIn(name);
+    if (!number || (*this)(*number) != name) return std::nullopt;
+    return number;
+  }
+
+  /// The number of a file, with any number of digits. The parts before and after it are
+  /// not compared.
+  std::optional<long long> numberIn(const std::string& name) const {
     if (name.size() <= before.size() + after.size()) return std::nullopt;
     const std::string digits =
         name.substr(before.size(), name.size() - before.size() - after.size());
     long long number = 0;
     const bool decimal = std::all_of(digits.begin(), digits.end(), isDigit);
-    if (!decimal || !parseInteger(digits, number) || (*this)(number) != name)
-      return std::nullopt;
+    if (!decimal || !parseInteger(digits, number)) return std::nullopt;
     return number;
   }
 };
+
+/// @brief The parts that all names have before and after a number in which they differ.
+NumberedName commonName(const std::vector<std::string>& names) {
+  NumberedName common{names[0], names[0], 0};
+  for (const std::string& name : names) {
+    const auto before = std::mismatch(common.before.begin(), common.before.end(),
+                                      name.begin(), name.end());
+    common.before.erase(before.first, common.before.end());
+    const auto after = std::mismatch(common.after.rbegin(), common.after.rend(),
+                                     name.rbegin(), name.rend());
+    common.after.erase(common.after.begin(), after.first.base());
+  }
+  while (!common.before.empty() && isDigit(common.before.back()))
+    common.before.pop_back();
+  while (!common.after.empty() && isDigit(common.after.front()))
+    common.after.erase(common.after.begin());
+  return common;
+}
 
 std::optional<NumberedName> parseNumbered(const std::string& name) {
   const std::size_t percent = name.find('%');
@@ -155,6 +194,12 @@ std::vector<std::string> select(const std::string& word,
   return taken;
 }
 
+void requireNotNegative(const char* option, std::optional<long long> frame) {
+  if (frame.value_or(0) < 0)
+    throw std::runtime_error(option + (" " + std::to_string(*frame)) +
+                             ": frames are counted from 0");
+}
+
 }  // namespace
 
 bool isBeforeNaturally(const std::string& a, const std::string& b) {
@@ -179,8 +224,33 @@ bool isBeforeNaturally(const std::string& a, const std::string& b) {
   return a < b;  // equal numbers, as in f1 and f01
 }
 
+std::string noteOnGaps(const std::vector<std::string>& frames) {
+  if (frames.size() < 3) return "";
+  const NumberedName name = commonName(frames);
+  std::vector<long long> steps;
+  std::optional<long long> last;
+  for (const std::string& frame : frames) {
+    const std::optional<long long> number = name.numberIn(frame);
+    if (!number || *number <= last.value_or(-1)) return "";
+    if (last) steps.push_back(*number - *last);
+    last = number;
+  }
+  const long long usual = *std::min_element(steps.begin(), steps.end());
+  const auto num_usual = std::count(steps.begin(), steps.end(), usual);
+  const auto num_gaps = static_cast<std::ptrdiff_t>(steps.size()) - num_usual;
+  if (num_gaps == 0 || num_gaps >= num_usual) return "";
+  const auto gap = std::find_if(steps.begin(), steps.end(),
+                                [usual](long long step) { return step > usual; });
+  const auto before = static_cast<std::size_t>(gap - steps.begin());
+  return frames[before] + ": the next file is " + frames[before + 1] +
+         "; numbers between them are missing" +
+         (num_gaps > 1 ? ". There are " + std::to_string(num_gaps) + " such places" : "");
+}
+
 std::vector<std::string> listFrames(const std::vector<std::string>& words,
                                     const FrameRange& range) {
+  requireNotNegative("--start", range.start);
+  requireNotNegative("--end", range.end);
   std::vector<std::string> frames;
   bool range_is_used = range.isWhole();
   for (const std::string& word : words) {
@@ -188,11 +258,12 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
     std::error_code error;
     std::vector<std::string> found;
     const bool is_there = fs::exists(word, error);
+    if (!is_there) requirePlainFolder(word);
     if (fs::is_directory(word, error)) {
       found = select(word, meshesIn(word), range);
     } else if (!is_there && parseNumbered(name)) {
       found = numbersOf(word, range);
-    } else if (!is_there && name.find_first_of("*?[") != std::string::npos) {
+    } else if (!is_there && isPattern(name)) {
       found = select(word, matchesOf(word), range);
     } else {
       if (!is_there)

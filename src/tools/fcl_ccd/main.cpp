@@ -45,7 +45,7 @@ constexpr const char* kRunDetails = R"(Frames:
   All frames of a mesh have the same vertices and faces in the same order.
   Formats: OBJ, PLY (ascii and binary, float and double), OFF (text), STL (ascii and
   binary). Polygons are divided into triangles, in all frames as in the first. A convex
-  polygon becomes the fan of triangles around its first vertex.
+  polygon that turns at every corner becomes the fan of triangles around its first vertex.
   All files are checked before the first step. Positions in binary PLY files are checked
   in their step.
   Step i goes from frame i to frame i + 1, counted from 0. Vertices move on straight lines.
@@ -78,8 +78,8 @@ Output:
   --contacts and --steps grow with each step. --json and --paint are written at the end.
 
 Stopping:
-  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. A second signal
-  ends the program at once.
+  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. Another signal,
+  half a second after the first or later, ends the program at once.
   --resume continues after the last whole step in the files of --contacts and --steps. At
   the end the files are as if the run had never stopped. There may be more frames than
   before, but not with --weld.

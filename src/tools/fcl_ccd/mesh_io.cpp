@@ -156,7 +156,7 @@ PolygonMesh readPolygonMesh(const std::string& path) {
       throw std::runtime_error(
           "unknown mesh format; expected .obj, .ply, .off or .stl. Convert it first, for "
           "example with: meshio convert IN OUT.ply (Debian package meshio-tools)");
-    PolygonMesh mesh = parse(extension, readBytes(path));
+    PolygonMesh mesh = parse(extension, readRegularFile(path));
     requireFinite(mesh.vertices);
     // A polygon has fewer triangles than corners.
     requireFewEnough(mesh.faces.corners.size(), "faces");

@@ -20,11 +20,12 @@
 namespace fcl_ccd {
 namespace {
 
-/// @brief A file that is opened for reading; opening may have failed.
+/// @brief A file that is opened for reading; opening may have failed. It does not wait
+/// for the writer of a pipe.
 class InputFile {
  public:
   explicit InputFile(const std::string& path)
-      : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+      : file_(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   InputFile(const InputFile&) = delete;
   InputFile& operator=(const InputFile&) = delete;
   ~InputFile() {
@@ -68,7 +69,7 @@ MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(pa
   faces_ = std::move(first.faces);
   vertices_ = std::move(first.vertices);
   if (!isPly(paths_[0])) return;
-  const std::string bytes = readBytes(paths_[0]);
+  const std::string bytes = readRegularFile(paths_[0]);
   const auto block = findVertexBlock(bytes);
   if (!block) return;
   head_ = bytes.substr(0, block->begin);
@@ -82,7 +83,7 @@ Vertices MeshSequence::read(std::size_t frame) const {
     const auto vertices = namingPlace(
         [&] { return path; },
         [&]() -> std::optional<Vertices> {
-          const std::string bytes = readBytes(path);
+          const std::string bytes = readRegularFile(path);
           const std::string_view file = bytes;
           if (file.size() != tail_begin_ + tail_.size() ||
               file.substr(0, head_.size()) != head_ || file.substr(tail_begin_) != tail_)

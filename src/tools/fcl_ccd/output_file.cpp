@@ -184,17 +184,18 @@ void OutputFile::fail(const std::string& what, int error) const {
 }
 
 void requireWritable(const std::string& path) {
+  const auto refuse = [&](int error) { throw WriteError(path, "cannot write", error); };
   struct stat status {};
-  const auto require = [&](bool holds, int error) {
-    if (!holds) throw WriteError(path, "cannot write", error);
-  };
   if (stat(path.c_str(), &status) == 0) {
-    require(!S_ISDIR(status.st_mode), EISDIR);
-    require(standardStream(status) >= 0 || access(path.c_str(), W_OK) == 0, errno);
-  } else {
-    const fs::path folder = fs::path(targetOf(path)).parent_path();
-    require(access(folder.empty() ? "." : folder.c_str(), W_OK | X_OK) == 0, errno);
+    if (S_ISDIR(status.st_mode)) refuse(EISDIR);
+    if (standardStream(status) < 0 && access(path.c_str(), W_OK) != 0) refuse(errno);
+    return;
   }
+  const fs::path parent = fs::path(targetOf(path)).parent_path();
+  const std::string folder = parent.empty() ? "." : parent.string();
+  if (stat(folder.c_str(), &status) != 0) refuse(errno);
+  if (!S_ISDIR(status.st_mode)) refuse(ENOTDIR);
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(errno);
 }
 
 int standardStreamOf(const std::string& path) {

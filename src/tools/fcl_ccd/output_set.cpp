@@ -19,8 +19,12 @@ namespace fs = std::filesystem;
 /// count: nothing in them is overwritten.
 bool isSameFile(const std::string& a, const std::string& b) {
   std::error_code error;
-  if (fs::exists(a, error) && !fs::is_regular_file(a, error)) return false;
-  if (fs::equivalent(a, b, error)) return true;
+  const fs::file_status status = fs::status(a, error);
+  // Paths are only compared if both are new: this looks up each folder in them, and a new
+  // output is compared with every frame.
+  if (fs::exists(status) != fs::exists(b, error)) return false;
+  if (fs::exists(status))
+    return fs::is_regular_file(status) && fs::equivalent(a, b, error);
   return fs::weakly_canonical(fs::absolute(a, error), error) ==
          fs::weakly_canonical(fs::absolute(b, error), error);
 }

@@ -116,7 +116,8 @@ std::vector<StepLine> scanSteps(const GrowingOutputs& outputs) {
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(file.line()) +
                                " is not step " + std::to_string(step) +
                                ". Leave out --resume to overwrite the file");
-    if (step >= outputs.num_steps || line.value("files", Json()) != outputs.filesOf(step))
+    if (step >= outputs.num_steps ||
+        line.value("files", Json()) != namesInJson(outputs.filesOf(step)))
       throw std::runtime_error(path + ": step " + std::to_string(step) +
                                " was of other frames than it is now. Give --resume the " +
                                "frames and options of the run that it continues");

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <new>
 #include <optional>
@@ -174,7 +175,7 @@ class Run {
       return end(kBadFrame, "out of memory. Fewer --jobs need less");
     } catch (const RankLost& error) {
       return end(kRankLost, error.what());
-    } catch (const std::runtime_error& error) {
+    } catch (const std::exception& error) {
       return end(kBadFrame, error.what());
     }
     return end(last.end_code, last.cause);
@@ -196,7 +197,7 @@ class Run {
     try {
       outputs_.rollBack();
       outputs_.finish(code == 0);
-      if (num_steps_ > 1) print(summaryLines(outputs_.summary()));
+      print(summaryLines(outputs_.summary()));
     } catch (const WriteError& error) {
       return endAfter(error);
     }

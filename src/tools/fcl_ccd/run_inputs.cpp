@@ -59,6 +59,8 @@ void weldFrames(MeshSequence& meshes, double eps, std::vector<std::string>& note
 MeshSequence openSequence(const std::vector<std::string>& paths,
                           const RunOptions& options, std::size_t num_workers,
                           std::vector<std::string>& notes) {
+  const std::string gaps = noteOnGaps(paths);
+  if (!gaps.empty()) notes.push_back(gaps);
   MeshSequence meshes(paths);
   if (options.weld) {
     weldFrames(meshes, *options.weld, notes);

@@ -122,8 +122,9 @@ std::string tableRow(const StepReport& report) {
 
 std::string summaryLines(const RunSummary& summary) {
   std::string lines =
-      std::to_string(summary.steps) + " steps, " + std::to_string(summary.vf) +
-      (summary.at_distance ? " vf, " : " vf and ") + std::to_string(summary.ee) +
+      std::to_string(summary.steps) + (summary.steps == 1 ? " step, " : " steps, ") +
+      std::to_string(summary.vf) + (summary.at_distance ? " vf, " : " vf and ") +
+      std::to_string(summary.ee) +
       (summary.at_distance ? " ee, " + std::to_string(summary.ve) + " ve and " +
                                  std::to_string(summary.vv) + " vv contacts; "
                            : " ee contacts; ") +
@@ -180,11 +181,17 @@ std::string stepLine(const StepReport& report) {
   else if (result.first() != nullptr)
     first = toJson(*result.first());
   const Json line = {{"step", report.index},
-                     {"files", report.files},
+                     {"files", namesInJson(report.files)},
                      {"contacts", countsOf(result)},
                      {"initially_crossing", result.initially_crossing},
                      {"first", first}};
   return line.dump() + '\n';
+}
+
+Json namesInJson(const std::vector<std::string>& files) {
+  constexpr int kOneLine = -1;
+  return Json::parse(
+      Json(files).dump(kOneLine, ' ', false, Json::error_handler_t::replace));
 }
 
 RunSummary summaryOf(const StepReport& report) {
@@ -256,7 +263,7 @@ Json toJson(const StepReport& report) {
   Json stages = Json::object();
   for (const StageField& stage : kStages) stages[stage.name] = result.counts.*stage.count;
   return {{"step", report.index},
-          {"files", report.files},
+          {"files", namesInJson(report.files)},
           {"vertices", report.vertices},
           {"triangles", report.triangles},
           {"contacts", countsOf(result)},

@@ -71,6 +71,10 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
 /// machine, the number of threads, or the previous steps.
 std::string stepLine(const StepReport& report);
 
+/// @brief Names of files as JSON has them. A byte that is not part of valid UTF-8 becomes
+/// U+FFFD, since JSON is UTF-8.
+nlohmann::ordered_json namesInJson(const std::vector<std::string>& files);
+
 /// @brief The content of a line of the list of steps.
 RunSummary summaryOf(const nlohmann::ordered_json& step_line);
 

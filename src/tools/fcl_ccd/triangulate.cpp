@@ -17,6 +17,25 @@ double turn(const Point2& a, const Point2& b, const Point2& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
+/// The sine of an angle below which three points count as points of a line: 0.06 degrees.
+/// Rounded to six digits, the fewest that programs write, a point moves by up to 5e-6 of
+/// its coordinate. This is the angle at an edge of 1/200 of the coordinate. A polygon of
+/// fewer than 6,000 corners on a circle turns by more at each.
+constexpr double kStraight = 1e-3;
+
+/// The angles with which ears are searched, each when there is no ear left with the one
+/// before. A thin face has only thin ears.
+constexpr double kStraightOfEars[] = {kStraight, 1e-6, 1e-9, 0};
+
+/// @brief The least turn() of three points that are not on a line, for this sine of an
+/// angle between b - a and c - b.
+double leastTurn(double sine, const Point2& a, const Point2& b, const Point2& c) {
+  const auto squared = [](const Point2& p, const Point2& q) {
+    return (q.x - p.x) * (q.x - p.x) + (q.y - p.y) * (q.y - p.y);
+  };
+  return sine * std::sqrt(squared(a, b)) * std::sqrt(squared(b, c));
+}
+
 /// @brief Twice the sum of the areas that the polygon covers in the planes yz, zx and xy.
 std::array<double, 3> newellNormal(const Vertices& vertices,
                                    const std::vector<int>& corners) {
@@ -49,10 +68,13 @@ std::vector<Point2> project(const Vertices& vertices, const std::vector<int>& co
   return points;
 }
 
-bool isConvex(const std::vector<Point2>& points) {
+/// @brief Whether the polygon turns to the left at each corner.
+bool isStrictlyConvex(const std::vector<Point2>& points) {
   const std::size_t n = points.size();
-  for (std::size_t i = 0; i < n; ++i)
-    if (turn(points[i], points[(i + 1) % n], points[(i + 2) % n]) < 0) return false;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point2 &a = points[i], &b = points[(i + 1) % n], &c = points[(i + 2) % n];
+    if (!(turn(a, b, c) > leastTurn(kStraight, a, b, c))) return false;
+  }
   return true;
 }
 
@@ -64,18 +86,31 @@ class Ring {
 
   std::size_t size() const { return corners_.size(); }
 
-  /// Whether the triangle at corner i turns to the left and contains no other corner.
-  bool isEar(std::size_t i) const {
+  /// Whether the triangle at corner i turns to the left and contains no other corner, not
+  /// on its edges either.
+  /// @param straight  the sine of an angle below which three corners are on a line.
+  bool isEar(std::size_t i, double straight) const {
     const std::size_t before = (i + size() - 1) % size(), after = (i + 1) % size();
     const Point2 &a = points_[before], &b = points_[i], &c = points_[after];
-    if (!(turn(a, b, c) > 0)) return false;
+    if (!(turn(a, b, c) > leastTurn(straight, a, b, c))) return false;
     for (std::size_t k = 0; k < size(); ++k) {
       const int id = corners_[k];
       if (id == corners_[before] || id == corners_[i] || id == corners_[after]) continue;
       const Point2& p = points_[k];
-      if (turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) return false;
+      const auto isBeside = [&](const Point2& from, const Point2& to) {
+        const double side = turn(from, to, p);
+        return side >= 0 || side >= -leastTurn(straight, from, to, p);
+      };
+      if (isBeside(a, b) && isBeside(b, c) && isBeside(c, a)) return false;
     }
     return true;
+  }
+
+  /// The first ear at corner i or behind it; size() if there is none.
+  std::size_t findEar(std::size_t i, double straight) const {
+    for (std::size_t k = 0; k < size(); ++k)
+      if (isEar((i + k) % size(), straight)) return (i + k) % size();
+    return size();
   }
 
   void cut(std::size_t i, Triangles& out) {
@@ -100,17 +135,16 @@ void addFan(const std::vector<int>& corners, Triangles& out) {
 void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
                 Triangles& out) {
   std::vector<Point2> points = project(vertices, corners);
-  if (isConvex(points)) return addFan(corners, out);
+  if (isStrictlyConvex(points)) return addFan(corners, out);
   Ring ring(corners, std::move(points));
-  for (std::size_t i = 0; ring.size() > 3;) {
-    std::size_t tried = 0;
-    while (tried < ring.size() && !ring.isEar(i)) {
-      i = (i + 1) % ring.size();
-      ++tried;
+  std::size_t i = 0;
+  for (const double straight : kStraightOfEars) {
+    while (ring.size() > 3) {
+      const std::size_t ear = ring.findEar(i, straight);
+      if (ear == ring.size()) break;
+      ring.cut(ear, out);
+      i = ear % ring.size();
     }
-    if (tried == ring.size()) break;
-    ring.cut(i, out);
-    i %= ring.size();
   }
   addFan(ring.corners(), out);
 }
