@@ -151,7 +151,8 @@ bool isTreeSound(const BVHModel<BV>& model) {
   if constexpr (kHasSlabs<BV>)
     return true;
   else
-    return isFittedFromTheTop(model) || containAllCorners(model);
+    return isBox(orientedBoxOf(model.getBV(0).bv), kFitSlack<typename BV::S>) &&
+           (isFittedFromTheTop(model) || containAllCorners(model));
 }
 
 #define FCL_CCD_INSTANTIATE(S)                             \

@@ -10,13 +10,17 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "fcl/broadphase/continuous_collision_manager.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/bvh/refit_top_down.h"
+#include "fcl/geometry/shape/box.h"
 #include "fcl/math/bv/utility.h"
+#include "fcl/math/motion/translation_motion.h"
 #include "mesh/moving_kdop.h"
 #include "test_models.h"
 #include "tree/fcl_volumes.h"
@@ -263,6 +267,86 @@ TEST(FCL_SOUND_TREE, sumsOfBoxesLeaveTrianglesOut) {
   EXPECT_FALSE(isTreeSound(*model));
   refitTopDown(*model);
   EXPECT_LT(mostOutside(*model), 1e-12);
+}
+
+/// Strips of up to ten triangles, and one triangle of which two or three corners are
+/// equal. FCL gives the root of some of them axes that are not at right angles.
+std::vector<TestMesh> meshesOfBadRoots() {
+  std::vector<TestMesh> out(12);
+  for (std::size_t n = 1; n <= 10; ++n) {
+    TestMesh& strip = out[n - 1];
+    for (std::size_t i = 0; i <= n; ++i) {
+      const auto x = static_cast<double>(i);
+      strip.vertices.emplace_back(x, 0, 0);
+      strip.vertices.emplace_back(x, 1, 0.125 * x * x);
+      if (i < n) strip.triangles.emplace_back(2 * i, 2 * i + 1, 2 * i + 2);
+    }
+  }
+  const Vector3<double> p(0.5, 0.25, 0);
+  out[10].vertices = {p, p, Vector3<double>(1, 1, 0)};
+  out[11].vertices = {p, p, p};
+  out[10].triangles = out[11].triangles = {Triangle(0, 1, 2)};
+  return out;
+}
+
+/// The first contact of a model with a large box that comes down and turns. The other
+/// uses of the root do not throw.
+template <typename S>
+S firstContact(const std::shared_ptr<CollisionGeometry<S>>& model) {
+  const auto box = std::make_shared<Box<S>>(S{8}, S{8}, S{1});
+  Transform3<S> from = Transform3<S>::Identity(), to = from;
+  from.translation() = Vector3<S>(0, 0, 4);
+  to.translation() = Vector3<S>(0, 0, -4);
+  to.linear() = AngleAxis<S>(S{0.5}, Vector3<S>(1, 2, 3).normalized()).toRotationMatrix();
+  const Transform3<S> still = Transform3<S>::Identity();
+  ContinuousCollisionRequest<S> request;
+  request.ccd_motion_type = CCDM_LINEAR;
+  ContinuousCollisionResult<S> result;
+  continuousCollide(model.get(), still, still, box.get(), from, to, request, result);
+  EXPECT_TRUE(result.is_collide);
+  // The mesh turns, too.
+  ContinuousCollisionResult<S> both;
+  continuousCollide(model.get(), to, from, model.get(), still, still, request, both);
+  ContinuousCollisionObject<S> first(model,
+                                     std::make_shared<TranslationMotion<S>>(still, from)),
+      second(box, std::make_shared<TranslationMotion<S>>(from, still));
+  ContinuousCollisionManager<S> manager;
+  manager.registerObject(&first);
+  manager.registerObject(&second);
+  manager.setup();
+  const SweptCollisionObject<S> swept(&first);
+  EXPECT_LT(swept.getAABB().max_.norm(), 100);
+  return result.time_of_contact;
+}
+
+// A root without axes at right angles does not bound the mesh. FCL answers such models.
+TYPED_TEST(FCL_SOUND_TREE, rootsWithoutAxes) {
+  using S = typename TypeParam::S;
+  for (const TestMesh& mesh : meshesOfBadRoots()) {
+    SCOPED_TRACE(std::to_string(mesh.vertices.size()) + " vertices");
+    const auto model = makeModel<BVHModel<TypeParam>>(mesh);
+    const S expected = firstContact<S>(makeModel<BVHModel<AABB<S>>>(mesh));
+    for (int times = 0; times < 2; ++times) {
+      if (isTreeSound(*model)) {
+        EXPECT_LT(RigidTree(*model, Pose()).reach(), 100);
+      }
+      expectBoundsIfSound(*model);
+      EXPECT_NEAR(firstContact<S>(model), expected, 1e-4);
+      replace(*model, mesh);
+    }
+  }
+}
+
+// A few triangles without area are no reason for a new tree.
+TYPED_TEST(FCL_SOUND_TREE, trianglesWithoutArea) {
+  TestMesh mesh = makeIcosphere(2, 1);
+  for (const std::size_t i : {0, 5, 9}) {
+    mesh.triangles[i][1] = mesh.triangles[i][0];
+    mesh.triangles[i + 20][2] = mesh.triangles[i + 20][1] = mesh.triangles[i + 20][0];
+  }
+  const auto model = makeModel<BVHModel<TypeParam>>(mesh);
+  EXPECT_TRUE(isTreeSound(*model));
+  expectBoundsIfSound(*model);
 }
 
 // One volume that cannot be a sum is enough. Numbers that are NaN prove nothing.
