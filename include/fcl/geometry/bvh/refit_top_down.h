@@ -34,7 +34,7 @@ FCL_EXPORT void markFittedFromTheTop(BVHModel<BV>& model);
 ///
 /// In some models all boxes have the same axes: wires, and strips of long rectangles.
 /// Then FCL's boxes do not show how they were fitted, also after `endModel()`. This call
-/// turns the axes of the root, whose box becomes up to 1.5 times as wide.
+/// turns the axes of the root, whose box becomes up to twice as wide.
 ///
 /// The vertices, the triangles and the shape of the tree stay. The cost is that of FCL's
 /// refit from the top down, O(n log n) for n triangles. Nothing is needed for AABBs and
