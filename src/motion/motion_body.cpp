@@ -176,6 +176,18 @@ MotionBody::MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
     radius_ = std::max(radius_, (norm(whole.center) + whole.radius) * kUpward);
     displacement_ = whole.displacement;
   }
+  // Below this the boxes, whose numbers are floats, may be far larger than the mesh.
+  constexpr double kTiny = 0x1p-80;
+  if (!(radius_ < kTiny)) return;
+  radius_ = displacement_ = 0;
+  const auto larger = [](double most, double x, double y, double z) {
+    return std::max(most, (std::abs(x) + std::abs(y) + std::abs(z)) * kUpward);
+  };
+  for (const TreeVertex& vertex : tree.vertices()) {
+    const auto &p = vertex.t0, &q = vertex.t1;
+    radius_ = larger(larger(radius_, p[0], p[1], p[2]), q[0], q[1], q[2]);
+    displacement_ = larger(displacement_, q[0] - p[0], q[1] - p[1], q[2] - p[2]);
+  }
 }
 
 MotionBody::MotionBody(const ConvexShape& shape, const MotionPath& path)

@@ -60,9 +60,16 @@ double gapAlong(const Vec& n, const Vec (&a)[3], const Vec (&b)[3]) {
 /// Keeps the direction, or its opposite, if it shows a larger gap than the best so far.
 void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
                   double& gap) {
-  const double length = norm(d);
-  if (!(length > 0x1p-500)) return;
-  const Vec n = (1 / length) * d, opposite = -1. * n;
+  constexpr double kLeast = 0x1p-500;
+  Vec long_enough = d;
+  double length = norm(d);
+  // The products of three edges of tiny triangles.
+  if (!(length > kLeast)) {
+    long_enough = (1 / kLeast) * d;
+    length = norm(long_enough);
+    if (!(length > kLeast)) return;
+  }
+  const Vec n = (1 / length) * long_enough, opposite = -1. * n;
   const double along = gapAlong(n, a, b), against = gapAlong(opposite, a, b);
   if (along > gap) {
     gap = along;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/geometry/bvh/refit_top_down.h"
 #include "tree/fcl_volumes.h"
 
 namespace fcl {
@@ -87,19 +88,92 @@ bool isNoSum(const RSS<S>& bv, const RSS<S>& left, const RSS<S>&) {
          (axes.col(2) - normal).cwiseAbs().maxCoeff() > kOtherAxes;
 }
 
-/// Whether a node has volumes that were certainly not fitted from the bottom up.
-template <typename BV>
-bool isFittedFromTheTop(const BVHModel<BV>& model) {
+/// Calls visit(node) for up to 64 inner nodes, the root first, until it returns true.
+/// Returns whether it did.
+template <typename Model, typename Visit>
+bool visitSample(Model& model, Visit&& visit) {
   constexpr int kMostNodes = 64, kStride = 7919;
   const int count = model.getNumBVs();
   for (int i = 0, at = 0; i < std::min(count, kMostNodes);
-       ++i, at = (at + kStride) % count) {
-    const BVNode<BV>& node = model.getBV(at);
-    if (!node.isLeaf() && isNoSum(node.bv, model.getBV(node.leftChild()).bv,
-                                  model.getBV(node.rightChild()).bv))
-      return true;
-  }
+       ++i, at = (at + kStride) % count)
+    if (!model.getBV(at).isLeaf() && visit(model.getBV(at))) return true;
   return false;
+}
+
+/// Whether a node has volumes that were certainly not fitted from the bottom up.
+template <typename BV>
+bool isFittedFromTheTop(const BVHModel<BV>& model) {
+  return visitSample(model, [&model](const BVNode<BV>& node) {
+    return isNoSum(node.bv, model.getBV(node.leftChild()).bv,
+                   model.getBV(node.rightChild()).bv);
+  });
+}
+
+/// The axes, two of them turned by 45 degrees about the other one.
+template <typename S>
+Matrix3<S> turnedAxes(const Matrix3<S>& axes, int about) {
+  const int i = (about + 1) % 3, j = (about + 2) % 3;
+  const S cosine = std::sqrt(S{0.5});
+  Matrix3<S> out = axes;
+  out.col(i) = cosine * (axes.col(i) + axes.col(j));
+  out.col(j) = cosine * (axes.col(j) - axes.col(i));
+  return out;
+}
+
+/// How far a box reaches from its center along other axes, and more: FCL's fit, the
+/// numbers of the new volume, and the products here round by less than 20 units in the
+/// last place of the coordinates.
+template <typename S>
+Vector3<double> extentsAlong(const OrientedBox& box, const Matrix3<S>& axes) {
+  constexpr double kRounding = 64 * double{std::numeric_limits<S>::epsilon()};
+  double rounding = 0;
+  for (int k = 0; k < 3; ++k)
+    rounding += kRounding * (std::abs(box.center[k]) + box.extent[k]);
+  const Matrix3<double> products = axesOf(box).transpose() * axes.template cast<double>();
+  Vector3<double> out;
+  for (int j = 0; j < 3; ++j) {
+    out[j] = rounding;
+    for (int i = 0; i < 3; ++i) out[j] += box.extent[i] * std::abs(products(i, j));
+  }
+  return out;
+}
+
+/// A volume around a volume, with axes turned by 45 degrees about one of them.
+template <typename S>
+OBB<S> turned(const OBB<S>& obb, int about) {
+  OBB<S> out = obb;
+  out.axis = turnedAxes(obb.axis, about);
+  out.extent = extentsAlong(orientedBoxOf(obb), out.axis).template cast<S>();
+  return out;
+}
+/// The rectangle with its radius contains the box without its rounded corners.
+template <typename S>
+RSS<S> turned(const RSS<S>& rss, int about) {
+  const OrientedBox box = orientedBoxOf(rss);
+  RSS<S> out = rss;
+  out.axis = turnedAxes(rss.axis, about);
+  const Vector3<double> extents = extentsAlong(box, out.axis);
+  Vector3<double> corner(box.center[0], box.center[1], box.center[2]);
+  for (int k = 0; k < 2; ++k) {
+    corner -= extents[k] * out.axis.col(k).template cast<double>();
+    out.l[k] = static_cast<S>(2 * extents[k]);
+  }
+  out.To = corner.template cast<S>();
+  out.r = static_cast<S>(extents[2]);
+  return out;
+}
+/// Of these only the OBB is turned. It shows where they come from.
+template <typename S>
+OBBRSS<S> turned(const OBBRSS<S>& bv, int about) {
+  OBBRSS<S> out = bv;
+  out.obb = turned(bv.obb, about);
+  return out;
+}
+template <typename S>
+kIOS<S> turned(const kIOS<S>& bv, int about) {
+  kIOS<S> out = bv;
+  out.obb = turned(bv.obb, about);
+  return out;
 }
 
 /// Whether a box, enlarged by a margin, contains the corners of the triangles below a
@@ -151,22 +225,50 @@ bool isTreeSound(const BVHModel<BV>& model) {
   if constexpr (kHasSlabs<BV>)
     return true;
   else
-    return isFittedFromTheTop(model) || containAllCorners(model);
+    return isBox(orientedBoxOf(model.getBV(0).bv), kFitSlack<typename BV::S>) &&
+           (isFittedFromTheTop(model) || containAllCorners(model));
 }
 
-#define FCL_CCD_INSTANTIATE(S)                             \
-  template bool isTreeSound(const BVHModel<AABB<S>>&);     \
-  template bool isTreeSound(const BVHModel<OBB<S>>&);      \
-  template bool isTreeSound(const BVHModel<RSS<S>>&);      \
-  template bool isTreeSound(const BVHModel<OBBRSS<S>>&);   \
-  template bool isTreeSound(const BVHModel<kIOS<S>>&);     \
-  template bool isTreeSound(const BVHModel<KDOP<S, 16>>&); \
-  template bool isTreeSound(const BVHModel<KDOP<S, 18>>&); \
-  template bool isTreeSound(const BVHModel<KDOP<S, 24>>&);
-FCL_CCD_INSTANTIATE(double)
-FCL_CCD_INSTANTIATE(float)
+}  // namespace deformable
+
+// isNoSum() compares with one or two sets of axes. Turns about three axes give volumes of
+// which each set excludes at most one.
+template <typename BV>
+void markFittedFromTheTop(BVHModel<BV>& model) {
+  using namespace deformable;
+  if constexpr (!kHasSlabs<BV>) {
+    if (isFittedFromTheTop(model)) return;
+    visitSample(model, [&model](BVNode<BV>& node) {
+      for (int about = 0; about < 3; ++about) {
+        const BV bv = turned(node.bv, about);
+        if (!isBox(orientedBoxOf(bv), kFitSlack<typename BV::S>) ||
+            !isNoSum(bv, model.getBV(node.leftChild()).bv,
+                     model.getBV(node.rightChild()).bv))
+          continue;
+        node.bv = bv;
+        return true;
+      }
+      return false;
+    });
+  }
+}
+
+#define FCL_CCD_INSTANTIATE(...)                                       \
+  template bool deformable::isTreeSound(const BVHModel<__VA_ARGS__>&); \
+  template void markFittedFromTheTop(BVHModel<__VA_ARGS__>&);
+#define FCL_CCD_INSTANTIATE_ALL(S) \
+  FCL_CCD_INSTANTIATE(AABB<S>)     \
+  FCL_CCD_INSTANTIATE(OBB<S>)      \
+  FCL_CCD_INSTANTIATE(RSS<S>)      \
+  FCL_CCD_INSTANTIATE(OBBRSS<S>)   \
+  FCL_CCD_INSTANTIATE(kIOS<S>)     \
+  FCL_CCD_INSTANTIATE(KDOP<S, 16>) \
+  FCL_CCD_INSTANTIATE(KDOP<S, 18>) \
+  FCL_CCD_INSTANTIATE(KDOP<S, 24>)
+FCL_CCD_INSTANTIATE_ALL(double)
+FCL_CCD_INSTANTIATE_ALL(float)
+#undef FCL_CCD_INSTANTIATE_ALL
 #undef FCL_CCD_INSTANTIATE
 
-}  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -24,6 +24,10 @@ namespace deformable {
 /// (3) a small tree is sound if its boxes contain the corners of all triangles below
 /// them.
 ///
+/// (2) and (3) need a root with axes at right angles. RigidTree reads any other root as
+/// unbounded, and then nothing bounds the size of the mesh. FCL makes such a root for one
+/// triangle without area, and by the sum of some RSSs.
+///
 /// Reads at most 64 nodes, and for (2) most often the root alone. Reads the tree as it is
 /// now, and keeps nothing.
 ///

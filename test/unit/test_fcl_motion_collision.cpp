@@ -591,6 +591,37 @@ TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {
 }
 
 // The answer of any number of threads is the same to the bit.
+// The boxes of trees of ours are floats, and the products of three edges leave the range
+// of double.
+TEST_F(MotionCollision, TinyMeshes) {
+  double expected = -1;
+  for (const double size : {1e-30, 1e-40, 1e-55, 1e-70, 1e-80, 1e-90}) {
+    SCOPED_TRACE(size);
+    TestMesh cube = makeBox({1, 1, 1}, 2);
+    for (auto& p : cube.vertices) p *= size;
+    const auto rigid = makeModel<Rigid<double>>(cube);
+    const auto deformable = makeModel<Model>(cube);
+    for (const double offset : {3., 0.5}) {
+      Pose from = Pose::Identity(), to = turned(0.5);
+      from.translation() = size * Vector3<double>(-5, offset, 0);
+      to.translation() = size * Vector3<double>(5, offset, 0);
+      const Pose still = Pose::Identity();
+      for (const CollisionGeometry<double>* cube_of_tree :
+           {static_cast<CollisionGeometry<double>*>(rigid.get()),
+            static_cast<CollisionGeometry<double>*>(deformable.get())}) {
+        ContactResult result;
+        continuousCollide(cube_of_tree, still, still, cube_of_tree, from, to,
+                          requestOf<ContactRequest>(CCDM_LINEAR), result);
+        EXPECT_EQ(result.is_collide, offset < 1);
+        if (offset > 1) continue;
+        if (expected < 0) expected = result.time_of_contact;
+        EXPECT_GT(result.time_of_contact, 0.2);
+        EXPECT_NEAR(result.time_of_contact, expected, 1e-5);
+      }
+    }
+  }
+}
+
 TEST_F(MotionCollision, NumberOfThreads) {
   const SinkingSheet sheet;
   for (const CollisionGeometry<double>* other :

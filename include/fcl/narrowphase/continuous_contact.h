@@ -60,9 +60,9 @@ struct ContinuousContact {
   /// request's toc_err, or a few units in the last place if toc_err is smaller. It is [0,
   /// 0] if the features touch at t = 0. On straight paths, with ContinuousQuery::kFirst
   /// and kAny, it is also no wider than an eighth of toc_hi. So toc_lo is 0 only for
-  /// features that touch at t = 0 (or before 2^-1074, the first double above 0). With
-  /// kAll this holds for the time_of_contact of the result; the brackets in the list may
-  /// begin before it.
+  /// features that touch at t = 0. (Times below 2^-1022, where doubles lose digits, may
+  /// have the bracket [0, 2^-1022 / 8].) With kAll this holds for the time_of_contact of
+  /// the result; the brackets in the list may begin before it.
   ///
   /// If a mesh turns, or with a shape or an octree: the features do not touch before
   /// toc_lo, and are within the query's tolerance of each other then

@@ -6,9 +6,21 @@
 
 #include <stdexcept>
 
+#include "fcl/export.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 
 namespace fcl {
+namespace detail {
+
+/// @brief Makes a tree that was fitted from the top down one that isTreeSound()
+/// (sound_tree.h) recognises. If no volume shows it already, one volume, the root's as a
+/// rule, gets axes that FCL's sum of its children cannot have. It contains the old one,
+/// and so FCL's queries stay correct.
+/// @pre the tree was fitted from the top down
+template <typename BV>
+FCL_EXPORT void markFittedFromTheTop(BVHModel<BV>& model);
+
+}  // namespace detail
 
 /// @brief Refits FCL's own tree of a rigid model so that each volume bounds the triangles
 /// below it.
@@ -18,7 +30,11 @@ namespace fcl {
 /// are sums of, in meshes of any shape. FCL's own queries then miss contacts, and each
 /// continuous query of this package builds a tree of its own. After this call queries
 /// read FCL's tree again. `endReplaceModel(true, false)` instead of `endReplaceModel()`
-/// has the same effect, without the cost of the first refit.
+/// has the same effect, without the cost of the first refit, in most models.
+///
+/// In some models all boxes have the same axes: wires, and strips of long rectangles.
+/// Then FCL's boxes do not show how they were fitted, also after `endModel()`. This call
+/// turns the axes of the root, whose box becomes up to twice as wide.
 ///
 /// The vertices, the triangles and the shape of the tree stay. The cost is that of FCL's
 /// refit from the top down, O(n log n) for n triangles. Nothing is needed for AABBs and
@@ -43,6 +59,7 @@ void refitTopDown(BVHModel<BV>& model) {
   model.beginReplaceModel();
   for (int i = 0; i < model.num_vertices; ++i) model.replaceVertex(model.vertices[i]);
   model.endReplaceModel(true, false);
+  detail::markFittedFromTheTop(model);
 }
 
 }  // namespace fcl
