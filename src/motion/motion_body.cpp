@@ -337,8 +337,10 @@ std::vector<std::int32_t> MotionBody::placesOfTriangles() const {
   if (!tree_) return {};
   const auto& triangles = tree_->triangles();
   std::vector<std::int32_t> places(triangles.size());
-  for (std::size_t i = 0; i < triangles.size(); ++i)
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    assert(triangles[i].index < places.size());
     places[triangles[i].index] = static_cast<std::int32_t>(i);
+  }
   return places;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <set>
@@ -90,8 +91,8 @@ class FeatureContacts {
             places[k].empty() ? id : places[k][static_cast<std::size_t>(id)]);
       };
       const BodyTriangle a = triangleOf(0), b = triangleOf(1);
-      // The tolerance includes the rounding of a time.
-      const double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
+      double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
+      if (t > span.t0) t = std::max(std::nextafter(t, 0), span.t0);
       if (addPair(a, b, numberOf(pair, a, b), t, last) && span.t1 < 1) {
         pairs_.push_back(pair);
         in_contact_.add(pairs_.back());
@@ -398,6 +399,7 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
     if (wanted.most_box_tests > kFewBoxTests) touching = queryMotions(a, b, wanted);
     if (touching.is_cut) return contactsBy(chords, a, b, options);
   }
+  wanted.most_box_tests = MotionQueryOptions().most_box_tests;
   QueryAnswer answer;
   count(touching.counts, answer.counts);
   if (touching.contacts.empty()) return answer;

@@ -418,7 +418,7 @@ double TrianglePairMotion::proveContact(double t, double width) const {
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
   const double longest = std::min(width, 1 - t);
-  // A double has fewer than 1100 doublings.
+  // Doubles have fewer than 1100 powers of two.
   const double factor = 4;
   for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
        h *= factor) {
