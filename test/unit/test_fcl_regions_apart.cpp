@@ -175,13 +175,17 @@ test::TestMesh makeOpenRing(double gap, double teeth, double slope) {
   });
 }
 
+/// Sanitizer runs have an eighth of the rounds, too few to count what they contain.
+const int kRounds = test::rounds(24);
+const bool kCounts = kRounds == 24;
+
 // The ends of a ring come near each other through the gap between them. Only the proof
 // about borders sees that.
 TEST(FCL_REGIONS_APART, bordersThatComeNear) {
   constexpr std::uint64_t kSeed = 391;
   Random random(kSeed);
   Tally tally;
-  for (int i = 0; i < test::rounds(24); ++i) {
+  for (int i = 0; i < kRounds; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const double teeth = i % 3 ? 0 : random.uniform(0, 0.4),
                  slope = random.uniform(0, 0.3);
@@ -191,6 +195,7 @@ TEST(FCL_REGIONS_APART, bordersThatComeNear) {
     for (const double distance : {0.01, 0.05, 0.1}) tally.add(mesh, distance);
     ASSERT_FALSE(HasFailure());
   }
+  if (!kCounts) return;
   EXPECT_GT(tally.near, 500U);
   EXPECT_GT(3 * tally.triangles, tally.all);
   EXPECT_GT(tally.fans, 200U);
@@ -203,7 +208,7 @@ TEST(FCL_REGIONS_APART, lowHoles) {
   constexpr int kSide = 12;
   Random random(kSeed);
   Tally tally;
-  for (int i = 0; i < test::rounds(24); ++i) {
+  for (int i = 0; i < kRounds; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh = still(test::makeSheet(kSide, kSide));
     const std::size_t hole = random.index(mesh.triangles.size());
@@ -220,6 +225,7 @@ TEST(FCL_REGIONS_APART, lowHoles) {
     for (const double share : {0.02, 0.05, 0.1}) tally.add(mesh, share / kSide);
     ASSERT_FALSE(HasFailure());
   }
+  if (!kCounts) return;
   EXPECT_GT(tally.near, 20U);
   EXPECT_GT(2 * tally.triangles, tally.all);
 }
@@ -229,7 +235,7 @@ TEST(FCL_REGIONS_APART, sheetsWithHoles) {
   constexpr std::uint64_t kSeed = 392;
   Random random(kSeed);
   Tally tally;
-  for (int i = 0; i < test::rounds(24); ++i) {
+  for (int i = 0; i < kRounds; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const auto sheet = [&](double squeeze, double shear, double wave) {
       return test::makeSheet(11, 11, [=](double u, double v) {
@@ -249,6 +255,7 @@ TEST(FCL_REGIONS_APART, sheetsWithHoles) {
     for (const double share : {0.02, 0.2, 0.5, 0.8}) tally.add(mesh, share / 11);
     ASSERT_FALSE(HasFailure());
   }
+  if (!kCounts) return;
   EXPECT_GT(tally.near, 1000U);
   EXPECT_GT(4 * tally.triangles, tally.all);
   EXPECT_GT(tally.fans, 200U);
@@ -259,7 +266,7 @@ TEST(FCL_REGIONS_APART, bodies) {
   constexpr std::uint64_t kSeed = 393;
   Random random(kSeed);
   Tally tally;
-  for (int i = 0; i < test::rounds(24); ++i) {
+  for (int i = 0; i < kRounds; ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     MovingMesh mesh =
         still(i % 2 ? test::makeUvSphere(10, 8, 1) : test::makeIcosphere(2, 1));
@@ -276,6 +283,7 @@ TEST(FCL_REGIONS_APART, bodies) {
     for (const double distance : {0.002, 0.02, 0.1, 0.3}) tally.add(mesh, distance);
     ASSERT_FALSE(HasFailure());
   }
+  if (!kCounts) return;
   EXPECT_GT(tally.near, 1000U);
   EXPECT_GT(tally.bodies, 15U);
   EXPECT_LT(tally.bodies, 80U);
