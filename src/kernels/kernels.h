@@ -243,7 +243,8 @@ struct Kernels {
 
   /// Finds the children of the node that overlap the box at some time, a bit each, and
   /// the times from which on they do: overlapWindow() of each, unless the request leaves
-  /// it out. With a shift some may be left out that do not overlap without rounding.
+  /// it out. With a shift a child is also left out if the exact sums show no overlap,
+  /// where overlapWindow() rounds to one.
   unsigned (*overlapChildren)(const BoxView& box, const MovingKdopNode& node,
                               const OverlapRequest& request,
                               float (&earliest)[MovingKdopNode::kWidth]);

@@ -85,10 +85,14 @@ class ConvexShape {
   /// @brief Whether the core is its box, up to the box's pad.
   bool fillsBox() const { return fills_box_; }
 
+  /// @brief Whether the center is certainly a point of the core. That of a hull may be
+  /// outside.
+  bool containsCenter() const { return kind_ != Kind::kHull; }
+
   /// @brief The radius of a ball around the center inside of the core; 0: none is known.
   double innerRadius() const;
 
-  /// @brief A point inside.
+  /// @brief The middle of the box of the core.
   Vec center() const { return {box_.center[0], box_.center[1], box_.center[2]}; }
 
  private:

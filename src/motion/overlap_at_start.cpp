@@ -60,7 +60,9 @@ bool overlapAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape&
   const Vec way = posed(second.pose, b.center()) - rotated(pose_a.rotation, a.center());
   const double distance = norm(way);
   if (distance > kUpward * (outerRadius(a) + outerRadius(b))) return false;
-  if (distance <= innerRadius(a, pose_a) + innerRadius(b, pose_b)) return true;
+  if (a.containsCenter() && b.containsCenter() &&
+      distance <= innerRadius(a, pose_a) + innerRadius(b, pose_b))
+    return true;
   const double radii = a.radius() + b.radius();
   const ConvexGap gap = convexGap(first, second, way, radii, radii);
   return gap.depth > 0 || gap.distance <= radii;

@@ -114,11 +114,12 @@ class Buckets {
              std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(later)),
                       later - 1);
     }
-    // Four kinds of two sides.
+    // Five kinds (kCrossing is none of a contact) of two sides.
+    constexpr double kGroups = 10;
     const std::uint64_t group =
         2 * static_cast<std::uint64_t>(c.kind) + (c.first_on_a ? 0 : 1);
     const double share = static_cast<double>(group * num_vertices_ + c.vertices[0]) /
-                         (8 * static_cast<double>(num_vertices_));
+                         (kGroups * static_cast<double>(num_vertices_));
     return std::min(static_cast<std::size_t>(share * static_cast<double>(at_start_)),
                     at_start_ - 1);
   }

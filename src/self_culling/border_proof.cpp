@@ -206,24 +206,32 @@ bool BorderProof::isSimple() {
   return simple;
 }
 
-std::vector<BorderProof::EdgePair> BorderProof::findNear(const RegionBorder& border,
-                                                         int direction, double distance) {
+void BorderProof::markNear(const RegionBorder& border, int direction, double distance,
+                           std::vector<std::uint8_t>& is_apart) {
   assert(border.size() > 0);
+  // Each edge meets some dozens of others where the distance is ten times its length.
+  constexpr std::size_t kMostPairsOfEdge = 64;
   border_ = &border;
   direction_ = direction;
   project(direction);
   fitTree();
   const KdopShift shift = shiftFor(distance);
-  std::vector<EdgePair> near;
+  std::size_t left = kMostPairsOfEdge * border.size();
   visitPairs(&shift, [&](std::size_t i, std::size_t j) {
-    const bool has_common =
-        border.from(i) == border.from(j) || border.from(i) == border.to(j) ||
-        border.to(i) == border.from(j) || border.to(i) == border.to(j);
-    if (!has_common && !areApart(planarEdge(i), planarEdge(j), distance))
-      near.push_back({i, j});
+    if (left-- == 0) {
+      for (const std::uint32_t v : border.points) is_apart[v] = 0;
+      return false;
+    }
+    const std::uint32_t ends[4] = {border.from(i), border.to(i), border.from(j),
+                                   border.to(j)};
+    const bool has_common = ends[0] == ends[2] || ends[0] == ends[3] ||
+                            ends[1] == ends[2] || ends[1] == ends[3];
+    const auto is_marked = [&](std::uint32_t v) { return is_apart[v] == 0; };
+    if (!has_common && !std::all_of(ends, ends + 4, is_marked) &&
+        !areApart(planarEdge(i), planarEdge(j), distance))
+      for (const std::uint32_t v : ends) is_apart[v] = 0;
     return true;
   });
-  return near;
 }
 
 /// The length of w, as a vector of space: its product with a point is that of w with the

@@ -45,17 +45,14 @@ class BorderProof {
   /// @brief The bit of the direction of the last proof.
   int direction() const { return direction_; }
 
-  /// @brief Two edges of a border.
-  struct EdgePair {
-    std::size_t first, second;
-  };
-
-  /// @brief The pairs of edges without a common vertex that may come within a distance of
-  /// each other during the step, seen along a direction.
+  /// @brief Marks the vertices of the pairs of edges without a common vertex that may
+  /// come within a distance of each other during the step, seen along a direction. With a
+  /// distance far above the length of edges all vertices of the border are marked.
   /// @param border  has at least one edge
   /// @param direction  a bit of kAxes
-  std::vector<EdgePair> findNear(const RegionBorder& border, int direction,
-                                 double distance);
+  /// @param[out] is_apart  0 for a vertex that is marked, by its place
+  void markNear(const RegionBorder& border, int direction, double distance,
+                std::vector<std::uint8_t>& is_apart);
 
  private:
   struct Point {

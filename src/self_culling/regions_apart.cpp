@@ -27,10 +27,7 @@ class BorderMarks {
 
   void mark(const RegionBorder& border, int direction) {
     markShortLoops(border);
-    for (const BorderProof::EdgePair& pair :
-         proof_.findNear(border, direction, distance_))
-      for (const std::size_t edge : {pair.first, pair.second})
-        is_apart_[border.from(edge)] = is_apart_[border.to(edge)] = 0;
+    proof_.markNear(border, direction, distance_, is_apart_);
   }
 
  private:

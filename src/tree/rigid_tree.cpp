@@ -132,20 +132,23 @@ RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes,
                      const Pose& beginning, const Pose& end)
     : nodes_(nodes),
       volumes_(volumes),
-      is_rotated_(!beginning.isTranslation() || !end.isTranslation()),
       turns_(!std::equal(beginning.rotation, beginning.rotation + 9, end.rotation)) {
+  OrientedBox whole;
+  orientedBox(0, whole);
+  is_rotated_ = !beginning.isTranslation() || !end.isTranslation();
   std::copy(beginning.rotation, beginning.rotation + 9, rotation_[0]);
   std::copy(end.rotation, end.rotation + 9, rotation_[1]);
   for (auto frame : {0, 1}) setOrigin(frame);
   reach_ *= 1 + slack();
   if (!turns_) return;
-  // The difference of both rotations, applied to any point.
+  // The difference of both rotations, applied to any point, whose length is below `size`.
   double size = 0, square = 0;
   for (int k = 0; k < 9; ++k) {
     const double change = rotation_[1][k] - rotation_[0][k];
     square += change * change;
   }
-  for (const double x : origin_[0]) size += std::abs(x) + reach_;
+  for (int k = 0; k < 3; ++k) size += std::abs(whole.center[k]) + whole.extent[k];
+  size *= 1 + 2 * slack();
   displacement_ = roundUp(std::sqrt(square) * size, 0.f);
 }
 

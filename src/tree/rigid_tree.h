@@ -67,6 +67,9 @@ class RigidTree {
   /// ~triangle of a leaf.
   int link(int node) const;
 
+  /// @brief Whether the rotations at t = 0 and t = 1 differ.
+  bool turns() const { return turns_; }
+
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
   bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
 

@@ -2,6 +2,7 @@
 #include "tree/separating_axes.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cfloat>
 #include <cmath>
 #include <limits>
@@ -50,6 +51,7 @@ SeparatingAxes::SeparatingAxes(const MeshInstance& a, const MeshInstance& b)
 }
 
 bool SeparatingAxes::areApart(int i, int j) const {
+  assert(!a_.turns() && !b_.turns());
   OrientedBox a, b;
   a_.orientedBox(i, a);
   b_.orientedBox(j, b);

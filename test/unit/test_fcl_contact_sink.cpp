@@ -26,7 +26,7 @@ using test::Random;
 
 FeatureContact randomContact(Random& random, std::size_t vertices, double at_start) {
   FeatureContact contact{};
-  contact.kind = static_cast<ContinuousContactKind>(random.index(4));
+  contact.kind = static_cast<ContinuousContactKind>(random.index(5));
   contact.first_on_a = random.index(4) != 0;
   for (std::uint32_t& v : contact.vertices)
     v = static_cast<std::uint32_t>(random.index(vertices));

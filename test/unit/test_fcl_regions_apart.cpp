@@ -289,6 +289,13 @@ TEST(FCL_REGIONS_APART, bodies) {
   EXPECT_LT(tally.bodies, 80U);
 }
 
+// There are more pairs of near edges of the border than are looked at.
+TEST(FCL_REGIONS_APART, nothingIsApartAtTheSizeOfTheMesh) {
+  const MovingMesh sheet = still(test::makeSheet(40, 40));
+  EXPECT_GT(LeftOut(sheet, 1e-3).triangles(), 1000U);
+  EXPECT_EQ(LeftOut(sheet, 3).triangles(), 0U);
+}
+
 // Round bodies are apart by nearly the least height of their triangles.
 TEST(FCL_REGIONS_APART, roundBodiesAreApartByTheirHeights) {
   for (const test::TestMesh& mesh :

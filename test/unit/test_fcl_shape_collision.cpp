@@ -117,6 +117,14 @@ Geometry octahedron(double radius) {
   return std::make_shared<Convex<double>>(vertices, 8, faces);
 }
 
+/// A tetrahedron with a corner at each place.
+Geometry tetrahedron(const Point (&corner)[4]) {
+  auto vertices = std::make_shared<std::vector<Point>>(corner, corner + 4);
+  auto faces = std::make_shared<std::vector<int>>(
+      std::vector<int>{3, 0, 2, 1, 3, 0, 1, 3, 3, 0, 3, 2, 3, 1, 2, 3});
+  return std::make_shared<Convex<double>>(vertices, 4, faces);
+}
+
 Geometry floorMesh() {
   const TestMesh sheet =
       makeSheet(8, 8, [](double u, double v) { return Point(4 * u - 2, 4 * v - 2, 0); });
@@ -249,6 +257,33 @@ TEST(ShapeCollide, WhatIsInsideTouchesAtTheBeginning) {
                    {std::make_shared<Plane<double>>(Point(0, 0, 1), 0.5), at(0, 0, 0),
                     at(0, 0, 0)})
                    .is_collide);
+}
+
+// The middle of the box of a hull may be far outside of the hull.
+TEST(ShapeCollide, HullsAroundWhoseBoxesMeetAreApart) {
+  const Geometry low = tetrahedron({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}),
+                 high = tetrahedron({{1, 1, 1}, {0, 1, 1}, {1, 0, 1}, {1, 1, 0}}),
+                 triangle = std::make_shared<TriangleP<double>>(
+                     Point(0, 0, 0), Point(1, 0, 0.5), Point(0, 1, 1)),
+                 ball = std::make_shared<Sphere<double>>(0.1),
+                 box = std::make_shared<Box<double>>(0.1, 0.1, 0.1);
+  Pose middle = Pose::Identity();
+  middle.translation() = Point(0.5, 0.5, 0.5);
+  const Pose origin = Pose::Identity();
+  const auto expectApart = [](const Geometry& a, const Pose& at_a, const Geometry& b,
+                              const Pose& at_b) {
+    ContinuousCollisionRequest<double> request;
+    ContinuousCollisionResult<double> result;
+    continuousCollide(a.get(), at_a, at_a, b.get(), at_b, at_b, request, result);
+    EXPECT_FALSE(result.is_collide);
+    continuousCollide(b.get(), at_b, at_b, a.get(), at_a, at_a, request, result);
+    EXPECT_FALSE(result.is_collide);
+  };
+  expectApart(low, origin, high, origin);
+  for (const Geometry& other : {ball, box}) {
+    expectApart(low, origin, other, middle);
+    expectApart(triangle, origin, other, middle);
+  }
 }
 
 TEST(ShapeCollide, BoxTurnsOnItsEdge) {
