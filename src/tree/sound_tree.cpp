@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "fcl/geometry/bvh/BVH_model.h"
-#include "fcl/geometry/bvh/refit_top_down.h"
 #include "tree/fcl_volumes.h"
 
 namespace fcl {
@@ -229,13 +228,10 @@ bool isTreeSound(const BVHModel<BV>& model) {
            (isFittedFromTheTop(model) || containAllCorners(model));
 }
 
-}  // namespace deformable
-
 // isNoSum() compares with one or two sets of axes. Turns about three axes give volumes of
 // which each set excludes at most one.
 template <typename BV>
 void markFittedFromTheTop(BVHModel<BV>& model) {
-  using namespace deformable;
   if constexpr (!kHasSlabs<BV>) {
     if (isFittedFromTheTop(model)) return;
     visitSample(model, [&model](BVNode<BV>& node) {
@@ -253,8 +249,8 @@ void markFittedFromTheTop(BVHModel<BV>& model) {
   }
 }
 
-#define FCL_CCD_INSTANTIATE(...)                                       \
-  template bool deformable::isTreeSound(const BVHModel<__VA_ARGS__>&); \
+#define FCL_CCD_INSTANTIATE(...)                           \
+  template bool isTreeSound(const BVHModel<__VA_ARGS__>&); \
   template void markFittedFromTheTop(BVHModel<__VA_ARGS__>&);
 #define FCL_CCD_INSTANTIATE_ALL(S) \
   FCL_CCD_INSTANTIATE(AABB<S>)     \
@@ -270,5 +266,6 @@ FCL_CCD_INSTANTIATE_ALL(float)
 #undef FCL_CCD_INSTANTIATE_ALL
 #undef FCL_CCD_INSTANTIATE
 
+}  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

@@ -35,6 +35,13 @@ namespace deformable {
 template <typename BV>
 bool isTreeSound(const BVHModel<BV>& model);
 
+/// @brief Makes a tree that was fitted from the top down one that isTreeSound()
+/// recognises: see refitTopDown().
+/// @tparam BV  any of FCL's bounding volumes
+/// @pre the tree was fitted from the top down
+template <typename BV>
+void markFittedFromTheTop(BVHModel<BV>& model);
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

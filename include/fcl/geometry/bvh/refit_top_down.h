@@ -12,10 +12,10 @@
 namespace fcl {
 namespace detail {
 
-/// @brief Makes a tree that was fitted from the top down one that isTreeSound()
-/// (sound_tree.h) recognises. If no volume shows it already, one volume, the root's as a
-/// rule, gets axes that FCL's sum of its children cannot have. It contains the old one,
-/// and so FCL's queries stay correct.
+/// @brief Makes a tree that was fitted from the top down one that queries recognise. If
+/// no volume shows it already, one volume, the root's as a rule, gets axes that FCL's sum
+/// of its children cannot have. It contains the old one, and so FCL's queries stay
+/// correct.
 /// @pre the tree was fitted from the top down
 template <typename BV>
 FCL_EXPORT void markFittedFromTheTop(BVHModel<BV>& model);
