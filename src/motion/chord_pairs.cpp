@@ -71,16 +71,13 @@ const MeshInstance& ChordMesh::during(double t0, double t1, int num_threads) {
   mesh_ = body_.meshInBodyFrame();
   const MotionPath& path = body_.path();
   const Pose pose[2] = {path.pose(t0), path.pose(t1)};
-  const auto setTranslation = [&] {
-    for (auto frame : {0, 1})
-      std::copy(pose[frame].translation, pose[frame].translation + 3,
-                mesh_.translation[frame]);
-  };
   if (!isRefit(t0, t1)) {
     // Where vertices are posed already, the path is the identity (PreparedMotion).
     if (!mesh_.frames.isPosed()) mesh_.frames.setPoses(pose[0], pose[1]);
     if (!mesh_.tree) mesh_.rigid = mesh_.rigid.turned(pose[0], pose[1]);
-    setTranslation();
+    for (auto frame : {0, 1})
+      std::copy(pose[frame].translation, pose[frame].translation + 3,
+                mesh_.translation[frame]);
     return mesh_;
   }
   const VertexFrames& frames = mesh_.frames;
