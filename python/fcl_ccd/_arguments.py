@@ -15,6 +15,20 @@ if TYPE_CHECKING:
 _WANTED = {"f": "numbers", "i": "integers"}
 
 
+class Built:
+    """A class whose attributes exist only after __init__(). Using them earlier is a TypeError."""
+
+    if not TYPE_CHECKING:  # For mypy any attribute would exist.
+
+        def __getattr__(self, name: str) -> Any:
+            """Called for an attribute that was not found."""
+            if any(name in getattr(cls, "__annotations__", {}) for cls in type(self).__mro__):
+                raise TypeError(
+                    f"the __init__() of this {type(self).__name__} was not called, or has not ended"
+                )
+            return super().__getattribute__(name)
+
+
 def _array(values: ArrayLike, name: str, kind: str, shape: Sequence[Optional[int]]) -> NDArray[Any]:
     """An array of float64 (kind "f") or int64 ("i") in C order. None in shape: any length."""
     array = np.asarray(values)

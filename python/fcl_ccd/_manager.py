@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Hashable, List, Mapping, Optional, Union
 
-from . import _core
+from . import _arguments, _core
 from ._motions import MotionLike, path_of
 from ._queries import Filter, Result, filter_of, geometry_of, request_of
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
+class Pair(_arguments.Built):
     """Two objects of a manager in contact.
 
     o1, o2 : the names of the objects. A mesh in contact with itself is both of them. A mesh
@@ -29,7 +29,7 @@ class Pair:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ManagerResult:
+class ManagerResult(_arguments.Built):
     """The answer of CollisionManager.collide(). It is true if there is a collision.
 
     is_collide : bool
@@ -58,7 +58,7 @@ class ManagerResult:
         )
 
 
-class CollisionManager:
+class CollisionManager(_arguments.Built):
     """Finds the contacts of many meshes and shapes that move: a broad phase and its queries.
 
     Each object has a name, a mesh or shape, and a motion. One mesh may be in many objects.
@@ -85,9 +85,12 @@ class CollisionManager:
     changes nothing.
     """
 
+    _manager: _core.Manager
+    _objects: Dict[Hashable, _core.ManagedObject]
+
     def __init__(self) -> None:
         self._manager = _core.Manager()
-        self._objects: Dict[Hashable, _core.ManagedObject] = {}
+        self._objects = {}
 
     def register(
         self,

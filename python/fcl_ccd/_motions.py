@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-class Motion:
+class Motion(_arguments.Built):
     """The path of an object during a step: Linear-, Screw-, Spline- or BoundedMotion."""
 
     _path: _core.Motion

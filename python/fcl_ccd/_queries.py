@@ -72,7 +72,7 @@ class Filter(_core.Filter):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
+class Result(_arguments.Built):
     """The answer of collide() and self_collide(). It is true if there is a collision.
 
     Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.

@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "classes.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
@@ -232,7 +233,7 @@ py::array toArray(const fcl::detail::PoseNumbers<double>& pose) {
 }
 
 void bindMotions(py::module_& module) {
-  py::class_<Motion>(module, "Motion")
+  Class<Motion>(module, "Motion")
       .def_static("straight", &straight)
       .def_static("turn", &turn)
       .def_static("screw", &screw)
