@@ -92,12 +92,14 @@ def _wrong_elements(values: object, array: NDArray[Any], name: str, kind: str) -
     if array.dtype.kind != "O":
         return type_error(f"{name} has elements of type {array.dtype}. Give {_WANTED[kind]}")
     elements = array.ravel().tolist()
-    if kind == "i" and all(type(element) is int for element in elements):
-        return _too_large(max(elements, key=abs), name)  # numpy has no integer that large
+    if all(type(element) is int for element in elements):
+        largest = max(elements, key=abs)
+        if kind == "i" and abs(largest) > _MOST:  # numpy has no such integers
+            return _too_large(largest, name)
     other = next((e for e in elements if type(e) not in (int, float)), elements[0])
     return type_error(
-        f"{name} has an element of type {type(other).__name__}, in an array of objects. "
-        f"Give {_WANTED[kind]}"
+        f"{name} is an array of objects, with an element of type {type(other).__name__}. "
+        f"Give an array of {_WANTED[kind]}"
     )
 
 
