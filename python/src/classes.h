@@ -7,7 +7,9 @@
 #include <pybind11/pybind11.h>
 
 #include <cstddef>
+#include <memory>
 #include <string>
+#include <utility>
 
 namespace fcl_ccd {
 namespace python {
@@ -22,10 +24,27 @@ namespace python {
 template <typename Object, typename... Options>
 class Class : public pybind11::class_<Object, Options...> {
  public:
-  Class(pybind11::module_& module, const char* name)
-      : pybind11::class_<Object, Options...>(module, name) {
+  /// @param extra  options of pybind11
+  template <typename... Extra>
+  Class(pybind11::module_& module, const char* name, const Extra&... extra)
+      : pybind11::class_<Object, Options...>(module, name, extra...) {
     pybind11::detail::get_type_info(typeid(Object))->operator_new = &refuseUse;
     this->def("__reduce_ex__", &refuseCopy);
+  }
+
+  /// A constructor without Python's lock (the GIL), which two threads may call for one
+  /// object.
+  template <typename... Arguments, typename... Names>
+  Class& defInit(const Names&... names) {
+    const auto init = [](pybind11::detail::value_and_holder& self,
+                         Arguments... arguments) {
+      auto built = std::make_unique<Object>(std::forward<Arguments>(arguments)...);
+      if (self.value_ptr())
+        throw pybind11::type_error("another thread has called this __init__()");
+      self.value_ptr() = built.release();
+    };
+    this->def("__init__", init, pybind11::detail::is_new_style_constructor(), names...);
+    return *this;
   }
 
  private:
@@ -45,6 +64,42 @@ class Class : public pybind11::class_<Object, Options...> {
                                " cannot be copied or pickled. Make another one");
   }
 };
+
+/// The C++ object of an object of Python. Null: it is not built, or its class has more
+/// than one base of this module.
+template <typename Object>
+const Object* builtObject(PyObject* self) {
+  const auto& instance = *reinterpret_cast<pybind11::detail::instance*>(self);
+  if (!instance.simple_layout || !instance.simple_holder_constructed) return nullptr;
+  return static_cast<const Object*>(instance.simple_value_holder[0]);
+}
+
+/// Shows Python's garbage collector what objects of a class refer to, so that cycles with
+/// objects of the user are freed. There is no tp_clear, as in a tuple: these objects do
+/// not change, and in each cycle there is one that does.
+/// @tparam Object  its visit(visit) calls visit(pybind11::handle) for each reference
+template <typename Object>
+pybind11::custom_type_setup seenByCollector() {
+  return pybind11::custom_type_setup([](PyHeapTypeObject* heap_type) {
+    PyTypeObject& type = heap_type->ht_type;
+    type.tp_flags |= Py_TPFLAGS_HAVE_GC;
+    type.tp_traverse = [](PyObject* self, visitproc visit, void* arg) {
+#if PY_VERSION_HEX >= 0x03090000
+      Py_VISIT(Py_TYPE(self));
+#endif
+      int stop = 0;
+      if (const auto* object = builtObject<Object>(self))
+        object->visit([&](const pybind11::handle& reference) {
+          if (stop == 0 && reference) stop = visit(reference.ptr(), arg);
+        });
+      return stop;
+    };
+    type.tp_dealloc = [](PyObject* self) {
+      PyObject_GC_UnTrack(self);
+      pybind11::detail::pybind11_object_dealloc(self);
+    };
+  });
+}
 
 }  // namespace python
 }  // namespace fcl_ccd

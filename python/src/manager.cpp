@@ -24,7 +24,12 @@ namespace {
 using FclManager = fcl::ContinuousCollisionManagerd;
 using FclRequest = fcl::ContinuousContactRequestd;
 using FclResult = fcl::ContinuousManagerResultd;
-using FclMotion = std::shared_ptr<fcl::MotionBase<double>>;
+
+/// FCL's motion on a path, and what keeps its functions of Python alive.
+struct FclMotion {
+  std::shared_ptr<fcl::MotionBase<double>> motion;
+  py::object functions;
+};
 
 /// FCL's objects do not own what they refer to, and queries do not write to it.
 std::shared_ptr<fcl::CollisionGeometry<double>> borrow(const Geometry& geometry) {
@@ -40,7 +45,8 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
         name_(std::move(name)),
         owner_(std::move(owner)),
         geometry_(geometryOf(owner_)) {
-    motion = makeMotion(path);
+    FclMotion made = makeMotion(path);
+    swapMotion(made);
     takeNote();
   }
 
@@ -48,9 +54,20 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
   const Geometry& geometry() const { return geometry_; }
 
   FclMotion makeMotion(const Motion& path) const {
-    return toFclMotion(path, dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr);
+    const bool deforms = dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr;
+    return {toFclMotion(path, deforms), path.functions};
   }
-  void swapMotion(FclMotion& other) { motion.swap(other); }
+  void swapMotion(FclMotion& other) {
+    motion.swap(other.motion);
+    std::swap(functions_, other.functions);
+  }
+
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    visit(name_);
+    visit(owner_);
+    visit(functions_);
+  }
 
   /// The manager has read the mesh.
   void takeNote() { num_updates_ = geometry_.numUpdates(); }
@@ -61,7 +78,7 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
     return py::cast<const Geometry&>(owner);
   }
 
-  py::object name_, owner_;
+  py::object name_, owner_, functions_;
   const Geometry& geometry_;
   std::uint64_t num_updates_{0};
 };
@@ -216,6 +233,11 @@ class Manager : public Guarded {
     });
   }
 
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    for (const auto& owner : owners_) visit(owner.second);
+  }
+
  private:
   /// Called without the GIL. After an exception the object is not registered.
   void add(ManagedObject& object, const fcl::ContinuousFilter& filter,
@@ -266,8 +288,8 @@ class Manager : public Guarded {
 }  // namespace
 
 void bindManager(py::module_& module) {
-  Class<ManagedObject>(module, "ManagedObject");
-  Class<Manager>(module, "Manager")
+  Class<ManagedObject>(module, "ManagedObject", seenByCollector<ManagedObject>());
+  Class<Manager>(module, "Manager", seenByCollector<Manager>())
       .def(py::init<>())
       .def("_insert", &Manager::insert)
       .def("_remove", &Manager::remove)

@@ -210,10 +210,9 @@ void bindMeshes(py::module_& module) {
   Class<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;
   Class<DeformableMesh, Mesh>(module, "DeformableMesh")
-      .def(py::init<const Doubles&, const Integers&, const Integers&, const Integers&,
-                    int>(),
-           py::arg("vertices"), py::arg("triangles"), py::arg("edges"), py::arg("points"),
-           py::arg("num_threads"))
+      .defInit<const Doubles&, const Integers&, const Integers&, const Integers&, int>(
+          py::arg("vertices"), py::arg("triangles"), py::arg("edges"), py::arg("points"),
+          py::arg("num_threads"))
       .def("_update", &DeformableMesh::update, py::arg("previous"), py::arg("current"))
       .def("_update_topology", &DeformableMesh::updateTopology, py::arg("triangles"),
            py::arg("previous"), py::arg("current"), py::arg("origins"), py::arg("edges"),
@@ -250,8 +249,7 @@ void bindMeshes(py::module_& module) {
                                return copyOf(m.tri_indices, m.num_tris);
                              }));
   Class<RigidMesh, Mesh>(module, "RigidMesh")
-      .def(py::init<const Doubles&, const Integers&>(), py::arg("vertices"),
-           py::arg("triangles"))
+      .defInit<const Doubles&, const Integers&>(py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly("num_vertices",
                              [](const RigidMesh& m) { return m.model().num_vertices; })
       .def_property_readonly("num_triangles",

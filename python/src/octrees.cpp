@@ -104,7 +104,7 @@ class OcTree : public Geometry {
 void bindOctrees(py::module_& module) {
   module.attr("octree_cell_dtype") = dtypeOf<Cell>();
   Class<OcTree, Geometry>(module, "OcTree")
-      .def(py::init<const Doubles&, double>(), py::arg("points"), py::arg("resolution"))
+      .defInit<const Doubles&, double>(py::arg("points"), py::arg("resolution"))
       .def_property_readonly("resolution", &OcTree::resolution)
       .def_property_readonly("num_cells", &OcTree::numCells)
       .def("_cells", &OcTree::cells);

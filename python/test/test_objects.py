@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Objects made without __init__(), and copies."""
+"""Objects made without __init__(), copies, and cycles of objects."""
 
 import copy
+import gc
 import inspect
 import pickle
+import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -162,3 +165,88 @@ def test_copies_of_what_is_built():
     result = fcl_ccd.collide(MESH, MESH)
     for same in (copy.deepcopy(result), pickle.loads(pickle.dumps(result))):
         np.testing.assert_array_equal(same.contacts, result.contacts)
+
+
+def test_threads_that_build_one_object():
+    """One of them does. The others are told, and nothing ends the process."""
+    found = not_built(fcl_ccd.RigidMesh)
+    many = np.tile(TRIANGLES, (2000, 1))
+    start, errors = threading.Barrier(4), []
+
+    def build():
+        start.wait()
+        try:
+            found.__init__(VERTICES, many)
+        except TypeError as error:
+            errors.append(str(error))
+
+    threads = [threading.Thread(target=build) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert set(errors) <= {"another thread has called this __init__()"}
+    assert found.num_triangles == len(many)
+    del found
+    gc.collect()
+
+
+class User:
+    """An object of the user with a method that a motion calls."""
+
+    def pose(self, t):
+        return np.eye(4)
+
+    def motion(self):
+        return fcl_ccd.BoundedMotion(
+            self.pose, lambda t: np.zeros((4, 4)), lambda *ball: 0, lambda *span: 0
+        )
+
+
+def user_with_motion():
+    user = User()
+    user.own_motion = user.motion()
+    return user
+
+
+def user_with_manager():
+    user = User()
+    user.manager = fcl_ccd.CollisionManager()
+    user.manager.register("ball", fcl_ccd.Sphere(1), user.motion())
+    user.manager.update({"ball": user.motion()})
+    user.manager.register(user, fcl_ccd.Sphere(1))  # also as a name
+    return user
+
+
+def user_with_both():
+    user = user_with_motion()
+    user.manager = fcl_ccd.CollisionManager()
+    user.manager.register("ball", fcl_ccd.Sphere(1), user.own_motion)
+    return user
+
+
+class UserMesh(fcl_ccd.RigidMesh):
+    pass
+
+
+def mesh_with_manager():
+    mesh = UserMesh(VERTICES, TRIANGLES)
+    mesh.manager = fcl_ccd.CollisionManager()
+    mesh.manager.register("mesh", mesh)
+    return mesh
+
+
+@pytest.mark.parametrize(
+    "make", [user_with_motion, user_with_manager, user_with_both, mesh_with_manager]
+)
+def test_cycles_are_freed(make):
+    kept = make()
+    gc.collect()  # sees what is alive, and objects that are not built
+    others = [not_built(of) for of in COMPILED.values()]
+    gc.collect()
+    if hasattr(kept, "manager"):
+        assert kept.manager.collide() is not None
+    reference = weakref.ref(kept)
+    del kept, others
+    gc.collect()
+    assert reference() is None
