@@ -225,9 +225,9 @@ def integer(value: int, name: str, most: int = 2**31 - 1) -> int:
 
 
 def flag(value: bool, name: str) -> bool:
-    if isinstance(value, (bool, np.bool_)):
-        return bool(value)
-    if isinstance(value, (int, np.integer)) and value in (0, 1):
+    if value is True or value is False:
+        return value
+    if isinstance(value, np.bool_) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
         return bool(value)
     raise wrong_type(name, value, "True or False")
 
