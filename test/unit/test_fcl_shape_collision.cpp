@@ -719,6 +719,47 @@ TEST(ShapeCollide, BadInputHasAClearError) {
   EXPECT_NE(messageOf(std::make_shared<Sphere<double>>(1.), at(kNan, 0, 0)), "");
 }
 
+// A halfspace in such a pose missed contacts, and the radius of a sphere did not scale.
+TEST(ShapeCollide, TransformsThatAreNoRotations) {
+  const auto posed = [](const Matrix3<double>& m, double z) {
+    Pose pose = at(0, 0, z);
+    pose.linear() = m;
+    return pose;
+  };
+  Matrix3<double> shear = Matrix3<double>::Identity();
+  shear(2, 0) = 0.5;
+  const Matrix3<double> one = Matrix3<double>::Identity(),
+                        mirror = Point(1, 1, -1).asDiagonal(),
+                        flat = Point(1, 1, 0).asDiagonal();
+  const Geometry floor = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.);
+  const auto messageOf = [&](const Geometry& o, const Pose& begin, const Pose& end) {
+    try {
+      ask({o, begin, end}, {floor, at(0, 0, 0), at(0, 0, 0)});
+    } catch (const Exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Geometry shapes[] = {std::make_shared<Sphere<double>>(1.),
+                             std::make_shared<Box<double>>(1., 1., 1.),
+                             std::make_shared<Halfspace<double>>(Point(0, 0, -1), 0.),
+                             std::make_shared<Plane<double>>(Point(0, 0, 1), 0.)};
+  for (const Geometry& shape : shapes)
+    for (const Matrix3<double>& m : {Matrix3<double>(2 * one), mirror, shear, flat})
+      for (const Matrix3<double>& other : {m, one}) {
+        const std::string wanted = "a transform scales, mirrors or shears";
+        for (const std::string& message :
+             {messageOf(shape, posed(other, 3), posed(m, -1)),
+              messageOf(shape, posed(m, 3), posed(other, -1))})
+          EXPECT_NE(message.find(wanted), std::string::npos) << message;
+      }
+  // What was computed in float or typed with four digits is a rotation.
+  Matrix3<double> typed;
+  typed << 0.7071, -0.7071, 0, 0.7071, 0.7071, 0, 0, 0, 1;
+  for (const Geometry& shape : shapes)
+    EXPECT_EQ(messageOf(shape, posed(typed, 3), posed(one, -1)), "");
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace fcl
