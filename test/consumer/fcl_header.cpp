@@ -12,3 +12,10 @@ double timeThroughFclHeader(const fcl::CollisionGeometryd& a,
   return fcl::continuousCollide(&a, still, still, &b, b_beg, b_end,
                                 fcl::ContinuousCollisionRequestd(), result);
 }
+
+// A program in double does not compile Eigen's transforms in float, which took a
+// twentieth of the time of the header. After a use of them this is an error of gcc.
+namespace Eigen {
+template <>
+class Transform<float, 3, Isometry>;
+}
