@@ -50,10 +50,15 @@ bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& 
       (isUnbounded(*o1.geometry) && isUnbounded(*o2.geometry)) || !isPlain(o1) ||
       !isPlain(o2))
     return false;
-  const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
-                    b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
-  return isInRange(a) && isInRange(b) &&
-         deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+  try {
+    const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
+                      b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
+    return isInRange(a) && isInRange(b) &&
+           deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+  } catch (const Exception&) {
+    // The query tells first what is wrong with the request.
+    return false;
+  }
 }
 
 template bool areOverlappingShapes(const MovingGeometry<double>&,

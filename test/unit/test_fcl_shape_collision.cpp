@@ -719,6 +719,30 @@ TEST(ShapeCollide, BadInputHasAClearError) {
   EXPECT_NE(messageOf(std::make_shared<Sphere<double>>(1.), at(kNan, 0, 0)), "");
 }
 
+TEST(ShapeCollide, WhatIsWrongIsToldInOneOrder) {
+  const Pose still = at(0, 0, 0);
+  const Sphere<double> wrong(-1), right(1);
+  const Halfspace<double> flat(Point::UnitZ(), 0);
+  const auto messageOf = [&still](const auto& o1, const auto& o2, auto request) {
+    request.toc_err = -1;
+    try {
+      std::conditional_t<std::is_same_v<decltype(request), Request>, Result,
+                         ContinuousCollisionResult<double>>
+          result;
+      continuousCollide(&o1, still, still, &o2, still, still, request, result);
+    } catch (const Exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const ContinuousCollisionRequest<double> plain;
+  const Request with_contacts;
+  EXPECT_NE(messageOf(wrong, right, plain).find("toc_err"), std::string::npos);
+  EXPECT_EQ(messageOf(wrong, right, plain), messageOf(wrong, right, with_contacts));
+  EXPECT_EQ(messageOf(right, right, plain), messageOf(right, right, with_contacts));
+  EXPECT_EQ(messageOf(flat, right, plain), messageOf(flat, right, with_contacts));
+}
+
 }  // namespace
 }  // namespace test
 }  // namespace fcl
