@@ -392,12 +392,20 @@ class MotionTraversal {
     work.t1 = std::min(work.t1, std::ceil(end / unit) * unit);
   }
 
+  /// How far points may deviate from straight lines, as a share of the radius of a part.
+  /// Directions of shapes are compared at both ends of a span only. In short spans fewer
+  /// pairs may touch before the first contact does: a first contact of a mesh and a
+  /// cylinder takes 0.44 ms, with a quarter 0.65 ms. For all contacts each span costs,
+  /// and a quarter takes half of the time.
+  double mostDeviation() const {
+    if (!side_[0].body.shape() && !side_[1].body.shape()) return 0.5;
+    return options_.all ? 0.25 : 0x1p-5;
+  }
+
   void divide(MotionWork& work) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
     constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6;
-    // Directions of shapes are compared at both ends of a span only.
-    const double most_deviation =
-        side_[0].body.shape() || side_[1].body.shape() ? 0.25 : 0.5;
+    const double most_deviation = mostDeviation();
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
                               partSpan(1, work.b, work.t0, work.t1)};
