@@ -394,12 +394,12 @@ class MotionTraversal {
 
   /// How far points may deviate from straight lines, as a share of the radius of a part.
   /// Directions of shapes are compared at both ends of a span only. In short spans fewer
-  /// pairs may touch before the first contact does: a first contact of a mesh and a
-  /// cylinder takes 0.44 ms, with a quarter 0.65 ms. For all contacts each span costs,
-  /// and a quarter takes half of the time.
+  /// pairs may touch before the first contact does: that of a mesh and a cylinder takes
+  /// 0.44 ms, with a share of a quarter 0.65 ms. Where all contacts are wanted each span
+  /// costs: they take 7% to 45% less time than with a quarter, most beside a halfspace.
   double mostDeviation() const {
     if (!side_[0].body.shape() && !side_[1].body.shape()) return 0.5;
-    return options_.all ? 0.25 : 0x1p-5;
+    return options_.all ? 1 : 0x1p-5;
   }
 
   void divide(MotionWork& work) {
