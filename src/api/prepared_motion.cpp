@@ -75,8 +75,9 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
-    shape_.emplace(
-        convexShapeOf(placed.geometry(), name, reach + path.translationReach()));
+    // In the body frame, which a matrix that is no rotation makes larger or smaller.
+    const double reach_in_body = (reach + path.translationReach()) / path.stretch();
+    shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));

@@ -49,7 +49,8 @@ class MotionTraversal {
     rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
                 16 * kUnitRounding * (a.speed() + b.speed());
     box_margin_ = options.distance + rounding_;
-    direction_bound_ = (1 + 0x1p-10) * std::max(a.path().stretch(), b.path().stretch());
+    direction_bound_ =
+        (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
   }
 
   MotionAnswer run() {

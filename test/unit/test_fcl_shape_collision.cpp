@@ -419,6 +419,42 @@ TEST(ShapeCollide, MinDistanceOfAMeshThatTurns) {
   EXPECT_NEAR(result.contacts.at(0).pos[2], 0.5 * distance, 1e-9);
 }
 
+// Boxes and flats whose matrices make all lengths smaller or larger. The distance is that
+// in the world. The other box goes down by 4 units of the scale.
+TEST(ShapeCollide, MinDistanceWithMatricesThatScale) {
+  const TestMesh cube = makeBox({1, 1, 1});
+  auto mesh = std::make_shared<BVHModel<OBBRSS<double>>>();
+  mesh->beginModel();
+  mesh->addSubModel(cube.vertices, cube.triangles);
+  mesh->endModel();
+  const Geometry box = std::make_shared<Box<double>>(2, 2, 2),
+                 plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
+                 halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
+  for (const double scale : {1e-3, 0.5, 2., 8.}) {
+    const auto scaled = [scale](double z, double turn) {
+      Pose pose = turned(turn, Point(0, 0, 1), at(0, 0, scale * z));
+      pose.linear() *= scale;
+      return pose;
+    };
+    for (const double distance : {0., 0.4})
+      for (const double turn : {0., 1.})
+        for (const Geometry& above : {box, Geometry(mesh)})
+          for (const Geometry& below : {box, plane, halfspace}) {
+            SCOPED_TRACE(testing::Message() << scale << " " << distance << " " << turn);
+            Request request = requestOf();
+            request.min_distance = scale * distance;
+            const Moving a{above, scaled(5, 0), scaled(1, 0)},
+                b{below, scaled(0, 0), scaled(0, turn)};
+            const double time = (3 - distance) / 4;
+            for (const Result& result : {ask(a, b, request), ask(b, a, request)}) {
+              ASSERT_TRUE(result.is_collide);
+              EXPECT_LE(result.time_of_contact, time + 1e-15);
+              EXPECT_NEAR(result.time_of_contact, time, 1e-11);
+            }
+          }
+  }
+}
+
 TEST(ShapeCollide, TMaxCutsAtTheTime) {
   const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
   const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
