@@ -293,10 +293,22 @@ ConvexGap ConvexPairMotion::flatGap(const State& state) const {
   return out;
 }
 
+/// The direction between the centers, or the suggested one if it shows a larger gap.
+/// Newton's method needs a good one.
+Vec ConvexPairMotion::firstGuess(const State& state) const {
+  const Vec way = state.side[1].center() - state.side[0].center();
+  const bool is_curved = state.side[0].now.isCurved() || state.side[1].now.isCurved();
+  if (!is_curved || !(maxNorm(suggested_) > 0)) return way;
+  const auto gapAlong = [&state](const Vec& n) {
+    return -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+  };
+  const double length = norm(way);
+  return length > 0 && gapAlong(way) > length * gapAlong(suggested_) ? way : suggested_;
+}
+
 ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
   if (flat_ >= 0) return flatGap(state);
-  const Vec guess =
-      maxNorm(guess_) > 0 ? guess_ : state.side[1].center() - state.side[0].center();
+  const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(state);
   return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact);
 }
 

@@ -47,6 +47,13 @@ class ConvexPairMotion {
   /// that then. Not if they touch then.
   void ignoreInitiallyCloser();
 
+  /// @brief Suggests a direction from a to b that may part the sets, for example that of
+  /// a pair beside this one; 0: none. The answer depends on it by rounding only.
+  void suggest(const Vec& direction) { suggested_ = direction; }
+
+  /// @brief The last direction that parted the sets while they were advanced; 0: none.
+  const Vec& lastDirection() const { return guess_; }
+
   /// @brief As TrianglePairMotion::advance(). Also kContact where the sets overlap.
   Answer advance(double& t, double last, int& steps, MotionCounts& counts);
 
@@ -110,6 +117,8 @@ class ConvexPairMotion {
   MotionTolerance tolerance_;
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
+  Vec firstGuess(const State& state) const;
+  Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};
 };

@@ -476,8 +476,10 @@ class MotionTraversal {
       const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
                                      b.isMesh() ? y.triangle.index : kNoTriangle};
       ConvexPairMotion pair(x, y, work.start, end, tolerance_);
+      pair.suggest(last_direction_);
       if (options_.ignores_initially_closer) pair.ignoreInitiallyCloser();
       advance(work, index, end, pair);
+      if (maxNorm(pair.lastDirection()) > 0) last_direction_ = pair.lastDirection();
       return;
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
@@ -566,6 +568,9 @@ class MotionTraversal {
   /// The latest time that matters.
   double latest_;
   MotionWorkQueue works_;
+  /// That parted the last pair with a shape or a cell. Others beside it have about the
+  /// same.
+  Vec last_direction_{0, 0, 0};
   /// The number of pairs that did not touch earlier than the contact that was found.
   int num_apart_{0};
   std::vector<MotionContact> contacts_;
