@@ -455,6 +455,29 @@ TEST(ShapeCollide, MinDistanceWithMatricesThatScale) {
   }
 }
 
+TEST(ShapeCollide, ParallelFlatsWithMatricesThatScale) {
+  const Geometry plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
+                 halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
+  for (const double scale : {1e-3, 0.5, 2., 8.})
+    for (const double distance : {0., 0.4})
+      for (const Geometry& below : {plane, halfspace}) {
+        SCOPED_TRACE(testing::Message() << scale << " " << distance);
+        const auto scaled = [scale](double z) {
+          Pose pose = at(0, 0, scale * z);
+          pose.linear() *= scale;
+          return pose;
+        };
+        Request request = requestOf();
+        request.min_distance = scale * distance;
+        const Result result =
+            ask({plane, scaled(5), scaled(-1)}, {below, scaled(0), scaled(0)}, request);
+        ASSERT_TRUE(result.is_collide);
+        EXPECT_LE(result.time_of_contact, (5 - distance) / 6 + 1e-15);
+        EXPECT_NEAR(result.time_of_contact, (5 - distance) / 6, 1e-11);
+        EXPECT_NEAR(result.contacts.at(0).normal[2], -1, 1e-12);
+      }
+}
+
 TEST(ShapeCollide, TMaxCutsAtTheTime) {
   const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
   const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
