@@ -1,25 +1,70 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Conversion and checks of arguments. What is contiguous and of the right type is not copied."""
+"""Conversion and checks of arguments. What is contiguous and of the right type is not copied.
+
+A TypeError names the function that the user called, the argument, and what it takes.
+"""
 
 from __future__ import annotations
 
 import math
 import operator
+import sys
 from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
 if TYPE_CHECKING:
+    from types import FrameType
+
     from numpy.typing import ArrayLike, NDArray
 
 _WANTED = {"f": "numbers", "i": "integers"}
 
 
+class Built:
+    """A class whose attributes exist only after __init__(). Using them earlier is a TypeError."""
+
+    if not TYPE_CHECKING:  # For mypy any attribute would exist.
+
+        def __getattr__(self, name: str) -> Any:
+            """Called for an attribute that was not found."""
+            if any(name in getattr(cls, "__annotations__", {}) for cls in type(self).__mro__):
+                raise TypeError(
+                    f"the __init__() of this {type(self).__name__} was not called, or has not ended"
+                )
+            return super().__getattribute__(name)
+
+
+def _called() -> str:
+    """The function of this package that the user called, for a message: "collide(): "."""
+    frame: Optional[FrameType] = sys._getframe(1)
+    called = ""
+    while frame is not None and frame.f_globals.get("__package__") == __package__:
+        name = frame.f_code.co_name
+        owner = frame.f_locals.get("self")
+        if owner is not None:
+            of = type(owner).__name__
+            name = of if name == "__init__" else f"{of}.{name}"
+        called, frame = name, frame.f_back
+    return f"{called}(): " if called.isidentifier() or "." in called else ""
+
+
+def type_error(text: str) -> TypeError:
+    return TypeError(_called() + text)
+
+
+def wrong_type(name: str, value: object, wanted: str) -> TypeError:
+    return type_error(f"{name} is of type {type(value).__name__}. Give {wanted}")
+
+
 def _array(values: ArrayLike, name: str, kind: str, shape: Sequence[Optional[int]]) -> NDArray[Any]:
     """An array of float64 (kind "f") or int64 ("i") in C order. None in shape: any length."""
-    array = np.asarray(values)
+    try:
+        array = np.asarray(values)
+    except ValueError as error:  # for example lists of different lengths
+        raise ValueError(f"{name} is no array of {_WANTED[kind]}: {error}") from error
     if array.dtype.kind not in ("iuf" if kind == "f" else "iu") and array.size > 0:
-        raise TypeError(f"{name} has elements of type {array.dtype}. Give {_WANTED[kind]}")
+        raise _wrong_elements(values, array, name, kind)
     if array.ndim != len(shape) or any(
         wanted not in (None, given) for wanted, given in zip(shape, array.shape)
     ):
@@ -27,7 +72,35 @@ def _array(values: ArrayLike, name: str, kind: str, shape: Sequence[Optional[int
         raise ValueError(
             f"{name} has the shape {array.shape}. Give an array of shape ({wanted_shape})"
         )
+    if array.dtype == np.uint64 and kind == "i" and array.size > 0:
+        largest = int(array.max())
+        if largest > _MOST:
+            raise _too_large(largest, name)
     return np.ascontiguousarray(array, dtype=np.float64 if kind == "f" else np.int64)
+
+
+_MOST = 2**63 - 1
+
+
+def _too_large(number: int, name: str) -> ValueError:
+    return ValueError(f"{name} has the number {number}. The largest number possible is 2^63 - 1")
+
+
+def _wrong_elements(values: object, array: NDArray[Any], name: str, kind: str) -> Exception:
+    if array.ndim == 0:
+        return wrong_type(name, values, f"an array of {_WANTED[kind]}")
+    if array.dtype.kind != "O":
+        return type_error(f"{name} has elements of type {array.dtype}. Give {_WANTED[kind]}")
+    elements = array.ravel().tolist()
+    if all(type(element) is int for element in elements):
+        largest = max(elements, key=abs)
+        if kind == "i" and abs(largest) > _MOST:  # numpy has no such integers
+            return _too_large(largest, name)
+    other = next((e for e in elements if type(e) not in (int, float)), elements[0])
+    return type_error(
+        f"{name} is an array of objects, with an element of type {type(other).__name__}. "
+        f"Give an array of {_WANTED[kind]}"
+    )
 
 
 def points(values: ArrayLike, name: str) -> NDArray[np.float64]:
@@ -69,10 +142,22 @@ def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:
     return array
 
 
+def real(value: float, name: str) -> float:
+    """A number. It may be infinite or NaN, which the library judges."""
+    if type(value) is float:
+        return value
+    if isinstance(value, (str, bytes, bool, np.bool_)):  # float() would take them
+        raise wrong_type(name, value, "a number")
+    try:
+        return float(value)
+    except (TypeError, ValueError) as error:
+        raise wrong_type(name, value, "a number") from error
+    except OverflowError as error:
+        raise ValueError(f"{name} is {value}. It is too large for a double") from error
+
+
 def number(value: float, name: str) -> float:
-    if not isinstance(value, (int, float, np.integer, np.floating)) or isinstance(value, bool):
-        raise TypeError(f"{name} is of type {type(value).__name__}. Give a number")
-    out = float(value)
+    out = real(value, name)
     if not math.isfinite(out):
         raise ValueError(f"{name} is {out}. Give a finite number")
     return out
@@ -94,14 +179,32 @@ def bound(value: float, name: str) -> float:
     return out
 
 
+def _in_range(array: NDArray[Any], name: str, least: int, most: int, wanted: str) -> List[int]:
+    outside = array[(array < least) | (array > most)]
+    if outside.size > 0:
+        raise ValueError(f"{name} has the number {outside[0]}, out of range. {wanted}")
+    numbers_in_range: List[int] = array.tolist()
+    return numbers_in_range
+
+
+def iterable(values: Any, name: str, wanted: str) -> Iterable[Any]:
+    if isinstance(values, (str, bytes)):
+        raise wrong_type(name, values, wanted)
+    try:
+        found: Iterable[Any] = iter(values)
+    except TypeError as error:
+        raise wrong_type(name, values, wanted) from error
+    return found
+
+
 def faces(values: Iterable[ArrayLike], name: str) -> Sequence[int]:
     """Polygons in FCL's encoding: the number of vertices, then the vertices, of each face."""
     encoded: List[int] = []
-    for i, face in enumerate(values):
-        ids = _array(face, f"face {i} of {name}", "i", (None,))
-        if ((ids < -(2**31)) | (ids >= 2**31)).any():
-            raise ValueError(f"face {i} of {name} has a number out of range")
-        encoded += [len(ids), *ids.tolist()]
+    for i, face in enumerate(iterable(values, name, "an array of integers or a list of polygons")):
+        of = f"face {i} of {name}"
+        ids = _array(face, of, "i", (None,))
+        wanted = "Vertices are numbered from 0"
+        encoded += [len(ids), *_in_range(ids, of, -(2**31), 2**31 - 1, wanted)]
     return encoded
 
 
@@ -110,31 +213,44 @@ def pose(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def integer(value: int, name: str, most: int = 2**31 - 1) -> int:
-    number = operator.index(value)
+    if isinstance(value, bool):
+        raise wrong_type(name, value, "an integer")
+    try:
+        number = operator.index(value)
+    except TypeError as error:
+        raise wrong_type(name, value, "an integer") from error
     if not 0 <= number <= most:
         raise ValueError(f"{name} is {number}; it must be from 0 to {most}")
     return number
+
+
+def flag(value: bool, name: str) -> bool:
+    if value is True or value is False:
+        return value
+    if isinstance(value, np.bool_) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
+        return bool(value)
+    raise wrong_type(name, value, "True or False")
+
+
+def function_or_none(value: Any, name: str) -> Any:
+    if value is not None and not callable(value):
+        raise wrong_type(name, value, "a function, or None")
+    return value
 
 
 def bit_masks(values: Optional[ArrayLike], name: str) -> Sequence[int]:
     """The groups or masks of triangles; None or empty: those of the object count."""
     if values is None:
         return ()
-    array = _array(values, name, "i", (None,))
-    if ((array < 0) | (array >= 2**32)).any():
-        raise ValueError(f"{name} has a number out of range. A group or mask has 32 bits")
-    masks: Sequence[int] = array.tolist()
-    return masks
+    wanted = "A group or mask has 32 bits"
+    return _in_range(_array(values, name, "i", (None,)), name, 0, 2**32 - 1, wanted)
 
 
 def origins(values: Optional[ArrayLike]) -> Sequence[int]:
     if values is None:
         return ()
-    array = _array(values, "origins", "i", (None,))
-    if ((array < -1) | (array >= 2**31)).any():
-        raise ValueError("origins has a number out of range. Give triangle numbers, or -1")
-    numbers_of_triangles: Sequence[int] = array.tolist()
-    return numbers_of_triangles
+    wanted = "Give triangle numbers, or -1"
+    return _in_range(_array(values, "origins", "i", (None,)), "origins", -1, 2**31 - 1, wanted)
 
 
 def frames(given: Tuple[ArrayLike, ...]) -> Tuple[Optional[NDArray[np.float64]], NDArray[np.float64]]:
@@ -143,4 +259,4 @@ def frames(given: Tuple[ArrayLike, ...]) -> Tuple[Optional[NDArray[np.float64]],
         return None, points(given[0], "current")
     if len(given) == 2:
         return points(given[0], "previous"), points(given[1], "current")
-    raise TypeError(f"update() takes one or two frames; {len(given)} are given")
+    raise type_error(f"one or two frames are needed; {len(given)} are given")

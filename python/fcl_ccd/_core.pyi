@@ -1,4 +1,4 @@
-from typing import Any, Callable, Dict, Hashable, Optional, Sequence, Tuple
+from typing import Any, Callable, Dict, Hashable, NoReturn, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,14 @@ candidate_dtype: np.dtype[np.void]
 feature_test_dtype: np.dtype[np.void]
 octree_cell_dtype: np.dtype[np.void]
 
-class Geometry: ...
+class _Class(type):
+    """pybind11's metaclass, which has no name here at runtime."""
+
+class _Made(metaclass=_Class):
+    """Made by other functions: the constructor raises TypeError."""
+    def __init__(self, *args: NoReturn, **kwargs: NoReturn) -> None: ...
+
+class Geometry(_Made): ...
 class Mesh(Geometry): ...
 
 class DeformableMesh(Mesh):
@@ -141,7 +148,7 @@ class OcTree(Geometry):
     def num_cells(self) -> int: ...
     def _cells(self, numbers: NDArray[np.int64]) -> NDArray[np.void]: ...
 
-class Motion:
+class Motion(_Made):
     @staticmethod
     def straight(begin: NDArray[np.float64], end: NDArray[np.float64], name: str) -> Motion: ...
     @staticmethod
@@ -163,7 +170,7 @@ class Motion:
         angular_speed: Callable[[float, float], float],
     ) -> Motion: ...
 
-class Filter:
+class Filter(metaclass=_Class):
     def __init__(
         self,
         group: int,
@@ -172,7 +179,7 @@ class Filter:
         triangle_masks: Sequence[int],
     ) -> None: ...
 
-class Request:
+class Request(metaclass=_Class):
     def __init__(
         self,
         query: str,
@@ -189,9 +196,9 @@ class Request:
         ignore_initially_closer: bool,
     ) -> None: ...
 
-class ManagedObject: ...
+class ManagedObject(_Made): ...
 
-class Manager:
+class Manager(metaclass=_Class):
     def __init__(self) -> None: ...
     def _insert(
         self,

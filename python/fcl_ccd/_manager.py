@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Callable, Dict, Hashable, List, Mapping, Optional, Union
 
-from . import _core
+from . import _arguments, _core
 from ._motions import MotionLike, path_of
 from ._queries import Filter, Result, filter_of, geometry_of, request_of
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Pair:
+class Pair(_arguments.Built):
     """Two objects of a manager in contact.
 
     o1, o2 : the names of the objects. A mesh in contact with itself is both of them. A mesh
@@ -29,7 +29,7 @@ class Pair:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ManagerResult:
+class ManagerResult(_arguments.Built):
     """The answer of CollisionManager.collide(). It is true if there is a collision.
 
     is_collide : bool
@@ -58,7 +58,7 @@ class ManagerResult:
         )
 
 
-class CollisionManager:
+class CollisionManager(_arguments.Built):
     """Finds the contacts of many meshes and shapes that move: a broad phase and its queries.
 
     Each object has a name, a mesh or shape, and a motion. One mesh may be in many objects.
@@ -85,9 +85,12 @@ class CollisionManager:
     changes nothing.
     """
 
+    _manager: _core.Manager
+    _objects: Dict[Hashable, _core.ManagedObject]
+
     def __init__(self) -> None:
         self._manager = _core.Manager()
-        self._objects: Dict[Hashable, _core.ManagedObject] = {}
+        self._objects = {}
 
     def register(
         self,
@@ -112,14 +115,14 @@ class CollisionManager:
         """
         if name is None:
             raise ValueError("name is None. Give a name")
-        if name in self._objects:
+        if self._is_registered(name):
             raise ValueError(f"{name!r} is registered. After a change call update()")
         self._objects[name] = self._manager._insert(
             name,
             geometry_of(o, "o"),
             path_of(motion, "motion"),
             filter_of(filter, "filter"),
-            bool(self_collision),
+            _arguments.flag(self_collision, "self_collision"),
         )
 
     def unregister(self, name: Hashable) -> None:
@@ -144,11 +147,13 @@ class CollisionManager:
             return
         motions: List[_core.Motion] = []
         if isinstance(objects, Mapping):
-            motions = [
-                path_of(motion, f"the motion of {name!r}") for name, motion in objects.items()
-            ]
-        names = dict.fromkeys(objects)
-        self._manager._update([self._object(name) for name in names], motions)
+            items = list(objects.items())
+            motions = [path_of(motion, f"the motion of {name!r}") for name, motion in items]
+            objects = [name for name, _ in items]
+        wanted = "a dict of names and motions, or a list of names"
+        names = _arguments.iterable(objects, "objects", wanted)
+        given = dict.fromkeys(self._object(name) for name in names)  # each once
+        self._manager._update(list(given), motions)
 
     def set_filter(self, name: Hashable, filter: Optional[Filter]) -> None:
         """Replace the filter of an object: which others it can be in contact with. None: all."""
@@ -156,7 +161,7 @@ class CollisionManager:
 
     def set_self_collision(self, name: Hashable, enabled: bool) -> None:
         """Whether collide() looks for contacts of the mesh of this object with itself."""
-        self._manager._set_self_collision(self._object(name), bool(enabled))
+        self._manager._set_self_collision(self._object(name), _arguments.flag(enabled, "enabled"))
 
     def collide(
         self,
@@ -218,20 +223,29 @@ class CollisionManager:
     ) -> Dict[str, Any]:
         if name is not None and other is not None:
             raise ValueError("name and other are given. Give one of them")
-        if motion is not None and not isinstance(other, _core.Geometry):
+        if isinstance(other, _core.Geometry):
+            return self._manager._collide_geometry(other, path_of(motion, "motion"), request)
+        if other is not None and not isinstance(other, CollisionManager):
+            wanted = "a mesh, a shape, an OcTree or a CollisionManager"
+            raise _arguments.wrong_type("other", other, wanted)
+        if motion is not None:
             raise ValueError("motion is for a mesh or a shape that is given as other")
+        if other is not None:
+            return self._manager._collide_manager(other._manager, request)
         if name is not None:
             return self._manager._collide_one(self._object(name), request)
-        if other is None:
-            return self._manager._collide_all(request)
-        if isinstance(other, CollisionManager):
-            return self._manager._collide_manager(other._manager, request)
-        return self._manager._collide_geometry(
-            geometry_of(other, "other"), path_of(motion, "motion"), request
-        )
+        return self._manager._collide_all(request)
+
+    def _is_registered(self, name: Hashable) -> bool:
+        try:
+            hash(name)
+        except TypeError as error:
+            wanted = "a name that can be a key of a dict"
+            raise _arguments.wrong_type("name", name, wanted) from error
+        return name in self._objects
 
     def _object(self, name: Hashable) -> _core.ManagedObject:
-        if name not in self._objects:
+        if not self._is_registered(name):
             raise ValueError(f"{name!r} is not registered. Call register() first")
         return self._objects[name]
 

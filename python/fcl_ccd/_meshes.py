@@ -179,7 +179,8 @@ def weld_vertices(frames: Sequence[ArrayLike], *, eps: float = 0.0) -> NDArray[n
     own. Raises ValueError for no frame, frames of different size, a position that is not
     finite, or a negative eps.
     """
+    listed = _arguments.iterable(frames, "frames", "a list of (n, 3) arrays")
     return _core.weld_vertices(
-        [_arguments.points(frame, f"frame {i}") for i, frame in enumerate(frames)],
+        [_arguments.points(frame, f"frame {i}") for i, frame in enumerate(listed)],
         _arguments.size(eps, "eps"),
     )

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-class Motion:
+class Motion(_arguments.Built):
     """The path of an object during a step: Linear-, Screw-, Spline- or BoundedMotion."""
 
     _path: _core.Motion
@@ -34,8 +34,8 @@ class LinearMotion(Motion):
     ) -> None:
         name = "a pose of LinearMotion"
         self._path = _core.Motion.turn(
-            _arguments.pose(begin, name),
-            _arguments.pose(end, name),
+            _arguments.pose(begin, "begin"),
+            _arguments.pose(end, "end"),
             _arguments.numbers(reference, "reference", 3),
             name,
         )
@@ -50,7 +50,7 @@ class ScrewMotion(Motion):
     def __init__(self, begin: ArrayLike, end: ArrayLike) -> None:
         name = "a pose of ScrewMotion"
         self._path = _core.Motion.screw(
-            _arguments.pose(begin, name), _arguments.pose(end, name), name
+            _arguments.pose(begin, "begin"), _arguments.pose(end, "end"), name
         )
 
 
@@ -116,7 +116,7 @@ class BoundedMotion(Motion):
         }
         for name, function in given.items():
             if not callable(function):
-                raise TypeError(f"{name} is of type {type(function).__name__}. Give a function")
+                raise _arguments.wrong_type(name, function, "a function")
         self._path = _core.Motion.bounded(
             lambda t: _arguments.pose(pose(t), "pose(t)"),
             lambda t: _arguments.numbers(rate(t), "rate(t)", 4, 4),
@@ -136,7 +136,14 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
         return _AT_ORIGIN
     if isinstance(motion, Motion):
         return motion._path
-    poses = np.asarray(motion)
+    wanted = (
+        "a pose of shape (4, 4), a pair of poses, or a LinearMotion, ScrewMotion, SplineMotion or "
+        "BoundedMotion"
+    )
+    try:
+        poses = np.asarray(motion)
+    except ValueError as error:  # for example lists of different lengths
+        raise ValueError(f"{name} is no array of numbers: {error}. Give {wanted}") from error
     if poses.shape == (4, 4):
         pose = _arguments.pose(poses, name)
         return _core.Motion.straight(pose, pose, name)
@@ -144,7 +151,6 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
         return _core.Motion.straight(
             _arguments.pose(poses[0], name), _arguments.pose(poses[1], name), name
         )
-    raise ValueError(
-        f"{name} has the shape {poses.shape}. Give a pose of shape (4, 4), a pair of poses, or a "
-        "LinearMotion, ScrewMotion, SplineMotion or BoundedMotion"
-    )
+    if poses.ndim == 0:
+        raise _arguments.wrong_type(name, motion, wanted)
+    raise ValueError(f"{name} has the shape {poses.shape}. Give {wanted}")

@@ -72,7 +72,7 @@ class Filter(_core.Filter):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Result:
+class Result(_arguments.Built):
     """The answer of collide() and self_collide(). It is true if there is a collision.
 
     Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
@@ -165,23 +165,23 @@ def request_of(
     min_distance: float,
     ignore_initially_closer: bool,
 ) -> _core.Request:
-    if accepts_triangles is not None and not callable(accepts_triangles):
-        raise TypeError("accepts_triangles is not a function")
+    if not isinstance(query, str):
+        raise _arguments.wrong_type("query", query, "'all', 'first' or 'any'")
     if num_max_contacts is not None:
         num_max_contacts = _arguments.integer(num_max_contacts, "num_max_contacts", 2**63 - 1)
     return _core.Request(
         query,
-        toc_err,
+        _arguments.real(toc_err, "toc_err"),
         num_max_contacts,
-        enable_contact,
-        t_max,
-        enable_crossings,
+        _arguments.flag(enable_contact, "enable_contact"),
+        _arguments.real(t_max, "t_max"),
+        _arguments.flag(enable_crossings, "enable_crossings"),
         filter_of(filter1, "filter1"),
         filter_of(filter2, "filter2"),
-        accepts_triangles,
+        _arguments.function_or_none(accepts_triangles, "accepts_triangles"),
         _arguments.integer(num_threads, "num_threads"),
-        min_distance,
-        ignore_initially_closer,
+        _arguments.real(min_distance, "min_distance"),
+        _arguments.flag(ignore_initially_closer, "ignore_initially_closer"),
     )
 
 
@@ -189,27 +189,23 @@ def filter_of(given: Optional[Filter], name: str) -> _core.Filter:
     if given is None:
         return _ACCEPTS_ALL
     if not isinstance(given, Filter):
-        raise TypeError(f"{name} is of type {type(given).__name__}. Give a fcl_ccd.Filter")
+        raise _arguments.wrong_type(name, given, "a fcl_ccd.Filter, or None")
     return given
 
 
 def mesh_of(o: Mesh, name: str) -> Mesh:
     if isinstance(o, _core.Mesh):
         return o
+    meshes = "a DeformableMesh or a RigidMesh"
     if isinstance(o, _core.Geometry):
-        raise TypeError(
-            f"{name} is of type {type(o).__name__}, not a mesh. Give a DeformableMesh or a "
-            "RigidMesh, for example of its surface"
-        )
-    raise TypeError(f"{name} is of type {type(o).__name__}. Give a DeformableMesh or a RigidMesh")
+        meshes += ", for example of its surface"
+    raise _arguments.wrong_type(name, o, meshes)
 
 
 def geometry_of(o: Geometry, name: str) -> Geometry:
     if not isinstance(o, _core.Geometry):
-        raise TypeError(
-            f"{name} is of type {type(o).__name__}. Give a DeformableMesh, a RigidMesh, a shape "
-            "or an OcTree"
-        )
+        wanted = "a DeformableMesh, a RigidMesh, a shape or an OcTree"
+        raise _arguments.wrong_type(name, o, wanted)
     return o
 
 
@@ -353,6 +349,7 @@ _BLOCK = 65536
 
 def _hand_out(ask: Callable[[Sink, int], bool], sink: Optional[Sink], block: int) -> Any:
     block = _arguments.integer(block, "block", 2**63 - 1)
+    sink = _arguments.function_or_none(sink, "sink")
     if sink is not None:
         return ask(sink, block)
     blocks: List[NDArray[np.void]] = []
@@ -380,8 +377,9 @@ def self_candidates(
     Sinks, blocks, distance and fields are those of candidates().
     """
     mesh = mesh_of(o, "o")
+    distance = _arguments.real(min_distance, "min_distance")
     return _hand_out(
-        lambda take, size: _core.self_candidates(mesh, take, size, min_distance), sink, block
+        lambda take, size: _core.self_candidates(mesh, take, size, distance), sink, block
     )
 
 
@@ -443,10 +441,9 @@ def candidates(
     """
     mesh1, mesh2 = mesh_of(o1, "o1"), mesh_of(o2, "o2")
     path1, path2 = path_of(motion1, "motion1"), path_of(motion2, "motion2")
+    distance = _arguments.real(min_distance, "min_distance")
     return _hand_out(
-        lambda take, size: _core.candidates(
-            mesh1, path1, mesh2, path2, take, size, min_distance
-        ),
+        lambda take, size: _core.candidates(mesh1, path1, mesh2, path2, take, size, distance),
         sink,
         block,
     )
@@ -527,4 +524,9 @@ def _feature_tests(
     end = _arguments.feature_points(t1, "t1", num_points)
     if begin.shape != end.shape:
         raise ValueError(f"t0 has {len(begin)} queries and t1 has {len(end)}")
-    return test(begin, end, toc_err, min_distance)
+    return test(
+        begin,
+        end,
+        _arguments.real(toc_err, "toc_err"),
+        _arguments.real(min_distance, "min_distance"),
+    )

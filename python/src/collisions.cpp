@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "arrays.h"
+#include "classes.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "meshes.h"
@@ -156,10 +157,10 @@ Request makeRequest(const std::string& query, double toc_err,
 
 void bindCollisions(py::module_& module) {
   module.attr("contact_dtype") = dtypeOf<Contact>();
-  py::class_<fcl::ContinuousFilter>(module, "Filter")
+  Class<fcl::ContinuousFilter>(module, "Filter")
       .def(py::init(&makeFilter), py::arg("group"), py::arg("mask"),
            py::arg("triangle_groups"), py::arg("triangle_masks"));
-  py::class_<Request>(module, "Request")
+  Class<Request>(module, "Request")
       .def(py::init(&makeRequest), py::arg("query"), py::arg("toc_err"),
            py::arg("num_max_contacts"), py::arg("enable_contact"), py::arg("t_max"),
            py::arg("enable_crossings"), py::arg("filter1"), py::arg("filter2"),

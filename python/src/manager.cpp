@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "classes.h"
 #include "fcl/broadphase/continuous_collision_manager.h"
 #include "meshes.h"
 #include "motions.h"
@@ -22,7 +24,12 @@ namespace {
 using FclManager = fcl::ContinuousCollisionManagerd;
 using FclRequest = fcl::ContinuousContactRequestd;
 using FclResult = fcl::ContinuousManagerResultd;
-using FclMotion = std::shared_ptr<fcl::MotionBase<double>>;
+
+/// FCL's motion on a path, and what keeps its functions of Python alive.
+struct FclMotion {
+  std::shared_ptr<fcl::MotionBase<double>> motion;
+  py::object functions;
+};
 
 /// FCL's objects do not own what they refer to, and queries do not write to it.
 std::shared_ptr<fcl::CollisionGeometry<double>> borrow(const Geometry& geometry) {
@@ -38,7 +45,8 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
         name_(std::move(name)),
         owner_(std::move(owner)),
         geometry_(geometryOf(owner_)) {
-    motion = makeMotion(path);
+    FclMotion made = makeMotion(path);
+    swapMotion(made);
     takeNote();
   }
 
@@ -46,9 +54,20 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
   const Geometry& geometry() const { return geometry_; }
 
   FclMotion makeMotion(const Motion& path) const {
-    return toFclMotion(path, dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr);
+    const bool deforms = dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr;
+    return {toFclMotion(path, deforms), path.functions};
   }
-  void swapMotion(FclMotion& other) { motion.swap(other); }
+  void swapMotion(FclMotion& other) {
+    motion.swap(other.motion);
+    std::swap(functions_, other.functions);
+  }
+
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    visit(name_);
+    visit(owner_);
+    visit(functions_);
+  }
 
   /// The manager has read the mesh.
   void takeNote() { num_updates_ = geometry_.numUpdates(); }
@@ -59,12 +78,10 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
     return py::cast<const Geometry&>(owner);
   }
 
-  py::object name_, owner_;
+  py::object name_, owner_, functions_;
   const Geometry& geometry_;
   std::uint64_t num_updates_{0};
 };
-
-using ObjectPtr = std::shared_ptr<ManagedObject>;
 
 FclRequest toFclRequest(const Request& request, const TriangleFilter& filter) {
   FclRequest out;
@@ -110,43 +127,48 @@ class Manager : public Guarded {
  public:
   Manager() : Guarded("manager") {}
 
-  ObjectPtr insert(py::object name, py::object geometry, const Motion& motion,
-                   const fcl::ContinuousFilter& filter, bool self_collision) {
+  py::object insert(py::object name, py::object geometry, const Motion& motion,
+                    const fcl::ContinuousFilter& filter, bool self_collision) {
     const Writing writing(*this);
-    auto object =
-        std::make_shared<ManagedObject>(std::move(name), std::move(geometry), motion);
-    const Reading reading(object->geometry());
-    const py::gil_scoped_release release;
-    manager_.registerObject(object.get());
+    py::object owner = py::cast(
+        std::make_unique<ManagedObject>(std::move(name), std::move(geometry), motion));
+    auto& object = py::cast<ManagedObject&>(owner);
+    const Reading reading(object.geometry());
+    const auto place = owners_.emplace(&object, owner).first;
     try {
-      manager_.setFilter(object.get(), filter);
-      manager_.setSelfCollision(object.get(), self_collision);
-      owners_.emplace(object.get(), object);
+      const py::gil_scoped_release release;
+      add(object, filter, self_collision);
     } catch (...) {
-      manager_.unregisterObject(object.get());
+      owners_.erase(place);
       throw;
     }
-    return object;
+    return owner;
   }
 
-  void remove(const ManagedObject& object) {
+  void remove(ManagedObject& object) {
     const Writing writing(*this);
-    const auto owner = owners_.find(&object);
-    if (owner == owners_.end()) throw py::value_error("the object is not registered");
-    manager_.unregisterObject(owner->second.get());
-    owners_.erase(owner);
+    const auto place = owners_.find(&object);
+    if (place == owners_.end()) throw py::value_error("the object is not registered");
+    manager_.unregisterObject(&object);
+    // Python may run when the last owner goes. The table is in order then.
+    const py::object owner = std::move(place->second);
+    owners_.erase(place);
   }
 
   /// @param objects  each once
   /// @param motions  one for each object; or none: they keep theirs
-  void update(const std::vector<ObjectPtr>& objects,
+  void update(const std::vector<ManagedObject*>& objects,
               const std::vector<const Motion*>& motions) {
+    const auto is_none = [](const void* p) { return p == nullptr; };
+    if (std::any_of(objects.begin(), objects.end(), is_none) ||
+        std::any_of(motions.begin(), motions.end(), is_none))
+      throw py::type_error("an object or a motion is None");
     const Writing writing(*this);
     Reading reading;
     std::vector<fcl::ContinuousCollisionObjectd*> addresses;
-    for (const ObjectPtr& object : objects) {
+    for (ManagedObject* object : objects) {
       reading.add(object->geometry());
-      addresses.push_back(object.get());
+      addresses.push_back(object);
     }
     std::vector<FclMotion> others;
     for (std::size_t i = 0; i < motions.size(); ++i)
@@ -162,17 +184,17 @@ class Manager : public Guarded {
       swap_motions();
       throw;
     }
-    for (const ObjectPtr& object : objects) object->takeNote();
+    for (ManagedObject* object : objects) object->takeNote();
   }
 
-  void setFilter(const ObjectPtr& object, const fcl::ContinuousFilter& filter) {
+  void setFilter(ManagedObject& object, const fcl::ContinuousFilter& filter) {
     const Writing writing(*this);
-    manager_.setFilter(object.get(), filter);
+    manager_.setFilter(&object, filter);
   }
 
-  void setSelfCollision(const ObjectPtr& object, bool enabled) {
+  void setSelfCollision(ManagedObject& object, bool enabled) {
     const Writing writing(*this);
-    manager_.setSelfCollision(object.get(), enabled);
+    manager_.setSelfCollision(&object, enabled);
   }
 
   py::dict collideAll(const Request& request) const {
@@ -184,11 +206,11 @@ class Manager : public Guarded {
   }
 
   /// @param object  registered
-  py::dict collideOne(const ObjectPtr& object, const Request& request) const {
+  py::dict collideOne(ManagedObject& object, const Request& request) const {
     Reading reading;
     addAll(reading);
     return answer(request, [&](const FclRequest& asked, FclResult& result) {
-      manager_.collide(object.get(), asked, result);
+      manager_.collide(&object, asked, result);
     });
   }
 
@@ -211,7 +233,25 @@ class Manager : public Guarded {
     });
   }
 
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    for (const auto& owner : owners_) visit(owner.second);
+  }
+
  private:
+  /// Called without the GIL. After an exception the object is not registered.
+  void add(ManagedObject& object, const fcl::ContinuousFilter& filter,
+           bool self_collision) {
+    manager_.registerObject(&object);
+    try {
+      manager_.setFilter(&object, filter);
+      manager_.setSelfCollision(&object, self_collision);
+    } catch (...) {
+      manager_.unregisterObject(&object);
+      throw;
+    }
+  }
+
   /// Adds the manager and all that it has. An object that has changed since the manager
   /// read it has a box that is out of date, and contacts would be missed.
   void addAll(Reading& reading) const {
@@ -241,14 +281,15 @@ class Manager : public Guarded {
   }
 
   FclManager manager_;
-  std::unordered_map<const ManagedObject*, ObjectPtr> owners_;
+  /// The objects of Python that own what is registered.
+  std::unordered_map<const ManagedObject*, py::object> owners_;
 };
 
 }  // namespace
 
 void bindManager(py::module_& module) {
-  py::class_<ManagedObject, ObjectPtr>(module, "ManagedObject");
-  py::class_<Manager>(module, "Manager")
+  Class<ManagedObject>(module, "ManagedObject", seenByCollector<ManagedObject>());
+  Class<Manager>(module, "Manager", seenByCollector<Manager>())
       .def(py::init<>())
       .def("_insert", &Manager::insert)
       .def("_remove", &Manager::remove)

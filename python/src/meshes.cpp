@@ -4,9 +4,11 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "classes.h"
 #include "fcl/geometry/bvh/weld_vertices.h"
 
 namespace fcl_ccd {
@@ -40,9 +42,11 @@ std::vector<Triangle> toTriangles(const Integers& array, std::size_t num_vertice
   std::vector<Triangle> triangles;
   triangles.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    const std::int64_t* t = ids + 3 * i;
-    for (int k = 0; k < 3; ++k)
-      if (t[k] < 0 || t[k] > last) throw py::value_error(refersTo(i, t[k], num_vertices));
+    // A copy: another thread may write to the array between the check and the use.
+    const std::array<std::int64_t, 3> t{ids[3 * i], ids[3 * i + 1], ids[3 * i + 2]};
+    for (const std::int64_t vertex : t)
+      if (vertex < 0 || vertex > last)
+        throw py::value_error(refersTo(i, vertex, num_vertices));
     triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
                            static_cast<std::size_t>(t[2]));
   }
@@ -202,14 +206,13 @@ RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
 
 void bindMeshes(py::module_& module) {
   module.def("weld_vertices", &weldVertices, py::arg("frames"), py::arg("eps"));
-  py::class_<Geometry>(module, "Geometry");
-  py::class_<Mesh, Geometry>(module, "Mesh");
+  Class<Geometry>(module, "Geometry");
+  Class<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;
-  py::class_<DeformableMesh, Mesh>(module, "DeformableMesh")
-      .def(py::init<const Doubles&, const Integers&, const Integers&, const Integers&,
-                    int>(),
-           py::arg("vertices"), py::arg("triangles"), py::arg("edges"), py::arg("points"),
-           py::arg("num_threads"))
+  Class<DeformableMesh, Mesh>(module, "DeformableMesh")
+      .defInit<const Doubles&, const Integers&, const Integers&, const Integers&, int>(
+          py::arg("vertices"), py::arg("triangles"), py::arg("edges"), py::arg("points"),
+          py::arg("num_threads"))
       .def("_update", &DeformableMesh::update, py::arg("previous"), py::arg("current"))
       .def("_update_topology", &DeformableMesh::updateTopology, py::arg("triangles"),
            py::arg("previous"), py::arg("current"), py::arg("origins"), py::arg("edges"),
@@ -245,9 +248,8 @@ void bindMeshes(py::module_& module) {
                              readModel<DeformableMesh>([](const Deformable& m) {
                                return copyOf(m.tri_indices, m.num_tris);
                              }));
-  py::class_<RigidMesh, Mesh>(module, "RigidMesh")
-      .def(py::init<const Doubles&, const Integers&>(), py::arg("vertices"),
-           py::arg("triangles"))
+  Class<RigidMesh, Mesh>(module, "RigidMesh")
+      .defInit<const Doubles&, const Integers&>(py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly("num_vertices",
                              [](const RigidMesh& m) { return m.model().num_vertices; })
       .def_property_readonly("num_triangles",

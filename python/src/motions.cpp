@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "classes.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
@@ -120,6 +121,7 @@ Motion bounded(const py::function& pose, const py::function& rate,
                const py::function& acceleration, const py::function& angular_speed) {
   Motion motion{};
   motion.own = std::make_shared<PythonMotion>(pose, rate, acceleration, angular_speed);
+  motion.functions = py::make_tuple(pose, rate, acceleration, angular_speed);
   motion.path.path = PathKind::kBounded;
   motion.path.motion = motion.own.get();
   for (const int end : {0, 1}) {
@@ -146,13 +148,6 @@ fcl::BoundedMotion::Placement toPlacement(const PoseNumbers<double>& parts) {
 }
 
 }  // namespace
-
-PythonMotion::PythonMotion(py::function pose, py::function rate,
-                           py::function acceleration, py::function angular_speed)
-    : pose_(std::move(pose)),
-      rate_(std::move(rate)),
-      acceleration_(std::move(acceleration)),
-      angular_speed_(std::move(angular_speed)) {}
 
 fcl::BoundedMotion::Placement PythonMotion::placementAt(double t) const {
   const py::gil_scoped_acquire acquire;
@@ -232,7 +227,7 @@ py::array toArray(const fcl::detail::PoseNumbers<double>& pose) {
 }
 
 void bindMotions(py::module_& module) {
-  py::class_<Motion>(module, "Motion")
+  Class<Motion>(module, "Motion", seenByCollector<Motion>())
       .def_static("straight", &straight)
       .def_static("turn", &turn)
       .def_static("screw", &screw)

@@ -19,8 +19,13 @@ class PythonMotion : public fcl::MotionBase<double>, public fcl::BoundedMotion {
   /// @param pose, rate  functions of t that give 4x4 arrays
   /// @param acceleration  function of center, radius, t0, t1
   /// @param angular_speed  function of t0, t1
-  PythonMotion(py::function pose, py::function rate, py::function acceleration,
-               py::function angular_speed);
+  /// The functions must live as long as the motion. Its owners hold them.
+  PythonMotion(py::handle pose, py::handle rate, py::handle acceleration,
+               py::handle angular_speed)
+      : pose_(pose),
+        rate_(rate),
+        acceleration_(acceleration),
+        angular_speed_(angular_speed) {}
 
   /// Queries call these without the GIL. An exception of Python reaches their caller.
   Placement placementAt(double t) const override;
@@ -37,20 +42,26 @@ class PythonMotion : public fcl::MotionBase<double>, public fcl::BoundedMotion {
   void getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&) const override;
 
  private:
-  py::function pose_, rate_, acceleration_, angular_speed_;
+  py::handle pose_, rate_, acceleration_, angular_speed_;
 };
 
 /// A path without the object that follows it.
 struct Motion {
   fcl::detail::MovingGeometry<double> path;
-  /// If the path is one of Python.
+  /// If the path is one of Python: the motion, and the tuple of its functions.
   std::shared_ptr<PythonMotion> own;
+  py::object functions;
 
   fcl::detail::MovingGeometry<double> of(
       const fcl::CollisionGeometry<double>& mesh) const {
     fcl::detail::MovingGeometry<double> moving = path;
     moving.geometry = &mesh;
     return moving;
+  }
+
+  template <typename Visit>
+  void visit(const Visit& visit) const {
+    visit(functions);
   }
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "classes.h"
 #include "fcl/narrowphase/octree_cell.h"
 #include "geometry.h"
 
@@ -102,8 +103,8 @@ class OcTree : public Geometry {
 
 void bindOctrees(py::module_& module) {
   module.attr("octree_cell_dtype") = dtypeOf<Cell>();
-  py::class_<OcTree, Geometry>(module, "OcTree")
-      .def(py::init<const Doubles&, double>(), py::arg("points"), py::arg("resolution"))
+  Class<OcTree, Geometry>(module, "OcTree")
+      .defInit<const Doubles&, double>(py::arg("points"), py::arg("resolution"))
       .def_property_readonly("resolution", &OcTree::resolution)
       .def_property_readonly("num_cells", &OcTree::numCells)
       .def("_cells", &OcTree::cells);

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "classes.h"
 #include "fcl/geometry/shape/box.h"
 #include "fcl/geometry/shape/capsule.h"
 #include "fcl/geometry/shape/cone.h"
@@ -98,7 +99,7 @@ py::array verticesOf(const Shape<fcl::Convexd>& convex) {
 
 /// A shape that consists of numbers.
 template <typename FclShape>
-py::class_<Shape<FclShape>, Geometry> bindShape(py::module_& module, const char* name) {
+Class<Shape<FclShape>, Geometry> bindShape(py::module_& module, const char* name) {
   return {module, name};
 }
 

@@ -195,7 +195,7 @@ def test_wrong_calls_change_nothing():
         (lambda: manager.register("x", PREVIOUS), TypeError, "o is of type ndarray"),
         (lambda: manager.register("x", cloth, turn), ValueError, "give a LinearMotion"),
         (lambda: manager.register("x", BALL, filter=3), TypeError, "filter is of type int"),
-        (lambda: manager.register([], BALL), TypeError, "unhashable"),
+        (lambda: manager.register([], BALL), TypeError, "name is of type list. Give a name"),
         (lambda: manager.register("x", fcl_ccd.Sphere(1), self_collision=True), ValueError, "mesh"),
         (lambda: manager.register(None, BALL), ValueError, "name is None"),
         (lambda: manager.register("x", fcl_ccd.Sphere(1e308), far), ValueError, "not finite"),

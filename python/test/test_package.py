@@ -104,6 +104,18 @@ fcl_ccd.self_collide(3)
     assert "program.py:10:" in error and 'incompatible type "int"' in error
 
 
+def test_stubs_are_those_of_the_compiled_part():
+    require("mypy")
+    found = subprocess.run(
+        [sys.executable, "-m", "mypy.stubtest", "fcl_ccd._core"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=Path(fcl_ccd.__file__).parent.parent,
+    )
+    assert found.returncode == 0, found.stdout + found.stderr
+
+
 @pytest.mark.parametrize("example", EXAMPLES, ids=[path.stem for path in EXAMPLES])
 def test_examples(example, tmp_path):
     if "import matplotlib" in example.read_text(encoding="utf-8"):

@@ -160,9 +160,9 @@ def test_wrong_shapes(make, error, text):
 
 def test_what_shapes_cannot_do():
     ball, mesh = fcl_ccd.Sphere(1), fcl_ccd.RigidMesh(*grid(3))
-    with pytest.raises(TypeError, match="o is of type Sphere, not a mesh"):
+    with pytest.raises(TypeError, match="o is of type Sphere. Give a DeformableMesh"):
         fcl_ccd.self_collide(ball)
-    with pytest.raises(TypeError, match="o2 is of type Sphere, not a mesh"):
+    with pytest.raises(TypeError, match="o2 is of type Sphere. Give a DeformableMesh"):
         fcl_ccd.candidates(mesh, ball)
 
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "api/convex_shapes.h"
+#include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "motion/overlap_at_start.h"
 
@@ -32,7 +33,9 @@ bool isPlain(const MovingGeometry<S>& o) {
   if (!turns && o.path != PathKind::kStraight && o.path != PathKind::kScrew) return false;
   if (turns && (o.reference[0] != 0 || o.reference[1] != 0 || o.reference[2] != 0))
     return false;
-  return isInRange(o.pose[0]) && isInRange(o.pose[1]);
+  for (const PoseNumbers<S>& pose : o.pose)
+    if (!isInRange(pose) || !deformable::isRotation(toPose(pose).rotation)) return false;
+  return true;
 }
 
 bool isInRange(const ConvexShape& shape) {

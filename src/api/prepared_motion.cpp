@@ -62,8 +62,33 @@ MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
 
 }  // namespace
 
+bool isRotation(const double (&r)[9]) {
+  constexpr double kMostDeviation = 0x1p-10;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k) {
+      const double product =
+          r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
+      if (std::abs(product - (i == k)) > kMostDeviation) return false;
+    }
+  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
+             r[2] * (r[3] * r[7] - r[4] * r[6]) >
+         0;
+}
+
+/// A turn is defined between rotations only, and a sphere that is sheared is no sphere.
+template <typename S>
+void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
+  if (placed.isMesh() && placed.goesStraight()) return;
+  for (const Pose& pose : {placed.beginning(), placed.end()})
+    if (!isRotation(pose.rotation))
+      throw Exception(std::string(name) + ", " + kindOf(placed.geometry()) +
+                      ": a transform scales, mirrors or shears. Give a rotation and a "
+                      "translation, and change the geometry instead");
+}
+
 template <typename S>
 MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
+  requireRotations(placed, name);
   MotionPath path = unnamedPathOf(placed, name);
   path.setName(name);
   return path;
@@ -179,6 +204,7 @@ MeshInstance PreparedMotion::beginning() const {
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                          \
+  template void requireRotations(const PlacedGeometry<S>&, const char*);                \
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
                                           double, int, double);

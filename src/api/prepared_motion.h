@@ -15,10 +15,21 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// @brief Whether a matrix is a rotation up to 2^-10. One that was computed in float, or
+/// typed with four digits, is.
+bool isRotation(const double (&matrix)[9]);
+
+/// @brief Refuses transforms that scale, mirror or shear. Only the vertices of a mesh may
+/// go straight between any two places.
+/// @param name  the name of the geometry in errors
+template <typename S>
+void requireRotations(const PlacedGeometry<S>& placed, const char* name);
+
 /// @brief The path of a geometry that this library answers.
 /// @param name  the name of the geometry in errors; must live as long as the path
 /// @pre placed.isKnown()
-/// @throws fcl::Exception  when the rotation of a spline is too large
+/// @throws fcl::Exception  as requireRotations(); also when the rotation of a spline is
+/// too large
 template <typename S>
 MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name);
 

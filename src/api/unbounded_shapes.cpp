@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "api/prepared_motion.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "motion/convex_advance.h"
@@ -86,6 +87,8 @@ template <typename S>
 ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                            const QueryOptions& options) {
   constexpr double kParallel = 0x1p-48;
+  requireRotations(o1, "o1");
+  requireRotations(o2, "o2");
   const Flat a = flatOf(o1, "o1"), b = flatOf(o2, "o2");
   ShapeAnswer answer;
   if (options.filter && !options.filter->rules().accept(-1, -1)) return answer;

@@ -13,7 +13,7 @@ namespace deformable {
 /// parallel during the whole step, which means here: up to 2^-48, and no rotation
 /// changes.
 /// @pre both are isUnbounded(); the poses are finite
-/// @throws fcl::Exception  as convexShapeOf()
+/// @throws fcl::Exception  as convexShapeOf() and requireRotations()
 template <typename S>
 ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                            const QueryOptions& options);

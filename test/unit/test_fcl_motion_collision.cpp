@@ -556,6 +556,45 @@ TEST_F(MotionCollision, WhatIsRefused) {
   expectRefused([&] { ask(*bar_, nowhere, CCDM_LINEAR); }, "2^200");
 }
 
+// Vertices that go straight may go anywhere: twice the size at both ends, or at the end
+// of a mesh that deforms. A turn needs rotations.
+TEST_F(MotionCollision, TransformsThatAreNoRotations) {
+  const TestMesh box = makeBox(Vector3<double>(1, 1, 1));
+  const auto cube = makeModel<Rigid<double>>(box);
+  DeformableBVHModel<OBBRSS<double>> sinking;
+  sinking.beginModel();
+  sinking.addSubModel(box.vertices, box.triangles);
+  sinking.endModel();
+  std::vector<Vector3<double>> below = box.vertices;
+  for (Vector3<double>& v : below) v[2] -= 1;
+  sinking.beginUpdateModel();
+  sinking.updateSubModel(below);
+  sinking.endUpdateModel();
+  const auto posed = [](double scale, double z) {
+    Pose pose = kStill;
+    pose.linear() *= scale;
+    pose.translation()[2] = z;
+    return pose;
+  };
+  const auto floor = makeModel<Rigid<double>>(makeBox(Vector3<double>(99, 99, 1)));
+  const auto ask = [&](const CollisionGeometry<double>& o, double begin, double end,
+                       CCDMotionType type) {
+    Result result;
+    continuousCollide(&o, posed(begin, 4), posed(end, 0), floor.get(), kStill, kStill,
+                      requestOf<Request>(type), result);
+    return result.time_of_contact;
+  };
+  const std::string wanted = "o1, a triangle mesh: a transform scales, mirrors or shears";
+  for (const CCDMotionType type : {CCDM_TRANS, CCDM_LINEAR, CCDM_SCREW}) {
+    EXPECT_NEAR(ask(*cube, 2, 2, type), 0.25, 1e-3);
+    EXPECT_NEAR(ask(*cube, -2, -2, type), 0.25, 1e-3);
+    for (const double end : {2., -1., 0.})
+      expectRefused([&] { ask(*cube, 1, end, type); }, wanted);
+  }
+  EXPECT_NEAR(ask(sinking, 1, 2, CCDM_TRANS), 2. / 7, 1e-3);  // from 3 to -4
+  expectRefused([&] { ask(sinking, 1, 2, CCDM_LINEAR); }, wanted);
+}
+
 TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {
   const SinkingSheet sheet;
   const Vector3<double> zero = Vector3<double>::Zero();

@@ -419,9 +419,10 @@ TEST(ShapeCollide, MinDistanceOfAMeshThatTurns) {
   EXPECT_NEAR(result.contacts.at(0).pos[2], 0.5 * distance, 1e-9);
 }
 
-// Boxes and flats whose matrices make all lengths smaller or larger. The distance is that
-// in the world. The other box goes down by 4 units of the scale.
-TEST(ShapeCollide, MinDistanceWithMatricesThatScale) {
+// Boxes and flats in matrices that are rotations up to a few digits, and make all lengths
+// smaller or larger. The distance is that in the world. The other box goes down by 4
+// units of the scale.
+TEST(ShapeCollide, MinDistanceWithInexactRotations) {
   const TestMesh cube = makeBox({1, 1, 1});
   auto mesh = std::make_shared<BVHModel<OBBRSS<double>>>();
   mesh->beginModel();
@@ -430,7 +431,7 @@ TEST(ShapeCollide, MinDistanceWithMatricesThatScale) {
   const Geometry box = std::make_shared<Box<double>>(2, 2, 2),
                  plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
                  halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
-  for (const double scale : {1e-3, 0.5, 2., 8.}) {
+  for (const double scale : {0.9997, 1.0004}) {
     const auto scaled = [scale](double z, double turn) {
       Pose pose = turned(turn, Point(0, 0, 1), at(0, 0, scale * z));
       pose.linear() *= scale;
@@ -455,10 +456,10 @@ TEST(ShapeCollide, MinDistanceWithMatricesThatScale) {
   }
 }
 
-TEST(ShapeCollide, ParallelFlatsWithMatricesThatScale) {
+TEST(ShapeCollide, ParallelFlatsWithInexactRotations) {
   const Geometry plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
                  halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
-  for (const double scale : {1e-3, 0.5, 2., 8.})
+  for (const double scale : {0.9997, 1.0004})
     for (const double distance : {0., 0.4})
       for (const Geometry& below : {plane, halfspace}) {
         SCOPED_TRACE(testing::Message() << scale << " " << distance);
@@ -800,6 +801,60 @@ TEST(ShapeCollide, WhatIsWrongIsToldInOneOrder) {
   EXPECT_EQ(messageOf(wrong, right, plain), messageOf(wrong, right, with_contacts));
   EXPECT_EQ(messageOf(right, right, plain), messageOf(right, right, with_contacts));
   EXPECT_EQ(messageOf(flat, right, plain), messageOf(flat, right, with_contacts));
+}
+
+// Also where the look at t = 0 would find that they overlap.
+TEST(ShapeCollide, ARequestWithoutContactsRefusesTransforms) {
+  Pose twice = at(0, 0, 0);
+  twice.linear() *= 2;
+  const Sphere<double> ball(1);
+  for (const Pose& begin : {at(0, 0, 0), twice}) {
+    ContinuousCollisionResult<double> result;
+    EXPECT_THROW(continuousCollide(&ball, begin, twice, &ball, at(0, 0, 0), at(0, 0, 0),
+                                   ContinuousCollisionRequest<double>(), result),
+                 Exception);
+  }
+}
+
+// A halfspace in such a pose missed contacts, and the radius of a sphere did not scale.
+TEST(ShapeCollide, TransformsThatAreNoRotations) {
+  const auto posed = [](const Matrix3<double>& m, double z) {
+    Pose pose = at(0, 0, z);
+    pose.linear() = m;
+    return pose;
+  };
+  Matrix3<double> shear = Matrix3<double>::Identity();
+  shear(2, 0) = 0.5;
+  const Matrix3<double> one = Matrix3<double>::Identity(),
+                        mirror = Point(1, 1, -1).asDiagonal(),
+                        flat = Point(1, 1, 0).asDiagonal();
+  const Geometry floor = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 0.);
+  const auto messageOf = [&](const Geometry& o, const Pose& begin, const Pose& end) {
+    try {
+      ask({o, begin, end}, {floor, at(0, 0, 0), at(0, 0, 0)});
+    } catch (const Exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const Geometry shapes[] = {std::make_shared<Sphere<double>>(1.),
+                             std::make_shared<Box<double>>(1., 1., 1.),
+                             std::make_shared<Halfspace<double>>(Point(0, 0, -1), 0.),
+                             std::make_shared<Plane<double>>(Point(0, 0, 1), 0.)};
+  for (const Geometry& shape : shapes)
+    for (const Matrix3<double>& m : {Matrix3<double>(2 * one), mirror, shear, flat})
+      for (const Matrix3<double>& other : {m, one}) {
+        const std::string wanted = "a transform scales, mirrors or shears";
+        for (const std::string& message :
+             {messageOf(shape, posed(other, 3), posed(m, -1)),
+              messageOf(shape, posed(m, 3), posed(other, -1))})
+          EXPECT_NE(message.find(wanted), std::string::npos) << message;
+      }
+  // What was computed in float or typed with four digits is a rotation.
+  Matrix3<double> typed;
+  typed << 0.7071, -0.7071, 0, 0.7071, 0.7071, 0, 0, 0, 1;
+  for (const Geometry& shape : shapes)
+    EXPECT_EQ(messageOf(shape, posed(typed, 3), posed(one, -1)), "");
 }
 
 }  // namespace

@@ -201,25 +201,26 @@ fcl_ccd::ContactColumns parseColumns(const std::string& list) {
   return columns;
 }
 
-CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
+void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   constexpr int kUnlimited = -1;
-  CLI::App* run = app.add_subcommand("run", "Continuous collision of meshes in motion");
-  run->footer(kRunDetails);
-  run->add_option("A", options.frames, "Frames of mesh A, at least two")
+  run.add_option("A", options.frames, "Frames of mesh A, at least two")
       ->type_name("FRAMES")
       ->required()
       ->expected(1, kUnlimited);
-  run->add_option("--against", options.against,
-                  "Frames of mesh B: as many as of A, or one if it does not move")
+  run.add_option("--against", options.against,
+                 "Frames of mesh B: as many as of A, or one if it does not move")
       ->type_name("FRAMES")
       ->expected(1, kUnlimited);
-  run->add_option("--start", options.range.start, "First frame")->type_name("N");
-  run->add_option("--end", options.range.end, "Last frame")->type_name("N");
-  run->add_option("--stride", options.range.stride, "Take each N-th frame")
+  run.add_option("--start", options.range.start, "First frame")->type_name("N");
+  run.add_option("--end", options.range.end, "Last frame")->type_name("N");
+  run.add_option("--stride", options.range.stride, "Take each N-th frame")
       ->type_name("N")
       ->check(positive<int>("a positive whole number"))
       ->capture_default_str();
-  run->add_flag_callback(
+}
+
+void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
+  run.add_flag_callback(
          "--no-self", [&options] { options.settings.self = false; },
          "Do not test A against itself")
       ->needs("--against");
@@ -227,52 +228,66 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
       {"all", ContinuousQuery::kAll},
       {"first", ContinuousQuery::kFirst},
       {"any", ContinuousQuery::kAny}};
-  run->add_option("--query", options.settings.query, "all, first or any (default: all)")
+  run.add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(oneOf(kQueries, "all, first or any"));
-  run->add_option(
-         "--thickness", options.settings.min_distance,
-         "Contact at this distance, in the unit of the files (default: touching)")
+  run.add_option("--thickness", options.settings.min_distance,
+                 "Contact at this distance, in the unit of the files (default: touching)")
       ->type_name("D")
       ->check(positive<double>("a positive number"));
-  run->add_flag("--ignore-initially-closer", options.settings.ignore_initially_closer,
-                "Pairs that begin nearer than D are contacts only when they come nearer")
+  run.add_flag("--ignore-initially-closer", options.settings.ignore_initially_closer,
+               "Pairs that begin nearer than D are contacts only when they come nearer")
       ->needs("--thickness");
-  run->add_option(
-         "--jobs", options.jobs,
-         "Steps at the same time, one thread each; 0: as many as there are cores")
+}
+
+void addWorkOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
+  run.add_option("--jobs", options.jobs,
+                 "Steps at the same time, one thread each; 0: as many as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of jobs"));
-  run->add_option(
+  run.add_option(
          "--threads", options.threads,
          "Threads of a step, one step after the other; 0: as many as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of threads"));
-  run->add_option("--weld", options.weld,
-                  "Join vertices that coincide in all frames, within EPS (default: 0)")
+  run.add_option("--weld", options.weld,
+                 "Join vertices that coincide in all frames, within EPS (default: 0)")
       ->type_name("[EPS]")
       ->expected(0, 1)
       ->default_str("0")
       ->check(notNegative<double>("a distance"));
-  run->add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
+}
+
+void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
+  run.add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
       ->type_name("FILE")
       ->check(named());
-  run->add_option_function<std::string>(
+  run.add_option_function<std::string>(
          "--columns",
          [&options](const std::string& list) { options.columns = parseColumns(list); },
          "More columns: triangles,position,normal")
       ->type_name("LIST")
       ->needs("--contacts");
-  run->add_option("--steps", options.steps_path,
-                  "Write a JSON object for each step when it is done")
+  run.add_option("--steps", options.steps_path,
+                 "Write a JSON object for each step when it is done")
       ->type_name("FILE")
       ->check(named());
-  run->add_flag("--resume", options.resume,
-                "Continue the files of --contacts and --steps");
-  run->add_option("--paint", options.paint_path,
-                  "Write the last frame as PLY, with contacts in colour")
+  run.add_flag("--resume", options.resume,
+               "Continue the files of --contacts and --steps");
+  run.add_option("--paint", options.paint_path,
+                 "Write the last frame as PLY, with contacts in colour")
       ->type_name("FILE")
       ->check(named());
+}
+
+// The order is that of the help.
+CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
+  CLI::App* run = app.add_subcommand("run", "Continuous collision of meshes in motion");
+  run->footer(kRunDetails);
+  addFrameOptions(*run, options);
+  addTestOptions(*run, options);
+  addWorkOptions(*run, options);
+  addOutputOptions(*run, options);
   addCommonOptions(*run, options.settings.toc_err, options.settings.repeat,
                    options.json_path);
   return run;

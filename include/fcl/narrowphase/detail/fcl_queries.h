@@ -6,6 +6,7 @@
 #define FCL_NARROWPHASE_DETAIL_FCL_QUERIES_H
 
 #include <memory>
+#include <type_traits>
 
 #include "fcl/common/exception.h"
 #include "fcl/math/motion/interp_motion.h"
@@ -80,7 +81,8 @@ S askFcl(const MovingGeometry<S>& o1, const MotionBase<S>* motion1,
 }
 
 /// @brief FCL's answer about geometries that go from one transform to another.
-template <typename S>
+template <typename S,
+          typename std::enable_if<!std::is_same<S, float>::value, int>::type = 0>
 S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
          const ContinuousCollisionRequest<S>& request,
          ContinuousCollisionResult<S>& result) {
@@ -91,17 +93,20 @@ S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   return askFcl(o1, motionOf(o1).get(), o2, motionOf(o2).get(), request, result);
 }
 
-/// @brief The same in float, where stock FCL does not compile. The library does it.
-inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2,
-                    const ContinuousCollisionRequest<float>& request,
-                    ContinuousCollisionResult<float>& result) {
+/// @brief The same in float, where stock FCL does not compile. The library does it. It is
+/// a template, so that programs in double need not compile Eigen's transforms in float.
+template <typename S,
+          typename std::enable_if<std::is_same<S, float>::value, int>::type = 0>
+S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+         const ContinuousCollisionRequest<S>& request,
+         ContinuousCollisionResult<S>& result) {
   FclOutcome outcome{result.is_collide, result.time_of_contact, {}};
-  const float answer = askFclInFloat(o1, o2, request, outcome);
+  const S answer = askFclInFloat(o1, o2, request, outcome);
   result.is_collide = outcome.is_collide;
   result.time_of_contact = outcome.time_of_contact;
   if (outcome.is_collide) {
-    result.contact_tf1 = toTransform(outcome.contact_pose[0]);
-    result.contact_tf2 = toTransform(outcome.contact_pose[1]);
+    result.contact_tf1 = toTransform<S>(outcome.contact_pose[0]);
+    result.contact_tf2 = toTransform<S>(outcome.contact_pose[1]);
   }
   return answer;
 }

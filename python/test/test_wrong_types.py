@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Arguments of another type: the message names the function, the argument, and what it takes."""
+
+import inspect
+
+import numpy as np
+import pytest
+from scenes import grid
+
+import fcl_ccd
+
+VERTICES, TRIANGLES = grid(4)
+MESH, BALL, EYE = fcl_ccd.DeformableMesh(VERTICES, TRIANGLES), fcl_ccd.Sphere(1), np.eye(4)
+OCTREE = fcl_ccd.OcTree(VERTICES, 0.1)
+MANAGER = fcl_ccd.CollisionManager()
+MANAGER.register("ball", BALL)
+T0 = {points: np.zeros((1, points, 3)) for points in (2, 3, 4)}
+CONTROL = np.zeros((4, 3))
+
+# Calls that are right. Methods are found in their class.
+CALLS = {
+    "BoundedMotion": (
+        lambda t: EYE,
+        lambda t: 0 * EYE,
+        lambda center, radius, t0, t1: 0,
+        lambda t0, t1: 0,
+    ),
+    "Box": (1, 2, 3),
+    "Capsule": (1, 2),
+    "CollisionManager": (),
+    "CollisionManager.collide": (MANAGER, BALL, EYE),
+    "CollisionManager.register": (fcl_ccd.CollisionManager(), "mesh", MESH),
+    "CollisionManager.set_filter": (MANAGER, "ball", None),
+    "CollisionManager.set_self_collision": (MANAGER, "ball", False),
+    "CollisionManager.unregister": (fcl_ccd.CollisionManager(), "ball"),
+    "CollisionManager.update": (MANAGER,),
+    "Cone": (1, 2),
+    "Convex": (VERTICES, TRIANGLES),
+    "Cylinder": (1, 2),
+    "DeformableMesh": (VERTICES, TRIANGLES),
+    "DeformableMesh.update": (MESH, VERTICES, VERTICES),
+    "DeformableMesh.update_topology": (MESH, TRIANGLES, VERTICES, VERTICES),
+    "Ellipsoid": (1, 2, 3),
+    "Filter": (),
+    "Halfspace": ((0, 0, 1), 1),
+    "LinearMotion": (EYE, EYE),
+    "OcTree": (VERTICES, 0.1),
+    "OcTree.cells": (OCTREE, [0]),
+    "Plane": ((0, 0, 1), 1),
+    "RigidMesh": (VERTICES, TRIANGLES),
+    "ScrewMotion": (EYE, EYE),
+    "Sphere": (1,),
+    "SplineMotion": (CONTROL, CONTROL),
+    "TriangleP": (*VERTICES[:3],),
+    "candidates": (MESH, MESH),
+    "collide": (MESH, BALL),
+    "edge_edge": (T0[4], T0[4]),
+    "self_candidates": (MESH,),
+    "self_collide": (MESH,),
+    "vertex_edge": (T0[3], T0[3]),
+    "vertex_face": (T0[4], T0[4]),
+    "vertex_vertex": (T0[2], T0[2]),
+    "weld_vertices": ([VERTICES],),
+}
+REQUIRED = {"vertex_edge": {"min_distance": 1.0}, "vertex_vertex": {"min_distance": 1.0}}
+MADE_BY_QUERIES = "Kind", "ManagerResult", "Motion", "Pair", "Result"
+FRAMES = fcl_ccd.DeformableMesh.update  # has no names of arguments
+
+
+def public_calls():
+    """The name and the function or class of each call of the package."""
+    for name in fcl_ccd.__all__:
+        of = getattr(fcl_ccd, name)
+        if inspect.isfunction(of):
+            yield name, of
+        elif inspect.isclass(of) and name not in MADE_BY_QUERIES:
+            yield name, of
+            for method, function in inspect.getmembers(of, inspect.isfunction):
+                if not method.startswith("_"):
+                    yield f"{name}.{method}", function
+
+
+def wrong_values(annotation):
+    values = [object()]
+    if annotation != "str" and "Hashable" not in annotation:
+        values.append("text")
+    if annotation in ("float", "int", "bool", "str"):
+        values += [None, [1], np.zeros(2), b"1"]
+    if annotation in ("float", "int"):
+        values += [True, "1"]
+    if annotation == "int":
+        values.append(1.5)
+    return values
+
+
+def wrong_arguments():
+    for name, function in public_calls():
+        for argument, parameter in inspect.signature(function).parameters.items():
+            if argument not in ("self", "name") and function is not FRAMES:
+                for value in wrong_values(parameter.annotation):
+                    yield pytest.param(name, function, argument, value, id=f"{name}-{argument}")
+
+
+def test_all_calls_are_in_the_table():
+    assert sorted(name for name, _ in public_calls()) == sorted(CALLS)
+    assert len(list(wrong_arguments())) > 300
+
+
+@pytest.mark.parametrize("name, function, argument, value", wrong_arguments())
+def test_one_wrong_argument(name, function, argument, value):
+    """The others are right."""
+    bound = inspect.signature(function).bind(*CALLS[name], **REQUIRED.get(name, {}))
+    bound.arguments[argument] = value
+    with pytest.raises(TypeError) as error:
+        function(*bound.args, **bound.kwargs)
+    message = str(error.value)
+    assert message.startswith(f"{name}(): "), message
+    assert argument in message and " Give " in message, message
+    assert "\n" not in message  # not a list of overloads
+
+
+def test_frames():
+    for frames in ((object(),), (VERTICES, "text"), (None, VERTICES)):
+        with pytest.raises(TypeError, match=r"DeformableMesh.update\(\): (current|previous) is"):
+            MESH.update(*frames)
+
+
+def test_functions_of_the_user_are_not_named():
+    """A TypeError from inside of a callback is the user's own."""
+
+    def fails(b1, b2):
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match="^mine$"):
+        fcl_ccd.collide(MESH, MESH, accepts_triangles=fails)
+
+    def nested(block):
+        fcl_ccd.Sphere("1")
+
+    with pytest.raises(TypeError, match=r"^Sphere\(\): radius is of type str. Give a number"):
+        fcl_ccd.candidates(MESH, MESH, sink=nested)
