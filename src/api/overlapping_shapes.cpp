@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "api/convex_shapes.h"
+#include "api/prepared_motion.h"
 #include "api/query_arguments.h"
 #include "motion/overlap_at_start.h"
 
@@ -32,7 +33,9 @@ bool isPlain(const MovingGeometry<S>& o) {
   if (!turns && o.path != PathKind::kStraight && o.path != PathKind::kScrew) return false;
   if (turns && (o.reference[0] != 0 || o.reference[1] != 0 || o.reference[2] != 0))
     return false;
-  return isInRange(o.pose[0]) && isInRange(o.pose[1]);
+  for (const PoseNumbers<S>& pose : o.pose)
+    if (!isInRange(pose) || !deformable::isRotation(toPose(pose).rotation)) return false;
+  return true;
 }
 
 bool isInRange(const ConvexShape& shape) {
@@ -50,10 +53,15 @@ bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& 
       (isUnbounded(*o1.geometry) && isUnbounded(*o2.geometry)) || !isPlain(o1) ||
       !isPlain(o2))
     return false;
-  const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
-                    b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
-  return isInRange(a) && isInRange(b) &&
-         deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+  try {
+    const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
+                      b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
+    return isInRange(a) && isInRange(b) &&
+           deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+  } catch (const Exception&) {
+    // The query tells first what is wrong with the request.
+    return false;
+  }
 }
 
 template bool areOverlappingShapes(const MovingGeometry<double>&,

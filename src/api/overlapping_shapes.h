@@ -9,7 +9,8 @@ namespace detail {
 
 /// @brief Whether two shapes overlap at t = 0, as far as a look at their first poses
 /// shows. Many programs ask about such pairs, and the rest of a query costs more.
-/// @return false also where the query might throw, or might not be answered here
+/// @return false also where the query might throw for another reason than its request, or
+/// might not be answered here
 /// @pre the floating-point mode is the default one
 template <typename S>
 bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2);

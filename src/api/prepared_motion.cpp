@@ -31,22 +31,6 @@ bool isPosed(const PlacedGeometry<S>& placed) {
          !haveSameRotation(placed.beginning(), placed.end());
 }
 
-/// A turn is defined between rotations only, and a sphere that is sheared is no sphere. A
-/// rotation that was computed in float, or typed with four digits, is taken.
-constexpr double kMostDeviation = 0x1p-10;
-
-bool isRotation(const double (&r)[9]) {
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k <= i; ++k) {
-      const double product =
-          r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
-      if (std::abs(product - (i == k)) > kMostDeviation) return false;
-    }
-  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
-             r[2] * (r[3] * r[7] - r[4] * r[6]) >
-         0;
-}
-
 Vec applied(const double (&m)[9], const double (&x)[3]) {
   return {m[0] * x[0] + m[1] * x[1] + m[2] * x[2],
           m[3] * x[0] + m[4] * x[1] + m[5] * x[2],
@@ -78,6 +62,20 @@ MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
 
 }  // namespace
 
+bool isRotation(const double (&r)[9]) {
+  constexpr double kMostDeviation = 0x1p-10;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k) {
+      const double product =
+          r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
+      if (std::abs(product - (i == k)) > kMostDeviation) return false;
+    }
+  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
+             r[2] * (r[3] * r[7] - r[4] * r[6]) >
+         0;
+}
+
+/// A turn is defined between rotations only, and a sphere that is sheared is no sphere.
 template <typename S>
 void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
   if (placed.isMesh() && placed.goesStraight()) return;
@@ -102,8 +100,9 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
-    shape_.emplace(
-        convexShapeOf(placed.geometry(), name, reach + path.translationReach()));
+    // In the body frame, which a matrix that is no rotation makes larger or smaller.
+    const double reach_in_body = (reach + path.translationReach()) / path.stretch();
+    shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));

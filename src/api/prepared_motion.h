@@ -15,6 +15,10 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// @brief Whether a matrix is a rotation up to 2^-10. One that was computed in float, or
+/// typed with four digits, is.
+bool isRotation(const double (&matrix)[9]);
+
 /// @brief Refuses transforms that scale, mirror or shear. Only the vertices of a mesh may
 /// go straight between any two places.
 /// @param name  the name of the geometry in errors

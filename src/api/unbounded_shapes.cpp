@@ -29,9 +29,11 @@ template <typename Shape>
 Flat flatOf(const Shape& shape, const Pose& beginning, const Pose& end, bool is_solid) {
   const Vec n = {static_cast<double>(shape.n[0]), static_cast<double>(shape.n[1]),
                  static_cast<double>(shape.n[2])};
-  const double length = std::sqrt(dot(n, n));
-  const double offset = static_cast<double>(shape.d) / length;
-  Flat out{(1 / length) * rotated(beginning.rotation, n), {}, is_solid, 0};
+  // The plane through the foot, which a matrix that scales moves.
+  const Vec posed_n = rotated(beginning.rotation, n);
+  const double posed_length = norm(posed_n),
+               offset = static_cast<double>(shape.d) * (posed_length / dot(n, n));
+  Flat out{(1 / posed_length) * posed_n, {}, is_solid, 0};
   for (int k = 0; k < 2; ++k) {
     const double(&t)[3] = (k == 0 ? beginning : end).translation;
     out.offset[k] = dot(out.normal, vecOf(t)) + offset;

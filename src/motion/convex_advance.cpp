@@ -78,23 +78,16 @@ ConvexPairMotion::ConvexPairMotion(const MovingConvex& a, const MovingConvex& b,
       flat_(flatOf(a, b)),
       t1_(t1),
       tolerance_(tolerance),
-      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {
-  setDistance(tolerance.distance);
-}
-
-void ConvexPairMotion::setDistance(double distance) {
-  tolerance_.distance = distance_ = distance;
-  if (flat_ >= 0) distance_ *= set_[flat_]->path->stretch();
-}
+      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
 
 void ConvexPairMotion::ignoreInitiallyCloser() {
   const ConvexGap gap = gapOf(stateAt(0), 0);
-  if (gap.distance > distance_ + tolerance_.touching) return;
+  if (gap.distance > tolerance_.distance + tolerance_.touching) return;
   double radii = 0;
   for (const MovingConvex* set : set_)
     if (set->shape) radii += set->shape->radius();
   const double own = (gap.gap - radii) * (1 - kNearerShare) - 2 * tolerance_.touching;
-  if (own > 0) setDistance(radii + own);
+  if (own > 0) tolerance_.distance = radii + own;
 }
 
 ConvexPairMotion::Side ConvexPairMotion::sideAt(int k, double t) const {
@@ -158,16 +151,28 @@ double ConvexPairMotion::Side::size() const {
 }
 
 ConvexPairMotion::Separator ConvexPairMotion::inWorld(const Vec& direction) const {
-  return {direction, {0, 0, 0}, acceleration_, margin(), 1};
+  return {direction, {0, 0, 0}, acceleration_, margin(1), 1};
+}
+
+/// A matrix that is no rotation changes the length of the normal of a flat. How much
+/// longer than now it may become.
+double ConvexPairMotion::growthOfNormal(const State& state) const {
+  if (flat_ < 0 || set_[flat_]->path->isTranslation()) return 1;
+  const PosedConvex& flat = state.side[flat_].now;
+  return set_[flat_]->path->stretch() /
+         norm(rotated(flat.pose.rotation, flat.shape->flat()->normal));
 }
 
 // The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
 // the second derivative of n . z is n . z'' + 2 n' . z' + n'' . z, and r times the norm
 // of R'' is at most the bound on the acceleration of points within r of the origin.
 //
-// A flat is the plane through its foot with the normal n(t), where m is that in the body
-// frame. So its foot stands for all of its points. The height n . z is at most |n| times
-// the distance, and |n| is at most the stretch of R.
+// The length of R x is at most s |x|, s the stretch of R, so that |m| <= s and |n(t)| <=
+// s^2; and n' and n'' are bounded by |m|.
+//
+// A flat is the plane through its foot with the normal n(t), where m is parallel to that
+// in the body frame and n(t0) a unit vector. So its foot stands for all of its points.
+// The height n . z is at most |n| times the distance.
 ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const State& state,
                                                      const ConvexGap& gap) const {
   const MotionPath& path = *set_[k]->path;
@@ -175,11 +180,13 @@ ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const Stat
   const double(&v)[9] = state.side[k].rate.rotation;
   const Vec& n = gap.direction;
   Vec m = rotatedBack(r, n);
+  double length = path.stretch();
   if (flat_ >= 0) {
     const Vec& normal = set_[k]->shape->flat()->normal;
-    m = dot(m, normal) < 0 ? -1. * normal : normal;
+    length = 1 / norm(rotated(r, normal));
+    m = (dot(m, normal) < 0 ? -length : length) * normal;
   }
-  const double stretch = path.stretch() * path.stretch(), turn = path.turnSpeed(),
+  const double longest = std::max(path.stretch(), 1.) * length, turn = path.turnSpeed(),
                speed = set_[0]->speed + set_[1]->speed;
   double apart = std::max(gap.distance, gap.gap);
   if (flat_ >= 0) apart = norm(state.side[1].center() - state.side[0].center());
@@ -188,8 +195,9 @@ ConvexPairMotion::Separator ConvexPairMotion::inBody(int k, double t, const Stat
     apart += state.side[side].size() * set_[side]->path->stretch();
   const double turning =
       2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
-  return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * stretch * kUpward,
-          flat_ >= 0 ? margin() : margin() * stretch * kUpward, 0.5 / turn};
+  return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * longest * kUpward,
+          flat_ >= 0 ? margin(growthOfNormal(state)) : margin(1) * longest * kUpward,
+          0.5 / turn};
 }
 
 /// The gap of the cores along a direction, `h` later, at least. It is concave in h, since
@@ -285,11 +293,23 @@ ConvexGap ConvexPairMotion::flatGap(const State& state) const {
   return out;
 }
 
+/// The direction between the centers, or the suggested one if it shows a larger gap.
+/// Newton's method needs a good one.
+Vec ConvexPairMotion::firstGuess(const State& state) const {
+  const Vec way = state.side[1].center() - state.side[0].center();
+  const bool is_curved = state.side[0].now.isCurved() || state.side[1].now.isCurved();
+  if (!is_curved || !(maxNorm(suggested_) > 0)) return way;
+  const auto gapAlong = [&state](const Vec& n) {
+    return -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+  };
+  const double length = norm(way);
+  return length > 0 && gapAlong(way) > length * gapAlong(suggested_) ? way : suggested_;
+}
+
 ConvexGap ConvexPairMotion::gapOf(const State& state, double contact) const {
   if (flat_ >= 0) return flatGap(state);
-  const Vec guess =
-      maxNorm(guess_) > 0 ? guess_ : state.side[1].center() - state.side[0].center();
-  return convexGap(state.side[0].now, state.side[1].now, guess, margin(), contact);
+  const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(state);
+  return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact);
 }
 
 /// Prefers the direction of a flat side: where the gap is a few roundings wide another
@@ -313,10 +333,11 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
 
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {
-  const double contact = distance_ + tolerance_.touching - tolerance_.position;
   while (true) {
     const State state = stateAt(t);
     ++counts.steps;
+    const double contact = tolerance_.distance * growthOfNormal(state) +
+                           tolerance_.touching - tolerance_.position;
     const ConvexGap gap = gapOf(state, contact);
     if (gap.distance <= contact) return Answer::kContact;
     if (steps-- <= 0) return Answer::kOpen;

@@ -47,6 +47,13 @@ class ConvexPairMotion {
   /// that then. Not if they touch then.
   void ignoreInitiallyCloser();
 
+  /// @brief Suggests a direction from a to b that may part the sets, for example that of
+  /// a pair beside this one; 0: none. The answer depends on it by rounding only.
+  void suggest(const Vec& direction) { suggested_ = direction; }
+
+  /// @brief The last direction that parted the sets while they were advanced; 0: none.
+  const Vec& lastDirection() const { return guess_; }
+
   /// @brief As TrianglePairMotion::advance(). Also kContact where the sets overlap.
   Answer advance(double& t, double last, int& steps, MotionCounts& counts);
 
@@ -80,7 +87,6 @@ class ConvexPairMotion {
   State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
   ConvexGap gapOf(const State& state, double contact) const;
   ConvexGap flatGap(const State& state) const;
-  void setDistance(double distance);
   /// A direction that is fixed in the world, or in a body.
   struct Separator {
     Vec direction, change;
@@ -90,8 +96,12 @@ class ConvexPairMotion {
     /// The longest step, for which the direction stays of about the same length.
     double longest;
   };
-  /// The gap that a step keeps. Its end may round by another half of the position error.
-  double margin() const { return 2 * tolerance_.position + distance_; }
+  /// The gap that a step keeps, along a direction that may become longer by a factor. Its
+  /// end may round by another half of the position error.
+  double margin(double growth) const {
+    return 2 * tolerance_.position + growth * tolerance_.distance;
+  }
+  double growthOfNormal(const State& state) const;
   Separator inWorld(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
   double gapAfter(double h, const State& state, const Separator& separator) const;
@@ -103,11 +113,12 @@ class ConvexPairMotion {
   /// normal or not at all.
   int flat_;
   double t1_;
+  /// With the distance of contact of this pair.
   MotionTolerance tolerance_;
-  /// The distance of contact; of a flat as a difference of heights, see inBody().
-  double distance_{0};
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
+  Vec firstGuess(const State& state) const;
+  Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};
 };

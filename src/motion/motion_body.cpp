@@ -274,25 +274,22 @@ double MotionBody::reach(const BodyPart& part, double t, const Vec& direction,
 double MotionBody::reachOfMesh(const BodyPart& part, double t, const Vec& direction,
                                std::int64_t& room) const {
   double most = -HUGE_VAL;
-  std::vector<std::int32_t> left{part.child};
+  std::vector<BodyPart> left{part};
   while (!left.empty() && room >= 0) {
-    const std::int32_t child = left.back();
+    const BodyPart at = left.back();
     left.pop_back();
-    if (child < 0) {
-      --room;
-      if (!isReadable(~child)) return HUGE_VAL;
-      const BodyTriangle at = triangle(~child);
-      for (int k = 0; k < 3; ++k)
-        most = std::max(most,
-                        dot(direction, (1 - t) * at.corner[0][k] + t * at.corner[1][k]));
-    } else if (tree_) {
-      const MovingKdopNode& node = tree_->node(child);
-      left.insert(left.end(), node.child, node.child + node.count);
-    } else {
-      const int first = rigid_->link(child);
-      for (int i = first; i < first + 2; ++i)
-        left.push_back(rigid_->link(i) < 0 ? rigid_->link(i) : i);
+    if (!at.isTriangle()) {
+      BodyPart below[MotionBoxes::kWidth];
+      const int count = children(at, below);
+      left.insert(left.end(), below, below + count);
+      continue;
     }
+    --room;
+    if (!isReadable(~at.child)) return HUGE_VAL;
+    const BodyTriangle of = triangle(~at.child);
+    for (int k = 0; k < 3; ++k)
+      most =
+          std::max(most, dot(direction, (1 - t) * of.corner[0][k] + t * of.corner[1][k]));
   }
   return most;
 }
@@ -320,6 +317,23 @@ void MotionBody::open(const BodyPart& part, MotionNode& out) const {
     out.part[lane] = {children[from], nodes[from]};
     out.box[0].set(lane, rigidBox(nodes[from]));
   }
+}
+
+int MotionBody::children(const BodyPart& part,
+                         BodyPart (&out)[MotionBoxes::kWidth]) const {
+  assert(isMesh() && !part.isTriangle());
+  if (tree_) {
+    const MovingKdopNode& node = tree_->node(part.child);
+    for (int lane = 0; lane < node.count; ++lane)
+      out[lane] = {node.child[lane], part.child * MovingKdopNode::kWidth + lane};
+    return node.count;
+  }
+  const int first = rigid_->link(part.child);
+  for (int i = 0; i < 2; ++i) {
+    const int link = rigid_->link(first + i);
+    out[i] = {link < 0 ? link : first + i, first + i};
+  }
+  return 2;
 }
 
 MeshInstance MotionBody::meshInBodyFrame() const {

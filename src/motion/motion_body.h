@@ -103,6 +103,11 @@ class MotionBody {
 
   BodyPart root() const;
   void open(const BodyPart& part, MotionNode& out) const;
+  /// @brief The children of a node as its tree has them, without their boxes: two of a
+  /// rigid mesh.
+  /// @return how many there are
+  /// @pre it is a mesh
+  int children(const BodyPart& part, BodyPart (&out)[MotionBoxes::kWidth]) const;
   /// @brief The box of a part at t = 0 or t = 1.
   MotionBox box(const BodyPart& part, int frame) const;
 

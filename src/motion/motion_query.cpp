@@ -49,7 +49,8 @@ class MotionTraversal {
     rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
                 16 * kUnitRounding * (a.speed() + b.speed());
     box_margin_ = options.distance + rounding_;
-    direction_bound_ = (1 + 0x1p-10) * std::max(a.path().stretch(), b.path().stretch());
+    direction_bound_ =
+        (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
   }
 
   MotionAnswer run() {
@@ -392,12 +393,20 @@ class MotionTraversal {
     work.t1 = std::min(work.t1, std::ceil(end / unit) * unit);
   }
 
+  /// How far points may deviate from straight lines, as a share of the radius of a part.
+  /// Directions of shapes are compared at both ends of a span only. In short spans fewer
+  /// pairs may touch before the first contact does: that of a mesh and a cylinder takes
+  /// 0.44 ms, with a share of a quarter 0.65 ms. Where all contacts are wanted each span
+  /// costs: they take 7% to 45% less time than with a quarter, most beside a halfspace.
+  double mostDeviation() const {
+    if (!side_[0].body.shape() && !side_[1].body.shape()) return 0.5;
+    return options_.all ? 1 : 0x1p-5;
+  }
+
   void divide(MotionWork& work) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
     constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6;
-    // Directions of shapes are compared at both ends of a span only.
-    const double most_deviation =
-        side_[0].body.shape() || side_[1].body.shape() ? 0.25 : 0.5;
+    const double most_deviation = mostDeviation();
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
                               partSpan(1, work.b, work.t0, work.t1)};
@@ -467,8 +476,10 @@ class MotionTraversal {
       const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
                                      b.isMesh() ? y.triangle.index : kNoTriangle};
       ConvexPairMotion pair(x, y, work.start, end, tolerance_);
+      pair.suggest(last_direction_);
       if (options_.ignores_initially_closer) pair.ignoreInitiallyCloser();
       advance(work, index, end, pair);
+      if (maxNorm(pair.lastDirection()) > 0) last_direction_ = pair.lastDirection();
       return;
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
@@ -557,6 +568,9 @@ class MotionTraversal {
   /// The latest time that matters.
   double latest_;
   MotionWorkQueue works_;
+  /// That parted the last pair with a shape or a cell. Others beside it have about the
+  /// same.
+  Vec last_direction_{0, 0, 0};
   /// The number of pairs that did not touch earlier than the contact that was found.
   int num_apart_{0};
   std::vector<MotionContact> contacts_;

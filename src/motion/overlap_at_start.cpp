@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motion/overlap_at_start.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "motion/convex_distance.h"
@@ -41,6 +42,78 @@ double innerRadius(const ConvexShape& shape, const Pose& pose) {
   return shape.radius() + inner * (1 - 4 * kRounding);
 }
 
+/// The heights of the points of a mesh above a flat, at t = 0.
+class HeightsAtStart {
+ public:
+  HeightsAtStart(const MotionBody& flat, const MotionBody& mesh)
+      : mesh_(mesh), is_solid_(flat.shape()->flat()->is_solid) {
+    const FlatShape& shape = *flat.shape()->flat();
+    const Pose pose_flat = flat.path().pose(0), pose_mesh = mesh.path().pose(0);
+    const Vec normal = rotated(pose_flat.rotation, shape.normal),
+              up = (1 / norm(normal)) * normal;
+    up_ = rotatedBack(pose_mesh.rotation, up);
+    origin_ = dot(up, (vecOf(pose_mesh.translation) - vecOf(pose_flat.translation)) -
+                          rotated(pose_flat.rotation, shape.foot()));
+  }
+
+  /// Goes down the tree to the triangle that is likely to be lowest; or, for a plane, to
+  /// one that it is likely to cross. All triangles of a box below a halfspace are as
+  /// good.
+  bool findTouch() const {
+    BodyPart part = mesh_.root(), children[MotionBoxes::kWidth];
+    bool is_below = false;
+    while (!part.isTriangle()) {
+      const int count = mesh_.children(part, children);
+      part = children[0];
+      if (is_below) continue;
+      double least = HUGE_VAL;
+      for (int i = 0; i < count && !is_below; ++i) {
+        const Heights heights = heightsOf(mesh_.box(children[i], 0));
+        if (!(heights.least() < least)) continue;
+        least = heights.least();
+        is_below = is_solid_ && heights.most() <= 0;
+        part = children[i];
+      }
+      if (!(least <= 0)) return false;
+    }
+    return touches(part);
+  }
+
+ private:
+  /// The heights of the points of a box, or, from a plane, their distances.
+  struct Heights {
+    double center, reach;
+    double least() const { return center - reach; }
+    double most() const { return center + reach; }
+  };
+
+  Heights heightsOf(const MotionBox& box) const {
+    const double center = origin_ + dot(up_, vecOf(box.center));
+    double reach = box.pad;
+    for (int i = 0; i < 3; ++i)
+      reach += box.extent[i] * std::abs(dot(up_, vecOf(box.axis[i])));
+    return {is_solid_ ? center : std::abs(center), reach};
+  }
+
+  bool touches(const BodyPart& part) const {
+    if (!mesh_.isReadable(~part.child)) return false;
+    const BodyTriangle triangle = mesh_.triangle(~part.child);
+    double lowest = HUGE_VAL, highest = -HUGE_VAL;
+    for (const Vec& corner : triangle.corner[0]) {
+      const double height = origin_ + dot(up_, corner);
+      lowest = std::min(lowest, height);
+      highest = std::max(highest, height);
+    }
+    return lowest <= 0 && (is_solid_ || highest >= 0);
+  }
+
+  const MotionBody& mesh_;
+  bool is_solid_;
+  /// The upward unit normal in the frame of the mesh, and the height of its origin.
+  Vec up_;
+  double origin_;
+};
+
 double outerRadius(const ConvexShape& shape) {
   return shape.box().radius + shape.radius();
 }
@@ -66,6 +139,14 @@ bool overlapAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape&
   const double radii = a.radius() + b.radius();
   const ConvexGap gap = convexGap(first, second, way, radii, radii);
   return gap.depth > 0 || gap.distance <= radii;
+}
+
+bool overlapAtStart(const MotionBody& a, const MotionBody& b) {
+  const auto isFlat = [](const MotionBody& body) {
+    return body.shape() && body.shape()->flat();
+  };
+  if (isFlat(a) && b.isMesh()) return HeightsAtStart(a, b).findTouch();
+  return isFlat(b) && a.isMesh() && HeightsAtStart(b, a).findTouch();
 }
 
 }  // namespace deformable

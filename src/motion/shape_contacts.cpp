@@ -7,6 +7,7 @@
 
 #include "motion/convex_advance.h"
 #include "motion/motion_query.h"
+#include "motion/overlap_at_start.h"
 #include "motion/posed_vector.h"
 
 namespace fcl {
@@ -135,6 +136,10 @@ void keepFirst(std::vector<MotionContact>& contacts) {
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
                                const QueryOptions& options) {
   ShapeAnswer answer;
+  if (options.stop_at_crossing && overlapAtStart(a, b)) {
+    answer.contacts.emplace_back();
+    return answer;
+  }
   const auto ask = [&](const MotionQueryOptions& wanted) {
     MotionAnswer found = queryMotions(a, b, wanted);
     answer.counts.node_pairs += found.counts.box_tests;

@@ -138,7 +138,11 @@ RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes,
   is_rotated_ = !beginning.isTranslation() || !end.isTranslation();
   std::copy(beginning.rotation, beginning.rotation + 9, rotation_[0]);
   std::copy(end.rotation, end.rotation + 9, rotation_[1]);
-  for (auto frame : {0, 1}) setOrigin(frame);
+  setOrigin(0);
+  if (turns_)
+    setOrigin(1);
+  else
+    std::copy(origin_[0], origin_[0] + 3, origin_[1]);
   reach_ *= 1 + slack();
   if (!turns_) return;
   // The difference of both rotations, applied to any point, whose length is below `size`.

@@ -419,6 +419,66 @@ TEST(ShapeCollide, MinDistanceOfAMeshThatTurns) {
   EXPECT_NEAR(result.contacts.at(0).pos[2], 0.5 * distance, 1e-9);
 }
 
+// Boxes and flats in matrices that are rotations up to a few digits, and make all lengths
+// smaller or larger. The distance is that in the world. The other box goes down by 4
+// units of the scale.
+TEST(ShapeCollide, MinDistanceWithInexactRotations) {
+  const TestMesh cube = makeBox({1, 1, 1});
+  auto mesh = std::make_shared<BVHModel<OBBRSS<double>>>();
+  mesh->beginModel();
+  mesh->addSubModel(cube.vertices, cube.triangles);
+  mesh->endModel();
+  const Geometry box = std::make_shared<Box<double>>(2, 2, 2),
+                 plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
+                 halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
+  for (const double scale : {0.9997, 1.0004}) {
+    const auto scaled = [scale](double z, double turn) {
+      Pose pose = turned(turn, Point(0, 0, 1), at(0, 0, scale * z));
+      pose.linear() *= scale;
+      return pose;
+    };
+    for (const double distance : {0., 0.4})
+      for (const double turn : {0., 1.})
+        for (const Geometry& above : {box, Geometry(mesh)})
+          for (const Geometry& below : {box, plane, halfspace}) {
+            SCOPED_TRACE(testing::Message() << scale << " " << distance << " " << turn);
+            Request request = requestOf();
+            request.min_distance = scale * distance;
+            const Moving a{above, scaled(5, 0), scaled(1, 0)},
+                b{below, scaled(0, 0), scaled(0, turn)};
+            const double time = (3 - distance) / 4;
+            for (const Result& result : {ask(a, b, request), ask(b, a, request)}) {
+              ASSERT_TRUE(result.is_collide);
+              EXPECT_LE(result.time_of_contact, time + 1e-15);
+              EXPECT_NEAR(result.time_of_contact, time, 1e-11);
+            }
+          }
+  }
+}
+
+TEST(ShapeCollide, ParallelFlatsWithInexactRotations) {
+  const Geometry plane = std::make_shared<Plane<double>>(Point(0, 0, 1), 1.),
+                 halfspace = std::make_shared<Halfspace<double>>(Point(0, 0, 1), 1.);
+  for (const double scale : {0.9997, 1.0004})
+    for (const double distance : {0., 0.4})
+      for (const Geometry& below : {plane, halfspace}) {
+        SCOPED_TRACE(testing::Message() << scale << " " << distance);
+        const auto scaled = [scale](double z) {
+          Pose pose = at(0, 0, scale * z);
+          pose.linear() *= scale;
+          return pose;
+        };
+        Request request = requestOf();
+        request.min_distance = scale * distance;
+        const Result result =
+            ask({plane, scaled(5), scaled(-1)}, {below, scaled(0), scaled(0)}, request);
+        ASSERT_TRUE(result.is_collide);
+        EXPECT_LE(result.time_of_contact, (5 - distance) / 6 + 1e-15);
+        EXPECT_NEAR(result.time_of_contact, (5 - distance) / 6, 1e-11);
+        EXPECT_NEAR(result.contacts.at(0).normal[2], -1, 1e-12);
+      }
+}
+
 TEST(ShapeCollide, TMaxCutsAtTheTime) {
   const Moving ball{std::make_shared<Sphere<double>>(0.25), at(0, 0, 2), at(0, 0, -2)};
   const Moving floor{floorMesh(), at(0, 0, 0), at(0, 0, 0)};
@@ -717,6 +777,43 @@ TEST(ShapeCollide, BadInputHasAClearError) {
     EXPECT_NE(message.find(words), std::string::npos) << message;
   }
   EXPECT_NE(messageOf(std::make_shared<Sphere<double>>(1.), at(kNan, 0, 0)), "");
+}
+
+TEST(ShapeCollide, WhatIsWrongIsToldInOneOrder) {
+  const Pose still = at(0, 0, 0);
+  const Sphere<double> wrong(-1), right(1);
+  const Halfspace<double> flat(Point::UnitZ(), 0);
+  const auto messageOf = [&still](const auto& o1, const auto& o2, auto request) {
+    request.toc_err = -1;
+    try {
+      std::conditional_t<std::is_same_v<decltype(request), Request>, Result,
+                         ContinuousCollisionResult<double>>
+          result;
+      continuousCollide(&o1, still, still, &o2, still, still, request, result);
+    } catch (const Exception& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const ContinuousCollisionRequest<double> plain;
+  const Request with_contacts;
+  EXPECT_NE(messageOf(wrong, right, plain).find("toc_err"), std::string::npos);
+  EXPECT_EQ(messageOf(wrong, right, plain), messageOf(wrong, right, with_contacts));
+  EXPECT_EQ(messageOf(right, right, plain), messageOf(right, right, with_contacts));
+  EXPECT_EQ(messageOf(flat, right, plain), messageOf(flat, right, with_contacts));
+}
+
+// Also where the look at t = 0 would find that they overlap.
+TEST(ShapeCollide, ARequestWithoutContactsRefusesTransforms) {
+  Pose twice = at(0, 0, 0);
+  twice.linear() *= 2;
+  const Sphere<double> ball(1);
+  for (const Pose& begin : {at(0, 0, 0), twice}) {
+    ContinuousCollisionResult<double> result;
+    EXPECT_THROW(continuousCollide(&ball, begin, twice, &ball, at(0, 0, 0), at(0, 0, 0),
+                                   ContinuousCollisionRequest<double>(), result),
+                 Exception);
+  }
 }
 
 // A halfspace in such a pose missed contacts, and the radius of a sphere did not scale.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Meshes against planes and halfspaces that turn: closed forms of the first time of each
-// triangle, and how much is looked at for it.
+// triangle, and how much is looked at for it. And the look at t = 0.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,12 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "fcl/geometry/bvh/BVH_model.h"
+#include "api/prepared_motion.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
+#include "motion/overlap_at_start.h"
+#include "motion/shape_contacts.h"
 
 namespace fcl {
 namespace test {
@@ -158,6 +161,93 @@ TEST_P(MeshAndFlat, AMeshTurnsAndGrazesAFlat) {
       // A graze is early by at most sqrt(2 tau / kappa).
       EXPECT_NEAR(result.time_of_contact, time, 1e-7);
     }
+}
+
+template <typename BV>
+Geometry deformingModelOf(const TestMesh& mesh) {
+  auto model = std::make_shared<DeformableBVHModel<BV>>();
+  model->beginModel();
+  model->addSubModel(mesh.vertices, mesh.triangles);
+  model->endModel();
+  std::vector<Point> moved = mesh.vertices;
+  for (Point& p : moved) p *= 1 + 0.2 * std::sin(5 * p[0] + p[2]);
+  model->beginUpdateModel();
+  model->updateSubModel(moved);
+  model->endUpdateModel();
+  return model;
+}
+
+Pose randomPose(Random& random, double way) {
+  Pose pose = Pose::Identity();
+  pose.linear() =
+      AngleAxis<double>(random.uniform(0, 3), random.point(1).normalized()).matrix();
+  pose.translation() = random.point(way);
+  return pose;
+}
+
+/// What the look at t = 0 says, and what the query says without it.
+struct Look {
+  bool is_touch;
+  double time;
+
+  Look(const Geometry& a, const Pose (&pose_a)[2], const Geometry& b,
+       const Pose (&pose_b)[2]) {
+    using namespace detail;
+    using deformable::PreparedMotion;
+    const auto moving_a = movingGeometry(a.get(), pose_a[0], pose_a[1], PathKind::kTurn),
+               moving_b = movingGeometry(b.get(), pose_b[0], pose_b[1], PathKind::kTurn);
+    const PreparedMotion mesh(PlacedGeometry<double>(moving_a), "o1", 1e-6, 1),
+        flat(PlacedGeometry<double>(moving_b), "o2", 1e-6, 1, mesh.body().size());
+    is_touch = overlapAtStart(mesh.body(), flat.body());
+    EXPECT_EQ(overlapAtStart(flat.body(), mesh.body()), is_touch);
+    deformable::QueryOptions options;
+    options.query = ContinuousQuery::kAny;
+    const auto answer = queryShapeContacts(mesh.body(), flat.body(), options);
+    time = answer.contacts.empty() ? kNever : answer.contacts.front().toc_lo;
+  }
+};
+
+// Poses in which the lowest vertex is at a depth below the flat.
+TEST_P(MeshAndFlat, TheLookAtTheBeginningChangesNoAnswer) {
+  const TestMesh mesh = bumpyBall({0.2, 0.1, 0.3});
+  const std::vector<Geometry> models = {modelOf(mesh),
+                                        deformingModelOf<AABB<double>>(mesh),
+                                        deformingModelOf<OBBRSS<double>>(mesh)};
+  Random random(41);
+  int touching = 0, found = 0;
+  for (const double depth : {0.5, 0.1, 1e-3, 1e-9, 1e-12, 1e-14, 1e-15, 1e-16, 0., -1e-16,
+                             -1e-15, -1e-14, -1e-12, -1e-9, -1e-3, -0.3})
+    for (int round = 0; round < 30; ++round) {
+      SCOPED_TRACE(depth);
+      const Geometry& model = models[static_cast<std::size_t>(round % 3)];
+      const Pose pose[2] = {randomPose(random, 4), randomPose(random, 4)};
+      const Point n = random.point(1).normalized();
+      double lowest = 1e9;
+      for (const Point& p : mesh.vertices) lowest = std::min(lowest, n.dot(pose[0] * p));
+      Pose flat_pose[2] = {randomPose(random, 4), randomPose(random, 4)};
+      const Point in_flat = flat_pose[0].linear().transpose() * n;
+      const double offset = lowest + depth - n.dot(flat_pose[0].translation());
+      const Geometry flat = flatOf(GetParam(), in_flat, offset);
+      const Look look(model, pose, flat, flat_pose);
+      const bool touches = depth >= 1e-12;
+      touching += touches;
+      found += touches && look.is_touch;
+      if (touches || look.is_touch) {
+        EXPECT_EQ(look.time, 0);
+      }
+      if (depth <= -1e-12) {
+        EXPECT_FALSE(look.is_touch);
+      }
+      ContinuousCollisionRequest<double> request;
+      request.ccd_motion_type = CCDM_LINEAR;
+      request.toc_err = 1e-6;
+      ContinuousCollisionResult<double> result;
+      continuousCollide(model.get(), pose[0], pose[1], flat.get(), flat_pose[0],
+                        flat_pose[1], request, result);
+      EXPECT_EQ(result.is_collide ? double{result.time_of_contact} : kNever, look.time);
+    }
+  // The way down the tree may end beside the one vertex that is below.
+  EXPECT_GT(found, touching / 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(, MeshAndFlat, testing::Values("plane", "halfspace"),
