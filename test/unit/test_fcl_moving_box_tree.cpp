@@ -157,7 +157,7 @@ TEST(MovingBoxTree, InsertAndRemoveKeepPairsAndBalance) {
     if (is_in[i])
       tree.remove(static_cast<int>(i));
     else
-      tree.insert({boxes[i], static_cast<int>(i)});
+      tree.insert({&boxes[i], static_cast<int>(i)});
     is_in[i] = !is_in[i];
     count = is_in[i] ? count + 1 : count - 1;
     ASSERT_EQ(tree.size(), count);
@@ -174,7 +174,8 @@ TEST(MovingBoxTree, SortedInsertionStaysBalanced) {
   for (int i = 0; i < 4096; ++i) {
     const HalfAxisBox at{{.1 - i, .1, .1, .1 + i, .1, .1}};
     const std::vector<HalfAxisBox> boxes{at, at};
-    tree.insert({linearBox(boundsOf(boxes)), i});
+    const LinearBox box = linearBox(boundsOf(boxes));
+    tree.insert({&box, i});
   }
   EXPECT_LE(tree.height(), 18);
   for (int i = 0; i < 4095; ++i) tree.remove(i);
@@ -189,10 +190,9 @@ TEST(MovingBoxTree, BuiltTreesAndPairsOfTwoTrees) {
   std::vector<LinearBox> boxes[2];
   for (int s = 0; s < 2; ++s) {
     std::vector<MovingBoxTree::Leaf> leaves;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 200; ++i)
       boxes[s].push_back(linearBox(boundsOf(randomBoxes(random, 1, .5))));
-      leaves.push_back({boxes[s].back(), i});
-    }
+    for (int i = 0; i < 200; ++i) leaves.push_back({&boxes[s][std::size_t(i)], i});
     tree[s].build(leaves);
     EXPECT_EQ(tree[s].height(), 8);
     expectAllPairs(tree[s], boxes[s], std::vector<bool>(200, true), {0, 1});
