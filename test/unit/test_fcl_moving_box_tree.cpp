@@ -9,9 +9,11 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "broadphase/broad_phase.h"
 #include "mesh_generators.h"
 
 namespace fcl {
@@ -211,6 +213,51 @@ TEST(MovingBoxTree, BuiltTreesAndPairsOfTwoTrees) {
   EXPECT_GT(found.size(), 50u);
   tree[1].visitMeeting(boxes[0][0], {0, 1}, [&](int b) { near_first.insert(b); });
   EXPECT_EQ(near_first, expected_first);
+}
+
+/// The pairs of a broad phase in their order, with the beginnings of their windows.
+using OrderedPairs = std::vector<std::tuple<double, int, int>>;
+
+TEST(BroadPhase, PairsAreSortedByTheirWindowsAndThenByInsertion) {
+  Random random(5);
+  std::vector<std::vector<HalfAxisBox>> boxes;
+  for (int i = 0; i < 150; ++i) boxes.push_back(randomBoxes(random, 1, 1));
+  // Twenty that touch the first one at the end of the step, at the same time.
+  for (int i = 0; i < 20; ++i) {
+    HalfAxisBox far = boxes[0][1], near = boxes[0][1];
+    far.half[0] -= 9, far.half[3] += 9;
+    near.half[3] = -boxes[0][1].half[0] + (near.half[0] + near.half[3]);
+    near.half[0] = -boxes[0][1].half[3];
+    boxes.push_back({far, near});
+  }
+  std::vector<char> objects(boxes.size());
+  std::vector<void*> addresses;
+  BoundsList bounds;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    addresses.push_back(&objects[i]);
+    bounds.items.push_back({bounds.boxes.size(), 1});
+    bounds.boxes.insert(bounds.boxes.end(), boxes[i].begin(), boxes[i].end());
+  }
+  BroadPhase broad_phase;
+  broad_phase.insert(addresses.data(), bounds);
+  OrderedPairs expected, found;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t k = i + 1; k < boxes.size(); ++k) {
+      const MeetingWindow window =
+          meetingWindow(boundsOf(boxes[i]), boundsOf(boxes[k]), 0);
+      if (!window.isEmpty()) expected.emplace_back(window.lo, i, k);
+    }
+  std::sort(expected.begin(), expected.end());
+  const auto numberOf = [&](const void* object) {
+    return static_cast<int>(static_cast<const char*>(object) - objects.data());
+  };
+  for (const MeetingObjects& pair : broad_phase.pairs(MeetingQuery()))
+    found.emplace_back(pair.window.lo, numberOf(pair.o1), numberOf(pair.o2));
+  EXPECT_EQ(found, expected);
+  const auto meets_at_0 = [](const auto& pair) { return std::get<0>(pair) == 0; };
+  const auto num_at_0 = std::count_if(expected.begin(), expected.end(), meets_at_0);
+  EXPECT_GT(num_at_0, 100);
+  EXPECT_GT(static_cast<std::ptrdiff_t>(expected.size()) - num_at_0, 100);
 }
 
 }  // namespace
