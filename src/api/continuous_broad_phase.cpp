@@ -8,7 +8,7 @@
 #include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "broadphase/broad_phase.h"
-#include "fcl/broadphase/continuous_collision_manager.h"
+#include "fcl/broadphase/swept_collision_object.h"
 
 namespace fcl {
 namespace detail {
