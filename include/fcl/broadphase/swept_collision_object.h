@@ -151,14 +151,14 @@ template <typename S>
 SweptCollisionObject<S>::SweptCollisionObject(ContinuousCollisionObject<S>* object)
     : CollisionObject<S>(std::shared_ptr<CollisionGeometry<S>>()), object_(object) {
   detail::requireUsable(object);
-  this->cgeom_const = object->collisionGeometry();
-  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
   this->setUserData(object);
   update();
 }
 
 template <typename S>
 void SweptCollisionObject<S>::update() {
+  this->cgeom_const = object_->collisionGeometry();
+  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
   const detail::MovingGeometry<S> moving = detail::readObject<S>(object_);
   Transform3<S> tf = detail::toTransform(moving.pose[0]);
   if (moving.path == detail::PathKind::kUnknown)
