@@ -218,7 +218,8 @@ struct PairTimes {
 PairTimes measurePairs(const Scene& scene, const Manager& manager,
                        const std::vector<ObjectPair>& box_pairs) {
   PairTimes out;
-  const int runs = scene.objects.size() > 2000 ? 1 : 3;
+  const std::size_t count = scene.objects.size();
+  const int runs = count > 2000 ? 1 : count > 200 ? 3 : 15;
   std::vector<ObjectPair> contacts;
   out.within = medianOf(runs, [&] {
     contacts.clear();
