@@ -7,7 +7,7 @@
 #include <memory>
 
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
-#include <fcl/broadphase/continuous_collision_manager.h>
+#include <fcl/broadphase/swept_collision_object.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/motion/translation_motion.h>

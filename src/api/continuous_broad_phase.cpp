@@ -8,7 +8,7 @@
 #include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "broadphase/broad_phase.h"
-#include "fcl/broadphase/continuous_collision_manager.h"
+#include "fcl/broadphase/swept_collision_object.h"
 
 namespace fcl {
 namespace detail {
@@ -20,7 +20,11 @@ using deformable::MeetingObjects;
 using deformable::MeetingQuery;
 
 template <typename S>
-class ContinuousBroadPhase<S>::Boxes : public BroadPhase {};
+class ContinuousBroadPhase<S>::Boxes : public BroadPhase {
+ public:
+  /// What the last change read. Its memory is used again.
+  BoundsList read;
+};
 
 namespace {
 
@@ -29,10 +33,10 @@ void prefetchNothing(const void*) {}
 /// The bounds of objects. An error names the object by its place in the list.
 /// @param prefetch  called for an object some time after its own memory was asked for
 template <typename S, typename Read>
-BoundsList boundsOf(void* const* objects, std::size_t count, Read read,
-                    void (*prefetch)(const void*)) {
+void readBounds(void* const* objects, std::size_t count, Read read,
+                void (*prefetch)(const void*), BoundsList& bounds) {
   constexpr std::size_t kAheadOfObjects = 12, kAheadOfMotions = 6, kLine = 64;
-  BoundsList bounds;
+  bounds.clear();
   bounds.items.reserve(count);
   bounds.boxes.reserve(2 * count);
   for (std::size_t i = 0; i < count; ++i) {
@@ -50,7 +54,6 @@ BoundsList boundsOf(void* const* objects, std::size_t count, Read read,
                       " of the list)");
     }
   }
-  return bounds;
 }
 
 MeetingQuery queryOf(const BroadPhaseSettings& settings) {
@@ -97,7 +100,8 @@ void ContinuousBroadPhase<S>::insert(void* const* objects, std::size_t count, Re
       throw Exception("object " + std::to_string(i) +
                       " of the list is registered already, or twice in the list. After a "
                       "change call update()");
-  boxes_->insert(objects, boundsOf<S>(objects, count, read, prefetch));
+  readBounds<S>(objects, count, read, prefetch, boxes_->read);
+  boxes_->insert(objects, boxes_->read);
 }
 
 template <typename S>
@@ -108,7 +112,8 @@ void ContinuousBroadPhase<S>::update(void* const* objects, std::size_t count, Re
   const auto missing = std::find(slots.begin(), slots.end(), -1);
   if (missing != slots.end())
     requireRegistered(*boxes_, objects[missing - slots.begin()]);
-  boxes_->update(slots, boundsOf<S>(objects, count, read, prefetch));
+  readBounds<S>(objects, count, read, prefetch, boxes_->read);
+  boxes_->update(slots, boxes_->read);
 }
 
 template <typename S>
@@ -191,7 +196,8 @@ std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsOf(
     void* object, Read read, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
   const MeetingQuery query = queryOf(settings);
-  const BoundsList bounds = boundsOf<S>(&object, 1, read, &prefetchNothing);
+  BoundsList bounds;
+  readBounds<S>(&object, 1, read, &prefetchNothing, bounds);
   return toPairs(boxes_->pairsOf(object, bounds.at(0), query));
 }
 

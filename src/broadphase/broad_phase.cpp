@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numeric>
 
 namespace fcl {
 namespace detail {
@@ -155,7 +156,7 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
     }
     if (slot.place == kUnbounded) continue;
     is_touched[slot.place] = true;
-    if (!is_rebuilt[slot.place]) tree_[slot.place].insert({slot.box, number});
+    if (!is_rebuilt[slot.place]) tree_[slot.place].insert({&slot.box, number});
   }
   for (const Place place : {kMoving, kResting})
     if (is_touched[place] && is_rebuilt[place]) buildTree(place);
@@ -164,7 +165,7 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
 void BroadPhase::buildTree(Place place) {
   std::vector<MovingBoxTree::Leaf> leaves;
   leaves.reserve(members_[place].size());
-  for (const SlotNumber i : members_[place]) leaves.push_back({at(i).box, i});
+  for (const SlotNumber i : members_[place]) leaves.push_back({&at(i).box, i});
   tree_[place].build(leaves);
 }
 
@@ -218,6 +219,7 @@ void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
   // Neighbours in space are scattered in memory.
   constexpr std::size_t kAheadOfSlots = 16, kAheadOfBoxes = 8;
   const std::size_t last = near.size() - 1;
+  found.reserve(found.size() + near.size());
   for (std::size_t i = 0; i < near.size(); ++i) {
     const SlotPair &slots = near[std::min(i + kAheadOfSlots, last)],
                    &boxes = near[std::min(i + kAheadOfBoxes, last)];
@@ -297,13 +299,44 @@ void BroadPhase::refreshResting() const {
   stale_.clear();
 }
 
-std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
-                                               const BroadPhase& other) const {
-  std::sort(found.begin(), found.end(), [](const Found& x, const Found& y) {
+/// Sorts by the start of the window, then by the order of insertion. Pairs are spread
+/// over buckets in this order: those that meet at t = 0 by the order of insertion, the
+/// others by their time. If the times are spread evenly this takes O(n).
+void BroadPhase::sort(std::vector<Found>& found) const {
+  const auto is_before = [](const Found& x, const Found& y) {
     if (x.window.lo != y.window.lo) return x.window.lo < y.window.lo;
     if (x.serial_a != y.serial_a) return x.serial_a < y.serial_a;
     return x.serial_b < y.serial_b;
-  });
+  };
+  const auto meets_at_0 = [](const Found& pair) { return pair.window.lo <= 0; };
+  const double count = static_cast<double>(found.size()),
+               at_0 = static_cast<double>(
+                   std::count_if(found.begin(), found.end(), meets_at_0)),
+               per_serial = at_0 / static_cast<double>(next_serial_);
+  const auto bucket_of = [&](const Found& pair) {
+    return static_cast<std::size_t>(meets_at_0(pair)
+                                        ? per_serial * static_cast<double>(pair.serial_a)
+                                        : at_0 + (count - at_0) * pair.window.lo);
+  };
+  // A product may round up to the beginning of the next part, and a window begin at 1.
+  std::vector<std::size_t> end(found.size() + 2, 0);
+  for (const Found& pair : found) ++end[bucket_of(pair) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Found> spread(found.size());
+  for (const Found& pair : found) spread[end[bucket_of(pair)]++] = pair;
+  std::size_t first = 0;
+  for (const std::size_t last : end) {
+    if (last - first > 1)
+      std::sort(spread.begin() + static_cast<std::ptrdiff_t>(first),
+                spread.begin() + static_cast<std::ptrdiff_t>(last), is_before);
+    first = last;
+  }
+  found.swap(spread);
+}
+
+std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
+                                               const BroadPhase& other) const {
+  sort(found);
   std::vector<MeetingObjects> out;
   out.reserve(found.size());
   constexpr std::size_t kAhead = 16;

@@ -149,6 +149,7 @@ class BroadPhase {
   void findResting(const LinearQuery& query, std::vector<SlotPair>& near) const;
   void findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const;
   void refreshResting() const;
+  void sort(std::vector<Found>& found) const;
   std::vector<MeetingObjects> sorted(std::vector<Found>& found,
                                      const BroadPhase& other) const;
 

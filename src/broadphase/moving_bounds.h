@@ -51,9 +51,9 @@ LinearBox linearBox(const MovingBounds& bounds);
 
 /// @brief The sum of the widths at both ends: what a random box meets grows with it.
 inline float widthOf(const LinearBox& box) {
-  float sum = 0;
-  for (const auto& axis : box.axis) sum += (axis[0] + axis[1]) + (axis[2] + axis[3]);
-  return sum;
+  Float4 sum{};
+  for (const auto& axis : box.axis) sum += Float4{axis[0], axis[1], axis[2], axis[3]};
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 /// @brief Which pairs of linear boxes a traversal visits.
@@ -68,6 +68,28 @@ struct LinearQuery {
 
 /// More than the rounding of a quotient of sums of floats, 2^-22 of itself.
 constexpr float kFloatWindowLoss = 0x1p-20f;
+
+/// @brief Whether linear depths are all >= 0 at one time in [0, latest], rounded outward.
+/// There are two for each axis: their values at t = 0 and t = 1.
+/// @pre no depth is negative at both ends
+inline bool haveCommonTime(const Float4 (&depth)[3], float latest) {
+  const Float4 &x = depth[0], &y = depth[1], &z = depth[2];
+  const Float4 at_0[2] = {{x[0], x[2], y[0], y[2]}, {z[0], z[2], z[0], z[2]}},
+               at_1[2] = {{x[1], x[3], y[1], y[3]}, {z[1], z[3], z[1], z[3]}};
+  Float4 enter{}, leave = Float4{} + latest;
+  for (int i = 0; i < 2; ++i) {
+    const Float4 t = at_0[i] / (at_0[i] - at_1[i]),
+                 earliest = at_0[i] < 0 ? t * (1 - kFloatWindowLoss) : enter,
+                 last = at_1[i] < 0 ? t * (1 + kFloatWindowLoss) : leave;
+    enter = enter > earliest ? enter : earliest;
+    leave = leave < last ? leave : last;
+  }
+  // The latest beginning comes before each end: one lane has it after two maxima.
+  const Float4 halves{enter[2], enter[3], enter[0], enter[1]};
+  enter = enter > halves ? enter : halves;
+  const Float4 others{enter[1], enter[0], enter[3], enter[2]};
+  return !isAny((enter > leave) | (others > leave));
+}
 
 /// @brief Whether two linear boxes may be near each other. Along each of the six sides
 /// the depth s(t) of the overlap is linear; the boxes are near while all are >= 0. The
@@ -85,21 +107,12 @@ inline bool mayMeet(const LinearBox& a, const LinearBox& b, const LinearQuery& q
     apart |= negative & other_end;
     at_an_end |= negative;
   }
-  // Most pairs are apart along one side at all times, or along none at any.
-  if (isAny(apart)) return false;
-  if (!isAny(at_an_end)) return true;
-  float enter = 0, leave = query.latest;
-  for (const Float4& s : depth)
-    for (int side = 0; side < 4; side += 2) {
-      const float s0 = s[side], s1 = s[side + 1];
-      if (s0 >= 0 && s1 >= 0) continue;
-      const float t = s0 / (s0 - s1);
-      if (s0 < 0)
-        enter = enter > t * (1 - kFloatWindowLoss) ? enter : t * (1 - kFloatWindowLoss);
-      else
-        leave = leave < t * (1 + kFloatWindowLoss) ? leave : t * (1 + kFloatWindowLoss);
-    }
-  return enter <= leave;
+  // Most pairs are apart along one side at all times, or along none at any. Which of the
+  // two is unpredictable: so one branch is for both. It is taken if there is a bit of the
+  // 4 in at_an_end, and none in apart.
+  const int apart_bits = bitsOf(apart);
+  if (bitsOf(at_an_end) <= 16 * apart_bits) return apart_bits == 0;
+  return haveCommonTime(depth, query.latest);
 }
 
 }  // namespace deformable

@@ -9,6 +9,15 @@ namespace detail {
 namespace deformable {
 namespace {
 
+/// The boxes of the leaves are scattered in memory. So many are asked for before they are
+/// read.
+constexpr int kBoxesAhead = 16;
+
+void prefetch(const LinearBox& box) {
+  __builtin_prefetch(&box);
+  __builtin_prefetch(reinterpret_cast<const char*>(&box) + sizeof(LinearBox) - 1);
+}
+
 LinearBox unionOf(const LinearBox& a, const LinearBox& b) {
   LinearBox out;
   for (int k = 0; k < 3; ++k)
@@ -106,7 +115,7 @@ void MovingBoxTree::refitAbove(std::int32_t node) {
 void MovingBoxTree::insert(const Leaf& leaf) {
   const std::int32_t fresh = newNode();
   Node& node = at(fresh);
-  node.box = leaf.box;
+  node.box = *leaf.box;
   node.child[0] = leaf.object;
   node.child[1] = kNone;
   node.parent = kNone;
@@ -117,7 +126,7 @@ void MovingBoxTree::insert(const Leaf& leaf) {
     root_ = fresh;
     return;
   }
-  const std::int32_t sibling = leafBeside(leaf.box), parent = newNode();
+  const std::int32_t sibling = leafBeside(*leaf.box), parent = newNode();
   replaceChild(at(sibling).parent, sibling, parent);
   at(parent).child[0] = sibling;
   at(parent).child[1] = fresh;
@@ -143,19 +152,22 @@ void MovingBoxTree::remove(std::int32_t object) {
   refitAbove(above);
 }
 
-std::int32_t MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* first,
-                                      Middle* last, std::int32_t parent) {
-  const std::int32_t node = newNode();
-  at(node).parent = parent;
+/// Makes the tree of these leaves in a node that is there. Two siblings are neighbours in
+/// memory, and are followed by what is below the first one.
+void MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* first,
+                              Middle* last, std::int32_t node) {
   if (last - first == 1) {
     const Leaf& leaf = leaves[first->leaf];
-    at(node).box = leaf.box;
+    at(node).box = *leaf.box;
     at(node).child[0] = leaf.object;
     at(node).child[1] = kNone;
     at(node).height = 0;
     setPlace(leaf.object, node);
-    return node;
+    return;
   }
+  if (last - first <= kBoxesAhead && last - first > kBoxesAhead / 2)
+    for (const Middle* middle = first; middle != last; ++middle)
+      prefetch(*leaves[middle->leaf].box);
   Middle lo = *first, hi = *first;
   for (const Middle* middle = first + 1; middle != last; ++middle)
     for (int k = 0; k < 3; ++k) {
@@ -169,13 +181,15 @@ std::int32_t MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* f
   std::nth_element(first, half, last, [axis](const Middle& x, const Middle& y) {
     return x.at[axis] < y.at[axis];
   });
-  // The vector of nodes may grow in between.
-  const std::int32_t left = buildPart(leaves, first, half, node);
-  const std::int32_t right = buildPart(leaves, half, last, node);
-  at(node).child[0] = left;
-  at(node).child[1] = right;
+  const auto left = static_cast<std::int32_t>(nodes_.size());
+  nodes_.resize(nodes_.size() + 2);
+  for (int c = 0; c < 2; ++c) {
+    at(node).child[c] = left + c;
+    at(left + c).parent = node;
+  }
+  buildPart(leaves, first, half, left);
+  buildPart(leaves, half, last, left + 1);
   fit(node);
-  return node;
 }
 
 /// The leaves in the order in which this tree has them, and then the others. Neighbours
@@ -183,38 +197,41 @@ std::int32_t MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* f
 /// of the time to build.
 std::vector<MovingBoxTree::Leaf> MovingBoxTree::inThisOrder(
     const std::vector<Leaf>& leaves) const {
-  std::vector<const Leaf*> at_node(nodes_.size(), nullptr);
+  constexpr std::uint32_t kNoLeaf = ~std::uint32_t{0};
+  std::vector<std::uint32_t> at_node(nodes_.size(), kNoLeaf);
   std::vector<Leaf> out, others;
   out.reserve(leaves.size());
-  for (const Leaf& leaf : leaves) {
-    const std::size_t object = index(leaf.object);
+  for (std::uint32_t i = 0; i < leaves.size(); ++i) {
+    const std::size_t object = index(leaves[i].object);
     if (object < place_.size() && place_[object] != kNone)
-      at_node[index(place_[object])] = &leaf;
+      at_node[index(place_[object])] = i;
     else
-      others.push_back(leaf);
+      others.push_back(leaves[i]);
   }
-  for (const Leaf* leaf : at_node)
-    if (leaf) out.push_back(*leaf);
+  for (const std::uint32_t leaf : at_node)
+    if (leaf != kNoLeaf) out.push_back(leaves[leaf]);
   out.insert(out.end(), others.begin(), others.end());
   return out;
 }
 
 void MovingBoxTree::build(const std::vector<Leaf>& unordered) {
   const std::vector<Leaf> leaves = inThisOrder(unordered);
-  clear();
-  if (leaves.empty()) return;
   std::vector<Middle> middles(leaves.size());
   for (std::size_t i = 0; i < leaves.size(); ++i) {
-    const LinearBox& box = leaves[i].box;
+    prefetch(*leaves[std::min<std::size_t>(i + kBoxesAhead, leaves.size() - 1)].box);
     middles[i].leaf = static_cast<std::uint32_t>(i);
     for (int k = 0; k < 3; ++k) {
-      const auto& axis = box.axis[k];
+      const auto& axis = leaves[i].box->axis[k];
       middles[i].at[k] = (axis[2] - axis[0]) + (axis[3] - axis[1]);
     }
   }
+  clear();
+  if (leaves.empty()) return;
   nodes_.reserve(2 * leaves.size());
   count_ = leaves.size();
-  root_ = buildPart(leaves, middles.data(), middles.data() + middles.size(), kNone);
+  root_ = newNode();
+  at(root_).parent = kNone;
+  buildPart(leaves, middles.data(), middles.data() + middles.size(), root_);
 }
 
 }  // namespace deformable

@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_BROADPHASE_MOVING_BOX_TREE_H
 #define FCL_CCD_BROADPHASE_MOVING_BOX_TREE_H
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
@@ -21,8 +22,9 @@ namespace deformable {
 /// most one, as in an AVL tree. build() takes O(n log n).
 class MovingBoxTree {
  public:
+  /// The tree has a copy of the box.
   struct Leaf {
-    LinearBox box;
+    const LinearBox* box;
     std::int32_t object;
   };
 
@@ -67,7 +69,15 @@ class MovingBoxTree {
     float at[3];
     std::uint32_t leaf;
   };
-  using NodePair = std::pair<std::int32_t, std::int32_t>;
+  struct NodePair {
+    std::int32_t first, second;
+  };
+  static constexpr std::size_t kPairsAtATime = 16;
+  /// Pairs of nodes whose boxes may meet. There is always room for one more.
+  struct PairStack {
+    std::vector<NodePair> pairs{std::vector<NodePair>(64 * kPairsAtATime)};
+    std::size_t size{0};
+  };
 
   static std::size_t index(std::int32_t i) { return static_cast<std::size_t>(i); }
   const Node& at(std::int32_t node) const { return nodes_[index(node)]; }
@@ -81,12 +91,12 @@ class MovingBoxTree {
   std::int32_t balance(std::int32_t node);
   void refitAbove(std::int32_t node);
   std::vector<Leaf> inThisOrder(const std::vector<Leaf>& leaves) const;
-  std::int32_t buildPart(const std::vector<Leaf>& leaves, Middle* first, Middle* last,
-                         std::int32_t parent);
+  void buildPart(const std::vector<Leaf>& leaves, Middle* first, Middle* last,
+                 std::int32_t node);
   template <typename Visit>
-  static void visitCross(const MovingBoxTree& a, const MovingBoxTree& b,
-                         const LinearQuery& query, std::vector<NodePair>& stack,
-                         Visit&& visit);
+  static void openPairs(const MovingBoxTree& a, const MovingBoxTree& b,
+                        const LinearQuery& query, std::size_t rest, PairStack& stack,
+                        Visit&& visit);
 
   std::vector<Node> nodes_;
   std::vector<std::int32_t> free_;
@@ -112,42 +122,59 @@ void MovingBoxTree::visitMeeting(const LinearBox& box, const LinearQuery& query,
   }
 }
 
-/// The pairs on the stack: their boxes may meet. Opens the wider of two nodes.
+/// Opens the wider of the nodes of each pair on the stack, until at most `rest` pairs are
+/// left. What to open, and which children are near, is unpredictable, and is chosen
+/// without branches. Several pairs are taken from the stack at a time: so the processor
+/// works at one while another one waits for its memory.
 template <typename Visit>
-void MovingBoxTree::visitCross(const MovingBoxTree& a, const MovingBoxTree& b,
-                               const LinearQuery& query, std::vector<NodePair>& stack,
-                               Visit&& visit) {
-  while (!stack.empty()) {
-    const NodePair pair = stack.back();
-    stack.pop_back();
-    const Node &x = a.at(pair.first), &y = b.at(pair.second);
-    if (x.isLeaf() && y.isLeaf()) {
-      visit(x.child[0], y.child[0]);
-    } else if (y.isLeaf() || (!x.isLeaf() && widthOf(x.box) >= widthOf(y.box))) {
-      for (const std::int32_t child : x.child)
-        if (mayMeet(a.at(child).box, y.box, query)) stack.push_back({child, pair.second});
-    } else {
-      for (const std::int32_t child : y.child)
-        if (mayMeet(x.box, b.at(child).box, query)) stack.push_back({pair.first, child});
+void MovingBoxTree::openPairs(const MovingBoxTree& a, const MovingBoxTree& b,
+                              const LinearQuery& query, std::size_t rest,
+                              PairStack& stack, Visit&& visit) {
+  while (stack.size > rest) {
+    NodePair taken[kPairsAtATime];
+    const std::size_t count = std::min(stack.size, kPairsAtATime);
+    stack.size -= count;
+    std::copy_n(stack.pairs.data() + stack.size, count, taken);
+    if (stack.pairs.size() < stack.size + 2 * count + 1)
+      stack.pairs.resize(2 * stack.pairs.size());
+    NodePair* top = stack.pairs.data() + stack.size;
+    for (std::size_t i = 0; i < count; ++i) {
+      const NodePair pair = taken[i];
+      const Node &x = a.at(pair.first), &y = b.at(pair.second);
+      if ((x.height | y.height) == 0) {
+        visit(x.child[0], y.child[0]);
+        continue;
+      }
+      const float width_x = widthOf(x.box), width_y = widthOf(y.box);
+      const bool opens_x = (x.isLeaf() ? -1 : width_x) >= (y.isLeaf() ? -1 : width_y);
+      const Node *const opened = opens_x ? &x : &y, *const other = opens_x ? &y : &x,
+                        *const nodes = opens_x ? a.nodes_.data() : b.nodes_.data();
+      for (const std::int32_t child : opened->child) {
+        top->first = opens_x ? child : pair.first;
+        top->second = opens_x ? pair.second : child;
+        top += mayMeet(nodes[index(child)].box, other->box, query);
+      }
     }
+    stack.size = static_cast<std::size_t>(top - stack.pairs.data());
   }
 }
 
 template <typename Visit>
 void MovingBoxTree::visitPairs(const LinearQuery& query, Visit&& visit) const {
   if (root_ == kNone) return;
-  std::vector<NodePair> cross;
+  PairStack pairs;
   std::vector<std::int32_t> stack{root_};
   while (!stack.empty()) {
     const Node& node = at(stack.back());
     stack.pop_back();
     if (node.isLeaf()) continue;
     if (mayMeet(at(node.child[0]).box, at(node.child[1]).box, query)) {
-      cross.push_back({node.child[0], node.child[1]});
-      visitCross(*this, *this, query, cross, visit);
+      pairs.pairs[pairs.size++] = {node.child[0], node.child[1]};
+      openPairs(*this, *this, query, kPairsAtATime, pairs, visit);
     }
     stack.insert(stack.end(), node.child, node.child + 2);
   }
+  openPairs(*this, *this, query, 0, pairs, visit);
 }
 
 template <typename Visit>
@@ -155,8 +182,9 @@ void MovingBoxTree::visitPairs(const MovingBoxTree& other, const LinearQuery& qu
                                Visit&& visit) const {
   if (root_ == kNone || other.root_ == kNone) return;
   if (!mayMeet(at(root_).box, other.at(other.root_).box, query)) return;
-  std::vector<NodePair> stack{{root_, other.root_}};
-  visitCross(*this, other, query, stack, visit);
+  PairStack pairs;
+  pairs.pairs[pairs.size++] = {root_, other.root_};
+  openPairs(*this, other, query, 0, pairs, visit);
 }
 
 }  // namespace deformable

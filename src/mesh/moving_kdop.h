@@ -105,13 +105,16 @@ typedef float Float4 __attribute__((vector_size(16)));
 /// A comparison of two Float4: all bits of a lane, or none.
 typedef int Mask4 __attribute__((vector_size(16)));
 
-inline bool isAny(const Mask4& mask) {
+/// @brief A bit for each lane.
+inline int bitsOf(const Mask4& mask) {
 #if defined(__SSE__)
-  return __builtin_ia32_movmskps(reinterpret_cast<const Float4&>(mask)) != 0;
+  return __builtin_ia32_movmskps(reinterpret_cast<const Float4&>(mask));
 #else
-  return (mask[0] | mask[1] | mask[2] | mask[3]) != 0;
+  return (mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8);
 #endif
 }
+
+inline bool isAny(const Mask4& mask) { return bitsOf(mask) != 0; }
 
 /// The part of the step that a window loses is multiplied by this. So it is rounded down
 /// by more than its rounding: 2^-24 for each of the two sums, their difference, the

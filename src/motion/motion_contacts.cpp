@@ -136,6 +136,12 @@ class FeatureContacts {
       }
   }
 
+  bool hasContactBy(double t) const {
+    const auto& contacts = sink_.contacts();
+    return std::any_of(contacts.begin(), contacts.end(),
+                       [t](const FeatureContact& x) { return x.toc_lo <= t; });
+  }
+
   ContactSink& sink() { return sink_; }
   const MotionCounts& counts() const { return counts_; }
 
@@ -207,6 +213,7 @@ class FeatureContacts {
   /// @return whether it has a contact
   bool addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
                double last) {
+    if (t > latestWanted()) return false;
     if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
     const FeaturePair pair = featurePair(bit);
     BodyTriangle x = a, y = b;
@@ -223,18 +230,30 @@ class FeatureContacts {
     int steps = kMostSteps;
     if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
       return false;
-    if (t > last) return false;
+    if (t > std::min(last, latestWanted())) return false;
     put(a, b, bit, t, provedTime(a, b, t, last));
     return true;
   }
 
+  /// A contact that begins later is dropped at the end, and proves nothing for the
+  /// others.
+  double latestWanted() const {
+    return options_.query == ContinuousQuery::kFirst ? sink_.firstHi() : 1;
+  }
+
   /// A time after t at which the triangles provably cross; t if none is found.
-  double provedTime(const BodyTriangle& a, const BodyTriangle& b, double t,
-                    double last) const {
+  double provedTime(const BodyTriangle& a, const BodyTriangle& b, double t, double last) {
+    // Flat triangles touch with many features at the same time.
+    Proof& proof = last_proof_;
+    if (proof.t == t && proof.last == last && proof.triangle[0] == a.index &&
+        proof.triangle[1] == b.index)
+      return proof.hi;
     const TrianglePairMotion pair(body_[0]->path(), a, body_[1]->path(), b, t, last,
                                   tolerance_);
-    return pair.proveContact(
+    const double hi = pair.proveContact(
         t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
+    proof = {{a.index, b.index}, t, last, hi};
+    return hi;
   }
 
   bool addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
@@ -254,6 +273,11 @@ class FeatureContacts {
     sink_.add({idsOf(bit, a, b), lo, lo == 0 ? 0 : hi});
   }
 
+  /// The times of provedTime().
+  struct Proof {
+    std::int32_t triangle[2]{-1, -1};
+    double t{-1}, last{-1}, hi{-1};
+  };
   static constexpr int kMostSteps = 10000;
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MotionBody* body_[2];
@@ -264,6 +288,7 @@ class FeatureContacts {
   /// Pairs that have a contact in an earlier span.
   std::deque<FeatureIds> pairs_;
   ContactTable<FeatureIds> in_contact_;
+  Proof last_proof_;
   MotionCounts counts_;
 };
 
@@ -351,8 +376,16 @@ void addFeatures(const MotionAnswer& triangles, double last, const QueryOptions&
 void addFeatures(const MotionBody& a, const MotionBody& b, MotionAnswer triangles,
                  MotionQueryOptions wanted, const QueryOptions& options,
                  FeatureContacts& features, QueryAnswer& answer) {
-  if (!wanted.all) triangles = firstTriangles(a, b, std::move(triangles), wanted);
   const FeatureContacts unmoved(a, b, options, false);
+  if (options.query == ContinuousQuery::kAny && !wanted.all) {
+    // As a rule features of the first triangles touch as early as these. Then no others
+    // touch earlier.
+    MotionAnswer first;
+    first.contacts.push_back(triangles.contacts.front());
+    addFeatures(first, first.contacts[0].toc_hi, options, unmoved, features, answer);
+    if (features.hasContactBy(first.contacts[0].toc_lo)) return;
+  }
+  if (!wanted.all) triangles = firstTriangles(a, b, std::move(triangles), wanted);
   addFeatures(triangles, wanted.last, options, unmoved, features, answer);
   if (!features.sink().contacts().empty() || answer.hasCrossing()) return;
   // Features that pass at the distance of the tolerance may round differently than

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <new>
 #include <set>
 #include <thread>
 #include <utility>
@@ -340,6 +341,53 @@ TEST(ContinuousCollisionManager, FclsInterface) {
   EXPECT_THROW(base.distance(nullptr, nullptr), Exception);
   EXPECT_THROW(base.distance(scene.objects[0], nullptr, nullptr), Exception);
   EXPECT_THROW(manager.distance(&manager, nullptr, nullptr), Exception);
+}
+
+bool keepFirstGeometry(CollisionObject<double>* o1, CollisionObject<double>*,
+                       void* geometry) {
+  *static_cast<const CollisionGeometry<double>**>(geometry) =
+      o1->collisionGeometry().get();
+  return true;
+}
+
+TEST(ContinuousCollisionManager, AnObjectWhereAnotherOneWasHasItsOwnGeometry) {
+  const auto still = translation(Vector(0, 0, 0), Vector(0, 0, 0));
+  const auto rests = makeObject(std::make_shared<Sphere<double>>(1), still);
+  Manager manager;
+  manager.registerObject(rests.get());
+  // Neither is registered. The second one is at the address of the first.
+  alignas(Object) char memory[sizeof(Object)];
+  for (int i = 0; i < 2; ++i) {
+    const Geometry geometry = std::make_shared<Sphere<double>>(.5);
+    Object* const object = new (memory) Object(geometry, still);
+    const CollisionGeometry<double>* seen = nullptr;
+    manager.collide(object, &seen, &keepFirstGeometry);
+    EXPECT_EQ(seen, geometry.get());
+    object->~Object();
+  }
+}
+
+bool unregisterFirst(Object* o1, Object*, void* data) {
+  auto& manager = *static_cast<Manager*>(data);
+  std::vector<Object*> objects;
+  manager.getObjects(objects);
+  if (std::find(objects.begin(), objects.end(), o1) != objects.end())
+    manager.unregisterObject(o1);
+  return false;
+}
+
+TEST(ContinuousCollisionManager, CallbacksMayChangeTheManager) {
+  Random random(12);
+  const Scene scene = randomScene(random, 30, .3);
+  Manager manager;
+  manager.registerObjects(scene.objects);
+  const PairSet pairs = boxPairsOf(manager);
+  std::set<const void*> first;
+  for (const auto& pair : pairs) first.insert(pair.first);
+  ASSERT_GT(first.size(), 5u);
+  manager.collide(&manager, &unregisterFirst);
+  EXPECT_EQ(manager.size(), scene.objects.size() - first.size());
+  EXPECT_TRUE(boxPairsOf(manager).empty());
 }
 
 TEST(SweptCollisionObject, FclsDiscreteManagersMissNoContact) {

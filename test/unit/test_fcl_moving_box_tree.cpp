@@ -9,9 +9,11 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "broadphase/broad_phase.h"
 #include "mesh_generators.h"
 
 namespace fcl {
@@ -157,7 +159,7 @@ TEST(MovingBoxTree, InsertAndRemoveKeepPairsAndBalance) {
     if (is_in[i])
       tree.remove(static_cast<int>(i));
     else
-      tree.insert({boxes[i], static_cast<int>(i)});
+      tree.insert({&boxes[i], static_cast<int>(i)});
     is_in[i] = !is_in[i];
     count = is_in[i] ? count + 1 : count - 1;
     ASSERT_EQ(tree.size(), count);
@@ -174,7 +176,8 @@ TEST(MovingBoxTree, SortedInsertionStaysBalanced) {
   for (int i = 0; i < 4096; ++i) {
     const HalfAxisBox at{{.1 - i, .1, .1, .1 + i, .1, .1}};
     const std::vector<HalfAxisBox> boxes{at, at};
-    tree.insert({linearBox(boundsOf(boxes)), i});
+    const LinearBox box = linearBox(boundsOf(boxes));
+    tree.insert({&box, i});
   }
   EXPECT_LE(tree.height(), 18);
   for (int i = 0; i < 4095; ++i) tree.remove(i);
@@ -189,10 +192,9 @@ TEST(MovingBoxTree, BuiltTreesAndPairsOfTwoTrees) {
   std::vector<LinearBox> boxes[2];
   for (int s = 0; s < 2; ++s) {
     std::vector<MovingBoxTree::Leaf> leaves;
-    for (int i = 0; i < 200; ++i) {
+    for (int i = 0; i < 200; ++i)
       boxes[s].push_back(linearBox(boundsOf(randomBoxes(random, 1, .5))));
-      leaves.push_back({boxes[s].back(), i});
-    }
+    for (int i = 0; i < 200; ++i) leaves.push_back({&boxes[s][std::size_t(i)], i});
     tree[s].build(leaves);
     EXPECT_EQ(tree[s].height(), 8);
     expectAllPairs(tree[s], boxes[s], std::vector<bool>(200, true), {0, 1});
@@ -211,6 +213,51 @@ TEST(MovingBoxTree, BuiltTreesAndPairsOfTwoTrees) {
   EXPECT_GT(found.size(), 50u);
   tree[1].visitMeeting(boxes[0][0], {0, 1}, [&](int b) { near_first.insert(b); });
   EXPECT_EQ(near_first, expected_first);
+}
+
+/// The pairs of a broad phase in their order, with the beginnings of their windows.
+using OrderedPairs = std::vector<std::tuple<double, int, int>>;
+
+TEST(BroadPhase, PairsAreSortedByTheirWindowsAndThenByInsertion) {
+  Random random(5);
+  std::vector<std::vector<HalfAxisBox>> boxes;
+  for (int i = 0; i < 150; ++i) boxes.push_back(randomBoxes(random, 1, 1));
+  // Twenty that touch the first one at the end of the step, at the same time.
+  for (int i = 0; i < 20; ++i) {
+    HalfAxisBox far = boxes[0][1], near = boxes[0][1];
+    far.half[0] -= 9, far.half[3] += 9;
+    near.half[3] = -boxes[0][1].half[0] + (near.half[0] + near.half[3]);
+    near.half[0] = -boxes[0][1].half[3];
+    boxes.push_back({far, near});
+  }
+  std::vector<char> objects(boxes.size());
+  std::vector<void*> addresses;
+  BoundsList bounds;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    addresses.push_back(&objects[i]);
+    bounds.items.push_back({bounds.boxes.size(), 1});
+    bounds.boxes.insert(bounds.boxes.end(), boxes[i].begin(), boxes[i].end());
+  }
+  BroadPhase broad_phase;
+  broad_phase.insert(addresses.data(), bounds);
+  OrderedPairs expected, found;
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (std::size_t k = i + 1; k < boxes.size(); ++k) {
+      const MeetingWindow window =
+          meetingWindow(boundsOf(boxes[i]), boundsOf(boxes[k]), 0);
+      if (!window.isEmpty()) expected.emplace_back(window.lo, i, k);
+    }
+  std::sort(expected.begin(), expected.end());
+  const auto numberOf = [&](const void* object) {
+    return static_cast<int>(static_cast<const char*>(object) - objects.data());
+  };
+  for (const MeetingObjects& pair : broad_phase.pairs(MeetingQuery()))
+    found.emplace_back(pair.window.lo, numberOf(pair.o1), numberOf(pair.o2));
+  EXPECT_EQ(found, expected);
+  const auto meets_at_0 = [](const auto& pair) { return std::get<0>(pair) == 0; };
+  const auto num_at_0 = std::count_if(expected.begin(), expected.end(), meets_at_0);
+  EXPECT_GT(num_at_0, 100);
+  EXPECT_GT(static_cast<std::ptrdiff_t>(expected.size()) - num_at_0, 100);
 }
 
 }  // namespace

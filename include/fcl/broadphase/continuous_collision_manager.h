@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "fcl/broadphase/broadphase_continuous_collision_manager.h"
+#include "fcl/broadphase/swept_collision_object.h"
 #include "fcl/narrowphase/continuous_collision.h"
 
 namespace fcl {
@@ -53,103 +54,6 @@ struct ContinuousManagerResult {
 using ContinuousManagerResultf = ContinuousManagerResult<float>;
 using ContinuousManagerResultd = ContinuousManagerResult<double>;
 
-namespace detail {
-
-/// @brief Two objects whose boxes meet during [t_lo, t_hi].
-struct BroadPhasePair {
-  double t_lo, t_hi;
-  void* o1;
-  void* o2;
-};
-
-struct BroadPhaseSettings {
-  /// Pairs that come within this distance.
-  double distance;
-  /// Pairs that meet no later than this time.
-  double t_max;
-  bool with_self;
-};
-
-/// @brief The box of an object during the whole step.
-struct StepBox {
-  double lower[3];
-  double upper[3];
-};
-
-/// @brief The moving boxes of objects, and the pairs that meet. The border between the
-/// manager, which is compiled with the program, and the library: see query_numbers.h.
-template <typename S>
-class FCL_EXPORT ContinuousBroadPhase {
- public:
-  /// Reads the geometry and the motion of an object.
-  using Read = MovingGeometry<S> (*)(const void* object);
-  /// Asks for the memory that a Read will need soon.
-  using Prefetch = void (*)(const void* object);
-
-  ContinuousBroadPhase();
-  ~ContinuousBroadPhase();
-  ContinuousBroadPhase(const ContinuousBroadPhase&) = delete;
-  ContinuousBroadPhase& operator=(const ContinuousBroadPhase&) = delete;
-
-  void insert(void* const* objects, std::size_t count, Read read, Prefetch prefetch);
-  void update(void* const* objects, std::size_t count, Read read, Prefetch prefetch);
-  void remove(const void* object);
-  void rebuild();
-  void clear();
-  void setFilter(const void* object, std::uint32_t group, std::uint32_t mask);
-  void setSelf(const void* object, bool self);
-
-  std::size_t size() const;
-  bool contains(const void* object) const;
-  /// In the order of their registration.
-  std::vector<void*> objects() const;
-  /// Reads an object, which need not be registered, and returns its box.
-  static StepBox stepBox(const void* object, Read read);
-
-  /// Sorted by t_lo, then by the order of registration.
-  std::vector<BroadPhasePair> pairs(const BroadPhaseSettings& settings) const;
-  std::vector<BroadPhasePair> pairsOf(void* object, Read read,
-                                      const BroadPhaseSettings& settings) const;
-  std::vector<BroadPhasePair> pairsWith(const ContinuousBroadPhase& other,
-                                        const BroadPhaseSettings& settings) const;
-
- private:
-  class Boxes;
-  std::unique_ptr<Boxes> boxes_;
-};
-
-/// @brief Reads the geometry and the motion of a ContinuousCollisionObject. It reads
-/// nothing of a motion that the library does not know.
-template <typename S>
-MovingGeometry<S> readObject(const void* object);
-
-/// @brief Asks for the memory of the object's motion.
-template <typename S>
-void prefetchObject(const void* object);
-
-}  // namespace detail
-
-/// @brief An object for FCL's managers of discrete objects that stands for one that
-/// moves. Its AABB covers the step, so that these managers find the pairs that can meet.
-/// Its pose is that at t = 0. A callback finds the object that moves as getUserData().
-template <typename S>
-class SweptCollisionObject : public CollisionObject<S> {
- public:
-  /// @param object  must live as long as this
-  /// @throws fcl::Exception  as ContinuousCollisionManager
-  explicit SweptCollisionObject(ContinuousCollisionObject<S>* object);
-
-  /// @brief Reads the object again. Do not call FCL's computeAABB(), which covers one
-  /// pose. @throws fcl::Exception  as ContinuousCollisionManager
-  void update();
-
- private:
-  ContinuousCollisionObject<S>* object_;
-};
-
-using SweptCollisionObjectf = SweptCollisionObject<float>;
-using SweptCollisionObjectd = SweptCollisionObject<double>;
-
 /// @brief Finds the contacts of many objects that move. FCL declares the interface
 /// BroadPhaseContinuousCollisionManager and has no class that implements it; this class
 /// does.
@@ -181,6 +85,9 @@ using SweptCollisionObjectd = SweptCollisionObject<double>;
 /// depend on it.
 ///
 /// The manager does not own the objects. They must live until they are unregistered.
+///
+/// A callback may change the manager. The pairs of its query were found before, and all
+/// of them come: objects that it unregisters must live until the query returns.
 ///
 /// @throws fcl::Exception  An object is null, or has no geometry or motion; it is
 /// registered twice, or is not registered; a mesh is not built; a geometry or a path is
@@ -322,68 +229,6 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
 
 using ContinuousCollisionManagerf = ContinuousCollisionManager<float>;
 using ContinuousCollisionManagerd = ContinuousCollisionManager<double>;
-
-namespace detail {
-
-template <typename S>
-void requireUsable(const ContinuousCollisionObject<S>* object) {
-  requireNotNull(object, "object");
-  requireNotNull(object->collisionGeometry().get(), "object: the geometry");
-  requireNotNull(object->getMotion(), "object: the motion");
-}
-
-template <typename S>
-void prefetchObject(const void* object) {
-  // Those of FCL's motions that are read, without their polynomials.
-  constexpr int kLine = 64, kLines = 6;
-  const auto* motion = reinterpret_cast<const char*>(
-      static_cast<const ContinuousCollisionObject<S>*>(object)->getMotion());
-  for (int i = 0; i < kLines; ++i) __builtin_prefetch(motion + i * kLine);
-}
-
-template <typename S>
-MovingGeometry<S> readObject(const void* object) {
-  const auto& o = *static_cast<const ContinuousCollisionObject<S>*>(object);
-  const MotionBase<S>& motion = *o.getMotion();
-  MovingGeometry<S> moving{
-      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr};
-  if (readMotion(motion, moving)) return moving;
-  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
-    readBoundedMotion(*bounded, moving);
-  else
-    moving.path = PathKind::kUnknown;
-  return moving;
-}
-
-}  // namespace detail
-
-// Without a geometry FCL's constructor leaves the geometry's own AABB as it is.
-template <typename S>
-SweptCollisionObject<S>::SweptCollisionObject(ContinuousCollisionObject<S>* object)
-    : CollisionObject<S>(std::shared_ptr<CollisionGeometry<S>>()), object_(object) {
-  detail::requireUsable(object);
-  this->cgeom_const = object->collisionGeometry();
-  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
-  this->setUserData(object);
-  update();
-}
-
-template <typename S>
-void SweptCollisionObject<S>::update() {
-  const detail::MovingGeometry<S> moving = detail::readObject<S>(object_);
-  Transform3<S> tf = detail::toTransform(moving.pose[0]);
-  if (moving.path == detail::PathKind::kUnknown)
-    object_->getMotion()->getCurrentTransform(tf);
-  const detail::StepBox box =
-      detail::ContinuousBroadPhase<S>::stepBox(object_, &detail::readObject<S>);
-  const Matrix3<S> rotation = tf.linear();
-  const Vector3<S> translation = tf.translation();
-  this->setTransform(rotation, translation);
-  for (int k = 0; k < 3; ++k) {
-    this->aabb.min_[k] = static_cast<S>(box.lower[k]);
-    this->aabb.max_[k] = static_cast<S>(box.upper[k]);
-  }
-}
 
 template <typename S>
 std::vector<void*> ContinuousCollisionManager<S>::addressesOf(
