@@ -132,6 +132,11 @@ ChordSearch::ChordSearch(const MotionBody& a, const MotionBody& b,
       (whole / (count * count) + tolerance.touching + tolerance.position) * kUpward;
 }
 
+bool ChordSearch::listsWindows() const {
+  return !(options_.min_distance > 0) && body_[0]->path().turn() &&
+         body_[1]->path().turn();
+}
+
 // To interpolate, pose and refit takes about as long for a vertex as half a box test.
 std::uint64_t ChordSearch::boxTestsBefore() const {
   if (num_spans_ == 0) return ~std::uint64_t{0};
@@ -169,6 +174,7 @@ ChordSearch::Span ChordSearch::find(int i) {
   // Of a bracket only the lower end matters.
   near.toc_err = 1;
   near.names_parts = false;
+  near.lists_near_pairs = listsWindows();
   span.near = queryPair(mesh_[0].during(span.t0, span.t1, options_.num_threads),
                         mesh_[1].during(span.t0, span.t1, options_.num_threads), near);
   if (i > 0) span.near.crossings.clear();

@@ -56,6 +56,11 @@ class ChordSearch {
   /// @brief 0: there would be too many. Then the true paths have to be compared.
   int numSpans() const { return num_spans_; }
 
+  /// @brief Whether the pairs of a span have windows. Not with a distance, and not on
+  /// paths that are no turns: there they have been advanced along their chords, since to
+  /// advance them on the true paths takes longer.
+  bool listsWindows() const;
+
   /// @brief The number of box tests on the true paths that cost less than the meshes of
   /// all spans: where there are few contacts, these may be enough.
   std::uint64_t boxTestsBefore() const;
@@ -63,8 +68,8 @@ class ChordSearch {
   struct Span {
     double t0, t1;
     /// The times are fractions of the span. Before toc_lo the features of a pair are
-    /// further apart on the true paths; toc_hi has no meaning. Pairs that are not in the
-    /// list stay further apart.
+    /// further apart on the true paths, and with listsWindows() after toc_hi. Pairs that
+    /// are not in the list stay further apart.
     QueryAnswer near;
   };
 
