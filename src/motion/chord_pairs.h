@@ -81,14 +81,17 @@ class ChordSearch {
   Span find(int i);
 
  private:
-  bool mayMeet(double t0, double t1) const;
+  double deviation(int i) const;
+  bool mayMeet(double t0, double t1, double deviation) const;
 
   const MotionBody* body_[2];
   const QueryOptions& options_;
   ChordMesh mesh_[2];
   int num_spans_{0};
-  /// By which the distance of two features on the true paths may be less than on chords.
-  double deviation_{0};
+  /// The largest deviation of each mesh from its chords, if there were one span; and the
+  /// error of a distance on chords.
+  double whole_[2]{0, 0};
+  double error_{0};
 };
 
 }  // namespace deformable
