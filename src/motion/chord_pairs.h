@@ -56,6 +56,11 @@ class ChordSearch {
   /// @brief 0: there would be too many. Then the true paths have to be compared.
   int numSpans() const { return num_spans_; }
 
+  /// @brief Whether the pairs of a span have windows. Not with a distance, and not on
+  /// paths that are no turns: there they have been advanced along their chords, since to
+  /// advance them on the true paths takes longer.
+  bool listsWindows() const;
+
   /// @brief The number of box tests on the true paths that cost less than the meshes of
   /// all spans: where there are few contacts, these may be enough.
   std::uint64_t boxTestsBefore() const;
@@ -63,8 +68,8 @@ class ChordSearch {
   struct Span {
     double t0, t1;
     /// The times are fractions of the span. Before toc_lo the features of a pair are
-    /// further apart on the true paths; toc_hi has no meaning. Pairs that are not in the
-    /// list stay further apart.
+    /// further apart on the true paths, and with listsWindows() after toc_hi. Pairs that
+    /// are not in the list stay further apart.
     QueryAnswer near;
   };
 
@@ -76,14 +81,17 @@ class ChordSearch {
   Span find(int i);
 
  private:
-  bool mayMeet(double t0, double t1) const;
+  double deviation(int i) const;
+  bool mayMeet(double t0, double t1, double deviation) const;
 
   const MotionBody* body_[2];
   const QueryOptions& options_;
   ChordMesh mesh_[2];
   int num_spans_{0};
-  /// By which the distance of two features on the true paths may be less than on chords.
-  double deviation_{0};
+  /// The largest deviation of each mesh from its chords, if there were one span; and the
+  /// error of a distance on chords.
+  double whole_[2]{0, 0};
+  double error_{0};
 };
 
 }  // namespace deformable

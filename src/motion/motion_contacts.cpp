@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "mesh/feature_pairs.h"
 #include "motion/chord_pairs.h"
 #include "motion/feature_advance.h"
+#include "motion/turning_pairs.h"
 #include "query/contact_sink.h"
 #include "query/contact_table.h"
 #include "query/distance_contact.h"
@@ -52,9 +54,6 @@ class FreeParts {
   std::set<Edge> edges_;
 };
 
-/// For each triangle its place in the tree; empty: they are the same.
-using Places = std::vector<std::int32_t>;
-
 class FeatureContacts {
  public:
   /// @param may_repeat  whether add() may get the same pair of features more than once
@@ -79,25 +78,30 @@ class FeatureContacts {
       addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, last);
   }
 
-  /// The contacts of pairs of features that come near during a span, except for those of
-  /// which earlier spans have the first contact.
-  void add(const ChordSearch::Span& span, const Places (&places)[2]) {
-    const double last = std::min(span.t1, options_.t_max);
-    for (const FeatureContact& pair : span.near.contacts) {
-      if (in_contact_.find(pair)) continue;
-      const auto triangleOf = [&](int k) {
-        const std::int32_t id = pair.triangles[k];
-        return body_[k]->triangle(
-            places[k].empty() ? id : places[k][static_cast<std::size_t>(id)]);
-      };
-      const BodyTriangle a = triangleOf(0), b = triangleOf(1);
-      double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
-      if (t > span.t0) t = std::max(std::nextafter(t, 0), span.t0);
-      if (addPair(a, b, numberOf(pair, a, b), t, last) && span.t1 < 1) {
-        pairs_.push_back(pair);
-        in_contact_.add(pairs_.back());
-      }
+  /// The contact of a pair of features, given by its number, from t on.
+  /// @return whether there is one
+  bool addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
+               double last) {
+    if (t > latestWanted()) return false;
+    if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
+    const FeaturePair pair = featurePair(bit);
+    BodyTriangle x = a, y = b;
+    if (pair.kind == ContinuousContactKind::kEdgeEdge) {
+      x = featureOf(a, pair.first, (pair.first + 1) % 3);
+      y = featureOf(b, pair.second, (pair.second + 1) % 3);
+    } else {
+      BodyTriangle& vertex = pair.first_on_a ? x : y;
+      vertex = featureOf(vertex, pair.first, pair.first);
     }
+    const auto& path_a = body_[0]->path();
+    const auto& path_b = body_[1]->path();
+    TrianglePairMotion motion(path_a, x, path_b, y, t, last, tolerance_);
+    int steps = kMostSteps;
+    if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
+      return false;
+    if (t > std::min(last, latestWanted())) return false;
+    put(a, b, bit, t, provedTime(a, b, t, last));
+    return true;
   }
 
   /// A contact of the features that are nearest when two triangles touch.
@@ -143,7 +147,6 @@ class FeatureContacts {
   }
 
   ContactSink& sink() { return sink_; }
-  const MotionCounts& counts() const { return counts_; }
 
  private:
   /// Poses a vertex as VertexFrames does.
@@ -192,47 +195,6 @@ class FeatureContacts {
       default:
         return kEdges + 3 * (a.isFree() ? 0 : near.a) + (b.isFree() ? 0 : near.b);
     }
-  }
-
-  /// The number of a pair of features of two triangles.
-  static int numberOf(const FeatureIds& pair, const BodyTriangle& a,
-                      const BodyTriangle& b) {
-    const auto vertexOf = [&pair](const BodyTriangle& triangle, int i) {
-      const auto id = static_cast<std::int32_t>(pair.vertices[i]);
-      return triangle.vertex[0] == id ? 0 : triangle.vertex[1] == id ? 1 : 2;
-    };
-    const auto edgeOf = [&](const BodyTriangle& triangle, int i) {
-      const int first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
-      return (first + 1) % 3 == second ? first : second;
-    };
-    if (pair.kind == ContinuousContactKind::kEdgeEdge)
-      return 6 + 3 * edgeOf(a, 0) + edgeOf(b, 2);
-    return pair.first_on_a ? vertexOf(a, 0) : 3 + vertexOf(b, 0);
-  }
-
-  /// @return whether it has a contact
-  bool addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
-               double last) {
-    if (t > latestWanted()) return false;
-    if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
-    const FeaturePair pair = featurePair(bit);
-    BodyTriangle x = a, y = b;
-    if (pair.kind == ContinuousContactKind::kEdgeEdge) {
-      x = featureOf(a, pair.first, (pair.first + 1) % 3);
-      y = featureOf(b, pair.second, (pair.second + 1) % 3);
-    } else {
-      BodyTriangle& vertex = pair.first_on_a ? x : y;
-      vertex = featureOf(vertex, pair.first, pair.first);
-    }
-    const auto& path_a = body_[0]->path();
-    const auto& path_b = body_[1]->path();
-    TrianglePairMotion motion(path_a, x, path_b, y, t, last, tolerance_);
-    int steps = kMostSteps;
-    if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
-      return false;
-    if (t > std::min(last, latestWanted())) return false;
-    put(a, b, bit, t, provedTime(a, b, t, last));
-    return true;
   }
 
   /// A contact that begins later is dropped at the end, and proves nothing for the
@@ -285,11 +247,113 @@ class FeatureContacts {
   const QueryOptions& options_;
   MotionTolerance tolerance_;
   ContactSink sink_;
+  Proof last_proof_;
+  MotionCounts counts_;
+};
+
+/// The contacts of pairs of features that come near on chords, span by span.
+class ChordContacts {
+ public:
+  /// @param has_windows  ChordSearch::listsWindows()
+  ChordContacts(const MotionBody& a, const MotionBody& b, const QueryOptions& options,
+                bool has_windows)
+      : body_{&a, &b},
+        options_(options),
+        places_{a.placesOfTriangles(), b.placesOfTriangles()},
+        features_(a, b, options, false) {
+    if (has_windows) turning_.emplace(a, b, options);
+  }
+
+  /// Adds the contacts in a span, except for those of pairs that had one before.
+  void add(const ChordSearch::Span& span) {
+    const auto take = [&](const FeatureContact& pair, const TurningAnswer& found) {
+      bool is_contact = found.is_contact;
+      if (found.is_open)
+        is_contact = addAlone(pair, span);
+      else if (is_contact)
+        features_.sink().add({pair, found.toc_lo, found.toc_hi});
+      if (is_contact) keepOut(pair, span);
+    };
+    for (const FeatureContact& pair : span.near.contacts) {
+      if (in_contact_.find(pair)) continue;
+      if (turning_)
+        addTurning(pair, span, take);
+      else if (addAlone(pair, span))
+        keepOut(pair, span);
+    }
+    if (turning_) turning_->finish(take);
+  }
+
+  ContactSink& sink() { return features_.sink(); }
+
+ private:
+  BodyTriangle triangleOf(const FeatureContact& pair, int k) const {
+    const std::int32_t id = pair.triangles[k];
+    const std::vector<std::int32_t>& places = places_[k];
+    return body_[k]->triangle(places.empty() ? id : places[static_cast<std::size_t>(id)]);
+  }
+
+  /// The number of a pair of features of two triangles.
+  static int numberOf(const FeatureIds& pair, const BodyTriangle& a,
+                      const BodyTriangle& b) {
+    const auto vertexOf = [&pair](const BodyTriangle& triangle, int i) {
+      const auto id = static_cast<std::int32_t>(pair.vertices[i]);
+      return triangle.vertex[0] == id ? 0 : triangle.vertex[1] == id ? 1 : 2;
+    };
+    const auto edgeOf = [&](const BodyTriangle& triangle, int i) {
+      const int first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
+      return (first + 1) % 3 == second ? first : second;
+    };
+    if (pair.kind == ContinuousContactKind::kEdgeEdge)
+      return 6 + 3 * edgeOf(a, 0) + edgeOf(b, 2);
+    return pair.first_on_a ? vertexOf(a, 0) : 3 + vertexOf(b, 0);
+  }
+
+  double lastOf(const ChordSearch::Span& span) const {
+    return std::min(span.t1, options_.t_max);
+  }
+  /// A time before which the pair is apart during the span.
+  static double firstOf(const FeatureContact& pair, const ChordSearch::Span& span) {
+    if (pair.toc_lo == 0) return span.t0;
+    const double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
+    return std::max(std::nextafter(t, 0), span.t0);
+  }
+
+  template <typename Take>
+  void addTurning(const FeatureContact& pair, const ChordSearch::Span& span,
+                  Take&& take) {
+    const BodyTriangle a = triangleOf(pair, 0), b = triangleOf(pair, 1);
+    const double end = span.t0 + pair.toc_hi * (span.t1 - span.t0);
+    turning_->add({pair, a, b, featurePair(numberOf(pair, a, b)), firstOf(pair, span),
+                   std::min(std::nextafter(end, 1), lastOf(span))},
+                  take);
+  }
+
+  /// Advances one pair.
+  /// @return whether it has a contact
+  bool addAlone(const FeatureContact& pair, const ChordSearch::Span& span) {
+    const BodyTriangle a = triangleOf(pair, 0), b = triangleOf(pair, 1);
+    return features_.addPair(a, b, numberOf(pair, a, b), firstOf(pair, span),
+                             lastOf(span));
+  }
+
+  /// Leaves a pair out in the spans after this one.
+  void keepOut(const FeatureIds& pair, const ChordSearch::Span& span) {
+    if (!(span.t1 < 1)) return;
+    pairs_.push_back(pair);
+    in_contact_.add(pairs_.back());
+  }
+
+  const MotionBody* body_[2];
+  const QueryOptions& options_;
+  /// For each triangle its place in the tree; empty: they are the same.
+  std::vector<std::int32_t> places_[2];
+  FeatureContacts features_;
+  /// Empty: pairs are advanced one by one.
+  std::optional<TurningBatch> turning_;
   /// Pairs that have a contact in an earlier span.
   std::deque<FeatureIds> pairs_;
   ContactTable<FeatureIds> in_contact_;
-  Proof last_proof_;
-  MotionCounts counts_;
 };
 
 /// Keeps the contacts that the query wants: those that may be the first, or one.
@@ -406,16 +470,14 @@ QueryAnswer contactsBy(ChordSearch& chords, const MotionBody& a, const MotionBod
                        const QueryOptions& options) {
   QueryAnswer answer;
   const BodiesNearOrigin near(a, b);
-  // A pair may come near in several spans.
-  FeatureContacts features(near.a, near.b, options, true);
-  const Places places[2] = {a.placesOfTriangles(), b.placesOfTriangles()};
+  ChordContacts contacts(near.a, near.b, options, chords.listsWindows());
   for (int i = 0; i < chords.numSpans(); ++i) {
     ChordSearch::Span span = chords.find(i);
     if (i == 0) answer.crossings = std::move(span.near.crossings);
     count(span.near.counts, answer.counts);
-    features.add(span, places);
+    contacts.add(span);
   }
-  complete(options, features.sink(), answer);
+  complete(options, contacts.sink(), answer);
   return answer;
 }
 

@@ -244,13 +244,13 @@ MotionPath MotionPath::still(const Pose& pose) {
 
 MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end) {
   MotionPath path;
-  path.beginning_ = beginning;
-  path.angle_ = turnBetween(beginning, end, path.axis_);
+  path.turn_.beginning = beginning;
+  path.turn_.angle = turnBetween(beginning, end, path.turn_.axis);
   path.stretch_ =
       std::max(spectralBound(beginning.rotation), spectralBound(end.rotation));
-  if (path.angle_ > 0) {
-    crossColumns(path.axis_, beginning.rotation, path.sine_rotation_);
-    crossColumns(path.axis_, path.sine_rotation_, path.cosine_rotation_);
+  if (path.turn_.angle > 0) {
+    crossColumns(path.turn_.axis, beginning.rotation, path.turn_.sine_rotation);
+    crossColumns(path.turn_.axis, path.turn_.sine_rotation, path.turn_.cosine_rotation);
   }
   return path;
 }
@@ -259,22 +259,24 @@ MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end) {
 /// difference of the poses, not from the end pose, which rounds much more far from the
 /// origin.
 void MotionPath::reachEnd(const Pose& end) {
-  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_);
+  const SineCosine at =
+      turn_.angle == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(turn_.angle);
   for (int i = 0; i < 9; ++i)
-    linear_rotation_[i] = (end.rotation[i] - beginning_.rotation[i]) -
-                          (at.sine * sine_rotation_[i] + at.cosine * cosine_rotation_[i]);
+    turn_.linear_rotation[i] =
+        (end.rotation[i] - turn_.beginning.rotation[i]) -
+        (at.sine * turn_.sine_rotation[i] + at.cosine * turn_.cosine_rotation[i]);
   for (int k = 0; k < 3; ++k)
-    linear_translation_[k] =
-        (end.translation[k] - beginning_.translation[k]) -
-        (at.sine * sine_translation_[k] + at.cosine * cosine_translation_[k]);
+    turn_.linear_translation[k] =
+        (end.translation[k] - turn_.beginning.translation[k]) -
+        (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k]);
 }
 
 MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
                                      const double (&reference)[3]) {
   MotionPath path = turnFrom(beginning, end);
   const Vec point = vecOf(reference);
-  set(path.sine_translation_, -1. * times(path.sine_rotation_, point));
-  set(path.cosine_translation_, -1. * times(path.cosine_rotation_, point));
+  set(path.turn_.sine_translation, -1. * times(path.turn_.sine_rotation, point));
+  set(path.turn_.cosine_translation, -1. * times(path.turn_.cosine_rotation, point));
   path.reachEnd(end);
   path.reference_size_ = norm(point);
   path.setTurnBounds();
@@ -287,14 +289,14 @@ MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
 // Q (1 - cos(w t)) are not, and lose nothing.
 MotionPath MotionPath::screw(const Pose& beginning, const Pose& end) {
   MotionPath path = turnFrom(beginning, end);
-  if (path.angle_ > 0) {
+  if (path.turn_.angle > 0) {
     const Vec way = vecOf(end.translation) - vecOf(beginning.translation);
-    const Vec across = way - dot(way, path.axis_) * path.axis_;
-    const SineCosine half = sineCosine(0.5 * path.angle_);
+    const Vec across = way - dot(way, path.turn_.axis) * path.turn_.axis;
+    const SineCosine half = sineCosine(0.5 * path.turn_.angle);
     const Vec turning =
-        0.5 * ((half.cosine / half.sine) * across - cross(path.axis_, across));
-    set(path.sine_translation_, turning);
-    set(path.cosine_translation_, cross(path.axis_, turning));
+        0.5 * ((half.cosine / half.sine) * across - cross(path.turn_.axis, across));
+    set(path.turn_.sine_translation, turning);
+    set(path.turn_.cosine_translation, cross(path.turn_.axis, turning));
   }
   path.reachEnd(end);
   path.setTurnBounds();
@@ -302,15 +304,15 @@ MotionPath MotionPath::screw(const Pose& beginning, const Pose& end) {
 }
 
 void MotionPath::setTurnBounds() {
-  const double sine = norm(vecOf(sine_translation_)),
-               cosine = norm(vecOf(cosine_translation_)),
-               linear = norm(vecOf(linear_translation_)), w = angle_;
+  const double sine = norm(vecOf(turn_.sine_translation)),
+               cosine = norm(vecOf(turn_.cosine_translation)),
+               linear = norm(vecOf(turn_.linear_translation)), w = turn_.angle;
   translation_size_ =
-      (norm(vecOf(beginning_.translation)) + linear + std::min(1., w) * sine +
+      (norm(vecOf(turn_.beginning.translation)) + linear + std::min(1., w) * sine +
        std::min(2., w * w) * cosine + reference_size_) *
       kUpward;
   translation_reach_ = translation_size_;
-  turn_speed_ = (w * stretch_ + frobenius(linear_rotation_)) * kUpward;
+  turn_speed_ = (w * stretch_ + frobenius(turn_.linear_rotation)) * kUpward;
   translation_speed_ = (linear + w * (sine + cosine)) * kUpward;
   rotation_error_ = 32;
 }
@@ -361,7 +363,7 @@ void MotionPath::shift(const double (&origin)[3]) {
     for (int k = 0; k < 3; ++k) origin_[k] += origin[k];
     return setBoundedReach();
   }
-  for (int k = 0; k < 3; ++k) beginning_.translation[k] -= origin[k];
+  for (int k = 0; k < 3; ++k) turn_.beginning.translation[k] -= origin[k];
   if (kind_ == Kind::kTurn) return setTurnBounds();
   for (auto& point : translation_points_)
     for (int k = 0; k < 3; ++k) point[k] -= origin[k];
@@ -379,16 +381,18 @@ Pose MotionPath::pose(double t) const {
     return out;
   }
   const SineCosine at =
-      angle_ == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(angle_ * t);
+      turn_.angle == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(turn_.angle * t);
   Pose out;
   for (int i = 0; i < 9; ++i)
-    out.rotation[i] = beginning_.rotation[i] +
-                      (at.sine * sine_rotation_[i] + at.cosine * cosine_rotation_[i] +
-                       t * linear_rotation_[i]);
+    out.rotation[i] =
+        turn_.beginning.rotation[i] +
+        (at.sine * turn_.sine_rotation[i] + at.cosine * turn_.cosine_rotation[i] +
+         t * turn_.linear_rotation[i]);
   for (int k = 0; k < 3; ++k)
-    out.translation[k] = beginning_.translation[k] + (at.sine * sine_translation_[k] +
-                                                      at.cosine * cosine_translation_[k] +
-                                                      t * linear_translation_[k]);
+    out.translation[k] =
+        turn_.beginning.translation[k] +
+        (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k] +
+         t * turn_.linear_translation[k]);
   return out;
 }
 
@@ -401,33 +405,34 @@ PoseRate MotionPath::rate(double t) const {
     std::copy(at.translation, at.translation + 3, out.translation);
     return out;
   }
-  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
-  const double sine = angle_ * at.sine, cosine = angle_ * at.cosine;
+  const SineCosine at = turn_.angle == 0 ? SineCosine{0, 0} : sineCosine(turn_.angle * t);
+  const double sine = turn_.angle * at.sine, cosine = turn_.angle * at.cosine;
   PoseRate out;
   for (int i = 0; i < 9; ++i)
-    out.rotation[i] =
-        cosine * sine_rotation_[i] + sine * cosine_rotation_[i] + linear_rotation_[i];
+    out.rotation[i] = cosine * turn_.sine_rotation[i] + sine * turn_.cosine_rotation[i] +
+                      turn_.linear_rotation[i];
   for (int k = 0; k < 3; ++k)
-    out.translation[k] = cosine * sine_translation_[k] + sine * cosine_translation_[k] +
-                         linear_translation_[k];
+    out.translation[k] = cosine * turn_.sine_translation[k] +
+                         sine * turn_.cosine_translation[k] + turn_.linear_translation[k];
   return out;
 }
 
 // Columns of C and D, P and Q are products with the axis, which round by a few u, and w^2
 // is at most 10. What is left of (R x)'' is 2 E x'.
 double MotionPath::axisAcceleration(double displacement) const {
-  return 2 * frobenius(linear_rotation_) * displacement * kUpward;
+  return 2 * frobenius(turn_.linear_rotation) * displacement * kUpward;
 }
 
 PoseRate MotionPath::turnAccelerationAt(double t) const {
-  const SineCosine at = angle_ == 0 ? SineCosine{0, 0} : sineCosine(angle_ * t);
-  const double square = angle_ * angle_, sine = -square * at.sine,
+  const SineCosine at = turn_.angle == 0 ? SineCosine{0, 0} : sineCosine(turn_.angle * t);
+  const double square = turn_.angle * turn_.angle, sine = -square * at.sine,
                cosine = square * at.cosine;
   PoseRate out;
   for (int i = 0; i < 9; ++i)
-    out.rotation[i] = sine * sine_rotation_[i] + cosine * cosine_rotation_[i];
+    out.rotation[i] = sine * turn_.sine_rotation[i] + cosine * turn_.cosine_rotation[i];
   for (int k = 0; k < 3; ++k)
-    out.translation[k] = sine * sine_translation_[k] + cosine * cosine_translation_[k];
+    out.translation[k] =
+        sine * turn_.sine_translation[k] + cosine * turn_.cosine_translation[k];
   return out;
 }
 
@@ -484,19 +489,19 @@ PoseRate MotionPath::splineRate(double t) const {
 // than twice as much to the length of the result.
 AccelerationBound MotionPath::turnAcceleration() const {
   AccelerationBound bound{};
-  if (angle_ == 0) {
-    bound.per_displacement = 2 * frobenius(linear_rotation_) * kUpward;
+  if (turn_.angle == 0) {
+    bound.per_displacement = 2 * frobenius(turn_.linear_rotation) * kUpward;
     return bound;
   }
-  const double square = angle_ * angle_, rounding = 64 * kUnitRounding * square;
-  for (int i = 0; i < 9; ++i) bound.turn[i] = square * sine_rotation_[i];
-  for (int k = 0; k < 3; ++k) bound.offset[k] = square * sine_translation_[k];
+  const double square = turn_.angle * turn_.angle, rounding = 64 * kUnitRounding * square;
+  for (int i = 0; i < 9; ++i) bound.turn[i] = square * turn_.sine_rotation[i];
+  for (int k = 0; k < 3; ++k) bound.offset[k] = square * turn_.sine_translation[k];
   bound.per_radius = (square * stretch_ + rounding) * kUpward;
   bound.per_distance = rounding * stretch_;
-  bound.constant =
-      rounding * (norm(vecOf(sine_translation_)) + norm(vecOf(cosine_translation_)));
+  bound.constant = rounding * (norm(vecOf(turn_.sine_translation)) +
+                               norm(vecOf(turn_.cosine_translation)));
   bound.per_displacement = 2 * turn_speed_ * kUpward;
-  bound.jerk = angle_ * kUpward;
+  bound.jerk = turn_.angle * kUpward;
   return bound;
 }
 

@@ -45,9 +45,7 @@ struct AccelerationBound {
   bool isZero() const;
 };
 
-/// @brief The motion of a rigid body, or of the frame in which a mesh deforms, for t in
-/// [0, 1]: the real-number evaluation of parameters that are doubles. It is a turn at
-/// constant speed,
+/// @brief A turn at constant speed,
 ///
 ///   p(t) = (R1 x + T1) + t (E x + L) + sin(w t) (C x + P) + (1 - cos(w t)) (D x + Q),
 ///
@@ -56,8 +54,27 @@ struct AccelerationBound {
 /// matrices that are not exactly rotations, L is the straight part of the motion.
 /// Interpolation turns about a reference point that goes straight, a screw about a fixed
 /// axis. P and Q are zero if the reference point is the origin of the body. Without a
-/// turn w, C, D, P and Q are zero. Or it is a uniform cubic B-spline of translations and
-/// of rotation vectors, as FCL's SplineMotion. Or it is a motion of the program.
+/// turn w, C, D, P and Q are zero.
+struct Turn {
+  /// w and a.
+  double angle{0};
+  Vec axis{1, 0, 0};
+  /// R1, T1.
+  Pose beginning;
+  /// C, D, E.
+  double sine_rotation[9]{};
+  double cosine_rotation[9]{};
+  double linear_rotation[9]{};
+  /// P, Q, L.
+  double sine_translation[3]{};
+  double cosine_translation[3]{};
+  double linear_translation[3]{};
+};
+
+/// @brief The motion of a rigid body, or of the frame in which a mesh deforms, for t in
+/// [0, 1]: the real-number evaluation of parameters that are doubles. It is a turn, or a
+/// uniform cubic B-spline of translations and of rotation vectors, as FCL's SplineMotion.
+/// Or it is a motion of the program.
 class MotionPath {
  public:
   /// @brief At rest.
@@ -99,10 +116,13 @@ class MotionPath {
   /// @brief Bound on the acceleration during [t0, t1].
   AccelerationBound acceleration(double t0, double t1) const;
 
+  /// @brief Null: another path.
+  const Turn* turn() const { return kind_ == Kind::kTurn ? &turn_ : nullptr; }
+
   /// @brief The axis of a turn, a unit vector of the world; null: another path. Points
   /// are hardly accelerated along it.
   const Vec* axis() const {
-    return kind_ == Kind::kTurn && angle_ > 0 ? &axis_ : nullptr;
+    return kind_ == Kind::kTurn && turn_.angle > 0 ? &turn_.axis : nullptr;
   }
 
   /// @brief Bound on the acceleration along the axis, up to 256 u of the size of the path
@@ -114,7 +134,7 @@ class MotionPath {
   bool hasConstantAcceleration() const { return kind_ == Kind::kTurn; }
 
   /// @brief Whether the rotation is the same at all times.
-  bool isTranslation() const { return kind_ == Kind::kTurn && angle_ == 0; }
+  bool isTranslation() const { return kind_ == Kind::kTurn && turn_.angle == 0; }
 
   /// @brief Bound on |T(t)|.
   double translationReach() const { return translation_reach_; }
@@ -155,15 +175,7 @@ class MotionPath {
   const char* name_{"the object"};
   Kind kind_{Kind::kTurn};
   // Members of a turn.
-  double angle_{0};
-  Vec axis_{1, 0, 0};
-  Pose beginning_;
-  double sine_rotation_[9]{};
-  double cosine_rotation_[9]{};
-  double linear_rotation_[9]{};
-  double sine_translation_[3]{};
-  double cosine_translation_[3]{};
-  double linear_translation_[3]{};
+  Turn turn_;
   /// Distance of the reference point from the origin of the body.
   double reference_size_{0};
   // Members of a spline.

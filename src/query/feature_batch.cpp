@@ -41,16 +41,32 @@ TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
   in_place_ = {mesh.tree->triangles().data(), mesh.tree->vertices().data()};
 }
 
-void TriangleReader::readIntoStore(int i) {
+/// Sets the place of a triangle.
+void TriangleReader::find(int i) {
   assert(i >= 0);
-  const auto index = static_cast<std::size_t>(i);
   if (!triangles_) {
     // Not initialized, since each is written before it is read.
-    triangles_.reset(new TreeTriangle[kStored]);
-    vertices_.reset(new TreeVertex[3 * kStored]);
+    triangles_.reset(new TreeTriangle[kPlaces]);
+    vertices_.reset(new TreeVertex[3 * kPlaces]);
+    stored_.assign(kPlaces, -1);
+    place_of_.assign(kPlaces, 0);
   }
-  const std::size_t next = (stored_ + 1) % kStored;
-  TreeTriangle& triangle = triangles_[next];
+  std::uint16_t& place = place_of_[static_cast<std::size_t>(i) % kPlaces];
+  const std::size_t reads_left = (place + kPlaces - next_) % kPlaces;
+  if (stored_[place] != i || reads_left < kStored) {
+    stored_[next_] = -1;
+    compute(i, next_);
+    stored_[next_] = i;
+    place = static_cast<std::uint16_t>(next_);
+    next_ = (next_ + 1) % kPlaces;
+  }
+  index_ = i;
+  place_ = place;
+}
+
+void TriangleReader::compute(int i, std::size_t place) {
+  const auto index = static_cast<std::size_t>(i);
+  TreeTriangle& triangle = triangles_[place];
   if (mesh_.tree) {
     triangle = mesh_.tree->triangles()[index];
   } else {
@@ -75,13 +91,11 @@ void TriangleReader::readIntoStore(int i) {
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    TreeVertex& x = vertices_[3 * next + k];
+    TreeVertex& x = vertices_[3 * place + k];
     pose(triangle.id[k], x);
     if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
     if (!isFinite(x)) throw NonFiniteVertex(mesh_.name, triangle.id[k]);
   }
-  stored_ = next;
-  index_ = i;
 }
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {

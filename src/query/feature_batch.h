@@ -68,10 +68,12 @@ struct TrianglesInPlace {
 };
 
 /// @brief Reads the triangles of a mesh. A moving tree in place is read without a copy.
-/// For other meshes the reader computes vertices and their boxes into a store of its own.
+/// For other meshes the reader computes vertices and their boxes into a store of its own,
+/// where it finds most of them again: pairs of triangles that are near in a block have
+/// triangles in common.
 class TriangleReader {
  public:
-  /// @brief The size of the store: a result is valid until this number of later reads.
+  /// @brief A result is valid until this number of later reads.
   static constexpr std::size_t kStored = 256;
 
   /// @param mesh  kept by reference
@@ -82,9 +84,9 @@ class TriangleReader {
   /// @throws NonFiniteVertex
   const TreeTriangle* read(int i, const TreeVertex** x) {
     if (in_place_.triangles) return in_place_.read(i, x);
-    if (i != index_) readIntoStore(i);
-    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * stored_ + k];
-    return &triangles_[stored_];
+    if (i != index_) find(i);
+    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * place_ + k];
+    return &triangles_[place_];
   }
 
   void prefetch(int i) const {
@@ -96,14 +98,25 @@ class TriangleReader {
   const TrianglesInPlace& inPlace() const { return in_place_; }
 
  private:
-  void readIntoStore(int i);
+  /// Places of the store, which are taken in a circle. A triangle is used again as long
+  /// as its place will not be taken by the next kStored reads.
+  static constexpr std::size_t kPlaces = 2 * kStored;
+
+  void find(int i);
+  void compute(int i, std::size_t place);
   void pose(std::uint32_t id, TreeVertex& out) const;
 
   const MeshInstance& mesh_;
   TrianglesInPlace in_place_{nullptr, nullptr};
-  /// The triangle that was read last into the store, and its place there.
+  /// The triangle that was read last, and its place.
   int index_{-1};
-  std::size_t stored_{0};
+  std::size_t place_{0};
+  /// The place that is taken next.
+  std::size_t next_{0};
+  /// The triangle at each place; -1: none. And, by the last bits of its number, where a
+  /// triangle is if it is in the store.
+  std::vector<int> stored_;
+  std::vector<std::uint16_t> place_of_;
   std::unique_ptr<TreeTriangle[]> triangles_;
   std::unique_ptr<TreeVertex[]> vertices_;
 };

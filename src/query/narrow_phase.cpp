@@ -265,6 +265,9 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
       if (!sink_.mayKeepAtStart(candidate)) {
         ++counts_.box_culled;
         candidates_.pop_back();
+      } else if (options_.lists_near_pairs) {
+        add(FeatureContact{candidate, candidate.window_lo, candidate.window_hi});
+        candidates_.pop_back();
       } else if (isPart(candidate.kind)) {
         testDistance(candidate);
         candidates_.pop_back();

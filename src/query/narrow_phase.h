@@ -46,6 +46,10 @@ struct QueryOptions {
   /// With a distance: whether a contact is named after the parts of its features that are
   /// nearest, or after the features.
   bool names_parts{true};
+  /// With a distance: whether the answer has all pairs of features that may come within
+  /// it, for tests on other paths. Their brackets are the times outside of which they
+  /// provably do not.
+  bool lists_near_pairs{false};
 };
 
 /// @brief What the tasks of a query tell each other, so that none does work that cannot

@@ -190,10 +190,12 @@ void RigidTree::rotate(int frame, OrientedBox& box) const {
   for (auto& axis : box.axis) turn(axis);
 }
 
-// For an AABB or a KDOP this is the box of the first three slabs.
+/// The box of a node in the body's frame: of an AABB or a KDOP that of the first three
+/// slabs.
 template <typename BV>
-void RigidTree::setBox(int node, int frame, OrientedBox& box) const {
+OrientedBox RigidTree::storedBox(int node) const {
   const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
+  OrientedBox box;
   if constexpr (kHasSlabs<BV>) {
     const Slabs slabs = slabsOf(bv);
     for (int k = 0; k < 3; ++k) {
@@ -205,44 +207,60 @@ void RigidTree::setBox(int node, int frame, OrientedBox& box) const {
     box = orientedBoxOf(bv);
     if (!isBox(box, volumes_.slack)) box = kUnbounded;
   }
+  return box;
+}
+
+template <typename BV>
+void RigidTree::setBox(int node, int frame, OrientedBox& box) const {
+  box = storedBox<BV>(node);
   if (is_rotated_) rotate(frame, box);
 }
 
 template <typename BV>
-void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], int frame,
-                        MovingKdopNode& out) const {
-  auto& rows = frame == 0 ? out.t0 : out.t1;
+void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const {
   if constexpr (kHasSlabs<BV>)
     if (!is_rotated_) {
       double origin[8];
-      kdopCoordinates(origin_[frame], origin);
+      kdopCoordinates(origin_[0], origin);
       for (int lane = 0; lane < kWidth; ++lane) {
         const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
         for (int j = 0; j < 8; ++j) {
-          rows[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
-          rows[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
+          out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
+          out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
         }
       }
       // The bounds along x, y, z are coordinates, without error. Bounds along other
       // directions are sums of two coordinates; the slack contains their rounding.
-      return roundOutward(0.f, rows);
+      roundOutward(0.f, out.t0);
+      std::memcpy(out.t1, out.t0, sizeof(out.t0));
+      return;
     }
-  EightBoxes boxes;
+  const int num_frames = turns_ ? 2 : 1;
+  EightBoxes boxes[2];
   for (int lane = 0; lane < kWidth; ++lane) {
-    OrientedBox box;
-    setBox<BV>(nodes[lane], frame, box);
-    for (int k = 0; k < 3; ++k) {
-      boxes.center[k][lane] = static_cast<float>(box.center[k] - origin_[frame][k]);
-      for (int i = 0; i < 3; ++i)
-        boxes.half_axis[i][k][lane] = static_cast<float>(box.axis[i][k] * box.extent[i]);
+    const OrientedBox stored = storedBox<BV>(nodes[lane]);
+    for (int frame = 0; frame < num_frames; ++frame) {
+      OrientedBox box = stored;
+      if (is_rotated_) rotate(frame, box);
+      for (int k = 0; k < 3; ++k) {
+        boxes[frame].center[k][lane] =
+            static_cast<float>(box.center[k] - origin_[frame][k]);
+        for (int i = 0; i < 3; ++i)
+          boxes[frame].half_axis[i][k][lane] =
+              static_cast<float>(box.axis[i][k] * box.extent[i]);
+      }
     }
   }
-  fitBoxes(boxes, rows);
   // A half-axis is a sum of components of the center and of the half axes. Rounding them
   // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1. 3
   // more cover the rounding of the padding itself. The slack of the fit is far larger
   // than the few 2^-53 of the rotation and of the center.
-  roundOutward(8 * kFloatUnit, rows);
+  for (int frame = 0; frame < num_frames; ++frame) {
+    auto& rows = frame == 0 ? out.t0 : out.t1;
+    fitBoxes(boxes[frame], rows);
+    roundOutward(8 * kFloatUnit, rows);
+  }
+  if (!turns_) std::memcpy(out.t1, out.t0, sizeof(out.t0));
 }
 
 /// Pads rows whose half-axes are set: by `rounding`, relative to the sum of the
@@ -263,16 +281,6 @@ void RigidTree::roundOutward(float rounding, float (&rows)[16][kWidth]) const {
   }
 }
 
-/// Fills the rows of both frames.
-void RigidTree::setAllRows(const std::int32_t (&nodes)[kWidth],
-                           MovingKdopNode& out) const {
-  (this->*volumes_.set_rows)(nodes, 0, out);
-  if (turns_)
-    (this->*volumes_.set_rows)(nodes, 1, out);
-  else
-    std::memcpy(out.t1, out.t0, sizeof(out.t0));
-}
-
 void RigidTree::open(int i, MovingKdopNode& out) const {
   assert(nodes_ && i >= 0);
   // `nodes` has FCL's nodes, for their boxes. `out.child` has the links to what is below
@@ -281,7 +289,7 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   std::fill(nodes, nodes + kWidth, i);
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
   out.markTriangles();
-  setAllRows(nodes, out);
+  (this->*volumes_.set_rows)(nodes, out);
   std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
 }
@@ -290,7 +298,7 @@ MovingKdop RigidTree::box(int node) const {
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, node);
   MovingKdopNode out;
-  setAllRows(nodes, out);
+  (this->*volumes_.set_rows)(nodes, out);
   return out.box(0);
 }
 

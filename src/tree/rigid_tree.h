@@ -90,8 +90,8 @@ class RigidTree {
     /// Whether the volumes store bounds along our directions.
     bool has_slabs;
     void (RigidTree::*set_box)(int node, int frame, OrientedBox& box) const;
-    /// Fills the rows of a frame with the 16-DOPs of FCL's nodes.
-    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth], int frame,
+    /// Fills the rows of both frames with the 16-DOPs of FCL's nodes.
+    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth],
                                 MovingKdopNode& out) const;
   };
   template <typename BV>
@@ -102,10 +102,11 @@ class RigidTree {
   void setOrigin(int frame);
 
   template <typename BV>
+  OrientedBox storedBox(int node) const;
+  template <typename BV>
   void setBox(int node, int frame, OrientedBox& box) const;
   template <typename BV>
-  void setRows(const std::int32_t (&nodes)[kWidth], int frame, MovingKdopNode& out) const;
-  void setAllRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
+  void setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
   void roundOutward(float rounding, float (&rows)[16][kWidth]) const;
   void rotate(int frame, OrientedBox& box) const;
 
