@@ -75,7 +75,7 @@ class MovingBoxTree {
   static constexpr std::size_t kPairsAtATime = 16;
   /// Pairs of nodes whose boxes may meet. There is always room for one more.
   struct PairStack {
-    std::vector<NodePair> pairs{std::vector<NodePair>(64 * kPairsAtATime)};
+    std::vector<NodePair> pairs{std::vector<NodePair>(4 * kPairsAtATime)};
     std::size_t size{0};
   };
 
