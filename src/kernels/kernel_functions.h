@@ -45,6 +45,7 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                                  const std::uint32_t* codes, const TimeWindow* windows,
                                  std::size_t count, double latest, double distance);
 EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
+unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,

@@ -365,6 +365,10 @@ struct Kernels {
   /// OrderedPoints.
   EightApproaches (*approach)(const EightPoints& pairs, const DistanceRequest& request);
 
+  /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
+  /// known, a bit each. The others need more than a plain direction.
+  unsigned (*leastDistances)(const EightPoints& pairs, double (&least)[8]);
+
   /// Solves the plain cases of solveCoplanarity(): a pair whose volume has one sign or
   /// changes it once, clearly inside or outside. Proved lanes have the properties (1) and
   /// (2) of that function.
