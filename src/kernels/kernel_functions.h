@@ -38,7 +38,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
-                  float (&gaps)[8]);
+                  double distance, float (&gaps)[8]);
 unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,

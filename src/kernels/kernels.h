@@ -282,14 +282,16 @@ struct Kernels {
 
   /// Finds which of up to eight pairs of triangles are apart at t = 0 and stay apart
   /// during the first part of the step, a bit each. The plane of one of the two provably
-  /// separates them by more than their vertices can approach each other.
+  /// separates them by more than their vertices can approach each other. With a distance
+  /// they stay further apart than this.
   /// @param count  1 to 8
   /// @param share  the length of that part of the step, rounded up by more than the
   /// rounding of a sum and a product
+  /// @param distance  0: only apart
   /// @param[out] gaps  a gap for each pair. Features that are further apart than this at
   /// t = 0 along one of the directions do not touch in that part of the step
   unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
-                       float (&gaps)[8]);
+                       double distance, float (&gaps)[8]);
 
   /// Finds which of up to eight edges may pass through their faces at t = 0, a bit each.
   /// isCrossing() is false for all others.
