@@ -43,7 +43,7 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, double latest, double distance);
+                                 std::size_t count, const DistanceRequest& request);
 EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
 unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,

@@ -354,14 +354,14 @@ struct Kernels {
                                     const std::uint32_t* codes, const TimeWindow* windows,
                                     std::size_t count, double latest);
 
-  /// Finds which of up to eight pairs of features that cullFeatures() kept may come
-  /// within a distance in [windowLo(), min(windowHi(), latest)], a bit each. All others
-  /// stay further apart than advanceToDistance() calls a contact: a direction that proves
-  /// it at both ends of the window proves it in between.
+  /// Finds which of up to eight pairs of features that cullFeatures() kept may be in
+  /// contact in [windowLo(), min(windowHi(), t_stop)], a bit each. All others stay
+  /// further apart than advanceToDistance() calls a contact: a direction that proves it
+  /// at both ends of the window proves it in between.
   /// @param count  1 to 8
   unsigned (*mayComeWithin)(ContinuousContactKind kind, const TrianglePair* pairs,
                             const std::uint32_t* codes, const TimeWindow* windows,
-                            std::size_t count, double latest, double distance);
+                            std::size_t count, const DistanceRequest& request);
 
   /// advanceToDistance() of eight VF or EE pairs whose points are in the order of
   /// OrderedPoints.

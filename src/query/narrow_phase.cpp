@@ -250,13 +250,12 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);
-  const double latest = this->latest();
+  const DistanceRequest request = distanceRequest();
   candidates_.clear();
   for (std::size_t first = 0; first < size && !isDone(); first += 8) {
     const std::size_t count = std::min<std::size_t>(8, size - first);
-    unsigned left =
-        kernels_.mayComeWithin(kind, batch_.pairs(), codes + first, windows + first,
-                               count, latest, options_.min_distance);
+    unsigned left = kernels_.mayComeWithin(kind, batch_.pairs(), codes + first,
+                                           windows + first, count, request);
     counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
     for (; left != 0 && !isDone(); left &= left - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));
