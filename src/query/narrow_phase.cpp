@@ -93,11 +93,11 @@ void NarrowPhase::flush() {
   for (const ContinuousContactKind kind :
        {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     BlockPairs pairs{*this, kind, latest};
-    if (options_.min_distance > 0) {
+    if (!(options_.min_distance > 0)) {
+      runStages(pairs);
+    } else if (sink_.mayKeepAtStart(kind)) {
       pairs.cullByBoxes();
       testDistances(kind);
-    } else {
-      runStages(pairs);
     }
   }
   batch_.clear();
