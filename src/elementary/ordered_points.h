@@ -5,8 +5,6 @@
 #ifndef FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 #define FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 
-#include <utility>
-
 #include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl {
@@ -29,10 +27,7 @@ class OrderedPoints {
       case ContinuousContactKind::kEdgeEdge:
         sort(0, 1);
         sort(2, 3);
-        if (isBefore(2, 0) || (!isBefore(0, 2) && isBefore(3, 1))) {
-          swap(0, 2);
-          swap(1, 3);
-        }
+        sortEdges();
         return;
       case ContinuousContactKind::kVertexEdge:
         sort(1, 2);
@@ -55,12 +50,20 @@ class OrderedPoints {
       if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k];
     return false;
   }
-  void sort(int i, int j) {
-    if (isBefore(j, i)) swap(i, j);
+  void sortEdges() {
+    const bool is_turned = isBefore(2, 0) || (!isBefore(0, 2) && isBefore(3, 1));
+    swapIf(is_turned, 0, 2);
+    swapIf(is_turned, 1, 3);
   }
-  void swap(int i, int j) {
-    std::swap(point[i], point[j]);
-    std::swap(number[i], number[j]);
+  void sort(int i, int j) { swapIf(isBefore(j, i), i, j); }
+  /// Without a branch on the condition, which would be unpredictable.
+  void swapIf(bool condition, int i, int j) {
+    const Point *p = point[i], *q = point[j];
+    const int m = number[i], n = number[j];
+    point[i] = condition ? q : p;
+    point[j] = condition ? p : q;
+    number[i] = condition ? n : m;
+    number[j] = condition ? m : n;
   }
 };
 

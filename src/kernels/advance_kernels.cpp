@@ -2,7 +2,7 @@
 //
 // The advancement of eight pairs to a distance, step by step as advanceToDistance() does
 // it: every number has the same bits. A lane that needs more than the plain steps is left
-// open.
+// open. And the least distance of eight pairs at rest.
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "kernels/advance_kernels.cpp"
@@ -10,6 +10,7 @@
 #endif
 
 #include "elementary/distance_advance.h"
+#include "elementary/least_distance.h"
 #include "kernels/eight_features.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
@@ -28,12 +29,13 @@ struct Polygons {
   Doubles size;
   int count;
 
-  HWY_INLINE Polygons(ContinuousContactKind kind, const Points& x)
+  HWY_INLINE Polygons(ContinuousContactKind kind, const Vectors (&x0)[4],
+                      const Vectors (&x1)[4])
       : size(all(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
     for (int k = 0; k < count; ++k) {
       const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
-      t0[k] = x.t0[p.second] - x.t0[p.first];
-      t1[k] = x.t1[p.second] - x.t1[p.first];
+      t0[k] = x0[p.second] - x0[p.first];
+      t1[k] = x1[p.second] - x1[p.first];
       velocity[k] = t1[k] - t0[k];
       size = larger(size, larger(dot(t0[k], t0[k]), dot(t1[k], t1[k])));
     }
@@ -227,7 +229,7 @@ class AdvancingPairs {
 EightApproaches approachOfEight(const EightPoints& pairs,
                                 const DistanceRequest& request) {
   const Points points(pairs);
-  const Polygons x(pairs.kind, points);
+  const Polygons x(pairs.kind, points.t0, points.t1);
   AdvancingPairs advancing(x, request);
   EightApproaches out;
   store(advancing.time(), out.toc_lo);
@@ -242,6 +244,19 @@ EightApproaches approachOfEight(const EightPoints& pairs,
     out.corner[lane] = kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1;
   }
   return out;
+}
+
+/// The first attempt of leastDistance(), if it is enough.
+unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]) {
+  const Points points(pairs);
+  const Polygons x(pairs.kind, points.t1, points.t1);
+  const NearestPoints near = nearestPoints(x, x.t1);
+  const Vectors n = directionsApart(near, NearestSides(x, x.t1, near));
+  Doubles gap = dot(n, x.t1[0]);
+  for (int k = 1; k < x.count; ++k) gap = min(dot(n, x.t1[k]), gap);
+  constexpr double kUnit = LeastDistance::kUnit;
+  store(max(gap * all(1 - 8 * kUnit) - all(16 * kUnit) * x.size, all(0)), least);
+  return bits(near.is_sure & (gap > all(LeastDistance::kEnough) * near.distance));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -41,6 +41,7 @@ extern const Kernels kKernels = {targetName(),
                                  &coplanarityOfFeatures,
                                  &mayComeWithinOfFeatures,
                                  &approachOfEight,
+                                 &leastDistancesOf,
                                  &solveEight,
                                  &divideEight};
 

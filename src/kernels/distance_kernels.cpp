@@ -46,22 +46,30 @@ HWY_INLINE void takeSide(const Vectors& p, const Vectors& q, Shortest& best) {
 }
 
 /// The vector from the origin to about the nearest point of a polygon of three or four
-/// corners, as nearestPoint() has it.
-HWY_INLINE Vectors nearestPoint(const Vectors* corner, int count) {
-  const Doubles zero = broadcast<kEight>(0.);
-  Shortest best{corner[0], dot(corner[0], corner[0])};
-  for (int k = 0; k < count; ++k)
-    takeSide(corner[k], corner[k + 1 < count ? k + 1 : 0], best);
-  const Vectors v = corner[1] - corner[0], w = corner[count - 1] - corner[0],
-                n = cross(v, w);
-  const Doubles square = dot(n, n), along = dot(cross(w, corner[0]), n),
-                across = dot(cross(corner[0], v), n);
-  const DoubleMask is_inside =
-      (along > zero) & (across > zero) &
-      (count == 3 ? (along + across < square) : (along < square) & (across < square));
-  best.take((dot(corner[0], n) / square) * n, is_inside);
-  return best.vector;
-}
+/// corners, as nearestPoint() has it. It may be imprecise for slivers.
+struct Nearest {
+  Vectors vector;
+  /// The square of the distance of a point of the polygon, near that point.
+  Doubles reached;
+
+  HWY_INLINE Nearest(const Vectors* corner, int count) {
+    const Doubles zero = broadcast<kEight>(0.);
+    Shortest best{corner[0], dot(corner[0], corner[0])};
+    for (int k = 0; k < count; ++k)
+      takeSide(corner[k], corner[k + 1 < count ? k + 1 : 0], best);
+    const Vectors v = corner[1] - corner[0], w = corner[count - 1] - corner[0],
+                  n = cross(v, w);
+    const Doubles square = dot(n, n), along = dot(cross(w, corner[0]), n),
+                  across = dot(cross(corner[0], v), n);
+    const DoubleMask is_inside =
+        (along > zero) & (across > zero) &
+        (count == 3 ? (along + across < square) : (along < square) & (across < square));
+    const Vectors inside = corner[0] + (along / square) * v + (across / square) * w;
+    reached = select(is_inside, dot(inside, inside), best.square);
+    best.take((dot(corner[0], n) / square) * n, is_inside);
+    vector = best.vector;
+  }
+};
 
 /// Differences of the points of two features that move linearly, at both ends of the
 /// window, in the order of DifferencePolygon, and a bound on their coordinates.
@@ -90,15 +98,40 @@ HWY_INLINE DoubleMask isMiddling(const Doubles& size) {
   return (size >= broadcast<kEight>(0x1p-200)) & (size <= broadcast<kEight>(0x1p200));
 }
 
-/// The direction is that of the nearest points in the middle of the window.
-///
-/// u = 2^-53, N the norm. A corner is off by 8 u of its length, which is below 2 N, a
-/// product with it by 3 u more: 22 u N times the length of the direction, which rounds by
-/// 3 u. advanceToDistance() reports what comes within d (1 + kShare) + kTouching (d + 2
-/// N): twice these tolerances are more than all of it.
+/// The tolerances that the filter leaves to advanceToDistance(), which reports what comes
+/// within d (1 + kShare) + kTouching (d + 2 N), with N the norm. u = 2^-53. A corner is
+/// off by 8 u of its length, which is below 2 N, a product with it by 3 u more: 22 u N
+/// times the length of the direction, which rounds by 3 u. Twice these tolerances are
+/// more than all of it.
+constexpr double kTouchingTwice = 2 * DistanceTolerance::kTouching;
+
+/// The distance from which on pairs may be left out. Of a pair that is nearer than the
+/// wanted distance at t = 0, if it is ignored then: that of a point at t = 0, less a
+/// share of 1e-9. advanceToDistance() takes off 2e-9 and two tolerances of a distance
+/// that differs by less than half of one. Pairs that almost touch are left to it,
+/// relative to N: rounding may hide their distance.
+/// @param reached  the square of the distance of this point
+HWY_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
+                              const Doubles& reached, double distance, bool ignores) {
+  const Doubles usual =
+      broadcast<kEight>(distance * (1 + 2 * DistanceTolerance::kShare + kTouchingTwice)) +
+      broadcast<kEight>(2 * kTouchingTwice) * norm;
+  if (!ignores) return usual;
+  constexpr double kAlmost = 0x1p-20;
+  const Doubles initial = squareRoot(reached);
+  const DoubleMask is_nearer =
+      (lo <= broadcast<kEight>(0.)) & (initial <= broadcast<kEight>(distance)) &
+      (initial > broadcast<kEight>(kAlmost) * max(norm, broadcast<kEight>(distance)));
+  return select(is_nearer, initial * broadcast<kEight>(1 - DistanceTolerance::kShare),
+                usual);
+}
+
+/// The direction is that of the nearest points in the middle of the window; at its
+/// beginning, where pairs are compared with their distance at t = 0. This pays if the
+/// window is short.
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, double latest, double distance) {
+                                 std::size_t count, const DistanceRequest& request) {
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
@@ -111,21 +144,21 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
   // windowLo() and windowHi().
   const Doubles margin = broadcast<kEight>(kWindowMargin);
   const Doubles lo = max(broadcast<kEight>(0.), starts - margin),
-                hi = min(broadcast<kEight>(latest),
+                hi = min(broadcast<kEight>(request.t_stop),
                          min(broadcast<kEight>(1.), ends + margin));
   const Points points{EightFeatures(pairs, eight_codes)};
   const MovingPolygons x(kind, points, lo, hi);
+  const bool ignores = request.ignores_initially_closer && isEarly(request.t_stop);
   Vectors middle[4];
   for (int k = 0; k < x.count; ++k)
-    middle[k] = broadcast<kEight>(0.5) * (x.l[k] + x.h[k]);
-  const Vectors n = nearestPoint(middle, x.count);
+    middle[k] = ignores ? x.l[k] : broadcast<kEight>(0.5) * (x.l[k] + x.h[k]);
+  const Nearest near(middle, x.count);
+  const Vectors& n = near.vector;
   const Doubles square = dot(n, n);
-  constexpr double kTouching = 2 * DistanceTolerance::kTouching;
-  const double reach = distance * (1 + 2 * DistanceTolerance::kShare + kTouching);
-  const Doubles least = squareRoot(square) * (broadcast<kEight>(reach) +
-                                              broadcast<kEight>(2 * kTouching) * x.norm);
-  DoubleMask apart =
-      isMiddling(x.norm) & isMiddling(square) & isMiddling(broadcast<kEight>(distance));
+  const Doubles least = squareRoot(square) *
+                        leastApart(lo, x.norm, near.reached, request.distance, ignores);
+  DoubleMask apart = isMiddling(x.norm) & isMiddling(square) &
+                     isMiddling(broadcast<kEight>(request.distance));
   for (int k = 0; k < x.count; ++k)
     apart = apart & (dot(n, x.l[k]) > least) & (dot(n, x.h[k]) > least);
   return ((1U << count) - 1) & ~bits(apart);

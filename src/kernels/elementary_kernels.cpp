@@ -310,27 +310,35 @@ struct TrianglePoints {
 };
 
 /// Lanes in which the direction d separates the triangles by so much that they stay apart
-/// even if vertices approach each other by `approach` along each axis.
+/// even if vertices approach each other by `approach` along each axis; with a distance,
+/// further apart than this. The factor of the distance has more than the rounding of the
+/// length of d, a few units.
 HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
-                                   const Doubles& approach) {
+                                   const Doubles& approach, double distance) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
                 b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
   const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
                 below = min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]);
   const Doubles size = maxNorm(d), volume = size * p.norm;
-  const Doubles least = broadcast<kEight>(kPlaneBound) * volume +
-                        broadcast<kEight>(kPlaneApproach) * size * approach;
-  return isInRange(volume) & ((above > least) | (below > least));
+  Doubles least = broadcast<kEight>(kPlaneBound) * volume +
+                  broadcast<kEight>(kPlaneApproach) * size * approach;
+  DoubleMask is_valid = isInRange(volume);
+  if (distance > 0) {
+    const Doubles square = dot(d, d);
+    is_valid = is_valid & isInRange(square);
+    least = least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
+  }
+  return is_valid & ((above > least) | (below > least));
 }
 
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
-                  float (&gaps)[8]) {
+                  double distance, float (&gaps)[8]) {
   const TrianglePoints p(pairs, count);
   const Doubles bridged = broadcast<kEight>(share) * p.approach;
   store(roundedUp(bridged + bridged, broadcast<kEight>(FLT_MIN)), gaps);
   const DoubleMask apart =
-      areSeparated(p, cross(p.x[1], p.x[2]), bridged) |
-      areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged);
+      areSeparated(p, cross(p.x[1], p.x[2]), bridged, distance) |
+      areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged, distance);
   return bits(apart) & ((1U << count) - 1);
 }
 

@@ -38,13 +38,14 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count);
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
-                  float (&gaps)[8]);
+                  double distance, float (&gaps)[8]);
 unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, double latest, double distance);
+                                 std::size_t count, const DistanceRequest& request);
 EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
+unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,

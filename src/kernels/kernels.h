@@ -282,14 +282,16 @@ struct Kernels {
 
   /// Finds which of up to eight pairs of triangles are apart at t = 0 and stay apart
   /// during the first part of the step, a bit each. The plane of one of the two provably
-  /// separates them by more than their vertices can approach each other.
+  /// separates them by more than their vertices can approach each other. With a distance
+  /// they stay further apart than this.
   /// @param count  1 to 8
   /// @param share  the length of that part of the step, rounded up by more than the
   /// rounding of a sum and a product
+  /// @param distance  0: only apart
   /// @param[out] gaps  a gap for each pair. Features that are further apart than this at
   /// t = 0 along one of the directions do not touch in that part of the step
   unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
-                       float (&gaps)[8]);
+                       double distance, float (&gaps)[8]);
 
   /// Finds which of up to eight edges may pass through their faces at t = 0, a bit each.
   /// isCrossing() is false for all others.
@@ -352,18 +354,22 @@ struct Kernels {
                                     const std::uint32_t* codes, const TimeWindow* windows,
                                     std::size_t count, double latest);
 
-  /// Finds which of up to eight pairs of features that cullFeatures() kept may come
-  /// within a distance in [windowLo(), min(windowHi(), latest)], a bit each. All others
-  /// stay further apart than advanceToDistance() calls a contact: a direction that proves
-  /// it at both ends of the window proves it in between.
+  /// Finds which of up to eight pairs of features that cullFeatures() kept may be in
+  /// contact in [windowLo(), min(windowHi(), t_stop)], a bit each. All others stay
+  /// further apart than advanceToDistance() calls a contact: a direction that proves it
+  /// at both ends of the window proves it in between.
   /// @param count  1 to 8
   unsigned (*mayComeWithin)(ContinuousContactKind kind, const TrianglePair* pairs,
                             const std::uint32_t* codes, const TimeWindow* windows,
-                            std::size_t count, double latest, double distance);
+                            std::size_t count, const DistanceRequest& request);
 
   /// advanceToDistance() of eight VF or EE pairs whose points are in the order of
   /// OrderedPoints.
   EightApproaches (*approach)(const EightPoints& pairs, const DistanceRequest& request);
+
+  /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
+  /// known, a bit each. The others need more than a plain direction.
+  unsigned (*leastDistances)(const EightPoints& pairs, double (&least)[8]);
 
   /// Solves the plain cases of solveCoplanarity(): a pair whose volume has one sign or
   /// changes it once, clearly inside or outside. Proved lanes have the properties (1) and

@@ -25,11 +25,11 @@ class CandidateCollector {
  public:
   /// @param a, b, sink  kept by reference; a and b are the same object for a
   /// self-collision
-  /// @param at_distance  as of FeatureBatch
+  /// @param reach  as of FeatureBatch
   /// @pre both meshes have owners; otherwise the sink would get pairs repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                     const CandidateSink& sink, bool at_distance)
-      : batch_(a, b, shift, kernels(), at_distance), sink_(sink) {
+                     const CandidateSink& sink, double reach)
+      : batch_(a, b, shift, kernels(), reach), sink_(sink) {
     assert(a.hasOwners() && b.hasOwners());
   }
 

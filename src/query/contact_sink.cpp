@@ -9,10 +9,21 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
+  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
+  const auto key = [](const FeatureContact& c) {
+    return std::make_tuple(c.kind, !c.first_on_a, c.vertices[0], c.vertices[1],
+                           c.vertices[2], c.vertices[3]);
+  };
+  return key(x) < key(y);
+}
+
 namespace {
 
-/// Of two contacts of the same parts, whether x is the one to keep.
+/// Of two contacts of the same features, or with a distance of the same parts, whether x
+/// is the one to keep.
 bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
+  if (!isPart(x.kind)) return isEarlier(x, y);
   const auto key = [](const FeatureContact& c) {
     return std::make_tuple(c.toc_lo, c.toc_hi, c.triangles[0], c.triangles[1]);
   };
@@ -21,13 +32,23 @@ bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
 
 }  // namespace
 
-bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
-  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
-  const auto key = [](const FeatureContact& c) {
-    return std::make_tuple(c.kind, !c.first_on_a, c.vertices[0], c.vertices[1],
-                           c.vertices[2], c.vertices[3]);
-  };
-  return key(x) < key(y);
+void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists) {
+  ContactTable<FeatureContact> seen;
+  for (auto& list : lists) {
+    auto end = list.begin();
+    for (const FeatureContact& contact : list) {
+      const bool is_once = !may_repeat && !isPart(contact.kind);
+      FeatureContact* kept = is_once ? nullptr : seen.find(contact);
+      if (!kept) {
+        *end = contact;
+        if (!is_once) seen.add(*end);
+        ++end;
+      } else if (isPreferred(contact, *kept)) {
+        *kept = contact;
+      }
+    }
+    list.erase(end, list.end());
+  }
 }
 
 /// With a distance, other features may have the same nearest parts.
@@ -54,9 +75,7 @@ bool ContactSink::add(const FeatureContact& contact) {
   const bool may_repeat = mayRepeat(contact);
   if (may_repeat)
     if (FeatureContact* kept = seen_.find(contact)) {
-      if (isPart(contact.kind) ? !isPreferred(contact, *kept)
-                               : !isEarlier(contact, *kept))
-        return false;
+      if (!isPreferred(contact, *kept)) return false;
       replace(*kept, contact);
       return true;
     }
@@ -91,7 +110,8 @@ namespace {
 
 /// Numbers of buckets that ascend in the order of contacts, for as many buckets as there
 /// are contacts. Most buckets get one or two. Contacts at t = 0 have buckets by their
-/// kind and first vertex, the others by time.
+/// kind and side, each with as many as it has contacts, and then by their first vertex.
+/// The others have them by time.
 class Buckets {
  public:
   explicit Buckets(const std::vector<std::deque<FeatureContact>>& lists) {
@@ -99,34 +119,38 @@ class Buckets {
       count_ += list.size();
       for (const FeatureContact& c : list) {
         if (c.toc_lo > 0) continue;
-        ++at_start_;
-        num_vertices_ = std::max(num_vertices_, c.vertices[0] + std::uint64_t{1});
+        ++ends_[groupOf(c)];
+        num_vertices_ = std::max(num_vertices_, c.vertices[0] + 1.);
       }
     }
+    for (std::size_t i = 1; i < kGroups; ++i) ends_[i] += ends_[i - 1];
   }
 
   std::size_t count() const { return count_; }
 
   std::size_t operator()(const FeatureContact& c) const {
-    if (c.toc_lo > 0) {
-      const std::size_t later = count_ - at_start_;
-      return at_start_ +
-             std::min(static_cast<std::size_t>(c.toc_lo * static_cast<double>(later)),
-                      later - 1);
-    }
-    // Five kinds (kCrossing is none of a contact) of two sides.
-    constexpr double kGroups = 10;
-    const std::uint64_t group =
-        2 * static_cast<std::uint64_t>(c.kind) + (c.first_on_a ? 0 : 1);
-    const double share = static_cast<double>(group * num_vertices_ + c.vertices[0]) /
-                         (kGroups * static_cast<double>(num_vertices_));
-    return std::min(static_cast<std::size_t>(share * static_cast<double>(at_start_)),
-                    at_start_ - 1);
+    const std::size_t at_start = ends_[kGroups - 1];
+    if (c.toc_lo > 0) return at_start + partOf(c.toc_lo, count_ - at_start);
+    const std::size_t group = groupOf(c), first = group == 0 ? 0 : ends_[group - 1];
+    return first + partOf(c.vertices[0] / num_vertices_, ends_[group] - first);
   }
 
  private:
-  std::size_t count_{0}, at_start_{0};
-  std::uint64_t num_vertices_{0};
+  /// Five kinds (kCrossing is none of a contact) of two sides.
+  static constexpr std::size_t kGroups = 10;
+
+  static std::size_t groupOf(const FeatureContact& c) {
+    return 2 * static_cast<std::size_t>(c.kind) + (c.first_on_a ? 0 : 1);
+  }
+  static std::size_t partOf(double share, std::size_t count) {
+    return std::min(static_cast<std::size_t>(share * static_cast<double>(count)),
+                    count - 1);
+  }
+
+  std::size_t count_{0};
+  /// The end of each group's buckets.
+  std::size_t ends_[kGroups] = {};
+  double num_vertices_{0};
 };
 
 }  // namespace

@@ -71,6 +71,11 @@ class ContactSink {
   /// could not if the sink is full of contacts at t = 0 that come before it.
   bool mayKeepAtStart(const FeatureIds& pair) const;
 
+  /// @brief The same for any pair of a kind.
+  bool mayKeepAtStart(ContinuousContactKind kind) const {
+    return mayKeepAtStart(FeatureIds{kind, true, {0, 0, 0, 0}, {0, 0}});
+  }
+
   /// @brief Moves the contacts out, in no order. Call clear() before the next add().
   std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 
@@ -98,6 +103,11 @@ class ContactSink {
   /// The contacts whose pairs may come again.
   ContactTable<FeatureContact> seen_;
 };
+
+/// @brief Keeps, of the contacts of the same features in several lists, the one that a
+/// ContactSink would keep.
+/// @param may_repeat  false: only those of parts may repeat
+void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists);
 
 /// @brief The contacts of several lists, earliest first. Only pointers are sorted, since
 /// there may be many contacts. With a distance a large part of them may be at t = 0.

@@ -430,7 +430,8 @@ class ContactQuery {
 
 bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                 const CandidateSink& sink, double min_distance) {
-  CandidateCollector leaves(a, b, shift, sink, min_distance > 0);
+  CandidateCollector leaves(a, b, shift, sink,
+                            min_distance > 0 ? reachOf(a, b, min_distance) : 0);
   StageTimes times;
   const MeshPair meshes{a, b, shift, proveSelf(a, b, true, min_distance, 1, times),
                         min_distance};

@@ -122,13 +122,12 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
 }
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
-                           const KdopShift* shift, const Kernels& kernels,
-                           bool at_distance)
+                           const KdopShift* shift, const Kernels& kernels, double reach)
     : reader_a_(a),
       reader_b_(b),
       self_(&a == &b),
-      at_distance_(at_distance),
-      tests_points_(at_distance && (hasFreePoints(a) || hasFreePoints(b))),
+      reach_(reach),
+      tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
       shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
@@ -212,15 +211,16 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
 /// If `latest` is early, leaves out the triangle pairs that are apart until then. If not,
 /// it only leaves out their edges that might cross at t = 0.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
-  const bool is_early = leavesOutApart(latest);
+  const bool is_early = isEarly(latest);
   if (!is_early && !has_edges_) return;
   // The kernel needs more than the rounding of a sum and a product, 2^-53 each.
-  const double share = is_early ? latest * (1 + 0x1p-50) : 0;
+  const double share = is_early ? latest * (1 + 0x1p-50) : 0,
+               reach = is_early ? reach_ : 0;
   std::size_t kept = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     float gaps[8];
-    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, gaps);
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, reach, gaps);
     if (!is_early) {
       // There is no branch, since it would be unpredictable.
       for (std::size_t i = 0; i < count; ++i)
@@ -258,10 +258,10 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
       list.codes.get());
-  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
-                                    roundUp(latest, 0.f),
-                                    leavesOutApart(latest) ? gaps_.get() : nullptr,
-                                    list.codes.get(), size, list.windows.get());
+  list.size =
+      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
+                            list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

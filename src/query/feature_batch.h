@@ -138,10 +138,9 @@ class FeatureBatch {
 
   /// @param a, b  kept by reference; the same object for a self-collision
   /// @param shift  added to boxes of a: between their trees, and the distance; null: none
-  /// @param at_distance  whether features that come near are wanted, not only those that
-  /// touch
+  /// @param reach  features that come within it are wanted; 0: those that touch
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-               const Kernels& kernels, bool at_distance = false);
+               const Kernels& kernels, double reach = 0);
 
   bool isSelf() const { return self_; }
 
@@ -221,16 +220,13 @@ class FeatureBatch {
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
-  /// Whether triangles that a plane separates until `latest` are left out. With a
-  /// distance the proof does not hold.
-  bool leavesOutApart(double latest) const { return !at_distance_ && isEarly(latest); }
   void leaveOutApart(double latest, StageCounts& counts);
   unsigned edgePairsToTest();
   void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
-  bool at_distance_;
+  double reach_;
   /// Whether free points come near free edges or each other.
   bool tests_points_;
   const KdopShift* shift_;

@@ -42,7 +42,8 @@ NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
                          QueryProgress* progress, std::size_t task)
     : options_(options),
       kernels_(kernels()),
-      batch_(a, b, shift, kernels_, options.min_distance > 0),
+      batch_(a, b, shift, kernels_,
+             options.min_distance > 0 ? reachOf(a, b, options.min_distance) : 0),
       may_repeat_(!a.hasOwners() || !b.hasOwners()),
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             may_repeat_),
@@ -92,11 +93,11 @@ void NarrowPhase::flush() {
   for (const ContinuousContactKind kind :
        {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     BlockPairs pairs{*this, kind, latest};
-    if (options_.min_distance > 0) {
+    if (!(options_.min_distance > 0)) {
+      runStages(pairs);
+    } else if (sink_.mayKeepAtStart(kind)) {
       pairs.cullByBoxes();
       testDistances(kind);
-    } else {
-      runStages(pairs);
     }
   }
   batch_.clear();
@@ -249,13 +250,12 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);
-  const double latest = this->latest();
+  const DistanceRequest request = distanceRequest();
   candidates_.clear();
   for (std::size_t first = 0; first < size && !isDone(); first += 8) {
     const std::size_t count = std::min<std::size_t>(8, size - first);
-    unsigned left =
-        kernels_.mayComeWithin(kind, batch_.pairs(), codes + first, windows + first,
-                               count, latest, options_.min_distance);
+    unsigned left = kernels_.mayComeWithin(kind, batch_.pairs(), codes + first,
+                                           windows + first, count, request);
     counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
     for (; left != 0 && !isDone(); left &= left - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));

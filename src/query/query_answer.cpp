@@ -69,35 +69,31 @@ void takeAny(const std::vector<TaskAnswer>& tasks, QueryAnswer& answer) {
 
 using ContactLists = std::vector<std::deque<FeatureContact>>;
 
-/// Takes the contacts whose brackets begin no later than `latest`, the earliest
-/// max_contacts of them.
-ContactLists takeUntil(double latest, const std::vector<TaskAnswer>& tasks,
-                       std::size_t max_contacts, bool may_repeat, QueryAnswer& answer) {
-  ContactSink sink(max_contacts, may_repeat);
-  for (const TaskAnswer& task : tasks)
-    if (task.contacts)
-      for (const FeatureContact& contact : *task.contacts)
-        if (contact.toc_lo <= latest) sink.add(contact);
-  answer.cut |= sink.isCut();
-  ContactLists lists(1);
-  lists[0] = sink.takeContacts();
-  return lists;
-}
-
-/// Takes the earliest max_contacts of all contacts.
-ContactLists takeAll(std::vector<TaskAnswer>& tasks, std::size_t max_contacts,
-                     bool may_repeat, bool has_parts, QueryAnswer& answer) {
-  std::size_t count = 0;
-  for (const TaskAnswer& task : tasks) {
-    answer.cut |= task.cut;
-    if (task.contacts) count += task.contacts->size();
-  }
-  // A sink is needed only if it may have to leave out contacts.
-  if (may_repeat || has_parts || count > max_contacts)
-    return takeUntil(kInfinity, tasks, max_contacts, may_repeat, answer);
+/// Takes the earliest max_contacts of the contacts whose brackets begin no later than
+/// `latest`.
+/// @param may_repeat, has_parts  whether several tasks may have found a contact, or one
+/// of parts of features
+ContactLists takeUntil(double latest, std::vector<TaskAnswer>& tasks,
+                       std::size_t max_contacts, bool may_repeat, bool has_parts,
+                       QueryAnswer& answer) {
   ContactLists lists;
-  for (TaskAnswer& task : tasks)
-    if (task.contacts) lists.push_back(std::move(*task.contacts));
+  for (TaskAnswer& task : tasks) {
+    if (!task.contacts) continue;
+    std::deque<FeatureContact>& list = lists.emplace_back(std::move(*task.contacts));
+    if (latest < 1)
+      list.erase(std::remove_if(list.begin(), list.end(),
+                                [&](const auto& c) { return c.toc_lo > latest; }),
+                 list.end());
+  }
+  if (may_repeat || has_parts) dropRepeats(may_repeat, lists);
+  std::size_t count = 0;
+  for (const auto& list : lists) count += list.size();
+  if (count <= max_contacts) return lists;
+  ContactSink sink(max_contacts, false);
+  for (const auto& list : lists)
+    for (const FeatureContact& contact : list) sink.add(contact);
+  answer.cut = true;
+  lists.assign(1, sink.takeContacts());
   return lists;
 }
 
@@ -147,11 +143,11 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   const bool at_distance = options.min_distance > 0;
   const bool may_repeat = !a.hasOwners() || !b.hasOwners();
   const double first_hi = progress.first_hi.load();
-  ContactLists contacts;
-  if (options.query == ContinuousQuery::kFirst) {
-    contacts = takeUntil(first_hi, tasks, options.max_contacts, may_repeat, answer);
-  } else {
-    contacts = takeAll(tasks, options.max_contacts, may_repeat, at_distance, answer);
+  const bool is_first = options.query == ContinuousQuery::kFirst;
+  ContactLists contacts = takeUntil(is_first ? first_hi : 1, tasks, options.max_contacts,
+                                    may_repeat, at_distance, answer);
+  if (!is_first) {
+    for (const TaskAnswer& task : tasks) answer.cut |= task.cut;
     if (answer.cut && !at_distance && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
       answer.first = {first.toc_lo, first.toc_hi};

@@ -7,17 +7,11 @@
 
 #include <vector>
 
-#include "elementary/feature_points.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-/// @brief A proved lower bound on the distance of two features; 0 if nothing is proved.
-/// @param kind  kVertexFace, kEdgeEdge, kVertexEdge or kVertexVertex
-/// @param x  paths whose both ends are the same
-double leastDistance(ContinuousContactKind kind, const FeaturePoints& x);
 
 /// @brief Lowers the bounds of the vertices so that, if no vertex moves further than its
 /// bound, all VF and EE pairs stay further apart than min_distance. Vertices of a pair

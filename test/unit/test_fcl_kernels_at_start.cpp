@@ -198,14 +198,14 @@ TEST(FCL_KERNELS, trianglesThatComeTogetherAreNotApart) {
       (n < count ? touching : separated).push_back(triangles[n].pair());
     float gaps[8];
     for (const Kernels* k : allSets()) {
-      EXPECT_EQ(k->areApart(touching.data(), count, share, gaps), 0U) << k->name;
+      EXPECT_EQ(k->areApart(touching.data(), count, share, 0, gaps), 0U) << k->name;
       for (std::size_t n = 0; n < count; ++n)
         EXPECT_EQ(gaps[n], roundUp(2 * scale * approach[n], 0.f)) << k->name;
     }
     const unsigned found =
-        allSets().front()->areApart(separated.data(), count, share, gaps);
+        allSets().front()->areApart(separated.data(), count, share, 0, gaps);
     for (const Kernels* k : allSets())
-      EXPECT_EQ(k->areApart(separated.data(), count, share, gaps), found) << k->name;
+      EXPECT_EQ(k->areApart(separated.data(), count, share, 0, gaps), found) << k->name;
     apart += __builtin_popcount(found);
     total += static_cast<int>(count);
     ASSERT_FALSE(HasFailure());
@@ -238,9 +238,11 @@ TEST(FCL_KERNELS, layersAreApart) {
         x[0][1].t0[3] = x[1][2].t0[3] = 0.5;
         for (const Kernels* k : allSets()) {
           float gaps[8];
-          EXPECT_EQ(k->areApart(&pair, 1, 0.33, gaps), 1U) << k->name << " " << upright;
-          EXPECT_EQ(k->areApart(&pair, 1, 0, gaps), 1U) << k->name << " " << upright;
-          EXPECT_EQ(k->areApart(&pair, 1, 0.34, gaps), 0U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, 0.33, 0, gaps), 1U)
+              << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, 0, 0, gaps), 1U) << k->name << " " << upright;
+          EXPECT_EQ(k->areApart(&pair, 1, 0.34, 0, gaps), 0U)
+              << k->name << " " << upright;
         }
       }
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The kernels of contact at a distance, against the scalar test: the filter before it and
-// the advancement of eight pairs.
+// The kernels of contact at a distance, against the scalar test: the filters before it,
+// the advancement of eight pairs, and the least distance of pairs at rest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "elementary/distance_advance.h"
+#include "elementary/least_distance.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
@@ -61,28 +63,31 @@ struct Found {
   int culled{0}, contacts{0}, apart{0};
 };
 
-/// No instruction set culls what the scalar test reports until `latest`, and all find the
-/// same.
-Found expectRightFilter(const MovingPair (&queries)[8], double distance, double latest) {
+DistanceRequest requestUntil(double latest, double distance) {
+  DistanceRequest request;
+  request.distance = distance;
+  request.t_max = request.t_stop = latest;
+  return request;
+}
+
+/// No instruction set culls what the scalar test reports, and all find the same.
+Found expectRightFilter(const MovingPair (&queries)[8], const DistanceRequest& request) {
   const DistanceBlock block(queries);
   const ContinuousContactKind kind = queries[0].kind;
   unsigned contacts = 0;
   for (unsigned lane = 0; lane < 8; ++lane) {
-    DistanceRequest request;
-    request.distance = distance;
-    request.t_max = latest;
     contacts |=
         unsigned{advanceToDistance(kind, queries[lane].points(), request).is_contact}
         << lane;
   }
-  const unsigned found = allSets().front()->mayComeWithin(
-      kind, block.pairs, block.codes, block.windows, 8, latest, distance);
-  EXPECT_EQ(contacts & ~found, 0U) << distance;
+  const unsigned found = allSets().front()->mayComeWithin(kind, block.pairs, block.codes,
+                                                          block.windows, 8, request);
+  EXPECT_EQ(contacts & ~found, 0U) << request.distance;
   for (const Kernels* k : allSets())
     for (const std::size_t count : {8, 3, 1})
-      EXPECT_EQ(k->mayComeWithin(kind, block.pairs, block.codes, block.windows, count,
-                                 latest, distance),
-                found & ((1U << count) - 1))
+      EXPECT_EQ(
+          k->mayComeWithin(kind, block.pairs, block.codes, block.windows, count, request),
+          found & ((1U << count) - 1))
           << k->name;
   return {8 - __builtin_popcount(found), __builtin_popcount(contacts),
           8 - __builtin_popcount(contacts)};
@@ -102,8 +107,8 @@ TEST(FCL_KERNELS, distanceFilterNeverCullsAContact) {
         for (int k = 0; k < 3; ++k) p.t1[k] = p.t0[k] + motion * (p.t1[k] - p.t0[k]);
     }
     const double latest = random.index(2) ? 1 : random.uniform(0.2, 1);
-    const Found n =
-        expectRightFilter(queries, std::pow(10, random.uniform(-6, 0)), latest);
+    const Found n = expectRightFilter(
+        queries, requestUntil(latest, std::pow(10, random.uniform(-6, 0))));
     sum.culled += n.culled;
     sum.contacts += n.contacts;
     sum.apart += n.apart;
@@ -131,12 +136,45 @@ TEST(FCL_KERNELS, distanceFilterOfGrazes) {
                                    1 - 1e-9, 1 + 1e-9,    1 - 3e-9};
     const double distance =
         std::sqrt(nearestPoint(polygon, corners).square) * kFactors[random.index(6)];
-    const Found n = expectRightFilter(queries, distance, 1);
+    const Found n = expectRightFilter(queries, requestUntil(1, distance));
     contacts += n.contacts;
     culled += n.culled;
   }
   EXPECT_GT(contacts, 3000);
   EXPECT_GT(culled, 3000);
+}
+
+/// Pairs that are nearer than the distance at t = 0, and ignored then: the filter leaves
+/// out those that do not come nearer until an early time. Some rest, some move together,
+/// and some almost touch.
+TEST(FCL_KERNELS, distanceFilterOfIgnoredPairs) {
+  Random random(77);
+  Found sum;
+  for (int i = 0; i < 8000 && !testing::Test::HasFailure(); ++i) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    const double latest = std::pow(10, random.uniform(-14, -1.3));
+    MovingPair queries[8];
+    for (MovingPair& pair : queries) {
+      pair = scatteredPair(random, kind);
+      const Vector3<double> way = random.point(1);
+      const double apart = random.index(4) ? 1 : std::pow(10, random.uniform(-13, 0));
+      const int moves = static_cast<int>(random.index(3));
+      for (auto& p : pair.x)
+        for (int k = 0; k < 3; ++k) {
+          // Nearer to each other in one direction.
+          if (k == i % 3) p.t0[k] *= apart;
+          if (moves < 2) p.t1[k] = p.t0[k] + (moves == 1 ? way[k] : 0);
+        }
+    }
+    DistanceRequest request = requestUntil(latest, std::pow(10, random.uniform(-2, 0)));
+    request.ignores_initially_closer = true;
+    const Found n = expectRightFilter(queries, request);
+    sum.culled += n.culled;
+    sum.contacts += n.contacts;
+    sum.apart += n.apart;
+  }
+  EXPECT_GT(sum.contacts, 1000);
+  EXPECT_GT(sum.culled, sum.apart / 2);
 }
 
 /// Sizes over all of double's range, and coordinates that are not finite.
@@ -151,7 +189,8 @@ TEST(FCL_KERNELS, distanceFilterOfAllSizes) {
       scale(pair, std::ldexp(1, exponent));
     }
     culled +=
-        expectRightFilter(queries, std::ldexp(random.uniform(0.01, 0.1), exponent), 1)
+        expectRightFilter(
+            queries, requestUntil(1, std::ldexp(random.uniform(0.01, 0.1), exponent)))
             .culled;
   }
   EXPECT_GT(culled, 300);
@@ -165,7 +204,7 @@ TEST(FCL_KERNELS, distanceFilterOfAllSizes) {
   const DistanceBlock block(queries);
   for (const Kernels* k : allSets())
     EXPECT_EQ(k->mayComeWithin(ContinuousContactKind::kEdgeEdge, block.pairs, block.codes,
-                               block.windows, 8, 1, 1e-3),
+                               block.windows, 8, requestUntil(1, 1e-3)),
               0xffU)
         << k->name;
 }
@@ -308,6 +347,92 @@ TEST(FCL_KERNELS, advancesAllSizesAsTheScalarTest) {
   }
   EXPECT_GT(sum.contacts, 100);
   EXPECT_GT(sum.open, 2000);
+}
+
+/// Pairs at rest at t = 1: the bound of the scalar function, to the bit.
+TEST(FCL_KERNELS, leastDistancesAsTheScalarFunction) {
+  Random random(78);
+  int known = 0, unknown = 0;
+  for (int i = 0; i < 4000 && !testing::Test::HasFailure(); ++i) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    std::vector<TreeVertex> vertices(32);
+    EightPoints points;
+    points.kind = kind;
+    double expected[8];
+    for (std::size_t lane = 0; lane < 8; ++lane) {
+      MovingPair pair = scatteredPair(random, kind);
+      // Some are flat.
+      if (random.index(4) == 0)
+        for (auto& x : pair.x) x.t1[i % 3] = 0.25;
+      for (std::size_t k = 0; k < 4; ++k) {
+        vertices[4 * lane + k].setPath(pair.x[k].t0, pair.x[k].t1);
+        points.x[k][lane] = &vertices[4 * lane + k];
+        std::copy(pair.x[k].t1, pair.x[k].t1 + 3, pair.x[k].t0);
+      }
+      expected[lane] = leastDistance(kind, pair.points());
+    }
+    double first[8];
+    const unsigned found = allSets().front()->leastDistances(points, first);
+    test::expectSameBits(found, first, expected);
+    for (const Kernels* k : allSets()) {
+      double least[8];
+      EXPECT_EQ(k->leastDistances(points, least), found) << k->name;
+      test::expectSameBits(found, least, expected);
+    }
+    known += __builtin_popcount(found);
+    unknown += 8 - __builtin_popcount(found);
+  }
+  EXPECT_GT(known, 20000);
+  EXPECT_GT(unknown, 100);
+}
+
+/// Triangles that a plane keeps further apart than a distance, until an early time. The
+/// distance of two triangles is that of their VF and EE pairs, unless they cross.
+TEST(FCL_KERNELS, trianglesThatStayApartByADistance) {
+  Random random(79);
+  int apart = 0, near = 0;
+  for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
+    const double distance = i % 3 ? std::pow(10, random.uniform(-4, -0.3)) : 0,
+                 share = std::pow(10, random.uniform(-4, -1.3));
+    std::vector<TreeVertex> vertices(6);
+    VertexPath paths[6];
+    const Vector3<double> away = random.point(1);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Vector3<double> p = random.point(1) + (k < 3 ? 0. : 1.) * away,
+                            q = p + random.point(0.5);
+      std::copy(p.data(), p.data() + 3, paths[k].t0);
+      std::copy(q.data(), q.data() + 3, paths[k].t1);
+      vertices[k].setPath(paths[k].t0, paths[k].t1);
+    }
+    TrianglePair pair{};
+    for (std::size_t k = 0; k < 6; ++k) pair.x[k] = &vertices[k];
+    float gaps[8];
+    const bool is_apart =
+        allSets().front()->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U;
+    for (const Kernels* k : allSets())
+      EXPECT_EQ(k->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U,
+                unsigned{is_apart})
+          << k->name;
+    bool comes_near = false;
+    const auto test = [&](ContinuousContactKind kind, std::array<std::size_t, 4> id) {
+      comes_near |=
+          advanceToDistance(
+              kind, {{&paths[id[0]], &paths[id[1]], &paths[id[2]], &paths[id[3]]}},
+              requestUntil(share, std::max(distance, 1e-9)))
+              .is_contact;
+    };
+    for (std::size_t k = 0; k < 3; ++k) {
+      test(ContinuousContactKind::kVertexFace, {k, 3, 4, 5});
+      test(ContinuousContactKind::kVertexFace, {3 + k, 0, 1, 2});
+      for (std::size_t l = 0; l < 3; ++l)
+        test(ContinuousContactKind::kEdgeEdge, {k, (k + 1) % 3, 3 + l, 3 + (l + 1) % 3});
+    }
+    EXPECT_FALSE(is_apart && comes_near) << distance << " until " << share;
+    apart += is_apart && distance > 0;
+    near += comes_near && distance > 0;
+  }
+  EXPECT_GT(apart, 200);
+  EXPECT_GT(near, 200);
 }
 
 }  // namespace

@@ -262,6 +262,60 @@ TEST(FCL_MIN_DISTANCE, smoothSheetsAgainstAllPairs) {
   EXPECT_EQ(trianglePairs(large, high, true), trianglePairs(large, high, false));
 }
 
+/// Some triangles twice, with their vertices in another order too. Each pair of features
+/// is one contact.
+TEST(FCL_MIN_DISTANCE, duplicateTrianglesAgainstAllPairs) {
+  Random random(88);
+  Seen seen;
+  for (int i = 0; i < 8; ++i) {
+    MovingMesh mesh = crumpledSheet(random, 4, 0.2);
+    const std::size_t count = mesh.triangles.size();
+    for (std::size_t k = 0; k < count / 3; ++k) {
+      const Triangle t = mesh.triangles[random.index(count)];
+      mesh.triangles.push_back(random.index(2) ? t : Triangle(t[1], t[0], t[2]));
+    }
+    const auto model = modelOf(mesh);
+    for (const double distance : {0.01, 0.1}) {
+      SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(distance));
+      Request request = requestAt(distance);
+      request.ignore_initially_closer = i % 2;
+      const Contacts found = contactsOf(selfContacts<double>(*model, request), true);
+      ASSERT_EQ(found, bruteForce(mesh, mesh, request));
+      seen.add(found);
+    }
+  }
+  EXPECT_EQ(seen.kinds.size(), 4U);
+  EXPECT_GT(seen.later, 100U);
+}
+
+/// Two balls in one mesh that come near each other. Each is left out with itself as long
+/// as its triangles are high.
+TEST(FCL_MIN_DISTANCE, bodiesAgainstAllPairs) {
+  Random random(89);
+  std::size_t contacts = 0;
+  for (int i = 0; i < 4; ++i) {
+    MovingMesh mesh = still(makeIcosphere(1, 0.5));
+    append(mesh, still(makeIcosphere(1, 0.4)));
+    const std::size_t half = mesh.t0.size() / 2;
+    const Vector3<double> from(1.2, random.uniform(-0.3, 0.3), 0.1),
+        to(random.uniform(0.7, 0.95), random.uniform(-0.3, 0.3), 0);
+    for (std::size_t k = half; k < mesh.t0.size(); ++k) {
+      mesh.t0[k] += from;
+      mesh.t1[k] = 0.9 * mesh.t1[k] + to;
+    }
+    const auto model = modelOf(mesh);
+    for (const double distance : {0.01, 0.15, 0.4}) {
+      SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(distance));
+      Request request = requestAt(distance);
+      request.ignore_initially_closer = i % 2;
+      const Result result = selfContacts<double>(*model, request);
+      ASSERT_EQ(contactsOf(result, true), bruteForce(mesh, mesh, request));
+      contacts += result.contacts.size();
+    }
+  }
+  EXPECT_GT(contacts, 1000U);
+}
+
 TEST(FCL_MIN_DISTANCE, pairsAgainstAllPairs) {
   Random random(82);
   Seen seen;
@@ -367,18 +421,16 @@ TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
   }
 }
 
-TEST(FCL_MIN_DISTANCE, threadsDoNotMatter) {
-  Random random(84);
-  const MovingMesh mesh = crumpledSheet(random, 24, 0.03);
-  const auto model = modelOf(mesh);
+void expectSameWithFourThreads(const Model& model, Request request, std::size_t least) {
   for (const bool ignores : {false, true}) {
-    Request request = requestAt(0.01);
     request.ignore_initially_closer = ignores;
-    const Result one = selfContacts<double>(*model, request);
+    request.num_threads = 1;
+    const Result one = selfContacts<double>(model, request);
     request.num_threads = 4;
-    const Result four = selfContacts<double>(*model, request);
+    const Result four = selfContacts<double>(model, request);
     ASSERT_EQ(one.contacts.size(), four.contacts.size());
-    ASSERT_GT(one.contacts.size(), 100U);
+    ASSERT_GE(one.contacts.size(), least);
+    EXPECT_EQ(one.counts.triangle_pairs, four.counts.triangle_pairs);
     for (std::size_t i = 0; i < one.contacts.size(); ++i) {
       const Contact &x = one.contacts[i], &y = four.contacts[i];
       EXPECT_TRUE(nameOf(x, true) == nameOf(y, true));
@@ -390,6 +442,22 @@ TEST(FCL_MIN_DISTANCE, threadsDoNotMatter) {
       EXPECT_EQ(x.normal, y.normal);
     }
   }
+}
+
+TEST(FCL_MIN_DISTANCE, threadsDoNotMatter) {
+  Random random(84);
+  expectSameWithFourThreads(*modelOf(crumpledSheet(random, 24, 0.03)), requestAt(0.01),
+                            100);
+  // Regions and a body that are left out, and a sheet that comes near them.
+  const auto sheet = [](double height) {
+    return makeSheet(40, 40, [=](double u, double v) {
+      return Vector3<double>(u, v, height + 0.05 * std::sin(5 * u));
+    });
+  };
+  MovingMesh mesh{sheet(0).vertices, sheet(0).vertices, sheet(0).triangles};
+  append(mesh, {sheet(0.4).vertices, sheet(0.02).vertices, sheet(0).triangles});
+  append(mesh, moved(still(makeIcosphere(3, 0.3)), {0.5, 0.5, -0.4}));
+  expectSameWithFourThreads(*modelOf(mesh), requestAt(0.025), 1000);
 }
 
 bool holds(const Triangle& t, int v) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/least_distance.h"
+
+#include <algorithm>
+
+#include "elementary/distance_advance.h"
+#include "elementary/nearest_point.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
+  constexpr double kUnit = LeastDistance::kUnit;
+  const DifferencePolygon polygon(kind, x);
+  Vec corners[DifferencePolygon::kMaxCorners];
+  for (int k = 0; k < polygon.count(); ++k) corners[k] = polygon.t0(k);
+  const NearestPoint near = nearestPoint(polygon, corners);
+  double best = 0;
+  for (int attempt = 0; attempt < kDirectionAttempts; ++attempt) {
+    const Vec n = directionApart(polygon, corners, near, attempt);
+    double gap = dot(n, corners[0]);
+    for (int k = 1; k < polygon.count(); ++k) gap = std::min(gap, dot(n, corners[k]));
+    best = std::max(best, gap);
+    if (best > LeastDistance::kEnough * near.distance) break;
+  }
+  const double least = best * (1 - 8 * kUnit) - 16 * kUnit * polygon.size();
+  return least > 0 ? least : 0;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
