@@ -12,8 +12,8 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// A point of b minus a point of a.
-struct Difference {
+/// The support points of a and b, and the second minus the first.
+struct SupportPair {
   Vec point[2];
   int id[2];
   Vec between;
@@ -21,7 +21,7 @@ struct Difference {
 
 /// Up to four differences, and weights of the point of their hull nearest to the origin.
 struct Simplex {
-  Difference vertex[4];
+  SupportPair vertex[4];
   double weight[4];
   int count{0};
 };
@@ -188,8 +188,8 @@ class GapSearch {
   }
 
   /// The difference that is least along a direction, which is noted if it shows more.
-  Difference measure(const Vec& n) {
-    Difference d;
+  SupportPair measure(const Vec& n) {
+    SupportPair d;
     d.point[0] = set_[0]->support(n, d.id[0]);
     d.point[1] = set_[1]->support(-1. * n, d.id[1]);
     d.between = d.point[1] - d.point[0];
@@ -205,7 +205,7 @@ class GapSearch {
   bool add(const Vec& direction) {
     const double length = norm(direction);
     if (!(length > 0x1p-500)) return false;
-    const Difference d = measure((1 / length) * direction);
+    const SupportPair d = measure((1 / length) * direction);
     for (int i = 0; i < simplex_.count; ++i) {
       const Vec change = d.between - simplex_.vertex[i].between;
       if (maxNorm(change) == 0) return false;
