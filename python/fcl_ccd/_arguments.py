@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import operator
 import sys
+from numbers import Real
 from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
@@ -28,7 +29,8 @@ class Built:
 
         def __getattr__(self, name: str) -> Any:
             """Called for an attribute that was not found."""
-            if any(name in getattr(cls, "__annotations__", {}) for cls in type(self).__mro__):
+            own = [c for c in type(self).__mro__ if c.__module__.partition(".")[0] == __package__]
+            if any(name in getattr(c, "__annotations__", {}) for c in own):
                 raise TypeError(
                     f"the __init__() of this {type(self).__name__} was not called, or has not ended"
                 )
@@ -63,6 +65,8 @@ def _array(values: ArrayLike, name: str, kind: str, shape: Sequence[Optional[int
         array = np.asarray(values)
     except ValueError as error:  # for example lists of different lengths
         raise ValueError(f"{name} is no array of {_WANTED[kind]}: {error}") from error
+    if array.dtype.kind == "O":
+        array = _plain_numbers(array, name, kind)
     if array.dtype.kind not in ("iuf" if kind == "f" else "iu") and array.size > 0:
         raise _wrong_elements(values, array, name, kind)
     if array.ndim != len(shape) or any(
@@ -86,16 +90,28 @@ def _too_large(number: int, name: str) -> ValueError:
     return ValueError(f"{name} has the number {number}. The largest number possible is 2^63 - 1")
 
 
+def _plain_numbers(array: NDArray[Any], name: str, kind: str) -> NDArray[Any]:
+    """The same in numpy's numbers where all elements are Python's, else as it is."""
+    elements = array.ravel().tolist()
+    if not all(type(element) in ((int, float) if kind == "f" else (int,)) for element in elements):
+        return array
+    if kind == "f":
+        try:
+            return array.astype(np.float64)
+        except OverflowError as error:
+            raise ValueError(f"{name} has a number that is too large for a double") from error
+    largest = max(elements, key=abs, default=0)
+    if abs(largest) > _MOST:
+        raise _too_large(largest, name)
+    return array.astype(np.int64)
+
+
 def _wrong_elements(values: object, array: NDArray[Any], name: str, kind: str) -> Exception:
     if array.ndim == 0:
         return wrong_type(name, values, f"an array of {_WANTED[kind]}")
     if array.dtype.kind != "O":
         return type_error(f"{name} has elements of type {array.dtype}. Give {_WANTED[kind]}")
     elements = array.ravel().tolist()
-    if all(type(element) is int for element in elements):
-        largest = max(elements, key=abs)
-        if kind == "i" and abs(largest) > _MOST:  # numpy has no such integers
-            return _too_large(largest, name)
     other = next((e for e in elements if type(e) not in (int, float)), elements[0])
     return type_error(
         f"{name} is an array of objects, with an element of type {type(other).__name__}. "
@@ -146,12 +162,10 @@ def real(value: float, name: str) -> float:
     """A number. It may be infinite or NaN, which the library judges."""
     if type(value) is float:
         return value
-    if isinstance(value, (str, bytes, bool, np.bool_)):  # float() would take them
+    if not isinstance(value, Real) or isinstance(value, bool):
         raise wrong_type(name, value, "a number")
     try:
         return float(value)
-    except (TypeError, ValueError) as error:
-        raise wrong_type(name, value, "a number") from error
     except OverflowError as error:
         raise ValueError(f"{name} is {value}. It is too large for a double") from error
 

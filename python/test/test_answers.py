@@ -297,6 +297,8 @@ def test_inputs_of_any_numeric_type_and_layout():
         np.testing.assert_array_equal(fcl_ccd.self_collide(mesh).contacts["toc_lo"], expected)
     mesh = fcl_ccd.DeformableMesh(PREVIOUS.astype(np.float32), TRIANGLES)
     np.testing.assert_array_equal(mesh.current, PREVIOUS.astype(np.float32))
+    mesh = fcl_ccd.DeformableMesh(PREVIOUS.astype(object), TRIANGLES.astype(object))
+    np.testing.assert_array_equal(mesh.current, PREVIOUS)
 
 
 def test_inputs_stay_unchanged():

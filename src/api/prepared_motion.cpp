@@ -100,8 +100,8 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
-    // In the body frame, which a matrix that is no rotation makes larger or smaller.
-    const double reach_in_body = (reach + path.translationReach()) / path.stretch();
+    // In the body frame. A matrix that is just a rotation shrinks by less than 2^-9.
+    const double reach_in_body = (1 + 0x1p-8) * (reach + path.translationReach());
     shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {

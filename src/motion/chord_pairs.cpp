@@ -206,7 +206,7 @@ ChordSearch::Span ChordSearch::find(int i) {
   near.max_contacts = static_cast<std::size_t>(-1);
   near.t_max = std::min(1., (options_.t_max - span.t0) * num_spans_ * kUpward);
   near.all_crossings &= i == 0;
-  // Of a bracket only the lower end matters.
+  // A bracket need not be narrow.
   near.toc_err = 1;
   near.names_parts = false;
   near.lists_near_pairs = listsWindows();

@@ -81,12 +81,14 @@ ConvexPairMotion::ConvexPairMotion(const MovingConvex& a, const MovingConvex& b,
       acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
 
 void ConvexPairMotion::ignoreInitiallyCloser() {
-  const ConvexGap gap = gapOf(stateAt(0), 0);
+  const State state = stateAt(0);
+  const ConvexGap gap = gapOf(state, 0);
   if (gap.distance > tolerance_.distance + tolerance_.touching) return;
   double radii = 0;
   for (const MovingConvex* set : set_)
     if (set->shape) radii += set->shape->radius();
-  const double own = (gap.gap - radii) * (1 - kNearerShare) - 2 * tolerance_.touching;
+  const double own = (gap.gap / growthOfNormal(state) - radii) * (1 - kNearerShare) -
+                     2 * tolerance_.touching;
   if (own > 0) tolerance_.distance = radii + own;
 }
 

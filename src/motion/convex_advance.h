@@ -102,6 +102,7 @@ class ConvexPairMotion {
     return 2 * tolerance_.position + growth * tolerance_.distance;
   }
   double growthOfNormal(const State& state) const;
+  Vec firstGuess(const State& state) const;
   Separator inWorld(const Vec& direction) const;
   Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
   double gapAfter(double h, const State& state, const Separator& separator) const;
@@ -117,7 +118,6 @@ class ConvexPairMotion {
   MotionTolerance tolerance_;
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};
-  Vec firstGuess(const State& state) const;
   Vec suggested_{0, 0, 0};
   /// The direction of the last gap; 0: there is none.
   Vec guess_{0, 0, 0};

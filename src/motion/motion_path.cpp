@@ -269,6 +269,10 @@ void MotionPath::reachEnd(const Pose& end) {
     turn_.linear_translation[k] =
         (end.translation[k] - turn_.beginning.translation[k]) -
         (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k]);
+  // A rotation of the beginning, and a part of E.
+  stretch_ =
+      (spectralBound(turn_.beginning.rotation) + frobenius(turn_.linear_rotation)) *
+      kUpward;
 }
 
 MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,

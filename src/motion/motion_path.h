@@ -2,6 +2,9 @@
 #ifndef FCL_CCD_MOTION_MOTION_PATH_H
 #define FCL_CCD_MOTION_MOTION_PATH_H
 
+#include <algorithm>
+#include <iterator>
+
 #include "fcl/math/motion/bounded_motion.h"
 #include "mesh/vertex_frames.h"
 #include "numerics/moving_vector.h"
@@ -134,7 +137,11 @@ class MotionPath {
   bool hasConstantAcceleration() const { return kind_ == Kind::kTurn; }
 
   /// @brief Whether the rotation is the same at all times.
-  bool isTranslation() const { return kind_ == Kind::kTurn && turn_.angle == 0; }
+  bool isTranslation() const {
+    return kind_ == Kind::kTurn && turn_.angle == 0 &&
+           std::all_of(std::begin(turn_.linear_rotation), std::end(turn_.linear_rotation),
+                       [](double x) { return x == 0; });
+  }
 
   /// @brief Bound on |T(t)|.
   double translationReach() const { return translation_reach_; }

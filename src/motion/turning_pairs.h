@@ -107,7 +107,7 @@ class TurningBatch {
   }
 
   struct Pair {
-    /// Kept by reference until its answer is there.
+    /// Kept by reference until its answer is there. The triangles are copied.
     const FeatureContact& name;
     const BodyTriangle &a, &b;
     FeaturePair features;

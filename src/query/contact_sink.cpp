@@ -140,7 +140,10 @@ class Buckets {
   static constexpr std::size_t kGroups = 10;
 
   static std::size_t groupOf(const FeatureContact& c) {
-    return 2 * static_cast<std::size_t>(c.kind) + (c.first_on_a ? 0 : 1);
+    const std::size_t group =
+        2 * static_cast<std::size_t>(c.kind) + (c.first_on_a ? 0 : 1);
+    assert(group < kGroups);
+    return group;
   }
   static std::size_t partOf(double share, std::size_t count) {
     return std::min(static_cast<std::size_t>(share * static_cast<double>(count)),

@@ -77,6 +77,7 @@ ContactLists takeUntil(double latest, std::vector<TaskAnswer>& tasks,
                        std::size_t max_contacts, bool may_repeat, bool has_parts,
                        QueryAnswer& answer) {
   ContactLists lists;
+  lists.reserve(tasks.size());  // to grow would copy the contacts
   for (TaskAnswer& task : tasks) {
     if (!task.contacts) continue;
     std::deque<FeatureContact>& list = lists.emplace_back(std::move(*task.contacts));

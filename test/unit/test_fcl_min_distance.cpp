@@ -399,6 +399,13 @@ TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
     for (auto c = expected.begin(); c != expected.end();)
       c = c->second.first <= first_hi ? std::next(c) : expected.erase(c);
     EXPECT_EQ(contactsOf(first, true), expected);
+    request.num_max_contacts = 1 + random.index(first.contacts.size());
+    const Result few_first = selfContacts<double>(*model, request);
+    ASSERT_EQ(few_first.contacts.size(), request.num_max_contacts);
+    EXPECT_EQ(few_first.contacts_cut, few_first.contacts.size() < first.contacts.size());
+    for (std::size_t k = 0; k < few_first.contacts.size(); ++k)
+      EXPECT_TRUE(nameOf(few_first.contacts[k], true) == nameOf(first.contacts[k], true));
+    request.num_max_contacts = 1000000;
 
     request.query = ContinuousQuery::kAny;
     EXPECT_TRUE(selfContacts<double>(*model, request).is_collide);

@@ -86,8 +86,9 @@ using ContinuousManagerResultd = ContinuousManagerResult<double>;
 ///
 /// The manager does not own the objects. They must live until they are unregistered.
 ///
-/// A callback may change the manager. The pairs of its query were found before, and all
-/// of them come: objects that it unregisters must live until the query returns.
+/// A ContinuousCollisionCallBack may change the manager. The pairs of its query were
+/// found before, and all of them come: objects that it unregisters must live until the
+/// query returns. FCL's CollisionCallBack must not unregister objects.
 ///
 /// @throws fcl::Exception  An object is null, or has no geometry or motion; it is
 /// registered twice, or is not registered; a mesh is not built; a geometry or a path is

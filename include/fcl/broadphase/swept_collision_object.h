@@ -157,14 +157,15 @@ SweptCollisionObject<S>::SweptCollisionObject(ContinuousCollisionObject<S>* obje
 
 template <typename S>
 void SweptCollisionObject<S>::update() {
-  this->cgeom_const = object_->collisionGeometry();
-  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
   const detail::MovingGeometry<S> moving = detail::readObject<S>(object_);
   Transform3<S> tf = detail::toTransform(moving.pose[0]);
   if (moving.path == detail::PathKind::kUnknown)
     object_->getMotion()->getCurrentTransform(tf);
   const detail::StepBox box =
       detail::ContinuousBroadPhase<S>::stepBox(object_, &detail::readObject<S>);
+  // Nothing throws from here on.
+  this->cgeom_const = object_->collisionGeometry();
+  this->cgeom = std::const_pointer_cast<CollisionGeometry<S>>(this->cgeom_const);
   const Matrix3<S> rotation = tf.linear();
   const Vector3<S> translation = tf.translation();
   this->setTransform(rotation, translation);

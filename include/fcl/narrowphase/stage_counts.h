@@ -50,14 +50,16 @@ struct StageCounts {
   /// once the contacts found so far leave no more than the beginning of the step
   std::uint64_t plane_culled{0};
   /// VF and EE pairs without a common vertex that the remaining triangle pairs own; with
-  /// min_distance also pairs of free points with free edges and with each other
+  /// min_distance also pairs of free points with free edges and with each other. Without
+  /// EE pairs where the contacts found so far leave no room for them
   std::uint64_t feature_pairs{0};
   /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};
   /// feature pairs that the filters of the request reject
   std::uint64_t mask_culled{0};
   /// feature pairs that provably never become coplanar while their boxes overlap; with
-  /// min_distance: those that a direction provably keeps further apart
+  /// min_distance: those that a direction provably keeps further apart, or that do not
+  /// come nearer if they are ignored
   std::uint64_t filter_culled{0};
   /// feature pairs for which the certified solve (with min_distance: directional
   /// advancement) proved that there is no contact
