@@ -10,6 +10,9 @@
 #endif
 
 #include "kernels/kernel_functions.h"
+#if defined(FCL_CCD_USE_HIGHWAY)
+#include "kernels/targets.h"
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {
@@ -72,22 +75,13 @@ const Kernels& kernels() {
 }
 
 std::vector<const Kernels*> allKernels() {
-  std::vector<const Kernels*> all;
 #if defined(FCL_CCD_USE_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1)) != 0
-  // The library makes its own choice, since Highway's is valid for the whole process. The
-  // best target has the lowest bit. Without any bit the code without vector instructions
-  // is used.
-  hwy::ChosenTarget choice;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; true;
-       left &= left - 1) {
-    choice.Update(left & -left);
-    const Kernels* k = HWY_DISPATCH_TABLE(table)[choice.GetIndex()]();
-    if (all.empty() || all.back() != k) all.push_back(k);
-    if (left == 0) return all;
-  }
-#else
-  all.push_back(&kernels());
+  std::vector<const Kernels*> all;
+  for (const auto kernelsOf : ofEachTarget(HWY_DISPATCH_TABLE(table)))
+    all.push_back(kernelsOf());
   return all;
+#else
+  return {&kernels()};
 #endif
 }
 

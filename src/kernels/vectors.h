@@ -38,6 +38,10 @@ struct Vectors {
   Doubles x, y, z;
 };
 
+HWY_INLINE Vectors loadVectors(const double (&v)[3][8]) {
+  return {load<kEight>(v[0]), load<kEight>(v[1]), load<kEight>(v[2])};
+}
+
 HWY_INLINE Vectors operator+(const Vectors& a, const Vectors& b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }

@@ -97,7 +97,8 @@ class FeatureContacts {
     const auto& path_b = body_[1]->path();
     TrianglePairMotion motion(path_a, x, path_b, y, t, last, tolerance_);
     int steps = kMostSteps;
-    if (motion.advance(t, last, steps, counts_) == TrianglePairMotion::Answer::kApart)
+    MotionCounts counts;  // of no interest
+    if (motion.advance(t, last, steps, counts) == TrianglePairMotion::Answer::kApart)
       return false;
     if (t > std::min(last, latestWanted())) return false;
     put(a, b, bit, t, provedTime(a, b, t, last));
@@ -223,7 +224,8 @@ class FeatureContacts {
     FeaturePairMotion motion(body_[0]->path(), a, body_[1]->path(), b, bit, t, last,
                              tolerance_);
     if (options_.ignores_initially_closer && t == 0) motion.ignoreInitiallyCloser();
-    if (motion.advance(t, counts_) == TrianglePairMotion::Answer::kApart) return false;
+    MotionCounts counts;  // of no interest
+    if (motion.advance(t, counts) == TrianglePairMotion::Answer::kApart) return false;
     const DistanceContact found = motion.contactAt(
         t, TrianglePairMotion::bracketWidth(t, options_.toc_err, options_.t_max));
     sink_.add(contactOf(idsOf(bit, a, b), found, false));
@@ -248,7 +250,6 @@ class FeatureContacts {
   MotionTolerance tolerance_;
   ContactSink sink_;
   Proof last_proof_;
-  MotionCounts counts_;
 };
 
 /// The contacts of pairs of features that come near on chords, span by span.

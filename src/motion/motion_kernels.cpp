@@ -19,9 +19,6 @@ namespace deformable {
 namespace HWY_NAMESPACE {
 
 HWY_INLINE Vectors all(const double (&v)[3]) { return {all(v[0]), all(v[1]), all(v[2])}; }
-HWY_INLINE Vectors loadVectors(const double (&v)[3][8]) {
-  return {load<kEight>(v[0]), load<kEight>(v[1]), load<kEight>(v[2])};
-}
 
 HWY_INLINE Vectors rotated(const double (&r)[9], const Vectors& v) {
   return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z,

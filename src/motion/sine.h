@@ -18,6 +18,19 @@ struct SineCosine {
   double sine, cosine;
 };
 
+constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
+/// @brief pi / 2 as a sum: the first two have 33 bits.
+constexpr double kHalfPi[3] = {0x1.921fb54400000p+0, 0x1.0b4611a600000p-34,
+                               0x1.3198a2e037073p-69};
+/// @brief 1 / k! of odd k, with its sign, from 17 to 3.
+constexpr double kSineSeries[8] = {
+    1 / 355687428096000., -1 / 1307674368000., 1 / 6227020800., -1 / 39916800.,
+    1 / 362880.,          -1 / 5040.,          1 / 120.,        -1 / 6.};
+/// @brief The same of even k, from 18 to 4.
+constexpr double kCosineSeries[8] = {
+    -1 / 6402373705728000., 1 / 20922789888000., -1 / 87178291200., 1 / 479001600.,
+    -1 / 3628800.,          1 / 40320.,          -1 / 720.,         1 / 24.};
+
 /// @brief Sine and cosine of |x| <= kMostAngle, each within 4 u (u = 2^-53); the sine of
 /// |x| <= pi / 4 also within 4 u of itself.
 ///
@@ -27,31 +40,16 @@ struct SineCosine {
 /// 2^-102: 1 u. Taylor's series up to x^17 and x^18 leave (pi / 4)^19 / 19! < 2^-63. The
 /// sum of the first two terms rounds by u / 2, what is below them by less than u.
 inline SineCosine sineCosine(double x) {
-  constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-  constexpr double kHalfPi[3] = {0x1.921fb54400000p+0, 0x1.0b4611a600000p-34,
-                                 0x1.3198a2e037073p-69};
   const double quadrant = std::nearbyint(x * kTwoOverPi);
   const double r =
       ((x - quadrant * kHalfPi[0]) - quadrant * kHalfPi[1]) - quadrant * kHalfPi[2];
   const double q = r * r;
-  // 1 / k! of odd and even k.
-  double s = 1 / 355687428096000.;
-  s = s * q - 1 / 1307674368000.;
-  s = s * q + 1 / 6227020800.;
-  s = s * q - 1 / 39916800.;
-  s = s * q + 1 / 362880.;
-  s = s * q - 1 / 5040.;
-  s = s * q + 1 / 120.;
-  s = s * q - 1 / 6.;
+  double s = kSineSeries[0], c = kCosineSeries[0];
+  for (int k = 1; k < 8; ++k) {
+    s = s * q + kSineSeries[k];
+    c = c * q + kCosineSeries[k];
+  }
   s = r + r * (q * s);
-  double c = -1 / 6402373705728000.;
-  c = c * q + 1 / 20922789888000.;
-  c = c * q - 1 / 87178291200.;
-  c = c * q + 1 / 479001600.;
-  c = c * q - 1 / 3628800.;
-  c = c * q + 1 / 40320.;
-  c = c * q - 1 / 720.;
-  c = c * q + 1 / 24.;
   c = 1 - (0.5 * q - (q * q) * c);
   switch (static_cast<int>(quadrant) & 3) {
     case 0:

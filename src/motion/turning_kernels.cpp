@@ -32,6 +32,10 @@
 #include "kernels/lanes.h"
 #include "kernels/nearest_points.h"
 #include "kernels/vectors.h"
+#include "motion/sine.h"
+#if defined(FCL_CCD_USE_HIGHWAY)
+#include "kernels/targets.h"
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {
@@ -41,40 +45,27 @@ namespace HWY_NAMESPACE {
 
 constexpr unsigned kAllOfEight = (1U << kEight) - 1;
 
-HWY_INLINE Vectors loadVectors(const double (&v)[3][8]) {
-  return {load<kEight>(v[0]), load<kEight>(v[1]), load<kEight>(v[2])};
-}
-
 struct SinesCosines {
   Doubles sine, cosine;
 };
 
-HWY_INLINE Doubles series(const Doubles& q, const double* first, const double* end) {
-  Doubles sum = all(*first);
-  while (++first != end) sum = sum * q + all(*first);
+HWY_INLINE Doubles series(const Doubles& q, const double (&terms)[8]) {
+  Doubles sum = all(terms[0]);
+  for (int k = 1; k < 8; ++k) sum = sum * q + all(terms[k]);
   return sum;
 }
 
 /// sineCosine() of angles in [0, 3.2].
 HWY_INLINE SinesCosines sinesCosines(const Doubles& x) {
-  constexpr double kTwoOverPi = 0x1.45f306dc9c883p-1;
-  constexpr double kHalfPi[3] = {0x1.921fb54400000p+0, 0x1.0b4611a600000p-34,
-                                 0x1.3198a2e037073p-69};
   // A sum with it is rounded to an integer.
   constexpr double kInteger = 0x1.8p52;
-  static constexpr double kSines[] = {
-      1 / 355687428096000., -1 / 1307674368000., 1 / 6227020800., -1 / 39916800.,
-      1 / 362880.,          -1 / 5040.,          1 / 120.,        -1 / 6.};
-  static constexpr double kCosines[] = {
-      -1 / 6402373705728000., 1 / 20922789888000., -1 / 87178291200., 1 / 479001600.,
-      -1 / 3628800.,          1 / 40320.,          -1 / 720.,         1 / 24.};
   const Doubles zero = all(0),
                 quadrant = (x * all(kTwoOverPi) + all(kInteger)) - all(kInteger);
   const Doubles r = ((x - quadrant * all(kHalfPi[0])) - quadrant * all(kHalfPi[1])) -
                     quadrant * all(kHalfPi[2]);
   const Doubles q = r * r;
-  const Doubles s = r + r * (q * series(q, kSines, kSines + 8)),
-                c = all(1) - (all(0.5) * q - (q * q) * series(q, kCosines, kCosines + 8));
+  const Doubles s = r + r * (q * series(q, kSineSeries)),
+                c = all(1) - (all(0.5) * q - (q * q) * series(q, kCosineSeries));
   const DoubleMask is_first = quadrant < all(0.5), is_second = quadrant < all(1.5);
   return {select(is_first, s, select(is_second, c, zero - s)),
           select(is_first, c, select(is_second, zero - s, zero - c))};
@@ -431,20 +422,10 @@ TurningAnswers advanceTurning(const TurningPairs& pairs, const TurningBody (&bod
 }
 
 std::vector<decltype(&advanceTurning)> allTurningKernels() {
-  std::vector<decltype(&advanceTurning)> all;
 #if defined(FCL_CCD_USE_HIGHWAY) && (HWY_TARGETS & (HWY_TARGETS - 1)) != 0
-  // As allKernels().
-  hwy::ChosenTarget choice;
-  for (std::int64_t left = hwy::SupportedTargets() & HWY_TARGETS; true;
-       left &= left - 1) {
-    choice.Update(left & -left);
-    const auto kernel = HWY_DISPATCH_TABLE(turningAnswers)[choice.GetIndex()];
-    if (all.empty() || all.back() != kernel) all.push_back(kernel);
-    if (left == 0) return all;
-  }
+  return ofEachTarget(HWY_DISPATCH_TABLE(turningAnswers));
 #else
-  all.push_back(&advanceTurning);
-  return all;
+  return {&advanceTurning};
 #endif
 }
 
