@@ -250,3 +250,11 @@ def test_cycles_are_freed(make):
     del kept, others
     gc.collect()
     assert reference() is None
+
+
+def test_annotations_of_a_user_are_no_attributes_of_ours():
+    class Cached(fcl_ccd.LinearMotion):
+        cache: dict
+
+    motion = Cached(np.eye(4), np.eye(4))
+    assert getattr(motion, "cache", None) is None

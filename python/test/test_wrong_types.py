@@ -139,3 +139,9 @@ def test_functions_of_the_user_are_not_named():
 
     with pytest.raises(TypeError, match=r"^Sphere\(\): radius is of type str. Give a number"):
         fcl_ccd.candidates(MESH, MESH, sink=nested)
+
+
+@pytest.mark.parametrize("value", [1e-4 + 1j, np.complex128(1e-4), bytearray(b"1e-4"), np.array([1e-4])])
+def test_what_float_would_take_is_no_number(value):
+    with pytest.raises(TypeError, match=r"self_collide\(\): toc_err is of type"):
+        fcl_ccd.self_collide(MESH, toc_err=value)
