@@ -18,8 +18,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A pair whose points are in order.
 struct OrderedPair : OrderedPoints<VertexPath> {
   FeaturePoints x;
-  OrderedPair(ContinuousContactKind kind, const FeaturePoints& points)
-      : OrderedPoints(kind, points.point), x{{point[0], point[1], point[2], point[3]}} {}
+  OrderedPair(ContinuousContactKind kind, const FeaturePoints& points,
+              const PointIds& ids)
+      : OrderedPoints(kind, points.point, ids),
+        x{{point[0], point[1], point[2], point[3]}} {}
 };
 
 /// n, of length 1 or less, without its parts along v and w, and with length 1; the zero
@@ -392,8 +394,8 @@ double placeOnFirstEdge(const NearestPoint& near) {
 }  // namespace
 
 DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoints& x,
-                                  const DistanceRequest& request) {
-  const OrderedPair ordered(kind, x);
+                                  const DistanceRequest& request, const PointIds& ids) {
+  const OrderedPair ordered(kind, x, ids);
   AdvancingPair pair(kind, ordered.x);
   const double size = std::max(pair.size(), request.distance);
   if (size >= Advance::kLeastSize && size <= Advance::kMostSize)
@@ -403,7 +405,7 @@ DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoint
 
 void distanceGeometry(ContinuousContactKind kind, const FeaturePoints& x, double t,
                       double (&position)[3], double (&normal)[3]) {
-  const OrderedPair ordered(kind, x);
+  const OrderedPair ordered(kind, x, {});
   AdvancingPair pair(kind, ordered.x);
   const NearestPoint near = pair.nearestAt(t);
   const double s = kind == ContinuousContactKind::kEdgeEdge ? placeOnFirstEdge(near) : 0;

@@ -99,9 +99,11 @@ struct Advance {
 /// the features or of their points; (4) the same inputs give the same bits on every
 /// machine.
 /// @param kind  kVertexFace, kEdgeEdge, kVertexEdge or kVertexVertex
+/// @param ids  name the parts of features whose points coincide
 /// @pre all coordinates are finite
 DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoints& x,
-                                  const DistanceRequest& request);
+                                  const DistanceRequest& request,
+                                  const PointIds& ids = {});
 
 /// @brief The middle of the nearest points at t, and the unit vector from the first
 /// feature to the second; zero if they touch.

@@ -4,6 +4,8 @@
 #ifndef FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 #define FCL_CCD_ELEMENTARY_FEATURE_POINTS_H
 
+#include <cstdint>
+
 #include "fcl/narrowphase/stage_counts.h"
 #include "mesh/vertex_frames.h"
 
@@ -15,6 +17,12 @@ namespace deformable {
 struct FeaturePoints {
   const VertexPath* point[4];
   const VertexPath& operator[](int i) const { return *point[i]; }
+};
+
+/// @brief The ids of the points of a pair. Points of a feature that coincide are in the
+/// order of their ids: an edge or a vertex of the feature then has one name.
+struct PointIds {
+  std::uint32_t id[4]{0, 1, 2, 3};
 };
 
 /// The same quantity at t = 0 and at t = 1; compilers use vector instructions for it.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The order in which the points of a pair are tested at a distance. It depends on the
-// points only, so that the answer does not depend on the order in which they are given.
+// points and their ids only, so that the answer does not depend on the order in which
+// they are given.
 #ifndef FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 #define FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 
+#include "elementary/feature_points.h"
 #include "fcl/narrowphase/stage_counts.h"
 
 namespace fcl {
@@ -16,8 +18,9 @@ namespace deformable {
 template <typename Point>
 class OrderedPoints {
  public:
-  OrderedPoints(ContinuousContactKind kind, const Point* const (&points)[4])
-      : point{points[0], points[1], points[2], points[3]} {
+  OrderedPoints(ContinuousContactKind kind, const Point* const (&points)[4],
+                const PointIds& ids)
+      : point{points[0], points[1], points[2], points[3]}, ids_(ids) {
     switch (kind) {
       case ContinuousContactKind::kVertexFace:
         sort(1, 2);
@@ -33,7 +36,7 @@ class OrderedPoints {
         sort(1, 2);
         return;
       default:
-        sort(0, 1);
+        swapIf(compare(1, 0) < 0, 0, 1);
         return;
     }
   }
@@ -42,16 +45,23 @@ class OrderedPoints {
   int number[4]{0, 1, 2, 3};
 
  private:
-  bool isBefore(int i, int j) const {
+  /// Below, at or above 0: point i is before point j, they coincide, or it is after it.
+  int compare(int i, int j) const {
     const Point &p = *point[i], &q = *point[j];
     for (int k = 0; k < 3; ++k)
-      if (p.t0[k] != q.t0[k]) return p.t0[k] < q.t0[k];
+      if (p.t0[k] != q.t0[k]) return p.t0[k] < q.t0[k] ? -1 : 1;
     for (int k = 0; k < 3; ++k)
-      if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k];
-    return false;
+      if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k] ? -1 : 1;
+    return 0;
+  }
+  /// For two points of one feature.
+  bool isBefore(int i, int j) const {
+    const int order = compare(i, j);
+    return order != 0 ? order < 0 : ids_.id[number[i]] < ids_.id[number[j]];
   }
   void sortEdges() {
-    const bool is_turned = isBefore(2, 0) || (!isBefore(0, 2) && isBefore(3, 1));
+    const int first = compare(2, 0);
+    const bool is_turned = first != 0 ? first < 0 : compare(3, 1) < 0;
     swapIf(is_turned, 0, 2);
     swapIf(is_turned, 1, 3);
   }
@@ -65,6 +75,8 @@ class OrderedPoints {
     number[i] = condition ? n : m;
     number[j] = condition ? m : n;
   }
+
+  const PointIds ids_;
 };
 
 }  // namespace deformable

@@ -80,13 +80,19 @@ FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
   return contact;
 }
 
+PointIds idsOf(const FeatureIds& pair) {
+  PointIds out;
+  std::copy(pair.vertices, pair.vertices + 4, out.id);
+  return out;
+}
+
 EightOrdered::EightOrdered(const std::vector<FeatureCandidate>& pairs) {
   assert(!pairs.empty() && pairs.size() <= 8);
   points_.kind = pairs.front().kind;
   for (std::size_t lane = 0; lane < 8; ++lane) {
     const FeatureCandidate& pair = pairs[std::min(lane, pairs.size() - 1)];
     assert(pair.kind == points_.kind && !isPart(pair.kind));
-    const OrderedPoints<TreeVertex> ordered(pair.kind, pair.x);
+    const OrderedPoints<TreeVertex> ordered(pair.kind, pair.x, idsOf(pair));
     points_.set(lane, ordered.point);
     std::copy(ordered.number, ordered.number + 4, number_[lane]);
   }

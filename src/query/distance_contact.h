@@ -34,6 +34,8 @@ void enlarge(double reach, KdopShift& shift);
 FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
                          bool is_self);
 
+PointIds idsOf(const FeatureIds& pair);
+
 /// @brief One to eight VF or EE pairs of one kind, for Kernels::approach().
 class EightOrdered {
  public:

@@ -305,8 +305,9 @@ void NarrowPhase::testEightDistances() {
 }
 
 void NarrowPhase::testDistance(const FeatureCandidate& candidate) {
-  const DistanceContact found = advanceToDistance(
-      candidate.kind, CandidatePoints(candidate).get(), distanceRequest());
+  const DistanceContact found =
+      advanceToDistance(candidate.kind, CandidatePoints(candidate).get(),
+                        distanceRequest(), idsOf(candidate));
   if (found.is_contact)
     addNear(candidate, found);
   else

@@ -29,6 +29,7 @@ namespace {
 using detail::deformable::advanceToDistance;
 using detail::deformable::DistanceContact;
 using detail::deformable::DistanceRequest;
+using detail::deformable::PointIds;
 using detail::deformable::QueryOptions;
 using detail::deformable::querySelf;
 using detail::deformable::VertexPath;
@@ -121,7 +122,9 @@ class BruteForce {
     const std::size_t num_first = kind == Kind::kVertexFace ? 1 : 2;
     const bool is_self = mesh_[0] == mesh_[1];
     VertexPath x[4];
+    PointIds ids;
     for (std::size_t i = 0; i < 4; ++i) {
+      ids.id[i] = static_cast<std::uint32_t>(id[i]);
       const bool is_first = i < num_first;
       for (std::size_t j = num_first; is_self && is_first && j < 4; ++j)
         if (id[i] == id[j]) return;
@@ -132,7 +135,7 @@ class BruteForce {
       }
     }
     const DistanceContact c =
-        advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request_);
+        advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request_, ids);
     if (!c.is_contact) return;
     Feature parts[2];
     for (std::size_t i = 0; i < 4 && c.points[i] >= 0; ++i) {
@@ -286,6 +289,35 @@ TEST(FCL_MIN_DISTANCE, duplicateTrianglesAgainstAllPairs) {
   }
   EXPECT_EQ(seen.kinds.size(), 4U);
   EXPECT_GT(seen.later, 100U);
+}
+
+/// Where corners of a triangle coincide, two of its edges have the same nearest point.
+/// Which one a contact names does not depend on the corner at which the triangle begins.
+TEST(FCL_MIN_DISTANCE, coincidentCorners) {
+  Random random(90);
+  Seen seen;
+  for (int i = 0; i < 8; ++i) {
+    MovingMesh mesh = crumpledSheet(random, 4, 0.3);
+    for (std::size_t k = 0; k < mesh.triangles.size(); k += 4)
+      for (auto* frame : {&mesh.t0, &mesh.t1})
+        (*frame)[mesh.id(k, 0)] = (*frame)[mesh.id(k, 1)];
+    MovingMesh turned = mesh;
+    for (Triangle& t : turned.triangles)
+      t = random.index(2) ? Triangle(t[1], t[2], t[0]) : Triangle(t[2], t[1], t[0]);
+    std::reverse(turned.triangles.begin(), turned.triangles.end());
+    for (const double distance : {0.01, 0.1, 0.3}) {
+      SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(distance));
+      Request request = requestAt(distance);
+      request.ignore_initially_closer = i % 2;
+      const Contacts truth = bruteForce(mesh, mesh, request);
+      for (const MovingMesh* given : {&mesh, &turned})
+        ASSERT_EQ(contactsOf(selfContacts<double>(*modelOf(*given), request), true),
+                  truth);
+      seen.add(truth);
+    }
+  }
+  EXPECT_EQ(seen.kinds.size(), 4U);
+  EXPECT_GT(seen.later, 500U);
 }
 
 /// Two balls in one mesh that come near each other. Each is left out with itself as long
