@@ -310,7 +310,8 @@ def collide(
         microsecond, and threads wait for each other: prefer filters.
     num_threads : int
         1: the caller's thread. n: at most n threads. 0: all cores. The answer does not
-        depend on it. A query in which a mesh turns uses one thread.
+        depend on it. The first or any contact of a mesh that turns or of a shape takes one
+        thread, and so does a query with an OcTree.
 
     If all vertices of two meshes go straight the answer is exact: no contact is missed and
     none is invented. If a mesh turns, or with a shape, contact means to come within some

@@ -209,7 +209,7 @@ class MotionConverter {
   bool at_distance_;
 };
 
-/// Answers two meshes, one of which turns. Threads are used only to make trees.
+/// Answers two meshes, one of which turns.
 template <typename S>
 void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                    QueryOptions options, const QuerySettings& settings,
@@ -282,8 +282,7 @@ ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& 
   });
 }
 
-/// Answers a shape or an octree, and another one of these or a mesh. Threads are used
-/// only to make trees.
+/// Answers a shape or an octree, and another one of these or a mesh.
 template <typename S>
 void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   QueryOptions options, const QuerySettings& settings,

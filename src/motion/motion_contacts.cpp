@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
 #include "motion/chord_pairs.h"
@@ -67,6 +68,32 @@ class FeatureContacts {
               may_repeat) {
     if (options.filter && options.min_distance > 0)
       for (auto k : {0, 1}) parts_[k].find(*body_[k]);
+  }
+
+  /// Of the same bodies, without contacts: for a part of the pairs.
+  FeatureContacts ofPart() const { return FeatureContacts(*this, Part()); }
+
+  /// The contacts of features of pairs of triangles that touch. They do not depend on the
+  /// number of threads.
+  void add(const std::vector<MotionContact>& triangles, double last) {
+    // Which contacts a first-contact query wants depends on those before.
+    if (options_.query != ContinuousQuery::kAll ||
+        numThreads(options_.num_threads) == 1) {
+      for (const MotionContact& contact : triangles) add(contact, last);
+      return;
+    }
+    constexpr std::size_t kBlock = 64;
+    std::vector<std::deque<FeatureContact>> found((triangles.size() + kBlock - 1) /
+                                                  kBlock);
+    parallelForBlocks(triangles.size(), kBlock, options_.num_threads,
+                      [&](std::size_t first, std::size_t end) {
+                        FeatureContacts part = ofPart();
+                        for (std::size_t i = first; i < end; ++i)
+                          part.add(triangles[i], last);
+                        found[first / kBlock] = part.sink_.takeContacts();
+                      });
+    for (const std::deque<FeatureContact>& contacts : found)
+      for (const FeatureContact& contact : contacts) sink_.add(contact);
   }
 
   /// The contacts of the features that two triangles own, from the time at which the
@@ -150,6 +177,14 @@ class FeatureContacts {
   ContactSink& sink() { return sink_; }
 
  private:
+  struct Part {};
+  FeatureContacts(const FeatureContacts& whole, Part)
+      : body_{whole.body_[0], whole.body_[1]},
+        parts_{whole.parts_[0], whole.parts_[1]},
+        options_(whole.options_),
+        tolerance_(whole.tolerance_),
+        sink_(kNoLimit, false) {}
+
   /// Poses a vertex as VertexFrames does.
   static void posed(const Pose& pose, const Vec& x, double (&out)[3]) {
     const double(&r)[9] = pose.rotation;
@@ -261,33 +296,62 @@ class ChordContacts {
       : body_{&a, &b},
         options_(options),
         places_{a.placesOfTriangles(), b.placesOfTriangles()},
-        features_(a, b, options, false) {
-    if (has_windows) turning_.emplace(a, b, options);
-  }
+        features_(a, b, options, false),
+        has_windows_(has_windows) {}
 
   /// Adds the contacts in a span, except for those of pairs that had one before.
   void add(const ChordSearch::Span& span) {
-    const auto take = [&](const FeatureContact& pair, const TurningAnswer& found) {
-      bool is_contact = found.is_contact;
-      if (found.is_open)
-        is_contact = addAlone(pair, span);
-      else if (is_contact)
-        features_.sink().add({pair, found.toc_lo, found.toc_hi});
-      if (is_contact) keepOut(pair, span);
-    };
-    for (const FeatureContact& pair : span.near.contacts) {
-      if (in_contact_.find(pair)) continue;
-      if (turning_)
-        addTurning(pair, span, take);
-      else if (addAlone(pair, span))
-        keepOut(pair, span);
+    constexpr std::size_t kBlock = 4096;
+    const std::size_t count = span.near.contacts.size();
+    std::vector<Found> found((count + kBlock - 1) / kBlock);
+    parallelForBlocks(count, kBlock, options_.num_threads,
+                      [&](std::size_t first, std::size_t last) {
+                        found[first / kBlock] = advance(span, first, last);
+                      });
+    for (const Found& part : found) {
+      for (const FeatureContact& contact : part.contacts) features_.sink().add(contact);
+      for (const FeatureContact* pair : part.pairs) keepOut(*pair, span);
     }
-    if (turning_) turning_->finish(take);
   }
 
   ContactSink& sink() { return features_.sink(); }
 
  private:
+  /// Contacts, and the pairs that have them.
+  struct Found {
+    std::deque<FeatureContact> contacts;
+    std::vector<const FeatureContact*> pairs;
+  };
+
+  /// Advances the pairs of a span with these numbers.
+  Found advance(const ChordSearch::Span& span, std::size_t first,
+                std::size_t last) const {
+    Found found;
+    FeatureContacts alone = features_.ofPart();
+    // Without windows pairs are advanced one by one.
+    std::optional<TurningBatch> turning;
+    if (has_windows_) turning.emplace(*body_[0], *body_[1], options_);
+    const auto take = [&](const FeatureContact& pair, const TurningAnswer& answer) {
+      bool is_contact = answer.is_contact;
+      if (answer.is_open)
+        is_contact = addAlone(pair, span, alone);
+      else if (is_contact)
+        alone.sink().add({pair, answer.toc_lo, answer.toc_hi});
+      if (is_contact) found.pairs.push_back(&pair);
+    };
+    for (std::size_t i = first; i < last; ++i) {
+      const FeatureContact& pair = span.near.contacts[i];
+      if (in_contact_.find(pair)) continue;
+      if (turning)
+        addTurning(pair, span, *turning, take);
+      else if (addAlone(pair, span, alone))
+        found.pairs.push_back(&pair);
+    }
+    if (turning) turning->finish(take);
+    found.contacts = alone.sink().takeContacts();
+    return found;
+  }
+
   BodyTriangle triangleOf(const FeatureContact& pair, int k) const {
     const std::int32_t id = pair.triangles[k];
     const std::vector<std::int32_t>& places = places_[k];
@@ -322,20 +386,21 @@ class ChordContacts {
 
   template <typename Take>
   void addTurning(const FeatureContact& pair, const ChordSearch::Span& span,
-                  Take&& take) {
+                  TurningBatch& turning, Take&& take) const {
     const BodyTriangle a = triangleOf(pair, 0), b = triangleOf(pair, 1);
     const double end = span.t0 + pair.toc_hi * (span.t1 - span.t0);
-    turning_->add({pair, a, b, featurePair(numberOf(pair, a, b)), firstOf(pair, span),
-                   std::min(std::nextafter(end, 1), lastOf(span))},
-                  take);
+    turning.add({pair, a, b, featurePair(numberOf(pair, a, b)), firstOf(pair, span),
+                 std::min(std::nextafter(end, 1), lastOf(span))},
+                take);
   }
 
   /// Advances one pair.
   /// @return whether it has a contact
-  bool addAlone(const FeatureContact& pair, const ChordSearch::Span& span) {
+  bool addAlone(const FeatureContact& pair, const ChordSearch::Span& span,
+                FeatureContacts& features) const {
     const BodyTriangle a = triangleOf(pair, 0), b = triangleOf(pair, 1);
-    return features_.addPair(a, b, numberOf(pair, a, b), firstOf(pair, span),
-                             lastOf(span));
+    return features.addPair(a, b, numberOf(pair, a, b), firstOf(pair, span),
+                            lastOf(span));
   }
 
   /// Leaves a pair out in the spans after this one.
@@ -350,8 +415,7 @@ class ChordContacts {
   /// For each triangle its place in the tree; empty: they are the same.
   std::vector<std::int32_t> places_[2];
   FeatureContacts features_;
-  /// Empty: pairs are advanced one by one.
-  std::optional<TurningBatch> turning_;
+  const bool has_windows_;
   /// Pairs that have a contact in an earlier span.
   std::deque<FeatureIds> pairs_;
   ContactTable<FeatureIds> in_contact_;
@@ -406,6 +470,7 @@ MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
   wanted.proves_contacts = !wanted.all;
   wanted.last = options.t_max;
   wanted.distance = options.min_distance;
+  wanted.num_threads = options.num_threads;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   // Features are advanced by directions that turn, which takes fewer steps.
   if (options.min_distance > 0) wanted.max_steps = 256;
@@ -428,11 +493,10 @@ MotionAnswer firstTriangles(const MotionBody& a, const MotionBody& b,
 void addFeatures(const MotionAnswer& triangles, double last, const QueryOptions& options,
                  const FeatureContacts& unmoved, FeatureContacts& features,
                  QueryAnswer& answer) {
-  for (const MotionContact& contact : triangles.contacts) {
+  for (const MotionContact& contact : triangles.contacts)
     if (contact.toc_lo == 0 && (options.all_crossings || answer.crossings.empty()))
       unmoved.addCrossings(contact, answer.crossings);
-    features.add(contact, last);
-  }
+  features.add(triangles.contacts, last);
   if (options.all_crossings) sortCrossings(answer.crossings);
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 
+#include "base/parallel.h"
 #include "motion/convex_advance.h"
 #include "motion/flat_windows.h"
 #include "motion/motion_side.h"
@@ -54,12 +56,18 @@ class MotionTraversal {
   }
 
   MotionAnswer run() {
-    traverse([this](const MotionWork& work) { advance(work); });
+    const auto advance = [this](const MotionWork& work) { this->advance(work); };
+    begin();
+    const bool is_for_tasks = isForTasks();
+    while (!works_.isEmpty() && !isCut() && !(is_for_tasks && isLong()))
+      step(works_.pop(), advance);
+    if (is_for_tasks && !works_.isEmpty()) runTasks(pieces(advance));
     return finish();
   }
 
   std::vector<NearTriangles> nearTriangles() {
     std::vector<NearTriangles> near;
+    begin();
     traverse([&near](const MotionWork& work) {
       near.push_back({{~work.a.child, ~work.b.child}, work.t0, work.t1});
     });
@@ -67,21 +75,80 @@ class MotionTraversal {
   }
 
  private:
+  static constexpr std::size_t kTasks = 32, kPiecesPerTask = 8;
+
+  /// Whether the traversal has taken about a millisecond: then it is divided into tasks.
+  /// Neither this nor the tasks depend on the number of threads.
+  bool isLong() const {
+    constexpr std::uint64_t kBoxTestsPerStep = 8, kMost = 8192;
+    return counts_.box_tests + kBoxTestsPerStep * counts_.steps > kMost;
+  }
+
+  void begin() { testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0}); }
+
   /// Calls visit(work) for pairs of triangles.
   template <typename Visit>
   void traverse(Visit&& visit) {
-    testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0});
-    while (!works_.isEmpty() && !isCut()) {
-      MotionWork work = works_.pop();
-      if (areKeptApart(work)) continue;
-      if (work.a.isTriangle() && work.b.isTriangle())
-        visit(work);
-      else
-        divide(work);
-    }
+    while (!works_.isEmpty()) step(works_.pop(), visit);
+  }
+
+  template <typename Visit>
+  void step(MotionWork work, Visit&& visit) {
+    if (areKeptApart(work)) return;
+    if (work.a.isTriangle() && work.b.isTriangle())
+      visit(work);
+    else
+      divide(work);
   }
 
   bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
+
+  /// Whether the work may be done in any order and by several threads. The cells of an
+  /// octree are numbered as they are met.
+  bool isForTasks() const {
+    return options_.all && options_.most_box_tests == MotionQueryOptions::kNoLimit &&
+           !side_[0].body.octree() && !side_[1].body.octree();
+  }
+
+  /// Divides the work that is left, the first first: the largest parts as a rule.
+  template <typename Visit>
+  std::vector<MotionWork> pieces(Visit&& visit) {
+    std::deque<MotionWork> waiting;
+    const auto take = [&] {
+      for (const MotionWork& work : works_.takeAll()) waiting.push_back(work);
+    };
+    for (take(); !waiting.empty() && waiting.size() < kTasks * kPiecesPerTask; take()) {
+      const MotionWork work = waiting.front();
+      waiting.pop_front();
+      step(work, visit);
+    }
+    return {waiting.begin(), waiting.end()};
+  }
+
+  /// Does the pieces of work in tasks, each with a traversal of its own.
+  void runTasks(const std::vector<MotionWork>& pieces) {
+    struct Found {
+      std::vector<MotionContact> contacts;
+      MotionCounts counts;
+    };
+    const std::size_t size = (pieces.size() + kTasks - 1) / kTasks;
+    std::vector<Found> found(kTasks);
+    if (pieces.empty()) return;
+    parallelForBlocks(
+        pieces.size(), size, options_.num_threads,
+        [&](std::size_t first, std::size_t last) {
+          MotionTraversal task(side_[0].body, side_[1].body, options_);
+          for (std::size_t i = first; i < last; ++i) {
+            task.push(pieces[i]);
+            task.traverse([&](const MotionWork& work) { task.advance(work); });
+          }
+          found[first / size] = {std::move(task.contacts_), task.counts_};
+        });
+    for (const Found& part : found) {
+      contacts_.insert(contacts_.end(), part.contacts.begin(), part.contacts.end());
+      counts_ += part.counts;
+    }
+  }
 
   /// Nothing that starts at the time of a contact can be earlier than it.
   void push(const MotionWork& work) {

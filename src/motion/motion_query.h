@@ -14,6 +14,8 @@ namespace detail {
 namespace deformable {
 
 struct MotionQueryOptions {
+  static constexpr std::uint64_t kNoLimit = ~std::uint64_t{0};
+
   /// Whether every pair of triangles is wanted, with its first time. If not, the first
   /// contact only.
   bool all{false};
@@ -33,7 +35,9 @@ struct MotionQueryOptions {
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
   int max_steps{10000};
   /// After this number of tests of boxes the query is given up.
-  std::uint64_t most_box_tests{~std::uint64_t{0}};
+  std::uint64_t most_box_tests{kNoLimit};
+  /// The largest number of threads, if `all` is set; 0: as many as the task arena has.
+  int num_threads{1};
   /// Selects the triangle pairs that count; null: all of them.
   const PairRules* rules{nullptr};
 };
@@ -65,6 +69,7 @@ constexpr std::int32_t kNoTriangle = -1;
 /// neither free edges nor free points.) (2) It is never late: toc_lo is not
 /// after the first time at which they do. (3) A reported pair comes within distance +
 /// `touching`, unless it is marked kGivenUp.
+/// The answer does not depend on the number of threads.
 /// @pre the floating-point mode is the default one
 MotionAnswer queryMotions(const MotionBody& a, const MotionBody& b,
                           const MotionQueryOptions& options);

@@ -5,6 +5,7 @@
 #define FCL_CCD_MOTION_MOTION_WORK_H
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "motion/motion_body.h"
@@ -48,6 +49,10 @@ class MotionWorkQueue {
   bool isEmpty() const { return heap_.empty() && ready_.empty(); }
 
   void push(const MotionWork& work);
+
+  /// @brief Moves all work out, in the order in which it came.
+  /// @pre the order is kAny
+  std::vector<MotionWork> takeAll() { return std::exchange(ready_, {}); }
 
   /// @brief The work that comes next. Its parts belong to its dive.
   MotionWork pop();

@@ -65,6 +65,14 @@ struct MotionCounts {
   std::uint64_t steps{0};
   /// The number of steps in which the direction of the nearest features was not enough.
   std::uint64_t all_directions{0};
+
+  MotionCounts& operator+=(const MotionCounts& other) {
+    box_tests += other.box_tests;
+    triangle_pairs += other.triangle_pairs;
+    steps += other.steps;
+    all_directions += other.all_directions;
+    return *this;
+  }
 };
 
 /// @brief The number of corners of two triangles, of which one or both may stand for an

@@ -629,7 +629,6 @@ TEST_F(MotionCollision, TwoThreadsOnSharedModelsAndMotions) {
   EXPECT_EQ(worst[0], worst[1]);
 }
 
-// The answer of any number of threads is the same to the bit.
 // The boxes of trees of ours are floats, and the products of three edges leave the range
 // of double.
 TEST_F(MotionCollision, TinyMeshes) {
@@ -661,6 +660,7 @@ TEST_F(MotionCollision, TinyMeshes) {
   }
 }
 
+// The answer of any number of threads is the same to the bit.
 TEST_F(MotionCollision, NumberOfThreads) {
   const SinkingSheet sheet;
   for (const CollisionGeometry<double>* other :

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "fcl/narrowphase/collision.h"
@@ -454,6 +455,115 @@ double distanceOf(const FeatureContact& contact, const Body& a,
 
 // Each feature pair is listed once. The pairs that are nearest when their triangles come
 // together are among them. All are as near as promised.
+void expectSame(const MotionAnswer& found, const MotionAnswer& expected) {
+  EXPECT_EQ(found.counts.box_tests, expected.counts.box_tests);
+  EXPECT_EQ(found.counts.triangle_pairs, expected.counts.triangle_pairs);
+  ASSERT_EQ(found.contacts.size(), expected.contacts.size());
+  for (std::size_t i = 0; i < found.contacts.size(); ++i) {
+    const MotionContact &x = found.contacts[i], &y = expected.contacts[i];
+    EXPECT_EQ(x.toc_lo, y.toc_lo);
+    EXPECT_EQ(x.toc_hi, y.toc_hi);
+    for (int k = 0; k < 2; ++k) EXPECT_EQ(x.triangle[k], y.triangle[k]);
+    EXPECT_EQ(x.certainty, y.certainty);
+  }
+}
+
+/// A long query for all contacts is divided into tasks. One with a limit of its work is
+/// not.
+TEST(FCL_MOTION_QUERY, tasksFindWhatOneTraversalFinds) {
+  const Body a(makeIcosphere(4, 0.5)), b(makeIcosphere(3, 0.45));
+  MotionQueryOptions whole;
+  whole.all = true;
+  whole.most_box_tests = MotionQueryOptions::kNoLimit - 1;
+  std::size_t contacts = 0;
+  for (int i = 0; i < 4; ++i) {
+    Random random(9100 + i);
+    const ReferenceMotion motion_a = randomMotion(random, 0.4),
+                          motion_b = randomMotion(random, 0.4);
+    whole.distance = i % 2 ? 0.01 : 0;
+    const MotionAnswer expected = ask(a, motion_a.path(), b, motion_b.path(), whole);
+    contacts += expected.contacts.size();
+    MotionQueryOptions divided = whole;
+    divided.most_box_tests = MotionQueryOptions::kNoLimit;
+    for (const int threads : {1, 3}) {
+      SCOPED_TRACE(std::to_string(i) + " with threads: " + std::to_string(threads));
+      divided.num_threads = threads;
+      expectSame(ask(a, motion_a.path(), b, motion_b.path(), divided), expected);
+    }
+  }
+  EXPECT_GE(contacts, 2000U);
+}
+
+/// The direction that parted the pair before is a guess for the next one, which may round
+/// differently in another task.
+TEST(FCL_MOTION_QUERY, tasksBesideAShape) {
+  const Body a(makeIcosphere(4, 0.5));
+  std::size_t contacts = 0;
+  for (int i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    Random random(9200 + i);
+    const ReferenceMotion motion_a = randomMotion(random, 0.3),
+                          motion_b = randomMotion(random, 0.3);
+    const MovingBody moving(a, motion_a.path());
+    const ConvexShape shape = ConvexShape::cylinder(0.3, 0.8);
+    const MotionBody other(shape, motion_b.path());
+    MotionQueryOptions options;
+    options.all = true;
+    options.most_box_tests = MotionQueryOptions::kNoLimit - 1;
+    const MotionAnswer whole = queryMotions(moving.body, other, options);
+    options.most_box_tests = MotionQueryOptions::kNoLimit;
+    const MotionAnswer divided = queryMotions(moving.body, other, options);
+    options.num_threads = 3;
+    expectSame(queryMotions(moving.body, other, options), divided);
+    std::map<std::int32_t, double> times;
+    for (const MotionContact& contact : whole.contacts)
+      times[contact.triangle[0]] = contact.toc_lo;
+    EXPECT_EQ(divided.contacts.size(), times.size());
+    for (const MotionContact& contact : divided.contacts) {
+      ASSERT_EQ(times.count(contact.triangle[0]), 1U);
+      EXPECT_NEAR(contact.toc_lo, times[contact.triangle[0]], 1e-9);
+    }
+    contacts += times.size();
+  }
+  EXPECT_GE(contacts, 200U);
+}
+
+/// Contacts of features are found in blocks of pairs of triangles, or of pairs that come
+/// near along chords.
+TEST(FCL_MOTION_QUERY, threadsFindTheSameContactsOfFeatures) {
+  const Body a(makeIcosphere(3, 0.5)), b(makeIcosphere(3, 0.45));
+  std::size_t contacts = 0;
+  for (int i = 0; i < 3; ++i) {
+    SCOPED_TRACE(i);
+    Random random(9300 + i);
+    const ReferenceMotion motion_a = randomMotion(random, 0.4),
+                          motion_b = randomMotion(random, 0.4);
+    const MovingBody moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
+    QueryOptions options;
+    options.min_distance = i % 3 == 1 ? 0.01 : 0;
+    options.ignores_initially_closer = i % 3 == 2;
+    const QueryAnswer one = queryMotionContacts(moving_a.body, moving_b.body, options);
+    contacts += one.contacts.size();
+    for (const int threads : {2, 5}) {
+      options.num_threads = threads;
+      const QueryAnswer found =
+          queryMotionContacts(moving_a.body, moving_b.body, options);
+      ASSERT_EQ(found.contacts.size(), one.contacts.size());
+      EXPECT_EQ(found.hasCrossing(), one.hasCrossing());
+      for (std::size_t k = 0; k < one.contacts.size(); ++k) {
+        const FeatureContact &x = found.contacts[k], &y = one.contacts[k];
+        EXPECT_EQ(x.toc_lo, y.toc_lo);
+        EXPECT_EQ(x.toc_hi, y.toc_hi);
+        EXPECT_EQ(x.kind, y.kind);
+        EXPECT_EQ(x.first_on_a, y.first_on_a);
+        EXPECT_TRUE(std::equal(x.vertices, x.vertices + 4, y.vertices));
+        EXPECT_TRUE(std::equal(x.triangles, x.triangles + 2, y.triangles));
+      }
+    }
+  }
+  EXPECT_GE(contacts, 1000U);
+}
+
 TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
   MotionQueryOptions all;

@@ -206,10 +206,11 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
 
   /// @brief The number of threads of the query. 1 (the default): the caller's thread,
   /// without tasks, so that callers can run queries side by side as with FCL. n: at most
-  /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative. If
-  /// a mesh turns, or with a shape or an octree, only the trees that the query makes use
-  /// threads, and a part of the search for all contacts. The answer does not depend on
-  /// this number. The StageCounts of a first-contact query may depend on it.
+  /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative.
+  /// The first or any contact of a mesh that turns, or of a shape, takes one thread, and
+  /// so does a query with an octree; only the trees that it makes use more. The answer
+  /// does not depend on this number. The StageCounts of a first-contact query may depend
+  /// on it.
   int num_threads{1};
 };
 
