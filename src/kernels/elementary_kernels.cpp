@@ -282,39 +282,49 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
-/// The points of eight triangle pairs at t = 0, relative to the first point. `approach`
-/// is the most by which two vertices of the triangles can approach each other along a
-/// coordinate axis during the step.
+/// The points of eight triangle pairs in one frame, relative to the first point.
 struct TrianglePoints {
   Vectors x[6];
-  Doubles norm, approach;
+  /// The fourth numbers of the vertices: at t = 0 their displacements.
+  Doubles fourth[6];
+  Doubles norm;
 
-  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
-    Doubles moved[6];
+  /// @param frame  TreeVertex::t0 or t1
+  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count,
+                            double (TreeVertex::*frame)[4])
+      : norm(broadcast<kEight>(0.)) {
     for (std::size_t i = 0; i < 6; ++i) {
       // If there are fewer than eight pairs, the last one is repeated.
-      const auto row = [=](std::size_t lane) HWY_ATTR {
-        return pairs[lane < count ? lane : count - 1].x[i]->t0;
+      const auto row = [=](std::size_t lane) HWY_ATTR -> const double(&)[4] {
+        return pairs[lane < count ? lane : count - 1].x[i]->*frame;
       };
-      // The fourth number of TreeVertex::t0 is the displacement of the vertex.
-      loadColumns(row, x[i].x, x[i].y, x[i].z, moved[i]);
+      loadColumns(row, x[i].x, x[i].y, x[i].z, fourth[i]);
     }
-    approach =
-        max(max(moved[0], moved[1]), moved[2]) + max(max(moved[3], moved[4]), moved[5]);
-    norm = broadcast<kEight>(0.);
     for (std::size_t i = 6; i-- > 0;) {
       x[i] = x[i] - x[0];
       norm = max(norm, maxNorm(x[i]));
     }
   }
+
+  /// The most by which two vertices of the triangles can approach each other along a
+  /// coordinate axis during the step.
+  HWY_INLINE Doubles approach() const {
+    return max(max(fourth[0], fourth[1]), fourth[2]) +
+           max(max(fourth[3], fourth[4]), fourth[5]);
+  }
+};
+
+/// On which side of the first triangles the second ones lie, along a direction.
+struct PlaneSides {
+  DoubleMask above, below;
 };
 
 /// Lanes in which the direction d separates the triangles by so much that they stay apart
 /// even if vertices approach each other by `approach` along each axis; with a distance,
 /// further apart than this. The factor of the distance has more than the rounding of the
 /// length of d, a few units.
-HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
-                                   const Doubles& approach, double distance) {
+HWY_INLINE PlaneSides planeSides(const TrianglePoints& p, const Vectors& d,
+                                 const Doubles& approach, double distance) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
                 b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
   const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
@@ -328,17 +338,43 @@ HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
     is_valid = is_valid & isInRange(square);
     least = least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
   }
-  return is_valid & ((above > least) | (below > least));
+  return {is_valid & (above > least), is_valid & (below > least)};
+}
+
+HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
+                                   const Doubles& approach, double distance) {
+  const PlaneSides sides = planeSides(p, d, approach, distance);
+  return sides.above | sides.below;
 }
 
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   double distance, float (&gaps)[8]) {
-  const TrianglePoints p(pairs, count);
-  const Doubles bridged = broadcast<kEight>(share) * p.approach;
+  const TrianglePoints p(pairs, count, &TreeVertex::t0);
+  const Doubles bridged = broadcast<kEight>(share) * p.approach();
   store(roundedUp(bridged + bridged, broadcast<kEight>(FLT_MIN)), gaps);
   const DoubleMask apart =
       areSeparated(p, cross(p.x[1], p.x[2]), bridged, distance) |
       areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged, distance);
+  return bits(apart) & ((1U << count) - 1);
+}
+
+/// The gap along a direction is the least of functions that are linear in t: where it is
+/// large enough at both ends of the step, it is in between.
+unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance) {
+  const TrianglePoints begin(pairs, count, &TreeVertex::t0),
+      end(pairs, count, &TreeVertex::t1);
+  const Doubles zero = broadcast<kEight>(0.);
+  DoubleMask apart = zero > zero;
+  for (const std::size_t first : {0, 3}) {
+    // Twice the edges in the middle of the step.
+    const auto edge = [&](std::size_t i) HWY_ATTR {
+      return (begin.x[first + i] - begin.x[first]) + (end.x[first + i] - end.x[first]);
+    };
+    const Vectors normal = cross(edge(1), edge(2));
+    const PlaneSides from = planeSides(begin, normal, zero, distance),
+                     to = planeSides(end, normal, zero, distance);
+    apart = apart | (from.above & to.above) | (from.below & to.below);
+  }
   return bits(apart) & ((1U << count) - 1);
 }
 

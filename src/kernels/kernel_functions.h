@@ -39,6 +39,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           std::size_t count);
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   double distance, float (&gaps)[8]);
+unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance);
 unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,

@@ -293,6 +293,13 @@ struct Kernels {
   unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
                        double distance, float (&gaps)[8]);
 
+  /// Finds which of up to eight pairs of triangles stay further apart than a distance
+  /// during the whole step, a bit each. A direction proves it at both ends of the step:
+  /// the normal of one of the two triangles in its middle.
+  /// @param count  1 to 8
+  /// @param distance  above 0
+  unsigned (*stayApart)(const TrianglePair* pairs, std::size_t count, double distance);
+
   /// Finds which of up to eight edges may pass through their faces at t = 0, a bit each.
   /// isCrossing() is false for all others.
   /// @param codes  as of cullCrossings()

@@ -156,8 +156,9 @@ class FeatureBatch {
 
   void clear();
 
-  /// @brief Culls triangle pairs that are apart until `latest`, and lists the edges and
-  /// faces whose boxes overlap at t = 0.
+  /// @brief Culls triangle pairs that are apart until `latest`, with a distance those
+  /// that stay further apart than it, and lists the edges and faces whose boxes overlap
+  /// at t = 0.
   /// @param latest  later contacts do not matter to the query
   /// @param counts  plane_culled is counted
   void cullTriangles(double latest, StageCounts& counts);
@@ -220,7 +221,10 @@ class FeatureBatch {
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
+  void keepPair(std::size_t i, std::size_t& kept);
   void leaveOutApart(double latest, StageCounts& counts);
+  void leaveOutFar(StageCounts& counts);
+  void leaveOutEdges();
   unsigned edgePairsToTest();
   void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
 

@@ -386,53 +386,119 @@ TEST(FCL_KERNELS, leastDistancesAsTheScalarFunction) {
   EXPECT_GT(unknown, 100);
 }
 
-/// Triangles that a plane keeps further apart than a distance, until an early time. The
-/// distance of two triangles is that of their VF and EE pairs, unless they cross.
+/// Two triangles that move.
+struct TwoTriangles {
+  std::vector<TreeVertex> vertices{6};
+  VertexPath paths[6];
+  TrianglePair pair{};
+
+  TwoTriangles(Random& random, double motion) {
+    const Vector3<double> away = random.point(1);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Vector3<double> p = random.point(1) + (k < 3 ? 0. : 1.) * away,
+                            q = p + random.point(motion);
+      std::copy(p.data(), p.data() + 3, paths[k].t0);
+      std::copy(q.data(), q.data() + 3, paths[k].t1);
+      vertices[k].setPath(paths[k].t0, paths[k].t1);
+      pair.x[k] = &vertices[k];
+    }
+  }
+
+  /// The distance of two triangles is that of their VF and EE pairs, unless they cross.
+  bool comeWithin(double distance, double until) const {
+    const auto test = [&](ContinuousContactKind kind, std::array<std::size_t, 4> id) {
+      return advanceToDistance(
+                 kind, {{&paths[id[0]], &paths[id[1]], &paths[id[2]], &paths[id[3]]}},
+                 requestUntil(until, std::max(distance, 1e-9)))
+          .is_contact;
+    };
+    bool comes_near = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      comes_near |= test(ContinuousContactKind::kVertexFace, {k, 3, 4, 5}) ||
+                    test(ContinuousContactKind::kVertexFace, {3 + k, 0, 1, 2});
+      for (std::size_t l = 0; l < 3; ++l)
+        comes_near |= test(ContinuousContactKind::kEdgeEdge,
+                           {k, (k + 1) % 3, 3 + l, 3 + (l + 1) % 3});
+    }
+    return comes_near;
+  }
+};
+
+/// Triangles that a plane keeps further apart than a distance, until an early time.
 TEST(FCL_KERNELS, trianglesThatStayApartByADistance) {
   Random random(79);
   int apart = 0, near = 0;
   for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
     const double distance = i % 3 ? std::pow(10, random.uniform(-4, -0.3)) : 0,
                  share = std::pow(10, random.uniform(-4, -1.3));
-    std::vector<TreeVertex> vertices(6);
-    VertexPath paths[6];
-    const Vector3<double> away = random.point(1);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const Vector3<double> p = random.point(1) + (k < 3 ? 0. : 1.) * away,
-                            q = p + random.point(0.5);
-      std::copy(p.data(), p.data() + 3, paths[k].t0);
-      std::copy(q.data(), q.data() + 3, paths[k].t1);
-      vertices[k].setPath(paths[k].t0, paths[k].t1);
-    }
-    TrianglePair pair{};
-    for (std::size_t k = 0; k < 6; ++k) pair.x[k] = &vertices[k];
+    const TwoTriangles x(random, 0.5);
     float gaps[8];
     const bool is_apart =
-        allSets().front()->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U;
+        allSets().front()->areApart(&x.pair, 1, share * (1 + 0x1p-50), distance, gaps) &
+        1U;
     for (const Kernels* k : allSets())
-      EXPECT_EQ(k->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U,
+      EXPECT_EQ(k->areApart(&x.pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U,
                 unsigned{is_apart})
           << k->name;
-    bool comes_near = false;
-    const auto test = [&](ContinuousContactKind kind, std::array<std::size_t, 4> id) {
-      comes_near |=
-          advanceToDistance(
-              kind, {{&paths[id[0]], &paths[id[1]], &paths[id[2]], &paths[id[3]]}},
-              requestUntil(share, std::max(distance, 1e-9)))
-              .is_contact;
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      test(ContinuousContactKind::kVertexFace, {k, 3, 4, 5});
-      test(ContinuousContactKind::kVertexFace, {3 + k, 0, 1, 2});
-      for (std::size_t l = 0; l < 3; ++l)
-        test(ContinuousContactKind::kEdgeEdge, {k, (k + 1) % 3, 3 + l, 3 + (l + 1) % 3});
-    }
+    const bool comes_near = x.comeWithin(distance, share);
     EXPECT_FALSE(is_apart && comes_near) << distance << " until " << share;
     apart += is_apart && distance > 0;
     near += comes_near && distance > 0;
   }
   EXPECT_GT(apart, 200);
   EXPECT_GT(near, 200);
+}
+
+/// Triangles that a plane keeps further apart than a distance during the whole step.
+TEST(FCL_KERNELS, trianglesThatStayApartThroughout) {
+  Random random(80);
+  int apart = 0, near = 0;
+  for (int i = 0; i < 1000 && !testing::Test::HasFailure(); ++i) {
+    const double distance = std::pow(10, random.uniform(-4, -0.3)),
+                 motion = std::pow(10, random.uniform(-2, 0));
+    const std::vector<TwoTriangles> x = [&] {
+      std::vector<TwoTriangles> made;
+      made.reserve(8);
+      for (int k = 0; k < 8; ++k) made.emplace_back(random, motion);
+      return made;
+    }();
+    TrianglePair pairs[8];
+    for (std::size_t k = 0; k < 8; ++k) pairs[k] = x[k].pair;
+    const unsigned found = allSets().front()->stayApart(pairs, 8, distance);
+    for (const Kernels* k : allSets())
+      for (const std::size_t count : {8, 5, 1})
+        EXPECT_EQ(k->stayApart(pairs, count, distance), found & ((1U << count) - 1))
+            << k->name;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const bool is_apart = found >> k & 1U, comes_near = x[k].comeWithin(distance, 1);
+      EXPECT_FALSE(is_apart && comes_near) << distance;
+      apart += is_apart;
+      near += comes_near;
+    }
+  }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(near, 1000);
+}
+
+/// Two triangles face each other, and one moves. The plane between them is parallel to
+/// both at all times; the least distance is that at the end.
+TEST(FCL_KERNELS, trianglesThatStayApartUpToTheirGap) {
+  constexpr double kCorners[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+  for (const double gap : {1e-6, 1e-3, 0.25}) {
+    std::vector<TreeVertex> vertices(6);
+    TrianglePair pair{};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double(&at)[2] = kCorners[k % 3];
+      const double from[3] = {at[0], at[1], k < 3 ? 0. : 1.},
+                   to[3] = {at[0] + (k < 3 ? 0. : 0.3), at[1], k < 3 ? 0 : gap};
+      vertices[k].setPath(from, to);
+      pair.x[k] = &vertices[k];
+    }
+    for (const Kernels* k : allSets()) {
+      EXPECT_EQ(k->stayApart(&pair, 1, gap * (1 - 1e-6)), 1U) << k->name << " " << gap;
+      EXPECT_EQ(k->stayApart(&pair, 1, gap * (1 + 1e-6)), 0U) << k->name << " " << gap;
+    }
+  }
 }
 
 }  // namespace
