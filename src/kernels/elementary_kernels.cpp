@@ -285,6 +285,8 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
 /// The points of eight triangle pairs in one frame, relative to the first point.
 struct TrianglePoints {
   Vectors x[6];
+  /// The first point.
+  Vectors origin;
   /// The fourth numbers of the vertices: at t = 0 their displacements.
   Doubles fourth[6];
   Doubles norm;
@@ -300,6 +302,7 @@ struct TrianglePoints {
       };
       loadColumns(row, x[i].x, x[i].y, x[i].z, fourth[i]);
     }
+    origin = x[0];
     for (std::size_t i = 6; i-- > 0;) {
       x[i] = x[i] - x[0];
       norm = max(norm, maxNorm(x[i]));
@@ -314,37 +317,40 @@ struct TrianglePoints {
   }
 };
 
-/// On which side of the first triangles the second ones lie, along a direction.
-struct PlaneSides {
-  DoubleMask above, below;
+/// How far the second triangles lie above the first ones, along a direction, and below
+/// them. They are apart where this is valid and more than `least`.
+struct PlaneGaps {
+  Doubles above, below, least;
+  DoubleMask is_valid;
 };
 
-/// Lanes in which the direction d separates the triangles by so much that they stay apart
-/// even if vertices approach each other by `approach` along each axis; with a distance,
-/// further apart than this. The factor of the distance has more than the rounding of the
-/// length of d, a few units.
-HWY_INLINE PlaneSides planeSides(const TrianglePoints& p, const Vectors& d,
-                                 const Doubles& approach, double distance) {
+/// The gaps along the direction d. The least one is enough even if vertices approach each
+/// other by `approach` along each axis; with a distance, they stay further apart than
+/// this. The factor of the distance has more than the rounding of the length of d, a few
+/// units.
+HWY_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
+                               const Doubles& approach, double distance) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
                 b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
-  const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
-                below = min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]);
   const Doubles size = maxNorm(d), volume = size * p.norm;
-  Doubles least = broadcast<kEight>(kPlaneBound) * volume +
-                  broadcast<kEight>(kPlaneApproach) * size * approach;
-  DoubleMask is_valid = isInRange(volume);
+  PlaneGaps out{min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
+                min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]),
+                broadcast<kEight>(kPlaneBound) * volume +
+                    broadcast<kEight>(kPlaneApproach) * size * approach,
+                isInRange(volume)};
   if (distance > 0) {
     const Doubles square = dot(d, d);
-    is_valid = is_valid & isInRange(square);
-    least = least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
+    out.is_valid = out.is_valid & isInRange(square);
+    out.least =
+        out.least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
   }
-  return {is_valid & (above > least), is_valid & (below > least)};
+  return out;
 }
 
 HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
                                    const Doubles& approach, double distance) {
-  const PlaneSides sides = planeSides(p, d, approach, distance);
-  return sides.above | sides.below;
+  const PlaneGaps gaps = planeGaps(p, d, approach, distance);
+  return gaps.is_valid & ((gaps.above > gaps.least) | (gaps.below > gaps.least));
 }
 
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
@@ -358,22 +364,55 @@ unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
   return bits(apart) & ((1U << count) - 1);
 }
 
-/// The gap along a direction is the least of functions that are linear in t: where it is
-/// large enough at both ends of the step, it is in between.
-unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance) {
+/// How far along a direction the bends of a body's three vertices reach, at least and at
+/// most.
+struct BendRange {
+  Doubles least{broadcast<kEight>(0.)}, most{least};
+
+  /// @param twice  twice the places of the vertices in the middle of the step, relative
+  /// to `origin`
+  HWY_INLINE BendRange(const Bend* bend, const Vectors& origin, const Vectors (&twice)[3],
+                       const Vectors& d) {
+    if (!bend) return;
+    const Vectors half = broadcast<kEight>(0.5) * product(bend->matrix, d);
+    const Doubles reach[3] = {dot(half, twice[0]), dot(half, twice[1]),
+                              dot(half, twice[2])},
+                  offset = dot(half, origin) + dot(d, allOf(bend->offset));
+    least = min(min(reach[0], reach[1]), reach[2]) + offset;
+    most = max(max(reach[0], reach[1]), reach[2]) + offset;
+  }
+};
+
+/// The gap along a direction is at least (1 - t) g0 + t g1 + 4 t (1 - t) s, with g0 and
+/// g1 those at both ends of the step and s the least difference of the bends along it.
+unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance,
+                   const PairBends& bends) {
   const TrianglePoints begin(pairs, count, &TreeVertex::t0),
       end(pairs, count, &TreeVertex::t1);
   const Doubles zero = broadcast<kEight>(0.);
+  const Vectors origin = begin.origin + end.origin;
+  Vectors twice[2][3];
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      twice[k][i] = begin.x[3 * k + i] + end.x[3 * k + i];
   DoubleMask apart = zero > zero;
-  for (const std::size_t first : {0, 3}) {
-    // Twice the edges in the middle of the step.
-    const auto edge = [&](std::size_t i) HWY_ATTR {
-      return (begin.x[first + i] - begin.x[first]) + (end.x[first + i] - end.x[first]);
-    };
-    const Vectors normal = cross(edge(1), edge(2));
-    const PlaneSides from = planeSides(begin, normal, zero, distance),
-                     to = planeSides(end, normal, zero, distance);
-    apart = apart | (from.above & to.above) | (from.below & to.below);
+  for (const auto& corner : twice) {
+    const Vectors d = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const PlaneGaps from = planeGaps(begin, d, zero, distance),
+                    to = planeGaps(end, d, zero, distance);
+    const DoubleMask is_valid = from.is_valid & to.is_valid;
+    if (bends.isAny()) {
+      const BendRange a(bends.of[0], origin, twice[0], d),
+          b(bends.of[1], origin, twice[1], d);
+      apart =
+          apart |
+          (is_valid &
+           (staysAbove(from.above - from.least, to.above - to.least, b.least - a.most) |
+            staysAbove(from.below - from.least, to.below - to.least, a.least - b.most)));
+    } else {
+      apart = apart | (is_valid & (((from.above > from.least) & (to.above > to.least)) |
+                                   ((from.below > from.least) & (to.below > to.least))));
+    }
   }
   return bits(apart) & ((1U << count) - 1);
 }

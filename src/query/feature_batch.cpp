@@ -127,6 +127,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       reader_b_(b),
       self_(&a == &b),
       reach_(reach),
+      bends_{{a.bend, b.bend}},
       tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
       shift_(shift),
       kernels_(kernels),
@@ -200,7 +201,7 @@ void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double lates
 }
 
 void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
-  if (isEarly(latest))
+  if (isBeginning(latest))
     leaveOutApart(latest, counts);
   else if (reach_ > 0)
     leaveOutFar(counts);
@@ -245,7 +246,7 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
   std::size_t kept = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
-    const unsigned apart = kernels_.stayApart(&pairs_[first], count, reach_);
+    const unsigned apart = kernels_.stayApart(&pairs_[first], count, reach_, bends_);
     for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1)
       keepPair(first + static_cast<std::size_t>(__builtin_ctz(left)), kept);
   }
@@ -284,10 +285,10 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
       list.codes.get());
-  list.size =
-      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
-                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
-                            list.codes.get(), size, list.windows.get());
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                                    roundUp(latest, 0.f),
+                                    isBeginning(latest) ? gaps_.get() : nullptr,
+                                    list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

@@ -184,6 +184,7 @@ class FeatureBatch {
     return list(kind).windows.get();
   }
   const TrianglePair* pairs() const { return pairs_.get(); }
+  const PairBends& bends() const { return bends_; }
 
   /// @brief Sets the candidate of a pair of features. It is the same whichever triangles
   /// the pair is found in.
@@ -221,6 +222,9 @@ class FeatureBatch {
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
+  /// Whether only the beginning of the step matters. Paths that are bent are compared
+  /// during the whole step.
+  bool isBeginning(double latest) const { return isEarly(latest) && !bends_.isAny(); }
   void keepPair(std::size_t i, std::size_t& kept);
   void leaveOutApart(double latest, StageCounts& counts);
   void leaveOutFar(StageCounts& counts);
@@ -231,6 +235,7 @@ class FeatureBatch {
   TriangleReader reader_a_, reader_b_;
   bool self_;
   double reach_;
+  PairBends bends_;
   /// Whether free points come near free edges or each other.
   bool tests_points_;
   const KdopShift* shift_;
