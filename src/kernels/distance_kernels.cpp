@@ -71,10 +71,48 @@ struct Nearest {
   }
 };
 
-/// Differences of the points of two features that move linearly, at both ends of the
-/// window, in the order of DifferencePolygon, and a bound on their coordinates.
+/// The bends of the points of eight pairs of features.
+class PointBends {
+ public:
+  /// @param codes  of the pairs of features
+  HWY_INLINE PointBends(const PairBends& bends, ContinuousContactKind kind,
+                        const std::uint32_t* codes)
+      : bends_(bends) {
+    // The vertices 0 to 2 belong to a, the others to b.
+    constexpr unsigned kVerticesOfA = 3;
+    double first_on_a[kEight];
+    for (std::size_t lane = 0; lane < kEight; ++lane)
+      first_on_a[lane] =
+          kind == ContinuousContactKind::kEdgeEdge || codes[lane] % 16 < kVerticesOfA;
+    first_on_a_ = load<kEight>(first_on_a) > broadcast<kEight>(0.);
+  }
+
+  /// The difference of the bends of a point of the second feature and one of the first.
+  HWY_INLINE Vectors between(const Points& x, const CornerPoints& p) const {
+    const Vectors first = x.t0[p.first] + x.t1[p.first],
+                  second = x.t0[p.second] + x.t1[p.second];
+    const Vectors of_a = bendOf(bends_.of[0], select(first_on_a_, first, second)),
+                  of_b = bendOf(bends_.of[1], select(first_on_a_, second, first));
+    return select(first_on_a_, of_b - of_a, of_a - of_b);
+  }
+
+ private:
+  static HWY_INLINE Vectors bendOf(const Bend* bend, const Vectors& twice) {
+    const Doubles zero = broadcast<kEight>(0.);
+    if (!bend) return {zero, zero, zero};
+    return broadcast<kEight>(0.5) * product(bend->matrix, twice) + allOf(bend->offset);
+  }
+
+  const PairBends& bends_;
+  DoubleMask first_on_a_;
+};
+
+/// Differences of the points of two features, at both ends of the window, in the order of
+/// DifferencePolygon, and a bound on their coordinates.
 struct MovingPolygons {
   Vectors l[4], h[4];
+  /// By how much corners deviate from straight lines during the window, in its middle.
+  Vectors bend[4];
   Doubles norm;
   int count;
 
@@ -89,6 +127,22 @@ struct MovingPolygons {
       norm = max(max(maxNorm(t0), maxNorm(t1)), norm);
       l[k] = at(t0, t1, lo);
       h[k] = at(t0, t1, hi);
+    }
+  }
+
+  /// On a part of the step of the length h the path of a corner is bent by h^2 of what it
+  /// is during the whole step.
+  HWY_INLINE void setBends(ContinuousContactKind kind, const Points& x,
+                           const PointBends& bends, const Doubles& lo,
+                           const Doubles& hi) {
+    const Doubles one = broadcast<kEight>(1.), four = broadcast<kEight>(4.),
+                  at_lo = four * (lo * (one - lo)), at_hi = four * (hi * (one - hi)),
+                  within = (hi - lo) * (hi - lo);
+    for (int k = 0; k < count; ++k) {
+      const Vectors whole = bends.between(x, DifferencePolygon::pointsOf(kind, k));
+      l[k] = l[k] + at_lo * whole;
+      h[k] = h[k] + at_hi * whole;
+      bend[k] = within * whole;
     }
   }
 };
@@ -131,7 +185,8 @@ HWY_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
 /// window is short.
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, const DistanceRequest& request) {
+                                 std::size_t count, const DistanceRequest& request,
+                                 const PairBends& bends) {
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
@@ -147,7 +202,9 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                 hi = min(broadcast<kEight>(request.t_stop),
                          min(broadcast<kEight>(1.), ends + margin));
   const Points points{EightFeatures(pairs, eight_codes)};
-  const MovingPolygons x(kind, points, lo, hi);
+  MovingPolygons x(kind, points, lo, hi);
+  if (bends.isAny())
+    x.setBends(kind, points, PointBends(bends, kind, eight_codes), lo, hi);
   const bool ignores = request.ignores_initially_closer && isEarly(request.t_stop);
   Vectors middle[4];
   for (int k = 0; k < x.count; ++k)
@@ -159,8 +216,13 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                         leastApart(lo, x.norm, near.reached, request.distance, ignores);
   DoubleMask apart = isMiddling(x.norm) & isMiddling(square) &
                      isMiddling(broadcast<kEight>(request.distance));
-  for (int k = 0; k < x.count; ++k)
-    apart = apart & (dot(n, x.l[k]) > least) & (dot(n, x.h[k]) > least);
+  for (int k = 0; k < x.count; ++k) {
+    const Doubles from = dot(n, x.l[k]), to = dot(n, x.h[k]);
+    if (bends.isAny())
+      apart = apart & staysAbove(from - least, to - least, dot(n, x.bend[k]));
+    else
+      apart = apart & (from > least) & (to > least);
+  }
   return ((1U << count) - 1) & ~bits(apart);
 }
 

@@ -282,63 +282,138 @@ HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
-/// The points of eight triangle pairs at t = 0, relative to the first point. `approach`
-/// is the most by which two vertices of the triangles can approach each other along a
-/// coordinate axis during the step.
+/// The points of eight triangle pairs in one frame, relative to the first point.
 struct TrianglePoints {
   Vectors x[6];
-  Doubles norm, approach;
+  /// The first point.
+  Vectors origin;
+  /// The fourth numbers of the vertices: at t = 0 their displacements.
+  Doubles fourth[6];
+  Doubles norm;
 
-  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count) {
-    Doubles moved[6];
+  /// @param frame  TreeVertex::t0 or t1
+  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count,
+                            double (TreeVertex::*frame)[4])
+      : norm(broadcast<kEight>(0.)) {
     for (std::size_t i = 0; i < 6; ++i) {
       // If there are fewer than eight pairs, the last one is repeated.
-      const auto row = [=](std::size_t lane) HWY_ATTR {
-        return pairs[lane < count ? lane : count - 1].x[i]->t0;
+      const auto row = [=](std::size_t lane) HWY_ATTR -> const double(&)[4] {
+        return pairs[lane < count ? lane : count - 1].x[i]->*frame;
       };
-      // The fourth number of TreeVertex::t0 is the displacement of the vertex.
-      loadColumns(row, x[i].x, x[i].y, x[i].z, moved[i]);
+      loadColumns(row, x[i].x, x[i].y, x[i].z, fourth[i]);
     }
-    approach =
-        max(max(moved[0], moved[1]), moved[2]) + max(max(moved[3], moved[4]), moved[5]);
-    norm = broadcast<kEight>(0.);
+    origin = x[0];
     for (std::size_t i = 6; i-- > 0;) {
       x[i] = x[i] - x[0];
       norm = max(norm, maxNorm(x[i]));
     }
   }
+
+  /// The most by which two vertices of the triangles can approach each other along a
+  /// coordinate axis during the step.
+  HWY_INLINE Doubles approach() const {
+    return max(max(fourth[0], fourth[1]), fourth[2]) +
+           max(max(fourth[3], fourth[4]), fourth[5]);
+  }
 };
 
-/// Lanes in which the direction d separates the triangles by so much that they stay apart
-/// even if vertices approach each other by `approach` along each axis; with a distance,
-/// further apart than this. The factor of the distance has more than the rounding of the
-/// length of d, a few units.
-HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
-                                   const Doubles& approach, double distance) {
+/// How far the second triangles lie above the first ones, along a direction, and below
+/// them. They are apart where this is valid and more than `least`.
+struct PlaneGaps {
+  Doubles above, below, least;
+  DoubleMask is_valid;
+};
+
+/// The gaps along the direction d. The least one is enough even if vertices approach each
+/// other by `approach` along each axis; with a distance, they stay further apart than
+/// this. The factor of the distance has more than the rounding of the length of d, a few
+/// units.
+HWY_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
+                               const Doubles& approach, double distance) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
                 b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
-  const Doubles above = min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
-                below = min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]);
   const Doubles size = maxNorm(d), volume = size * p.norm;
-  Doubles least = broadcast<kEight>(kPlaneBound) * volume +
-                  broadcast<kEight>(kPlaneApproach) * size * approach;
-  DoubleMask is_valid = isInRange(volume);
+  PlaneGaps out{min(min(b[0], b[1]), b[2]) - max(max(a[0], a[1]), a[2]),
+                min(min(a[0], a[1]), a[2]) - max(max(b[0], b[1]), b[2]),
+                broadcast<kEight>(kPlaneBound) * volume +
+                    broadcast<kEight>(kPlaneApproach) * size * approach,
+                isInRange(volume)};
   if (distance > 0) {
     const Doubles square = dot(d, d);
-    is_valid = is_valid & isInRange(square);
-    least = least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
+    out.is_valid = out.is_valid & isInRange(square);
+    out.least =
+        out.least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
   }
-  return is_valid & ((above > least) | (below > least));
+  return out;
+}
+
+HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
+                                   const Doubles& approach, double distance) {
+  const PlaneGaps gaps = planeGaps(p, d, approach, distance);
+  return gaps.is_valid & ((gaps.above > gaps.least) | (gaps.below > gaps.least));
 }
 
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   double distance, float (&gaps)[8]) {
-  const TrianglePoints p(pairs, count);
-  const Doubles bridged = broadcast<kEight>(share) * p.approach;
+  const TrianglePoints p(pairs, count, &TreeVertex::t0);
+  const Doubles bridged = broadcast<kEight>(share) * p.approach();
   store(roundedUp(bridged + bridged, broadcast<kEight>(FLT_MIN)), gaps);
   const DoubleMask apart =
       areSeparated(p, cross(p.x[1], p.x[2]), bridged, distance) |
       areSeparated(p, cross(p.x[4] - p.x[3], p.x[5] - p.x[3]), bridged, distance);
+  return bits(apart) & ((1U << count) - 1);
+}
+
+/// How far along a direction the bends of a body's three vertices reach, at least and at
+/// most.
+struct BendRange {
+  Doubles least{broadcast<kEight>(0.)}, most{least};
+
+  /// @param twice  twice the places of the vertices in the middle of the step, relative
+  /// to `origin`
+  HWY_INLINE BendRange(const Bend* bend, const Vectors& origin, const Vectors (&twice)[3],
+                       const Vectors& d) {
+    if (!bend) return;
+    const Vectors half = broadcast<kEight>(0.5) * product(bend->matrix, d);
+    const Doubles reach[3] = {dot(half, twice[0]), dot(half, twice[1]),
+                              dot(half, twice[2])},
+                  offset = dot(half, origin) + dot(d, allOf(bend->offset));
+    least = min(min(reach[0], reach[1]), reach[2]) + offset;
+    most = max(max(reach[0], reach[1]), reach[2]) + offset;
+  }
+};
+
+/// The gap along a direction is at least (1 - t) g0 + t g1 + 4 t (1 - t) s, with g0 and
+/// g1 those at both ends of the step and s the least difference of the bends along it.
+unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance,
+                   const PairBends& bends) {
+  const TrianglePoints begin(pairs, count, &TreeVertex::t0),
+      end(pairs, count, &TreeVertex::t1);
+  const Doubles zero = broadcast<kEight>(0.);
+  const Vectors origin = begin.origin + end.origin;
+  Vectors twice[2][3];
+  for (std::size_t k = 0; k < 2; ++k)
+    for (std::size_t i = 0; i < 3; ++i)
+      twice[k][i] = begin.x[3 * k + i] + end.x[3 * k + i];
+  DoubleMask apart = zero > zero;
+  for (const auto& corner : twice) {
+    const Vectors d = cross(corner[1] - corner[0], corner[2] - corner[0]);
+    const PlaneGaps from = planeGaps(begin, d, zero, distance),
+                    to = planeGaps(end, d, zero, distance);
+    const DoubleMask is_valid = from.is_valid & to.is_valid;
+    if (bends.isAny()) {
+      const BendRange a(bends.of[0], origin, twice[0], d),
+          b(bends.of[1], origin, twice[1], d);
+      apart =
+          apart |
+          (is_valid &
+           (staysAbove(from.above - from.least, to.above - to.least, b.least - a.most) |
+            staysAbove(from.below - from.least, to.below - to.least, a.least - b.most)));
+    } else {
+      apart = apart | (is_valid & (((from.above > from.least) & (to.above > to.least)) |
+                                   ((from.below > from.least) & (to.below > to.least))));
+    }
+  }
   return bits(apart) & ((1U << count) - 1);
 }
 

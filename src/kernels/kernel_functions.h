@@ -39,11 +39,14 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           std::size_t count);
 unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
                   double distance, float (&gaps)[8]);
+unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance,
+                   const PairBends& bends);
 unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
                          std::size_t count);
 unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
                                  const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, const DistanceRequest& request);
+                                 std::size_t count, const DistanceRequest& request,
+                                 const PairBends& bends);
 EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
 unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,

@@ -15,6 +15,7 @@
 
 #include "elementary/axis_window.h"
 #include "elementary/distance_advance.h"
+#include "mesh/bend.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/tree_nodes.h"
 
@@ -293,6 +294,14 @@ struct Kernels {
   unsigned (*areApart)(const TrianglePair* pairs, std::size_t count, double share,
                        double distance, float (&gaps)[8]);
 
+  /// Finds which of up to eight pairs of triangles stay further apart than a distance
+  /// during the whole step, a bit each. A direction proves it at both ends of the step:
+  /// the normal of one of the two triangles in its middle.
+  /// @param count  1 to 8
+  /// @param distance  above 0
+  unsigned (*stayApart)(const TrianglePair* pairs, std::size_t count, double distance,
+                        const PairBends& bends);
+
   /// Finds which of up to eight edges may pass through their faces at t = 0, a bit each.
   /// isCrossing() is false for all others.
   /// @param codes  as of cullCrossings()
@@ -361,7 +370,8 @@ struct Kernels {
   /// @param count  1 to 8
   unsigned (*mayComeWithin)(ContinuousContactKind kind, const TrianglePair* pairs,
                             const std::uint32_t* codes, const TimeWindow* windows,
-                            std::size_t count, const DistanceRequest& request);
+                            std::size_t count, const DistanceRequest& request,
+                            const PairBends& bends);
 
   /// advanceToDistance() of eight VF or EE pairs whose points are in the order of
   /// OrderedPoints.

@@ -88,6 +88,27 @@ HWY_INLINE MovingVectors loadPaths(const TreeVertex* const (&x)[kEight]) {
   return p;
 }
 
+/// The product of a matrix with the same numbers in all lanes and a vector.
+HWY_INLINE Vectors product(const double (&m)[9], const Vectors& v) {
+  return {all(m[0]) * v.x + all(m[1]) * v.y + all(m[2]) * v.z,
+          all(m[3]) * v.x + all(m[4]) * v.y + all(m[5]) * v.z,
+          all(m[6]) * v.x + all(m[7]) * v.y + all(m[8]) * v.z};
+}
+
+HWY_INLINE Vectors allOf(const double (&v)[3]) {
+  return {all(v[0]), all(v[1]), all(v[2])};
+}
+
+/// Whether (1 - t) g0 + t g1 + 4 t (1 - t) bend is above 0 for all t in [0, 1]: a bend
+/// below 0 has to be above minus the square of the mean of the roots of g0 and g1. The
+/// factor is more than the rounding of both sides, a few units.
+HWY_INLINE DoubleMask staysAbove(const Doubles& g0, const Doubles& g1,
+                                 const Doubles& bend) {
+  const Doubles zero = all(0), sum = g0 + g1, root = squareRoot(max(g0 * g1, zero));
+  return (g0 > zero) & (g1 > zero) &
+         (sum + (root + root) > all(-4 * (1 + 0x1p-40)) * bend);
+}
+
 /// The cross product of two moving vectors, as Bernstein coefficients in t. The middle
 /// one is times 2.
 struct MovingNormals {

@@ -11,12 +11,26 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/bend.h"
 #include "motion/motion_body.h"
 #include "query/query_answer.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
+
+/// @brief How points deviate from their chords in a turn.
+struct ChordBend {
+  Bend bend;
+  /// Bound on the distance from the path that is bent so.
+  double error;
+};
+
+/// @brief The bend during a span of the points within `radius` of the origin of the body.
+/// @param most  bound on their deviation from their chords
+/// @pre the path turns about an axis
+ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
+                 double most);
 
 /// @brief A mesh whose vertices go along their chords during a span.
 class ChordMesh {
@@ -31,7 +45,9 @@ class ChordMesh {
   bool isRefit(double t0, double t1) const;
 
   /// @brief The mesh of a span; valid until the next call.
-  const MeshInstance& during(double t0, double t1, int num_threads);
+  /// @param bend  how the paths of a rigid mesh are bent, kept by reference; null: chords
+  /// of later spans may be moved
+  const MeshInstance& during(double t0, double t1, int num_threads, const Bend* bend);
 
  private:
   const MotionBody& body_;
@@ -81,13 +97,17 @@ class ChordSearch {
   Span find(int i);
 
  private:
-  double deviation(int i) const;
+  bool isBent(int k) const;
+  double deviationIn(int k, int i) const;
   bool mayMeet(double t0, double t1, double deviation) const;
 
   const MotionBody* body_[2];
   const QueryOptions& options_;
   ChordMesh mesh_[2];
   int num_spans_{0};
+  /// Whether the paths of meshes that turn rigidly are compared as bent ones. Advancement
+  /// along chords knows no bends.
+  bool has_bends_{false};
   /// The largest deviation of each mesh from its chords, if there were one span; and the
   /// error of a distance on chords.
   double whole_[2]{0, 0};

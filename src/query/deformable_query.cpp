@@ -486,7 +486,7 @@ QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
   const DefaultFloatingPoint mode;
-  const KdopShift shift = shiftOf(a, b, options.min_distance);
+  const KdopShift shift = shiftOf(a, b, options.min_distance + options.box_margin);
   return ContactQuery(a, b, &shift, options).answer();
 }
 

@@ -127,6 +127,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       reader_b_(b),
       self_(&a == &b),
       reach_(reach),
+      bends_{{a.bend, b.bend}},
       tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
       shift_(shift),
       kernels_(kernels),
@@ -200,7 +201,12 @@ void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double lates
 }
 
 void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
-  leaveOutApart(latest, counts);
+  if (isBeginning(latest))
+    leaveOutApart(latest, counts);
+  else if (reach_ > 0)
+    leaveOutFar(counts);
+  else if (has_edges_)
+    leaveOutEdges();
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
@@ -208,35 +214,56 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
                                           crossings_.get(), size);
 }
 
-/// If `latest` is early, leaves out the triangle pairs that are apart until then. If not,
-/// it only leaves out their edges that might cross at t = 0.
+/// Moves a triangle pair to the end of those that are kept.
+void FeatureBatch::keepPair(std::size_t i, std::size_t& kept) {
+  pairs_[kept] = pairs_[i];
+  owned_[kept] = owned_[i];
+  edges_[kept++] = edges_[i];
+}
+
+/// Leaves out the triangle pairs that are apart until `latest`.
 void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
-  const bool is_early = isEarly(latest);
-  if (!is_early && !has_edges_) return;
   // The kernel needs more than the rounding of a sum and a product, 2^-53 each.
-  const double share = is_early ? latest * (1 + 0x1p-50) : 0,
-               reach = is_early ? reach_ : 0;
+  const double share = latest * (1 + 0x1p-50);
   std::size_t kept = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     float gaps[8];
-    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, reach, gaps);
-    if (!is_early) {
-      // There is no branch, since it would be unpredictable.
-      for (std::size_t i = 0; i < count; ++i)
-        edges_[first + i] &= static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
-      continue;
-    }
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, reach_, gaps);
     counts.plane_culled += static_cast<unsigned>(__builtin_popcount(apart));
     for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
-      pairs_[kept] = pairs_[first + lane];
-      owned_[kept] = owned_[first + lane];
-      edges_[kept] = edges_[first + lane];
-      gaps_[kept++] = gaps[lane];
+      gaps_[kept] = gaps[lane];
+      keepPair(first + lane, kept);
     }
   }
-  if (is_early) num_pairs_ = kept;
+  num_pairs_ = kept;
+}
+
+/// Leaves out the triangle pairs that stay further apart than the distance during the
+/// whole step: six of seven of those of a cloth beside a body.
+void FeatureBatch::leaveOutFar(StageCounts& counts) {
+  std::size_t kept = 0;
+  for (std::size_t first = 0; first < num_pairs_; first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
+    const unsigned apart = kernels_.stayApart(&pairs_[first], count, reach_, bends_);
+    for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1)
+      keepPair(first + static_cast<std::size_t>(__builtin_ctz(left)), kept);
+  }
+  counts.plane_culled += num_pairs_ - kept;
+  num_pairs_ = kept;
+}
+
+/// Leaves out the edges of triangle pairs that are apart at t = 0.
+void FeatureBatch::leaveOutEdges() {
+  for (std::size_t first = 0; first < num_pairs_; first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
+    float gaps[8];
+    const unsigned apart = kernels_.areApart(&pairs_[first], count, 0, 0, gaps);
+    // There is no branch, since it would be unpredictable.
+    for (std::size_t i = 0; i < count; ++i)
+      edges_[first + i] &= static_cast<std::uint16_t>((apart >> i & 1U) - 1U);
+  }
 }
 
 constexpr unsigned kVfPairs = (1U << kNumVertexFacePairs) - 1;
@@ -258,10 +285,10 @@ void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& 
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
       list.codes.get());
-  list.size =
-      kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
-                            roundUp(latest, 0.f), isEarly(latest) ? gaps_.get() : nullptr,
-                            list.codes.get(), size, list.windows.get());
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
+                                    roundUp(latest, 0.f),
+                                    isBeginning(latest) ? gaps_.get() : nullptr,
+                                    list.codes.get(), size, list.windows.get());
   counts.feature_pairs += size;
   counts.box_culled += size - list.size;
 }

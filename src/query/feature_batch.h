@@ -156,8 +156,9 @@ class FeatureBatch {
 
   void clear();
 
-  /// @brief Culls triangle pairs that are apart until `latest`, and lists the edges and
-  /// faces whose boxes overlap at t = 0.
+  /// @brief Culls triangle pairs that are apart until `latest`, with a distance those
+  /// that stay further apart than it, and lists the edges and faces whose boxes overlap
+  /// at t = 0.
   /// @param latest  later contacts do not matter to the query
   /// @param counts  plane_culled is counted
   void cullTriangles(double latest, StageCounts& counts);
@@ -183,6 +184,7 @@ class FeatureBatch {
     return list(kind).windows.get();
   }
   const TrianglePair* pairs() const { return pairs_.get(); }
+  const PairBends& bends() const { return bends_; }
 
   /// @brief Sets the candidate of a pair of features. It is the same whichever triangles
   /// the pair is found in.
@@ -220,13 +222,20 @@ class FeatureBatch {
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, double latest, bool with_crossings,
                StageCounts& counts);
+  /// Whether only the beginning of the step matters. Paths that are bent are compared
+  /// during the whole step.
+  bool isBeginning(double latest) const { return isEarly(latest) && !bends_.isAny(); }
+  void keepPair(std::size_t i, std::size_t& kept);
   void leaveOutApart(double latest, StageCounts& counts);
+  void leaveOutFar(StageCounts& counts);
+  void leaveOutEdges();
   unsigned edgePairsToTest();
   void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
   double reach_;
+  PairBends bends_;
   /// Whether free points come near free edges or each other.
   bool tests_points_;
   const KdopShift* shift_;

@@ -254,8 +254,9 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
   candidates_.clear();
   for (std::size_t first = 0; first < size && !isDone(); first += 8) {
     const std::size_t count = std::min<std::size_t>(8, size - first);
-    unsigned left = kernels_.mayComeWithin(kind, batch_.pairs(), codes + first,
-                                           windows + first, count, request);
+    unsigned left =
+        kernels_.mayComeWithin(kind, batch_.pairs(), codes + first, windows + first,
+                               count, request, batch_.bends());
     counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
     for (; left != 0 && !isDone(); left &= left - 1) {
       const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));

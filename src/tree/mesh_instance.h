@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "fcl/math/triangle.h"
+#include "mesh/bend.h"
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_frames.h"
 #include "tree/moving_kdop_tree.h"
@@ -34,6 +35,10 @@ struct MeshInstance {
   /// triangle owns all its features, so that a feature pair can be met repeatedly.
   const MeshTriangle* owners{nullptr};
   const Triangle* triangles{nullptr};
+
+  /// How the paths of the vertices are bent. Boxes do not contain the bends. Null: they
+  /// are straight.
+  const Bend* bend{nullptr};
 
   /// @brief Whether the tree's vertices have the same paths as in the world.
   bool isInPlace() const {

@@ -83,6 +83,23 @@ struct EightBoxes {
   float half_axis[3][3][MovingKdopNode::kWidth];
 };
 
+void rotateVector(const double (&r)[9], double (&v)[3]) {
+  const double x = v[0], y = v[1], z = v[2];
+  for (int k = 0; k < 3; ++k) v[k] = r[3 * k] * x + r[3 * k + 1] * y + r[3 * k + 2] * z;
+}
+
+/// Rotates the half axes.
+void rotateAxes(const double (&rotation)[9], EightBoxes& boxes) {
+  float r[9];
+  for (int k = 0; k < 9; ++k) r[k] = static_cast<float>(rotation[k]);
+  for (auto& axis : boxes.half_axis)
+    for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
+      const Float4 v[3] = {load(axis[0] + q), load(axis[1] + q), load(axis[2] + q)};
+      for (int k = 0; k < 3; ++k)
+        store(v[0] * r[3 * k] + v[1] * r[3 * k + 1] + v[2] * r[3 * k + 2], axis[k] + q);
+    }
+}
+
 /// The largest distance of a point of the box from its center, along x, y or z.
 double spreadOf(const OrientedBox& box) {
   double most = 0;
@@ -182,12 +199,8 @@ void RigidTree::setOrigin(int frame) {
 }
 
 void RigidTree::rotate(int frame, OrientedBox& box) const {
-  const auto turn = [&r = rotation_[frame]](double(&v)[3]) {
-    const double x = v[0], y = v[1], z = v[2];
-    for (int k = 0; k < 3; ++k) v[k] = r[3 * k] * x + r[3 * k + 1] * y + r[3 * k + 2] * z;
-  };
-  turn(box.center);
-  for (auto& axis : box.axis) turn(axis);
+  rotateVector(rotation_[frame], box.center);
+  for (auto& axis : box.axis) rotateVector(rotation_[frame], axis);
 }
 
 /// The box of a node in the body's frame: of an AABB or a KDOP that of the first three
@@ -238,27 +251,31 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
   const int num_frames = turns_ ? 2 : 1;
   EightBoxes boxes[2];
   for (int lane = 0; lane < kWidth; ++lane) {
-    const OrientedBox stored = storedBox<BV>(nodes[lane]);
+    const OrientedBox box = storedBox<BV>(nodes[lane]);
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        boxes[0].half_axis[i][k][lane] =
+            static_cast<float>(box.axis[i][k] * box.extent[i]);
     for (int frame = 0; frame < num_frames; ++frame) {
-      OrientedBox box = stored;
-      if (is_rotated_) rotate(frame, box);
-      for (int k = 0; k < 3; ++k) {
-        boxes[frame].center[k][lane] =
-            static_cast<float>(box.center[k] - origin_[frame][k]);
-        for (int i = 0; i < 3; ++i)
-          boxes[frame].half_axis[i][k][lane] =
-              static_cast<float>(box.axis[i][k] * box.extent[i]);
-      }
+      double center[3] = {box.center[0], box.center[1], box.center[2]};
+      if (is_rotated_) rotateVector(rotation_[frame], center);
+      for (int k = 0; k < 3; ++k)
+        boxes[frame].center[k][lane] = static_cast<float>(center[k] - origin_[frame][k]);
     }
   }
-  // A half-axis is a sum of components of the center and of the half axes. Rounding them
-  // to float and adding two is 2 units of kFloatUnit, the spread 2, the last sum 1. 3
-  // more cover the rounding of the padding itself. The slack of the fit is far larger
-  // than the few 2^-53 of the rotation and of the center.
+  if (turns_)
+    std::memcpy(boxes[1].half_axis, boxes[0].half_axis, sizeof(boxes[0].half_axis));
+  // A half-axis is a sum of components of the center and of the half axes. Those of the
+  // center are rounded to float. A half axis v and the rotation are rounded to float,
+  // then products and two sums of them: 5 units of kFloatUnit times |v|, which is at most
+  // the sum of its components. Adding two components is 1 + 2 and 1 + 2 * 5 units, the
+  // spread 2, the last sum 1. 3 more cover the rounding of the padding itself. The slack
+  // of the fit is far larger than the few 2^-53 of the rotation of the center.
   for (int frame = 0; frame < num_frames; ++frame) {
     auto& rows = frame == 0 ? out.t0 : out.t1;
+    if (is_rotated_) rotateAxes(rotation_[frame], boxes[frame]);
     fitBoxes(boxes[frame], rows);
-    roundOutward(8 * kFloatUnit, rows);
+    roundOutward(20 * kFloatUnit, rows);
   }
   if (!turns_) std::memcpy(out.t1, out.t0, sizeof(out.t0));
 }

@@ -16,6 +16,7 @@
 
 #include "elementary/distance_advance.h"
 #include "elementary/least_distance.h"
+#include "feature_distance.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
@@ -80,14 +81,14 @@ Found expectRightFilter(const MovingPair (&queries)[8], const DistanceRequest& r
         unsigned{advanceToDistance(kind, queries[lane].points(), request).is_contact}
         << lane;
   }
-  const unsigned found = allSets().front()->mayComeWithin(kind, block.pairs, block.codes,
-                                                          block.windows, 8, request);
+  const unsigned found = allSets().front()->mayComeWithin(
+      kind, block.pairs, block.codes, block.windows, 8, request, PairBends());
   EXPECT_EQ(contacts & ~found, 0U) << request.distance;
   for (const Kernels* k : allSets())
     for (const std::size_t count : {8, 3, 1})
-      EXPECT_EQ(
-          k->mayComeWithin(kind, block.pairs, block.codes, block.windows, count, request),
-          found & ((1U << count) - 1))
+      EXPECT_EQ(k->mayComeWithin(kind, block.pairs, block.codes, block.windows, count,
+                                 request, PairBends()),
+                found & ((1U << count) - 1))
           << k->name;
   return {8 - __builtin_popcount(found), __builtin_popcount(contacts),
           8 - __builtin_popcount(contacts)};
@@ -204,7 +205,7 @@ TEST(FCL_KERNELS, distanceFilterOfAllSizes) {
   const DistanceBlock block(queries);
   for (const Kernels* k : allSets())
     EXPECT_EQ(k->mayComeWithin(ContinuousContactKind::kEdgeEdge, block.pairs, block.codes,
-                               block.windows, 8, requestUntil(1, 1e-3)),
+                               block.windows, 8, requestUntil(1, 1e-3), PairBends()),
               0xffU)
         << k->name;
 }
@@ -386,53 +387,227 @@ TEST(FCL_KERNELS, leastDistancesAsTheScalarFunction) {
   EXPECT_GT(unknown, 100);
 }
 
-/// Triangles that a plane keeps further apart than a distance, until an early time. The
-/// distance of two triangles is that of their VF and EE pairs, unless they cross.
+/// Two triangles that move.
+struct TwoTriangles {
+  std::vector<TreeVertex> vertices{6};
+  VertexPath paths[6];
+  TrianglePair pair{};
+
+  TwoTriangles(Random& random, double motion) {
+    const Vector3<double> away = random.point(1);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const Vector3<double> p = random.point(1) + (k < 3 ? 0. : 1.) * away,
+                            q = p + random.point(motion);
+      std::copy(p.data(), p.data() + 3, paths[k].t0);
+      std::copy(q.data(), q.data() + 3, paths[k].t1);
+      vertices[k].setPath(paths[k].t0, paths[k].t1);
+      pair.x[k] = &vertices[k];
+    }
+  }
+
+  /// The distance of two triangles is that of their VF and EE pairs, unless they cross.
+  bool comeWithin(double distance, double until) const {
+    const auto test = [&](ContinuousContactKind kind, std::array<std::size_t, 4> id) {
+      return advanceToDistance(
+                 kind, {{&paths[id[0]], &paths[id[1]], &paths[id[2]], &paths[id[3]]}},
+                 requestUntil(until, std::max(distance, 1e-9)))
+          .is_contact;
+    };
+    bool comes_near = false;
+    for (std::size_t k = 0; k < 3; ++k) {
+      comes_near |= test(ContinuousContactKind::kVertexFace, {k, 3, 4, 5}) ||
+                    test(ContinuousContactKind::kVertexFace, {3 + k, 0, 1, 2});
+      for (std::size_t l = 0; l < 3; ++l)
+        comes_near |= test(ContinuousContactKind::kEdgeEdge,
+                           {k, (k + 1) % 3, 3 + l, 3 + (l + 1) % 3});
+    }
+    return comes_near;
+  }
+};
+
+/// Triangles that a plane keeps further apart than a distance, until an early time.
 TEST(FCL_KERNELS, trianglesThatStayApartByADistance) {
   Random random(79);
   int apart = 0, near = 0;
   for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
     const double distance = i % 3 ? std::pow(10, random.uniform(-4, -0.3)) : 0,
                  share = std::pow(10, random.uniform(-4, -1.3));
-    std::vector<TreeVertex> vertices(6);
-    VertexPath paths[6];
-    const Vector3<double> away = random.point(1);
-    for (std::size_t k = 0; k < 6; ++k) {
-      const Vector3<double> p = random.point(1) + (k < 3 ? 0. : 1.) * away,
-                            q = p + random.point(0.5);
-      std::copy(p.data(), p.data() + 3, paths[k].t0);
-      std::copy(q.data(), q.data() + 3, paths[k].t1);
-      vertices[k].setPath(paths[k].t0, paths[k].t1);
-    }
-    TrianglePair pair{};
-    for (std::size_t k = 0; k < 6; ++k) pair.x[k] = &vertices[k];
+    const TwoTriangles x(random, 0.5);
     float gaps[8];
     const bool is_apart =
-        allSets().front()->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U;
+        allSets().front()->areApart(&x.pair, 1, share * (1 + 0x1p-50), distance, gaps) &
+        1U;
     for (const Kernels* k : allSets())
-      EXPECT_EQ(k->areApart(&pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U,
+      EXPECT_EQ(k->areApart(&x.pair, 1, share * (1 + 0x1p-50), distance, gaps) & 1U,
                 unsigned{is_apart})
           << k->name;
-    bool comes_near = false;
-    const auto test = [&](ContinuousContactKind kind, std::array<std::size_t, 4> id) {
-      comes_near |=
-          advanceToDistance(
-              kind, {{&paths[id[0]], &paths[id[1]], &paths[id[2]], &paths[id[3]]}},
-              requestUntil(share, std::max(distance, 1e-9)))
-              .is_contact;
-    };
-    for (std::size_t k = 0; k < 3; ++k) {
-      test(ContinuousContactKind::kVertexFace, {k, 3, 4, 5});
-      test(ContinuousContactKind::kVertexFace, {3 + k, 0, 1, 2});
-      for (std::size_t l = 0; l < 3; ++l)
-        test(ContinuousContactKind::kEdgeEdge, {k, (k + 1) % 3, 3 + l, 3 + (l + 1) % 3});
-    }
+    const bool comes_near = x.comeWithin(distance, share);
     EXPECT_FALSE(is_apart && comes_near) << distance << " until " << share;
     apart += is_apart && distance > 0;
     near += comes_near && distance > 0;
   }
   EXPECT_GT(apart, 200);
   EXPECT_GT(near, 200);
+}
+
+/// Triangles that a plane keeps further apart than a distance during the whole step.
+TEST(FCL_KERNELS, trianglesThatStayApartThroughout) {
+  Random random(80);
+  int apart = 0, near = 0;
+  for (int i = 0; i < 1000 && !testing::Test::HasFailure(); ++i) {
+    const double distance = std::pow(10, random.uniform(-4, -0.3)),
+                 motion = std::pow(10, random.uniform(-2, 0));
+    const std::vector<TwoTriangles> x = [&] {
+      std::vector<TwoTriangles> made;
+      made.reserve(8);
+      for (int k = 0; k < 8; ++k) made.emplace_back(random, motion);
+      return made;
+    }();
+    TrianglePair pairs[8];
+    for (std::size_t k = 0; k < 8; ++k) pairs[k] = x[k].pair;
+    const unsigned found = allSets().front()->stayApart(pairs, 8, distance, PairBends());
+    for (const Kernels* k : allSets())
+      for (const std::size_t count : {8, 5, 1})
+        EXPECT_EQ(k->stayApart(pairs, count, distance, PairBends()),
+                  found & ((1U << count) - 1))
+            << k->name;
+    for (std::size_t k = 0; k < 8; ++k) {
+      const bool is_apart = found >> k & 1U, comes_near = x[k].comeWithin(distance, 1);
+      EXPECT_FALSE(is_apart && comes_near) << distance;
+      apart += is_apart;
+      near += comes_near;
+    }
+  }
+  EXPECT_GT(apart, 1000);
+  EXPECT_GT(near, 1000);
+}
+
+/// Two triangles on bent paths.
+struct BentTriangles : TwoTriangles {
+  Bend bend[2];
+
+  BentTriangles(Random& random, double motion) : TwoTriangles(random, motion) {
+    const double size = std::pow(10, random.uniform(-3, 0));
+    for (Bend& of : bend) {
+      const Vector3<double> offset = random.point(size);
+      std::copy(offset.data(), offset.data() + 3, of.offset);
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j <= i; ++j)
+          of.matrix[3 * i + j] = of.matrix[3 * j + i] = random.uniform(-size, size);
+    }
+  }
+
+  Vector3<double> pointAt(std::size_t vertex, double t, const PairBends& bends) const {
+    const Eigen::Map<const Vector3<double>> from(paths[vertex].t0), to(paths[vertex].t1);
+    const Vector3<double> chord = (1 - t) * from + t * to;
+    const Bend* of = bends.of[vertex / 3];
+    if (!of) return chord;
+    const Eigen::Map<const Matrix3<double>> matrix(of->matrix);
+    const Eigen::Map<const Vector3<double>> offset(of->offset);
+    return chord + 4 * t * (1 - t) * (matrix * (from + to) / 2 + offset);
+  }
+
+  /// The least distance of a pair of features at some times.
+  double leastDistance(int bit, double lo, double hi, const PairBends& bends) const {
+    constexpr int kSamples = 40;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= kSamples; ++i) {
+      const auto at = [&](std::size_t k) {
+        return pointAt(k, lo + (hi - lo) * i / kSamples, bends);
+      };
+      const auto first = static_cast<std::size_t>(bit < 6 ? bit : (bit - 6) / 3),
+                 second = static_cast<std::size_t>(bit < 6 ? 0 : (bit - 6) % 3);
+      const std::size_t face = bit < 3 ? 3 : 0;
+      least = std::min(
+          least,
+          bit < 6 ? test::distanceToFace(at(first), at(face), at(face + 1), at(face + 2))
+                  : test::distanceOfEdges(at(first), at((first + 1) % 3), at(3 + second),
+                                          at(3 + (second + 1) % 3)));
+    }
+    return least;
+  }
+};
+
+struct BentFound {
+  int apart{0}, culled{0}, near{0};
+};
+
+/// No pair of triangles and no pair of features that comes near at a sampled time on its
+/// bent paths is culled, and all instruction sets find the same.
+void expectRightOnBentPaths(const BentTriangles& x, const PairBends& bends,
+                            double distance, double lo, double hi, BentFound& sum) {
+  const unsigned is_apart = allSets().front()->stayApart(&x.pair, 1, distance, bends);
+  const DistanceRequest request = requestUntil(1, distance);
+  TimeWindow windows[8];
+  std::fill(windows, windows + 8,
+            TimeWindow{static_cast<float>(lo), static_cast<float>(hi)});
+  for (const auto kind :
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+    const bool vf = kind == ContinuousContactKind::kVertexFace;
+    const int count = vf ? 6 : 8;
+    std::uint32_t codes[8];
+    for (int k = 0; k < count; ++k) codes[k] = featureCode(0, vf ? k : 6 + k);
+    const auto size = static_cast<std::size_t>(count);
+    const unsigned found = allSets().front()->mayComeWithin(kind, &x.pair, codes, windows,
+                                                            size, request, bends);
+    for (const Kernels* k : allSets()) {
+      EXPECT_EQ(k->stayApart(&x.pair, 1, distance, bends), is_apart) << k->name;
+      EXPECT_EQ(k->mayComeWithin(kind, &x.pair, codes, windows, size, request, bends),
+                found)
+          << k->name;
+    }
+    for (int k = 0; k < count; ++k) {
+      const int bit = static_cast<int>(codes[k] % 16);
+      const bool is_near = x.leastDistance(bit, windows[0].lo, windows[0].hi, bends) <=
+                           distance,
+                 is_kept = found >> k & 1U;
+      EXPECT_TRUE(is_kept || !is_near) << bit << " in " << lo << " " << hi;
+      EXPECT_FALSE(is_apart && is_near) << bit;
+      sum.culled += !is_kept;
+      sum.near += is_near;
+    }
+  }
+  sum.apart += is_apart != 0;
+}
+
+TEST(FCL_KERNELS, bentPathsThatComeNearAreNotCulled) {
+  Random random(81);
+  BentFound sum;
+  for (int i = 0; i < 1500 && !testing::Test::HasFailure(); ++i) {
+    const BentTriangles x(random, std::pow(10, random.uniform(-2, 0)));
+    PairBends bends;
+    for (int k = 0; k < 2; ++k)
+      if (i % 3 != k) bends.of[k] = &x.bend[k];
+    const double lo = random.index(2) ? 0 : random.uniform(0, 0.8),
+                 hi = random.index(2) ? 1 : random.uniform(lo, 1);
+    expectRightOnBentPaths(x, bends, std::pow(10, random.uniform(-3, -0.5)), lo, hi, sum);
+  }
+  EXPECT_GT(sum.apart, 100);
+  EXPECT_GT(sum.culled, 5000);
+  EXPECT_GT(sum.near, 500);
+}
+
+/// Two triangles face each other, and one moves. The plane between them is parallel to
+/// both at all times; the least distance is that at the end.
+TEST(FCL_KERNELS, trianglesThatStayApartUpToTheirGap) {
+  constexpr double kCorners[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+  for (const double gap : {1e-6, 1e-3, 0.25}) {
+    std::vector<TreeVertex> vertices(6);
+    TrianglePair pair{};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double(&at)[2] = kCorners[k % 3];
+      const double from[3] = {at[0], at[1], k < 3 ? 0. : 1.},
+                   to[3] = {at[0] + (k < 3 ? 0. : 0.3), at[1], k < 3 ? 0 : gap};
+      vertices[k].setPath(from, to);
+      pair.x[k] = &vertices[k];
+    }
+    for (const Kernels* k : allSets()) {
+      EXPECT_EQ(k->stayApart(&pair, 1, gap * (1 - 1e-6), PairBends()), 1U)
+          << k->name << " " << gap;
+      EXPECT_EQ(k->stayApart(&pair, 1, gap * (1 + 1e-6), PairBends()), 0U)
+          << k->name << " " << gap;
+    }
+  }
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "fcl/common/exception.h"
+#include "motion/chord_pairs.h"
 #include "motion/sine.h"
 #include "reference_motion.h"
 
@@ -159,6 +160,37 @@ TEST(FCL_MOTION_PATH, refusesWildSplines) {
   EXPECT_THROW(MotionPath::spline(points, wild), Exception);
   wild[2][1] = std::nan("");
   EXPECT_THROW(MotionPath::spline(points, wild), Exception);
+}
+
+/// Points of turns stay within the error of their bent chords, and nearly reach it.
+TEST(FCL_MOTION_PATH, bentChords) {
+  Random random(14);
+  double worst = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const ReferenceMotion motion = randomMotion(random, 1);
+    const MotionPath path = motion.path();
+    if (!path.axis()) continue;
+    const double dt = std::ldexp(1., -static_cast<int>(random.index(7))),
+                 t0 = dt * static_cast<double>(random.index(std::size_t(1 / dt))),
+                 t1 = t0 + dt, radius = std::pow(10, random.uniform(-3, 1));
+    const double most = 0.125 * dt * dt * path.acceleration(t0, t1).of({0, 0, 0}, radius);
+    const ChordBend found = bendOf(path, radius, t0, t1, most);
+    const Eigen::Map<const Matrix3<double>> matrix(found.bend.matrix);
+    const Eigen::Map<const Vector3<double>> offset(found.bend.offset);
+    for (int k = 0; k < 20; ++k) {
+      const Vector3<double> x = radius * random.point(1).normalized();
+      const RealVector from = motion.at(t0) * x, to = motion.at(t1) * x;
+      const RealVector bend = matrix.cast<Real>() * (from + to) / 2 + offset.cast<Real>();
+      const Real s = k % 2 ? Real{0.5} : Real{random.uniform(0, 1)};
+      const RealVector chord = (1 - s) * from + s * to + 4 * s * (1 - s) * bend,
+                       at = motion.at(t0 + static_cast<double>(s) * dt) * x;
+      const auto error = static_cast<double>((at - chord).norm());
+      ASSERT_LE(error, found.error + 3 * path.positionError(radius))
+          << t0 << " to " << t1 << " at " << static_cast<double>(s);
+      if (found.error > 1e-9) worst = std::max(worst, error / found.error);
+    }
+  }
+  EXPECT_GT(worst, 0.1);
 }
 
 }  // namespace
