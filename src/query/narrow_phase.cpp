@@ -242,6 +242,8 @@ void NarrowPhase::add(const FeatureContact& contact) {
   sink_.add(contact);
   if (!progress_) return;
   QueryProgress::lower(progress_->first_hi, contact.toc_hi);
+  if (options_.min_distance > 0 && sink_.isCut())
+    QueryProgress::lower(progress_->last_vertex, sink_.lastVertexAtStart());
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 

@@ -62,6 +62,9 @@ struct QueryProgress {
   /// The lowest number of a task that has found an answer of the whole query, or an error
   /// instead.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
+  /// The lowest ContactSink::lastVertexAtStart(), with a distance. A task that has this
+  /// bound has as many contacts before it as are wanted, so it holds for all tasks.
+  std::atomic<std::uint32_t> last_vertex{~std::uint32_t{0}};
 
   template <typename T>
   static void lower(std::atomic<T>& value, T to) {
@@ -103,7 +106,7 @@ class NarrowPhase {
   /// finite
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
-    batch_.add(next, last, latest(), wantsCrossings(), counts_);
+    batch_.add(next, last, wanted(), counts_);
   }
 
   /// @brief Notes an error that visit() has thrown for a pair, and leaves the pair out.
@@ -170,6 +173,15 @@ class NarrowPhase {
       return true;
     return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || hasCrossing());
+  }
+  FeatureBatch::Wanted wanted() const {
+    FeatureBatch::Wanted wanted{latest(), wantsCrossings()};
+    if (!(options_.min_distance > 0)) return wanted;
+    wanted.last_vertex = sink_.lastVertexAtStart();
+    if (progress_)
+      wanted.last_vertex = std::min(
+          wanted.last_vertex, progress_->last_vertex.load(std::memory_order_relaxed));
+    return wanted;
   }
   bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
   /// The earliest upper end of a bracket, of all tasks.

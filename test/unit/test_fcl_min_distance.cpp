@@ -428,6 +428,52 @@ TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
   }
 }
 
+/// Expects the first contacts of `all` in lists of one to three.
+template <typename Query>
+void expectFirstFew(Request request, Query&& query) {
+  request.query = ContinuousQuery::kFirst;
+  const Result all = query(request);
+  ASSERT_GT(all.contacts.size(), 100U);
+  EXPECT_EQ(all.time_of_contact, 0);
+  for (request.num_max_contacts = 1; request.num_max_contacts < 4;
+       ++request.num_max_contacts)
+    for (request.num_threads = 1; request.num_threads <= 4; request.num_threads += 3) {
+      const Result few = query(request);
+      EXPECT_TRUE(few.contacts_cut);
+      EXPECT_EQ(few.initially_crossing, all.initially_crossing);
+      ASSERT_EQ(few.contacts.size(), request.num_max_contacts);
+      for (std::size_t k = 0; k < few.contacts.size(); ++k) {
+        const Contact &x = few.contacts[k], &y = all.contacts[k];
+        EXPECT_TRUE(nameOf(x, true) == nameOf(y, true));
+        EXPECT_EQ(x.first_on_o1, y.first_on_o1);
+        EXPECT_EQ(x.b1, y.b1);
+        EXPECT_EQ(x.b2, y.b2);
+        EXPECT_EQ(x.toc_hi, y.toc_hi);
+      }
+      // Most triangles have no vertex that comes before those in the list.
+      if (request.num_threads == 1) {
+        EXPECT_LT(4 * few.counts.feature_pairs, all.counts.feature_pairs);
+      }
+    }
+}
+
+// Triangles are left out whose contacts at t = 0 the list has no place for.
+TEST(FCL_MIN_DISTANCE, fewOfManyContactsAtStart) {
+  Random random(87);
+  for (int i = 0; i < 4; ++i) {
+    SCOPED_TRACE(i);
+    const MovingMesh sheet = crumpledSheet(random, 60, 0.01),
+                     other = moved(crumpledSheet(random, 60, 0.01), {0.01, 0.02, 0.01});
+    MovingMesh both = sheet;
+    append(both, other);
+    const auto a = modelOf(sheet), b = modelOf(other), ab = modelOf(both);
+    expectFirstFew(requestAt(0.02),
+                   [&](const Request& r) { return selfContacts<double>(*ab, r); });
+    expectFirstFew(requestAt(0.02),
+                   [&](const Request& r) { return pairContacts(*a, *b, r); });
+  }
+}
+
 void expectSameWithFourThreads(const Model& model, Request request, std::size_t least) {
   for (const bool ignores : {false, true}) {
     request.ignore_initially_closer = ignores;
