@@ -216,8 +216,10 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
-  num_crossings_ = kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
-                                          crossings_.get(), size);
+  // To a mesh with itself a shift adds nothing but a distance, which crossings do not
+  // have.
+  num_crossings_ = kernels_.cullCrossings(pairs_.get(), self_ ? nullptr : shift_,
+                                          &turned_shift_, crossings_.get(), size);
 }
 
 /// If `latest` is early, leaves out the triangle pairs that are apart until then. If not,

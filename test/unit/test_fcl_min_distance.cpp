@@ -474,6 +474,16 @@ TEST(FCL_MIN_DISTANCE, fewOfManyContactsAtStart) {
   }
 }
 
+// A distance does not make edges and faces meet.
+TEST(FCL_MIN_DISTANCE, crossingsHaveNoDistance) {
+  const auto sheet = makeSheet(10, 10);
+  MovingMesh mesh{sheet.vertices, sheet.vertices, sheet.triangles};
+  append(mesh, moved({sheet.vertices, sheet.vertices, sheet.triangles}, {0, 0, 0.05}));
+  const Result result = selfContacts<double>(*modelOf(mesh), requestAt(0.06));
+  EXPECT_GT(result.contacts.size(), 100U);
+  EXPECT_EQ(result.counts.crossing_tests, 0U);
+}
+
 void expectSameWithFourThreads(const Model& model, Request request, std::size_t least) {
   for (const bool ignores : {false, true}) {
     request.ignore_initially_closer = ignores;
