@@ -126,9 +126,7 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
     : reader_a_(a),
       reader_b_(b),
       self_(&a == &b),
-      reach_(reach),
       tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
-      shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
       owned_(new std::uint16_t[kMaxPairs]),
@@ -136,6 +134,12 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       gaps_(new float[kMaxPairs]),
       lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
       crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
+  setReach(shift, reach);
+}
+
+void FeatureBatch::setReach(const KdopShift* shift, double reach) {
+  reach_ = reach;
+  shift_ = shift;
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
     turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];

@@ -142,6 +142,9 @@ class FeatureBatch {
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                const Kernels& kernels, double reach = 0);
 
+  /// @brief From here on the shift and the reach are these.
+  void setReach(const KdopShift* shift, double reach);
+
   bool isSelf() const { return self_; }
 
   /// @brief What a query still looks for.

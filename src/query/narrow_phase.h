@@ -13,6 +13,7 @@
 #include "query/contact_sink.h"
 #include "query/crossing.h"
 #include "query/decided_pairs.h"
+#include "query/distance_contact.h"
 #include "query/feature_batch.h"
 #include "query/leading_contact.h"
 #include "query/pair_filter.h"
@@ -88,11 +89,10 @@ struct QueryError {
 class NarrowPhase {
  public:
   /// @param a, b  kept by reference; the same object for a self-collision
-  /// @param shift  added to boxes of a: relativeShift(a, b) and options.min_distance;
-  /// null: none
+  /// @param shifts  added to boxes of a, with options.min_distance; kept by reference
   /// @param progress  of the query; null if the query has no other tasks
   /// @param task  the number of this task
-  NarrowPhase(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+  NarrowPhase(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
               const QueryOptions& options, QueryProgress* progress = nullptr,
               std::size_t task = 0);
 
@@ -174,15 +174,7 @@ class NarrowPhase {
     return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || hasCrossing());
   }
-  FeatureBatch::Wanted wanted() const {
-    FeatureBatch::Wanted wanted{latest(), wantsCrossings()};
-    if (!(options_.min_distance > 0)) return wanted;
-    wanted.last_vertex = sink_.lastVertexAtStart();
-    if (progress_)
-      wanted.last_vertex = std::min(
-          wanted.last_vertex, progress_->last_vertex.load(std::memory_order_relaxed));
-    return wanted;
-  }
+  FeatureBatch::Wanted wanted() const;
   bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
   /// The earliest upper end of a bracket, of all tasks.
   double firstHi() const {
@@ -220,8 +212,14 @@ class NarrowPhase {
   void add(const FeatureContact& contact);
   bool isLeading(const TimeBracket& bracket) const;
 
+  void setReach(double reach);
+
   QueryOptions options_;
   const Kernels& kernels_;
+  const BoxShifts& shifts_;
+  /// Features further apart at t = 0 do not matter, and what is added to boxes.
+  double reach_;
+  KdopShift shift_;
   FeatureBatch batch_;
   /// The candidates of one kind that may become coplanar.
   std::vector<FeatureCandidate> candidates_;
