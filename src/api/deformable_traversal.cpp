@@ -103,8 +103,8 @@ struct DeformableTraversal<S>::State {
           deformable::relativeShift(mesh1(), mesh2()));
       second_view = std::make_unique<deformable::BinaryView>(mesh2());
     }
-    test =
-        std::make_unique<deformable::NarrowPhase>(mesh1(), mesh2(), shift.get(), options);
+    shifts = deformable::BoxShifts(shift.get());
+    test = std::make_unique<deformable::NarrowPhase>(mesh1(), mesh2(), shifts, options);
   }
 
   const deformable::MeshInstance& mesh1() const { return prepared1->instance(); }
@@ -128,6 +128,7 @@ struct DeformableTraversal<S>::State {
   const deformable::BinaryView view1;
   std::unique_ptr<deformable::BinaryView> second_view;  // null: with itself
   std::unique_ptr<deformable::KdopShift> shift;         // null: with itself
+  deformable::BoxShifts shifts;
   std::unique_ptr<deformable::NarrowPhase> test;
   const bool enable_contact;
   CollisionResult<S>& result;

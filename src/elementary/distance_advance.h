@@ -59,6 +59,9 @@ struct DistanceTolerance {
   static constexpr double kTouching = 512 * kUnit;
   /// The share of d within which a pair that is not decided soon is a contact.
   static constexpr double kShare = 1e-9;
+  /// Pairs that almost touch, by this share of d or of their coordinates, have a distance
+  /// that rounding may hide.
+  static constexpr double kAlmost = 0x1p-20;
 };
 
 /// @brief The answer for a pair.

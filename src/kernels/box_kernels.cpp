@@ -163,6 +163,14 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
   after = larger(after, whereNegative(s1, loss));
 }
 
+/// Half-axes of boxes that are moved: as shifted().
+template <std::size_t N>
+HWY_INLINE Lanes<float, N> movedBy(const Lanes<float, N>& half,
+                                   const Lanes<float, N>& shift) {
+  const Lanes<float, N> sum = half + shift;
+  return larger(sum + abs(sum) * broadcast<N>(kOutward), broadcast<N>(kLeastHalf));
+}
+
 /// The overlap depths of a box and the children of a node, along one half-axis in one
 /// frame. They are rounded outward: see shifted().
 template <std::size_t kStride, bool kShifted, int kFrame>
@@ -187,12 +195,15 @@ HWY_INLINE Floats depthSigns(const BoxView& box, const MovingKdopNode& node,
 
 /// The children that the request does not leave out: they are near enough to the box at t
 /// = 0. Sets `apart` to those of them that do not overlap the box at t = 0.
-template <std::size_t kStride, bool kShifted>
-HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
+/// @param start  the box at t = 0 with what is added to it, with the stride of `box`
+template <std::size_t kStride>
+HWY_INLINE unsigned nearChildren(const BoxView& box, const float* start,
+                                 const MovingKdopNode& node,
                                  const OverlapRequest& request, unsigned& apart) {
+  // Row r ^ 1 is the opposite half-axis.
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
-    s[r] = depthsAlong<kStride, kShifted, 0>(box, node, r);
+    s[r] = broadcast<kEight>(start[r * kStride]) + load<kEight>(node.t0[r ^ 1]);
   const Floats least =
       fold(s, [](const Floats& a, const Floats& b) HWY_ATTR { return smaller(a, b); });
   const Floats displacement =
@@ -204,14 +215,16 @@ HWY_INLINE unsigned nearChildren(const BoxView& box, const MovingKdopNode& node,
   return near;
 }
 
+/// @param start  as of nearChildren(); only read if kLeavesOut
 template <std::size_t kStride, bool kShifted, bool kLeavesOut>
-HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+HWY_INLINE unsigned overlapChildren(const BoxView& box, const float* start,
+                                    const MovingKdopNode& node,
                                     const OverlapRequest& request,
                                     float (&earliest)[MovingKdopNode::kWidth]) {
   unsigned left = node.lanes();
   if (kLeavesOut) {
     unsigned open = 0;
-    left = nearChildren<kStride, kShifted>(box, node, request, open);
+    left = nearChildren<kStride>(box, start, node, request, open);
     if (open == 0) {
       store(broadcast<kEight>(0.f), earliest);
       return left;
@@ -247,6 +260,18 @@ HWY_INLINE unsigned overlapChildren(const BoxView& box, const MovingKdopNode& no
   return left & bits(before <= hi);
 }
 
+template <std::size_t kStride, bool kShifted, bool kLeavesOut>
+unsigned overlapBox(const BoxView& box, const MovingKdopNode& node,
+                    const OverlapRequest& request,
+                    float (&earliest)[MovingKdopNode::kWidth]) {
+  float moved[16 * kStride];
+  if (kShifted && kLeavesOut)
+    for (std::size_t r = 0; r < 16; ++r)
+      moved[r * kStride] = shifted(box.t0[r * kStride], box.shift[0][r]);
+  return overlapChildren<kStride, kShifted, kLeavesOut>(box, kShifted ? moved : box.t0,
+                                                        node, request, earliest);
+}
+
 unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
                            const OverlapRequest& request,
                            float (&earliest)[MovingKdopNode::kWidth]) {
@@ -254,14 +279,14 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
   const bool is_single = box.stride == 1;
   const auto overlap =
       request.leavesOut()
-          ? (box.shift ? (is_single ? &overlapChildren<1, true, true>
-                                    : &overlapChildren<kInNode, true, true>)
-                       : (is_single ? &overlapChildren<1, false, true>
-                                    : &overlapChildren<kInNode, false, true>))
-          : (box.shift ? (is_single ? &overlapChildren<1, true, false>
-                                    : &overlapChildren<kInNode, true, false>)
-                       : (is_single ? &overlapChildren<1, false, false>
-                                    : &overlapChildren<kInNode, false, false>));
+          ? (box.shift ? (is_single ? &overlapBox<1, true, true>
+                                    : &overlapBox<kInNode, true, true>)
+                       : (is_single ? &overlapBox<1, false, true>
+                                    : &overlapBox<kInNode, false, true>))
+          : (box.shift ? (is_single ? &overlapBox<1, true, false>
+                                    : &overlapBox<kInNode, true, false>)
+                       : (is_single ? &overlapBox<1, false, false>
+                                    : &overlapBox<kInNode, false, false>));
   return overlap(box, node, request, earliest);
 }
 
@@ -282,6 +307,13 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
 template <bool kShifted, bool kLeavesOut>
 HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
+  // All boxes of a are moved side by side: one by one they would take as long as the
+  // comparisons.
+  float moved[16][MovingKdopNode::kWidth];
+  if (kShifted && kLeavesOut)
+    for (std::size_t r = 0; r < 16; ++r)
+      store(movedBy(load<kEight>(a.t0[r]), broadcast<kEight>(leaves.shift[0][r])),
+            moved[r]);
   std::uint64_t pairs = 0;
   unsigned fan_culled = 0;
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
@@ -294,7 +326,7 @@ HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
     const BoxView box{&a.t0[0][lane], &a.t1[0][lane], BoxView::kInNode,
                       a.displacement[lane], leaves.shift};
     left &= overlapChildren<BoxView::kInNode, kShifted, kLeavesOut>(
-        box, b, leaves.request, out.earliest[lane]);
+        box, kShifted ? &moved[0][lane] : box.t0, b, leaves.request, out.earliest[lane]);
     if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
       fan_culled += static_cast<unsigned>(__builtin_popcount(fan));
@@ -333,11 +365,6 @@ HWY_INLINE HalfAxes boxOf(const TreeVertex& x) {
   return load<16>(kFrame == 0 ? x.box.t0.half : x.box.t1.half);
 }
 
-HWY_INLINE HalfAxes shifted(const HalfAxes& half, const Kdop16& shift) {
-  const HalfAxes sum = half + load<16>(shift.half);
-  return larger(sum + abs(sum) * broadcast<16>(kOutward), broadcast<16>(kLeastHalf));
-}
-
 /// The overlap depths of a pair of features in one frame. The order of the two features
 /// matters only for the shift.
 template <ContinuousContactKind kind, bool kShifted, int kFrame>
@@ -359,7 +386,7 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
     first = larger(box(ends[0]), box(ends[1]));
     second = larger(box(ends[2]), box(ends[3]));
   }
-  if (kShifted) first = shifted(first, kFrame == 0 ? add->t0 : add->t1);
+  if (kShifted) first = movedBy(first, load<16>((kFrame == 0 ? add->t0 : add->t1).half));
   return first + swapHalves(second);
 }
 
@@ -441,7 +468,7 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
     const TreeVertex* const* mine = pairs[code / 16].x + 3 * on_b;
     const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
     HalfAxes ends = larger(boxOf<0>(*mine[k]), boxOf<0>(*mine[(k + 1) % 3]));
-    if (shift) ends = shifted(ends, (on_b ? turned_shift : shift)->t0);
+    if (shift) ends = movedBy(ends, load<16>((on_b ? turned_shift : shift)->t0.half));
     const HalfAxes all =
         larger(larger(boxOf<0>(*face[0]), boxOf<0>(*face[1])), boxOf<0>(*face[2]));
     return !isAnyNegative(ends + swapHalves(all));

@@ -171,11 +171,11 @@ HWY_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
       broadcast<kEight>(distance * (1 + 2 * DistanceTolerance::kShare + kTouchingTwice)) +
       broadcast<kEight>(2 * kTouchingTwice) * norm;
   if (!ignores) return usual;
-  constexpr double kAlmost = 0x1p-20;
   const Doubles initial = squareRoot(reached);
-  const DoubleMask is_nearer =
-      (lo <= broadcast<kEight>(0.)) & (initial <= broadcast<kEight>(distance)) &
-      (initial > broadcast<kEight>(kAlmost) * max(norm, broadcast<kEight>(distance)));
+  const DoubleMask is_nearer = (lo <= broadcast<kEight>(0.)) &
+                               (initial <= broadcast<kEight>(distance)) &
+                               (initial > broadcast<kEight>(DistanceTolerance::kAlmost) *
+                                              max(norm, broadcast<kEight>(distance)));
   return select(is_nearer, initial * broadcast<kEight>(1 - DistanceTolerance::kShare),
                 usual);
 }

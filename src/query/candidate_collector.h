@@ -39,7 +39,7 @@ class CandidateCollector {
   /// finite
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
-    batch_.add(next, last, latest(), false, counts_);
+    batch_.add(next, last, {latest(), false}, counts_);
   }
 
   /// @brief Ends the query with the error that visit() has thrown, since the query needs

@@ -98,6 +98,17 @@ bool ContactSink::mayKeepAtStart(const FeatureIds& pair) const {
   return isEarlier(FeatureContact{pair, 0, 0}, **order_.rbegin());
 }
 
+/// A contact of another kind, or of a face of a, comes behind all of a vertex of a with a
+/// face.
+std::uint32_t ContactSink::lastVertexAtStart() const {
+  constexpr std::uint32_t kNoBound = ~std::uint32_t{0};
+  if (latestKept() > 0) return kNoBound;
+  const FeatureContact& latest = **order_.rbegin();
+  const bool is_bound =
+      latest.kind == ContinuousContactKind::kVertexFace && latest.first_on_a;
+  return is_bound ? latest.vertices[0] : kNoBound;
+}
+
 void ContactSink::clear() {
   cut_ = false;
   first_hi_ = 1;

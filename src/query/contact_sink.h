@@ -76,6 +76,10 @@ class ContactSink {
     return mayKeepAtStart(FeatureIds{kind, true, {0, 0, 0, 0}, {0, 0}});
   }
 
+  /// @brief Contacts at t = 0 whose vertices all have larger numbers could not be kept.
+  /// The largest number if there is no such bound.
+  std::uint32_t lastVertexAtStart() const;
+
   /// @brief Moves the contacts out, in no order. Call clear() before the next add().
   std::deque<FeatureContact> takeContacts() { return std::move(contacts_); }
 

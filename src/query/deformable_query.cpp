@@ -84,11 +84,14 @@ void sortLatestFirst(NodePair* first, NodePair* last) {
 template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
 class Part {
  public:
-  Part(TreeA& tree_a, TreeB& tree_b, const KdopShift* shift, const SelfCulling& culling,
+  Part(TreeA& tree_a, TreeB& tree_b, const BoxShifts& shifts, const SelfCulling& culling,
        const SeparatingAxes* axes, double pose_displacement, const Schedule& schedule,
        Leaves& leaves)
-      : traversal_(tree_a, tree_b, shift, culling, axes, kernels(),
-                   schedule.in_order || leaves.latest() < 1),
+      : shifts_(shifts),
+        reach_(shifts.reach(1)),
+        shift_(shifts.shift(reach_)),
+        traversal_(tree_a, tree_b, shifts.isEmpty() ? nullptr : &shift_, culling, axes,
+                   kernels(), schedule.in_order || leaves.latest() < 1),
         pose_displacement_(pose_displacement),
         schedule_(schedule),
         leaves_(leaves),
@@ -135,8 +138,15 @@ class Part {
 
  private:
   void setLatest(double latest) {
-    if (latest == latest_) return;
+    if (latest != latest_) changeLatest(latest);
+  }
+
+  // Not inlined: it is rare, and would keep what is not rare from being inlined.
+  __attribute__((noinline)) void changeLatest(double latest) {
     traversal_.leaveOutAfter(latest, pose_displacement_);
+    const double reach = shifts_.reach(latest);
+    if (reach != reach_) traversal_.setShift(shifts_.shift(reach));
+    reach_ = reach;
     last_beginning_ = lastBeginning(latest);
     latest_ = latest;
   }
@@ -186,6 +196,10 @@ class Part {
     traversal_.clearCounts();
   }
 
+  const BoxShifts& shifts_;
+  /// Features further apart at t = 0 do not matter.
+  double reach_;
+  KdopShift shift_;
   Traversal<kSelf, TreeA, TreeB> traversal_;
   /// The sum of MeshInstance::poseDisplacement() of both meshes.
   double pose_displacement_;
@@ -215,7 +229,7 @@ void visitTree(const MeshInstance& mesh, Visit&& visit) {
 struct MeshPair {
   const MeshInstance& a;
   const MeshInstance& b;
-  const KdopShift* shift;
+  const BoxShifts& shifts;
   SelfProofs proofs;
   double min_distance;
 
@@ -240,7 +254,8 @@ struct MeshPair {
     const SelfCulling culling = proofs.culling();
     if (isSelf() && a.tree) {
       Part<true, const MovingKdopTree, const MovingKdopTree, Leaves> part(
-          *a.tree, *a.tree, shift, culling, nullptr, pose_displacement, schedule, leaves);
+          *a.tree, *a.tree, shifts, culling, nullptr, pose_displacement, schedule,
+          leaves);
       return visit(part);
     }
     visitTree(a, [&](auto& tree_a) {
@@ -249,13 +264,13 @@ struct MeshPair {
         using B = std::remove_reference_t<decltype(tree_b)>;
         if constexpr (std::is_same_v<A, B> && std::is_same_v<A, RigidTreeReader>)
           if (isSelf()) {
-            Part<true, A, B, Leaves> part(tree_a, tree_b, shift, culling, nullptr,
+            Part<true, A, B, Leaves> part(tree_a, tree_b, shifts, culling, nullptr,
                                           pose_displacement, schedule, leaves);
             return visit(part);
           }
         const SeparatingAxes axes(a, b);
         Part<false, A, B, Leaves> part(
-            tree_a, tree_b, shift, culling,
+            tree_a, tree_b, shifts, culling,
             a.tree || b.tree || min_distance > 0 ? nullptr : &axes, pose_displacement,
             schedule, leaves);
         visit(part);
@@ -319,12 +334,12 @@ std::size_t sampleOf(const MeshInstance& a, const MeshInstance& b,
 /// leaves.
 class ContactQuery {
  public:
-  ContactQuery(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+  ContactQuery(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
                const QueryOptions& options)
       : options_(options),
         task_options_(options),
         schedule_(options.query == ContinuousQuery::kAll ? kAllSchedule : kFirstSchedule),
-        meshes_{a, b, shift,
+        meshes_{a, b, shifts,
                 proveSelf(a, b, options.leaves_out_regions, options.min_distance,
                           options.num_threads, proof_times_),
                 options.min_distance} {
@@ -353,7 +368,7 @@ class ContactQuery {
 
  private:
   NarrowPhase narrowPhase(std::size_t task) {
-    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shift, task_options_, &progress_,
+    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, &progress_,
                        task);
   }
 
@@ -401,7 +416,7 @@ class ContactQuery {
     QueryOptions first = options_;
     first.query = ContinuousQuery::kFirst;
     first.max_contacts = 1;
-    return ContactQuery(meshes_.a, meshes_.b, meshes_.shift, first)
+    return ContactQuery(meshes_.a, meshes_.b, meshes_.shifts, first)
         .answer()
         .contacts.front();
   }
@@ -428,12 +443,13 @@ class ContactQuery {
   std::vector<TaskAnswer> tasks_;
 };
 
-bool candidates(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+bool candidates(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
                 const CandidateSink& sink, double min_distance) {
-  CandidateCollector leaves(a, b, shift, sink,
-                            min_distance > 0 ? reachOf(a, b, min_distance) : 0);
+  const double reach = shifts.reach(1);
+  const KdopShift shift = shifts.shift(reach);
+  CandidateCollector leaves(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach);
   StageTimes times;
-  const MeshPair meshes{a, b, shift, proveSelf(a, b, true, min_distance, 1, times),
+  const MeshPair meshes{a, b, shifts, proveSelf(a, b, true, min_distance, 1, times),
                         min_distance};
   meshes.visitPart(kAllSchedule, leaves, times, [&](auto& part) {
     std::vector<NodePair> works;
@@ -455,53 +471,47 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
   return position;
 }
 
-KdopShift shiftOf(const MeshInstance& a, const MeshInstance& b, double min_distance) {
-  KdopShift shift = relativeShift(a, b);
-  if (min_distance > 0) enlarge(reachOf(a, b, min_distance), shift);
-  return shift;
+BoxShifts shiftsOf(const MeshInstance& a, const MeshInstance& b, double min_distance,
+                   double box_margin, bool ignores_initially_closer) {
+  const bool is_self = &a == &b;
+  const KdopShift between = is_self ? KdopShift{} : relativeShift(a, b);
+  return {a,
+          b,
+          is_self ? nullptr : &between,
+          min_distance,
+          box_margin,
+          ignores_initially_closer};
 }
 
-/// What is added to boxes of a mesh that are compared with its own: nothing without a
-/// distance.
-class SelfShift {
- public:
-  SelfShift(const MeshInstance& mesh, double min_distance) : is_used_(min_distance > 0) {
-    if (is_used_) enlarge(reachOf(mesh, mesh, min_distance), shift_);
-  }
-  const KdopShift* get() const { return is_used_ ? &shift_ : nullptr; }
-
- private:
-  bool is_used_;
-  KdopShift shift_{};
-};
+QueryAnswer query(const MeshInstance& a, const MeshInstance& b,
+                  const QueryOptions& options) {
+  const DefaultFloatingPoint mode;
+  const BoxShifts shifts =
+      shiftsOf(a, b, options.min_distance, options.box_margin,
+               options.ignores_initially_closer && !options.lists_near_pairs);
+  return ContactQuery(a, b, shifts, options).answer();
+}
 
 }  // namespace
 
 QueryAnswer querySelf(const MeshInstance& a, const QueryOptions& options) {
-  const DefaultFloatingPoint mode;
-  const SelfShift shift(a, options.min_distance);
-  return ContactQuery(a, a, shift.get(), options).answer();
+  return query(a, a, options);
 }
 
 QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
                       const QueryOptions& options) {
-  const DefaultFloatingPoint mode;
-  const KdopShift shift = shiftOf(a, b, options.min_distance + options.box_margin);
-  return ContactQuery(a, b, &shift, options).answer();
+  return query(a, b, options);
 }
 
 bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
                     double min_distance) {
-  const DefaultFloatingPoint mode;
-  const SelfShift shift(a, min_distance);
-  return candidates(a, a, shift.get(), sink, min_distance);
+  return candidatesPair(a, a, sink, min_distance);
 }
 
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const CandidateSink& sink, double min_distance) {
   const DefaultFloatingPoint mode;
-  const KdopShift shift = shiftOf(a, b, min_distance);
-  return candidates(a, b, &shift, sink, min_distance);
+  return candidates(a, b, shiftsOf(a, b, min_distance, 0, false), sink, min_distance);
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

@@ -31,6 +31,16 @@ double sizeOf(const MeshInstance& a, const MeshInstance& b) {
   return size;
 }
 
+/// Bound on the way along an axis that a point of a mesh moves during the step.
+double displacementOf(const MeshInstance& mesh) {
+  if (!mesh.tree) return std::numeric_limits<double>::infinity();
+  const MovingKdopNode& root = mesh.tree->node(0);
+  float most = 0;
+  for (int lane = 0; lane < root.count; ++lane)
+    most = std::max(most, root.displacement[lane]);
+  return most + mesh.poseDisplacement();
+}
+
 }  // namespace
 
 double reachOf(const MeshInstance& a, const MeshInstance& b, double d) {
@@ -48,6 +58,43 @@ void enlarge(double reach, KdopShift& shift) {
     for (Kdop16* box : {&shift.t0, &shift.t1})
       box->half[j] =
           roundUp(double{box->half[j]} + (j % 8 < 3 ? reach : kDiagonal * reach), 0.f);
+}
+
+BoxShifts::BoxShifts(const KdopShift* between) : is_empty_(!between) {
+  if (between) between_ = *between;
+}
+
+BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
+                     const KdopShift* between, double distance, double box_margin,
+                     bool ignores_initially_closer)
+    : BoxShifts(between) {
+  if (!(distance > 0)) return;
+  is_empty_ = false;
+  reach_ = reachOf(a, b, distance);
+  // The share is more than the rounding of the sum in shift().
+  margin_ = box_margin * (1 + DistanceTolerance::kShare);
+  const double size = sizeOf(a, b);
+  // The rounding of two distances, 256 u L, is below the eighth of kShare d. Here L is
+  // the length of a vector of three coordinates of this size.
+  if (!ignores_initially_closer || !(distance > 0x1p-11 * size)) return;
+  // Kernels::mayComeWithin() leaves pairs within half of this to the test. What the test
+  // takes for touching is much nearer.
+  almost_ = 2 * DistanceTolerance::kAlmost * std::max(distance, size);
+  // Two points come nearer by at most the root of 3 of what they move along an axis. A
+  // pair at this distance D has to come nearer by 2 kShare D, one that is further apart
+  // than d by kShare d: advanceToDistance().
+  speed_ = 2 / DistanceTolerance::kShare * (displacementOf(a) + displacementOf(b));
+}
+
+double BoxShifts::reach(double latest) const {
+  const double share = speed_ * latest;
+  return share < reach_ ? std::min(reach_, std::max(almost_, share)) : reach_;
+}
+
+KdopShift BoxShifts::shift(double reach) const {
+  KdopShift shift = between_;
+  if (reach > 0) enlarge(reach + margin_, shift);
+  return shift;
 }
 
 FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,

@@ -6,6 +6,7 @@
 #define FCL_CCD_QUERY_DISTANCE_CONTACT_H
 
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "elementary/distance_advance.h"
@@ -25,6 +26,38 @@ double reachOf(const MeshInstance& a, const MeshInstance& b, double d);
 
 /// @brief Adds a distance to what is added to boxes: boxes that come within it overlap.
 void enlarge(double reach, KdopShift& shift);
+
+/// @brief How near features have to be at t = 0 to matter to a query, and what is added
+/// to boxes of mesh a, so that boxes of features that are as near overlap.
+///
+/// Where pairs that are nearer than d at t = 0 are ignored, a pair is in contact when it
+/// comes nearer than it is then, by more than a share of its distance. In the beginning
+/// of a step only pairs that nearly touch do: the others need more time.
+class BoxShifts {
+ public:
+  /// @brief Without a distance.
+  /// @param between  relativeShift(a, b); null for a mesh with itself
+  explicit BoxShifts(const KdopShift* between = nullptr);
+  /// @param distance  0: features that touch
+  /// @param box_margin  added to boxes beside the distance
+  BoxShifts(const MeshInstance& a, const MeshInstance& b, const KdopShift* between,
+            double distance, double box_margin, bool ignores_initially_closer);
+
+  /// @brief Whether nothing is added.
+  bool isEmpty() const { return is_empty_; }
+  /// @brief Features further apart at t = 0 have no contact until `latest`, which comes
+  /// from here on.
+  double reach(double latest) const;
+  /// @param reach  of reach()
+  KdopShift shift(double reach) const;
+
+ private:
+  bool is_empty_;
+  KdopShift between_{};
+  double reach_{0}, margin_{0}, almost_{0};
+  /// Infinity: the reach is always the same.
+  double speed_{std::numeric_limits<double>::infinity()};
+};
 
 /// @brief The contact of a pair: of the features that are nearest at its time. Their
 /// vertices have ascending ids; those that are not used have the largest number.

@@ -126,10 +126,8 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
     : reader_a_(a),
       reader_b_(b),
       self_(&a == &b),
-      reach_(reach),
       bends_{{a.bend, b.bend}},
       tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
-      shift_(shift),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
       owned_(new std::uint16_t[kMaxPairs]),
@@ -137,6 +135,12 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       gaps_(new float[kMaxPairs]),
       lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
       crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
+  setReach(shift, reach);
+}
+
+void FeatureBatch::setReach(const KdopShift* shift, double reach) {
+  reach_ = reach;
+  shift_ = shift;
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
     turned_shift_.t0.half[j] = shift->t0.half[j ^ 8];
@@ -155,14 +159,25 @@ void FeatureBatch::clear() {
   for (List& list : lists_) list.size = 0;
 }
 
+/// Whether one of the triangles has a vertex with this number or a lower one.
+bool hasVertexUpTo(std::uint32_t vertex, const TreeTriangle& a, const TreeTriangle& b) {
+  const auto least = [](const TreeTriangle& t) {
+    return std::min(std::min(t.id[0], t.id[1]), t.id[2]);
+  };
+  return std::min(least(a), least(b)) <= vertex;
+}
+
 template <typename ReaderA, typename ReaderB>
 void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
-                           const LeafPair* last, double latest, bool with_crossings,
+                           const LeafPair* last, const Wanted& wanted,
                            StageCounts& counts) {
   // The triangles of a block are far apart in memory, so that each is prefetched eight
   // pairs before it is read.
   constexpr std::ptrdiff_t kAhead = 8;
-  const float last_beginning = lastBeginning(latest);
+  const float last_beginning = lastBeginning(wanted.latest);
+  const bool with_crossings = wanted.crossings;
+  const std::uint32_t last_vertex = wanted.last_vertex;
+  const bool has_last_vertex = last_vertex != ~std::uint32_t{0};
   for (; next != last; ++next) {
     const LeafPair& ahead = next[std::min(kAhead, last - 1 - next)];
     reader_a.prefetch(ahead.a);
@@ -182,6 +197,7 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
       edges &= ~edgesAtBoth(shared);
       ++counts.adjacent_pairs;
     }
+    if (has_last_vertex && !hasVertexUpTo(last_vertex, *pair.a, *pair.b)) owned = 0;
     owned_[num_pairs_] = static_cast<std::uint16_t>(owned);
     edges_[num_pairs_] = static_cast<std::uint16_t>(edges);
     has_edges_ |= edges != 0;
@@ -191,13 +207,13 @@ void FeatureBatch::addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*
   }
 }
 
-void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, double latest,
-                       bool with_crossings, StageCounts& counts) {
+void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, const Wanted& wanted,
+                       StageCounts& counts) {
   TrianglesInPlace a = reader_a_.inPlace(), b = reader_b_.inPlace();
   if (a.triangles && b.triangles)
-    addFrom(a, b, next, last, latest, with_crossings, counts);
+    addFrom(a, b, next, last, wanted, counts);
   else
-    addFrom(reader_a_, reader_b_, next, last, latest, with_crossings, counts);
+    addFrom(reader_a_, reader_b_, next, last, wanted, counts);
 }
 
 void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
@@ -210,8 +226,10 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
-  num_crossings_ = kernels_.cullCrossings(pairs_.get(), shift_, &turned_shift_,
-                                          crossings_.get(), size);
+  // To a mesh with itself a shift adds nothing but a distance, which crossings do not
+  // have.
+  num_crossings_ = kernels_.cullCrossings(pairs_.get(), self_ ? nullptr : shift_,
+                                          &turned_shift_, crossings_.get(), size);
 }
 
 /// Moves a triangle pair to the end of those that are kept.

@@ -142,17 +142,29 @@ class FeatureBatch {
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
                const Kernels& kernels, double reach = 0);
 
+  /// @brief From here on the shift and the reach are these.
+  void setReach(const KdopShift* shift, double reach);
+
   bool isSelf() const { return self_; }
 
-  /// @brief Adds those triangle pairs whose boxes begin to overlap no later than
-  /// `latest`. The limit until clear() is kMaxPairs.
+  /// @brief What a query still looks for.
+  struct Wanted {
+    /// Later contacts do not matter.
+    double latest;
+    /// Whether it looks for edges that cross faces at t = 0.
+    bool crossings;
+    /// Features of triangles whose vertices all have larger numbers do not matter.
+    std::uint32_t last_vertex{~std::uint32_t{0}};
+  };
+
+  /// @brief Adds those triangle pairs that matter and whose boxes begin to overlap in
+  /// time. The limit until clear() is kMaxPairs.
   /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not
   /// finite
-  /// @param with_crossings  whether the query looks for edges that cross faces at t = 0
   /// @param counts  triangle_pairs and adjacent_pairs are counted
   /// @throws NonFiniteVertex
-  void add(const LeafPair*& next, const LeafPair* last, double latest,
-           bool with_crossings, StageCounts& counts);
+  void add(const LeafPair*& next, const LeafPair* last, const Wanted& wanted,
+           StageCounts& counts);
 
   void clear();
 
@@ -220,8 +232,7 @@ class FeatureBatch {
   }
   template <typename ReaderA, typename ReaderB>
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
-               const LeafPair* last, double latest, bool with_crossings,
-               StageCounts& counts);
+               const LeafPair* last, const Wanted& wanted, StageCounts& counts);
   /// Whether only the beginning of the step matters. Paths that are bent are compared
   /// during the whole step.
   bool isBeginning(double latest) const { return isEarly(latest) && !bends_.isAny(); }

@@ -38,19 +38,21 @@ bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate, double lates
 }  // namespace
 
 NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
-                         const KdopShift* shift, const QueryOptions& options,
+                         const BoxShifts& shifts, const QueryOptions& options,
                          QueryProgress* progress, std::size_t task)
     : options_(options),
       kernels_(kernels()),
-      batch_(a, b, shift, kernels_,
-             options.min_distance > 0 ? reachOf(a, b, options.min_distance) : 0),
+      shifts_(shifts),
+      reach_(shifts.reach(1)),
+      shift_(shifts.shift(reach_)),
+      batch_(a, b, shifts.isEmpty() ? nullptr : &shift_, kernels_, reach_),
       may_repeat_(!a.hasOwners() || !b.hasOwners()),
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             may_repeat_),
       progress_(progress),
       task_(task) {
   assert(options.toc_err > 0 && options.max_contacts > 0);
-  assert(&a == &b || shift);
+  assert(&a == &b || !shifts.isEmpty());
 }
 
 void NarrowPhase::begin(std::size_t task) {
@@ -59,6 +61,16 @@ void NarrowPhase::begin(std::size_t task) {
   crossings_.clear();
   error_.reset();
   counts_ = {};
+}
+
+FeatureBatch::Wanted NarrowPhase::wanted() const {
+  FeatureBatch::Wanted wanted{latest(), wantsCrossings()};
+  if (!(options_.min_distance > 0)) return wanted;
+  wanted.last_vertex = sink_.lastVertexAtStart();
+  if (progress_)
+    wanted.last_vertex = std::min(wanted.last_vertex,
+                                  progress_->last_vertex.load(std::memory_order_relaxed));
+  return wanted;
 }
 
 void NarrowPhase::refuse(const NonFiniteVertex& error, float earliest) {
@@ -86,8 +98,16 @@ struct NarrowPhase::BlockPairs {
   void solveRest() { phase.solveRest(); }
 };
 
+void NarrowPhase::setReach(double reach) {
+  if (reach == reach_) return;
+  reach_ = reach;
+  shift_ = shifts_.shift(reach);
+  batch_.setReach(&shift_, reach);
+}
+
 void NarrowPhase::flush() {
   const double latest = this->latest();
+  setReach(shifts_.reach(latest));
   batch_.cullTriangles(latest, counts_);
   testCrossings();
   for (const ContinuousContactKind kind :
@@ -242,6 +262,8 @@ void NarrowPhase::add(const FeatureContact& contact) {
   sink_.add(contact);
   if (!progress_) return;
   QueryProgress::lower(progress_->first_hi, contact.toc_hi);
+  if (options_.min_distance > 0 && sink_.isCut())
+    QueryProgress::lower(progress_->last_vertex, sink_.lastVertexAtStart());
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 

@@ -13,6 +13,7 @@
 #include "query/contact_sink.h"
 #include "query/crossing.h"
 #include "query/decided_pairs.h"
+#include "query/distance_contact.h"
 #include "query/feature_batch.h"
 #include "query/leading_contact.h"
 #include "query/pair_filter.h"
@@ -65,6 +66,9 @@ struct QueryProgress {
   /// The lowest number of a task that has found an answer of the whole query, or an error
   /// instead.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
+  /// The lowest ContactSink::lastVertexAtStart(), with a distance. A task that has this
+  /// bound has as many contacts before it as are wanted, so it holds for all tasks.
+  std::atomic<std::uint32_t> last_vertex{~std::uint32_t{0}};
 
   template <typename T>
   static void lower(std::atomic<T>& value, T to) {
@@ -88,11 +92,10 @@ struct QueryError {
 class NarrowPhase {
  public:
   /// @param a, b  kept by reference; the same object for a self-collision
-  /// @param shift  added to boxes of a: relativeShift(a, b) and options.min_distance;
-  /// null: none
+  /// @param shifts  added to boxes of a, with options.min_distance; kept by reference
   /// @param progress  of the query; null if the query has no other tasks
   /// @param task  the number of this task
-  NarrowPhase(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
+  NarrowPhase(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
               const QueryOptions& options, QueryProgress* progress = nullptr,
               std::size_t task = 0);
 
@@ -106,7 +109,7 @@ class NarrowPhase {
   /// finite
   /// @throws NonFiniteVertex
   void visit(const LeafPair*& next, const LeafPair* last) {
-    batch_.add(next, last, latest(), wantsCrossings(), counts_);
+    batch_.add(next, last, wanted(), counts_);
   }
 
   /// @brief Notes an error that visit() has thrown for a pair, and leaves the pair out.
@@ -174,6 +177,7 @@ class NarrowPhase {
     return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || hasCrossing());
   }
+  FeatureBatch::Wanted wanted() const;
   bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
   /// The earliest upper end of a bracket, of all tasks.
   double firstHi() const {
@@ -211,8 +215,14 @@ class NarrowPhase {
   void add(const FeatureContact& contact);
   bool isLeading(const TimeBracket& bracket) const;
 
+  void setReach(double reach);
+
   QueryOptions options_;
   const Kernels& kernels_;
+  const BoxShifts& shifts_;
+  /// Features further apart at t = 0 do not matter, and what is added to boxes.
+  double reach_;
+  KdopShift shift_;
   FeatureBatch batch_;
   /// The candidates of one kind that may become coplanar.
   std::vector<FeatureCandidate> candidates_;

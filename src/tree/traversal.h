@@ -109,12 +109,18 @@ class Traversal {
         request_{timed},
         is_shifted_(shift != nullptr) {
     assert(kSelf || shift);
-    if (!shift) return;
+    if (shift) setShift(*shift);
+  }
+
+  /// @brief From here on this is added to boxes of tree a.
+  /// @pre there was a shift
+  void setShift(const KdopShift& shift) {
+    assert(is_shifted_);
     // The shift of a box of tree b is the same, with opposite half-axes exchanged.
     for (int r = 0; r < 16; ++r) {
       const int j = MovingKdopNode::halfAxis(r);
-      shift_[0][0][r] = shift_[1][0][r ^ 1] = shift->t0.half[j];
-      shift_[0][1][r] = shift_[1][1][r ^ 1] = shift->t1.half[j];
+      shift_[0][0][r] = shift_[1][0][r ^ 1] = shift.t0.half[j];
+      shift_[0][1][r] = shift_[1][1][r ^ 1] = shift.t1.half[j];
     }
   }
 

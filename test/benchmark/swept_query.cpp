@@ -30,7 +30,8 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   deformable::MeshInstance instance;
   instance.frames = model.frames();
   instance.tree = &model.movingTree();
-  deformable::NarrowPhase leaves(instance, instance, nullptr, deformable::QueryOptions());
+  const deformable::BoxShifts shifts;
+  deformable::NarrowPhase leaves(instance, instance, shifts, deformable::QueryOptions());
   SweptContacts found;
   std::vector<deformable::LeafPair> pairs;
   found.ms_traverse = millisecondsOf([&] {

@@ -76,7 +76,7 @@ class CullCheck {
     StageCounts counts;
     const deformable::LeafPair leaves{a, b, 0.f};
     const deformable::LeafPair* next = &leaves;
-    batch_.add(next, next + 1, 1, false, counts);
+    batch_.add(next, next + 1, {1, false}, counts);
     batch_.cullTriangles(1, counts);
     for (const ContinuousContactKind kind :
          {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {

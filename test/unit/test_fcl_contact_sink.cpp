@@ -70,6 +70,32 @@ TEST(FCL_CONTACT_SINK, contactsAreInOrder) {
   }
 }
 
+// What is left out by the bound would not be kept.
+TEST(FCL_CONTACT_SINK, lastVertexAtStart) {
+  constexpr std::uint64_t kSeed = 92;
+  Random random(kSeed);
+  int bounds = 0, kept = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    ContactSink sink(1 + random.index(4), false);
+    for (std::size_t k = random.index(100); k > 0; --k)
+      sink.add(randomContact(random, 30, 0.95));
+    const std::uint32_t last = sink.lastVertexAtStart();
+    if (last == ~std::uint32_t{0}) continue;
+    ++bounds;
+    for (int k = 0; k < 20; ++k) {
+      const FeatureContact contact = randomContact(random, 30, 1);
+      const bool is_left_out =
+          *std::min_element(contact.vertices, contact.vertices + 4) > last;
+      EXPECT_FALSE(is_left_out && sink.mayKeepAtStart(contact));
+      if (!is_left_out) kept += sink.add(contact);
+      if (sink.lastVertexAtStart() != last) break;
+    }
+  }
+  EXPECT_GT(bounds, 500);
+  EXPECT_GT(kept, 100);
+}
+
 // Against a map, with contacts that are taken out again.
 TEST(FCL_CONTACT_SINK, tableOfContacts) {
   constexpr std::uint64_t kSeed = 396;

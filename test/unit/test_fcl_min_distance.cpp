@@ -460,6 +460,153 @@ TEST(FCL_MIN_DISTANCE, firstAnyAndFewContacts) {
   }
 }
 
+/// Expects the first contacts of `all` in lists of one to three.
+template <typename Query>
+void expectFirstFew(Request request, Query&& query) {
+  request.query = ContinuousQuery::kFirst;
+  const Result all = query(request);
+  ASSERT_GT(all.contacts.size(), 100U);
+  EXPECT_EQ(all.time_of_contact, 0);
+  for (request.num_max_contacts = 1; request.num_max_contacts < 4;
+       ++request.num_max_contacts)
+    for (request.num_threads = 1; request.num_threads <= 4; request.num_threads += 3) {
+      const Result few = query(request);
+      EXPECT_TRUE(few.contacts_cut);
+      EXPECT_EQ(few.initially_crossing, all.initially_crossing);
+      ASSERT_EQ(few.contacts.size(), request.num_max_contacts);
+      for (std::size_t k = 0; k < few.contacts.size(); ++k) {
+        const Contact &x = few.contacts[k], &y = all.contacts[k];
+        EXPECT_TRUE(nameOf(x, true) == nameOf(y, true));
+        EXPECT_EQ(x.first_on_o1, y.first_on_o1);
+        EXPECT_EQ(x.b1, y.b1);
+        EXPECT_EQ(x.b2, y.b2);
+        EXPECT_EQ(x.toc_hi, y.toc_hi);
+      }
+      // Most triangles have no vertex that comes before those in the list.
+      if (request.num_threads == 1) {
+        EXPECT_LT(4 * few.counts.feature_pairs, all.counts.feature_pairs);
+      }
+    }
+}
+
+// Triangles are left out whose contacts at t = 0 the list has no place for.
+TEST(FCL_MIN_DISTANCE, fewOfManyContactsAtStart) {
+  Random random(87);
+  for (int i = 0; i < 4; ++i) {
+    SCOPED_TRACE(i);
+    const MovingMesh sheet = crumpledSheet(random, 60, 0.01),
+                     other = moved(crumpledSheet(random, 60, 0.01), {0.01, 0.02, 0.01});
+    MovingMesh both = sheet;
+    append(both, other);
+    const auto a = modelOf(sheet), b = modelOf(other), ab = modelOf(both);
+    expectFirstFew(requestAt(0.02),
+                   [&](const Request& r) { return selfContacts<double>(*ab, r); });
+    expectFirstFew(requestAt(0.02),
+                   [&](const Request& r) { return pairContacts(*a, *b, r); });
+  }
+}
+
+/// Two crumpled sheets, whose vertices are mostly nearer to the other sheet than 0.06.
+/// Some vertices of the second one are as far above faces of the first one as `gaps`, 0
+/// for those that touch.
+MovingMesh touchingSheets(Random& random, const std::vector<double>& gaps) {
+  MovingMesh mesh = crumpledSheet(random, 10, 0.01);
+  const MovingMesh other = moved(crumpledSheet(random, 10, 0.01), {0.01, 0.02, 0.02});
+  const std::size_t first = mesh.t0.size(), faces = mesh.triangles.size();
+  append(mesh, other);
+  for (const double gap : gaps) {
+    const Triangle& t = mesh.triangles[random.index(faces)];
+    const Vector3<double> p[] = {mesh.t0[t[0]], mesh.t0[t[1]], mesh.t0[t[2]]};
+    const std::size_t v = first + random.index(other.t0.size());
+    // A corner of the face exactly, or above its middle.
+    const bool is_corner = random.index(2) == 0;
+    const Vector3<double> n = (p[1] - p[0]).cross(p[2] - p[0]).normalized(),
+                          at = is_corner ? p[0] : (p[0] + p[1] + p[2]) / 3;
+    mesh.t1[v] += at + gap * n - mesh.t0[v];
+    mesh.t0[v] = at + gap * n;
+  }
+  return mesh;
+}
+
+// What is nearer at t = 0 and ignored is left out where only t = 0 matters, and nothing
+// that touches then, or nearly.
+TEST(FCL_MIN_DISTANCE, touchingAmongIgnored) {
+  Random random(88);
+  std::size_t at_start = 0, later = 0;
+  for (int i = 0; i < 16; ++i) {
+    SCOPED_TRACE(i);
+    // 1e-6 and 2e-6 are about where rounding may hide a distance.
+    std::vector<double> gaps = {1e-11, 1e-9, 1e-7, 1e-6, 2e-6, 1e-5};
+    if (i % 4 != 3) gaps.insert(gaps.end(), {0, 0, 0, 1e-17, 1e-15, 1e-13});
+    const MovingMesh mesh = touchingSheets(random, gaps);
+    const auto model = modelOf(mesh);
+    Request request = requestAt(0.06);
+    request.ignore_initially_closer = true;
+    const Contacts truth = bruteForce(mesh, mesh, request);
+    request.query = ContinuousQuery::kFirst;
+    const Result first = selfContacts<double>(*model, request);
+    double first_hi = 1;
+    for (const auto& [name, bracket] : truth)
+      first_hi = std::min(first_hi, bracket.second);
+    Contacts expected;
+    for (const auto& [name, bracket] : truth)
+      if (bracket.first <= first_hi) expected.emplace(name, bracket);
+    ASSERT_EQ(contactsOf(first, true), expected);
+    (first_hi == 0 ? at_start : later) += first.contacts.size();
+    request.num_threads = 4;
+    EXPECT_EQ(contactsOf(selfContacts<double>(*model, request), true), expected);
+    if (first_hi > 0) continue;
+    // The same pairs, all of which matter.
+    request.ignore_initially_closer = false;
+    request.num_threads = 1;
+    const Result all = selfContacts<double>(*model, request);
+    EXPECT_LT(2 * first.counts.feature_pairs, all.counts.feature_pairs);
+  }
+  EXPECT_GT(at_start, 20U);
+  EXPECT_GT(later, 0U);
+}
+
+// Pairs of triangles that come nearer from the start on, each from its own distance. All
+// are in contact after 2e-9 of the time that they need to meet.
+TEST(FCL_MIN_DISTANCE, soonestOfManyIgnored) {
+  Random random(89);
+  for (int i = 0; i < 20; ++i) {
+    SCOPED_TRACE(i);
+    MovingMesh mesh;
+    for (int k = 0; k < 30; ++k) {
+      const auto sheet = makeSheet(1, 1);
+      const Vector3<double> at(2. * (k % 6), 2. * (k / 6), 0);
+      const double height = std::pow(10, random.uniform(-3, -1.2)),
+                   way = std::pow(10, random.uniform(-2, 0));
+      append(mesh, moved({sheet.vertices, sheet.vertices, sheet.triangles}, at));
+      MovingMesh above = moved({sheet.vertices, sheet.vertices, sheet.triangles},
+                               at + Vector3<double>(0.1, 0.05, height));
+      for (auto& p : above.t1) p[2] -= way;
+      append(mesh, above);
+    }
+    const auto model = modelOf(mesh);
+    Request request = requestAt(0.1);
+    request.ignore_initially_closer = true;
+    double soonest = 1;
+    for (const auto& [name, bracket] : bruteForce(mesh, mesh, request))
+      soonest = std::min(soonest, bracket.first);
+    ASSERT_GT(soonest, 0);
+    ASSERT_LT(soonest, 1e-9);
+    request.query = ContinuousQuery::kFirst;
+    EXPECT_EQ(selfContacts<double>(*model, request).time_of_contact, soonest);
+  }
+}
+
+// A distance does not make edges and faces meet.
+TEST(FCL_MIN_DISTANCE, crossingsHaveNoDistance) {
+  const auto sheet = makeSheet(10, 10);
+  MovingMesh mesh{sheet.vertices, sheet.vertices, sheet.triangles};
+  append(mesh, moved({sheet.vertices, sheet.vertices, sheet.triangles}, {0, 0, 0.05}));
+  const Result result = selfContacts<double>(*modelOf(mesh), requestAt(0.06));
+  EXPECT_GT(result.contacts.size(), 100U);
+  EXPECT_EQ(result.counts.crossing_tests, 0U);
+}
+
 void expectSameWithFourThreads(const Model& model, Request request, std::size_t least) {
   for (const bool ignores : {false, true}) {
     request.ignore_initially_closer = ignores;
