@@ -94,8 +94,8 @@ class BoundedMotion(Motion):
     with the same arguments must give the same answer.
 
     A query calls the functions often: a call takes some microseconds, and Python's lock.
-    They may come from several threads. An exception from them ends the query and reaches
-    the caller.
+    They may come from several threads, which wait for each other: use one thread. An
+    exception from them ends the query and reaches the caller.
 
     Raises ValueError if a function gives another shape, no rotation, a number that is not
     finite or a negative bound, here or in a query, and TypeError for another type.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <optional>
 #include <set>
 #include <utility>
@@ -30,8 +31,7 @@ namespace {
 /// edges. They are no features of their own.
 class FreeParts {
  public:
-  void find(const MotionBody& body) {
-    if (!body.hasFree()) return;
+  explicit FreeParts(const MotionBody& body) {
     for (std::int32_t place = 0; place < body.numTriangles(); ++place) {
       const BodyTriangle leaf = body.triangle(place);
       if (leaf.isFreePoint()) continue;
@@ -67,7 +67,8 @@ class FeatureContacts {
         sink_(options.query == ContinuousQuery::kAll ? options.max_contacts : kNoLimit,
               may_repeat) {
     if (options.filter && options.min_distance > 0)
-      for (auto k : {0, 1}) parts_[k].find(*body_[k]);
+      for (auto k : {0, 1})
+        if (body_[k]->hasFree()) parts_[k] = std::make_shared<FreeParts>(*body_[k]);
   }
 
   /// Of the same bodies, without contacts: for a part of the pairs.
@@ -198,7 +199,10 @@ class FeatureContacts {
   unsigned pairsOf(const BodyTriangle& a, const BodyTriangle& b) const {
     const bool at_distance = tolerance_.distance > 0;
     if (!options_.filter) return wantedPairs(a.owned, b.owned, at_distance);
-    const bool are_own = !parts_[0].contains(a) && !parts_[1].contains(b);
+    const auto isOwn = [this](int k, const BodyTriangle& leaf) {
+      return !parts_[k] || !parts_[k]->contains(leaf);
+    };
+    const bool are_own = isOwn(0, a) && isOwn(1, b);
     return wantedPairs(featuresOf(a), featuresOf(b), at_distance && are_own);
   }
 
@@ -280,7 +284,8 @@ class FeatureContacts {
   static constexpr int kMostSteps = 10000;
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MotionBody* body_[2];
-  FreeParts parts_[2];
+  /// With a filter and a distance; null for a mesh without free parts.
+  std::shared_ptr<const FreeParts> parts_[2];
   const QueryOptions& options_;
   MotionTolerance tolerance_;
   ContactSink sink_;
@@ -470,7 +475,7 @@ MotionQueryOptions motionOptionsOf(const QueryOptions& options) {
   wanted.proves_contacts = !wanted.all;
   wanted.last = options.t_max;
   wanted.distance = options.min_distance;
-  wanted.num_threads = options.num_threads;
+  if (options.query == ContinuousQuery::kAll) wanted.num_threads = options.num_threads;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   // Features are advanced by directions that turn, which takes fewer steps.
   if (options.min_distance > 0) wanted.max_steps = 256;

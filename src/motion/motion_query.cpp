@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <memory>
 
 #include "base/parallel.h"
 #include "motion/convex_advance.h"
@@ -61,7 +62,7 @@ class MotionTraversal {
     const bool is_for_tasks = isForTasks();
     while (!works_.isEmpty() && !isCut() && !(is_for_tasks && isLong()))
       step(works_.pop(), advance);
-    if (is_for_tasks && !works_.isEmpty()) runTasks(pieces(advance));
+    if (is_for_tasks && !works_.isEmpty()) runTasks(pieces());
     return finish();
   }
 
@@ -75,13 +76,15 @@ class MotionTraversal {
   }
 
  private:
-  static constexpr std::size_t kTasks = 32, kPiecesPerTask = 8;
+  static constexpr std::size_t kTasks = 32, kPieces = 8 * kTasks;
 
   /// Whether the traversal has taken about a millisecond: then it is divided into tasks.
   /// Neither this nor the tasks depend on the number of threads.
   bool isLong() const {
-    constexpr std::uint64_t kBoxTestsPerStep = 8, kMost = 8192;
-    return counts_.box_tests + kBoxTestsPerStep * counts_.steps > kMost;
+    constexpr std::uint64_t kMost = 8192, kPerStep = 8, kPerStepOfShape = 24;
+    const bool has_shape = side_[0].body.shape() || side_[1].body.shape();
+    return counts_.box_tests + (has_shape ? kPerStepOfShape : kPerStep) * counts_.steps >
+           kMost;
   }
 
   void begin() { testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0}); }
@@ -95,10 +98,14 @@ class MotionTraversal {
   template <typename Visit>
   void step(MotionWork work, Visit&& visit) {
     if (areKeptApart(work)) return;
-    if (work.a.isTriangle() && work.b.isTriangle())
+    if (isPair(work))
       visit(work);
     else
       divide(work);
+  }
+
+  static bool isPair(const MotionWork& work) {
+    return work.a.isTriangle() && work.b.isTriangle();
   }
 
   bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
@@ -111,39 +118,42 @@ class MotionTraversal {
   }
 
   /// Divides the work that is left, the first first: the largest parts as a rule.
-  template <typename Visit>
-  std::vector<MotionWork> pieces(Visit&& visit) {
+  std::vector<MotionWork> pieces() {
+    std::vector<MotionWork> pairs;
     std::deque<MotionWork> waiting;
     const auto take = [&] {
       for (const MotionWork& work : works_.takeAll()) waiting.push_back(work);
     };
-    for (take(); !waiting.empty() && waiting.size() < kTasks * kPiecesPerTask; take()) {
-      const MotionWork work = waiting.front();
+    for (take(); !waiting.empty() && pairs.size() + waiting.size() < kPieces; take()) {
+      MotionWork work = waiting.front();
       waiting.pop_front();
-      step(work, visit);
+      if (isPair(work))
+        pairs.push_back(work);
+      else
+        divide(work);
     }
-    return {waiting.begin(), waiting.end()};
+    pairs.insert(pairs.end(), waiting.begin(), waiting.end());
+    return pairs;
   }
 
-  /// Does the pieces of work in tasks, each with a traversal of its own.
+  /// Does the pieces of work in tasks, each with a traversal of its own. Large pieces are
+  /// side by side and go to different tasks.
   void runTasks(const std::vector<MotionWork>& pieces) {
     struct Found {
       std::vector<MotionContact> contacts;
       MotionCounts counts;
     };
-    const std::size_t size = (pieces.size() + kTasks - 1) / kTasks;
-    std::vector<Found> found(kTasks);
-    if (pieces.empty()) return;
-    parallelForBlocks(
-        pieces.size(), size, options_.num_threads,
-        [&](std::size_t first, std::size_t last) {
-          MotionTraversal task(side_[0].body, side_[1].body, options_);
-          for (std::size_t i = first; i < last; ++i) {
-            task.push(pieces[i]);
-            task.traverse([&](const MotionWork& work) { task.advance(work); });
-          }
-          found[first / size] = {std::move(task.contacts_), task.counts_};
-        });
+    std::vector<Found> found(std::min(kTasks, pieces.size()));
+    parallelFor(found.size(), options_.num_threads, [&](std::size_t number) {
+      // It is too large for the stack of a small thread.
+      const auto task =
+          std::make_unique<MotionTraversal>(side_[0].body, side_[1].body, options_);
+      for (std::size_t i = number; i < pieces.size(); i += found.size()) {
+        task->push(pieces[i]);
+        task->traverse([&](const MotionWork& work) { task->advance(work); });
+      }
+      found[number] = {std::move(task->contacts_), task->counts_};
+    });
     for (const Found& part : found) {
       contacts_.insert(contacts_.end(), part.contacts.begin(), part.contacts.end());
       counts_ += part.counts;
@@ -450,7 +460,7 @@ class MotionTraversal {
   /// The span of a piece of work: that of its parent, cut to [start, end], with ends that
   /// are dyadic so that poses are used again.
   static void setSpan(double end, MotionWork& work) {
-    if (work.a.isTriangle() && work.b.isTriangle()) {
+    if (isPair(work)) {
       work.t0 = work.start;
       work.t1 = end;
       return;

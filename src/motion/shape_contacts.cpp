@@ -117,7 +117,7 @@ MotionQueryOptions motionOptionsOf(const MotionBody& a, const MotionBody& b,
   wanted.toc_err = options.toc_err;
   wanted.all = options.query == ContinuousQuery::kAll;
   wanted.last = options.t_max;
-  wanted.num_threads = options.num_threads;
+  if (wanted.all) wanted.num_threads = options.num_threads;
   wanted.distance = options.min_distance + radiusOf(a) + radiusOf(b);
   wanted.ignores_initially_closer = options.ignores_initially_closer;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;

@@ -652,6 +652,44 @@ TEST(FCL_FREE_FEATURES_MOTION, filters) {
   EXPECT_GT(contacts, rounds(1000U));
 }
 
+/// Filters, free parts and a distance in blocks of pairs of triangles, of which the
+/// earliest contacts are kept.
+TEST(FCL_FREE_FEATURES_MOTION, threadsDoNotMatter) {
+  Random random(421);
+  std::size_t contacts = 0;
+  for (int i = 0; i < rounds(6); ++i) {
+    const BodySize size{6, 8, 16};
+    const auto a = freeModelOf<Model>(randomBody(random, size, 0.2, OnGrid::kNever)),
+               b = freeModelOf<Model>(randomBody(random, size, 0.2, OnGrid::kNever));
+    const Motion of_a = randomMotion(random, 0.5),
+                 of_b{of_a.begin, of_a.begin * randomMotion(random, 0.5).begin};
+    Request request = requestAt(i % 3 == 0 ? 0 : 0.08);
+    if (i % 2)
+      request.accepts_triangles = [](std::intptr_t x, std::intptr_t y) {
+        return (x + 2 * y) % 5 < 4;
+      };
+    if (i % 3 == 1) request.num_max_contacts = 50;
+    const Result one = ask(*a, of_a, *b, of_b, request);
+    request.num_threads = 3;
+    const Result three = ask(*a, of_a, *b, of_b, request);
+    EXPECT_EQ(three.contacts_cut, one.contacts_cut);
+    EXPECT_EQ(three.time_of_contact, one.time_of_contact);
+    ASSERT_EQ(three.contacts.size(), one.contacts.size());
+    for (std::size_t k = 0; k < one.contacts.size(); ++k) {
+      const Contact &x = three.contacts[k], &y = one.contacts[k];
+      EXPECT_EQ(x.kind, y.kind);
+      EXPECT_EQ(x.vertices, y.vertices);
+      EXPECT_EQ(x.b1, y.b1);
+      EXPECT_EQ(x.b2, y.b2);
+      EXPECT_EQ(x.toc_lo, y.toc_lo);
+      EXPECT_EQ(x.toc_hi, y.toc_hi);
+      EXPECT_EQ(x.pos, y.pos);
+    }
+    contacts += one.contacts.size();
+  }
+  EXPECT_GT(contacts, rounds(300U));
+}
+
 /// FCL's own rigid models, whose triangles have no owners, and models in float.
 TEST(FCL_FREE_FEATURES_MOTION, rigidMeshesAndFloat) {
   Random random(419);

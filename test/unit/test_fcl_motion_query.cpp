@@ -7,11 +7,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <functional>
 #include <map>
+#include <mutex>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "base/parallel.h"
 #include "fcl/narrowphase/collision.h"
 #include "motion/motion_contacts.h"
 #include "motion/motion_work.h"
@@ -453,8 +460,6 @@ double distanceOf(const FeatureContact& contact, const Body& a,
   return std::sqrt(nearestFeatures(first, other).square);
 }
 
-// Each feature pair is listed once. The pairs that are nearest when their triangles come
-// together are among them. All are as near as promised.
 void expectSame(const MotionAnswer& found, const MotionAnswer& expected) {
   EXPECT_EQ(found.counts.box_tests, expected.counts.box_tests);
   EXPECT_EQ(found.counts.triangle_pairs, expected.counts.triangle_pairs);
@@ -492,6 +497,38 @@ TEST(FCL_MOTION_QUERY, tasksFindWhatOneTraversalFinds) {
     }
   }
   EXPECT_GE(contacts, 2000U);
+}
+
+/// A rule that is asked about pairs, and waits until two threads have asked.
+TEST(FCL_MOTION_QUERY, tasksRunSideBySide) {
+  if (numThreads(2) == 1) GTEST_SKIP() << "a build without threads";
+  const Body a(makeIcosphere(4, 0.5)), b(makeIcosphere(4, 0.5));
+  Random random(9150);
+  const ReferenceMotion motion = randomMotion(random, 0.1);
+  std::mutex mutex;
+  std::condition_variable second;
+  std::set<std::thread::id> threads;
+  std::size_t asked = 0;
+  const std::function<bool(std::intptr_t, std::intptr_t)> accepts = [&](auto, auto) {
+    std::unique_lock<std::mutex> lock(mutex);
+    // The beginning of a traversal has one thread.
+    constexpr std::size_t kBeginning = 10000;
+    if (++asked < kBeginning) return false;
+    threads.insert(std::this_thread::get_id());
+    second.notify_all();
+    if (threads.size() < 2)
+      second.wait_for(lock, std::chrono::seconds(60), [&] { return threads.size() > 1; });
+    return false;
+  };
+  PairRules rules;
+  rules.accepts = &accepts;
+  MotionQueryOptions options;
+  options.all = true;
+  options.rules = &rules;
+  options.num_threads = 2;
+  ask(a, motion.path(), b, motion.path(), options);
+  EXPECT_GT(asked, 20000U);
+  EXPECT_GE(threads.size(), 2U);
 }
 
 /// The direction that parted the pair before is a guess for the next one, which may round
@@ -564,6 +601,8 @@ TEST(FCL_MOTION_QUERY, threadsFindTheSameContactsOfFeatures) {
   EXPECT_GE(contacts, 1000U);
 }
 
+// Each feature pair is listed once. The pairs that are nearest when their triangles come
+// together are among them. All are as near as promised.
 TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
   MotionQueryOptions all;
