@@ -8,18 +8,14 @@
 
 #include "base/parallel.h"
 #include "motion/convex_advance.h"
-#include "motion/flat_windows.h"
-#include "motion/motion_side.h"
 #include "motion/motion_work.h"
+#include "motion/part_windows.h"
 #include "motion/parting_direction.h"
-#include "motion/posed_vector.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUnitRounding = 0x1p-53;
 
 bool isEarlierContact(const MotionContact& x, const MotionContact& y) {
   if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
@@ -38,23 +34,14 @@ class MotionTraversal {
  public:
   MotionTraversal(const MotionBody& a, const MotionBody& b,
                   const MotionQueryOptions& options)
-      : side_{MotionSide(a), MotionSide(b)},
-        options_(options),
+      : options_(options),
         tolerance_(a, b, options.distance),
+        windows_(a, b, tolerance_, options.distance),
         parting_(a, b, tolerance_),
-        axes_share_(side_[0].axis ? side_[1].shareAlong(*side_[0].axis) : 1),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.last),
         works_(options.all ? MotionWorkQueue::Order::kAny
-                           : MotionWorkQueue::Order::kEarliestFirst) {
-    // A kernel adds up no more than a hundred roundings of the sizes, and a time is
-    // rounded by a few u.
-    rounding_ = tolerance_.position + 0x1p-44 * (a.size() + b.size()) +
-                16 * kUnitRounding * (a.speed() + b.speed());
-    box_margin_ = options.distance + rounding_;
-    direction_bound_ =
-        (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
-  }
+                           : MotionWorkQueue::Order::kEarliestFirst) {}
 
   MotionAnswer run() {
     const auto advance = [this](const MotionWork& work) { this->advance(work); };
@@ -82,12 +69,12 @@ class MotionTraversal {
   /// Neither this nor the tasks depend on the number of threads.
   bool isLong() const {
     constexpr std::uint64_t kMost = 8192, kPerStep = 8, kPerStepOfShape = 24;
-    const bool has_shape = side_[0].body.shape() || side_[1].body.shape();
+    const bool has_shape = body(0).shape() || body(1).shape();
     return counts_.box_tests + (has_shape ? kPerStepOfShape : kPerStep) * counts_.steps >
            kMost;
   }
 
-  void begin() { testAlone({0, 0, 1, side_[0].body.root(), side_[1].body.root(), 0, 0}); }
+  void begin() { testAlone({0, 0, 1, body(0).root(), body(1).root(), 0, 0}); }
 
   /// Calls visit(work) for pairs of triangles.
   template <typename Visit>
@@ -108,13 +95,15 @@ class MotionTraversal {
     return work.a.isTriangle() && work.b.isTriangle();
   }
 
+  const MotionBody& body(int k) const { return windows_.side(k).body; }
+
   bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
 
   /// Whether the work may be done in any order and by several threads. The cells of an
   /// octree are numbered as they are met.
   bool isForTasks() const {
     return options_.all && options_.most_box_tests == MotionQueryOptions::kNoLimit &&
-           !side_[0].body.octree() && !side_[1].body.octree();
+           !body(0).octree() && !body(1).octree();
   }
 
   /// Divides the work that is left, the first first: the largest parts as a rule.
@@ -146,8 +135,7 @@ class MotionTraversal {
     std::vector<Found> found(std::min(kTasks, pieces.size()));
     parallelFor(found.size(), options_.num_threads, [&](std::size_t number) {
       // It is too large for the stack of a small thread.
-      const auto task =
-          std::make_unique<MotionTraversal>(side_[0].body, side_[1].body, options_);
+      const auto task = std::make_unique<MotionTraversal>(body(0), body(1), options_);
       for (std::size_t i = number; i < pieces.size(); i += found.size()) {
         task->push(pieces[i]);
         task->traverse([&](const MotionWork& work) { task->advance(work); });
@@ -167,215 +155,21 @@ class MotionTraversal {
     if (!is_late) works_.push(work);
   }
 
-  /// The box of a part at a time.
-  MotionBox boxAt(const MotionBody& body, const BodyPart& part, double t) const {
-    MotionBox box = body.box(part, 0);
-    if (!body.isRigid()) interpolate(body.box(part, 1), t, box);
-    return box;
-  }
-
-  static void interpolate(const MotionBox& end, double t, MotionBox& box) {
-    for (int k = 0; k < 3; ++k) {
-      box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
-      box.extent[k] = (1 - t) * box.extent[k] + t * end.extent[k];
-    }
-    box.radius = (1 - t) * box.radius + t * end.radius;
-  }
-
-  /// A part of a body during a span.
-  struct PartSpan {
-    /// At t = 0 and t = 1. Of a rigid body only the first one is set.
-    MotionBox frame[2];
-    /// The largest deviation of its points from straight lines.
-    double deviation;
-  };
-
-  PartSpan partSpan(int k, const BodyPart& part, double t0, double t1) {
-    MotionSide& side = side_[k];
-    const double dt = t1 - t0;
-    PartSpan span;
-    span.frame[0] = side.body.box(part, 0);
-    if (!side.body.isRigid()) span.frame[1] = side.body.box(part, 1);
-    span.deviation = 0;
-    if (side.flat)
-      span.deviation = flatDeviation(k, t0, t1);
-    else if (!side.goes_straight)
-      span.deviation =
-          0.125 * dt * dt * side.accelerationOf(span.frame[0], span.frame[1], t0, t1);
-    return span;
-  }
-
-  /// How far the height of a point above a flat deviates from a straight line, less what
-  /// the acceleration of the point adds: see ConvexPairMotion::inBody().
-  double flatDeviation(int k, double t0, double t1) {
-    MotionSide &side = side_[k], &other = side_[1 - k];
-    const double dt = t1 - t0, middle = 0.5 * (t0 + t1);
-    const Vec foot = side.flat->foot();
-    const MotionBox root = boxAt(other.body, other.body.root(), middle);
-    const MotionPath& path = side.body.path();
-    const double speed = other.body.speed() + path.speed(norm(foot)),
-                 apart = norm(posed(other.poses.at(middle), vecOf(root.center)) -
-                              posed(side.poses.at(middle), foot)) +
-                         direction_bound_ * (root.radius + root.pad) + 0.5 * dt * speed;
-    const AccelerationBound& bound = side.acceleration(t0, t1);
-    return 0.125 * dt * dt * direction_bound_ *
-           (bound.of(foot, 0) + bound.of({0, 0, 0}, apart) +
-            2 * path.turnSpeed() * speed);
-  }
-
-  /// The radius of a part, with the margin around the core of a shape.
-  double sizeOf(int k, const PartSpan& span) const {
-    if (side_[k].flat) return HUGE_VAL;
-    const MotionBody& body = side_[k].body;
-    const double radius = body.isRigid()
-                              ? span.frame[0].radius
-                              : std::max(span.frame[0].radius, span.frame[1].radius);
-    return radius + (body.shape() ? body.shape()->radius() : 0);
-  }
-
   /// Tests the pair in its span, and adds the parts that may overlap.
   void testAlone(const MotionWork& work) {
-    const int many = side_[1].flat ? 0 : 1;
-    const MotionBody& body = side_[many].body;
+    const int many = windows_.side(1).flat ? 0 : 1;
+    const MotionBody& opened = body(many);
     const BodyPart &part = many == 1 ? work.b : work.a,
                    &other = many == 1 ? work.a : work.b;
     MotionNode node;
     node.count = 1;
-    for (int frame = 0; frame < (body.isRigid() ? 1 : 2); ++frame) {
-      const MotionBox box = body.box(part, frame);
+    for (int frame = 0; frame < (opened.isRigid() ? 1 : 2); ++frame) {
+      const MotionBox box = opened.box(part, frame);
       for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
         node.box[frame].set(lane, box);
     }
     std::fill(node.part, node.part + MotionBoxes::kWidth, part);
-    test(work, many, node, nullptr, partSpan(1 - many, other, work.t0, work.t1));
-  }
-
-  /// The node's boxes at a time.
-  const MotionBoxes* boxesAt(const MotionBody& body, const MotionNode& node, double t,
-                             MotionBoxes& scratch) const {
-    if (body.isRigid() || t == 0) return &node.box[0];
-    if (t == 1) return &node.box[1];
-    scratch = node.box[0];
-    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
-      for (int k = 0; k < 3; ++k) {
-        scratch.center[k][lane] =
-            (1 - t) * scratch.center[k][lane] + t * node.box[1].center[k][lane];
-        scratch.extent[k][lane] =
-            (1 - t) * scratch.extent[k][lane] + t * node.box[1].extent[k][lane];
-      }
-      scratch.radius[lane] =
-          (1 - t) * scratch.radius[lane] + t * node.box[1].radius[lane];
-    }
-    return &scratch;
-  }
-
-  /// What the gaps between the boxes of a node and another part are reduced by.
-  struct Margins {
-    /// How far the points of both deviate from straight lines during the span.
-    double deviation[MotionBoxes::kWidth]{};
-    /// The same along the axis about which a side turns, of the other part and the node.
-    double along_axis[2][MotionBoxes::kWidth]{};
-    /// Pads, requested distance and rounding.
-    double fixed[MotionBoxes::kWidth]{};
-
-    double with(double part_of_deviation, int lane) const {
-      return fixed[lane] + part_of_deviation * deviation[lane];
-    }
-    double alongAxis(int k, double part_of_deviation, int lane) const {
-      return fixed[lane] + part_of_deviation * along_axis[k][lane];
-    }
-  };
-
-  /// @param acceleration  of the node's boxes
-  Margins marginsOf(const MotionWork& work, int opened, const MotionNode& node,
-                    const PartSpan& other,
-                    const double (&acceleration)[MotionBoxes::kWidth]) {
-    MotionSide &one = side_[1 - opened], &many = side_[opened];
-    const double dt = work.t1 - work.t0, share = direction_bound_ * 0.125 * dt * dt,
-                 of_one = direction_bound_ * other.deviation,
-                 axis_one = share * one.axis_acceleration,
-                 axis_many = share * many.axis_acceleration,
-                 flat_share = one.flat ? shareAlongFlat(work, one, many) : 1;
-    Margins out;
-    for (int lane = 0; lane < node.count; ++lane) {
-      const double of_many = share * acceleration[lane];
-      out.deviation[lane] = of_one + (flat_share * of_many + axis_many);
-      out.along_axis[0][lane] = axis_one + (axes_share_ * of_many + axis_many);
-      out.along_axis[1][lane] = axis_many + (axes_share_ * of_one + axis_one);
-      out.fixed[lane] =
-          direction_bound_ * (other.frame[0].pad + box_margin_ + node.box[0].pad[lane]);
-    }
-    return out;
-  }
-
-  /// The share of a side's deviation along the normal of a flat, which may turn.
-  static double shareAlongFlat(const MotionWork& work, MotionSide& flat,
-                               const MotionSide& side) {
-    const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
-    if (turn > 1) return 1;
-    const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
-    return std::min(side.shareAlong(normal) + turn, 1.);
-  }
-
-  /// The windows in which the boxes of a node may overlap the part of the other side.
-  void setWindows(int opened, const MotionNode& node, const PartSpan& other,
-                  const SpanTimes& times, const Margins& margins,
-                  const MotionBoxes* const (&boxes)[3], MeetingWindows& windows) {
-    MotionSide &one = side_[1 - opened], &many = side_[opened];
-    const SpanPoses pose_one = one.spanPoses(times), pose_many = many.spanPoses(times);
-    double margin[MotionBoxes::kWidth] = {};
-    CalmDirection axes[2] = {{one.axis, {}}, {many.axis, {}}};
-    // Boxes are compared in the middle of the span too. In a half of it the deviation is
-    // a quarter.
-    const double part_of_deviation = one.flat ? 1 : 0.25;
-    for (int lane = 0; lane < node.count; ++lane) {
-      margin[lane] = margins.with(part_of_deviation, lane);
-      for (int k = 0; k < 2; ++k)
-        axes[k].margin[lane] = margins.alongAxis(k, part_of_deviation, lane);
-    }
-    if (one.flat)
-      return flatWindows(*one.flat, pose_one, boxes, pose_many, margin, node.count,
-                         windows);
-    MotionBox moving[3];
-    const MotionBox* others[3];
-    for (int k = 0; k < 3; ++k) {
-      others[k] = &other.frame[0];
-      if (one.body.isRigid()) continue;
-      moving[k] = other.frame[0];
-      interpolate(other.frame[1], times.at[k], moving[k]);
-      others[k] = &moving[k];
-    }
-    motionKernels().meetingWindows(others, pose_one, boxes, pose_many, margin, axes,
-                                   node.count, windows);
-  }
-
-  /// @param acceleration  of the node's boxes
-  TriangleHalves testTriangles(const MotionWork& work, int opened, const MotionNode& node,
-                               const BodyPart& part,
-                               const double (&acceleration)[MotionBoxes::kWidth]) {
-    TriangleHalves out;
-    const BodyPart& single = opened == 1 ? work.a : work.b;
-    MotionSide &one = side_[1 - opened], &many = side_[opened];
-    if (!one.body.isMesh() || !many.body.isMesh() || !single.isTriangle()) return out;
-    for (int lane = 0; lane < node.count; ++lane)
-      if (node.part[lane].isTriangle()) out.tested |= 1U << lane;
-    if (out.tested == 0) return out;
-    if (!one.body.isReadable(~single.child)) return {};
-    const BodyTriangle triangle = one.body.triangle(~single.child);
-    const double dt = work.t1 - work.t0, share = 0.125 * 0.25 * dt * dt,
-                 of_one =
-                     one.goes_straight
-                         ? 0
-                         : accelerationOf(one.acceleration(work.t0, work.t1), triangle);
-    double deviation[MotionBoxes::kWidth];
-    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
-      deviation[lane] = direction_bound_ * share * (of_one + acceleration[lane]);
-    const SpanTimes times(work.t0, work.t1);
-    motionKernels().meetingHalves(
-        one.spanTriangle(triangle, times), many.reader.triangles(part),
-        many.body.isRigid() ? nullptr : times.at, many.spanPoses(times), deviation,
-        direction_bound_ * box_margin_, out.tested, out.meeting);
-    return out;
+    test(work, many, node, nullptr, windows_.partSpan(1 - many, other, work.t0, work.t1));
   }
 
   /// Tests the children of one side's part against the other side's part.
@@ -383,31 +177,14 @@ class MotionTraversal {
   /// @param part  the part of that side; null: the node is the part itself
   /// @param other  the part of the other side
   void test(const MotionWork& work, int opened, const MotionNode& node,
-            const BodyPart* part, const PartSpan& other) {
+            const BodyPart* part, const PartWindows::PartSpan& other) {
     // A node of an octree may be occupied while none of its children is.
     if (node.count == 0) return;
-    const MotionSide& one = side_[1 - opened];
-    MotionSide& many = side_[opened];
-    const double dt = work.t1 - work.t0;
-    const SpanTimes times(work.t0, work.t1);
     counts_.box_tests += static_cast<std::uint64_t>(node.count);
-    const auto& acceleration = many.accelerations(part, node, work.t0, work.t1);
-    TriangleHalves halves;
-    if (part) halves = testTriangles(work, opened, node, *part, acceleration);
-    if ((halves.left() & ((1U << node.count) - 1)) == 0) return;
-    MotionBoxes moving[3];
-    const MotionBoxes* boxes[3];
-    for (int k = 0; k < 3; ++k)
-      boxes[k] = boxesAt(many.body, node, times.at[k], moving[k]);
-    const Margins margins = marginsOf(work, opened, node, other, acceleration);
-    MeetingWindows windows;
-    setWindows(opened, node, other, times, margins, boxes, windows);
-    halves.narrow(windows);
+    const double dt = work.t1 - work.t0;
+    const MeetingWindows windows = windows_.windows(work, opened, node, part, other);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
       const int lane = __builtin_ctz(left);
-      if (one.body.shape() && !one.flat && !one.body.shape()->fillsBox() &&
-          !narrowByShape(opened, work, boxes, lane, margins.with(1, lane), windows))
-        continue;
       MotionWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
       child.start = std::max(work.start, work.t0 + windows.lo[lane] * dt);
@@ -416,45 +193,6 @@ class MotionTraversal {
       setSpan(end, child);
       push(child);
     }
-  }
-
-  /// From the center of a shape to that of a box.
-  static Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape,
-                        const MotionBox& box, const Pose& pose_box) {
-    return posed(pose_box, vecOf(box.center)) - posed(pose_shape, shape.center());
-  }
-
-  /// Shortens the window of a box that may overlap the box of a shape, by the direction
-  /// that parts the shape itself from the box in the middle of the span.
-  /// @return whether they may overlap
-  bool narrowByShape(int opened, const MotionWork& work,
-                     const MotionBoxes* const (&boxes)[3], int lane, double margin,
-                     MeetingWindows& windows) {
-    const SpanTimes times(work.t0, work.t1);
-    const SpanPoses poses[2] = {side_[1 - opened].spanPoses(times),
-                                side_[opened].spanPoses(times)};
-    const MotionBox begin = boxes[0]->get(lane), end = boxes[2]->get(lane);
-    MotionBox middle = begin;
-    interpolate(end, 0.5, middle);
-    const ConvexShape* shape = side_[1 - opened].body.shape();
-    const auto posedShape = [&](const Pose& pose) -> PosedConvex {
-      return {shape, nullptr, pose, {}};
-    };
-    const auto posedBox = [](const MotionBox& box, const Pose& pose) -> PosedConvex {
-      return {nullptr, &box, pose, {}};
-    };
-    const Vec n =
-        convexGap(posedShape(poses[0].middle), posedBox(middle, poses[1].middle),
-                  towardsBox(*shape, poses[0].middle, middle, poses[1].middle), margin,
-                  margin)
-            .direction;
-    const auto gap = [&](const PosedConvex& of_shape, const PosedConvex& of_box) {
-      return -of_box.reach(-1. * n) - of_shape.reach(n) - margin;
-    };
-    const double first = gap(posedShape(poses[0].beginning),
-                             posedBox(begin, poses[1].beginning)),
-                 last = gap(posedShape(poses[0].end), posedBox(end, poses[1].end));
-    return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
   }
 
   /// The span of a piece of work: that of its parent, cut to [start, end], with ends that
@@ -476,7 +214,7 @@ class MotionTraversal {
   /// 0.44 ms, with a share of a quarter 0.65 ms. Where all contacts are wanted each span
   /// costs: they take 7% to 45% less time than with a quarter, most beside a halfspace.
   double mostDeviation() const {
-    if (!side_[0].body.shape() && !side_[1].body.shape()) return 0.5;
+    if (!body(0).shape() && !body(1).shape()) return 0.5;
     return options_.all ? 1 : 0x1p-5;
   }
 
@@ -485,20 +223,21 @@ class MotionTraversal {
     constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6;
     const double most_deviation = mostDeviation();
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
-    const PartSpan span[2] = {partSpan(0, work.a, work.t0, work.t1),
-                              partSpan(1, work.b, work.t0, work.t1)};
-    const double radius[2] = {sizeOf(0, span[0]), sizeOf(1, span[1])};
+    const PartWindows::PartSpan span[2] = {
+        windows_.partSpan(0, work.a, work.t0, work.t1),
+        windows_.partSpan(1, work.b, work.t0, work.t1)};
+    const double radius[2] = {windows_.sizeOf(0, span[0]), windows_.sizeOf(1, span[1])};
     const int opened =
         work.a.isTriangle() || (!work.b.isTriangle() && radius[1] > radius[0]) ? 1 : 0;
     // Small meshes that are within the distance still are in half of the span. Nothing is
     // gained where rounding is larger than both parts.
     const double least = std::max(std::min(radius[0], radius[1]),
                                   kLeastShare * std::max(radius[opened], apart_));
-    if (work.t1 - work.t0 > kShortest && least > rounding_ &&
+    if (work.t1 - work.t0 > kShortest && least > windows_.rounding() &&
         span[0].deviation + span[1].deviation > most_deviation * least)
       return halve(work);
     const BodyPart& part = opened == 1 ? work.b : work.a;
-    test(work, opened, side_[opened].reader.open(part), &part, span[1 - opened]);
+    test(work, opened, windows_.side(opened).reader.open(part), &part, span[1 - opened]);
   }
 
   void halve(const MotionWork& work) {
@@ -525,9 +264,9 @@ class MotionTraversal {
     const double end = std::min(work.t1, latest_);
     double gap[2];
     if (!parting_.areApart(work.a, work.b, {work.start, end}, gap)) return false;
-    const double deviation = partSpan(0, work.a, work.start, end).deviation +
-                             partSpan(1, work.b, work.start, end).deviation;
-    return staysPositive(gap, direction_bound_ * deviation);
+    const double deviation = windows_.partSpan(0, work.a, work.start, end).deviation +
+                             windows_.partSpan(1, work.b, work.start, end).deviation;
+    return staysPositive(gap, windows_.directionBound() * deviation);
   }
 
   /// Takes the direction of a contact. Other pairs may touch at the same time in another
@@ -545,7 +284,7 @@ class MotionTraversal {
 
   /// Advances a pair of triangles, shapes or cells of an octree.
   void advance(const MotionWork& work) {
-    const MotionBody &a = side_[0].body, &b = side_[1].body;
+    const MotionBody &a = body(0), &b = body(1);
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
     if (!a.isMesh() || !b.isMesh()) {
@@ -586,7 +325,7 @@ class MotionTraversal {
     contact.place[0] = ~work.a.child;
     contact.place[1] = ~work.b.child;
     for (int k = 0; k < 2; ++k)
-      contact.triangle[k] = side_[k].body.octree() ? contact.place[k] : index[k];
+      contact.triangle[k] = body(k).octree() ? contact.place[k] : index[k];
     contact.toc_lo = contact.toc_hi = work.start;
     contact.certainty = MotionCertainty::kGivenUp;
     if (answer == TrianglePairMotion::Answer::kContact) {
@@ -630,18 +369,12 @@ class MotionTraversal {
     return answer;
   }
 
-  MotionSide side_[2];
   const MotionQueryOptions& options_;
   MotionTolerance tolerance_;
+  PartWindows windows_;
   PartingDirection parting_;
-  /// The share of a body's deviation that it has along the axis of the other one.
-  double axes_share_;
   /// The distance at which meshes are in contact.
   double apart_;
-  /// Bound on the rounding of the distance of two boxes.
-  double rounding_;
-  double box_margin_;
-  double direction_bound_;
   /// The latest time that matters.
   double latest_;
   MotionWorkQueue works_;

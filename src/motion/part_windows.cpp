@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion/part_windows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "motion/convex_advance.h"
+#include "motion/flat_windows.h"
+#include "motion/posed_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kUnitRounding = 0x1p-53;
+
+void interpolate(const MotionBox& end, double t, MotionBox& box) {
+  for (int k = 0; k < 3; ++k) {
+    box.center[k] = (1 - t) * box.center[k] + t * end.center[k];
+    box.extent[k] = (1 - t) * box.extent[k] + t * end.extent[k];
+  }
+  box.radius = (1 - t) * box.radius + t * end.radius;
+}
+
+/// The box of a part at a time.
+MotionBox boxAt(const MotionBody& body, const BodyPart& part, double t) {
+  MotionBox box = body.box(part, 0);
+  if (!body.isRigid()) interpolate(body.box(part, 1), t, box);
+  return box;
+}
+
+/// The node's boxes at a time.
+const MotionBoxes* boxesAt(const MotionBody& body, const MotionNode& node, double t,
+                           MotionBoxes& scratch) {
+  if (body.isRigid() || t == 0) return &node.box[0];
+  if (t == 1) return &node.box[1];
+  scratch = node.box[0];
+  for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) {
+    for (int k = 0; k < 3; ++k) {
+      scratch.center[k][lane] =
+          (1 - t) * scratch.center[k][lane] + t * node.box[1].center[k][lane];
+      scratch.extent[k][lane] =
+          (1 - t) * scratch.extent[k][lane] + t * node.box[1].extent[k][lane];
+    }
+    scratch.radius[lane] = (1 - t) * scratch.radius[lane] + t * node.box[1].radius[lane];
+  }
+  return &scratch;
+}
+
+/// From the center of a shape to that of a box.
+Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape, const MotionBox& box,
+               const Pose& pose_box) {
+  return posed(pose_box, vecOf(box.center)) - posed(pose_shape, shape.center());
+}
+
+}  // namespace
+
+PartWindows::PartWindows(const MotionBody& a, const MotionBody& b,
+                         const MotionTolerance& tolerance, double distance)
+    : side_{MotionSide(a), MotionSide(b)},
+      axes_share_(side_[0].axis ? side_[1].shareAlong(*side_[0].axis) : 1) {
+  // A kernel adds up no more than a hundred roundings of the sizes, and a time is
+  // rounded by a few u.
+  rounding_ = tolerance.position + 0x1p-44 * (a.size() + b.size()) +
+              16 * kUnitRounding * (a.speed() + b.speed());
+  box_margin_ = distance + rounding_;
+  direction_bound_ =
+      (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
+}
+
+PartWindows::PartSpan PartWindows::partSpan(int k, const BodyPart& part, double t0,
+                                            double t1) {
+  MotionSide& side = side_[k];
+  const double dt = t1 - t0;
+  PartSpan span;
+  span.frame[0] = side.body.box(part, 0);
+  if (!side.body.isRigid()) span.frame[1] = side.body.box(part, 1);
+  span.deviation = 0;
+  if (side.flat)
+    span.deviation = flatDeviation(k, t0, t1);
+  else if (!side.goes_straight)
+    span.deviation =
+        0.125 * dt * dt * side.accelerationOf(span.frame[0], span.frame[1], t0, t1);
+  return span;
+}
+
+/// How far the height of a point above a flat deviates from a straight line, less what
+/// the acceleration of the point adds: see ConvexPairMotion::inBody().
+double PartWindows::flatDeviation(int k, double t0, double t1) {
+  MotionSide &side = side_[k], &other = side_[1 - k];
+  const double dt = t1 - t0, middle = 0.5 * (t0 + t1);
+  const Vec foot = side.flat->foot();
+  const MotionBox root = boxAt(other.body, other.body.root(), middle);
+  const MotionPath& path = side.body.path();
+  const double speed = other.body.speed() + path.speed(norm(foot)),
+               apart = norm(posed(other.poses.at(middle), vecOf(root.center)) -
+                            posed(side.poses.at(middle), foot)) +
+                       direction_bound_ * (root.radius + root.pad) + 0.5 * dt * speed;
+  const AccelerationBound& bound = side.acceleration(t0, t1);
+  return 0.125 * dt * dt * direction_bound_ *
+         (bound.of(foot, 0) + bound.of({0, 0, 0}, apart) + 2 * path.turnSpeed() * speed);
+}
+
+double PartWindows::sizeOf(int k, const PartSpan& span) const {
+  if (side_[k].flat) return HUGE_VAL;
+  const MotionBody& body = side_[k].body;
+  const double radius = body.isRigid()
+                            ? span.frame[0].radius
+                            : std::max(span.frame[0].radius, span.frame[1].radius);
+  return radius + (body.shape() ? body.shape()->radius() : 0);
+}
+
+/// @param acceleration  of the node's boxes
+PartWindows::Margins PartWindows::marginsOf(const MotionWork& work, int opened,
+                                            const MotionNode& node, const PartSpan& other,
+                                            const Accelerations& acceleration) {
+  MotionSide &one = side_[1 - opened], &many = side_[opened];
+  const double dt = work.t1 - work.t0, share = direction_bound_ * 0.125 * dt * dt,
+               of_one = direction_bound_ * other.deviation,
+               axis_one = share * one.axis_acceleration,
+               axis_many = share * many.axis_acceleration,
+               flat_share = one.flat ? shareAlongFlat(work, one, many) : 1;
+  Margins out;
+  for (int lane = 0; lane < node.count; ++lane) {
+    const double of_many = share * acceleration[lane];
+    out.deviation[lane] = of_one + (flat_share * of_many + axis_many);
+    out.along_axis[0][lane] = axis_one + (axes_share_ * of_many + axis_many);
+    out.along_axis[1][lane] = axis_many + (axes_share_ * of_one + axis_one);
+    out.fixed[lane] =
+        direction_bound_ * (other.frame[0].pad + box_margin_ + node.box[0].pad[lane]);
+  }
+  return out;
+}
+
+/// The share of a side's deviation along the normal of a flat, which may turn.
+double PartWindows::shareAlongFlat(const MotionWork& work, MotionSide& flat,
+                                   const MotionSide& side) {
+  const double turn = flat.body.path().turnSpeed() * (work.t1 - work.t0);
+  if (turn > 1) return 1;
+  const Vec normal = rotated(flat.poses.at(work.t0).rotation, flat.flat->normal);
+  return std::min(side.shareAlong(normal) + turn, 1.);
+}
+
+/// The windows in which the boxes of a node may overlap the part of the other side.
+void PartWindows::setWindows(int opened, const MotionNode& node, const PartSpan& other,
+                             const SpanTimes& times, const Margins& margins,
+                             const MotionBoxes* const (&boxes)[3],
+                             MeetingWindows& windows) {
+  MotionSide &one = side_[1 - opened], &many = side_[opened];
+  const SpanPoses pose_one = one.spanPoses(times), pose_many = many.spanPoses(times);
+  double margin[MotionBoxes::kWidth] = {};
+  CalmDirection axes[2] = {{one.axis, {}}, {many.axis, {}}};
+  // Boxes are compared in the middle of the span too. In a half of it the deviation is
+  // a quarter.
+  const double part_of_deviation = one.flat ? 1 : 0.25;
+  for (int lane = 0; lane < node.count; ++lane) {
+    margin[lane] = margins.with(part_of_deviation, lane);
+    for (int k = 0; k < 2; ++k)
+      axes[k].margin[lane] = margins.alongAxis(k, part_of_deviation, lane);
+  }
+  if (one.flat)
+    return flatWindows(*one.flat, pose_one, boxes, pose_many, margin, node.count,
+                       windows);
+  MotionBox moving[3];
+  const MotionBox* others[3];
+  for (int k = 0; k < 3; ++k) {
+    others[k] = &other.frame[0];
+    if (one.body.isRigid()) continue;
+    moving[k] = other.frame[0];
+    interpolate(other.frame[1], times.at[k], moving[k]);
+    others[k] = &moving[k];
+  }
+  motionKernels().meetingWindows(others, pose_one, boxes, pose_many, margin, axes,
+                                 node.count, windows);
+}
+
+/// @param acceleration  of the node's boxes
+TriangleHalves PartWindows::testTriangles(const MotionWork& work, int opened,
+                                          const MotionNode& node, const BodyPart& part,
+                                          const Accelerations& acceleration) {
+  TriangleHalves out;
+  const BodyPart& single = opened == 1 ? work.a : work.b;
+  MotionSide &one = side_[1 - opened], &many = side_[opened];
+  if (!one.body.isMesh() || !many.body.isMesh() || !single.isTriangle()) return out;
+  for (int lane = 0; lane < node.count; ++lane)
+    if (node.part[lane].isTriangle()) out.tested |= 1U << lane;
+  if (out.tested == 0) return out;
+  if (!one.body.isReadable(~single.child)) return {};
+  const BodyTriangle triangle = one.body.triangle(~single.child);
+  const double dt = work.t1 - work.t0, share = 0.125 * 0.25 * dt * dt,
+               of_one =
+                   one.goes_straight
+                       ? 0
+                       : accelerationOf(one.acceleration(work.t0, work.t1), triangle);
+  double deviation[MotionBoxes::kWidth];
+  for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
+    deviation[lane] = direction_bound_ * share * (of_one + acceleration[lane]);
+  const SpanTimes times(work.t0, work.t1);
+  motionKernels().meetingHalves(
+      one.spanTriangle(triangle, times), many.reader.triangles(part),
+      many.body.isRigid() ? nullptr : times.at, many.spanPoses(times), deviation,
+      direction_bound_ * box_margin_, out.tested, out.meeting);
+  return out;
+}
+
+/// Shortens the window of a box that may overlap the box of a shape, by the direction
+/// that parts the shape itself from the box in the middle of the span.
+/// @return whether they may overlap
+bool PartWindows::narrowByShape(int opened, const MotionWork& work,
+                                const MotionBoxes* const (&boxes)[3], int lane,
+                                double margin, MeetingWindows& windows) {
+  const SpanTimes times(work.t0, work.t1);
+  const SpanPoses poses[2] = {side_[1 - opened].spanPoses(times),
+                              side_[opened].spanPoses(times)};
+  const MotionBox begin = boxes[0]->get(lane), end = boxes[2]->get(lane);
+  MotionBox middle = begin;
+  interpolate(end, 0.5, middle);
+  const ConvexShape* shape = side_[1 - opened].body.shape();
+  const auto posedShape = [&](const Pose& pose) -> PosedConvex {
+    return {shape, nullptr, pose, {}};
+  };
+  const auto posedBox = [](const MotionBox& box, const Pose& pose) -> PosedConvex {
+    return {nullptr, &box, pose, {}};
+  };
+  const Vec n = convexGap(posedShape(poses[0].middle), posedBox(middle, poses[1].middle),
+                          towardsBox(*shape, poses[0].middle, middle, poses[1].middle),
+                          margin, margin)
+                    .direction;
+  const auto gap = [&](const PosedConvex& of_shape, const PosedConvex& of_box) {
+    return -of_box.reach(-1. * n) - of_shape.reach(n) - margin;
+  };
+  const double first = gap(posedShape(poses[0].beginning),
+                           posedBox(begin, poses[1].beginning)),
+               last = gap(posedShape(poses[0].end), posedBox(end, poses[1].end));
+  return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
+}
+
+MeetingWindows PartWindows::windows(const MotionWork& work, int opened,
+                                    const MotionNode& node, const BodyPart* part,
+                                    const PartSpan& other) {
+  MeetingWindows windows;
+  windows.mask = 0;
+  const MotionSide& one = side_[1 - opened];
+  MotionSide& many = side_[opened];
+  const SpanTimes times(work.t0, work.t1);
+  const auto& acceleration = many.accelerations(part, node, work.t0, work.t1);
+  TriangleHalves halves;
+  if (part) halves = testTriangles(work, opened, node, *part, acceleration);
+  if ((halves.left() & ((1U << node.count) - 1)) == 0) return windows;
+  MotionBoxes moving[3];
+  const MotionBoxes* boxes[3];
+  for (int k = 0; k < 3; ++k) boxes[k] = boxesAt(many.body, node, times.at[k], moving[k]);
+  const Margins margins = marginsOf(work, opened, node, other, acceleration);
+  setWindows(opened, node, other, times, margins, boxes, windows);
+  halves.narrow(windows);
+  if (!one.body.shape() || one.flat || one.body.shape()->fillsBox()) return windows;
+  for (unsigned left = windows.mask; left != 0; left &= left - 1) {
+    const int lane = __builtin_ctz(left);
+    if (!narrowByShape(opened, work, boxes, lane, margins.with(1, lane), windows))
+      windows.mask &= ~(1U << lane);
+  }
+  return windows;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

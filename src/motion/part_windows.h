@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// When parts of two bodies may meet, by their boxes.
+#ifndef FCL_CCD_MOTION_PART_WINDOWS_H
+#define FCL_CCD_MOTION_PART_WINDOWS_H
+
+#include "motion/motion_boxes.h"
+#include "motion/motion_side.h"
+#include "motion/motion_work.h"
+#include "motion/triangle_advance.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief Compares parts of two bodies during spans of time. For one thread.
+class PartWindows {
+ public:
+  /// @param distance  at which the bodies are in contact
+  PartWindows(const MotionBody& a, const MotionBody& b, const MotionTolerance& tolerance,
+              double distance);
+
+  MotionSide& side(int k) { return side_[k]; }
+  const MotionSide& side(int k) const { return side_[k]; }
+
+  /// @brief Bound on the rounding of the distance of two boxes.
+  double rounding() const { return rounding_; }
+  /// @brief Bound on the length of a direction that boxes are compared along.
+  double directionBound() const { return direction_bound_; }
+
+  /// @brief A part of a body during a span.
+  struct PartSpan {
+    /// At t = 0 and t = 1. Of a rigid body only the first one is set.
+    MotionBox frame[2];
+    /// The largest deviation of its points from straight lines.
+    double deviation;
+  };
+
+  PartSpan partSpan(int k, const BodyPart& part, double t0, double t1);
+
+  /// @brief The radius of a part, with the margin around the core of a shape.
+  double sizeOf(int k, const PartSpan& span) const;
+
+  /// @brief The windows, as shares of the span of the work, in which the children of one
+  /// side's part may meet the other side's part.
+  /// @param opened  the side whose children they are
+  /// @param part  the part of that side; null: the node is the part itself
+  /// @param other  the part of the other side
+  MeetingWindows windows(const MotionWork& work, int opened, const MotionNode& node,
+                         const BodyPart* part, const PartSpan& other);
+
+ private:
+  using Accelerations = double[MotionBoxes::kWidth];
+
+  /// What the gaps between the boxes of a node and another part are reduced by.
+  struct Margins {
+    /// How far the points of both deviate from straight lines during the span.
+    double deviation[MotionBoxes::kWidth]{};
+    /// The same along the axis about which a side turns, of the other part and the node.
+    double along_axis[2][MotionBoxes::kWidth]{};
+    /// Pads, requested distance and rounding.
+    double fixed[MotionBoxes::kWidth]{};
+
+    double with(double part_of_deviation, int lane) const {
+      return fixed[lane] + part_of_deviation * deviation[lane];
+    }
+    double alongAxis(int k, double part_of_deviation, int lane) const {
+      return fixed[lane] + part_of_deviation * along_axis[k][lane];
+    }
+  };
+
+  double flatDeviation(int k, double t0, double t1);
+  Margins marginsOf(const MotionWork& work, int opened, const MotionNode& node,
+                    const PartSpan& other, const Accelerations& acceleration);
+  static double shareAlongFlat(const MotionWork& work, MotionSide& flat,
+                               const MotionSide& side);
+  void setWindows(int opened, const MotionNode& node, const PartSpan& other,
+                  const SpanTimes& times, const Margins& margins,
+                  const MotionBoxes* const (&boxes)[3], MeetingWindows& windows);
+  TriangleHalves testTriangles(const MotionWork& work, int opened, const MotionNode& node,
+                               const BodyPart& part, const Accelerations& acceleration);
+  bool narrowByShape(int opened, const MotionWork& work,
+                     const MotionBoxes* const (&boxes)[3], int lane, double margin,
+                     MeetingWindows& windows);
+
+  MotionSide side_[2];
+  /// The share of a body's deviation that it has along the axis of the other one.
+  double axes_share_;
+  double rounding_;
+  double box_margin_;
+  double direction_bound_;
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif
