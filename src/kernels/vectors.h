@@ -104,7 +104,8 @@ HWY_INLINE Vectors allOf(const double (&v)[3]) {
 /// factor is more than the rounding of both sides, a few units.
 HWY_INLINE DoubleMask staysAbove(const Doubles& g0, const Doubles& g1,
                                  const Doubles& bend) {
-  const Doubles zero = all(0), sum = g0 + g1, root = squareRoot(max(g0 * g1, zero));
+  const Doubles zero = all(0), sum = g0 + g1,
+                root = squareRoot(max(g0, zero)) * squareRoot(max(g1, zero));
   return (g0 > zero) & (g1 > zero) &
          (sum + (root + root) > all(-4 * (1 + 0x1p-40)) * bend);
 }

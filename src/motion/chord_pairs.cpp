@@ -7,6 +7,7 @@
 
 #include "motion/motion_side.h"
 #include "motion/posed_vector.h"
+#include "motion/sine.h"
 #include "motion/triangle_advance.h"
 #include "query/deformable_query.h"
 
@@ -94,7 +95,8 @@ ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
   const Vec& a = *path.axis();
   const double axis[3] = {a.x, a.y, a.z}, dt = t1 - t0, share = dt * dt / 8,
                angle = path.turn()->angle * dt,
-               factor = 0.125 * angle * angle / std::cos(0.5 * angle);
+               factor = 0.125 * angle * angle / sineCosine(0.5 * angle).cosine;
+  assert(factor >= 0);
   ChordBend out{};
   double(&m)[9] = out.bend.matrix;
   double square = 0, size = 0;
@@ -209,7 +211,12 @@ ChordSearch::ChordSearch(const MotionBody& a, const MotionBody& b,
   error_ = tolerance.touching + tolerance.position;
 }
 
-bool ChordSearch::isBent(int k) const { return has_bends_ && turnsAsOne(*body_[k]); }
+bool ChordSearch::isBent(int k) const {
+  // bendOf() needs less than pi. Such large turns are rare.
+  constexpr double kMostTurn = 2.5;
+  return has_bends_ && turnsAsOne(*body_[k]) &&
+         body_[k]->path().turn()->angle < kMostTurn;
+}
 
 /// Bound on the deviation of a mesh from its chords in a span.
 double ChordSearch::deviationIn(int k, int i) const {

@@ -4,7 +4,7 @@
 // into spans. The chord of a vertex is the straight line from its place at the beginning
 // of a span to that at the end. Meshes whose vertices go along their chords are compared
 // as meshes that go straight (deformable_query.h), at the distance by which vertices may
-// deviate from the chords.
+// deviate from the chords, or from paths that are bent to one side (bend.h).
 #ifndef FCL_CCD_MOTION_CHORD_PAIRS_H
 #define FCL_CCD_MOTION_CHORD_PAIRS_H
 
@@ -28,6 +28,7 @@ struct ChordBend {
 
 /// @brief The bend during a span of the points within `radius` of the origin of the body.
 /// @param most  bound on their deviation from their chords
+/// @pre the body turns about an axis, by less than pi during the span
 /// @pre the path turns about an axis
 ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
                  double most);

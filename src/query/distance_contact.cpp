@@ -74,15 +74,16 @@ BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
   // The share is more than the rounding of the sum in shift().
   margin_ = box_margin * (1 + DistanceTolerance::kShare);
   const double size = sizeOf(a, b);
-  // The rounding of two distances, 256 u L, is below the eighth of kShare d. Here L is
-  // the length of a vector of three coordinates of this size.
+  // For pairs beyond d: the rounding of two distances, 256 u L, is below the eighth of
+  // kShare d. Here L is the length of a vector of three coordinates of this size.
   if (!ignores_initially_closer || !(distance > 0x1p-11 * size)) return;
   // Kernels::mayComeWithin() leaves pairs within half of this to the test. What the test
   // takes for touching is much nearer.
   almost_ = 2 * DistanceTolerance::kAlmost * std::max(distance, size);
   // Two points come nearer by at most the root of 3 of what they move along an axis. A
-  // pair at this distance D has to come nearer by 2 kShare D, one that is further apart
-  // than d by kShare d: advanceToDistance().
+  // pair at a distance D below d has to come nearer by kShare D and by what counts as
+  // touching, which is more than the rounding; one that is further apart by kShare d:
+  // advanceToDistance().
   speed_ = 2 / DistanceTolerance::kShare * (displacementOf(a) + displacementOf(b));
 }
 

@@ -160,7 +160,8 @@ void FeatureBatch::clear() {
 }
 
 /// Whether one of the triangles has a vertex with this number or a lower one.
-bool hasVertexUpTo(std::uint32_t vertex, const TreeTriangle& a, const TreeTriangle& b) {
+static bool hasVertexUpTo(std::uint32_t vertex, const TreeTriangle& a,
+                          const TreeTriangle& b) {
   const auto least = [](const TreeTriangle& t) {
     return std::min(std::min(t.id[0], t.id[1]), t.id[2]);
   };

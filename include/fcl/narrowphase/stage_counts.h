@@ -51,7 +51,7 @@ struct StageCounts {
   std::uint64_t plane_culled{0};
   /// VF and EE pairs without a common vertex that the remaining triangle pairs own; with
   /// min_distance also pairs of free points with free edges and with each other. Without
-  /// EE pairs where the contacts found so far leave no room for them
+  /// those pairs for which the contacts found so far leave no room
   std::uint64_t feature_pairs{0};
   /// feature pairs whose moving boxes do not overlap, or only too late to matter
   std::uint64_t box_culled{0};
