@@ -29,7 +29,6 @@ struct ChordBend {
 /// @brief The bend during a span of the points within `radius` of the origin of the body.
 /// @param most  bound on their deviation from their chords
 /// @pre the body turns about an axis, by less than pi during the span
-/// @pre the path turns about an axis
 ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
                  double most);
 
