@@ -42,7 +42,7 @@ QueryOptions makeOptions(const QuerySettings& settings) {
   options.query = ContinuousQuery::kFirst;
   options.max_contacts = 1;
   options.toc_err = requireTocErr(settings.toc_err, "request.toc_err");
-  options.stop_at_crossing = !settings.with_contacts;
+  options.only_time = !settings.with_contacts;
   if (!settings.with_contacts) return options;
   if (settings.num_max_contacts == 0)
     throw Exception(

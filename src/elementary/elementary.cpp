@@ -165,27 +165,43 @@ Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
   return side;
 }
 
+/// The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
+struct DifferenceSet {
+  bool is_triangle;
+  int num_corners;
+  const Difference* corner[4];
+  double sign[4];
+
+  explicit DifferenceSet(const Pair& pair)
+      : is_triangle(pair.kind == ContinuousContactKind::kVertexFace),
+        num_corners(is_triangle ? 3 : 4),
+        corner{&pair.difference[kU], &pair.difference[kR], &pair.difference[kQ],
+               &pair.difference[kZ]},
+        sign{1, -1, is_triangle ? -1. : 1., 1} {}
+
+  /// The direction from one feature to the nearest point of the other.
+  Vec directionAt(double t) const {
+    Vec at_t[4] = {};
+    for (int i = 0; i < num_corners; ++i) at_t[i] = sign[i] * corner[i]->at(t);
+    return separatingDirection(at_t, is_triangle);
+  }
+};
+
 /// Whether a plane through the origin keeps all differences of the features' vertices on
 /// one side at lo and hi, and so in between. Its normal is the direction from one feature
 /// to the nearest point of the other in the middle of [lo, hi]. No other test decides
 /// pairs without a normal (parallel edges, triangles without area).
 bool areSeparated(const Pair& pair, double lo, double hi) {
-  const double mid = lo + 0.5 * (hi - lo);
-  const bool vf = pair.kind == ContinuousContactKind::kVertexFace;
-  // The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
-  const Difference* corner[4] = {&pair.difference[kU], &pair.difference[kR],
-                                 &pair.difference[kQ], &pair.difference[kZ]};
-  const double sign[4] = {1, -1, vf ? -1. : 1., 1};
-  const int corners = vf ? 3 : 4;
-  Vec at_mid[4] = {};
-  for (int i = 0; i < corners; ++i) at_mid[i] = sign[i] * corner[i]->at(mid);
-  const Vec d = separatingDirection(at_mid, vf);
+  const DifferenceSet set(pair);
+  const Vec d = set.directionAt(lo + 0.5 * (hi - lo));
   const double size = maxNorm(d);
-  for (int i = 0; i < corners; ++i) {
-    const double scale = size * corner[i]->norm;
+  for (int i = 0; i < set.num_corners; ++i) {
+    const double scale = size * set.corner[i]->norm;
     if (!isInRange(scale)) return false;
-    if (!(sign[i] * dot(d, corner[i]->at(lo)) > kSideBound * scale)) return false;
-    if (!(sign[i] * dot(d, corner[i]->at(hi)) > kSideBound * scale)) return false;
+    const auto isAhead = [&](double t) {
+      return set.sign[i] * dot(d, set.corner[i]->at(t)) > kSideBound * scale;
+    };
+    if (!isAhead(lo) || !isAhead(hi)) return false;
   }
   return true;
 }
@@ -374,6 +390,30 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
     }
   }
   return found.withoutProof();
+}
+
+double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double window_lo,
+                  double window_hi) {
+  assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
+  const Pair pair(kind, x);
+  const DifferenceSet set(pair);
+  const Vec d = set.directionAt(window_lo);
+  const double size = maxNorm(d);
+  double until = window_hi;
+  for (int i = 0; i < set.num_corners; ++i) {
+    const double scale = size * set.corner[i]->norm, bound = kSideBound * scale;
+    if (!isInRange(scale)) return window_lo;
+    const double at_lo = set.sign[i] * dot(d, set.corner[i]->at(window_lo)) - bound,
+                 at_hi = set.sign[i] * dot(d, set.corner[i]->at(window_hi)) - bound;
+    if (!(at_lo > 0)) return window_lo;
+    if (at_hi > 0) continue;
+    // Both are lower bounds of a distance from the plane that changes linearly. The share
+    // of the window in which it stays positive is rounded three times, the time four
+    // times, by 2^-53 each.
+    const double share = at_lo / (at_lo - at_hi) * (1 - 0x1p-50);
+    until = std::min(until, window_lo + share * (window_hi - window_lo) - 0x1p-51);
+  }
+  return std::max(window_lo, until);
 }
 
 ElementaryResult decide(ContinuousContactKind kind, const FeaturePoints& x,

@@ -175,8 +175,7 @@ bool ChordSearch::isFor(const MotionBody& a, const MotionBody& b,
   // A smaller mesh is compared quickly either way.
   constexpr std::size_t kLeastVertices = 256;
   return a.isMesh() && b.isMesh() && options.query == ContinuousQuery::kAll &&
-         !options.filter && !options.stop_at_crossing &&
-         !options.ignores_initially_closer &&
+         !options.filter && !options.only_time && !options.ignores_initially_closer &&
          std::min(a.numVertices(), b.numVertices()) >= kLeastVertices && !a.hasFree() &&
          !b.hasFree();
 }

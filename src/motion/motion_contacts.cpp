@@ -572,7 +572,7 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
   // Rigid meshes have no owners.
   FeatureContacts features(near.a, near.b, options,
                            options.filter || a.isRigid() || b.isRigid());
-  if (options.stop_at_crossing)
+  if (options.only_time)
     features.addNearest(touching.contacts.front());
   else
     addFeatures(a, b, std::move(touching), wanted, options, features, answer);

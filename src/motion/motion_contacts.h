@@ -20,7 +20,7 @@ namespace deformable {
 /// With a distance in the options features are in contact when they come within it, and a
 /// contact is that of the nearest parts, as for straight paths (distance_advance.h).
 /// toc_hi is then a time at which the features provably are within it.
-/// @param options  with stop_at_crossing the answer is the first contact of triangles,
+/// @param options  with only_time the answer is the first contact of triangles,
 /// with the pair of features that is nearest at that time
 /// @pre the floating-point mode is the default one
 /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range

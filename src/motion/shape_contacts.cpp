@@ -137,7 +137,7 @@ void keepFirst(std::vector<MotionContact>& contacts) {
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
                                const QueryOptions& options) {
   ShapeAnswer answer;
-  if (options.stop_at_crossing && overlapAtStart(a, b)) {
+  if (options.only_time && overlapAtStart(a, b)) {
     answer.contacts.emplace_back();
     return answer;
   }

@@ -41,7 +41,7 @@ struct ShapeAnswer {
 /// for each pair of triangles, shapes and cells. As in queryMotions(), no contact is
 /// missed, and no time is late. Shapes and cells are solid: what is inside of one at t =
 /// 0 touches it then.
-/// @param options  with stop_at_crossing only the time of a contact is given
+/// @param options  with only_time only the time of a contact is given
 /// @pre the floating-point mode is the default one
 /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,

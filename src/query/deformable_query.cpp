@@ -391,6 +391,8 @@ class ContactQuery {
     leaves.begin(1 + works_.size());
     for (const NodePair& work : works_)
       if (progress_.first_hi.load() > kEarlyEnough) part.run(work, steps);
+    // A contact that begins with the one found here must be found again.
+    progress_.first_lo = 1;
   }
 
   template <typename Part>

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
+#include "elementary/magnified_solve.h"
 #include "elementary/predicates.h"
 #include "query/distance_contact.h"
 
@@ -27,6 +29,38 @@ class CandidatePoints {
 
  private:
   VertexPath path_[4];
+};
+
+/// Times rounded down so that times that differ by little become equal. If only the time
+/// of the first contact matters, brackets of pairs whose points nearly meet begin at such
+/// a time, never before that of apartUntil(). Where all nearly meets at one place, one
+/// pair then decides the time, and the others are left out. No bracket depends on what
+/// else was found, so the time does not depend on which pairs were left out.
+class CoarseTime {
+ public:
+  /// @param most  times in [0, 1] become smaller by at most this
+  explicit CoarseTime(double most) {
+    while (bits_ < kMostBits && std::ldexp(1, -bits_) > 0.5 * most) ++bits_;
+  }
+
+  double operator()(double t) const {
+    if (bits_ == kMostBits || t < kLeast) return t;
+    int exponent;
+    const double digits = std::frexp(t * kScale, &exponent);
+    const double down = std::ldexp(std::floor(std::ldexp(digits, bits_)), -bits_);
+    // The product and the division are rounded by 2^-53 each.
+    return std::ldexp(down, exponent) / kScale * (1 - 0x1p-51);
+  }
+
+ private:
+  static constexpr int kMostBits = 48;
+  /// Smaller times could be rounded up.
+  static constexpr double kLeast = 0x1p-1000;
+  /// Halves and thirds of the step are in the middle of what becomes equal.
+  static constexpr double kScale = 1.4142;
+
+  /// At first fewer than kTightShare, so that brackets are tight all the same.
+  int bits_{13};
 };
 
 bool mayBecomeCoplanarAccurately(const FeatureCandidate& candidate, double latest) {
@@ -262,6 +296,7 @@ void NarrowPhase::add(const FeatureContact& contact) {
   sink_.add(contact);
   if (!progress_) return;
   QueryProgress::lower(progress_->first_hi, contact.toc_hi);
+  QueryProgress::lower(progress_->first_lo, contact.toc_lo);
   if (options_.min_distance > 0 && sink_.isCut())
     QueryProgress::lower(progress_->last_vertex, sink_.lastVertexAtStart());
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
@@ -348,15 +383,34 @@ void NarrowPhase::addNear(const FeatureCandidate& candidate,
     add(FeatureContact{pair, found.toc_lo, found.toc_hi});
 }
 
-/// The decision of one pair. A pair that is met again is decided once.
+/// The decision of one pair.
+ElementaryResult NarrowPhase::decide(const FeatureCandidate& candidate,
+                                     double t_stop) const {
+  const CandidatePoints paths(candidate);
+  const double lo = candidate.window_lo, hi = candidate.window_hi,
+               toc_err = options_.toc_err;
+  if (!options_.only_time || !progress_ ||
+      !isWorthMagnifying(candidate.kind, paths.get()))
+    return deformable::decide(candidate.kind, paths.get(), lo, hi, toc_err, t_stop,
+                              options_.t_max);
+  // A pair that is apart until the earliest bracket so far cannot change the time.
+  const CoarseTime coarse(0.25 * toc_err);
+  const double apart = apartUntil(candidate.kind, paths.get(), lo, hi);
+  if (apart > 0 && coarse(apart) >= progress_->first_lo.load(std::memory_order_relaxed))
+    return {Answer::kNo, 0, 0, DecidedBy::kSolver};
+  ElementaryResult result = deformable::decide(candidate.kind, paths.get(), lo, hi,
+                                               0.75 * toc_err, t_stop, options_.t_max);
+  if (result.answer == Answer::kYes)
+    result.toc_lo = coarse(std::max(apart, result.toc_lo));
+  return result;
+}
+
+/// A pair that is met again is decided once.
 ElementaryResult NarrowPhase::decideOnce(const FeatureCandidate& candidate) {
   const double t_stop = latest();
   if (may_repeat_)
     if (const ElementaryResult* known = decided_.find(candidate, t_stop)) return *known;
-  const CandidatePoints paths(candidate);
-  const ElementaryResult result =
-      decide(candidate.kind, paths.get(), candidate.window_lo, candidate.window_hi,
-             options_.toc_err, t_stop, options_.t_max);
+  const ElementaryResult result = decide(candidate, t_stop);
   if (may_repeat_ && result.decided_by == DecidedBy::kExact)
     decided_.add(candidate, t_stop, result);
   return result;
@@ -397,7 +451,7 @@ void NarrowPhase::testCrossing(std::size_t i) {
   crossings_.push_back(crossing);
   if (!progress_ || !hasAnswer()) return;
   QueryProgress::lower(progress_->answered_by, task_);
-  if (options_.stop_at_crossing) QueryProgress::lower(progress_->first_hi, 0.);
+  if (options_.only_time) QueryProgress::lower(progress_->first_hi, 0.);
 }
 
 Crossing NarrowPhase::crossingAt(std::size_t i) const {

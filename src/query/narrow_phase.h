@@ -27,8 +27,9 @@ struct QueryOptions {
   ContinuousQuery query{ContinuousQuery::kAll};
   std::size_t max_contacts{static_cast<std::size_t>(-1)};
   double toc_err{1e-4};
-  /// Whether a crossing at t = 0 answers the query, so that contacts do not matter.
-  bool stop_at_crossing{false};
+  /// Whether only the time of the first contact matters, not the features that meet. A
+  /// crossing at t = 0 then answers the query.
+  bool only_time{false};
   /// See parallelFor().
   int num_threads{1};
   /// Whether a self-collision query leaves out embedded regions. The answer does not
@@ -63,6 +64,8 @@ struct QueryProgress {
   /// The earliest upper end of a bracket so far. An error counts as a contact at the time
   /// from which on its triangles may touch.
   std::atomic<double> first_hi{1};
+  /// The earliest lower end of a bracket so far.
+  std::atomic<double> first_lo{1};
   /// The lowest number of a task that has found an answer of the whole query, or an error
   /// instead.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
@@ -170,7 +173,7 @@ class NarrowPhase {
   static constexpr double kTimeRounding = 0x1p-40;
 
   bool hasAnswer() const {
-    if (hasCrossing() && options_.stop_at_crossing) return true;
+    if (hasCrossing() && options_.only_time) return true;
     // No contact is earlier than t = 0.
     if (error_ && (options_.query != ContinuousQuery::kFirst || error_->earliest <= 0.f))
       return true;
@@ -204,6 +207,7 @@ class NarrowPhase {
   template <typename OnNo, typename OnOpen>
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
+  ElementaryResult decide(const FeatureCandidate& candidate, double t_stop) const;
   ElementaryResult decideOnce(const FeatureCandidate& candidate);
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);

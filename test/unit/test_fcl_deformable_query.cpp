@@ -279,7 +279,7 @@ std::size_t expectRightAnswers(const Body& a, const Body& b) {
   EXPECT_EQ(answer.hasCrossing() || !answer.contacts.empty(),
             truth.has_crossing || total > 0);
   QueryOptions stop;
-  stop.stop_at_crossing = true;
+  stop.only_time = true;
   EXPECT_EQ(query(a, b, stop).hasCrossing(), truth.has_crossing);
   return total;
 }
@@ -621,6 +621,68 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfALargeMesh) {
     ASSERT_FALSE(HasFailure());
   }
   EXPECT_GT(left_out, 10000U);
+}
+
+/// Adds a sphere that is scaled about a point beside its center by a factor below 0: all
+/// its vertices meet there, but for rounding.
+void addCollapse(const Vector3<double>& center, double factor, MovingMesh& mesh) {
+  const TestMesh sphere = test::makeUvSphere(8, 5, 1);
+  const std::size_t first = mesh.t0.size();
+  const Vector3<double> about = center + Vector3<double>(.1, .05, .07);
+  for (const Vector3<double>& p : sphere.vertices) {
+    mesh.t0.push_back(center + p);
+    mesh.t1.push_back(about + factor * (mesh.t0.back() - about));
+  }
+  for (const Triangle& t : sphere.triangles)
+    mesh.triangles.emplace_back(first + t[0], first + t[1], first + t[2]);
+}
+
+/// Compares the time of a query that asks for nothing else with that of all contacts.
+/// @return exact tests of the query for the time, and of that for all contacts
+std::array<std::uint64_t, 2> expectTimeAlone(const MeshInstance& a, const Body& body) {
+  const QueryAnswer all = query(body, body, QueryOptions());
+  EXPECT_FALSE(all.contacts.empty());
+  QueryOptions options;
+  options.query = ContinuousQuery::kFirst;
+  options.max_contacts = 1;
+  options.only_time = true;
+  const QueryAnswer alone = querySelf(a, options);
+  EXPECT_GT(alone.first.lo, 0);
+  EXPECT_LE(alone.first.lo, all.first.hi);
+  EXPECT_GE(alone.first.lo, all.first.lo - options.toc_err);
+  for (const int threads : {2, 4}) {
+    options.num_threads = threads;
+    EXPECT_EQ(querySelf(a, options).first.lo, alone.first.lo);
+  }
+  return {alone.counts.exact_tests, all.counts.exact_tests};
+}
+
+// Where all meets at one place, integers have to decide each pair. For the time alone
+// a few are enough.
+TEST(FCL_DEFORMABLE_QUERY, timeAloneOfWhatMeetsAtOnePlace) {
+  for (const double factor : {-0.3, -0.7, -1., -2., 0.}) {
+    SCOPED_TRACE("factor " + std::to_string(factor));
+    MovingMesh mesh;
+    addCollapse({0, 0, 0}, factor, mesh);
+    const PreparedMovingMesh prepared(mesh);
+    const auto [alone, all] =
+        expectTimeAlone(prepared.instance(), Body{prepared.instance(), mesh.triangles});
+    EXPECT_GT(all, 1000U);
+    EXPECT_LT(alone, all / 100);
+  }
+}
+
+// The contact that the first steps in all parts of a large mesh find is found again.
+TEST(FCL_DEFORMABLE_QUERY, timeAloneOfALargeMesh) {
+  HeadOn scene;
+  for (std::size_t i = 0; i < 33000; ++i)
+    scene.add({10. * static_cast<double>(i % 30), 10. * static_cast<double>(i / 30 % 30),
+               10. * static_cast<double>(i / 900)},
+              {1, 0, 0}, 1, 0.95);
+  MovingMesh mesh = scene.both();
+  addCollapse({-10, 0, 0}, -2, mesh);
+  const PreparedMovingMesh prepared(mesh);
+  expectTimeAlone(prepared.instance(), Body{prepared.instance(), mesh.triangles});
 }
 
 template <typename S>

@@ -554,6 +554,63 @@ TEST(FCL_ELEMENTARY_TEST, everyStageIsProved) {
     EXPECT_GT(count, 500);
 }
 
+/// A pair that is scaled about a point by a factor below 0, so that all meets there.
+MovingPair scaledPair(Random& random, double& meeting) {
+  MovingPair pair = test::randomPair(random);
+  const Vector3<double> center = random.point(1);
+  const double factor = -random.uniform(0, 4);
+  meeting = 1 / (1 - factor);
+  for (auto& p : pair.x)
+    for (int k = 0; k < 3; ++k) {
+      p.t0[k] = random.uniform(-1, 1);
+      p.t1[k] = center[k] + factor * (p.t0[k] - center[k]);
+    }
+  return pair;
+}
+
+TEST(FCL_ELEMENTARY_TEST, noPairTouchesWhileApart) {
+  constexpr std::uint64_t kSeed = 14;
+  Random random(kSeed);
+  int later = 0;
+  const auto expectApart = [&](const MovingPair& pair, double lo, double hi) {
+    const FeaturePoints x = pair.points();
+    const double until = apartUntil(pair.kind, x, lo, hi);
+    ASSERT_GE(until, lo);
+    ASSERT_LE(until, hi);
+    if (until == lo) return;
+    ++later;
+    const ElementaryResult r = decideExactly(pair.kind, x, 1e-12, 1, until);
+    ASSERT_TRUE(r.answer == Answer::kNo || r.toc_hi <= lo) << pair << "\nseed " << kSeed;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    const double a = random.uniform(0, 1), b = random.uniform(0, 1);
+    ASSERT_NO_FATAL_FAILURE(expectApart(test::randomPair(random), 0, 1));
+    ASSERT_NO_FATAL_FAILURE(
+        expectApart(test::randomPair(random), std::min(a, b), std::max(a, b)));
+  }
+  for (const test::QueryFamily& family : test::queryFamilies())
+    for (int i = 0; i < 500; ++i)
+      ASSERT_NO_FATAL_FAILURE(expectApart(family.generate(random), 0, 1)) << family.name;
+  EXPECT_GT(later, 5000);
+}
+
+// There a plane tells the time up to rounding. What it cannot separate is nearly flat.
+TEST(FCL_ELEMENTARY_TEST, pairsAreApartUntilAllMeets) {
+  Random random(15);
+  int sharp = 0;
+  constexpr int kCount = 2000;
+  for (int i = 0; i < kCount; ++i) {
+    double meeting;
+    const MovingPair pair = scaledPair(random, meeting);
+    const double until = apartUntil(pair.kind, pair.points(), 0, 1);
+    ASSERT_NE(decideExactly(pair.kind, pair.points(), 1e-12, 1, until).answer,
+              Answer::kYes)
+        << pair;
+    sharp += until > meeting - 1e-13;
+  }
+  EXPECT_GT(sharp, kCount * 9 / 10);
+}
+
 TEST(FCL_ELEMENTARY_TEST, bracketsNarrowWithTheTolerance) {
   constexpr std::uint64_t kSeed = 13;
   Random random(kSeed);
