@@ -449,7 +449,9 @@ void NarrowPhase::testCrossing(std::size_t i) {
   Crossing crossing = crossingAt(i);
   if (options_.filter && !accept(crossing)) return;
   crossings_.push_back(crossing);
-  if (!progress_ || !hasAnswer()) return;
+  if (!progress_) return;
+  QueryProgress::lower(progress_->crossed_by, task_);
+  if (!hasAnswer()) return;
   QueryProgress::lower(progress_->answered_by, task_);
   if (options_.only_time) QueryProgress::lower(progress_->first_hi, 0.);
 }

@@ -69,6 +69,9 @@ struct QueryProgress {
   /// The lowest number of a task that has found an answer of the whole query, or an error
   /// instead.
   std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
+  /// The lowest number of a task that has found a crossing. Those of later tasks do not
+  /// matter, unless all are wanted.
+  std::atomic<std::size_t> crossed_by{static_cast<std::size_t>(-1)};
   /// The lowest ContactSink::lastVertexAtStart(), with a distance. A task that has this
   /// bound has as many contacts before it as are wanted, so it holds for all tasks.
   std::atomic<std::uint32_t> last_vertex{~std::uint32_t{0}};
@@ -181,7 +184,11 @@ class NarrowPhase {
            (!sink_.contacts().empty() || hasCrossing());
   }
   FeatureBatch::Wanted wanted() const;
-  bool wantsCrossings() const { return options_.all_crossings || !hasCrossing(); }
+  bool wantsCrossings() const {
+    if (options_.all_crossings) return true;
+    return !hasCrossing() &&
+           !(progress_ && progress_->crossed_by.load(std::memory_order_relaxed) < task_);
+  }
   /// The earliest upper end of a bracket, of all tasks.
   double firstHi() const {
     const double mine = sink_.firstHi();

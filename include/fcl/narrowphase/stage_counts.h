@@ -71,7 +71,8 @@ struct StageCounts {
   std::uint64_t exact_tests{0};
   /// feature pairs that are contacts
   std::uint64_t contacts{0};
-  /// edge-face pairs tested for crossing at t = 0
+  /// edge-face pairs tested for crossing at t = 0, until one is found; with several
+  /// threads the number may differ from run to run
   std::uint64_t crossing_tests{0};
 
   StageCounts& operator+=(const StageCounts& other) {
