@@ -6,6 +6,9 @@
 #ifndef FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 #define FCL_CCD_ELEMENTARY_ORDERED_POINTS_H
 
+#include <cassert>
+#include <cstdint>
+
 #include "elementary/feature_points.h"
 #include "fcl/narrowphase/stage_counts.h"
 
@@ -78,6 +81,24 @@ class OrderedPoints {
 
   const PointIds ids_;
 };
+
+/// @brief The numbers that the points of a VF or EE pair had before OrderedPoints took
+/// some of its exchanges. They are three: VF of points 1 and 2, 2 and 3, 1 and 2; EE of
+/// the points of the first edge, of those of the second one, and of both edges.
+/// @param exchanges  a bit each
+inline void exchangedNumbers(ContinuousContactKind kind, unsigned exchanges,
+                             int (&number)[4]) {
+  constexpr std::uint8_t kVertexFace[8][4] = {{0, 1, 2, 3}, {0, 2, 1, 3}, {0, 1, 3, 2},
+                                              {0, 2, 3, 1}, {0, 2, 1, 3}, {0, 1, 2, 3},
+                                              {0, 3, 1, 2}, {0, 3, 2, 1}};
+  constexpr std::uint8_t kEdgeEdge[8][4] = {{0, 1, 2, 3}, {1, 0, 2, 3}, {0, 1, 3, 2},
+                                            {1, 0, 3, 2}, {2, 3, 0, 1}, {2, 3, 1, 0},
+                                            {3, 2, 0, 1}, {3, 2, 1, 0}};
+  assert(exchanges < 8);
+  const auto& numbers =
+      (kind == ContinuousContactKind::kVertexFace ? kVertexFace : kEdgeEdge)[exchanges];
+  for (int i = 0; i < 4; ++i) number[i] = numbers[i];
+}
 
 }  // namespace deformable
 }  // namespace detail

@@ -9,12 +9,16 @@
 #include "hwy/foreach_target.h"
 #endif
 
+#include <algorithm>
+#include <cstdint>
+
 #include "elementary/distance_advance.h"
 #include "elementary/least_distance.h"
 #include "kernels/eight_features.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/nearest_points.h"
+#include "kernels/point_orders.h"
 #include "kernels/vectors.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -226,24 +230,36 @@ class AdvancingPairs {
   unsigned open_;
 };
 
-EightApproaches approachOfEight(const EightPoints& pairs,
-                                const DistanceRequest& request) {
-  const Points points(pairs);
-  const Polygons x(pairs.kind, points.t0, points.t1);
+void approachOfEight(ContinuousContactKind kind, const FourPoints* pairs,
+                     std::size_t count, const DistanceRequest& request,
+                     Approach (&answers)[8]) {
+  // The last one fills up the eight.
+  EightPoints eight;
+  for (std::size_t lane = 0; lane < kEight; ++lane)
+    eight.set(lane, pairs[std::min(lane, count - 1)].x);
+  Points points(eight);
+  const PointOrders orders(kind, points);
+  const Polygons x(kind, points.t0, points.t1);
   AdvancingPairs advancing(x, request);
-  EightApproaches out;
-  store(advancing.time(), out.toc_lo);
-  store(advancing.upperEnds(), out.toc_hi);
-  out.open = advancing.open() & ((1U << kEight) - 1);
-  out.yes = advancing.contacts() & ~out.open;
-  double part[kEight];
+  double toc_lo[kEight], toc_hi[kEight], part[kEight];
+  store(advancing.time(), toc_lo);
+  store(advancing.upperEnds(), toc_hi);
   store(advancing.nearestPart(), part);
-  for (std::size_t lane = 0; lane < kEight; ++lane) {
+  const unsigned open = advancing.open() | orders.unknown(),
+                 yes = advancing.contacts() & ~open;
+  for (std::size_t lane = 0; lane < count; ++lane) {
     const int k = static_cast<int>(part[lane]);
-    out.side[lane] = k < kCorner ? k : -1;
-    out.corner[lane] = kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1;
+    Approach& out = answers[lane];
+    out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
+                 : yes >> lane & 1U ? Approach::Answer::kYes
+                                    : Approach::Answer::kNo;
+    out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));
+    out.side = static_cast<std::int8_t>(k < kCorner ? k : -1);
+    out.corner = static_cast<std::int8_t>(
+        kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
+    out.toc_lo = toc_lo[lane];
+    out.toc_hi = toc_hi[lane];
   }
-  return out;
 }
 
 /// The first attempt of leastDistance(), if it is enough.

@@ -47,7 +47,9 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                                  const std::uint32_t* codes, const TimeWindow* windows,
                                  std::size_t count, const DistanceRequest& request,
                                  const PairBends& bends);
-EightApproaches approachOfEight(const EightPoints& pairs, const DistanceRequest& request);
+void approachOfEight(ContinuousContactKind kind, const FourPoints* pairs,
+                     std::size_t count, const DistanceRequest& request,
+                     Approach (&answers)[8]);
 unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);

@@ -176,18 +176,26 @@ struct EightAnswers {
   double toc_hi[8];
 };
 
-/// @brief The answers of advanceToDistance() for eight pairs, a bit each. Pairs in
-/// neither set are not in contact.
-struct EightApproaches {
-  /// Those that need more than plain steps, and have no answer.
-  unsigned open;
-  unsigned yes;
-  /// The brackets of the contacts, and what of each polygon is nearest then: as
-  /// NearestPoint has it.
-  double toc_lo[8];
-  double toc_hi[8];
-  int side[8];
-  int corner[8];
+/// @brief The points of a pair of features.
+struct FourPoints {
+  const TreeVertex* x[4];
+};
+
+/// @brief The answer of advanceToDistance() for a pair.
+struct Approach {
+  enum class Answer : std::uint8_t {
+    kNo,
+    kYes,
+    /// It needs more than plain steps, or the ids of its points decide.
+    kOpen
+  };
+  Answer answer;
+  /// How its points were put in order: exchangedNumbers().
+  std::uint8_t exchanges;
+  /// Of a contact, what of its polygon is nearest then, as NearestPoint has it; and its
+  /// bracket.
+  std::int8_t side, corner;
+  double toc_lo, toc_hi;
 };
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
@@ -373,9 +381,11 @@ struct Kernels {
                             std::size_t count, const DistanceRequest& request,
                             const PairBends& bends);
 
-  /// advanceToDistance() of eight VF or EE pairs whose points are in the order of
-  /// OrderedPoints.
-  EightApproaches (*approach)(const EightPoints& pairs, const DistanceRequest& request);
+  /// advanceToDistance() of VF or EE pairs of one kind, in any order of their points. The
+  /// answer of a pair does not depend on the others.
+  /// @param count  1 to 8
+  void (*approach)(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
+                   const DistanceRequest& request, Approach (&answers)[8]);
 
   /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
   /// known, a bit each. The others need more than a plain direction.

@@ -3,20 +3,12 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstring>
 #include <tuple>
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
-  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
-  const auto key = [](const FeatureContact& c) {
-    return std::make_tuple(c.kind, !c.first_on_a, c.vertices[0], c.vertices[1],
-                           c.vertices[2], c.vertices[3]);
-  };
-  return key(x) < key(y);
-}
 
 namespace {
 
@@ -34,13 +26,20 @@ bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
 
 void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists) {
   ContactTable<FeatureContact> seen;
+  const auto isOnce = [may_repeat](const FeatureContact& contact) {
+    return !may_repeat && !isPart(contact.kind);
+  };
+  std::size_t count = 0;
+  for (const auto& list : lists)
+    for (const FeatureContact& contact : list) count += isOnce(contact) ? 0 : 1;
+  seen.reserve(count);
   for (auto& list : lists) {
     auto end = list.begin();
     for (const FeatureContact& contact : list) {
-      const bool is_once = !may_repeat && !isPart(contact.kind);
+      const bool is_once = isOnce(contact);
       FeatureContact* kept = is_once ? nullptr : seen.find(contact);
       if (!kept) {
-        *end = contact;
+        if (&*end != &contact) *end = contact;
         if (!is_once) seen.add(*end);
         ++end;
       } else if (isPreferred(contact, *kept)) {
@@ -139,6 +138,16 @@ class Buckets {
 
   std::size_t count() const { return count_; }
 
+  /// A number that ascends in the order of the contacts of one bucket. Contacts with the
+  /// same number may differ.
+  static std::uint64_t keyOf(const FeatureContact& c) {
+    if (!(c.toc_lo > 0)) return std::uint64_t{c.vertices[0]} << 32 | c.vertices[1];
+    // Positive numbers are in the order of their bits.
+    std::uint64_t bits;
+    std::memcpy(&bits, &c.toc_lo, sizeof bits);
+    return bits;
+  }
+
   std::size_t operator()(const FeatureContact& c) const {
     const std::size_t at_start = ends_[kGroups - 1];
     if (c.toc_lo > 0) return at_start + partOf(c.toc_lo, count_ - at_start);
@@ -180,16 +189,16 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
   sorted_.resize(count);
   // After this loop ends[i] is the end of bucket i; before, it is its beginning.
   for (const auto& list : lists_)
-    for (const FeatureContact& c : list) sorted_[ends[bucketOf(c)]++] = &c;
+    for (const FeatureContact& c : list)
+      sorted_[ends[bucketOf(c)]++] = {Buckets::keyOf(c), &c};
   const auto at = [this](std::size_t i) {
     return sorted_.begin() + static_cast<std::ptrdiff_t>(i);
   };
   for (std::size_t i = 0, first = 0; i < count; first = ends[i], ++i)
     if (ends[i] - first > 1)
-      std::sort(at(first), at(ends[i]),
-                [](const FeatureContact* x, const FeatureContact* y) {
-                  return isEarlier(*x, *y);
-                });
+      std::sort(at(first), at(ends[i]), [](const Place& x, const Place& y) {
+        return x.key != y.key ? x.key < y.key : isEarlier(*x.contact, *y.contact);
+      });
 }
 
 }  // namespace deformable

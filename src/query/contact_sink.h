@@ -2,6 +2,7 @@
 #ifndef FCL_CCD_QUERY_CONTACT_SINK_H
 #define FCL_CCD_QUERY_CONTACT_SINK_H
 
+#include <algorithm>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,13 @@ struct FeatureContact : FeatureIds {
 
 /// @brief The order of contacts: by toc_lo, then by kind, side and vertex ids. No two
 /// contacts of a query are equal in it.
-bool isEarlier(const FeatureContact& x, const FeatureContact& y);
+inline bool isEarlier(const FeatureContact& x, const FeatureContact& y) {
+  if (x.toc_lo != y.toc_lo) return x.toc_lo < y.toc_lo;
+  if (x.kind != y.kind) return x.kind < y.kind;
+  if (x.first_on_a != y.first_on_a) return x.first_on_a;
+  return std::lexicographical_compare(x.vertices, x.vertices + 4, y.vertices,
+                                      y.vertices + 4);
+}
 
 /// @brief Whether the features are the nearest parts of those that were tested, with a
 /// distance: then others may have the same part.
@@ -116,6 +123,14 @@ void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists
 /// @brief The contacts of several lists, earliest first. Only pointers are sorted, since
 /// there may be many contacts. With a distance a large part of them may be at t = 0.
 class SortedContacts {
+  /// A contact, and a number of it that ascends in the order of contacts, as long as they
+  /// are in one bucket (Buckets in contact_sink.cpp). Most are told apart by this number,
+  /// so that the contacts, which are scattered in memory, are not read.
+  struct Place {
+    std::uint64_t key;
+    const FeatureContact* contact;
+  };
+
  public:
   class Iterator {
    public:
@@ -126,9 +141,9 @@ class SortedContacts {
     using reference = const FeatureContact&;
 
     Iterator() = default;
-    explicit Iterator(const FeatureContact* const* at) : at_(at) {}
-    reference operator*() const { return **at_; }
-    pointer operator->() const { return *at_; }
+    explicit Iterator(const Place* at) : at_(at) {}
+    reference operator*() const { return *at_->contact; }
+    pointer operator->() const { return at_->contact; }
     Iterator& operator++() {
       ++at_;
       return *this;
@@ -138,7 +153,7 @@ class SortedContacts {
     bool operator!=(const Iterator& other) const { return at_ != other.at_; }
 
    private:
-    const FeatureContact* const* at_{nullptr};
+    const Place* at_{nullptr};
   };
 
   SortedContacts() = default;
@@ -150,16 +165,16 @@ class SortedContacts {
   bool empty() const { return sorted_.empty(); }
   const FeatureContact& operator[](std::size_t i) const {
     assert(i < size());
-    return *sorted_[i];
+    return *sorted_[i].contact;
   }
-  const FeatureContact& front() const { return *sorted_.front(); }
-  const FeatureContact& back() const { return *sorted_.back(); }
+  const FeatureContact& front() const { return *sorted_.front().contact; }
+  const FeatureContact& back() const { return *sorted_.back().contact; }
   Iterator begin() const { return Iterator(sorted_.data()); }
   Iterator end() const { return Iterator(sorted_.data() + sorted_.size()); }
 
  private:
   std::vector<std::deque<FeatureContact>> lists_;
-  UninitializedVector<const FeatureContact*> sorted_;
+  UninitializedVector<Place> sorted_;
 };
 
 }  // namespace deformable

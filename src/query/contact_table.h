@@ -37,9 +37,14 @@ class ContactTable {
     }
   }
 
+  /// @brief Makes room for this number of contacts.
+  void reserve(std::size_t count) {
+    if (2 * count > places_.size()) grow(2 * count);
+  }
+
   /// @pre none with the same features is in the table
   void add(Contact& contact) {
-    if (2 * (size_ + 1) > places_.size()) grow();
+    reserve(size_ + 1);
     insert({Key(contact).hash(), &contact});
     ++size_;
   }
@@ -97,9 +102,11 @@ class ContactTable {
     places_[i] = place;
   }
 
-  void grow() {
-    constexpr std::size_t kLeast = 64;
-    std::vector<Place> before(std::max(kLeast, 2 * places_.size()));
+  /// @param count  of places, at least
+  void grow(std::size_t count) {
+    std::size_t size = 64;
+    while (size < count) size *= 2;
+    std::vector<Place> before(size);
     before.swap(places_);
     for (const Place& place : before)
       if (place.contact) insert(place);

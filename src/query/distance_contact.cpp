@@ -134,29 +134,18 @@ PointIds idsOf(const FeatureIds& pair) {
   return out;
 }
 
-EightOrdered::EightOrdered(const std::vector<FeatureCandidate>& pairs) {
-  assert(!pairs.empty() && pairs.size() <= 8);
-  points_.kind = pairs.front().kind;
-  for (std::size_t lane = 0; lane < 8; ++lane) {
-    const FeatureCandidate& pair = pairs[std::min(lane, pairs.size() - 1)];
-    assert(pair.kind == points_.kind && !isPart(pair.kind));
-    const OrderedPoints<TreeVertex> ordered(pair.kind, pair.x, idsOf(pair));
-    points_.set(lane, ordered.point);
-    std::copy(ordered.number, ordered.number + 4, number_[lane]);
-  }
-}
-
-DistanceContact EightOrdered::contact(const EightApproaches& found,
-                                      std::size_t lane) const {
-  assert(lane < 8 && (found.yes >> lane & 1U));
+DistanceContact contactOf(ContinuousContactKind kind, const Approach& found) {
+  assert(found.answer == Approach::Answer::kYes);
   NearestPoint near;
-  near.side = found.side[lane];
-  near.corner = found.corner[lane];
+  near.side = found.side;
+  near.corner = found.corner;
+  int number[4];
+  exchangedNumbers(kind, found.exchanges, number);
   DistanceContact contact;
   contact.is_contact = true;
-  contact.toc_lo = found.toc_lo[lane];
-  contact.toc_hi = found.toc_hi[lane];
-  setPart(points_.kind, near, number_[lane], contact);
+  contact.toc_lo = found.toc_lo;
+  contact.toc_hi = found.toc_hi;
+  setPart(kind, near, number, contact);
   return contact;
 }
 

@@ -69,22 +69,9 @@ FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
 
 PointIds idsOf(const FeatureIds& pair);
 
-/// @brief One to eight VF or EE pairs of one kind, for Kernels::approach().
-class EightOrdered {
- public:
-  /// @param pairs  the last one fills up the eight
-  explicit EightOrdered(const std::vector<FeatureCandidate>& pairs);
-
-  const EightPoints& points() const { return points_; }
-  /// @brief The contact of a pair, as advanceToDistance() has it.
-  /// @param found  the answers for points(), with this lane in `yes`
-  DistanceContact contact(const EightApproaches& found, std::size_t lane) const;
-
- private:
-  EightPoints points_;
-  /// The numbers of the points before they were put in order.
-  int number_[8][4];
-};
+/// @brief The contact of a VF or EE pair, as advanceToDistance() has it.
+/// @param found  with the answer kYes
+DistanceContact contactOf(ContinuousContactKind kind, const Approach& found);
 
 }  // namespace deformable
 }  // namespace detail

@@ -349,13 +349,17 @@ DistanceRequest NarrowPhase::distanceRequest() const {
 
 /// Tests up to eight candidates of one kind, and removes them.
 void NarrowPhase::testEightDistances() {
-  const EightOrdered eight(candidates_);
-  const EightApproaches found = kernels_.approach(eight.points(), distanceRequest());
+  const ContinuousContactKind kind = candidates_.front().kind;
+  FourPoints points[8];
+  for (std::size_t i = 0; i < candidates_.size(); ++i)
+    std::copy(candidates_[i].x, candidates_[i].x + 4, points[i].x);
+  Approach found[8];
+  kernels_.approach(kind, points, candidates_.size(), distanceRequest(), found);
   for (std::size_t i = 0; i < candidates_.size() && !isDone(); ++i) {
-    if (found.open >> i & 1U)
+    if (found[i].answer == Approach::Answer::kOpen)
       testDistance(candidates_[i]);
-    else if (found.yes >> i & 1U)
-      addNear(candidates_[i], eight.contact(found, i));
+    else if (found[i].answer == Approach::Answer::kYes)
+      addNear(candidates_[i], contactOf(kind, found[i]));
     else
       ++counts_.solver_culled;
   }

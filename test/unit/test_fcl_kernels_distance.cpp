@@ -238,41 +238,44 @@ void expectSameContact(const DistanceContact& found, const DistanceContact& expe
 Advanced expectSameAdvance(const MovingPair (&queries)[8],
                            const DistanceRequest& request) {
   std::vector<TreeVertex> vertices(32);
-  std::vector<FeatureCandidate> candidates(8);
-  for (std::size_t lane = 0; lane < 8; ++lane) {
-    candidates[lane].kind = queries[lane].kind;
+  FourPoints pairs[8];
+  for (std::size_t lane = 0; lane < 8; ++lane)
     for (std::size_t i = 0; i < 4; ++i) {
       TreeVertex& x = vertices[4 * lane + i];
       x.setPath(queries[lane].x[i].t0, queries[lane].x[i].t1);
-      candidates[lane].x[i] = &x;
+      pairs[lane].x[i] = &x;
     }
-  }
-  const EightOrdered eight(candidates);
+  const ContinuousContactKind kind = queries[0].kind;
+  const auto isOpen = [](const Approach& found) {
+    return found.answer == Approach::Answer::kOpen;
+  };
+  Approach first[8];
+  allSets().front()->approach(kind, pairs, 8, request, first);
   Advanced sum;
   for (const Kernels* k : allSets()) {
-    const EightApproaches found = k->approach(eight.points(), request);
-    EXPECT_EQ(found.open, allSets().front()->approach(eight.points(), request).open)
-        << k->name;
-    EXPECT_EQ(found.open & found.yes, 0U);
+    Approach found[8];
+    k->approach(kind, pairs, 8, request, found);
     sum = {};
     for (unsigned lane = 0; lane < 8; ++lane) {
       SCOPED_TRACE(std::string(k->name) + " lane " + std::to_string(lane));
-      if (found.open >> lane & 1U) {
+      EXPECT_EQ(isOpen(found[lane]), isOpen(first[lane]));
+      if (isOpen(found[lane])) {
         ++sum.open;
         continue;
       }
       const DistanceContact expected =
           advanceToDistance(queries[lane].kind, queries[lane].points(), request);
       EXPECT_FALSE(expected.is_given_up);
-      EXPECT_EQ(found.yes >> lane & 1U, unsigned{expected.is_contact});
-      if (!expected.is_contact || !(found.yes >> lane & 1U)) {
+      const bool is_contact = found[lane].answer == Approach::Answer::kYes;
+      EXPECT_EQ(is_contact, expected.is_contact);
+      if (!expected.is_contact || !is_contact) {
         ++sum.apart;
         continue;
       }
       ++sum.contacts;
       sum.moving_contacts += expected.toc_lo > 0;
       sum.brackets += expected.toc_hi > expected.toc_lo;
-      expectSameContact(eight.contact(found, lane), expected);
+      expectSameContact(contactOf(kind, found[lane]), expected);
     }
   }
   return sum;
@@ -303,6 +306,38 @@ TEST(FCL_KERNELS, advancesAsTheScalarTest) {
   EXPECT_GT(sum.brackets, 1000);
   EXPECT_GT(sum.apart, 3000);
   EXPECT_LT(sum.open, 6000 * 8 / 20);
+}
+
+/// Of points of one feature that coincide all the time the ids tell the order, which the
+/// kernel does not know. Points of two features, or at one time only, may coincide.
+TEST(FCL_KERNELS, leavesCoincidingPointsToTheScalarTest) {
+  Random random(76);
+  for (const auto kind :
+       {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge})
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) {
+        const int second = kind == ContinuousContactKind::kVertexFace ? 1 : 2;
+        const bool is_one_feature = (i < second) == (j < second);
+        for (const bool at_both : {false, true}) {
+          const MovingPair pair = scatteredPair(random, kind);
+          TreeVertex x[4];
+          FourPoints points;
+          for (int k = 0; k < 4; ++k) {
+            const int l = k == i ? j : k;
+            x[k].setPath(pair.x[l].t0, pair.x[at_both ? l : k].t1);
+            points.x[k] = &x[k];
+          }
+          DistanceRequest request;
+          request.distance = 100;
+          for (const Kernels* k : allSets()) {
+            Approach found[8];
+            k->approach(kind, &points, 1, request, found);
+            EXPECT_EQ(found[0].answer, is_one_feature && at_both ? Approach::Answer::kOpen
+                                                                 : Approach::Answer::kYes)
+                << k->name << " " << i << " " << j;
+          }
+        }
+      }
 }
 
 /// Features without length or area, flat pairs and pairs at rest.

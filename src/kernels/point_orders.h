@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The points of eight pairs in the order of OrderedPoints.
+//
+// Included once for each of Highway's targets. So it has no ordinary include guard.
+#include "elementary/ordered_points.h"
+#include "kernels/eight_features.h"
+#include "kernels/lanes.h"
+#include "kernels/vectors.h"
+
+#if defined(FCL_CCD_POINT_ORDERS_INCLUDED) == defined(HWY_TARGET_TOGGLE)
+#ifdef FCL_CCD_POINT_ORDERS_INCLUDED
+#undef FCL_CCD_POINT_ORDERS_INCLUDED
+#else
+#define FCL_CCD_POINT_ORDERS_INCLUDED
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace HWY_NAMESPACE {
+
+/// Puts the points of eight pairs in order. Lanes in which two points of a feature
+/// coincide are left out: their ids would decide.
+class PointOrders {
+ public:
+  HWY_INLINE PointOrders(ContinuousContactKind kind, Points& x) : x_(x) {
+    if (kind == ContinuousContactKind::kVertexFace) {
+      sort(0, 1, 2);
+      sort(1, 2, 3);
+      sort(2, 1, 2);
+    } else {
+      sort(0, 0, 1);
+      sort(1, 2, 3);
+      const Comparison first = compare(2, 0), second = compare(3, 1);
+      const DoubleMask is_turned = first.is_less | (first.is_equal & second.is_less);
+      exchanges_[2] = bits(is_turned);
+      exchange(is_turned, 0, 2);
+      exchange(is_turned, 1, 3);
+    }
+  }
+
+  /// The lanes in which points of a feature coincide.
+  HWY_INLINE unsigned unknown() const { return unknown_; }
+  /// The exchanges of a lane, see exchangedNumbers().
+  HWY_INLINE unsigned exchanges(std::size_t lane) const {
+    return (exchanges_[0] >> lane & 1U) | (exchanges_[1] >> lane & 1U) << 1 |
+           (exchanges_[2] >> lane & 1U) << 2;
+  }
+
+ private:
+  struct Comparison {
+    DoubleMask is_less, is_equal;
+  };
+
+  /// By the coordinates at t = 0, then by those at t = 1.
+  HWY_INLINE Comparison compare(int i, int j) const {
+    const Vectors &p = x_.t0[i], &q = x_.t0[j];
+    Comparison order{p.x < q.x, p.x == q.x};
+    if (bits(order.is_equal) == 0) return order;
+    then(p.y, q.y, order);
+    then(p.z, q.z, order);
+    then(x_.t1[i].x, x_.t1[j].x, order);
+    then(x_.t1[i].y, x_.t1[j].y, order);
+    then(x_.t1[i].z, x_.t1[j].z, order);
+    return order;
+  }
+  static HWY_INLINE void then(const Doubles& p, const Doubles& q, Comparison& order) {
+    order.is_less = order.is_less | (order.is_equal & (p < q));
+    order.is_equal = order.is_equal & (p == q);
+  }
+
+  HWY_INLINE void sort(int step, int i, int j) {
+    const Comparison order = compare(j, i);
+    exchanges_[step] = bits(order.is_less);
+    unknown_ |= bits(order.is_equal);
+    exchange(order.is_less, i, j);
+  }
+  HWY_INLINE void exchange(const DoubleMask& condition, int i, int j) {
+    for (Vectors* x : {x_.t0, x_.t1}) {
+      const Vectors p = x[i], q = x[j];
+      x[i] = select(condition, q, p);
+      x[j] = select(condition, p, q);
+    }
+  }
+
+  Points& x_;
+  unsigned exchanges_[3];
+  unsigned unknown_{0};
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+HWY_AFTER_NAMESPACE();
+
+#endif
