@@ -149,6 +149,7 @@ const MeshInstance& ChordMesh::during(double t0, double t1, int num_threads,
     for (auto frame : {0, 1})
       std::copy(pose[frame].translation, pose[frame].translation + 3,
                 mesh_.translation[frame]);
+    if (bend) mesh_.rigid.setBend(*bend, mesh_.translation);
     return mesh_;
   }
   const VertexFrames& frames = mesh_.frames;
@@ -271,7 +272,6 @@ ChordSearch::Span ChordSearch::find(int i) {
       bends[k] =
           bendOf(body_[k]->path(), body_[k]->radius(), span.t0, span.t1, deviation[k]);
       add += bends[k].error;
-      near.box_margin += deviation[k] * kUpward;
     } else {
       add += deviation[k];
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
+#include "tree/bent_boxes.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -132,6 +133,7 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   };
   fit(out.t0, 0, out.box.t0);
   fit(out.t1, 1, out.box.t1);
+  if (mesh_.bend) enlarge(*mesh_.bend, out);
 }
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
