@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include "motion/motion_body.h"
 #include "motion/posed_vector.h"
@@ -70,6 +71,7 @@ struct MotionSide {
 
   /// @brief The bound on the acceleration during a span; valid until the next call.
   const AccelerationBound& acceleration(double t0, double t1) {
+    if (has_constant_acceleration_ && span_[0] >= 0) return acceleration_;
     if (t0 != span_[0] || t1 != span_[1]) {
       acceleration_ = body.path().acceleration(t0, t1);
       span_[0] = t0;
@@ -106,6 +108,34 @@ struct MotionSide {
               : accelerationOf(node.box[0].get(lane),
                                node.box[body.isRigid() ? 0 : 1].get(lane), t0, t1);
     return out.most;
+  }
+
+  /// @brief A triangle that is compared with others.
+  struct SingleTriangle {
+    /// -1: none.
+    std::int32_t place{-1};
+    bool is_readable{false};
+    BodyTriangle of;
+    /// Bound on the acceleration of its points during the span.
+    double acceleration{0};
+  };
+
+  /// @brief A triangle in a span. Valid until the next call.
+  const SingleTriangle& triangle(std::int32_t place, double t0, double t1) {
+    if (single_.empty()) single_.resize(kSingles);
+    SingleTriangle& out = single_[static_cast<std::size_t>(place) % kSingles];
+    const bool is_stored = out.place == place;
+    if (is_stored && (!out.is_readable || has_constant_acceleration_)) return out;
+    if (!is_stored) {
+      out.place = place;
+      out.is_readable = body.isReadable(place);
+      out.acceleration = 0;
+      if (!out.is_readable) return out;
+      out.of = body.triangle(place);
+    }
+    if (!goes_straight)
+      out.acceleration = deformable::accelerationOf(acceleration(t0, t1), out.of);
+    return out;
   }
 
   /// @brief The share of a point's deviation from a straight line that it has along a
@@ -156,9 +186,13 @@ struct MotionSide {
     return bound.isZero() && bound.per_displacement == 0;
   }
 
+  /// One triangle is compared with many nodes.
+  static constexpr std::size_t kSingles = 64;
+  std::vector<SingleTriangle> single_;
   /// Those of nodes that were opened, if they are the same for all spans.
   Accelerations stored_[MotionBodyReader::kSlots];
   Accelerations other_;
+  const bool has_constant_acceleration_{body.path().hasConstantAcceleration()};
   AccelerationBound acceleration_;
   /// The span of that bound.
   double span_[2]{-1, -1};

@@ -186,19 +186,17 @@ TriangleHalves PartWindows::testTriangles(const MotionWork& work, int opened,
   for (int lane = 0; lane < node.count; ++lane)
     if (node.part[lane].isTriangle()) out.tested |= 1U << lane;
   if (out.tested == 0) return out;
-  if (!one.body.isReadable(~single.child)) return {};
-  const BodyTriangle triangle = one.body.triangle(~single.child);
+  const MotionSide::SingleTriangle& triangle =
+      one.triangle(~single.child, work.t0, work.t1);
+  if (!triangle.is_readable) return {};
   const double dt = work.t1 - work.t0, share = 0.125 * 0.25 * dt * dt,
-               of_one =
-                   one.goes_straight
-                       ? 0
-                       : accelerationOf(one.acceleration(work.t0, work.t1), triangle);
+               of_one = triangle.acceleration;
   double deviation[MotionBoxes::kWidth];
   for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
     deviation[lane] = direction_bound_ * share * (of_one + acceleration[lane]);
   const SpanTimes times(work.t0, work.t1);
   motionKernels().meetingHalves(
-      one.spanTriangle(triangle, times), many.reader.triangles(part),
+      one.spanTriangle(triangle.of, times), many.reader.triangles(part),
       many.body.isRigid() ? nullptr : times.at, many.spanPoses(times), deviation,
       direction_bound_ * box_margin_, out.tested, out.meeting);
   return out;

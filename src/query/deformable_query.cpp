@@ -474,22 +474,17 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
 }
 
 BoxShifts shiftsOf(const MeshInstance& a, const MeshInstance& b, double min_distance,
-                   double box_margin, bool ignores_initially_closer) {
+                   bool ignores_initially_closer) {
   const bool is_self = &a == &b;
   const KdopShift between = is_self ? KdopShift{} : relativeShift(a, b);
-  return {a,
-          b,
-          is_self ? nullptr : &between,
-          min_distance,
-          box_margin,
-          ignores_initially_closer};
+  return {a, b, is_self ? nullptr : &between, min_distance, ignores_initially_closer};
 }
 
 QueryAnswer query(const MeshInstance& a, const MeshInstance& b,
                   const QueryOptions& options) {
   const DefaultFloatingPoint mode;
   const BoxShifts shifts =
-      shiftsOf(a, b, options.min_distance, options.box_margin,
+      shiftsOf(a, b, options.min_distance,
                options.ignores_initially_closer && !options.lists_near_pairs);
   return ContactQuery(a, b, shifts, options).answer();
 }
@@ -513,7 +508,7 @@ bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const CandidateSink& sink, double min_distance) {
   const DefaultFloatingPoint mode;
-  return candidates(a, b, shiftsOf(a, b, min_distance, 0, false), sink, min_distance);
+  return candidates(a, b, shiftsOf(a, b, min_distance, false), sink, min_distance);
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

@@ -65,14 +65,12 @@ BoxShifts::BoxShifts(const KdopShift* between) : is_empty_(!between) {
 }
 
 BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
-                     const KdopShift* between, double distance, double box_margin,
+                     const KdopShift* between, double distance,
                      bool ignores_initially_closer)
     : BoxShifts(between) {
   if (!(distance > 0)) return;
   is_empty_ = false;
   reach_ = reachOf(a, b, distance);
-  // The share is more than the rounding of the sum in shift().
-  margin_ = box_margin * (1 + DistanceTolerance::kShare);
   const double size = sizeOf(a, b);
   // For pairs beyond d: the rounding of two distances, 256 u L, is below the eighth of
   // kShare d. Here L is the length of a vector of three coordinates of this size.
@@ -94,7 +92,7 @@ double BoxShifts::reach(double latest) const {
 
 KdopShift BoxShifts::shift(double reach) const {
   KdopShift shift = between_;
-  if (reach > 0) enlarge(reach + margin_, shift);
+  if (reach > 0) enlarge(reach, shift);
   return shift;
 }
 

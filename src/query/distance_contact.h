@@ -39,9 +39,8 @@ class BoxShifts {
   /// @param between  relativeShift(a, b); null for a mesh with itself
   explicit BoxShifts(const KdopShift* between = nullptr);
   /// @param distance  0: features that touch
-  /// @param box_margin  added to boxes beside the distance
   BoxShifts(const MeshInstance& a, const MeshInstance& b, const KdopShift* between,
-            double distance, double box_margin, bool ignores_initially_closer);
+            double distance, bool ignores_initially_closer);
 
   /// @brief Whether nothing is added.
   bool isEmpty() const { return is_empty_; }
@@ -54,7 +53,7 @@ class BoxShifts {
  private:
   bool is_empty_;
   KdopShift between_{};
-  double reach_{0}, margin_{0}, almost_{0};
+  double reach_{0}, almost_{0};
   /// Infinity: the reach is always the same.
   double speed_{std::numeric_limits<double>::infinity()};
 };

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
+#include "tree/bent_boxes.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -50,6 +51,7 @@ void TriangleReader::find(int i) {
     vertices_.reset(new TreeVertex[3 * kPlaces]);
     stored_.assign(kPlaces, -1);
     place_of_.assign(kPlaces, 0);
+    place_of_vertex_.assign(kPlaces, 0);
   }
   std::uint16_t& place = place_of_[static_cast<std::size_t>(i) % kPlaces];
   const std::size_t reads_left = (place + kPlaces - next_) % kPlaces;
@@ -91,11 +93,23 @@ void TriangleReader::compute(int i, std::size_t place) {
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint32_t id = triangle.id[k];
     TreeVertex& x = vertices_[3 * place + k];
-    pose(triangle.id[k], x);
-    if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
-    if (!isFinite(x)) throw NonFiniteVertex(mesh_.name, triangle.id[k]);
+    std::uint16_t& place_of_vertex = place_of_vertex_[id % kPlaces];
+    if (!mesh_.tree && isStored(id, place_of_vertex)) {
+      x = vertices_[place_of_vertex];
+    } else {
+      pose(id, x);
+      if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
+      if (!isFinite(x)) throw NonFiniteVertex(mesh_.name, id);
+    }
+    place_of_vertex = static_cast<std::uint16_t>(3 * place + k);
   }
+}
+
+/// Whether the vertex at a place of the store has this id.
+bool TriangleReader::isStored(std::uint32_t id, std::size_t place) const {
+  return stored_[place / 3] >= 0 && triangles_[place / 3].id[place % 3] == id;
 }
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
@@ -119,6 +133,7 @@ void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   };
   fit(out.t0, 0, out.box.t0);
   fit(out.t1, 1, out.box.t1);
+  if (mesh_.bend) enlarge(*mesh_.bend, out);
 }
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,

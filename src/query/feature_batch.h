@@ -104,6 +104,7 @@ class TriangleReader {
 
   void find(int i);
   void compute(int i, std::size_t place);
+  bool isStored(std::uint32_t id, std::size_t place) const;
   void pose(std::uint32_t id, TreeVertex& out) const;
 
   const MeshInstance& mesh_;
@@ -114,9 +115,9 @@ class TriangleReader {
   /// The place that is taken next.
   std::size_t next_{0};
   /// The triangle at each place; -1: none. And, by the last bits of its number, where a
-  /// triangle is if it is in the store.
+  /// triangle is if it is in the store, or a vertex.
   std::vector<int> stored_;
-  std::vector<std::uint16_t> place_of_;
+  std::vector<std::uint16_t> place_of_, place_of_vertex_;
   std::unique_ptr<TreeTriangle[]> triangles_;
   std::unique_ptr<TreeVertex[]> vertices_;
 };

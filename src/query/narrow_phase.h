@@ -52,9 +52,6 @@ struct QueryOptions {
   /// it, for tests on other paths. Their brackets are the times outside of which they
   /// provably do not.
   bool lists_near_pairs{false};
-  /// What is added to the distance of boxes: a bound on the bends of both meshes
-  /// (MeshInstance::bend).
-  double box_margin{0};
 };
 
 /// @brief What the tasks of a query tell each other, so that none does work that cannot

@@ -36,8 +36,8 @@ struct MeshInstance {
   const MeshTriangle* owners{nullptr};
   const Triangle* triangles{nullptr};
 
-  /// How the paths of the vertices are bent. Boxes do not contain the bends. Null: they
-  /// are straight.
+  /// How the paths of the vertices are bent. Null: they are straight. Not with a moving
+  /// tree; set RigidTree::setBend() too.
   const Bend* bend{nullptr};
 
   /// @brief Whether the tree's vertices have the same paths as in the world.

@@ -304,9 +304,17 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   // them.
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, i);
-  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) { return link(k); });
+  // Most nodes are not in the cache.
+  out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) {
+    const int left = link(k);
+    if (left >= 0)
+      for (const int child : {left, left + 1}) __builtin_prefetch(at(child));
+    return left;
+  });
+  for (int lane = 0; lane < out.count; ++lane) prefetch(nodes[lane]);
   out.markTriangles();
   (this->*volumes_.set_rows)(nodes, out);
+  if (has_bend_) bent_boxes_.enlarge(out);
   std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
 }

@@ -10,6 +10,7 @@
 #include "mesh/moving_kdop.h"
 #include "mesh/tree_nodes.h"
 #include "mesh/vertex_frames.h"
+#include "tree/bent_boxes.h"
 #include "tree/oriented_box.h"
 
 namespace fcl {
@@ -43,6 +44,13 @@ class RigidTree {
 
   /// @brief Makes a node with up to eight children from FCL's nodes below node i.
   void open(int i, MovingKdopNode& out) const;
+
+  /// @brief From here on the boxes of nodes contain paths that are bent.
+  /// @param translation  of the mesh, at t = 0 and t = 1
+  void setBend(const Bend& bend, const double (&translation)[2][3]) {
+    has_bend_ = true;
+    bent_boxes_ = BentBoxes(bend, origin_, translation);
+  }
 
   /// @brief The box of one of FCL's nodes.
   MovingKdop box(int node) const;
@@ -127,6 +135,8 @@ class RigidTree {
   double reach_{0};
   /// Bound on the motion of a point along an axis that is due to the rotations.
   float displacement_{0};
+  bool has_bend_{false};
+  BentBoxes bent_boxes_;
 };
 
 /// @brief A RigidTree as one traversal reads it, with eight children per node. A small

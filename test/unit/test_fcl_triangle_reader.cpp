@@ -7,10 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstring>
 #include <deque>
 
+#include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/math/bv/OBBRSS.h"
 #include "moving_mesh.h"
 #include "query/feature_batch.h"
+#include "test_models.h"
 
 namespace fcl {
 namespace test {
@@ -72,6 +76,45 @@ TEST(FCL_TRIANGLE_READER, trianglesStayAndAreFoundAgain) {
       }
   }
   EXPECT_GT(num_found, 30000);
+}
+
+// A vertex that was posed for another triangle is copied. Its numbers are the same.
+TEST(FCL_TRIANGLE_READER, trianglesShareTheirVertices) {
+  const TestMesh sphere = makeIcosphere(4, 1);
+  const auto model = makeModel<BVHModel<OBBRSS<double>>>(sphere);
+  Pose begin, end;
+  begin.translation[0] = 0.5;
+  end.translation[1] = 0.25;
+  const Bend bend{{0.1, 0, 0, 0, 0.1, 0, 0, 0, 0}, {0, 0.2, 0}};
+  for (const Bend* of : {static_cast<const Bend*>(nullptr), &bend}) {
+    MeshInstance mesh;
+    mesh.frames = VertexFrames(sphere.vertices[0].data(), sphere.vertices[0].data(),
+                               sphere.vertices.size());
+    mesh.frames.setPoses(begin, end);
+    mesh.rigid = RigidTree(*model, begin).turned(begin, end);
+    mesh.triangles = model->tri_indices;
+    mesh.bend = of;
+    for (int k = 0; k < 3; ++k) {
+      mesh.translation[0][k] = begin.translation[k];
+      mesh.translation[1][k] = end.translation[k];
+    }
+    Random random(6);
+    TriangleReader reader(mesh);
+    for (int round = 0; round < 20000; ++round) {
+      // Most are near the last ones.
+      const int number =
+          round % 50 == 0 ? static_cast<int>(random.index(5120))
+                          : (round / 50 * 37 + static_cast<int>(random.index(60))) % 5120;
+      const ReadTriangle found = readFrom(reader, number);
+      TriangleReader alone(mesh);
+      const ReadTriangle expected = readFrom(alone, number);
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(found.triangle->id[k], expected.triangle->id[k]);
+        ASSERT_EQ(std::memcmp(found.x[k], expected.x[k], sizeof(TreeVertex)), 0)
+            << round << ", " << k;
+      }
+    }
+  }
 }
 
 }  // namespace
