@@ -254,8 +254,8 @@ void approachOfEight(ContinuousContactKind kind, const FourPoints* pairs,
                  : yes >> lane & 1U ? Approach::Answer::kYes
                                     : Approach::Answer::kNo;
     out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));
-    out.side = static_cast<std::int8_t>(k < kCorner ? k : -1);
-    out.corner = static_cast<std::int8_t>(
+    out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
+    out.corner = static_cast<std::int16_t>(
         kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
     out.toc_lo = toc_lo[lane];
     out.toc_hi = toc_hi[lane];

@@ -194,7 +194,7 @@ struct Approach {
   std::uint8_t exchanges;
   /// Of a contact, what of its polygon is nearest then, as NearestPoint has it; and its
   /// bracket.
-  std::int8_t side, corner;
+  std::int16_t side, corner;
   double toc_lo, toc_hi;
 };
 
