@@ -27,9 +27,8 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
 
 /// @brief A time in the window before which the features certainly do not touch: until
 /// then a plane separates them, with the direction between their nearest points at the
-/// beginning of the window as its normal. It is window_lo if they touch there. It costs a
-/// tenth of solveCoplanarity(), and is sharp up to rounding for points that all meet at
-/// one place.
+/// beginning of the window as its normal. It is window_lo if they touch there. It is
+/// sharp up to rounding for points that all meet at one place.
 double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double window_lo,
                   double window_hi);
 

@@ -83,8 +83,9 @@ class OrderedPoints {
 };
 
 /// @brief The numbers that the points of a VF or EE pair had before OrderedPoints took
-/// some of its exchanges. They are three: VF of points 1 and 2, 2 and 3, 1 and 2; EE of
-/// the points of the first edge, of those of the second one, and of both edges.
+/// some of its three exchanges:
+/// - VF: points 1 and 2; points 2 and 3; points 1 and 2.
+/// - EE: the points of the first edge; those of the second edge; the edges.
 /// @param exchanges  a bit each
 inline void exchangedNumbers(ContinuousContactKind kind, unsigned exchanges,
                              int (&number)[4]) {

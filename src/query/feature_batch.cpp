@@ -115,6 +115,7 @@ bool TriangleReader::isStored(std::uint32_t id, std::size_t place) const {
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {
   const VertexPath path = mesh_.frames[id];
   out.setPath(path.t0, path.t1);
+  assert(!(mesh_.bend && mesh_.tree));
   if (mesh_.tree) return;
   // The boxes of a rigid tree do not contain the translation, so that it is subtracted
   // here. Adding and subtracting it each round by 2^-53 of the numbers, and so do the

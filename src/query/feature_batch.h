@@ -114,8 +114,8 @@ class TriangleReader {
   std::size_t place_{0};
   /// The place that is taken next.
   std::size_t next_{0};
-  /// The triangle at each place; -1: none. And, by the last bits of its number, where a
-  /// triangle is if it is in the store, or a vertex.
+  /// The triangle at each place; -1: none. And the place of a triangle, and of a vertex,
+  /// by the last bits of its number, if it is in the store.
   std::vector<int> stored_;
   std::vector<std::uint16_t> place_of_, place_of_vertex_;
   std::unique_ptr<TreeTriangle[]> triangles_;

@@ -31,35 +31,49 @@ class CandidatePoints {
   VertexPath path_[4];
 };
 
-/// Times rounded down so that times that differ by little become equal. If only the time
-/// of the first contact matters, brackets of pairs whose points nearly meet begin at such
-/// a time, never before that of apartUntil(). Where all nearly meets at one place, one
-/// pair then decides the time, and the others are left out. No bracket depends on what
-/// else was found, so the time does not depend on which pairs were left out.
+/// Brackets that times which differ by little have in common. If only the time of the
+/// first contact matters, pairs whose points nearly meet have such a bracket, which
+/// begins no earlier than apartUntil() tells. Where all nearly meets at one place, one
+/// pair then decides the bracket, and the others are left out. No bracket depends on what
+/// else was found, so the answer does not depend on which pairs were left out.
 class CoarseTime {
  public:
-  /// @param most  times in [0, 1] become smaller by at most this
-  explicit CoarseTime(double most) {
-    while (bits_ < kMostBits && std::ldexp(1, -bits_) > 0.5 * most) ++bits_;
+  /// Smaller tolerances have no coarse times, and smaller times could be rounded up.
+  static constexpr double kLeastTocErr = 0x1p-45, kLeastTime = 0x1p-1000;
+
+  /// @param toc_err  the width of a bracket, at most; at least kLeastTocErr
+  explicit CoarseTime(double toc_err) : toc_err_(toc_err) {
+    while (std::ldexp(1, -bits_) > 0.125 * toc_err) ++bits_;
   }
 
-  double operator()(double t) const {
-    if (bits_ == kMostBits || t < kLeast) return t;
+  /// The beginning of the bracket of a time t >= kLeastTime. It is earlier by at most a
+  /// quarter of toc_err and by at most 2^-12 of t. It grows with t.
+  double beginning(double t) const {
     int exponent;
     const double digits = std::frexp(t * kScale, &exponent);
     const double down = std::ldexp(std::floor(std::ldexp(digits, bits_)), -bits_);
-    // The product and the division are rounded by 2^-53 each.
+    // Three roundings of 2^-53.
     return std::ldexp(down, exponent) / kScale * (1 - 0x1p-51);
   }
 
+  /// The width that the bracket of a contact at t or later may have before it becomes
+  /// coarse: half of toc_err, and 2^-12 of t.
+  double widthFor(double t) const { return std::min(0.5 * toc_err_, 0x1p-12 * t); }
+
+  /// The end of the bracket that begins here. It is as late as the end of any bracket of
+  /// that width whose beginning becomes this one: 1 / (1 - 2^-12)^2 < 1 + 2^-11 + 2^-20.
+  /// It is tight.
+  double end(double beginning) const {
+    return std::min(
+        {1., beginning + 0.875 * toc_err_, beginning * (1 + 0x1p-11 + 0x1p-20)});
+  }
+
  private:
-  static constexpr int kMostBits = 48;
-  /// Smaller times could be rounded up.
-  static constexpr double kLeast = 0x1p-1000;
   /// Halves and thirds of the step are in the middle of what becomes equal.
   static constexpr double kScale = 1.4142;
 
-  /// At first fewer than kTightShare, so that brackets are tight all the same.
+  double toc_err_;
+  /// 13 digits after the point lose at most 2^-12 of a time.
   int bits_{13};
 };
 
@@ -387,25 +401,38 @@ void NarrowPhase::addNear(const FeatureCandidate& candidate,
     add(FeatureContact{pair, found.toc_lo, found.toc_hi});
 }
 
-/// The decision of one pair.
 ElementaryResult NarrowPhase::decide(const FeatureCandidate& candidate,
                                      double t_stop) const {
   const CandidatePoints paths(candidate);
-  const double lo = candidate.window_lo, hi = candidate.window_hi,
-               toc_err = options_.toc_err;
-  if (!options_.only_time || !progress_ ||
-      !isWorthMagnifying(candidate.kind, paths.get()))
-    return deformable::decide(candidate.kind, paths.get(), lo, hi, toc_err, t_stop,
-                              options_.t_max);
-  // A pair that is apart until the earliest bracket so far cannot change the time.
-  const CoarseTime coarse(0.25 * toc_err);
-  const double apart = apartUntil(candidate.kind, paths.get(), lo, hi);
-  if (apart > 0 && coarse(apart) >= progress_->first_lo.load(std::memory_order_relaxed))
+  const bool is_coarse = options_.only_time && progress_ &&
+                         options_.toc_err >= CoarseTime::kLeastTocErr &&
+                         isWorthMagnifying(candidate.kind, paths.get());
+  if (is_coarse) {
+    const double apart =
+        apartUntil(candidate.kind, paths.get(), candidate.window_lo, candidate.window_hi);
+    if (apart >= CoarseTime::kLeastTime) return decideForTime(candidate, t_stop, apart);
+  }
+  return deformable::decide(candidate.kind, paths.get(), candidate.window_lo,
+                            candidate.window_hi, options_.toc_err, t_stop,
+                            options_.t_max);
+}
+
+/// With a coarse bracket, for a pair that is apart until a known time. If that is not
+/// before the earliest bracket so far, the pair cannot change the time.
+ElementaryResult NarrowPhase::decideForTime(const FeatureCandidate& candidate,
+                                            double t_stop, double apart) const {
+  const CoarseTime coarse(options_.toc_err);
+  if (coarse.beginning(apart) >= progress_->first_lo.load(std::memory_order_relaxed))
     return {Answer::kNo, 0, 0, DecidedBy::kSolver};
-  ElementaryResult result = deformable::decide(candidate.kind, paths.get(), lo, hi,
-                                               0.75 * toc_err, t_stop, options_.t_max);
-  if (result.answer == Answer::kYes)
-    result.toc_lo = coarse(std::max(apart, result.toc_lo));
+  const CandidatePoints paths(candidate);
+  ElementaryResult result = deformable::decide(
+      candidate.kind, paths.get(), candidate.window_lo, candidate.window_hi,
+      coarse.widthFor(apart), t_stop, options_.t_max);
+  if (result.answer == Answer::kYes) {
+    result.toc_lo = coarse.beginning(std::max(apart, result.toc_lo));
+    assert(result.toc_hi <= coarse.end(result.toc_lo));
+    result.toc_hi = coarse.end(result.toc_lo);
+  }
   return result;
 }
 

@@ -5,21 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "tree/float4.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-Float4 load(const float* from) {
-  Float4 v;
-  __builtin_memcpy(&v, from, sizeof(v));
-  return v;
-}
-void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
-Float4 abs(const Float4& v) {
-  constexpr int kAllButSign = 0x7fffffff;
-  return Float4(Mask4(v) & kAllButSign);
-}
 
 /// What is added to a half-axis: 0 in place of a negative number, infinity in place of a
 /// NaN.
@@ -73,9 +64,10 @@ BentBoxes::BentBoxes(const Bend& bend, const double (&origin)[2][3],
   for (int k = 0; k < 3; ++k) {
     double along[8];
     kdopCoordinates({bend.matrix[k], bend.matrix[3 + k], bend.matrix[6 + k]}, along);
-    for (int j = 0; j < 8; ++j)
-      (j < 3 ? change : diagonal) =
-          std::max(j < 3 ? change : diagonal, std::abs(along[j]));
+    for (int j = 0; j < 8; ++j) {
+      double& most = j < 3 ? change : diagonal;
+      most = std::max(most, std::abs(along[j]));
+    }
     for (int i = 0; i < 3; ++i)
       matrix_[3 * i + k] = static_cast<float>(bend.matrix[3 * i + k]);
   }
@@ -126,8 +118,8 @@ void BentBoxes::enlarge(MovingKdopNode& node) const {
   }
 }
 
-// As a float a bend loses 2^-24 of itself, and the sum of two coordinates is at most that
-// of their sizes.
+// As a float a bend loses 2^-24 of itself, and so does the sum with the pad. The sum of
+// two coordinates is at most that of their sizes.
 void enlarge(const Bend& bend, TreeVertex& vertex) {
   double middle[3], size[3], s[3], along[8];
   for (int k = 0; k < 3; ++k) {

@@ -7,15 +7,12 @@
 #include <limits>
 
 #include "base/shuffle.h"
+#include "tree/float4.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-Float4 larger(Float4 x, Float4 y) { return x > y ? x : y; }
-
-void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
 
 typedef float Float2 __attribute__((vector_size(8)));
 typedef double DoublePair __attribute__((vector_size(16)));

@@ -10,6 +10,7 @@
 
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "tree/fcl_volumes.h"
+#include "tree/float4.h"
 #include "tree/open_binary.h"
 
 namespace fcl {
@@ -57,18 +58,6 @@ constexpr OrientedBox kUnbounded = {
     {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
 
 constexpr float kFloatUnit = 0x1p-24f;
-
-Float4 load(const float* from) {
-  Float4 v;
-  __builtin_memcpy(&v, from, sizeof(v));
-  return v;
-}
-void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
-Float4 abs(const Float4& v) {
-  constexpr int kAllButSign = 0x7fffffff;
-  return Float4(Mask4(v) & kAllButSign);
-}
-Float4 larger(const Float4& x, const Float4& y) { return x > y ? x : y; }
 
 /// A half-axis as roundUp() returns it: infinity in place of NaN, at least kLeastHalf.
 Float4 bounded(const Float4& half) {

@@ -650,9 +650,13 @@ std::array<std::uint64_t, 2> expectTimeAlone(const MeshInstance& a, const Body& 
   EXPECT_GT(alone.first.lo, 0);
   EXPECT_LE(alone.first.lo, all.first.hi);
   EXPECT_GE(alone.first.lo, all.first.lo - options.toc_err);
+  EXPECT_GE(alone.first.hi, all.first.lo);
+  EXPECT_LE(alone.first.hi - alone.first.lo, options.toc_err);
   for (const int threads : {2, 4}) {
     options.num_threads = threads;
-    EXPECT_EQ(querySelf(a, options).first.lo, alone.first.lo);
+    const QueryAnswer again = querySelf(a, options);
+    EXPECT_EQ(again.first.lo, alone.first.lo);
+    EXPECT_EQ(again.first.hi, alone.first.hi);
   }
   return {alone.counts.exact_tests, all.counts.exact_tests};
 }
@@ -670,6 +674,32 @@ TEST(FCL_DEFORMABLE_QUERY, timeAloneOfWhatMeetsAtOnePlace) {
     EXPECT_GT(all, 1000U);
     EXPECT_LT(alone, all / 100);
   }
+}
+
+// Other pairs are left out then, with the same bracket.
+TEST(FCL_DEFORMABLE_QUERY, timeAloneInAnyOrder) {
+  Random random(63);
+  for (const double noise : {0., 1e-9, 1e-6, 1e-3})
+    for (const double toc_err : {1e-2, 1e-4, 1e-9}) {
+      SCOPED_TRACE(std::to_string(noise) + ", " + std::to_string(toc_err));
+      MovingMesh mesh;
+      addCollapse({0, 0, 0}, -random.uniform(0, 3), mesh);
+      for (Vector3<double>& p : mesh.t1) p += random.point(noise);
+      QueryOptions options;
+      options.query = ContinuousQuery::kFirst;
+      options.max_contacts = 1;
+      options.only_time = true;
+      options.toc_err = toc_err;
+      std::set<std::pair<double, double>> brackets;
+      for (int order = 0; order < 6; ++order) {
+        const PreparedMovingMesh prepared(mesh);
+        const TimeBracket first = querySelf(prepared.instance(), options).first;
+        brackets.emplace(first.lo, first.hi);
+        for (std::size_t i = mesh.triangles.size() - 1; i > 0; --i)
+          std::swap(mesh.triangles[i], mesh.triangles[random.index(i + 1)]);
+      }
+      EXPECT_EQ(brackets.size(), 1U);
+    }
 }
 
 // The contact that the first steps in all parts of a large mesh find is found again.

@@ -210,7 +210,7 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// The first or any contact of a mesh that turns, or of a shape, takes one thread, and
   /// so does a query with an octree; only the trees that it makes use more. The answer
   /// does not depend on this number. The StageCounts of a first-contact query may depend
-  /// on it.
+  /// on it; those of other queries only in crossing_tests and plane_culled.
   int num_threads{1};
 };
 

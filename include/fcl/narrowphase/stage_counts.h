@@ -62,7 +62,7 @@ struct StageCounts {
   /// come nearer if they are ignored
   std::uint64_t filter_culled{0};
   /// feature pairs for which the certified solve (with min_distance: directional
-  /// advancement) proved that there is no contact
+  /// advancement) proved that there is no contact, or none before the first one
   std::uint64_t solver_culled{0};
   /// feature pairs that the solve left undecided and that integers proved to be no
   /// contact
@@ -71,8 +71,7 @@ struct StageCounts {
   std::uint64_t exact_tests{0};
   /// feature pairs that are contacts
   std::uint64_t contacts{0};
-  /// edge-face pairs tested for crossing at t = 0, until one is found; with several
-  /// threads the number may differ from run to run
+  /// edge-face pairs tested for crossing at t = 0, until one is found
   std::uint64_t crossing_tests{0};
 
   StageCounts& operator+=(const StageCounts& other) {
