@@ -16,8 +16,6 @@ namespace deformable {
 /// @brief Enlarges the boxes of a tree by the bends of its points.
 class BentBoxes {
  public:
-  BentBoxes() = default;
-
   /// @param origin  what the boxes at both ends of the step are relative to
   /// @param translation  of the mesh, in addition
   BentBoxes(const Bend& bend, const double (&origin)[2][3],
@@ -29,11 +27,10 @@ class BentBoxes {
  private:
   /// The bend of a point with the mean r of its places at both ends, relative to the
   /// origins, is matrix . r + at_origin.
-  float matrix_[9]{};
-  float at_origin_[3]{};
+  float matrix_[9], at_origin_[3];
   /// Bounds on how much the bend changes with a coordinate, along an axis and along a
   /// diagonal direction; and on the rounding of all that does not depend on the box.
-  float change_{0}, diagonal_change_{0}, rounding_{0};
+  float change_, diagonal_change_, rounding_;
 };
 
 /// @brief Enlarges the box of a vertex whose path is set. Rounds outward.

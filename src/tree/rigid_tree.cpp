@@ -303,7 +303,7 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   for (int lane = 0; lane < out.count; ++lane) prefetch(nodes[lane]);
   out.markTriangles();
   (this->*volumes_.set_rows)(nodes, out);
-  if (has_bend_) bent_boxes_.enlarge(out);
+  if (bent_boxes_) bent_boxes_->enlarge(out);
   std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
 }

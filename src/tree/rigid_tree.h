@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "mesh/moving_kdop.h"
 #include "mesh/tree_nodes.h"
@@ -48,8 +49,7 @@ class RigidTree {
   /// @brief From here on the boxes of nodes contain paths that are bent.
   /// @param translation  of the mesh, at t = 0 and t = 1
   void setBend(const Bend& bend, const double (&translation)[2][3]) {
-    has_bend_ = true;
-    bent_boxes_ = BentBoxes(bend, origin_, translation);
+    bent_boxes_.emplace(bend, origin_, translation);
   }
 
   /// @brief The box of one of FCL's nodes.
@@ -135,8 +135,7 @@ class RigidTree {
   double reach_{0};
   /// Bound on the motion of a point along an axis that is due to the rotations.
   float displacement_{0};
-  bool has_bend_{false};
-  BentBoxes bent_boxes_;
+  std::optional<BentBoxes> bent_boxes_;
 };
 
 /// @brief A RigidTree as one traversal reads it, with eight children per node. A small
