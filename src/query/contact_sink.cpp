@@ -92,9 +92,8 @@ bool ContactSink::add(const FeatureContact& contact) {
   return true;
 }
 
-bool ContactSink::mayKeepAtStart(const FeatureIds& pair) const {
-  if (latestKept() > 0) return true;
-  return isEarlier(FeatureContact{pair, 0, 0}, **order_.rbegin());
+bool ContactSink::mayKeep(const FeatureIds& pair, double earliest) const {
+  return !cut_ || isEarlier(FeatureContact{pair, earliest, earliest}, **order_.rbegin());
 }
 
 /// A contact of another kind, or of a face of a, comes behind all of a vertex of a with a

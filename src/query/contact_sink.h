@@ -74,13 +74,14 @@ class ContactSink {
   /// it, and it has dropped others before.
   double latestKept() const { return cut_ ? (*order_.rbegin())->toc_lo : 1; }
 
-  /// @brief Whether a contact of the pair at t = 0, or of parts of it, could be kept. It
-  /// could not if the sink is full of contacts at t = 0 that come before it.
-  bool mayKeepAtStart(const FeatureIds& pair) const;
+  /// @brief Whether a contact of the pair, or of parts of it, could be kept if its
+  /// bracket begins at this time or later. It could not if the sink has dropped contacts,
+  /// and all that it keeps come before this one.
+  bool mayKeep(const FeatureIds& pair, double earliest) const;
 
-  /// @brief The same for any pair of a kind.
+  /// @brief The same at t = 0 for any pair of a kind.
   bool mayKeepAtStart(ContinuousContactKind kind) const {
-    return mayKeepAtStart(FeatureIds{kind, true, {0, 0, 0, 0}, {0, 0}});
+    return mayKeep(FeatureIds{kind, true, {0, 0, 0, 0}, {0, 0}}, 0);
   }
 
   /// @brief Contacts at t = 0 whose vertices all have larger numbers could not be kept.

@@ -31,11 +31,11 @@ class CandidatePoints {
   VertexPath path_[4];
 };
 
-/// Brackets that times which differ by little have in common. If only the time of the
-/// first contact matters, pairs whose points nearly meet have such a bracket, which
-/// begins no earlier than apartUntil() tells. Where all nearly meets at one place, one
-/// pair then decides the bracket, and the others are left out. No bracket depends on what
-/// else was found, so the answer does not depend on which pairs were left out.
+/// Brackets that times which differ by little have in common. In a query for the first
+/// contact, pairs whose points nearly meet have such a bracket, which begins no earlier
+/// than apartUntil() tells. Where all nearly meets at one place, a few pairs then decide
+/// the answer, and the others are left out. No bracket depends on what else was found, so
+/// the answer does not depend on which pairs were left out.
 class CoarseTime {
  public:
   /// Smaller tolerances have no coarse times, and smaller times could be rounded up.
@@ -334,7 +334,7 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
       FeatureCandidate& candidate = candidates_.emplace_back();
       batch_.setCandidate(codes[i], windows[i], candidate);
       // Many pairs may be near at t = 0, of which a few are wanted.
-      if (!sink_.mayKeepAtStart(candidate)) {
+      if (!sink_.mayKeep(candidate, 0)) {
         ++counts_.box_culled;
         candidates_.pop_back();
       } else if (options_.lists_near_pairs) {
@@ -404,25 +404,32 @@ void NarrowPhase::addNear(const FeatureCandidate& candidate,
 ElementaryResult NarrowPhase::decide(const FeatureCandidate& candidate,
                                      double t_stop) const {
   const CandidatePoints paths(candidate);
-  const bool is_coarse = options_.only_time && progress_ &&
+  const bool is_coarse = options_.query == ContinuousQuery::kFirst && progress_ &&
                          options_.toc_err >= CoarseTime::kLeastTocErr &&
                          isWorthMagnifying(candidate.kind, paths.get());
   if (is_coarse) {
     const double apart =
         apartUntil(candidate.kind, paths.get(), candidate.window_lo, candidate.window_hi);
-    if (apart >= CoarseTime::kLeastTime) return decideForTime(candidate, t_stop, apart);
+    if (apart >= CoarseTime::kLeastTime) return decideCoarsely(candidate, t_stop, apart);
   }
   return deformable::decide(candidate.kind, paths.get(), candidate.window_lo,
                             candidate.window_hi, options_.toc_err, t_stop,
                             options_.t_max);
 }
 
-/// With a coarse bracket, for a pair that is apart until a known time. If that is not
-/// before the earliest bracket so far, the pair cannot change the time.
-ElementaryResult NarrowPhase::decideForTime(const FeatureCandidate& candidate,
-                                            double t_stop, double apart) const {
+/// Whether a contact of the pair whose bracket begins at this time or later may change
+/// the answer.
+bool NarrowPhase::mayMatter(const FeatureIds& pair, double earliest) const {
+  if (options_.only_time)
+    return earliest < progress_->first_lo.load(std::memory_order_relaxed);
+  return sink_.mayKeep(pair, earliest);
+}
+
+/// With a coarse bracket, for a pair that is apart until a known time.
+ElementaryResult NarrowPhase::decideCoarsely(const FeatureCandidate& candidate,
+                                             double t_stop, double apart) const {
   const CoarseTime coarse(options_.toc_err);
-  if (coarse.beginning(apart) >= progress_->first_lo.load(std::memory_order_relaxed))
+  if (!mayMatter(candidate, coarse.beginning(apart)))
     return {Answer::kNo, 0, 0, DecidedBy::kSolver};
   const CandidatePoints paths(candidate);
   ElementaryResult result = deformable::decide(

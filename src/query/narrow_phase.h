@@ -212,8 +212,9 @@ class NarrowPhase {
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
   ElementaryResult decide(const FeatureCandidate& candidate, double t_stop) const;
-  ElementaryResult decideForTime(const FeatureCandidate& candidate, double t_stop,
-                                 double apart) const;
+  bool mayMatter(const FeatureIds& pair, double earliest) const;
+  ElementaryResult decideCoarsely(const FeatureCandidate& candidate, double t_stop,
+                                  double apart) const;
   ElementaryResult decideOnce(const FeatureCandidate& candidate);
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);

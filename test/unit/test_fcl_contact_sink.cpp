@@ -87,13 +87,40 @@ TEST(FCL_CONTACT_SINK, lastVertexAtStart) {
       const FeatureContact contact = randomContact(random, 30, 1);
       const bool is_left_out =
           *std::min_element(contact.vertices, contact.vertices + 4) > last;
-      EXPECT_FALSE(is_left_out && sink.mayKeepAtStart(contact));
+      EXPECT_FALSE(is_left_out && sink.mayKeep(contact, 0));
       if (!is_left_out) kept += sink.add(contact);
       if (sink.lastVertexAtStart() != last) break;
     }
   }
   EXPECT_GT(bounds, 500);
   EXPECT_GT(kept, 100);
+}
+
+// mayKeep() is false only of what would not be kept.
+TEST(FCL_CONTACT_SINK, mayKeep) {
+  constexpr std::uint64_t kSeed = 93;
+  Random random(kSeed);
+  int kept = 0, left_out = 0;
+  for (int i = 0; i < 3000; ++i) {
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
+    ContactSink sink(1 + random.index(4), false);
+    for (int k = 0; k < 40; ++k) {
+      const FeatureContact contact = randomContact(random, 30, 0.5);
+      const double earliest = contact.toc_lo * (random.index(2) == 0 ? 1 : 0.5);
+      const bool may_keep = sink.mayKeep(contact, earliest);
+      const bool is_kept = sink.add(contact);
+      EXPECT_TRUE(may_keep || !is_kept);
+      // With the time itself it is known, as soon as a contact was dropped.
+      if (earliest == contact.toc_lo && k > 4) {
+        EXPECT_EQ(may_keep, is_kept);
+      }
+      kept += is_kept;
+      left_out += !may_keep;
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(kept, 10000);
+  EXPECT_GT(left_out, 50000);
 }
 
 // Against a map, with contacts that are taken out again.

@@ -702,6 +702,81 @@ TEST(FCL_DEFORMABLE_QUERY, timeAloneInAnyOrder) {
     }
 }
 
+/// The contacts of a self-collision, by name, with their brackets.
+std::vector<std::tuple<double, double, PairName>> listOf(const QueryAnswer& answer) {
+  std::vector<std::tuple<double, double, PairName>> list;
+  for (const FeatureContact& c : answer.contacts)
+    list.emplace_back(c.toc_lo, c.toc_hi, nameOf(c, true));
+  return list;
+}
+
+// The list of first contacts has the pairs of all contacts, whose brackets may be
+// shorter. Of a list that is cut, few pairs are decided.
+TEST(FCL_DEFORMABLE_QUERY, firstContactsOfWhatMeetsAtOnePlace) {
+  Random random(64);
+  for (const double factor : {-0.3, -0.7, -1., -2., 0.}) {
+    SCOPED_TRACE("factor " + std::to_string(factor));
+    MovingMesh mesh;
+    addCollapse({0, 0, 0}, factor, mesh);
+    const PreparedMovingMesh prepared(mesh);
+    const Body body{prepared.instance(), mesh.triangles};
+    const QueryAnswer all = query(body, body, QueryOptions());
+    QueryOptions options;
+    options.query = ContinuousQuery::kFirst;
+    const QueryAnswer first = query(body, body, options);
+    // All meets within a few units in the last place.
+    ASSERT_EQ(first.contacts.size(), all.contacts.size());
+    std::set<PairName> pairs;
+    for (const FeatureContact& c : all.contacts) pairs.insert(nameOf(c, true));
+    for (const FeatureContact& c : first.contacts) {
+      EXPECT_EQ(pairs.count(nameOf(c, true)), 1U);
+      EXPECT_LE(c.toc_lo, all.first.hi);
+      EXPECT_GE(c.toc_hi, all.first.lo);
+      EXPECT_LE(c.toc_hi - c.toc_lo, options.toc_err);
+    }
+    auto expected = listOf(first);
+    for (const std::size_t kept : {500U, 7U, 1U})
+      for (const int threads : {1, 4}) {
+        options.max_contacts = kept;
+        options.num_threads = threads;
+        const QueryAnswer cut = query(body, body, options);
+        EXPECT_TRUE(cut.cut);
+        expected.resize(kept);
+        EXPECT_EQ(listOf(cut), expected);
+        if (kept == 1) {
+          EXPECT_LT(cut.counts.exact_tests, all.counts.exact_tests / 20);
+        }
+      }
+  }
+}
+
+// With some noise, other pairs are left out when the triangles have another order. The
+// bracket of the first contact stays.
+TEST(FCL_DEFORMABLE_QUERY, firstContactsInAnyOrder) {
+  Random random(65);
+  for (const double noise : {0., 1e-9, 1e-6, 1e-3})
+    for (const double toc_err : {1e-2, 1e-4, 1e-9}) {
+      SCOPED_TRACE(std::to_string(noise) + ", " + std::to_string(toc_err));
+      MovingMesh mesh;
+      addCollapse({0, 0, 0}, -random.uniform(0, 3), mesh);
+      for (Vector3<double>& p : mesh.t1) p += random.point(noise);
+      QueryOptions options;
+      options.query = ContinuousQuery::kFirst;
+      options.toc_err = toc_err;
+      const PreparedMovingMesh prepared(mesh);
+      const TimeBracket expected = querySelf(prepared.instance(), options).first;
+      options.max_contacts = 1;
+      for (int order = 0; order < 5; ++order) {
+        for (std::size_t i = mesh.triangles.size() - 1; i > 0; --i)
+          std::swap(mesh.triangles[i], mesh.triangles[random.index(i + 1)]);
+        const PreparedMovingMesh again(mesh);
+        const TimeBracket first = querySelf(again.instance(), options).first;
+        EXPECT_EQ(first.lo, expected.lo);
+        EXPECT_EQ(first.hi, expected.hi);
+      }
+    }
+}
+
 // The contact that the first steps in all parts of a large mesh find is found again.
 TEST(FCL_DEFORMABLE_QUERY, timeAloneOfALargeMesh) {
   HeadOn scene;
