@@ -132,6 +132,16 @@ int turn(const double (&a)[3], const double (&b)[3], const double (&c)[3], int a
   return crossSign(a, b, a, c, axis);
 }
 
+/// Whether a corner of one feature is at a corner of the other at t = 0, as in triangle
+/// soup and where blocks stand side by side.
+bool doCornersMeet(ContinuousContactKind kind, const FeaturePoints& x) {
+  const int num_first = kind == ContinuousContactKind::kVertexFace ? 1 : 2;
+  for (int i = 0; i < num_first; ++i)
+    for (int j = num_first; j < 4; ++j)
+      if (std::equal(x[i].t0, x[i].t0 + 3, x[j].t0)) return true;
+  return false;
+}
+
 /// Whether p lies on the closed segment qr.
 bool isOnSegment(const double (&p)[3], const double (&q)[3], const double (&r)[3]) {
   for (int k = 0; k < 3; ++k)
@@ -226,6 +236,7 @@ bool doSegmentsTouch(const double (&a)[3], const double (&b)[3], const double (&
 }
 
 bool doTouchAtStart(ContinuousContactKind kind, const FeaturePoints& x) {
+  if (doCornersMeet(kind, x)) return true;
   return kind == ContinuousContactKind::kVertexFace
              ? isOnTriangle(x[0].t0, x[1].t0, x[2].t0, x[3].t0)
              : doSegmentsTouch(x[0].t0, x[1].t0, x[2].t0, x[3].t0);
