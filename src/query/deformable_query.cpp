@@ -344,7 +344,7 @@ class ContactQuery {
                           options.num_threads, proof_times_),
                 options.min_distance} {
     // One contact more than wanted tells whether there are more.
-    if (options.query == ContinuousQuery::kFirst && options.max_contacts + 1 != 0)
+    if (options.query == ContinuousQuery::kFirst && options.isLimited())
       ++task_options_.max_contacts;
   }
 

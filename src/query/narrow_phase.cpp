@@ -311,6 +311,8 @@ void NarrowPhase::add(const FeatureContact& contact) {
   if (!progress_) return;
   QueryProgress::lower(progress_->first_hi, contact.toc_hi);
   QueryProgress::lower(progress_->first_lo, contact.toc_lo);
+  if (options_.query == ContinuousQuery::kAll)
+    QueryProgress::lower(progress_->latest_kept, sink_.latestKept());
   if (options_.min_distance > 0 && sink_.isCut())
     QueryProgress::lower(progress_->last_vertex, sink_.lastVertexAtStart());
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);

@@ -52,6 +52,9 @@ struct QueryOptions {
   /// it, for tests on other paths. Their brackets are the times outside of which they
   /// provably do not.
   bool lists_near_pairs{false};
+
+  /// Whether the list may end before the last contact.
+  bool isLimited() const { return max_contacts != static_cast<std::size_t>(-1); }
 };
 
 /// @brief What the tasks of a query tell each other, so that none does work that cannot
@@ -72,6 +75,9 @@ struct QueryProgress {
   /// The lowest ContactSink::lastVertexAtStart(), with a distance. A task that has this
   /// bound has as many contacts before it as are wanted, so it holds for all tasks.
   std::atomic<std::uint32_t> last_vertex{~std::uint32_t{0}};
+  /// The lowest ContactSink::latestKept() in a query for all contacts. It holds for all
+  /// tasks for the same reason.
+  std::atomic<double> latest_kept{1};
 
   template <typename T>
   static void lower(std::atomic<T>& value, T to) {
@@ -138,7 +144,7 @@ class NarrowPhase {
     if (options_.query == ContinuousQuery::kAny) return options_.t_max;
     // A contact is at most `width` after the beginning of its bracket.
     const double width = options_.toc_err + kTimeRounding;
-    double latest = sink_.latestKept() + width;
+    double latest = latestKept() + width;
     if (options_.query == ContinuousQuery::kFirst) {
       const double first_hi = firstHi();
       latest = std::min(latest, std::min(first_hi + width, latestLeading(first_hi)));
@@ -175,10 +181,14 @@ class NarrowPhase {
   bool hasAnswer() const {
     if (hasCrossing() && options_.only_time) return true;
     // No contact is earlier than t = 0.
-    if (error_ && (options_.query != ContinuousQuery::kFirst || error_->earliest <= 0.f))
-      return true;
+    if (error_ && (!mayEndBefore() || error_->earliest <= 0.f)) return true;
     return options_.query == ContinuousQuery::kAny &&
            (!sink_.contacts().empty() || hasCrossing());
+  }
+  /// Whether an error may come too late to matter, see merge().
+  bool mayEndBefore() const {
+    return options_.query == ContinuousQuery::kFirst ||
+           (options_.query == ContinuousQuery::kAll && options_.isLimited());
   }
   FeatureBatch::Wanted wanted() const;
   bool wantsCrossings() const {
@@ -191,6 +201,13 @@ class NarrowPhase {
     const double mine = sink_.firstHi();
     return progress_ ? std::min(mine, progress_->first_hi.load(std::memory_order_relaxed))
                      : mine;
+  }
+  /// What begins later is dropped.
+  double latestKept() const {
+    const double mine = sink_.latestKept();
+    return progress_
+               ? std::min(mine, progress_->latest_kept.load(std::memory_order_relaxed))
+               : mine;
   }
   /// A candidate and a part of its window.
   struct Piece {

@@ -16,10 +16,9 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void throwError(const std::vector<TaskAnswer>& tasks, const QueryOptions& options,
+/// @param latest  later errors do not matter
+void throwError(const std::vector<TaskAnswer>& tasks, double latest,
                 const QueryProgress& progress) {
-  const double latest =
-      options.query == ContinuousQuery::kFirst ? progress.first_hi.load() : kInfinity;
   const std::size_t last = progress.answered_by.load();
   const QueryError* earliest = nullptr;
   for (std::size_t i = 0; i < tasks.size() && i <= last; ++i) {
@@ -103,18 +102,22 @@ TimeBracket firstListed(const QueryAnswer& answer) {
   return {answer.contacts.front().toc_lo, answer.contacts.front().toc_hi};
 }
 
+/// The latest beginning of a bracket.
+double latestOf(const ContactLists& contacts) {
+  double latest = 0;
+  for (const auto& list : contacts)
+    for (const FeatureContact& contact : list) latest = std::max(latest, contact.toc_lo);
+  return latest;
+}
+
 /// Whether the first contact is certainly among those that were kept. It is, if a contact
 /// with the earliest upper end is among them, and the latest of them begins no earlier
 /// than that end: contacts that were dropped begin no earlier either.
 bool isFirstKept(double first_hi, const ContactLists& contacts) {
-  double latest = 0;
   bool is_kept = false;
   for (const auto& list : contacts)
-    for (const FeatureContact& contact : list) {
-      latest = std::max(latest, contact.toc_lo);
-      is_kept |= contact.toc_hi == first_hi;
-    }
-  return is_kept && latest >= first_hi;
+    for (const FeatureContact& contact : list) is_kept |= contact.toc_hi == first_hi;
+  return is_kept && latestOf(contacts) >= first_hi;
 }
 
 }  // namespace
@@ -132,7 +135,10 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                   const MeshInstance& b,
                   const std::function<FeatureContact()>& firstContact) {
   assert(!tasks.empty());
-  throwError(tasks, options, progress);
+  const double first_hi = progress.first_hi.load();
+  const bool is_first = options.query == ContinuousQuery::kFirst,
+             is_all = options.query == ContinuousQuery::kAll;
+  if (!is_all) throwError(tasks, is_first ? first_hi : kInfinity, progress);
   QueryAnswer answer;
   addEffort(tasks, answer);
   if (options.query == ContinuousQuery::kAny) {
@@ -143,12 +149,11 @@ QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
   takeCrossings(tasks, options.all_crossings, answer);
   const bool at_distance = options.min_distance > 0;
   const bool may_repeat = !a.hasOwners() || !b.hasOwners();
-  const double first_hi = progress.first_hi.load();
-  const bool is_first = options.query == ContinuousQuery::kFirst;
   ContactLists contacts = takeUntil(is_first ? first_hi : 1, tasks, options.max_contacts,
                                     may_repeat, at_distance, answer);
-  if (!is_first) {
+  if (is_all) {
     for (const TaskAnswer& task : tasks) answer.cut |= task.cut;
+    throwError(tasks, answer.cut ? latestOf(contacts) : kInfinity, progress);
     if (answer.cut && !at_distance && !isFirstKept(first_hi, contacts)) {
       const FeatureContact first = firstContact();
       answer.first = {first.toc_lo, first.toc_hi};

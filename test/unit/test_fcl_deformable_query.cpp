@@ -177,6 +177,14 @@ PairName nameOf(const FeatureContact& c, bool self) {
   return {c.kind, false, x, y};
 }
 
+/// The contacts of a self-collision, by name, with their brackets.
+std::vector<std::tuple<double, double, PairName>> listOf(const QueryAnswer& answer) {
+  std::vector<std::tuple<double, double, PairName>> list;
+  for (const FeatureContact& c : answer.contacts)
+    list.emplace_back(c.toc_lo, c.toc_hi, nameOf(c, true));
+  return list;
+}
+
 bool hasAll(const Ids& triangle, const Ids& ids) {
   return std::all_of(ids.begin(), ids.end(), [&triangle](std::uint32_t id) {
     return std::find(triangle.begin(), triangle.end(), id) != triangle.end();
@@ -623,6 +631,34 @@ TEST(FCL_DEFORMABLE_QUERY, firstContactOfALargeMesh) {
   EXPECT_GT(left_out, 10000U);
 }
 
+// Of a list that is cut, each part of the query knows what the others have found.
+TEST(FCL_DEFORMABLE_QUERY, earliestOfManyContacts) {
+  Random random(66);
+  HeadOn scene;
+  for (std::size_t i = 0; i < 8000; ++i)
+    scene.add({10. * static_cast<double>(i % 20), 10. * static_cast<double>(i / 20 % 20),
+               10. * static_cast<double>(i / 400)},
+              {1, 0, 0}, 1, random.uniform(0.02, 1));
+  const MovingMesh mesh = scene.both();
+  const PreparedMovingMesh prepared(mesh);
+  const Body body{prepared.instance(), mesh.triangles};
+  const QueryAnswer all = query(body, body, QueryOptions());
+  const auto whole = listOf(all);
+  for (const std::size_t kept : {1U, 10U, 40U})
+    for (const int threads : {1, 4}) {
+      QueryOptions options;
+      options.max_contacts = kept;
+      options.num_threads = threads;
+      const QueryAnswer some = query(body, body, options);
+      EXPECT_TRUE(some.cut);
+      EXPECT_TRUE(std::equal(whole.begin(), whole.begin() + kept, listOf(some).begin()));
+      EXPECT_EQ(some.contacts.size(), kept);
+      EXPECT_EQ(some.first.lo, all.first.lo);
+      EXPECT_EQ(some.first.hi, all.first.hi);
+      EXPECT_LT(some.counts.contacts, all.counts.contacts / 4);
+    }
+}
+
 /// Adds a sphere that is scaled about a point beside its center by a factor below 0: all
 /// its vertices meet there, but for rounding.
 void addCollapse(const Vector3<double>& center, double factor, MovingMesh& mesh) {
@@ -700,14 +736,6 @@ TEST(FCL_DEFORMABLE_QUERY, timeAloneInAnyOrder) {
       }
       EXPECT_EQ(brackets.size(), 1U);
     }
-}
-
-/// The contacts of a self-collision, by name, with their brackets.
-std::vector<std::tuple<double, double, PairName>> listOf(const QueryAnswer& answer) {
-  std::vector<std::tuple<double, double, PairName>> list;
-  for (const FeatureContact& c : answer.contacts)
-    list.emplace_back(c.toc_lo, c.toc_hi, nameOf(c, true));
-  return list;
 }
 
 // The list of first contacts has the pairs of all contacts, whose brackets may be

@@ -344,11 +344,15 @@ struct Approach {
 // first scene few tasks have an answer to kAny. In the second scene errors come earlier
 // and later than the first contact.
 TEST(FCL_THREADS, errorsWithAnyNumber) {
+  const std::pair<ContinuousQuery, std::size_t> kinds[] = {
+      {ContinuousQuery::kAll, kNoLimit}, {ContinuousQuery::kAll, 1},
+      {ContinuousQuery::kAll, 20},       {ContinuousQuery::kFirst, kNoLimit},
+      {ContinuousQuery::kFirst, 2},      {ContinuousQuery::kAny, kNoLimit}};
   for (const Approach& approach : {Approach{0.05, 0, 0.03, 0.05}, {0.2, 0.4, 1, 0}}) {
     const TestMesh upper = approach.upper();
     const auto lower = makeModel<Plain>(approach.lower());
     int failed = 0, answered = 0;
-    for (const ContinuousQuery query : kQueries)
+    for (const auto& [query, max_contacts] : kinds)
       for (std::uint64_t seed = 1; seed <= 8; ++seed) {
         const auto rigid = makeModel<Plain>(upper);
         Random random(seed);
@@ -356,14 +360,14 @@ TEST(FCL_THREADS, errorsWithAnyNumber) {
           rigid->vertices[random.index(upper.vertices.size())][1] =
               std::numeric_limits<double>::quiet_NaN();
         const NamedScene scene{"broken", rigid, lower, translation(0, 0, -approach.way)};
-        const Outcome one(scene, requestOf(query, kNoLimit, 1e-4, 1));
+        const Outcome one(scene, requestOf(query, max_contacts, 1e-4, 1));
         ++(one.error.empty() ? answered : failed);
         for (int i = 0; i < 3; ++i)
           for (const int threads : {2, 4}) {
             SCOPED_TRACE("query " + std::to_string(static_cast<int>(query)) + ", seed " +
                          std::to_string(seed) + ", " + std::to_string(threads) +
                          " threads");
-            const Outcome several(scene, requestOf(query, kNoLimit, 1e-4, threads));
+            const Outcome several(scene, requestOf(query, max_contacts, 1e-4, threads));
             ASSERT_EQ(several.error, one.error);
             expectSame(several.result, one.result);
             if (HasFailure()) return;
@@ -374,8 +378,8 @@ TEST(FCL_THREADS, errorsWithAnyNumber) {
   }
 }
 
-// A first-contact query fails if a vertex may be in the first contact, but not if its
-// triangles come near only later.
+// A query for the first contact fails if a vertex may be in it, but not if its triangles
+// come near only later. So does a query for all contacts of which one is kept.
 TEST(FCL_THREADS, firstContactBeforeAnError) {
   const TestMesh upper = moved(bentSheet(16), 0, 0, 1);
   const auto lower = makeModel<Plain>(makeSheet(16, 16));
@@ -391,14 +395,21 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
     if (height > 0 && height < 0.15) continue;
     const Vector3<double> place = rigid->vertices[v];
     rigid->vertices[v][1] = std::numeric_limits<double>::quiet_NaN();
-    const Outcome outcome(scene, request);
+    const Outcome outcome(scene, request),
+        earliest(scene, requestOf(ContinuousQuery::kAll, 1, 1e-4, 1)),
+        all(scene, requestOf(ContinuousQuery::kAll, kNoLimit, 1e-4, 1));
     rigid->vertices[v] = place;
+    const std::string error =
+        "o1: vertex " + std::to_string(v) + " is not finite. Correct it";
+    EXPECT_EQ(all.error, error);
     if (height == 0) {
-      EXPECT_EQ(outcome.error,
-                "o1: vertex " + std::to_string(v) + " is not finite. Correct it");
+      EXPECT_EQ(outcome.error, error);
+      EXPECT_EQ(earliest.error, error);
     } else {
       EXPECT_EQ(outcome.error, "");
       EXPECT_EQ(outcome.result.time_of_contact, toc);
+      EXPECT_EQ(earliest.error, "");
+      EXPECT_EQ(earliest.result.time_of_contact, toc);
     }
   }
 }

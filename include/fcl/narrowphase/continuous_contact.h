@@ -209,8 +209,9 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// n threads. 0: as many as the oneTBB task arena around the call has. Not negative.
   /// The first or any contact of a mesh that turns, or of a shape, takes one thread, and
   /// so does a query with an octree; only the trees that it makes use more. The answer
-  /// does not depend on this number. The StageCounts of a first-contact query may depend
-  /// on it; those of other queries only in crossing_tests and plane_culled.
+  /// does not depend on this number. The StageCounts of a query for the first contact, or
+  /// with num_max_contacts, may depend on it; those of others only in crossing_tests and
+  /// plane_culled.
   int num_threads{1};
 };
 
