@@ -33,8 +33,8 @@ struct Polygons {
   Doubles size;
   int count;
 
-  HWY_INLINE Polygons(ContinuousContactKind kind, const Vectors (&x0)[4],
-                      const Vectors (&x1)[4])
+  FCL_CCD_INLINE Polygons(ContinuousContactKind kind, const Vectors (&x0)[4],
+                          const Vectors (&x1)[4])
       : size(all(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
     for (int k = 0; k < count; ++k) {
       const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
@@ -46,9 +46,9 @@ struct Polygons {
     size = squareRoot(size) * all(1 + 0x1p-50);
   }
 
-  HWY_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
+  FCL_CCD_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
 
-  HWY_INLINE void cornersAt(const Doubles& t, Vectors (&corner)[4]) const {
+  FCL_CCD_INLINE void cornersAt(const Doubles& t, Vectors (&corner)[4]) const {
     for (int k = 0; k < count; ++k) corner[k] = at(t0[k], t1[k], t);
   }
 };
@@ -59,14 +59,14 @@ struct Steps {
 };
 
 /// A lane of the mask fails: its direction proves nothing.
-HWY_INLINE Steps where(const DoubleMask& proves, const Steps& steps) {
+FCL_CCD_INLINE Steps where(const DoubleMask& proves, const Steps& steps) {
   return {select(proves, steps.until, all(-HUGE_VAL)),
           select(proves, steps.rate, all(0))};
 }
 
 /// AdvancingPair::fixedStep().
-HWY_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& least,
-                            const Doubles& t) {
+FCL_CCD_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& least,
+                                const Doubles& t) {
   const Doubles zero = all(0);
   Steps steps{all(HUGE_VAL), zero};
   DoubleMask proves = zero == zero;
@@ -83,9 +83,9 @@ HWY_INLINE Steps fixedSteps(const Polygons& x, const Vectors& n, const Doubles& 
 }
 
 /// AdvancingPair::turningStep().
-HWY_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
-                              const Vectors& n, const Vectors& turn, const Doubles& d,
-                              const Doubles& least, const Doubles& t) {
+FCL_CCD_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
+                                  const Vectors& n, const Vectors& turn, const Doubles& d,
+                                  const Doubles& least, const Doubles& t) {
   const Doubles zero = all(0), square = dot(turn, turn);
   Doubles longest = all(1) / squareRoot(square), rate = zero;
   DoubleMask proves = longest > zero;
@@ -104,9 +104,9 @@ HWY_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
 }
 
 /// AdvancingPair::longestStep(), its first attempt.
-HWY_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
-                              const NearestPoints& near, const Doubles& d,
-                              const Doubles& least, const Doubles& t, double last) {
+FCL_CCD_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
+                                  const NearestPoints& near, const Doubles& d,
+                                  const Doubles& least, const Doubles& t, double last) {
   const NearestSides sides(x, corner, near);
   const Vectors n = directionsApart(near, sides);
   const Steps fixed = fixedSteps(x, n, least, t);
@@ -123,7 +123,7 @@ HWY_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
 struct Tolerances {
   Doubles distance_error, margin, touching;
 
-  HWY_INLINE Tolerances(const Doubles& d, const Doubles& size)
+  FCL_CCD_INLINE Tolerances(const Doubles& d, const Doubles& size)
       : distance_error(all(64 * DistanceTolerance::kUnit) * size),
         margin(all(128 * DistanceTolerance::kUnit) * (d + size)),
         touching(all(DistanceTolerance::kTouching) * (d + size)) {}
@@ -132,7 +132,7 @@ struct Tolerances {
 /// Eight pairs on their way to the distance.
 class AdvancingPairs {
  public:
-  HWY_INLINE AdvancingPairs(const Polygons& x, const DistanceRequest& request)
+  FCL_CCD_INLINE AdvancingPairs(const Polygons& x, const DistanceRequest& request)
       : x_(x),
         request_(request),
         last_(request.t_stop < request.t_max ? request.t_stop : request.t_max),
@@ -145,14 +145,14 @@ class AdvancingPairs {
   }
 
   /// The lanes that need more than plain steps.
-  HWY_INLINE unsigned open() const { return open_; }
-  HWY_INLINE unsigned contacts() const { return bits(is_contact_); }
+  FCL_CCD_INLINE unsigned open() const { return open_; }
+  FCL_CCD_INLINE unsigned contacts() const { return bits(is_contact_); }
   /// Until when the features are further apart than d; the first time of contact.
-  HWY_INLINE const Doubles& time() const { return t_; }
-  HWY_INLINE const Doubles& nearestPart() const { return near_.part; }
+  FCL_CCD_INLINE const Doubles& time() const { return t_; }
+  FCL_CCD_INLINE const Doubles& nearestPart() const { return near_.part; }
 
   /// The upper ends of the brackets: setBracket() in distance_advance.cpp.
-  HWY_INLINE Doubles upperEnds() {
+  FCL_CCD_INLINE Doubles upperEnds() {
     const Doubles gap = reached_ - d_,
                   distance_error = Tolerances(d_, x_.size).distance_error;
     const Doubles width = min(min(all(request_.toc_err), all(Advance::kShareOfTime) * t_),
@@ -178,7 +178,7 @@ class AdvancingPairs {
   }
 
  private:
-  HWY_INLINE void advance() {
+  FCL_CCD_INLINE void advance() {
     // Most pairs take two or three.
     constexpr int kMostSteps = 12;
     Tolerances tolerance(d_, x_.size);
@@ -210,7 +210,7 @@ class AdvancingPairs {
   }
 
   /// Sets the distance of each pair that is nearer than it at t = 0.
-  HWY_INLINE void ignoreInitiallyCloser(const Tolerances& tolerance) {
+  FCL_CCD_INLINE void ignoreInitiallyCloser(const Tolerances& tolerance) {
     constexpr double kShare = DistanceTolerance::kShare;
     const DoubleMask is_closer = reached_ <= d_ * all(1 + kShare) + tolerance.touching;
     const Doubles less = reached_ * all(1 - 2 * kShare) - all(2) * tolerance.touching;

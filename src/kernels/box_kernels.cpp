@@ -51,13 +51,13 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
 /// numbers are combined two by two: in a chain each operation would wait for the one
 /// before.
 template <std::size_t kCount, typename Operation>
-HWY_INLINE Floats fold(Floats (&x)[kCount], const Operation& operation) {
+FCL_CCD_INLINE Floats fold(Floats (&x)[kCount], const Operation& operation) {
   for (std::size_t half = kCount / 2; half > 0; half /= 2)
     for (std::size_t i = 0; i < half; ++i) x[i] = operation(x[i], x[i + half]);
   return x[0];
 }
 
-HWY_INLINE float largest(float a, float b, float c) {
+FCL_CCD_INLINE float largest(float a, float b, float c) {
   const float ab = a < b ? b : a;
   return ab < c ? c : ab;
 }
@@ -67,20 +67,20 @@ HWY_INLINE float largest(float a, float b, float c) {
 template <int kFrame, int kFirst>
 struct HalfOfBoxes {
   template <typename Node>
-  static HWY_INLINE auto& row(Node& node, int i) {
+  static FCL_CCD_INLINE auto& row(Node& node, int i) {
     return (kFrame == 0 ? node.t0 : node.t1)[MovingKdopNode::rowOf(kFirst + i)];
   }
-  static HWY_INLINE Floats of(const TreeVertex& x) {
+  static FCL_CCD_INLINE Floats of(const TreeVertex& x) {
     return load<kEight>((kFrame == 0 ? x.box.t0 : x.box.t1).half + kFirst);
   }
   /// The half-axes of the box around three vertices.
-  static HWY_INLINE Floats around(const TreeVertex& a, const TreeVertex& b,
-                                  const TreeVertex& c) {
+  static FCL_CCD_INLINE Floats around(const TreeVertex& a, const TreeVertex& b,
+                                      const TreeVertex& c) {
     return larger(larger(of(a), of(b)), of(c));
   }
   /// The half-axes of the box around all children. Lanes that are not in use have the
   /// least numbers, so that they do not matter.
-  static HWY_INLINE Floats around(const MovingKdopNode& node) {
+  static FCL_CCD_INLINE Floats around(const MovingKdopNode& node) {
     Floats x[8];
     for (int i = 0; i < 8; ++i) x[i] = load<kEight>(row(node, i));
     transpose(x);
@@ -89,7 +89,7 @@ struct HalfOfBoxes {
   }
   /// Sets the rows of a node from the boxes of its children. Returns for each child the
   /// sum of its half-axes.
-  static HWY_INLINE Floats set(Floats (&x)[8], MovingKdopNode& node) {
+  static FCL_CCD_INLINE Floats set(Floats (&x)[8], MovingKdopNode& node) {
     transpose(x);
     for (int i = 0; i < 8; ++i) store(x[i], row(node, i));
     return fold(x, [](const Floats& a, const Floats& b) HWY_ATTR { return a + b; });
@@ -97,8 +97,9 @@ struct HalfOfBoxes {
 };
 
 template <bool kIsStill>
-HWY_INLINE void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
-                        MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+FCL_CCD_INLINE void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
+                            MovingKdopNode& node,
+                            float (&extents)[MovingKdopNode::kWidth]) {
   using Lower0 = HalfOfBoxes<0, 0>;
   using Upper0 = HalfOfBoxes<0, 8>;
   using Lower1 = HalfOfBoxes<1, 0>;
@@ -155,8 +156,8 @@ void fitNodeOf(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_
 /// along one half-axis at both ends of the step: `before` and `after` are the parts of
 /// the step that this direction cuts off at the beginning and at the end.
 template <std::size_t N>
-HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
-                        Lanes<float, N>& before, Lanes<float, N>& after) {
+FCL_CCD_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
+                            Lanes<float, N>& before, Lanes<float, N>& after) {
   const Lanes<float, N> least = smaller(s0, s1), most = larger(s0, s1);
   const Lanes<float, N> loss = least / (least - most) * broadcast<N>(kLossDown);
   before = larger(before, whereNegative(s0, loss));
@@ -165,8 +166,8 @@ HWY_INLINE void addLoss(const Lanes<float, N>& s0, const Lanes<float, N>& s1,
 
 /// Half-axes of boxes that are moved: as shifted().
 template <std::size_t N>
-HWY_INLINE Lanes<float, N> movedBy(const Lanes<float, N>& half,
-                                   const Lanes<float, N>& shift) {
+FCL_CCD_INLINE Lanes<float, N> movedBy(const Lanes<float, N>& half,
+                                       const Lanes<float, N>& shift) {
   const Lanes<float, N> sum = half + shift;
   return larger(sum + abs(sum) * broadcast<N>(kOutward), broadcast<N>(kLeastHalf));
 }
@@ -174,8 +175,8 @@ HWY_INLINE Lanes<float, N> movedBy(const Lanes<float, N>& half,
 /// The overlap depths of a box and the children of a node, along one half-axis in one
 /// frame. They are rounded outward: see shifted().
 template <std::size_t kStride, bool kShifted, int kFrame>
-HWY_INLINE Floats depthsAlong(const BoxView& box, const MovingKdopNode& node,
-                              std::size_t r) {
+FCL_CCD_INLINE Floats depthsAlong(const BoxView& box, const MovingKdopNode& node,
+                                  std::size_t r) {
   const float half = (kFrame == 0 ? box.t0 : box.t1)[r * kStride];
   // Row r ^ 1 is the opposite half-axis.
   return broadcast<kEight>(kShifted ? shifted(half, box.shift[kFrame][r]) : half) +
@@ -186,8 +187,8 @@ HWY_INLINE Floats depthsAlong(const BoxView& box, const MovingKdopNode& node,
 /// without rounding, or are above: the float nearest to the sum of two half-axes is not
 /// below minus the shift if the sum is not.
 template <std::size_t kStride, bool kShifted, int kFrame>
-HWY_INLINE Floats depthSigns(const BoxView& box, const MovingKdopNode& node,
-                             std::size_t r) {
+FCL_CCD_INLINE Floats depthSigns(const BoxView& box, const MovingKdopNode& node,
+                                 std::size_t r) {
   const Floats sum = broadcast<kEight>((kFrame == 0 ? box.t0 : box.t1)[r * kStride]) +
                      load<kEight>((kFrame == 0 ? node.t0 : node.t1)[r ^ 1]);
   return kShifted ? sum + broadcast<kEight>(box.shift[kFrame][r]) : sum;
@@ -197,9 +198,9 @@ HWY_INLINE Floats depthSigns(const BoxView& box, const MovingKdopNode& node,
 /// = 0. Sets `apart` to those of them that do not overlap the box at t = 0.
 /// @param start  the box at t = 0 with what is added to it, with the stride of `box`
 template <std::size_t kStride>
-HWY_INLINE unsigned nearChildren(const BoxView& box, const float* start,
-                                 const MovingKdopNode& node,
-                                 const OverlapRequest& request, unsigned& apart) {
+FCL_CCD_INLINE unsigned nearChildren(const BoxView& box, const float* start,
+                                     const MovingKdopNode& node,
+                                     const OverlapRequest& request, unsigned& apart) {
   // Row r ^ 1 is the opposite half-axis.
   Floats s[16];
   for (std::size_t r = 0; r < 16; ++r)
@@ -217,10 +218,10 @@ HWY_INLINE unsigned nearChildren(const BoxView& box, const float* start,
 
 /// @param start  as of nearChildren(); only read if kLeavesOut
 template <std::size_t kStride, bool kShifted, bool kLeavesOut>
-HWY_INLINE unsigned overlapChildren(const BoxView& box, const float* start,
-                                    const MovingKdopNode& node,
-                                    const OverlapRequest& request,
-                                    float (&earliest)[MovingKdopNode::kWidth]) {
+FCL_CCD_INLINE unsigned overlapChildren(const BoxView& box, const float* start,
+                                        const MovingKdopNode& node,
+                                        const OverlapRequest& request,
+                                        float (&earliest)[MovingKdopNode::kWidth]) {
   unsigned left = node.lanes();
   if (kLeavesOut) {
     unsigned open = 0;
@@ -291,9 +292,9 @@ unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
 }
 
 /// The triangles of node b that lie in an embedded fan with a triangle of node a.
-HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
-                                    const MovingKdopNode& b,
-                                    const std::uint8_t* embedded) {
+FCL_CCD_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
+                                        const MovingKdopNode& b,
+                                        const std::uint8_t* embedded) {
   const auto first = load<kEight>(b.places[0]), second = load<kEight>(b.places[1]),
              third = load<kEight>(b.places[2]);
   const auto at = [&](std::uint32_t vertex) {
@@ -305,7 +306,7 @@ HWY_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lane,
 }
 
 template <bool kShifted, bool kLeavesOut>
-HWY_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
+FCL_CCD_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
   // All boxes of a are moved side by side: one by one they would take as long as the
   // comparisons.
@@ -361,15 +362,15 @@ std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned
 
 /// The box of a vertex in one frame.
 template <int kFrame>
-HWY_INLINE HalfAxes boxOf(const TreeVertex& x) {
+FCL_CCD_INLINE HalfAxes boxOf(const TreeVertex& x) {
   return load<16>(kFrame == 0 ? x.box.t0.half : x.box.t1.half);
 }
 
 /// The overlap depths of a pair of features in one frame. The order of the two features
 /// matters only for the shift.
 template <ContinuousContactKind kind, bool kShifted, int kFrame>
-HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
-                           const KdopShift* shift, const KdopShift* turned_shift) {
+FCL_CCD_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
+                               const KdopShift* shift, const KdopShift* turned_shift) {
   const auto box = [&pair](std::size_t i) { return boxOf<kFrame>(*pair.x[i]); };
   HalfAxes first, second;
   const KdopShift* add = shift;
@@ -394,8 +395,8 @@ HWY_INLINE HalfAxes depths(const TrianglePair& pair, std::size_t bit,
 /// sixteen at a time: the place of a code depends on all codes before it, and later reads
 /// would wait for each of them.
 template <typename Keeps>
-HWY_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
-                                 const Keeps& keeps) {
+FCL_CCD_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
+                                     const Keeps& keeps) {
   std::size_t kept = 0;
   for (std::size_t first = 0; first < count; first += kSixteen) {
     const std::size_t size = count - first < kSixteen ? count - first : kSixteen;
@@ -408,10 +409,10 @@ HWY_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
 }
 
 template <ContinuousContactKind kind, bool kShifted>
-HWY_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
-                                    const KdopShift* turned_shift, float latest,
-                                    const float* gaps, std::uint32_t* codes,
-                                    std::size_t count, TimeWindow* windows) {
+FCL_CCD_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
+                                        const KdopShift* turned_shift, float latest,
+                                        const float* gaps, std::uint32_t* codes,
+                                        std::size_t count, TimeWindow* windows) {
   const auto at0 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 0>(pairs[code / 16], code % 16, shift, turned_shift);
   };

@@ -27,7 +27,7 @@ struct Shortest {
   Vectors vector;
   Doubles square;
 
-  HWY_INLINE void take(const Vectors& v, const DoubleMask& is_valid) {
+  FCL_CCD_INLINE void take(const Vectors& v, const DoubleMask& is_valid) {
     const Doubles other = dot(v, v);
     const DoubleMask is_shorter = is_valid & (other < square);
     vector = select(is_shorter, v, vector);
@@ -36,7 +36,7 @@ struct Shortest {
 };
 
 /// Takes the point of the side pq that is nearest to the origin.
-HWY_INLINE void takeSide(const Vectors& p, const Vectors& q, Shortest& best) {
+FCL_CCD_INLINE void takeSide(const Vectors& p, const Vectors& q, Shortest& best) {
   const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.);
   const Vectors way = q - p;
   const Doubles length = dot(way, way), along = zero - dot(p, way);
@@ -52,7 +52,7 @@ struct Nearest {
   /// The square of the distance of a point of the polygon, near that point.
   Doubles reached;
 
-  HWY_INLINE Nearest(const Vectors* corner, int count) {
+  FCL_CCD_INLINE Nearest(const Vectors* corner, int count) {
     const Doubles zero = broadcast<kEight>(0.);
     Shortest best{corner[0], dot(corner[0], corner[0])};
     for (int k = 0; k < count; ++k)
@@ -75,8 +75,8 @@ struct Nearest {
 class PointBends {
  public:
   /// @param codes  of the pairs of features
-  HWY_INLINE PointBends(const PairBends& bends, ContinuousContactKind kind,
-                        const std::uint32_t* codes)
+  FCL_CCD_INLINE PointBends(const PairBends& bends, ContinuousContactKind kind,
+                            const std::uint32_t* codes)
       : bends_(bends) {
     // The vertices 0 to 2 belong to a, the others to b.
     constexpr unsigned kVerticesOfA = 3;
@@ -88,7 +88,7 @@ class PointBends {
   }
 
   /// The difference of the bends of a point of the second feature and one of the first.
-  HWY_INLINE Vectors between(const Points& x, const CornerPoints& p) const {
+  FCL_CCD_INLINE Vectors between(const Points& x, const CornerPoints& p) const {
     const Vectors first = x.t0[p.first] + x.t1[p.first],
                   second = x.t0[p.second] + x.t1[p.second];
     const Vectors of_a = bendOf(bends_.of[0], select(first_on_a_, first, second)),
@@ -97,7 +97,7 @@ class PointBends {
   }
 
  private:
-  static HWY_INLINE Vectors bendOf(const Bend* bend, const Vectors& twice) {
+  static FCL_CCD_INLINE Vectors bendOf(const Bend* bend, const Vectors& twice) {
     const Doubles zero = broadcast<kEight>(0.);
     if (!bend) return {zero, zero, zero};
     return broadcast<kEight>(0.5) * product(bend->matrix, twice) + allOf(bend->offset);
@@ -116,8 +116,8 @@ struct MovingPolygons {
   Doubles norm;
   int count;
 
-  HWY_INLINE MovingPolygons(ContinuousContactKind kind, const Points& x,
-                            const Doubles& lo, const Doubles& hi)
+  FCL_CCD_INLINE MovingPolygons(ContinuousContactKind kind, const Points& x,
+                                const Doubles& lo, const Doubles& hi)
       : norm(broadcast<kEight>(0.)),
         count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
     for (int k = 0; k < count; ++k) {
@@ -132,9 +132,9 @@ struct MovingPolygons {
 
   /// On a part of the step of the length h the path of a corner is bent by h^2 of what it
   /// is during the whole step.
-  HWY_INLINE void setBends(ContinuousContactKind kind, const Points& x,
-                           const PointBends& bends, const Doubles& lo,
-                           const Doubles& hi) {
+  FCL_CCD_INLINE void setBends(ContinuousContactKind kind, const Points& x,
+                               const PointBends& bends, const Doubles& lo,
+                               const Doubles& hi) {
     const Doubles one = broadcast<kEight>(1.), four = broadcast<kEight>(4.),
                   at_lo = four * (lo * (one - lo)), at_hi = four * (hi * (one - hi)),
                   within = (hi - lo) * (hi - lo);
@@ -148,7 +148,7 @@ struct MovingPolygons {
 };
 
 /// Numbers with squares and fourth powers in the range of double.
-HWY_INLINE DoubleMask isMiddling(const Doubles& size) {
+FCL_CCD_INLINE DoubleMask isMiddling(const Doubles& size) {
   return (size >= broadcast<kEight>(0x1p-200)) & (size <= broadcast<kEight>(0x1p200));
 }
 
@@ -165,8 +165,8 @@ constexpr double kTouchingTwice = 2 * DistanceTolerance::kTouching;
 /// that differs by less than half of one. Pairs that almost touch are left to it,
 /// relative to N: rounding may hide their distance.
 /// @param reached  the square of the distance of this point
-HWY_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
-                              const Doubles& reached, double distance, bool ignores) {
+FCL_CCD_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
+                                  const Doubles& reached, double distance, bool ignores) {
   const Doubles usual =
       broadcast<kEight>(distance * (1 + 2 * DistanceTolerance::kShare + kTouchingTwice)) +
       broadcast<kEight>(2 * kTouchingTwice) * norm;

@@ -24,13 +24,13 @@ namespace HWY_NAMESPACE {
 /// Eight pairs of features, given by codes (featureCode()).
 class EightFeatures {
  public:
-  HWY_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
+  FCL_CCD_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
     for (std::size_t lane = 0; lane < kEight; ++lane) {
       vertices_[lane] = pairs[codes[lane] / 16].x;
       corners_[lane] = kFeaturePoints[codes[lane] % 16];
     }
   }
-  HWY_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {
+  FCL_CCD_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {
     return *vertices_[lane][corners_[lane][i]];
   }
 
@@ -45,12 +45,12 @@ class EightFeatures {
 struct Points {
   Vectors t0[4], t1[4];
 
-  HWY_INLINE explicit Points(const EightPoints& pairs) {
+  FCL_CCD_INLINE explicit Points(const EightPoints& pairs) {
     load([&pairs](std::size_t i, std::size_t lane)
              HWY_ATTR -> const TreeVertex& { return *pairs.x[i][lane]; });
   }
 
-  HWY_INLINE explicit Points(const EightFeatures& features) {
+  FCL_CCD_INLINE explicit Points(const EightFeatures& features) {
     load([&features](std::size_t i, std::size_t lane)
              HWY_ATTR -> const TreeVertex& { return features.point(i, lane); });
   }
@@ -58,7 +58,7 @@ struct Points {
  private:
   /// @param vertex  vertex(i, lane) is point i of the pair in a lane
   template <typename Vertex>
-  HWY_INLINE void load(const Vertex& vertex) {
+  FCL_CCD_INLINE void load(const Vertex& vertex) {
     for (std::size_t i = 0; i < 4; ++i) {
       const TreeVertex* x[kEight];
       for (std::size_t lane = 0; lane < kEight; ++lane) x[lane] = &vertex(i, lane);
@@ -74,7 +74,7 @@ struct Points {
 
 /// As Difference::at() in elementary.cpp. There is no special case for 0 and 1. So if a
 /// number is not finite in one frame, the result is not finite at any time.
-HWY_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
+FCL_CCD_INLINE Vectors at(const Vectors& t0, const Vectors& t1, const Doubles& t) {
   const Doubles s = broadcast<kEight>(1.) - t;
   return {s * t0.x + t * t1.x, s * t0.y + t * t1.y, s * t0.z + t * t1.z};
 }

@@ -36,13 +36,14 @@ struct Differences {
   Doubles norm;
 };
 
-HWY_INLINE Differences differences(const Points& x, const PairTable::Ends& ends) {
+FCL_CCD_INLINE Differences differences(const Points& x, const PairTable::Ends& ends) {
   const Vectors t0 = x.t0[ends.to] - x.t0[ends.from],
                 t1 = x.t1[ends.to] - x.t1[ends.from];
   return {t0, t1, max(max(maxNorm(t0), maxNorm(t1)), broadcast<kEight>(kLeastNorm))};
 }
 
-HWY_INLINE Segments restrict(const Differences& d, const Doubles& lo, const Doubles& hi) {
+FCL_CCD_INLINE Segments restrict(const Differences& d, const Doubles& lo,
+                                 const Doubles& hi) {
   return {at(d.t0, d.t1, lo), at(d.t0, d.t1, hi), d.norm};
 }
 
@@ -52,7 +53,7 @@ struct MovingCrosses {
   Doubles norm;
 };
 
-HWY_INLINE MovingCrosses cross(const Segments& a, const Segments& b) {
+FCL_CCD_INLINE MovingCrosses cross(const Segments& a, const Segments& b) {
   return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h),
           a.norm * b.norm};
 }
@@ -61,21 +62,21 @@ struct Cubics {
   Doubles b0, b1, b2, b3, outer, inner;
   DoubleMask has_bounds;
 
-  HWY_INLINE DoubleMask hasNoRoot() const {
+  FCL_CCD_INLINE DoubleMask hasNoRoot() const {
     const Doubles zero = broadcast<kEight>(0.), outer_n = zero - outer,
                   inner_n = zero - inner;
     return has_bounds &
            (((b0 > outer) & (b1 > inner) & (b2 > inner) & (b3 > outer)) |
             ((b0 < outer_n) & (b1 < inner_n) & (b2 < inner_n) & (b3 < outer_n)));
   }
-  HWY_INLINE DoubleMask changesSign() const {
+  FCL_CCD_INLINE DoubleMask changesSign() const {
     const Doubles outer_n = broadcast<kEight>(0.) - outer;
     return has_bounds &
            (((b0 > outer) & (b3 < outer_n)) | ((b0 < outer_n) & (b3 > outer)));
   }
 };
 
-HWY_INLINE Cubics spannedVolume(const Segments& u, const MovingCrosses& n) {
+FCL_CCD_INLINE Cubics spannedVolume(const Segments& u, const MovingCrosses& n) {
   const Doubles size = u.norm * n.norm;
   return {dot(u.l, n.c0),
           dot(u.h, n.c0) + dot(u.l, n.c1),
@@ -137,7 +138,7 @@ struct Pairs {
   const PairTable& table;
   Differences difference[kQ + 1];
 
-  HWY_INLINE explicit Pairs(const EightPairs& pairs) : table(pairTable(pairs.kind)) {
+  FCL_CCD_INLINE explicit Pairs(const EightPairs& pairs) : table(pairTable(pairs.kind)) {
     const Points x(pairs);
     for (std::size_t i = 0; i <= kQ; ++i)
       difference[i] = differences(x, table.difference[i]);
@@ -149,7 +150,7 @@ struct Pairs {
 struct Sides {
   DoubleMask positive, negative;
 
-  HWY_INLINE void require(const MovingCrosses& q, const MovingCrosses& n) {
+  FCL_CCD_INLINE void require(const MovingCrosses& q, const MovingCrosses& n) {
     const Doubles size = q.norm * n.norm;
     const DoubleMask valid = isInRange(size) & isInRange(q.norm) & isInRange(n.norm);
     const Doubles bound = broadcast<kEight>(kInsideBound) * size,
@@ -167,9 +168,9 @@ struct Sides {
   }
 };
 
-HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
-                            const Segments& u, const Segments& v, const Segments& w,
-                            const MovingCrosses& n) {
+FCL_CCD_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles& hi,
+                                const Segments& u, const Segments& v, const Segments& w,
+                                const MovingCrosses& n) {
   const Segments r = restrict(pairs.difference[kR], lo, hi),
                  q = restrict(pairs.difference[kQ], lo, hi);
   const Segments* const segments[] = {&u, &v, &w, &r, &q};
@@ -188,7 +189,7 @@ HWY_INLINE Sides insideness(const Pairs& pairs, const Doubles& lo, const Doubles
 /// within its tolerance, so that no lane depends on the others. The caller has to prove
 /// what it concludes from the result.
 /// @param open  the lanes that are computed, a bit each
-HWY_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance) {
+FCL_CCD_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& tolerance) {
   constexpr int kMaxSteps = 24;
   const Doubles zero = broadcast<kEight>(0.), one = broadcast<kEight>(1.),
                 half = broadcast<kEight>(0.5), two = broadcast<kEight>(2.),
@@ -264,12 +265,13 @@ struct Orientations {
 
   /// @param normal  v x w; the volume is u . normal
   /// @param norms  the product of the norms of v and w
-  HWY_INLINE Orientations(const Vectors& u, const Vectors& normal, const Doubles& norms)
+  FCL_CCD_INLINE Orientations(const Vectors& u, const Vectors& normal,
+                              const Doubles& norms)
       : Orientations(dot(u, normal), maxNorm(u) * norms, norms) {}
 
  private:
-  HWY_INLINE Orientations(const Doubles& volume, const Doubles& size,
-                          const Doubles& norms) {
+  FCL_CCD_INLINE Orientations(const Doubles& volume, const Doubles& size,
+                              const Doubles& norms) {
     const DoubleMask valid = isInRange(size) & isInRange(norms);
     const Doubles bound = broadcast<kEight>(kVolumeBound) * size;
     positive = valid & (volume > bound);
@@ -277,8 +279,8 @@ struct Orientations {
   }
 };
 
-HWY_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
-                                const Vectors& w) {
+FCL_CCD_INLINE Orientations turnsOf(const Vectors& along, const Vectors& v,
+                                    const Vectors& w) {
   return {along, cross(v, w), maxNorm(v) * maxNorm(w)};
 }
 
@@ -292,8 +294,8 @@ struct TrianglePoints {
   Doubles norm;
 
   /// @param frame  TreeVertex::t0 or t1
-  HWY_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count,
-                            double (TreeVertex::*frame)[4])
+  FCL_CCD_INLINE TrianglePoints(const TrianglePair* pairs, std::size_t count,
+                                double (TreeVertex::*frame)[4])
       : norm(broadcast<kEight>(0.)) {
     for (std::size_t i = 0; i < 6; ++i) {
       // If there are fewer than eight pairs, the last one is repeated.
@@ -311,7 +313,7 @@ struct TrianglePoints {
 
   /// The most by which two vertices of the triangles can approach each other along a
   /// coordinate axis during the step.
-  HWY_INLINE Doubles approach() const {
+  FCL_CCD_INLINE Doubles approach() const {
     return max(max(fourth[0], fourth[1]), fourth[2]) +
            max(max(fourth[3], fourth[4]), fourth[5]);
   }
@@ -328,8 +330,8 @@ struct PlaneGaps {
 /// other by `approach` along each axis; with a distance, they stay further apart than
 /// this. The factor of the distance has more than the rounding of the length of d, a few
 /// units.
-HWY_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
-                               const Doubles& approach, double distance) {
+FCL_CCD_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
+                                   const Doubles& approach, double distance) {
   const Doubles a[3] = {dot(d, p.x[0]), dot(d, p.x[1]), dot(d, p.x[2])},
                 b[3] = {dot(d, p.x[3]), dot(d, p.x[4]), dot(d, p.x[5])};
   const Doubles size = maxNorm(d), volume = size * p.norm;
@@ -347,8 +349,8 @@ HWY_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
   return out;
 }
 
-HWY_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
-                                   const Doubles& approach, double distance) {
+FCL_CCD_INLINE DoubleMask areSeparated(const TrianglePoints& p, const Vectors& d,
+                                       const Doubles& approach, double distance) {
   const PlaneGaps gaps = planeGaps(p, d, approach, distance);
   return gaps.is_valid & ((gaps.above > gaps.least) | (gaps.below > gaps.least));
 }
@@ -371,8 +373,8 @@ struct BendRange {
 
   /// @param twice  twice the places of the vertices in the middle of the step, relative
   /// to `origin`
-  HWY_INLINE BendRange(const Bend* bend, const Vectors& origin, const Vectors (&twice)[3],
-                       const Vectors& d) {
+  FCL_CCD_INLINE BendRange(const Bend* bend, const Vectors& origin,
+                           const Vectors (&twice)[3], const Vectors& d) {
     if (!bend) return;
     const Vectors half = broadcast<kEight>(0.5) * product(bend->matrix, d);
     const Doubles reach[3] = {dot(half, twice[0]), dot(half, twice[1]),
@@ -450,7 +452,7 @@ unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
 /// For cubics with the same sign at 0 and at 1, the time in between at which the cubic is
 /// nearest to zero or passes furthest beyond it, computed in doubles. 1/2 if there is
 /// none.
-HWY_INLINE Doubles nearestToZero(const Cubics& f) {
+FCL_CCD_INLINE Doubles nearestToZero(const Cubics& f) {
   const Doubles zero = broadcast<kEight>(0.), three = broadcast<kEight>(3.),
                 half = broadcast<kEight>(0.5);
   // The slope has Bernstein coefficients e0, e1, e2; it rises through zero at s / (1 - s)

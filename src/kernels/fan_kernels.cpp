@@ -20,8 +20,8 @@ namespace deformable {
 namespace HWY_NAMESPACE {
 
 /// The paths of the outer ends of spoke i, of eight fans.
-HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices, const EightFans& fans,
-                                    std::size_t i) {
+FCL_CCD_INLINE MovingVectors loadSpokes(const TreeVertex* vertices, const EightFans& fans,
+                                        std::size_t i) {
   const TreeVertex* x[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane)
     x[lane] = vertices + fans.spokes[lane][i];
@@ -31,18 +31,18 @@ HWY_INLINE MovingVectors loadSpokes(const TreeVertex* vertices, const EightFans&
 /// The spokes of eight short fans, and the normals of their triangles.
 class ShortFans {
  public:
-  HWY_INLINE ShortFans(const TreeVertex* vertices, const EightFans& fans) {
+  FCL_CCD_INLINE ShortFans(const TreeVertex* vertices, const EightFans& fans) {
     const MovingVectors center = loadPaths(fans.center);
     for (std::size_t i = 0; i < fans.count; ++i)
       spokes_[i] = loadSpokes(vertices, fans, i) - center;
     spokes_[fans.count] = spokes_[0];
   }
 
-  HWY_INLINE const MovingVectors& spoke(std::size_t i) const { return spokes_[i]; }
-  HWY_INLINE const MovingNormals& makeNormal(std::size_t i) {
+  FCL_CCD_INLINE const MovingVectors& spoke(std::size_t i) const { return spokes_[i]; }
+  FCL_CCD_INLINE const MovingNormals& makeNormal(std::size_t i) {
     return normals_[i] = cross(spokes_[i], spokes_[i + 1]);
   }
-  HWY_INLINE const MovingNormals& normal(std::size_t i) const { return normals_[i]; }
+  FCL_CCD_INLINE const MovingNormals& normal(std::size_t i) const { return normals_[i]; }
 
  private:
   MovingVectors spokes_[VertexFans::kShort + 1];
@@ -52,14 +52,14 @@ class ShortFans {
 /// The spokes and normals of long fans, which are computed when they are needed.
 class LongFans {
  public:
-  HWY_INLINE LongFans(const TreeVertex* vertices, const EightFans& fans)
+  FCL_CCD_INLINE LongFans(const TreeVertex* vertices, const EightFans& fans)
       : vertices_(vertices), fans_(fans), center_(loadPaths(fans.center)) {}
 
-  HWY_INLINE MovingVectors spoke(std::size_t i) const {
+  FCL_CCD_INLINE MovingVectors spoke(std::size_t i) const {
     return loadSpokes(vertices_, fans_, i < fans_.count ? i : 0) - center_;
   }
-  HWY_INLINE MovingNormals makeNormal(std::size_t i) const { return normal(i); }
-  HWY_INLINE MovingNormals normal(std::size_t i) const {
+  FCL_CCD_INLINE MovingNormals makeNormal(std::size_t i) const { return normal(i); }
+  FCL_CCD_INLINE MovingNormals normal(std::size_t i) const {
     return cross(spoke(i), spoke(i + 1));
   }
 
@@ -77,8 +77,8 @@ struct SideOfRay {
 
 /// @param across  a direction. A spoke is before the ray if its product with this
 /// direction is above the bound
-HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
-                               const Doubles& bound, const Doubles& minus_bound) {
+FCL_CCD_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
+                                   const Doubles& bound, const Doubles& minus_bound) {
   const Doubles g = dot(spoke, across);
   return {bits(g > bound), bits(g < minus_bound)};
 }
@@ -89,9 +89,9 @@ HWY_INLINE SideOfRay sideOfRay(const Vectors& spoke, const Vectors& across,
 /// @param norm  of the spokes
 /// @param turned  bound on the rounding of a product of a normal and d
 template <typename Fans>
-HWY_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const Vectors& d,
-                              const Doubles& norm, const Doubles& turned,
-                              double distance) {
+FCL_CCD_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const Vectors& d,
+                                  const Doubles& norm, const Doubles& turned,
+                                  double distance) {
   // More than the rounding of a product, a root and a quotient.
   constexpr double kUp = 1 + 0x1p-40;
   // The rim is a difference of differences: 2^-51 of the norm in a coordinate, and it is
@@ -117,8 +117,8 @@ HWY_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const Vecto
 }
 
 template <typename Fans>
-HWY_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed,
-                                double distance) {
+FCL_CCD_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed,
+                                    double distance) {
   Doubles u_norm = broadcast<kEight>(kLeastNorm);
   for (std::size_t i = 0; i < count; ++i) {
     const MovingVectors spoke = fans.spoke(i);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Lanes in as many of Highway's vectors as they take. Part of lanes.h, which includes it
-// once for each of Highway's targets.
+// once for each of Highway's targets that has vectors.
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {
@@ -196,9 +196,6 @@ HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
   Lanes<float, N> out;
   for (std::size_t p = 0; p < Lanes<float, N>::kParts; ++p) {
     // As many parts of floats as of doubles, or half as many.
-#if HWY_TARGET == HWY_SCALAR
-    out.part[p] = hn::DemoteTo(tag, a.part[p]);
-#else
     if constexpr (Lanes<float, N>::kParts == Lanes<double, N>::kParts) {
       out.part[p] = hn::DemoteTo(tag, a.part[p]);
     } else {
@@ -206,7 +203,6 @@ HWY_INLINE Lanes<float, N> narrowed(const Lanes<double, N>& a) {
       out.part[p] = hn::Combine(tag, hn::DemoteTo(half, a.part[2 * p + 1]),
                                 hn::DemoteTo(half, a.part[2 * p]));
     }
-#endif
   }
   return out;
 }
@@ -300,7 +296,6 @@ HWY_INLINE T largest(const Lanes<T, N>& a) {
   return hn::GetLane(hn::MaxOfLanes(tag, most));
 }
 
-#if HWY_TARGET != HWY_SCALAR
 /// Row i, which has four numbers. A vector of eight also has row i + 4, behind row i.
 template <typename Tag, typename Row>
 HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
@@ -311,7 +306,6 @@ HWY_INLINE hn::Vec<Tag> loadRows(Tag tag, const Row& row, std::size_t i) {
     return hn::Combine(tag, loadRows(half, row, i + 4), loadRows(half, row, i));
   }
 }
-#endif
 
 /// The columns of N rows of four.
 /// @param row  row(i) points to row i
@@ -321,12 +315,6 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
   const typename Lanes<T, N>::Tag tag;
   FCL_CCD_FOR_PARTS {
     const std::size_t i = p * Lanes<T, N>::kWidth;
-#if HWY_TARGET == HWY_SCALAR
-    x.part[p] = hn::LoadU(tag, row(i));
-    y.part[p] = hn::LoadU(tag, row(i) + 1);
-    z.part[p] = hn::LoadU(tag, row(i) + 2);
-    w.part[p] = hn::LoadU(tag, row(i) + 3);
-#else
     if constexpr (Lanes<T, N>::kWidth == 2) {
       const auto a = hn::LoadU(tag, row(i)), b = hn::LoadU(tag, row(i + 1));
       x.part[p] = hn::InterleaveLower(tag, a, b);
@@ -347,7 +335,6 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
       z.part[p] = hn::OddEvenBlocks(xz23, hn::SwapAdjacentBlocks(xz01));
       w.part[p] = hn::OddEvenBlocks(yw23, hn::SwapAdjacentBlocks(yw01));
     }
-#endif
   }
 }
 
@@ -361,14 +348,6 @@ HWY_INLINE void loadColumns(const Row& row, Lanes<T, N>& x, Lanes<T, N>& y,
 
 /// Eight rows of eight become columns.
 HWY_INLINE void transpose(Lanes<float, kEight> (&x)[kEight]) {
-#if HWY_TARGET == HWY_SCALAR
-  for (std::size_t i = 0; i < kEight; ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      const auto kept = x[i].part[j];
-      x[i].part[j] = x[j].part[i];
-      x[j].part[i] = kept;
-    }
-#else
   using Parts = Lanes<float, kEight>;
   const Parts::Tag tag;
   const hn::Repartition<std::uint64_t, Parts::Tag> twos;
@@ -399,7 +378,6 @@ HWY_INLINE void transpose(Lanes<float, kEight> (&x)[kEight]) {
       x[i + 4].part[0] = low.part[1];
     }
   }
-#endif
 }
 
 #undef FCL_CCD_FOR_PARTS

@@ -36,14 +36,14 @@ struct NearestPoints {
   /// The lanes whose nearest point is not inside of a sliver.
   DoubleMask is_sure;
 
-  HWY_INLINE DoubleMask isInside() const { return part == all(kInside); }
-  HWY_INLINE DoubleMask isSide() const { return part < all(kCorner); }
+  FCL_CCD_INLINE DoubleMask isInside() const { return part == all(kInside); }
+  FCL_CCD_INLINE DoubleMask isSide() const { return part < all(kCorner); }
 };
 
 /// The nearest points of the sides.
 template <typename Polygons>
-HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
-                          NearestPoints& best) {
+FCL_CCD_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
+                              NearestPoints& best) {
   const Doubles zero = all(0), one = all(1);
   for (int k = 0; k < x.count; ++k) {
     const int l = x.next(k);
@@ -65,7 +65,8 @@ HWY_INLINE void takeSides(const Polygons& x, const Vectors (&corner)[4],
 
 /// nearestPoint().
 template <typename Polygons>
-HWY_INLINE NearestPoints nearestPoints(const Polygons& x, const Vectors (&corner)[4]) {
+FCL_CCD_INLINE NearestPoints nearestPoints(const Polygons& x,
+                                           const Vectors (&corner)[4]) {
   const Doubles zero = all(0);
   const Vectors &p = corner[0], v = corner[1] - p, w = corner[x.count - 1] - p;
   NearestPoints sides, near;
@@ -100,8 +101,8 @@ struct NearestSides {
   Vectors from, to, from_velocity, to_velocity;
 
   template <typename Polygons>
-  HWY_INLINE NearestSides(const Polygons& x, const Vectors (&corner)[4],
-                          const NearestPoints& near)
+  FCL_CCD_INLINE NearestSides(const Polygons& x, const Vectors (&corner)[4],
+                              const NearestPoints& near)
       : from(corner[0]),
         to(corner[1]),
         from_velocity(x.velocity[0]),
@@ -117,7 +118,8 @@ struct NearestSides {
 };
 
 /// directionApart(), its first attempt. Lanes without a direction are not finite.
-HWY_INLINE Vectors directionsApart(const NearestPoints& near, const NearestSides& sides) {
+FCL_CCD_INLINE Vectors directionsApart(const NearestPoints& near,
+                                       const NearestSides& sides) {
   const Doubles one = all(1);
   const Doubles sign = select(dot(near.normal, near.point) < all(0), all(-1), one);
   const Vectors normal = sign * near.normal;
@@ -131,15 +133,15 @@ HWY_INLINE Vectors directionsApart(const NearestPoints& near, const NearestSides
   return select(near.isSide(), (one / rest) * across, n);
 }
 
-HWY_INLINE Vectors without(const Vectors& v, const Vectors& n) {
+FCL_CCD_INLINE Vectors without(const Vectors& v, const Vectors& n) {
   return v - dot(v, n) * n;
 }
 
 /// turnApart().
 template <typename Polygons>
-HWY_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
-                              const NearestPoints& near, const NearestSides& sides,
-                              const Vectors& n) {
+FCL_CCD_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
+                                  const NearestPoints& near, const NearestSides& sides,
+                                  const Vectors& n) {
   const Doubles one = all(1);
   const Vectors of_corner = (one / near.distance) * without(sides.from_velocity, n);
 
@@ -159,8 +161,8 @@ HWY_INLINE Vectors turnsApart(const Polygons& x, const Vectors (&corner)[4],
 }
 
 /// firstRoot().
-HWY_INLINE Doubles firstRoots(const Doubles& gap, const Doubles& rate,
-                              const Doubles& bend) {
+FCL_CCD_INLINE Doubles firstRoots(const Doubles& gap, const Doubles& rate,
+                                  const Doubles& bend) {
   const Doubles zero = all(0), discriminant = rate * rate - all(4) * gap * bend;
   const Doubles root = squareRoot(discriminant), divisor = root - rate;
   const DoubleMask opens = rate > zero;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Lanes in a plain loop, where Highway is switched off. Part of lanes.h.
+// Lanes in a plain loop, without Highway. Part of lanes.h.
 
 HWY_BEFORE_NAMESPACE();
 namespace fcl {

@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 /// coincide are left out: their ids would decide.
 class PointOrders {
  public:
-  HWY_INLINE PointOrders(ContinuousContactKind kind, Points& x) : x_(x) {
+  FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, Points& x) : x_(x) {
     if (kind == ContinuousContactKind::kVertexFace) {
       sort(0, 1, 2);
       sort(1, 2, 3);
@@ -42,9 +42,9 @@ class PointOrders {
   }
 
   /// The lanes in which points of a feature coincide.
-  HWY_INLINE unsigned unknown() const { return unknown_; }
+  FCL_CCD_INLINE unsigned unknown() const { return unknown_; }
   /// The exchanges of a lane, see exchangedNumbers().
-  HWY_INLINE unsigned exchanges(std::size_t lane) const {
+  FCL_CCD_INLINE unsigned exchanges(std::size_t lane) const {
     return (exchanges_[0] >> lane & 1U) | (exchanges_[1] >> lane & 1U) << 1 |
            (exchanges_[2] >> lane & 1U) << 2;
   }
@@ -55,7 +55,7 @@ class PointOrders {
   };
 
   /// By the coordinates at t = 0, then by those at t = 1.
-  HWY_INLINE Comparison compare(int i, int j) const {
+  FCL_CCD_INLINE Comparison compare(int i, int j) const {
     const Vectors &p = x_.t0[i], &q = x_.t0[j];
     Comparison order{p.x < q.x, p.x == q.x};
     if (bits(order.is_equal) == 0) return order;
@@ -66,18 +66,18 @@ class PointOrders {
     then(x_.t1[i].z, x_.t1[j].z, order);
     return order;
   }
-  static HWY_INLINE void then(const Doubles& p, const Doubles& q, Comparison& order) {
+  static FCL_CCD_INLINE void then(const Doubles& p, const Doubles& q, Comparison& order) {
     order.is_less = order.is_less | (order.is_equal & (p < q));
     order.is_equal = order.is_equal & (p == q);
   }
 
-  HWY_INLINE void sort(int step, int i, int j) {
+  FCL_CCD_INLINE void sort(int step, int i, int j) {
     const Comparison order = compare(j, i);
     exchanges_[step] = bits(order.is_less);
     unknown_ |= bits(order.is_equal);
     exchange(order.is_less, i, j);
   }
-  HWY_INLINE void exchange(const DoubleMask& condition, int i, int j) {
+  FCL_CCD_INLINE void exchange(const DoubleMask& condition, int i, int j) {
     for (Vectors* x : {x_.t0, x_.t1}) {
       const Vectors p = x[i], q = x[j];
       x[i] = select(condition, q, p);

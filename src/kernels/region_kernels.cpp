@@ -25,7 +25,7 @@ namespace HWY_NAMESPACE {
 
 /// The product of a vector with axis kAxis, without its error bound.
 template <std::size_t kAxis>
-HWY_INLINE Doubles along(const Vectors& a) {
+FCL_CCD_INLINE Doubles along(const Vectors& a) {
   constexpr int x = kAxes[kAxis][0], y = kAxes[kAxis][1], z = kAxes[kAxis][2];
   static_assert(x > 0 || (x == 0 && (y > 0 || (y == 0 && z > 0))), "what comes first");
   Doubles sum = x ? a.x : y ? a.y : a.z;
@@ -43,7 +43,7 @@ struct BoundedNormals {
 
 /// If all triangles face axis kAxis or its opposite, the bit of that direction; else 0.
 template <std::size_t kAxis>
-HWY_INLINE std::uint32_t facedAlong(const BoundedNormals& normals) {
+FCL_CCD_INLINE std::uint32_t facedAlong(const BoundedNormals& normals) {
   const MovingNormals& n = normals.n;
   const Doubles a = along<kAxis>(n.first), b = along<kAxis>(n.middle),
                 c = along<kAxis>(n.last);
@@ -53,13 +53,13 @@ HWY_INLINE std::uint32_t facedAlong(const BoundedNormals& normals) {
 }
 
 template <std::size_t... kAxis>
-HWY_INLINE std::uint32_t facedAlongAll(const BoundedNormals& normals,
-                                       std::index_sequence<kAxis...>) {
+FCL_CCD_INLINE std::uint32_t facedAlongAll(const BoundedNormals& normals,
+                                           std::index_sequence<kAxis...>) {
   return (... | facedAlong<kAxis>(normals));
 }
 
 /// Whether no coordinate is a NaN. Infinities of different signs count as one.
-HWY_INLINE bool areNumbers(const Vectors& a) {
+FCL_CCD_INLINE bool areNumbers(const Vectors& a) {
   const Doubles sum = a.x + a.y + a.z;
   return bits(sum == sum) == (1U << kEight) - 1;
 }
@@ -88,7 +88,7 @@ std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* tr
 struct MovingVolumes {
   Doubles outer0, inner0, inner1, outer1;
 
-  HWY_INLINE MovingVolumes(const MovingVectors& u, const MovingNormals& n)
+  FCL_CCD_INLINE MovingVolumes(const MovingVectors& u, const MovingNormals& n)
       : outer0(dot(u.t0, n.first)),
         inner0(dot(u.t1, n.first) + dot(u.t0, n.middle)),
         inner1(dot(u.t1, n.middle) + dot(u.t0, n.last)),
@@ -102,8 +102,8 @@ struct VolumeSigns {
 };
 
 /// @param size  the product of their norms, in the range of the bounds
-HWY_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& n,
-                                   const Doubles& size) {
+FCL_CCD_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& n,
+                                       const Doubles& size) {
   const auto [outer0, inner0, inner1, outer1] = MovingVolumes(u, n);
   const Doubles outer = broadcast<kEight>(kOuterBound) * size,
                 inner = broadcast<kEight>(kInnerBound) * size;
@@ -114,7 +114,7 @@ HWY_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& 
 }
 
 /// The same vector eight times.
-HWY_INLINE Vectors vectorsOf(const double* x) {
+FCL_CCD_INLINE Vectors vectorsOf(const double* x) {
   return {broadcast<kEight>(x[0]), broadcast<kEight>(x[1]), broadcast<kEight>(x[2])};
 }
 
@@ -154,23 +154,23 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
 }
 
 /// Sizes with squares in the range of the bounds.
-HWY_INLINE DoubleMask hasSquare(const Doubles& size) {
+FCL_CCD_INLINE DoubleMask hasSquare(const Doubles& size) {
   return (size >= all(0x1p-400)) & (size <= all(0x1p400));
 }
 
 /// More than the rounding of products and of lengths of differences.
 constexpr double kUp = 1 + 0x1p-40;
 
-HWY_INLINE Doubles squareOf(const Vectors& a) { return dot(a, a); }
+FCL_CCD_INLINE Doubles squareOf(const Vectors& a) { return dot(a, a); }
 
 /// The largest square of a vector during the step.
-HWY_INLINE Doubles largestSquare(const MovingVectors& v) {
+FCL_CCD_INLINE Doubles largestSquare(const MovingVectors& v) {
   return max(squareOf(v.t0), squareOf(v.t1));
 }
 
 /// A bound on the square of a cross product during the step.
 /// @param rounding  of a component
-HWY_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& rounding) {
+FCL_CCD_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& rounding) {
   const Doubles most =
       max(max(squareOf(n.first), all(0.25) * squareOf(n.middle)), squareOf(n.last));
   const Doubles length = squareRoot(most) * all(kUp) + all(2) * rounding;

@@ -18,14 +18,16 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-HWY_INLINE Vectors all(const double (&v)[3]) { return {all(v[0]), all(v[1]), all(v[2])}; }
+FCL_CCD_INLINE Vectors all(const double (&v)[3]) {
+  return {all(v[0]), all(v[1]), all(v[2])};
+}
 
-HWY_INLINE Vectors rotated(const double (&r)[9], const Vectors& v) {
+FCL_CCD_INLINE Vectors rotated(const double (&r)[9], const Vectors& v) {
   return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z,
           all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
           all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
 }
-HWY_INLINE Vectors turnedBack(const double (&r)[9], const Vectors& v) {
+FCL_CCD_INLINE Vectors turnedBack(const double (&r)[9], const Vectors& v) {
   return {all(r[0]) * v.x + all(r[3]) * v.y + all(r[6]) * v.z,
           all(r[1]) * v.x + all(r[4]) * v.y + all(r[7]) * v.z,
           all(r[2]) * v.x + all(r[5]) * v.y + all(r[8]) * v.z};
@@ -37,7 +39,7 @@ struct WorldBox {
   double half_axis[3][3];
 };
 
-HWY_INLINE WorldBox inWorld(const MotionBox& box, const Pose& pose) {
+FCL_CCD_INLINE WorldBox inWorld(const MotionBox& box, const Pose& pose) {
   const double(&r)[9] = pose.rotation;
   WorldBox out;
   for (int k = 0; k < 3; ++k) {
@@ -56,8 +58,8 @@ struct Projection {
   Doubles between, reach;
 };
 
-HWY_INLINE Projection project(const WorldBox& a, const MotionBoxes& b, const Pose& pose_b,
-                              const Vectors& d) {
+FCL_CCD_INLINE Projection project(const WorldBox& a, const MotionBoxes& b,
+                                  const Pose& pose_b, const Vectors& d) {
   const Vectors body = turnedBack(pose_b.rotation, d);
   const Vectors from = all(pose_b.translation) - all(a.center);
   Projection out{dot(body, loadVectors(b.center)) + dot(d, from), all(0)};
@@ -80,8 +82,8 @@ struct Gaps {
   Doubles first, middle, last;
 };
 
-HWY_INLINE Gaps gapsTo(const Doubles& side, const Projection (&p)[3],
-                       const Doubles (&reach)[3]) {
+FCL_CCD_INLINE Gaps gapsTo(const Doubles& side, const Projection (&p)[3],
+                           const Doubles (&reach)[3]) {
   const Doubles zero = all(0);
   const DoubleMask is_opposite = side < zero;
   const auto gap = [&](int k) HWY_ATTR {
@@ -92,8 +94,8 @@ HWY_INLINE Gaps gapsTo(const Doubles& side, const Projection (&p)[3],
 
 /// The part of the span, from where the first gap is, in which the gap is positive. It is
 /// not positive everywhere.
-HWY_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
-                          const Doubles& last) {
+FCL_CCD_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
+                              const Doubles& last) {
   const Doubles zero = all(0), half = all(0.5);
   const DoubleMask past_middle = middle > zero;
   const Doubles from = select(past_middle, middle, first),
@@ -102,8 +104,8 @@ HWY_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
 }
 
 /// Uses the side of b's center at the beginning, and the side at the end.
-HWY_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
-                          Losses& losses) {
+FCL_CCD_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
+                              Losses& losses) {
   const Doubles zero = all(0);
   const Doubles reach[3] = {p[0].reach + margin, p[1].reach + margin,
                             p[2].reach + margin};
@@ -167,8 +169,8 @@ struct SpanCorners {
   Vectors corner[3][3];
 };
 
-HWY_INLINE SpanCorners inWorld(const MotionTriangles& b, const double* times,
-                               const SpanPoses& poses) {
+FCL_CCD_INLINE SpanCorners inWorld(const MotionTriangles& b, const double* times,
+                                   const SpanPoses& poses) {
   const Pose* const pose[3] = {&poses.beginning, &poses.middle, &poses.end};
   SpanCorners out;
   for (int at = 0; at < 3; ++at)
@@ -189,9 +191,9 @@ struct ApartHalves {
 /// Whether the gaps of all pairs of corners stay above 0 during a half. With the gaps g0
 /// and g1 at its ends, g0 (1 - s) + g1 s - 4 D s (1 - s) > 0 for all s in [0, 1] if
 /// sqrt(g0) + sqrt(g1) > 2 sqrt(D). Without roots: 2 sqrt(g0 g1) > 4 D - g0 - g1.
-HWY_INLINE DoubleMask areApart(const Doubles (&a0)[3], const Doubles (&a1)[3],
-                               const Doubles (&b0)[3], const Doubles (&b1)[3],
-                               const Doubles& four_deviations) {
+FCL_CCD_INLINE DoubleMask areApart(const Doubles (&a0)[3], const Doubles (&a1)[3],
+                                   const Doubles (&b0)[3], const Doubles (&b1)[3],
+                                   const Doubles& four_deviations) {
   // More than the rounding of both sides.
   const Doubles zero = all(0), four = all(4 * (1 - 0x1p-40));
   DoubleMask apart = zero >= zero;
@@ -206,9 +208,9 @@ HWY_INLINE DoubleMask areApart(const Doubles (&a0)[3], const Doubles (&a1)[3],
 }
 
 /// Tries a direction, or its opposite, whichever parts the triangles more in the middle.
-HWY_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
-                         const Doubles& four_deviations, double margin, unsigned tested,
-                         ApartHalves& apart) {
+FCL_CCD_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
+                             const Doubles& four_deviations, double margin,
+                             unsigned tested, ApartHalves& apart) {
   const Doubles zero = all(0);
   Doubles of_a[3][3], of_b[3][3];
   for (int i = 0; i < 3; ++i) {
@@ -242,7 +244,7 @@ HWY_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vectors d,
                                                    of_b[half + 1], four_deviations);
 }
 
-HWY_INLINE Vectors unit(const Vectors& v) {
+FCL_CCD_INLINE Vectors unit(const Vectors& v) {
   return (all(1) / max(squareRoot(dot(v, v)), all(0x1p-500))) * v;
 }
 

@@ -49,14 +49,14 @@ struct SinesCosines {
   Doubles sine, cosine;
 };
 
-HWY_INLINE Doubles series(const Doubles& q, const double (&terms)[8]) {
+FCL_CCD_INLINE Doubles series(const Doubles& q, const double (&terms)[8]) {
   Doubles sum = all(terms[0]);
   for (int k = 1; k < 8; ++k) sum = sum * q + all(terms[k]);
   return sum;
 }
 
 /// sineCosine() of angles in [0, 3.2].
-HWY_INLINE SinesCosines sinesCosines(const Doubles& x) {
+FCL_CCD_INLINE SinesCosines sinesCosines(const Doubles& x) {
   // A sum with it is rounded to an integer.
   constexpr double kInteger = 0x1.8p52;
   const Doubles zero = all(0),
@@ -75,18 +75,18 @@ HWY_INLINE SinesCosines sinesCosines(const Doubles& x) {
 struct Poses {
   Doubles rotation[9], translation[3];
 
-  HWY_INLINE Vectors rotated(const Vectors& v) const {
+  FCL_CCD_INLINE Vectors rotated(const Vectors& v) const {
     const Doubles(&m)[9] = rotation;
     return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
             m[6] * v.x + m[7] * v.y + m[8] * v.z};
   }
-  HWY_INLINE Vectors shift() const {
+  FCL_CCD_INLINE Vectors shift() const {
     return {translation[0], translation[1], translation[2]};
   }
 };
 
 /// MotionPath::pose().
-HWY_INLINE Poses posesAt(const Turn& turn, const Doubles& t) {
+FCL_CCD_INLINE Poses posesAt(const Turn& turn, const Doubles& t) {
   Doubles sine = all(0), cosine = all(0);
   if (turn.angle > 0) {
     const Doubles angle = all(turn.angle) * t;
@@ -110,7 +110,7 @@ HWY_INLINE Poses posesAt(const Turn& turn, const Doubles& t) {
 }
 
 /// MotionPath::rate().
-HWY_INLINE Poses ratesAt(const Turn& turn, const Doubles& t) {
+FCL_CCD_INLINE Poses ratesAt(const Turn& turn, const Doubles& t) {
   Doubles sine = all(0), cosine = all(0);
   if (turn.angle > 0) {
     const SinesCosines at = sinesCosines(all(turn.angle) * t);
@@ -134,9 +134,9 @@ struct Corners {
 };
 
 /// @param count  the number of corners that are wanted
-HWY_INLINE void setPositions(const TurningPairs& pairs, int k, const TurningBody& body,
-                             const Poses& poses, const Doubles& t, int count,
-                             Corners& out) {
+FCL_CCD_INLINE void setPositions(const TurningPairs& pairs, int k,
+                                 const TurningBody& body, const Poses& poses,
+                                 const Doubles& t, int count, Corners& out) {
   for (int i = 0; i < count; ++i) {
     Vectors x = loadVectors(pairs.corner[k][0][i]);
     if (body.deforms) x = (all(1) - t) * x + t * loadVectors(pairs.corner[k][1][i]);
@@ -144,8 +144,8 @@ HWY_INLINE void setPositions(const TurningPairs& pairs, int k, const TurningBody
   }
 }
 
-HWY_INLINE void setCorners(const TurningPairs& pairs, int k, const TurningBody& body,
-                           const Doubles& t, int count, Corners& out) {
+FCL_CCD_INLINE void setCorners(const TurningPairs& pairs, int k, const TurningBody& body,
+                               const Doubles& t, int count, Corners& out) {
   const Poses poses = posesAt(*body.turn, t), rates = ratesAt(*body.turn, t);
   setPositions(pairs, k, body, poses, t, count, out);
   for (int i = 0; i < count; ++i) {
@@ -164,7 +164,7 @@ HWY_INLINE void setCorners(const TurningPairs& pairs, int k, const TurningBody& 
 struct FeatureSizes {
   int of[2];
 
-  HWY_INLINE explicit FeatureSizes(ContinuousContactKind kind)
+  FCL_CCD_INLINE explicit FeatureSizes(ContinuousContactKind kind)
       : of{kind == ContinuousContactKind::kEdgeEdge ? 2 : 1,
            kind == ContinuousContactKind::kEdgeEdge ? 2 : 3} {}
 };
@@ -176,8 +176,8 @@ struct TurningPolygons {
   Doubles size;
   int count;
 
-  HWY_INLINE TurningPolygons(const TurningPairs& pairs, const TurningBody (&body)[2],
-                             const Doubles& t)
+  FCL_CCD_INLINE TurningPolygons(const TurningPairs& pairs, const TurningBody (&body)[2],
+                                 const Doubles& t)
       : size(all(0)), count(pairs.kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
     const FeatureSizes sizes(pairs.kind);
     Corners of[2];
@@ -192,12 +192,12 @@ struct TurningPolygons {
     size = squareRoot(size);
   }
 
-  HWY_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
+  FCL_CCD_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
 };
 
 /// Bounds on the acceleration of the points of one body's features: accelerationOf().
-HWY_INLINE Doubles accelerations(const TurningPairs& pairs, int k,
-                                 const TurningBody& body, int count) {
+FCL_CCD_INLINE Doubles accelerations(const TurningPairs& pairs, int k,
+                                     const TurningBody& body, int count) {
   const AccelerationBound& bound = body.acceleration;
   const auto of = [&](const Vectors& x) HWY_ATTR {
     const double(&m)[9] = bound.turn;
@@ -223,9 +223,10 @@ HWY_INLINE Doubles accelerations(const TurningPairs& pairs, int k,
 }
 
 /// The ends of the steps that a direction proves; -infinity: none.
-HWY_INLINE Doubles stepsAlong(const TurningPolygons& x, const Vectors& n,
-                              const Vectors& turn, const Doubles& longest, double margin,
-                              double rate_margin, const Doubles& least_bend) {
+FCL_CCD_INLINE Doubles stepsAlong(const TurningPolygons& x, const Vectors& n,
+                                  const Vectors& turn, const Doubles& longest,
+                                  double margin, double rate_margin,
+                                  const Doubles& least_bend) {
   const Doubles zero = all(0);
   Doubles h = longest;
   DoubleMask proves = longest > zero;
@@ -243,8 +244,8 @@ HWY_INLINE Doubles stepsAlong(const TurningPolygons& x, const Vectors& n,
 /// Eight pairs on their way.
 class TurningAdvance {
  public:
-  HWY_INLINE TurningAdvance(const TurningPairs& pairs, const TurningBody (&body)[2],
-                            const TurningRequest& request)
+  FCL_CCD_INLINE TurningAdvance(const TurningPairs& pairs, const TurningBody (&body)[2],
+                                const TurningRequest& request)
       : pairs_(pairs),
         body_(body),
         request_(request),
@@ -255,13 +256,13 @@ class TurningAdvance {
   }
 
   /// The lanes that need more than plain steps.
-  HWY_INLINE unsigned open() const { return open_; }
-  HWY_INLINE const DoubleMask& contacts() const { return is_contact_; }
+  FCL_CCD_INLINE unsigned open() const { return open_; }
+  FCL_CCD_INLINE const DoubleMask& contacts() const { return is_contact_; }
   /// Until when the features are apart; the first time of contact.
-  HWY_INLINE const Doubles& time() const { return t_; }
+  FCL_CCD_INLINE const Doubles& time() const { return t_; }
 
  private:
-  HWY_INLINE void advance() {
+  FCL_CCD_INLINE void advance() {
     // Most pairs take three or four.
     constexpr int kMostSteps = 16;
     const Doubles last = load<kEight>(pairs_.last);
@@ -285,8 +286,8 @@ class TurningAdvance {
   }
 
   /// @param left  the lanes that matter
-  HWY_INLINE Doubles longestSteps(const TurningPolygons& x, const NearestPoints& near,
-                                  unsigned left) const {
+  FCL_CCD_INLINE Doubles longestSteps(const TurningPolygons& x, const NearestPoints& near,
+                                      unsigned left) const {
     // A turn that is not at right angles makes the direction longer than sqrt(2): by less
     // than this with h |m| <= 1.
     constexpr double kMostAlong = 0x1p-13, kHalfRoot = 0.7073;
@@ -317,7 +318,8 @@ class TurningAdvance {
 
 /// The lanes in which an edge of one triangle provably passes through the other, as
 /// TrianglePairMotion::provesCrossing() shows it.
-HWY_INLINE DoubleMask doCross(const Corners& a, const Corners& b, double position_error) {
+FCL_CCD_INLINE DoubleMask doCross(const Corners& a, const Corners& b,
+                                  double position_error) {
   const Doubles zero = all(0);
   Vectors x[2][3];
   Doubles size = zero;
@@ -358,9 +360,9 @@ HWY_INLINE DoubleMask doCross(const Corners& a, const Corners& b, double positio
 
 /// TrianglePairMotion::proveContact(). A contact at the beginning has exactly the time 0.
 /// @param is_wanted  the lanes in which there is a contact
-HWY_INLINE Doubles upperEnds(const TurningPairs& pairs, const TurningBody (&body)[2],
-                             const TurningRequest& request, const Doubles& t,
-                             const DoubleMask& is_wanted) {
+FCL_CCD_INLINE Doubles upperEnds(const TurningPairs& pairs, const TurningBody (&body)[2],
+                                 const TurningRequest& request, const Doubles& t,
+                                 const DoubleMask& is_wanted) {
   Corners of[2];
   for (int k = 0; k < 2; ++k) setCorners(pairs, k, body[k], t, 3, of[k]);
   Doubles speed = all(0);
