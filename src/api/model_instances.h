@@ -49,6 +49,8 @@
   TEMPLATE int BVHModel<__VA_ARGS__>::beginUpdateModel();                               \
   TEMPLATE int BVHModel<__VA_ARGS__>::updateSubModel(const std::vector<Vector3<S>>&);   \
   TEMPLATE int BVHModel<__VA_ARGS__>::endUpdateModel(bool, bool);                       \
+  TEMPLATE int BVHModel<__VA_ARGS__>::buildTree();                                      \
+  TEMPLATE int BVHModel<__VA_ARGS__>::refitTree(bool);                                  \
   TEMPLATE NODE_TYPE BVHModel<__VA_ARGS__>::getNodeType() const;                        \
   TEMPLATE void BVHModel<__VA_ARGS__>::computeLocalAABB();                              \
   TEMPLATE Vector3<S> BVHModel<__VA_ARGS__>::computeCOM() const;                        \
