@@ -68,21 +68,41 @@ class DeformableModel : public ::testing::Test {
   template <typename Call>
   static void expectRefusal(Model& model, int code, const std::string& word,
                             Call&& call) {
-    const Points previous = previousOf(model), current = currentOf(model);
-    const BVHBuildState state = model.build_state;
-    const bool up_to_date = model.isFclTreeUpToDate();
-    const auto before = selfContacts<S>(model);
-    ::testing::internal::CaptureStderr();
+    const Untouched before(model);
     const int got = call();
-    EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
-    EXPECT_EQ(got, code) << model.lastError();
-    EXPECT_NE(model.lastError().find(word), std::string::npos) << model.lastError();
-    EXPECT_TRUE(previousOf(model) == previous);
-    EXPECT_TRUE(currentOf(model) == current);
-    EXPECT_EQ(model.build_state, state);
-    EXPECT_EQ(model.isFclTreeUpToDate(), up_to_date);
-    expectIdentical(selfContacts<S>(model), before);
+    before.expectSame(model, got, code, word);
   }
+
+ private:
+  /// What a refused call leaves as it is. Apart from the call, which is another type each
+  /// time, so that it is compiled once.
+  struct Untouched {
+    Points previous, current;
+    BVHBuildState state;
+    bool up_to_date;
+    ContinuousContactResult<S> contacts;
+
+    explicit Untouched(const Model& model)
+        : previous(previousOf(model)),
+          current(currentOf(model)),
+          state(model.build_state),
+          up_to_date(model.isFclTreeUpToDate()),
+          contacts(selfContacts<S>(model)) {
+      ::testing::internal::CaptureStderr();
+    }
+
+    void expectSame(const Model& model, int got, int code,
+                    const std::string& word) const {
+      EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+      EXPECT_EQ(got, code) << model.lastError();
+      EXPECT_NE(model.lastError().find(word), std::string::npos) << model.lastError();
+      EXPECT_TRUE(previousOf(model) == previous);
+      EXPECT_TRUE(currentOf(model) == current);
+      EXPECT_EQ(model.build_state, state);
+      EXPECT_EQ(model.isFclTreeUpToDate(), up_to_date);
+      expectIdentical(selfContacts<S>(model), contacts);
+    }
+  };
 };
 
 // Each of FCL's types once, in one of the two scalars. With sanitizers, which take the

@@ -183,15 +183,22 @@ void expectSameContacts(const ContinuousContactResult<S>& x,
   }
 }
 
+inline void expectMessage(const std::string& message, const std::string& word) {
+  if (message.empty())
+    ADD_FAILURE() << "nothing thrown; expected a message with '" << word << "'";
+  EXPECT_NE(message.find(word), std::string::npos) << message;
+}
+
 /// @brief Expects fcl::Exception with a message that contains `word`.
 template <typename Call>
 void expectRefused(Call&& call, const std::string& word) {
+  std::string message;
   try {
     call();
-    ADD_FAILURE() << "nothing thrown; expected a message with '" << word << "'";
   } catch (const Exception& error) {
-    EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    message = error.what();
   }
+  expectMessage(message, word);
 }
 
 }  // namespace test
