@@ -33,9 +33,16 @@ struct Polygons {
   Doubles size;
   int count;
 
+  Polygons() = default;
   FCL_CCD_INLINE Polygons(ContinuousContactKind kind, const Vectors (&x0)[4],
-                          const Vectors (&x1)[4])
-      : size(all(0)), count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
+                          const Vectors (&x1)[4]) {
+    set(kind, x0, x1);
+  }
+
+  FCL_CCD_INLINE void set(ContinuousContactKind kind, const Vectors (&x0)[4],
+                          const Vectors (&x1)[4]) {
+    count = kind == ContinuousContactKind::kVertexFace ? 3 : 4;
+    size = all(0);
     for (int k = 0; k < count; ++k) {
       const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
       t0[k] = x0[p.second] - x0[p.first];
@@ -129,34 +136,117 @@ struct Tolerances {
         touching(all(DistanceTolerance::kTouching) * (d + size)) {}
 };
 
+/// A pair on its way to the distance.
+struct PairOnWay {
+  /// Which of the pairs it is.
+  std::size_t number;
+  /// Until when it is apart, how fast the gap closes, and its distance.
+  double time, rate, distance;
+};
+
 /// Eight pairs on their way to the distance.
 class AdvancingPairs {
  public:
-  FCL_CCD_INLINE AdvancingPairs(const Polygons& x, const DistanceRequest& request)
-      : x_(x),
-        request_(request),
-        last_(request.t_stop < request.t_max ? request.t_stop : request.t_max),
-        d_(all(request.distance)),
-        t_(all(0)),
-        rate_(all(0)) {
-    const Doubles size = max(x.size, d_);
+  /// @param on_way  1 to 8 of the pairs
+  FCL_CCD_INLINE void begin(ContinuousContactKind kind, const FourPoints* pairs,
+                            const PairOnWay* on_way, std::size_t count) {
+    count_ = count;
+    EightPoints eight;
+    double time[kEight], rate[kEight], distance[kEight];
+    for (std::size_t lane = 0; lane < kEight; ++lane) {
+      // The last one fills up the eight.
+      const PairOnWay& pair = on_way[std::min(lane, count - 1)];
+      number_[lane] = pair.number;
+      eight.set(lane, pairs[pair.number].x);
+      time[lane] = pair.time;
+      rate[lane] = pair.rate;
+      distance[lane] = pair.distance;
+    }
+    Points points(eight);
+    orders_ = PointOrders(kind, points);
+    x_.set(kind, points.t0, points.t1);
+    t_ = load<kEight>(time);
+    rate_ = load<kEight>(rate);
+    d_ = load<kEight>(distance);
+    const Doubles size = max(x_.size, d_);
     open_ = ~bits((size >= all(Advance::kLeastSize)) & (size <= all(Advance::kMostSize)));
-    advance();
   }
 
-  /// The lanes that need more than plain steps.
-  FCL_CCD_INLINE unsigned open() const { return open_; }
-  FCL_CCD_INLINE unsigned contacts() const { return bits(is_contact_); }
-  /// Until when the features are further apart than d; the first time of contact.
-  FCL_CCD_INLINE const Doubles& time() const { return t_; }
-  FCL_CCD_INLINE const Doubles& nearestPart() const { return near_.part; }
+  /// Takes a step.
+  /// @param step  its number, from 0 on
+  /// @return the pairs that are left, a bit each
+  FCL_CCD_INLINE unsigned advance(int step, const DistanceRequest& request) {
+    // Most pairs take two or three.
+    constexpr int kMostSteps = 12;
+    const double last = std::min(request.t_stop, request.t_max);
+    Tolerances tolerance(d_, x_.size);
+    Vectors corner[4];
+    x_.cornersAt(t_, corner);
+    near_ = nearestPoints(x_, corner);
+    open_ |= ~bits(near_.is_sure);
+    reached_ = near_.distance + tolerance.distance_error;
+    if (step == 0 && request.ignores_initially_closer) {
+      ignoreInitiallyCloser(tolerance);
+      tolerance = Tolerances(d_, x_.size);
+    }
+    is_contact_ = reached_ <= d_ + tolerance.touching;
+    left_ = ~(open_ | bits(is_contact_)) & ((1U << count_) - 1);
+    if (left_ == 0) return 0;
+    const Steps next =
+        longestSteps(x_, corner, near_, d_, d_ + tolerance.margin, t_, last);
+    open_ |= left_ & ~bits(next.until > t_);
+    const DoubleMask is_soon = next.until <= all(last);
+    left_ &= ~open_ & bits(is_soon);
+    if (step == kMostSteps) {
+      open_ |= left_;
+      left_ = 0;
+    }
+    const DoubleMask moves =
+        (reached_ > d_ + tolerance.touching) & (next.until > t_) & is_soon;
+    t_ = select(moves, next.until, t_);
+    rate_ = select(moves, next.rate, rate_);
+    return left_;
+  }
 
+  /// Takes the answers of the pairs that are not left.
+  /// @param on_way  gets those that are left
+  /// @return behind the last of these
+  FCL_CCD_INLINE PairOnWay* takeAnswers(const DistanceRequest& request, Approach* answers,
+                                        PairOnWay* on_way) {
+    double toc_lo[kEight], toc_hi[kEight], part[kEight], rate[kEight], distance[kEight];
+    store(t_, toc_lo);
+    store(upperEnds(request), toc_hi);
+    store(near_.part, part);
+    store(rate_, rate);
+    store(d_, distance);
+    const unsigned open = open_ | orders_.unknown(), yes = bits(is_contact_) & ~open;
+    for (std::size_t lane = 0; lane < count_; ++lane) {
+      if (left_ >> lane & 1U) {
+        *on_way++ = {number_[lane], toc_lo[lane], rate[lane], distance[lane]};
+        continue;
+      }
+      const int k = static_cast<int>(part[lane]);
+      Approach& out = answers[number_[lane]];
+      out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
+                   : yes >> lane & 1U ? Approach::Answer::kYes
+                                      : Approach::Answer::kNo;
+      out.exchanges = static_cast<std::uint8_t>(orders_.exchanges(lane));
+      out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
+      out.corner = static_cast<std::int16_t>(
+          kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
+      out.toc_lo = toc_lo[lane];
+      out.toc_hi = toc_hi[lane];
+    }
+    return on_way;
+  }
+
+ private:
   /// The upper ends of the brackets: setBracket() in distance_advance.cpp.
-  FCL_CCD_INLINE Doubles upperEnds() {
+  FCL_CCD_INLINE Doubles upperEnds(const DistanceRequest& request) {
     const Doubles gap = reached_ - d_,
                   distance_error = Tolerances(d_, x_.size).distance_error;
-    const Doubles width = min(min(all(request_.toc_err), all(Advance::kShareOfTime) * t_),
-                              all(request_.t_max) - t_);
+    const Doubles width = min(min(all(request.toc_err), all(Advance::kShareOfTime) * t_),
+                              all(request.t_max) - t_);
     Doubles hi = t_, h = all(Advance::kFirstGuess) * gap / rate_;
     DoubleMask is_left = is_contact_ & (t_ > all(0)) & (reached_ > d_) &
                          (width > all(0)) & (rate_ > all(0));
@@ -177,38 +267,6 @@ class AdvancingPairs {
     return hi;
   }
 
- private:
-  FCL_CCD_INLINE void advance() {
-    // Most pairs take two or three.
-    constexpr int kMostSteps = 12;
-    Tolerances tolerance(d_, x_.size);
-    for (int step = 0;; ++step) {
-      Vectors corner[4];
-      x_.cornersAt(t_, corner);
-      near_ = nearestPoints(x_, corner);
-      open_ |= ~bits(near_.is_sure);
-      reached_ = near_.distance + tolerance.distance_error;
-      if (step == 0 && request_.ignores_initially_closer) {
-        ignoreInitiallyCloser(tolerance);
-        tolerance = Tolerances(d_, x_.size);
-      }
-      is_contact_ = reached_ <= d_ + tolerance.touching;
-      unsigned left = ~(open_ | bits(is_contact_)) & kAllOfEight;
-      if (left == 0) return;
-      const Steps next =
-          longestSteps(x_, corner, near_, d_, d_ + tolerance.margin, t_, last_);
-      open_ |= left & ~bits(next.until > t_);
-      const DoubleMask is_soon = next.until <= all(last_);
-      left &= ~open_ & bits(is_soon);
-      if (step == kMostSteps) open_ |= left;
-      if (left == 0 || step == kMostSteps) return;
-      const DoubleMask moves =
-          (reached_ > d_ + tolerance.touching) & (next.until > t_) & is_soon;
-      t_ = select(moves, next.until, t_);
-      rate_ = select(moves, next.rate, rate_);
-    }
-  }
-
   /// Sets the distance of each pair that is nearer than it at t = 0.
   FCL_CCD_INLINE void ignoreInitiallyCloser(const Tolerances& tolerance) {
     constexpr double kShare = DistanceTolerance::kShare;
@@ -219,46 +277,51 @@ class AdvancingPairs {
     open_ |= ~bits(d_ > all(0));
   }
 
-  static constexpr unsigned kAllOfEight = (1U << kEight) - 1;
-
-  const Polygons& x_;
-  const DistanceRequest& request_;
-  const double last_;
+  std::size_t count_, number_[kEight];
+  Polygons x_;
+  PointOrders orders_;
   Doubles d_, t_, rate_, reached_;
   NearestPoints near_;
   DoubleMask is_contact_;
-  unsigned open_;
+  unsigned open_, left_;
 };
 
-void approachOfEight(ContinuousContactKind kind, const FourPoints* pairs,
-                     std::size_t count, const DistanceRequest& request,
-                     Approach (&answers)[8]) {
-  // The last one fills up the eight.
-  EightPoints eight;
-  for (std::size_t lane = 0; lane < kEight; ++lane)
-    eight.set(lane, pairs[std::min(lane, count - 1)].x);
-  Points points(eight);
-  const PointOrders orders(kind, points);
-  const Polygons x(kind, points.t0, points.t1);
-  AdvancingPairs advancing(x, request);
-  double toc_lo[kEight], toc_hi[kEight], part[kEight];
-  store(advancing.time(), toc_lo);
-  store(advancing.upperEnds(), toc_hi);
-  store(advancing.nearestPart(), part);
-  const unsigned open = advancing.open() | orders.unknown(),
-                 yes = advancing.contacts() & ~open;
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const int k = static_cast<int>(part[lane]);
-    Approach& out = answers[lane];
-    out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
-                 : yes >> lane & 1U ? Approach::Answer::kYes
-                                    : Approach::Answer::kNo;
-    out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));
-    out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
-    out.corner = static_cast<std::int16_t>(
-        kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
-    out.toc_lo = toc_lo[lane];
-    out.toc_hi = toc_hi[lane];
+/// Takes the steps of some eights in turn: each number of a step depends on the one
+/// before, so that a processor would wait for them if it had only one eight to work on.
+/// When fewer eights would do for the pairs that are left, these are put together.
+void approachOfAll(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
+                   const DistanceRequest& request, Approach* answers) {
+  AdvancingPairs eights[kMostApproaching / kEight];
+  PairOnWay on_way[kMostApproaching];
+  for (std::size_t i = 0; i < count; ++i) on_way[i] = {i, 0, 0, request.distance};
+  const auto eightsFor = [](std::size_t n) { return (n + kEight - 1) / kEight; };
+  int step = 0;
+  for (std::size_t num_pairs = count; num_pairs > 0;) {
+    const std::size_t size = eightsFor(num_pairs);
+    std::size_t open[kMostApproaching / kEight], num_open = size;
+    for (std::size_t i = 0; i < size; ++i) {
+      open[i] = i;
+      eights[i].begin(kind, pairs, on_way + kEight * i,
+                      std::min(kEight, num_pairs - kEight * i));
+    }
+    // To begin again takes about half a step of each eight.
+    while (num_open > 0 && 4 * eightsFor(num_pairs) > 3 * num_open) {
+      std::size_t still_open = 0;
+      num_pairs = 0;
+      for (std::size_t i = 0; i < num_open; ++i) {
+        const std::size_t eight = open[i];
+        const unsigned left = eights[eight].advance(step, request);
+        num_pairs += static_cast<unsigned>(__builtin_popcount(left));
+        // There is no branch, since it would be unpredictable.
+        open[still_open] = eight;
+        still_open += left != 0;
+      }
+      num_open = still_open;
+      ++step;
+    }
+    PairOnWay* end = on_way;
+    for (std::size_t i = 0; i < size; ++i)
+      end = eights[i].takeAnswers(request, answers, end);
   }
 }
 

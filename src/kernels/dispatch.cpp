@@ -44,7 +44,7 @@ extern const Kernels kKernels = {targetName(),
                                  &lowCorners,
                                  &coplanarityOfFeatures,
                                  &mayComeWithinOfFeatures,
-                                 &approachOfEight,
+                                 &approachOfAll,
                                  &leastDistancesOf,
                                  &solveEight,
                                  &divideEight};

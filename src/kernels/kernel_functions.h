@@ -47,9 +47,8 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                                  const std::uint32_t* codes, const TimeWindow* windows,
                                  std::size_t count, const DistanceRequest& request,
                                  const PairBends& bends);
-void approachOfEight(ContinuousContactKind kind, const FourPoints* pairs,
-                     std::size_t count, const DistanceRequest& request,
-                     Approach (&answers)[8]);
+void approachOfAll(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
+                   const DistanceRequest& request, Approach* answers);
 unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);

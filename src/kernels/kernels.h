@@ -198,6 +198,9 @@ struct Approach {
   double toc_lo, toc_hi;
 };
 
+/// @brief So many pairs Kernels::approach() takes at a time.
+constexpr std::size_t kMostApproaching = 64;
+
 /// @brief Lanes whose features touch at no time of the window at which the points are
 /// coplanar; lanes that may be plain cases in two parts; and the times at which to divide
 /// their windows.
@@ -383,9 +386,10 @@ struct Kernels {
 
   /// advanceToDistance() of VF or EE pairs of one kind, in any order of their points. The
   /// answer of a pair does not depend on the others.
-  /// @param count  1 to 8
+  /// @param count  1 to kMostApproaching
+  /// @param[out] answers  as many
   void (*approach)(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
-                   const DistanceRequest& request, Approach (&answers)[8]);
+                   const DistanceRequest& request, Approach* answers);
 
   /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
   /// known, a bit each. The others need more than a plain direction.

@@ -25,19 +25,20 @@ namespace HWY_NAMESPACE {
 /// coincide are left out: their ids would decide.
 class PointOrders {
  public:
-  FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, Points& x) : x_(x) {
+  PointOrders() = default;
+  FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, Points& x) {
     if (kind == ContinuousContactKind::kVertexFace) {
-      sort(0, 1, 2);
-      sort(1, 2, 3);
-      sort(2, 1, 2);
+      sort(x, 0, 1, 2);
+      sort(x, 1, 2, 3);
+      sort(x, 2, 1, 2);
     } else {
-      sort(0, 0, 1);
-      sort(1, 2, 3);
-      const Comparison first = compare(2, 0), second = compare(3, 1);
+      sort(x, 0, 0, 1);
+      sort(x, 1, 2, 3);
+      const Comparison first = compare(x, 2, 0), second = compare(x, 3, 1);
       const DoubleMask is_turned = first.is_less | (first.is_equal & second.is_less);
       exchanges_[2] = bits(is_turned);
-      exchange(is_turned, 0, 2);
-      exchange(is_turned, 1, 3);
+      exchange(is_turned, x, 0, 2);
+      exchange(is_turned, x, 1, 3);
     }
   }
 
@@ -55,15 +56,15 @@ class PointOrders {
   };
 
   /// By the coordinates at t = 0, then by those at t = 1.
-  FCL_CCD_INLINE Comparison compare(int i, int j) const {
-    const Vectors &p = x_.t0[i], &q = x_.t0[j];
+  static FCL_CCD_INLINE Comparison compare(const Points& x, int i, int j) {
+    const Vectors &p = x.t0[i], &q = x.t0[j];
     Comparison order{p.x < q.x, p.x == q.x};
     if (bits(order.is_equal) == 0) return order;
     then(p.y, q.y, order);
     then(p.z, q.z, order);
-    then(x_.t1[i].x, x_.t1[j].x, order);
-    then(x_.t1[i].y, x_.t1[j].y, order);
-    then(x_.t1[i].z, x_.t1[j].z, order);
+    then(x.t1[i].x, x.t1[j].x, order);
+    then(x.t1[i].y, x.t1[j].y, order);
+    then(x.t1[i].z, x.t1[j].z, order);
     return order;
   }
   static FCL_CCD_INLINE void then(const Doubles& p, const Doubles& q, Comparison& order) {
@@ -71,21 +72,21 @@ class PointOrders {
     order.is_equal = order.is_equal & (p == q);
   }
 
-  FCL_CCD_INLINE void sort(int step, int i, int j) {
-    const Comparison order = compare(j, i);
+  FCL_CCD_INLINE void sort(Points& x, int step, int i, int j) {
+    const Comparison order = compare(x, j, i);
     exchanges_[step] = bits(order.is_less);
     unknown_ |= bits(order.is_equal);
-    exchange(order.is_less, i, j);
+    exchange(order.is_less, x, i, j);
   }
-  FCL_CCD_INLINE void exchange(const DoubleMask& condition, int i, int j) {
-    for (Vectors* x : {x_.t0, x_.t1}) {
+  static FCL_CCD_INLINE void exchange(const DoubleMask& condition, Points& points, int i,
+                                      int j) {
+    for (Vectors* x : {points.t0, points.t1}) {
       const Vectors p = x[i], q = x[j];
       x[i] = select(condition, q, p);
       x[j] = select(condition, p, q);
     }
   }
 
-  Points& x_;
   unsigned exchanges_[3];
   unsigned unknown_{0};
 };

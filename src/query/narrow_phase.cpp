@@ -345,12 +345,12 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
       } else if (isPart(candidate.kind)) {
         testDistance(candidate);
         candidates_.pop_back();
-      } else if (candidates_.size() == 8) {
-        testEightDistances();
+      } else if (candidates_.size() == kMostApproaching) {
+        testManyDistances();
       }
     }
   }
-  if (!candidates_.empty()) testEightDistances();
+  if (!candidates_.empty()) testManyDistances();
 }
 
 DistanceRequest NarrowPhase::distanceRequest() const {
@@ -363,13 +363,13 @@ DistanceRequest NarrowPhase::distanceRequest() const {
   return request;
 }
 
-/// Tests up to eight candidates of one kind, and removes them.
-void NarrowPhase::testEightDistances() {
+/// Tests up to kMostApproaching candidates of one kind, and removes them.
+void NarrowPhase::testManyDistances() {
   const ContinuousContactKind kind = candidates_.front().kind;
-  FourPoints points[8];
+  FourPoints points[kMostApproaching];
   for (std::size_t i = 0; i < candidates_.size(); ++i)
     std::copy(candidates_[i].x, candidates_[i].x + 4, points[i].x);
-  Approach found[8];
+  Approach found[kMostApproaching];
   kernels_.approach(kind, points, candidates_.size(), distanceRequest(), found);
   for (std::size_t i = 0; i < candidates_.size() && !isDone(); ++i) {
     if (found[i].answer == Approach::Answer::kOpen)

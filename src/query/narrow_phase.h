@@ -237,7 +237,7 @@ class NarrowPhase {
   void add(const FeatureCandidate& candidate, TimeBracket bracket);
   void testDistances(ContinuousContactKind kind);
   DistanceRequest distanceRequest() const;
-  void testEightDistances();
+  void testManyDistances();
   void testDistance(const FeatureCandidate& candidate);
   void addNear(const FeatureCandidate& candidate, const DistanceContact& found);
   void add(const FeatureContact& contact);
