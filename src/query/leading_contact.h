@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <deque>
-#include <limits>
 #include <vector>
 
 #include "elementary/feature_points.h"
@@ -33,9 +32,11 @@ struct TimeBracket {
 /// @brief Let first_hi be the upper end of a tight bracket. If another tight bracket
 /// begins no later than first_hi, its contact is before the time that this function
 /// returns. Proof: the contact is no later than hi, lo >= (1 - kTightShare) hi, and 1 /
-/// (1 - kTightShare) < 1 + 2 kTightShare. The sum and the product round by 2^-53 each.
+/// (1 - kTightShare) < 1 + 2 kTightShare. The sum and the product round by 2^-53 each. If
+/// first_hi is 0, any number above 0 would do. Products with 2^-200 are normal numbers,
+/// with which a processor is several times as fast as with subnormal ones.
 inline double latestLeading(double first_hi) {
-  return first_hi * (1 + 2.5 * kTightShare) + std::numeric_limits<double>::denorm_min();
+  return first_hi * (1 + 2.5 * kTightShare) + 0x1p-200;
 }
 
 /// @brief A tight bracket of a contact, or the narrowest that doubles allow. It depends

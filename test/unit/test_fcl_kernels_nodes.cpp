@@ -19,6 +19,7 @@
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh_generators.h"
+#include "query/leading_contact.h"
 #include "random_boxes.h"
 #include "tree/box_position.h"
 
@@ -445,6 +446,20 @@ TEST(FCL_KERNELS, shiftedChildrenAsOverlapWindow) {
   EXPECT_GT(late, 1000);
   EXPECT_GT(left_out, 1000);
   EXPECT_LT(rounded, 20);
+}
+
+// Where nothing after t = 0 matters, what motion bridges is as good as nothing. But it is
+// a normal number: kernels take several times as long with subnormal ones.
+TEST(FCL_KERNELS, bridgesNormalNumbersAtTheStart) {
+  const double latest = latestLeading(0);
+  EXPECT_GT(latest, 0);
+  EXPECT_LT(latest, 1e-50);
+  EXPECT_GE(latest * 1e-30, DBL_MIN);
+  OverlapRequest request{true};
+  request.leaveOutAfter(latest, 0);
+  EXPECT_TRUE(request.leavesOut());
+  EXPECT_LT(request.share, 1e-19f);
+  EXPECT_GE(request.share * 1e-15f, FLT_MIN);
 }
 
 // Unbounded boxes overlap all boxes that are in use, and nothing else.
