@@ -41,6 +41,45 @@ double displacementOf(const MeshInstance& mesh) {
   return most + mesh.poseDisplacement();
 }
 
+/// setPart() for each answer that Kernels::approach() may have: most of the contacts of
+/// a query have one.
+class PartTable {
+ public:
+  PartTable() {
+    for (const bool is_edges : {false, true})
+      for (unsigned exchanges = 0; exchanges < kExchanges; ++exchanges)
+        for (int part = 0; part < kParts; ++part) {
+          const ContinuousContactKind kind = is_edges
+                                                 ? ContinuousContactKind::kEdgeEdge
+                                                 : ContinuousContactKind::kVertexFace;
+          // A triangle has three sides and corners.
+          if (!is_edges && part != kInside && part % kCorner == 3) continue;
+          NearestPoint near;
+          near.side = part < kCorner ? part : -1;
+          near.corner = kCorner <= part && part < kInside ? part - kCorner : -1;
+          int number[4];
+          exchangedNumbers(kind, exchanges, number);
+          DistanceContact& contact = contacts_[is_edges][exchanges][part];
+          contact.is_contact = true;
+          setPart(kind, near, number, contact);
+        }
+  }
+
+  const DistanceContact& find(ContinuousContactKind kind, const Approach& found) const {
+    const int part = found.side >= 0     ? found.side
+                     : found.corner >= 0 ? kCorner + found.corner
+                                         : kInside;
+    return contacts_[kind == ContinuousContactKind::kEdgeEdge][found.exchanges][part];
+  }
+
+ private:
+  static constexpr unsigned kExchanges = 8;
+  /// Sides, then corners, then the inside.
+  static constexpr int kCorner = 4, kInside = 8, kParts = 9;
+
+  DistanceContact contacts_[2][kExchanges][kParts];
+};
+
 }  // namespace
 
 double reachOf(const MeshInstance& a, const MeshInstance& b, double d) {
@@ -134,16 +173,10 @@ PointIds idsOf(const FeatureIds& pair) {
 
 DistanceContact contactOf(ContinuousContactKind kind, const Approach& found) {
   assert(found.answer == Approach::Answer::kYes);
-  NearestPoint near;
-  near.side = found.side;
-  near.corner = found.corner;
-  int number[4];
-  exchangedNumbers(kind, found.exchanges, number);
-  DistanceContact contact;
-  contact.is_contact = true;
+  static const PartTable table;
+  DistanceContact contact = table.find(kind, found);
   contact.toc_lo = found.toc_lo;
   contact.toc_hi = found.toc_hi;
-  setPart(kind, near, number, contact);
   return contact;
 }
 
