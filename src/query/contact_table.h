@@ -81,11 +81,13 @@ class ContactTable {
         std::sort(words.begin() + 2, words.end());
     }
     bool operator==(const Key& other) const { return words == other.words; }
-    /// After FNV-1a, by words.
+    /// Products do not depend on each other, so that none waits for the one before.
     std::uint64_t hash() const {
-      std::uint64_t hash = 0xcbf29ce484222325;
-      for (const std::uint32_t word : words) hash = (hash ^ word) * 0x100000001b3;
-      return hash ^ (hash >> 32);
+      const std::uint64_t first = std::uint64_t{words[1]} << 32 | words[2],
+                          second = std::uint64_t{words[3]} << 32 | words[4];
+      const std::uint64_t sum = (first + words[0]) * 0x9e3779b97f4a7c15 +
+                                (second ^ second >> 29) * 0xc2b2ae3d27d4eb4f;
+      return (sum ^ sum >> 32) * 0x9e3779b97f4a7c15 >> 20;
     }
   };
   struct Place {
