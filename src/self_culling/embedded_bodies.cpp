@@ -68,8 +68,7 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
   for (int k = 0; k < 3; ++k)
     for (const std::uint32_t place : triangles[region.first].place)
       ray[k] += vertices[place].t0[k] - center.t0[k];
-  bool left = true, right = true;
-  unsigned hit = 0;
+  bool left = true, right = true, is_hit = false;
   for (std::size_t i = region.first; i < region.last; i += 8) {
     const std::size_t count = std::min<std::size_t>(8, region.last - i);
     const unsigned all = (1U << count) - 1;
@@ -80,8 +79,12 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
         kernels.viewFrom(center, ray, vertices, triangles + i, count);
     left = left && views.left == all;
     right = right && views.right == all;
-    hit += static_cast<unsigned>(__builtin_popcount(all & ~views.missed));
-    if (!(left || right) || hit > 1) return false;
+    if (!(left || right)) return false;
+    const unsigned hit = all & ~views.missed;
+    if (hit == 0) continue;
+    const bool is_one = (hit & (hit - 1)) == 0;
+    if (is_hit || !is_one) return false;
+    is_hit = true;
   }
   return true;
 }
