@@ -56,8 +56,9 @@ struct OverlapRequest {
   /// @brief Leaves out boxes that do not overlap until `latest`, if that isEarly(). The
   /// factor 2 is there because a direction has at most two coordinates. 2^-20 is more
   /// than the rounding of the kernels: three operations and the sum of two half-axes,
-  /// 2^-24 each. The share is at least 2^-64, so that products with displacements are
-  /// normal numbers: with subnormal ones a comparison takes three times as long.
+  /// 2^-24 each. The share is at least 2^-64, which is nothing beside the size of any
+  /// motion. So its products with displacements above 2^-62 are normal numbers: with
+  /// subnormal ones a comparison takes three times as long.
   /// @param pose_displacement  sum of the displacements of both poses
   void leaveOutAfter(double latest, double pose_displacement) {
     assert(latest >= 0 && pose_displacement >= 0);
@@ -199,7 +200,9 @@ struct Approach {
   double toc_lo, toc_hi;
 };
 
-/// @brief So many pairs Kernels::approach() takes at a time.
+/// @brief So many pairs Kernels::approach() takes at a time: eight eights, so that those
+/// that are left fill eights again, and few enough for their state to stay in the first
+/// cache.
 constexpr std::size_t kMostApproaching = 64;
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
@@ -386,7 +389,7 @@ struct Kernels {
                             const PairBends& bends);
 
   /// advanceToDistance() of VF or EE pairs of one kind, in any order of their points. The
-  /// answer of a pair does not depend on the others.
+  /// answer of a pair does not depend on the others, except for whether it is kOpen.
   /// @param count  1 to kMostApproaching
   /// @param[out] answers  as many
   void (*approach)(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,

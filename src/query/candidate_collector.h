@@ -53,6 +53,7 @@ class CandidateCollector {
   bool isDone() const { return stopped_; }
 
   double latest() const { return 1; }
+  bool isTimed() const { return false; }
   void addTraversal(std::uint64_t, std::uint64_t) {}
 
  private:

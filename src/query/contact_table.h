@@ -81,7 +81,9 @@ class ContactTable {
         std::sort(words.begin() + 2, words.end());
     }
     bool operator==(const Key& other) const { return words == other.words; }
-    /// Products do not depend on each other, so that none waits for the one before.
+    /// Two products that do not wait for each other and one of their sum, by odd numbers
+    /// with bits all over (the golden ratio, and a prime of xxHash). The upper bits of a
+    /// product depend on all bits of its factors, so the lower 20 are left out.
     std::uint64_t hash() const {
       const std::uint64_t first = std::uint64_t{words[1]} << 32 | words[2],
                           second = std::uint64_t{words[3]} << 32 | words[4];

@@ -91,7 +91,7 @@ class Part {
         reach_(shifts.reach(1)),
         shift_(shifts.shift(reach_)),
         traversal_(tree_a, tree_b, shifts.isEmpty() ? nullptr : &shift_, culling, axes,
-                   kernels(), schedule.in_order || leaves.latest() < 1),
+                   kernels(), schedule.in_order || leaves.isTimed()),
         pose_displacement_(pose_displacement),
         schedule_(schedule),
         leaves_(leaves),

@@ -53,7 +53,7 @@ class PartTable {
                                                  ? ContinuousContactKind::kEdgeEdge
                                                  : ContinuousContactKind::kVertexFace;
           // A triangle has three sides and corners.
-          if (!is_edges && part != kInside && part % kCorner == 3) continue;
+          if (!is_edges && part % kCorner == 3) continue;
           NearestPoint near;
           near.side = part < kCorner ? part : -1;
           near.corner = kCorner <= part && part < kInside ? part - kCorner : -1;

@@ -33,8 +33,9 @@ struct TimeBracket {
 /// begins no later than first_hi, its contact is before the time that this function
 /// returns. Proof: the contact is no later than hi, lo >= (1 - kTightShare) hi, and 1 /
 /// (1 - kTightShare) < 1 + 2 kTightShare. The sum and the product round by 2^-53 each. If
-/// first_hi is 0, any number above 0 would do. Products with 2^-200 are normal numbers,
-/// with which a processor is several times as fast as with subnormal ones.
+/// first_hi is 0, any number above 0 would do. 2^-200 is earlier than any time that
+/// matters, and its products with coordinates above 2^-800 are normal numbers, with which
+/// a processor is several times as fast as with subnormal ones.
 inline double latestLeading(double first_hi) {
   return first_hi * (1 + 2.5 * kTightShare) + 0x1p-200;
 }

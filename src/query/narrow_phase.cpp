@@ -419,19 +419,21 @@ ElementaryResult NarrowPhase::decide(const FeatureCandidate& candidate,
                             options_.t_max);
 }
 
-/// Whether a contact of the pair whose bracket begins at this time or later may change
-/// the answer.
-bool NarrowPhase::mayMatter(const FeatureIds& pair, double earliest) const {
+/// Whether a contact of the pair may change the answer, if its bracket is this one or a
+/// later one. The end matters if there are errors, see refuse().
+bool NarrowPhase::mayMatter(const FeatureIds& pair, const TimeBracket& bracket) const {
+  if (bracket.hi < firstHi()) return true;
   if (options_.only_time)
-    return earliest < progress_->first_lo.load(std::memory_order_relaxed);
-  return sink_.mayKeep(pair, earliest);
+    return bracket.lo < progress_->first_lo.load(std::memory_order_relaxed);
+  return sink_.mayKeep(pair, bracket.lo);
 }
 
 /// With a coarse bracket, for a pair that is apart until a known time.
 ElementaryResult NarrowPhase::decideCoarsely(const FeatureCandidate& candidate,
                                              double t_stop, double apart) const {
   const CoarseTime coarse(options_.toc_err);
-  if (!mayMatter(candidate, coarse.beginning(apart)))
+  const double earliest = coarse.beginning(apart);
+  if (!mayMatter(candidate, {earliest, coarse.end(earliest)}))
     return {Answer::kNo, 0, 0, DecidedBy::kSolver};
   const CandidatePoints paths(candidate);
   ElementaryResult result = deformable::decide(

@@ -152,6 +152,9 @@ class NarrowPhase {
     return std::min(latest, options_.t_max);
   }
 
+  /// @brief Whether it matters when boxes begin to overlap.
+  bool isTimed() const { return options_.t_max < 1 || mayEndBefore(); }
+
   bool hasCrossing() const { return !crossings_.empty(); }
   /// @brief The first crossing that was found, or all of them
   /// (QueryOptions::all_crossings). A crossing of a mesh without owners may be there
@@ -229,7 +232,7 @@ class NarrowPhase {
   void solve(const std::vector<Piece>& pieces, OnNo&& on_no, OnOpen&& on_open);
   EightPairs eightOf(const std::vector<Piece>& pieces, std::size_t first) const;
   ElementaryResult decide(const FeatureCandidate& candidate, double t_stop) const;
-  bool mayMatter(const FeatureIds& pair, double earliest) const;
+  bool mayMatter(const FeatureIds& pair, const TimeBracket& bracket) const;
   ElementaryResult decideCoarsely(const FeatureCandidate& candidate, double t_stop,
                                   double apart) const;
   ElementaryResult decideOnce(const FeatureCandidate& candidate);

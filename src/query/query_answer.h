@@ -52,9 +52,10 @@ struct TaskAnswer {
 /// @param firstContact  a query for the first contact alone; called if that may be among
 /// the contacts that were dropped
 /// @throws NonFiniteVertex  if an error decides the query. For kFirst this is the
-/// earliest error, unless the first contact is before it; for kAll the earliest error,
-/// unless max_contacts ends the list before it; for kAny the error of the first task that
-/// has an answer or an error.
+/// earliest error, unless the first contact is before it. For kAll with max_contacts it
+/// is the earliest error, unless the first contact and the last one that is kept are
+/// before it. For other queries it is the error of the first task that has an answer or
+/// an error.
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,
                   const QueryProgress& progress, const MeshInstance& a,
                   const MeshInstance& b,

@@ -414,6 +414,46 @@ TEST(FCL_THREADS, firstContactBeforeAnError) {
   }
 }
 
+// The same with triangles whose boxes still overlap at the end of the step.
+TEST(FCL_THREADS, earliestContactsBeforeAnError) {
+  TestMesh wall, upper;
+  wall.vertices = {{-4, 0, 0}, {4, 0, 0}, {0, 0, -2}};
+  wall.triangles = {Triangle(0, 1, 2)};
+  for (int i = 0; i < 40; ++i) {
+    const double x = 0.05 * i - 1, z = i == 0 ? 0.5 : 0.6 + 0.005 * i;
+    const auto n = upper.vertices.size();
+    upper.vertices.insert(upper.vertices.end(),
+                          {{x, -0.02, z}, {x + 0.03, -0.02, z}, {x, 0.03, z}});
+    upper.triangles.emplace_back(n, n + 1, n + 2);
+  }
+  const auto rigid = makeModel<Plain>(upper);
+  const NamedScene scene{"broken", rigid, makeModel<Plain>(wall), translation(0, 0, -1)};
+  const double toc =
+      scene.run(requestOf(ContinuousQuery::kFirst, 1, 1e-4, 1)).time_of_contact;
+  EXPECT_NEAR(toc, 0.5, 1e-4);
+  // Triangle i meets the wall at its height.
+  for (const int i : {3, 20, 39}) {
+    const Vector3<double> place = rigid->vertices[3 * i];
+    rigid->vertices[3 * i][1] = std::numeric_limits<double>::quiet_NaN();
+    for (const int threads : {1, 2, 4})
+      for (const std::size_t kept : {std::size_t{1}, std::size_t{4}, kNoLimit}) {
+        SCOPED_TRACE(std::to_string(i) + ", " + std::to_string(threads) + ", " +
+                     std::to_string(kept));
+        const Outcome outcome(scene,
+                              requestOf(ContinuousQuery::kAll, kept, 1e-4, threads));
+        if (kept == kNoLimit) {
+          EXPECT_EQ(outcome.error,
+                    "o1: vertex " + std::to_string(3 * i) + " is not finite. Correct it");
+        } else {
+          EXPECT_EQ(outcome.error, "");
+          EXPECT_EQ(outcome.result.contacts.size(), kept);
+          EXPECT_EQ(outcome.result.time_of_contact, toc);
+        }
+      }
+    rigid->vertices[3 * i] = place;
+  }
+}
+
 // The caller's floating-point mode does not change the answer, and is the same after the
 // call, even if a pose is smaller than the mode can represent.
 TEST(FCL_THREADS, callersFloatingPointMode) {
