@@ -3,8 +3,9 @@
 // Eight or sixteen numbers that are computed at the same time, in as many of Highway's
 // vectors as the machine needs for them. They are a plain loop if Highway is switched
 // off, and for its targets without vector instructions (HWY_SCALAR, HWY_EMU128): the
-// compiler makes faster and shorter code of loops than of Highway's functions there. Every operation is an
-// IEEE operation, lane by lane, and none is fused. So all machines give the same bits.
+// compiler makes faster and shorter code of loops than of Highway's functions there.
+// Every operation is an IEEE operation, lane by lane, and none is fused. So all machines
+// give the same bits.
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
 #include <cmath>
