@@ -201,7 +201,7 @@ struct Approach {
 };
 
 /// @brief So many pairs Kernels::approach() takes at a time: eight eights, so that those
-/// that are left fill eights again, and few enough for their state to stay in the first
+/// that are left fill eights again, and few enough for their state to stay in a near
 /// cache.
 constexpr std::size_t kMostApproaching = 64;
 
