@@ -1,40 +1,65 @@
 #!/usr/bin/env bash
 # Fails when a public function is missing from the reference. Run doxygen first.
 #   bash cmake/check_reference.sh [TAG_FILE]
-# The script finds functions in the public headers by their form: a declaration outside of
-# detail begins at the first column, a public member of DeformableBVHModel and of
-# ContinuousCollisionManager at the third.
+# ctags reads the public headers, doxygen has read them for the reference, and each function
+# of namespace fcl and each public member of its classes must be there as often in both.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tags=${1:-build/doc/fcl_ccd.tag}
 [ -f "$tags" ] || { echo "$tags is missing: run doxygen first" >&2; exit 1; }
+command -v ctags >/dev/null || { echo "Install the package universal-ctags" >&2; exit 1; }
 
-# Lines "count name": how often a function is declared.
+# Lines "count scope name". ctags prints equal lines once, so each tells its place. A function
+# that is declared and then defined counts once. Members that are defined outside of their class
+# have no access there and are left out, as operators are.
 declared=$(
-  {
-    grep -hoE '^(FCL_EXPORT )?(double|float|bool|ContinuousFeatureTestResult<S>|OctreeCell<S>|std::vector<int>) [a-z][A-Za-z]+\(' \
-      include/fcl/narrowphase/*.h include/fcl/geometry/bvh/weld_vertices.h
-    sed -n '/DeformableBVHModel .*: public/,/^ private:/p' \
-      include/fcl/geometry/bvh/deformable_bvh_model.h |
-      grep -oE '^  (int|bool|std::size_t|void) [a-z][A-Za-z]+\('
-    sed -n '/^class ContinuousCollisionManager /,/^ private:/p' \
-      include/fcl/broadphase/continuous_collision_manager.h |
-      grep -oE '^  (bool|std::size_t|void) [a-z][A-Za-z]+\('
-  } | sed 's/.* //; s/($//' | LC_ALL=C sort | uniq -c
+  find include -name '*.h' -not -path '*/detail/*' -print0 |
+    xargs -0 ctags -x --language-force=C++ --kinds-C++=pf -I FCL_EXPORT --_xformat='%a %s %N %K %F:%n' |
+    grep -E '^(public fcl::[A-Za-z]+|- fcl) [~A-Za-z]+ ' | grep -v ' operator' |
+    awk '
+      { ++count[$2 " " $3, $4]; names[$2 " " $3] }
+      END {
+        for (f in names) {
+          most = count[f, "prototype"]
+          if (count[f, "function"] > most) most = count[f, "function"]
+          print most, f
+        }
+      }'
 )
-missing=0
-total=0
-while read -r count name; do
-  listed=$(grep -c "<name>$name</name>" "$tags" || true)
-  total=$((total + count))
-  if [ "$listed" -lt "$count" ]; then
-    echo "$name: declared $count times in public headers, $listed times in the reference" >&2
-    missing=1
-  fi
-done <<<"$declared"
-if [ "$total" -lt 40 ]; then
-  echo "Only $total public functions were found: their form in the headers has changed." >&2
+
+# missing_functions < TAG_FILE: a line for each function that the file has too rarely.
+missing_functions() {
+  awk '
+    NR == FNR { declared[$2 " " $3] = $1; next }
+    /<compound / { scope = "" }
+    /<name>/ {
+      name = $0
+      gsub(/ *<\/?name>/, "", name)
+      if (scope == "") { scope = name; sub(/<.*/, "", scope) } else if (is_function) ++listed[scope " " name]
+    }
+    /<member / { is_function = /kind="function"/ }
+    END {
+      for (f in declared)
+        if (listed[f] < declared[f])
+          print f ": declared " declared[f] " times in public headers, " listed[f] + 0 " times in the reference"
+    }' <(echo "$declared") -
+}
+
+total=$(awk '{ n += $1 } END { print n }' <<<"$declared")
+if [ "$total" -lt 100 ]; then
+  echo "ctags found only $total public functions in include/" >&2
   exit 1
 fi
-[ $missing -eq 0 ] || exit 1
+missing=$(missing_functions <"$tags")
+if [ -n "$missing" ]; then
+  echo "$missing" >&2
+  exit 1
+fi
+# The check must be able to fail: without a function, the reference is refused.
+for function in continuousCollide refitTopDown lastError; do
+  if [ -z "$(sed "s/<name>$function</<name>other</" "$tags" | missing_functions)" ]; then
+    echo "The check does not notice that $function is missing." >&2
+    exit 1
+  fi
+done
 echo "The reference has all $total public functions."

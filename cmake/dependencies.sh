@@ -29,7 +29,9 @@ fcl_ccd_install_dependencies() {
     packages+=(mypy python3-matplotlib python3-pip python3-setuptools python3-wheel)
   fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.
-  if [ "$1" = all ]; then packages+=(clang libclang-rt-dev clang-format-14 clang-tidy-14 doxygen); fi
+  if [ "$1" = all ]; then
+    packages+=(clang libclang-rt-dev clang-format-14 clang-tidy-14 doxygen universal-ctags)
+  fi
   packages+=("${@:2}")
 
   # On another system CMake names the packages that it cannot find.
