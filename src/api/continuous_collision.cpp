@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <string>
 #include <type_traits>
@@ -16,6 +15,7 @@
 #include "api/unbounded_shapes.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -110,7 +110,7 @@ QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
 template <typename S, typename Convert>
 void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
                   const Convert& convert, double update, ContinuousContacts<S>& result) {
-  const auto start = std::chrono::steady_clock::now();
+  const deformable::Stopwatch start;
   const std::size_t count = answer.contacts.size();
   const auto contactAt = [&](std::size_t i) {
     // Contacts that are neighbours in time are scattered in memory.
@@ -146,8 +146,7 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
   result.counts = answer.counts;
   result.times = answer.times;
   result.times.update += update;
-  result.times.test +=
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.times.test += start.seconds();
 }
 
 /// The meshes of a query of straight paths, for the conversion of its contacts.
@@ -292,7 +291,7 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
   const deformable::MeshInstance without_owners;
   options.filter = filter.prepare(without_owners, without_owners);
-  const auto start = std::chrono::steady_clock::now();
+  const deformable::Stopwatch start;
   double update = 0;
   ShapeAnswer answer;
   if (!filter.rejectsAll()) answer = shapeAnswerOf(o1, o2, options, update);
@@ -305,9 +304,7 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   if (!contacts) return;
   fillContacts(answer, o1, o2, settings.enable_contact, *contacts);
   contacts->times.update = update;
-  contacts->times.test =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() -
-      update;
+  contacts->times.test = start.seconds() - update;
 }
 
 }  // namespace

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 
 #include "base/default_floating_point.h"
+#include "base/stopwatch.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
@@ -241,10 +241,9 @@ void PreparedMesh::prepareDeforming(const BVHModel<BV>& model, const std::string
 
 template <typename Work>
 void PreparedMesh::measure(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch start;
   work();
-  update_time_ =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  update_time_ = start.seconds();
 }
 
 void PreparedMesh::refit(const std::string& name, int num_threads) {

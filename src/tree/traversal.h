@@ -45,7 +45,7 @@ class WorkList {
 
   void add(std::int32_t parent, int lane, std::int32_t node, bool swapped,
            float earliest) {
-    if (size_ == items_.size()) items_.resize(2 * size_ + 64);
+    if (size_ == items_.size()) grow();
     NodePair& work = items_[size_++];
     work.parent = parent;
     work.node = node;
@@ -60,6 +60,9 @@ class WorkList {
   }
 
  private:
+  // Not inlined: it is rare, and would keep add() from being inlined.
+  __attribute__((noinline)) void grow() { items_.resize(2 * size_ + 64); }
+
   std::vector<NodePair> items_;
   std::size_t size_{0};
 };
