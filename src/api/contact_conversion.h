@@ -7,7 +7,7 @@
 #include "fcl/narrowphase/continuous_contact.h"
 #include "motion/shape_contacts.h"
 #include "query/contact_sink.h"
-#include "query/narrow_phase.h"
+#include "query/crossing.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {

@@ -11,6 +11,7 @@
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
 #include "query/deformable_query.h"
+#include "query/narrow_phase.h"
 #include "tree/traversal.h"
 
 namespace fcl {

@@ -3,7 +3,8 @@
 #define FCL_CCD_MOTION_MOTION_CONTACTS_H
 
 #include "motion/motion_query.h"
-#include "query/deformable_query.h"
+#include "query/query_answer.h"
+#include "query/query_options.h"
 
 namespace fcl {
 namespace detail {

@@ -7,7 +7,7 @@
 
 #include "fcl/narrowphase/stage_counts.h"
 #include "motion/motion_body.h"
-#include "query/deformable_query.h"
+#include "query/query_options.h"
 
 namespace fcl {
 namespace detail {

@@ -12,7 +12,7 @@
 #include "motion/motion_path.h"
 #include "motion/triangle_advance.h"
 #include "query/contact_sink.h"
-#include "query/narrow_phase.h"
+#include "query/query_options.h"
 
 namespace fcl {
 namespace detail {

@@ -9,8 +9,8 @@
 #define FCL_CCD_QUERY_DEFORMABLE_QUERY_H
 
 #include "query/candidate_collector.h"
-#include "query/narrow_phase.h"
 #include "query/query_answer.h"
+#include "query/query_options.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {

@@ -3,7 +3,6 @@
 #define FCL_CCD_QUERY_NARROW_PHASE_H
 
 #include <algorithm>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -16,84 +15,13 @@
 #include "query/distance_contact.h"
 #include "query/feature_batch.h"
 #include "query/leading_contact.h"
-#include "query/pair_filter.h"
+#include "query/query_options.h"
+#include "query/query_progress.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-struct QueryOptions {
-  ContinuousQuery query{ContinuousQuery::kAll};
-  std::size_t max_contacts{static_cast<std::size_t>(-1)};
-  double toc_err{1e-4};
-  /// Whether only the time of the first contact matters, not the features that meet. A
-  /// crossing at t = 0 then answers the query.
-  bool only_time{false};
-  /// See parallelFor().
-  int num_threads{1};
-  /// Whether a self-collision query leaves out embedded regions. The answer does not
-  /// depend on it, except for which contact kAny finds.
-  bool leaves_out_regions{true};
-  /// Later contacts do not count.
-  double t_max{1};
-  /// Whether the answer has all crossings at t = 0, not only one.
-  bool all_crossings{false};
-  /// The pairs that count; null: all.
-  const PairFilter* filter{nullptr};
-  /// Features that come within this distance are in contact; 0: features that touch.
-  double min_distance{0};
-  /// See DistanceRequest.
-  bool ignores_initially_closer{false};
-  /// With a distance: whether a contact is named after the parts of its features that are
-  /// nearest, or after the features.
-  bool names_parts{true};
-  /// With a distance: whether the answer has all pairs of features that may come within
-  /// it, for tests on other paths. Their brackets are the times outside of which they
-  /// provably do not.
-  bool lists_near_pairs{false};
-
-  /// Whether the list may end before the last contact.
-  bool isLimited() const { return max_contacts != static_cast<std::size_t>(-1); }
-};
-
-/// @brief What the tasks of a query tell each other, so that none does work that cannot
-/// change the answer. Tasks have numbers. So the answer does not depend on which thread
-/// is faster.
-struct QueryProgress {
-  /// The earliest upper end of a bracket so far. An error counts as a contact at the time
-  /// from which on its triangles may touch.
-  std::atomic<double> first_hi{1};
-  /// The earliest lower end of a bracket so far.
-  std::atomic<double> first_lo{1};
-  /// The lowest number of a task that has found an answer of the whole query, or an error
-  /// instead.
-  std::atomic<std::size_t> answered_by{static_cast<std::size_t>(-1)};
-  /// The lowest number of a task that has found a crossing. Those of later tasks do not
-  /// matter, unless all are wanted.
-  std::atomic<std::size_t> crossed_by{static_cast<std::size_t>(-1)};
-  /// The lowest ContactSink::lastVertexAtStart(), with a distance. A task that has this
-  /// bound has as many contacts before it as are wanted, so it holds for all tasks.
-  std::atomic<std::uint32_t> last_vertex{~std::uint32_t{0}};
-  /// The lowest ContactSink::latestKept() in a query for all contacts. It holds for all
-  /// tasks for the same reason.
-  std::atomic<double> latest_kept{1};
-
-  template <typename T>
-  static void lower(std::atomic<T>& value, T to) {
-    T now = value.load(std::memory_order_relaxed);
-    while (to < now && !value.compare_exchange_weak(now, to, std::memory_order_relaxed)) {
-    }
-  }
-};
-
-/// @brief A vertex that is not finite. It belongs to two triangles whose boxes overlap
-/// from `earliest` on.
-struct QueryError {
-  float earliest;
-  const char* mesh;
-  std::size_t vertex;
-};
 
 /// @brief The narrow phase: from a block of triangle pairs whose boxes overlap to
 /// contacts in the sink. It tests for crossings at t = 0, and takes the pairs of features

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "query/leading_contact.h"
+#include "query/narrow_phase.h"
 
 namespace fcl {
 namespace detail {

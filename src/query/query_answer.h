@@ -9,12 +9,19 @@
 #include <optional>
 #include <vector>
 
+#include "fcl/narrowphase/stage_counts.h"
 #include "query/contact_sink.h"
-#include "query/narrow_phase.h"
+#include "query/crossing.h"
+#include "query/leading_contact.h"
+#include "query/query_options.h"
+#include "query/query_progress.h"
+#include "tree/mesh_instance.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
+
+class NarrowPhase;
 
 struct QueryAnswer {
   SortedContacts contacts;
