@@ -76,17 +76,17 @@ void BroadPhase::setBounds(const MovingBounds& bounds, Slot& slot) {
   slot.boxes.assign(bounds.boxes, bounds.boxes + bounds.num_spans + 1);
   slot.rests = isSameAtAllTimes(bounds);
   slot.box = linearBox(bounds);
-  slot.place = !isBounded(slot.box) ? kUnbounded : slot.rests ? kResting : kMoving;
+  slot.mobility = !isBounded(slot.box) ? kUnbounded : slot.rests ? kResting : kMoving;
 }
 
 void BroadPhase::join(SlotNumber i) {
-  std::vector<SlotNumber>& members = members_[at(i).place];
+  std::vector<SlotNumber>& members = members_[at(i).mobility];
   at(i).member = members.size();
   members.push_back(i);
 }
 
-void BroadPhase::leave(SlotNumber i, Place place) {
-  std::vector<SlotNumber>& members = members_[place];
+void BroadPhase::leave(SlotNumber i, Mobility mobility) {
+  std::vector<SlotNumber>& members = members_[mobility];
   members[at(i).member] = members.back();
   at(members.back()).member = at(i).member;
   members.pop_back();
@@ -142,31 +142,31 @@ void BroadPhase::change(const std::vector<SlotNumber>& slots, const BoundsList& 
     Slot& slot = at(number);
     if (!are_new) {
       if (slot.rests) markStale(number);
-      if (slot.place != kUnbounded) {
-        is_touched[slot.place] = true;
-        if (!is_rebuilt[slot.place]) tree_[slot.place].remove(number);
+      if (slot.mobility != kUnbounded) {
+        is_touched[slot.mobility] = true;
+        if (!is_rebuilt[slot.mobility]) tree_[slot.mobility].remove(number);
       }
     }
-    const Place before = slot.place;
+    const Mobility before = slot.mobility;
     setBounds(bounds.at(i), slot);
     if (slot.rests) markStale(number);
-    if (are_new || slot.place != before) {
+    if (are_new || slot.mobility != before) {
       if (!are_new) leave(number, before);
       join(number);
     }
-    if (slot.place == kUnbounded) continue;
-    is_touched[slot.place] = true;
-    if (!is_rebuilt[slot.place]) tree_[slot.place].insert({&slot.box, number});
+    if (slot.mobility == kUnbounded) continue;
+    is_touched[slot.mobility] = true;
+    if (!is_rebuilt[slot.mobility]) tree_[slot.mobility].insert({&slot.box, number});
   }
-  for (const Place place : {kMoving, kResting})
-    if (is_touched[place] && is_rebuilt[place]) buildTree(place);
+  for (const Mobility mobility : {kMoving, kResting})
+    if (is_touched[mobility] && is_rebuilt[mobility]) buildTree(mobility);
 }
 
-void BroadPhase::buildTree(Place place) {
+void BroadPhase::buildTree(Mobility mobility) {
   std::vector<MovingBoxTree::Leaf> leaves;
-  leaves.reserve(members_[place].size());
-  for (const SlotNumber i : members_[place]) leaves.push_back({&at(i).box, i});
-  tree_[place].build(leaves);
+  leaves.reserve(members_[mobility].size());
+  for (const SlotNumber i : members_[mobility]) leaves.push_back({&at(i).box, i});
+  tree_[mobility].build(leaves);
 }
 
 void BroadPhase::rebuild() {
@@ -180,8 +180,8 @@ void BroadPhase::remove(const void* object) {
   const SlotNumber i = entry->second;
   slot_of_.erase(entry);
   if (at(i).rests) markStale(i);
-  leave(i, at(i).place);
-  if (at(i).place != kUnbounded) tree_[at(i).place].remove(i);
+  leave(i, at(i).mobility);
+  if (at(i).mobility != kUnbounded) tree_[at(i).mobility].remove(i);
   at(i).object = nullptr;
   free_.push_back(i);
 }

@@ -104,7 +104,7 @@ class BroadPhase {
 
  private:
   using SlotNumber = std::int32_t;
-  enum Place { kMoving, kResting, kUnbounded, kNumPlaces };
+  enum Mobility { kMoving, kResting, kUnbounded, kNumMobilities };
 
   struct Slot {
     void* object{nullptr};
@@ -113,8 +113,8 @@ class BroadPhase {
     bool self{false};
     /// Whether its box is the same at all times.
     bool rests{false};
-    Place place{kUnbounded};
-    /// In members_[place].
+    Mobility mobility{kUnbounded};
+    /// In members_[mobility].
     std::size_t member{0};
     LinearBox box;
     std::vector<HalfAxisBox> boxes;
@@ -136,10 +136,10 @@ class BroadPhase {
   SlotNumber newSlot(void* object);
   void setBounds(const MovingBounds& bounds, Slot& slot);
   void join(SlotNumber i);
-  void leave(SlotNumber i, Place place);
+  void leave(SlotNumber i, Mobility mobility);
   void change(const std::vector<SlotNumber>& slots, const BoundsList& bounds,
               bool are_new);
-  void buildTree(Place place);
+  void buildTree(Mobility mobility);
   void markStale(SlotNumber i);
 
   static void addMeeting(const BroadPhase& one, const BroadPhase& two,
@@ -156,7 +156,7 @@ class BroadPhase {
   std::unordered_map<const void*, SlotNumber> slot_of_;
   std::vector<Slot> slots_;
   std::vector<SlotNumber> free_;
-  std::vector<SlotNumber> members_[kNumPlaces];
+  std::vector<SlotNumber> members_[kNumMobilities];
   MovingBoxTree tree_[2];
   std::uint64_t next_serial_{0};
 

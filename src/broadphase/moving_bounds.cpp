@@ -14,15 +14,15 @@ namespace {
 /// More than the rounding of a time, a quotient of sums of doubles.
 constexpr double kWindowMargin = 0x1p-48;
 
-/// The box at place i of n + 1 equally spaced places.
+/// The box at time i of n + 1 equally spaced times.
 HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
   if (bounds.num_spans == n) return bounds.boxes[i];
-  const int spans = bounds.num_spans, place = i * spans / n, rest = i * spans % n;
-  HalfAxisBox box = bounds.boxes[place];
+  const int spans = bounds.num_spans, span = i * spans / n, rest = i * spans % n;
+  HalfAxisBox box = bounds.boxes[span];
   if (rest == 0) return box;
   const double part = double(rest) / n;
   for (int j = 0; j < HalfAxisBox::kSides; ++j) {
-    const double to = bounds.boxes[place + 1].half[j];
+    const double to = bounds.boxes[span + 1].half[j];
     // Ends that are equal may be infinite, and have no difference then.
     if (box.half[j] != to) box.half[j] += (to - box.half[j]) * part;
   }

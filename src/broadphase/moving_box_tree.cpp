@@ -30,7 +30,7 @@ LinearBox unionOf(const LinearBox& a, const LinearBox& b) {
 void MovingBoxTree::clear() {
   nodes_.clear();
   free_.clear();
-  place_.clear();
+  leaf_of_.clear();
   root_ = kNone;
   count_ = 0;
 }
@@ -45,9 +45,9 @@ std::int32_t MovingBoxTree::newNode() {
   return node;
 }
 
-void MovingBoxTree::setPlace(std::int32_t object, std::int32_t node) {
-  if (index(object) >= place_.size()) place_.resize(index(object) + 1, kNone);
-  place_[index(object)] = node;
+void MovingBoxTree::setLeaf(std::int32_t object, std::int32_t node) {
+  if (index(object) >= leaf_of_.size()) leaf_of_.resize(index(object) + 1, kNone);
+  leaf_of_[index(object)] = node;
 }
 
 void MovingBoxTree::fit(std::int32_t node) {
@@ -120,7 +120,7 @@ void MovingBoxTree::insert(const Leaf& leaf) {
   node.child[1] = kNone;
   node.parent = kNone;
   node.height = 0;
-  setPlace(leaf.object, fresh);
+  setLeaf(leaf.object, fresh);
   ++count_;
   if (root_ == kNone) {
     root_ = fresh;
@@ -135,9 +135,9 @@ void MovingBoxTree::insert(const Leaf& leaf) {
 }
 
 void MovingBoxTree::remove(std::int32_t object) {
-  const std::int32_t leaf = place_[index(object)];
+  const std::int32_t leaf = leaf_of_[index(object)];
   assert(leaf != kNone);
-  place_[index(object)] = kNone;
+  leaf_of_[index(object)] = kNone;
   free_.push_back(leaf);
   --count_;
   const std::int32_t parent = at(leaf).parent;
@@ -162,7 +162,7 @@ void MovingBoxTree::buildPart(const std::vector<Leaf>& leaves, Middle* first,
     at(node).child[0] = leaf.object;
     at(node).child[1] = kNone;
     at(node).height = 0;
-    setPlace(leaf.object, node);
+    setLeaf(leaf.object, node);
     return;
   }
   if (last - first <= kBoxesAhead && last - first > kBoxesAhead / 2)
@@ -203,8 +203,8 @@ std::vector<MovingBoxTree::Leaf> MovingBoxTree::inThisOrder(
   out.reserve(leaves.size());
   for (std::uint32_t i = 0; i < leaves.size(); ++i) {
     const std::size_t object = index(leaves[i].object);
-    if (object < place_.size() && place_[object] != kNone)
-      at_node[index(place_[object])] = i;
+    if (object < leaf_of_.size() && leaf_of_[object] != kNone)
+      at_node[index(leaf_of_[object])] = i;
     else
       others.push_back(leaves[i]);
   }

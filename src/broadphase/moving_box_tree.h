@@ -69,13 +69,13 @@ class MovingBoxTree {
     float at[3];
     std::uint32_t leaf;
   };
-  struct NodePair {
+  struct OpenPair {
     std::int32_t first, second;
   };
   static constexpr std::size_t kPairsAtATime = 16;
   /// Pairs of nodes whose boxes may meet. There is always room for one more.
   struct PairStack {
-    std::vector<NodePair> pairs{std::vector<NodePair>(4 * kPairsAtATime)};
+    std::vector<OpenPair> pairs{std::vector<OpenPair>(4 * kPairsAtATime)};
     std::size_t size{0};
   };
 
@@ -84,7 +84,7 @@ class MovingBoxTree {
   Node& at(std::int32_t node) { return nodes_[index(node)]; }
 
   std::int32_t newNode();
-  void setPlace(std::int32_t object, std::int32_t node);
+  void setLeaf(std::int32_t object, std::int32_t node);
   void fit(std::int32_t node);
   std::int32_t leafBeside(const LinearBox& box) const;
   void replaceChild(std::int32_t parent, std::int32_t from, std::int32_t to);
@@ -101,7 +101,7 @@ class MovingBoxTree {
   std::vector<Node> nodes_;
   std::vector<std::int32_t> free_;
   /// The leaf of each object.
-  std::vector<std::int32_t> place_;
+  std::vector<std::int32_t> leaf_of_;
   std::int32_t root_{kNone};
   std::size_t count_{0};
 };
@@ -131,15 +131,15 @@ void MovingBoxTree::openPairs(const MovingBoxTree& a, const MovingBoxTree& b,
                               const LinearQuery& query, std::size_t rest,
                               PairStack& stack, Visit&& visit) {
   while (stack.size > rest) {
-    NodePair taken[kPairsAtATime];
+    OpenPair taken[kPairsAtATime];
     const std::size_t count = std::min(stack.size, kPairsAtATime);
     stack.size -= count;
     std::copy_n(stack.pairs.data() + stack.size, count, taken);
     if (stack.pairs.size() < stack.size + 2 * count + 1)
       stack.pairs.resize(2 * stack.pairs.size());
-    NodePair* top = stack.pairs.data() + stack.size;
+    OpenPair* top = stack.pairs.data() + stack.size;
     for (std::size_t i = 0; i < count; ++i) {
-      const NodePair pair = taken[i];
+      const OpenPair pair = taken[i];
       const Node &x = a.at(pair.first), &y = b.at(pair.second);
       if ((x.height | y.height) == 0) {
         visit(x.child[0], y.child[0]);

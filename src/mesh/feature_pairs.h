@@ -44,6 +44,19 @@ struct FeatureIds {
   std::int32_t triangles[2];
 };
 
+/// @brief A hash of up to five numbers below 2^32. Two products that do not wait for each
+/// other and one of their sum, by odd numbers with bits all over (the golden ratio, and a
+/// prime of xxHash). The upper bits of a product depend on all bits of its factors, so
+/// the lower 20 are left out.
+inline std::uint64_t hashOfIds(std::uint32_t kind, std::uint32_t v0, std::uint32_t v1,
+                               std::uint32_t v2, std::uint32_t v3) {
+  const std::uint64_t first = std::uint64_t{v0} << 32 | v1,
+                      second = std::uint64_t{v2} << 32 | v3;
+  const std::uint64_t sum =
+      (first + kind) * 0x9e3779b97f4a7c15 + (second ^ second >> 29) * 0xc2b2ae3d27d4eb4f;
+  return (sum ^ sum >> 32) * 0x9e3779b97f4a7c15 >> 20;
+}
+
 /// @brief The pairs of features of two triangles a and b, a bit each. Bit k: vertex k of
 /// a and the face of b. Bit 3 + k: vertex k of b and the face of a. Bit 6 + 3 i + j: edge
 /// i of a and edge j of b.

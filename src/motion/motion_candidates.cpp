@@ -139,7 +139,7 @@ class CandidateList {
 }  // namespace
 
 bool candidatesOfMotions(const MotionBody& a, const MotionBody& b,
-                         const CandidateSink& sink, double min_distance) {
+                         const FeatureCandidateSink& sink, double min_distance) {
   constexpr std::size_t kBlock = 1024;
   const BodiesNearOrigin near(a, b);
   CandidateList list(near.a, near.b, min_distance);

@@ -17,7 +17,7 @@ namespace deformable {
 /// @return whether the sink took them all
 /// @throws NonFiniteVertex; fcl::Exception when a vertex id of a triangle is out of range
 bool candidatesOfMotions(const MotionBody& a, const MotionBody& b,
-                         const CandidateSink& sink, double min_distance = 0);
+                         const FeatureCandidateSink& sink, double min_distance = 0);
 
 }  // namespace deformable
 }  // namespace detail

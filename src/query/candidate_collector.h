@@ -16,7 +16,7 @@ namespace detail {
 namespace deformable {
 
 /// @brief Takes a block of candidates. Returns false if it wants no more.
-using CandidateSink =
+using FeatureCandidateSink =
     std::function<bool(const FeatureCandidate* block, std::size_t count)>;
 
 /// @brief Takes the place of NarrowPhase in a query for candidates: it hands them to the
@@ -28,7 +28,7 @@ class CandidateCollector {
   /// @param reach  as of FeatureBatch
   /// @pre both meshes have owners; otherwise the sink would get pairs repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                     const CandidateSink& sink, double reach)
+                     const FeatureCandidateSink& sink, double reach)
       : batch_(a, b, shift, kernels(), reach), sink_(sink) {
     assert(a.hasOwners() && b.hasOwners());
   }
@@ -58,7 +58,7 @@ class CandidateCollector {
 
  private:
   FeatureBatch batch_;
-  const CandidateSink& sink_;
+  const FeatureCandidateSink& sink_;
   std::vector<FeatureCandidate> block_;
   bool stopped_{false};
   StageCounts counts_;

@@ -195,7 +195,7 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
   };
   for (std::size_t i = 0, first = 0; i < count; first = ends[i], ++i)
     if (ends[i] - first > 1)
-      std::sort(at(first), at(ends[i]), [](const Place& x, const Place& y) {
+      std::sort(at(first), at(ends[i]), [](const Entry& x, const Entry& y) {
         return x.key != y.key ? x.key < y.key : isEarlier(*x.contact, *y.contact);
       });
 }

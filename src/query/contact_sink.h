@@ -127,7 +127,7 @@ class SortedContacts {
   /// A contact, and a number of it that ascends in the order of contacts, as long as they
   /// are in one bucket (Buckets in contact_sink.cpp). Most are told apart by this number,
   /// so that the contacts, which are scattered in memory, are not read.
-  struct Place {
+  struct Entry {
     std::uint64_t key;
     const FeatureContact* contact;
   };
@@ -142,7 +142,7 @@ class SortedContacts {
     using reference = const FeatureContact&;
 
     Iterator() = default;
-    explicit Iterator(const Place* at) : at_(at) {}
+    explicit Iterator(const Entry* at) : at_(at) {}
     reference operator*() const { return *at_->contact; }
     pointer operator->() const { return at_->contact; }
     Iterator& operator++() {
@@ -154,7 +154,7 @@ class SortedContacts {
     bool operator!=(const Iterator& other) const { return at_ != other.at_; }
 
    private:
-    const Place* at_{nullptr};
+    const Entry* at_{nullptr};
   };
 
   SortedContacts() = default;
@@ -175,7 +175,7 @@ class SortedContacts {
 
  private:
   std::vector<std::deque<FeatureContact>> lists_;
-  UninitializedVector<Place> sorted_;
+  UninitializedVector<Entry> sorted_;
 };
 
 }  // namespace deformable

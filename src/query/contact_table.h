@@ -19,8 +19,8 @@ namespace deformable {
 /// The contacts belong to the caller; their features must not change while they are in
 /// it.
 ///
-/// The places of a table of twice as many as there are contacts, or more. A contact is at
-/// the place that its hash tells, or behind it without a free place in between.
+/// The slots of a table of twice as many as there are contacts, or more. A contact is at
+/// the slot that its hash tells, or behind it without a free slot in between.
 /// @tparam Contact  derived from FeatureIds
 template <typename Contact>
 class ContactTable {
@@ -31,19 +31,20 @@ class ContactTable {
     const Key key(pair);
     const std::uint64_t hash = key.hash();
     for (std::size_t i = hash & mask();; i = next(i)) {
-      const Place& place = places_[i];
-      if (!place.contact) return nullptr;
-      if (place.hash == hash && Key(*place.contact) == key) return place.contact;
+      const Slot& slot = slots_[i];
+      if (!slot.contact) return nullptr;
+      if (slot.hash == hash && Key(*slot.contact) == key) return slot.contact;
     }
   }
 
   /// @brief Makes room for this number of contacts.
   void reserve(std::size_t count) {
-    if (2 * count > places_.size()) grow(2 * count);
+    if (2 * count > slots_.size()) grow(2 * count);
   }
 
   /// @pre none with the same features is in the table
   void add(Contact& contact) {
+    assert(!find(contact));
     reserve(size_ + 1);
     insert({Key(contact).hash(), &contact});
     ++size_;
@@ -51,21 +52,22 @@ class ContactTable {
 
   /// @pre the contact is in the table
   void remove(const Contact& contact) {
+    assert(find(contact) == &contact);
     std::size_t i = Key(contact).hash() & mask();
-    while (places_[i].contact != &contact) i = next(i);
-    // Moves contacts forward that would not be found behind the free place.
-    for (std::size_t j = next(i); places_[j].contact; j = next(j)) {
-      const std::size_t home = places_[j].hash & mask();
+    while (slots_[i].contact != &contact) i = next(i);
+    // Moves contacts forward that would not be found behind the free slot.
+    for (std::size_t j = next(i); slots_[j].contact; j = next(j)) {
+      const std::size_t home = slots_[j].hash & mask();
       if (((j - home) & mask()) < ((j - i) & mask())) continue;
-      places_[i] = places_[j];
+      slots_[i] = slots_[j];
       i = j;
     }
-    places_[i] = {};
+    slots_[i] = {};
     --size_;
   }
 
   void clear() {
-    if (size_ > 0) std::fill(places_.begin(), places_.end(), Place());
+    if (size_ > 0) std::fill(slots_.begin(), slots_.end(), Slot());
     size_ = 0;
   }
 
@@ -81,43 +83,36 @@ class ContactTable {
         std::sort(words.begin() + 2, words.end());
     }
     bool operator==(const Key& other) const { return words == other.words; }
-    /// Two products that do not wait for each other and one of their sum, by odd numbers
-    /// with bits all over (the golden ratio, and a prime of xxHash). The upper bits of a
-    /// product depend on all bits of its factors, so the lower 20 are left out.
     std::uint64_t hash() const {
-      const std::uint64_t first = std::uint64_t{words[1]} << 32 | words[2],
-                          second = std::uint64_t{words[3]} << 32 | words[4];
-      const std::uint64_t sum = (first + words[0]) * 0x9e3779b97f4a7c15 +
-                                (second ^ second >> 29) * 0xc2b2ae3d27d4eb4f;
-      return (sum ^ sum >> 32) * 0x9e3779b97f4a7c15 >> 20;
+      return hashOfIds(words[0], words[1], words[2], words[3], words[4]);
     }
   };
-  struct Place {
+  struct Slot {
     std::uint64_t hash{0};
     Contact* contact{nullptr};
   };
 
-  std::size_t mask() const { return places_.size() - 1; }
+  std::size_t mask() const { return slots_.size() - 1; }
   std::size_t next(std::size_t i) const { return (i + 1) & mask(); }
 
-  void insert(const Place& place) {
-    std::size_t i = place.hash & mask();
-    while (places_[i].contact) i = next(i);
-    places_[i] = place;
+  void insert(const Slot& slot) {
+    std::size_t i = slot.hash & mask();
+    while (slots_[i].contact) i = next(i);
+    slots_[i] = slot;
   }
 
-  /// @param count  of places, at least
+  /// @param count  of slots, at least
   void grow(std::size_t count) {
     std::size_t size = 64;
     while (size < count) size *= 2;
-    std::vector<Place> before(size);
-    before.swap(places_);
-    for (const Place& place : before)
-      if (place.contact) insert(place);
+    std::vector<Slot> before(size);
+    before.swap(slots_);
+    for (const Slot& slot : before)
+      if (slot.contact) insert(slot);
   }
 
   /// Their number is a power of two.
-  std::vector<Place> places_;
+  std::vector<Slot> slots_;
   std::size_t size_{0};
 };
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "elementary/feature_points.h"
+#include "mesh/feature_pairs.h"
 #include "query/feature_batch.h"
 
 namespace fcl {
@@ -19,35 +20,35 @@ namespace deformable {
 
 /// @brief Remembers the decisions of some pairs. A decision is used again only if all
 /// that it depends on is the same, so that no answer and no count depends on what is
-/// remembered. A pair is forgotten when another one takes its place.
+/// remembered. A pair is forgotten when another one takes its slot.
 class DecidedPairs {
  public:
   /// @brief The decision of the same pair with the same t_stop, or null.
   const ElementaryResult* find(const FeatureCandidate& pair, double t_stop) const {
-    if (places_.empty()) return nullptr;
-    const Place& place = places_[placeOf(pair)];
-    return place.is_taken && place.t_stop == t_stop && isSame(place, pair) ? &place.result
-                                                                           : nullptr;
+    if (slots_.empty()) return nullptr;
+    const Slot& slot = slots_[slotOf(pair)];
+    return slot.is_taken && slot.t_stop == t_stop && isSame(slot, pair) ? &slot.result
+                                                                        : nullptr;
   }
 
   void add(const FeatureCandidate& pair, double t_stop, const ElementaryResult& result) {
-    if (places_.empty()) places_.resize(kPlaces);
-    Place& place = places_[placeOf(pair)];
-    place.is_taken = true;
-    place.kind = pair.kind;
-    place.first_on_a = pair.first_on_a;
-    std::copy(pair.vertices, pair.vertices + 4, place.vertices);
-    place.window_lo = pair.window_lo;
-    place.window_hi = pair.window_hi;
-    place.t_stop = t_stop;
-    place.result = result;
+    if (slots_.empty()) slots_.resize(kSlots);
+    Slot& slot = slots_[slotOf(pair)];
+    slot.is_taken = true;
+    slot.kind = pair.kind;
+    slot.first_on_a = pair.first_on_a;
+    std::copy(pair.vertices, pair.vertices + 4, slot.vertices);
+    slot.window_lo = pair.window_lo;
+    slot.window_hi = pair.window_hi;
+    slot.t_stop = t_stop;
+    slot.result = result;
   }
 
  private:
   /// 320 KB. The triangles of a block are neighbours, and meet a pair again soon.
-  static constexpr std::size_t kPlaces = 4096;
+  static constexpr std::size_t kSlots = 4096;
 
-  struct Place {
+  struct Slot {
     bool is_taken{false};
     bool first_on_a;
     ContinuousContactKind kind;
@@ -56,19 +57,17 @@ class DecidedPairs {
     ElementaryResult result;
   };
 
-  static bool isSame(const Place& place, const FeatureCandidate& pair) {
-    return place.kind == pair.kind && place.first_on_a == pair.first_on_a &&
-           place.window_lo == pair.window_lo && place.window_hi == pair.window_hi &&
-           std::equal(place.vertices, place.vertices + 4, pair.vertices);
+  static bool isSame(const Slot& slot, const FeatureCandidate& pair) {
+    return slot.kind == pair.kind && slot.first_on_a == pair.first_on_a &&
+           slot.window_lo == pair.window_lo && slot.window_hi == pair.window_hi &&
+           std::equal(slot.vertices, slot.vertices + 4, pair.vertices);
   }
-  static std::size_t placeOf(const FeatureCandidate& pair) {
-    // After FNV-1a, by words.
-    std::uint64_t hash = 0xcbf29ce484222325;
-    for (const std::uint32_t v : pair.vertices) hash = (hash ^ v) * 0x100000001b3;
-    return static_cast<std::size_t>(hash ^ (hash >> 32)) % kPlaces;
+  static std::size_t slotOf(const FeatureCandidate& pair) {
+    const std::uint32_t(&v)[4] = pair.vertices;
+    return hashOfIds(0, v[0], v[1], v[2], v[3]) % kSlots;
   }
 
-  std::vector<Place> places_;
+  std::vector<Slot> slots_;
 };
 
 }  // namespace deformable

@@ -149,7 +149,7 @@ class ContactQuery {
 };
 
 bool candidates(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
-                const CandidateSink& sink, double min_distance) {
+                const FeatureCandidateSink& sink, double min_distance) {
   const double reach = shifts.reach(1);
   const KdopShift shift = shifts.shift(reach);
   CandidateCollector leaves(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach);
@@ -204,13 +204,13 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
   return query(a, b, options);
 }
 
-bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
+bool candidatesSelf(const MeshInstance& a, const FeatureCandidateSink& sink,
                     double min_distance) {
   return candidatesPair(a, a, sink, min_distance);
 }
 
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
-                    const CandidateSink& sink, double min_distance) {
+                    const FeatureCandidateSink& sink, double min_distance) {
   const DefaultFloatingPoint mode;
   return candidates(a, b, shiftsOf(a, b, min_distance, false), sink, min_distance);
 }

@@ -29,14 +29,14 @@ QueryAnswer queryPair(const MeshInstance& a, const MeshInstance& b,
 /// that may touch
 /// @pre a has owners
 /// @return whether the sink took them all
-bool candidatesSelf(const MeshInstance& a, const CandidateSink& sink,
+bool candidatesSelf(const MeshInstance& a, const FeatureCandidateSink& sink,
                     double min_distance = 0);
 
 /// @brief Hands the candidates of meshes a and b to the sink.
 /// @pre a and b have owners
 /// @return whether the sink took them all
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
-                    const CandidateSink& sink, double min_distance = 0);
+                    const FeatureCandidateSink& sink, double min_distance = 0);
 
 /// @brief The shift between the boxes of two meshes, which may have different origins and
 /// translations. overlapWindow() adds it.

@@ -42,33 +42,33 @@ TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
   in_place_ = {mesh.tree->triangles().data(), mesh.tree->vertices().data()};
 }
 
-/// Sets the place of a triangle.
+/// Sets the slot of a triangle.
 void TriangleReader::find(int i) {
   assert(i >= 0);
   if (!triangles_) {
     // Not initialized, since each is written before it is read.
-    triangles_.reset(new TreeTriangle[kPlaces]);
-    vertices_.reset(new TreeVertex[3 * kPlaces]);
-    stored_.assign(kPlaces, -1);
-    place_of_.assign(kPlaces, 0);
-    place_of_vertex_.assign(kPlaces, 0);
+    triangles_.reset(new TreeTriangle[kSlots]);
+    vertices_.reset(new TreeVertex[3 * kSlots]);
+    stored_.assign(kSlots, -1);
+    slot_of_.assign(kSlots, 0);
+    slot_of_vertex_.assign(kSlots, 0);
   }
-  std::uint16_t& place = place_of_[static_cast<std::size_t>(i) % kPlaces];
-  const std::size_t reads_left = (place + kPlaces - next_) % kPlaces;
-  if (stored_[place] != i || reads_left < kStored) {
+  std::uint16_t& slot = slot_of_[static_cast<std::size_t>(i) % kSlots];
+  const std::size_t reads_left = (slot + kSlots - next_) % kSlots;
+  if (stored_[slot] != i || reads_left < kStored) {
     stored_[next_] = -1;
     compute(i, next_);
     stored_[next_] = i;
-    place = static_cast<std::uint16_t>(next_);
-    next_ = (next_ + 1) % kPlaces;
+    slot = static_cast<std::uint16_t>(next_);
+    next_ = (next_ + 1) % kSlots;
   }
   index_ = i;
-  place_ = place;
+  slot_ = slot;
 }
 
-void TriangleReader::compute(int i, std::size_t place) {
+void TriangleReader::compute(int i, std::size_t slot) {
   const auto index = static_cast<std::size_t>(i);
-  TreeTriangle& triangle = triangles_[place];
+  TreeTriangle& triangle = triangles_[slot];
   if (mesh_.tree) {
     triangle = mesh_.tree->triangles()[index];
   } else {
@@ -94,22 +94,22 @@ void TriangleReader::compute(int i, std::size_t place) {
   }
   for (std::size_t k = 0; k < 3; ++k) {
     const std::uint32_t id = triangle.id[k];
-    TreeVertex& x = vertices_[3 * place + k];
-    std::uint16_t& place_of_vertex = place_of_vertex_[id % kPlaces];
-    if (!mesh_.tree && isStored(id, place_of_vertex)) {
-      x = vertices_[place_of_vertex];
+    TreeVertex& x = vertices_[3 * slot + k];
+    std::uint16_t& slot_of_vertex = slot_of_vertex_[id % kSlots];
+    if (!mesh_.tree && isStored(id, slot_of_vertex)) {
+      x = vertices_[slot_of_vertex];
     } else {
       pose(id, x);
       if (mesh_.tree) x.box = mesh_.tree->vertices()[triangle.place[k]].box;
       if (!isFinite(x)) throw NonFiniteVertex(mesh_.name, id);
     }
-    place_of_vertex = static_cast<std::uint16_t>(3 * place + k);
+    slot_of_vertex = static_cast<std::uint16_t>(3 * slot + k);
   }
 }
 
-/// Whether the vertex at a place of the store has this id.
-bool TriangleReader::isStored(std::uint32_t id, std::size_t place) const {
-  return stored_[place / 3] >= 0 && triangles_[place / 3].id[place % 3] == id;
+/// Whether the vertex in a slot of the store has this id.
+bool TriangleReader::isStored(std::uint32_t id, std::size_t slot) const {
+  return stored_[slot / 3] >= 0 && triangles_[slot / 3].id[slot % 3] == id;
 }
 
 void TriangleReader::pose(std::uint32_t id, TreeVertex& out) const {

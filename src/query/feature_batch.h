@@ -85,8 +85,8 @@ class TriangleReader {
   const TreeTriangle* read(int i, const TreeVertex** x) {
     if (in_place_.triangles) return in_place_.read(i, x);
     if (i != index_) find(i);
-    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * place_ + k];
-    return &triangles_[place_];
+    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * slot_ + k];
+    return &triangles_[slot_];
   }
 
   void prefetch(int i) const {
@@ -98,26 +98,26 @@ class TriangleReader {
   const TrianglesInPlace& inPlace() const { return in_place_; }
 
  private:
-  /// Places of the store, which are taken in a circle. A triangle is used again as long
-  /// as its place will not be taken by the next kStored reads.
-  static constexpr std::size_t kPlaces = 2 * kStored;
+  /// Slots of the store, which are taken in a circle. A triangle is used again as long
+  /// as its slot will not be taken by the next kStored reads.
+  static constexpr std::size_t kSlots = 2 * kStored;
 
   void find(int i);
-  void compute(int i, std::size_t place);
-  bool isStored(std::uint32_t id, std::size_t place) const;
+  void compute(int i, std::size_t slot);
+  bool isStored(std::uint32_t id, std::size_t slot) const;
   void pose(std::uint32_t id, TreeVertex& out) const;
 
   const MeshInstance& mesh_;
   TrianglesInPlace in_place_{nullptr, nullptr};
-  /// The triangle that was read last, and its place.
+  /// The triangle that was read last, and its slot.
   int index_{-1};
-  std::size_t place_{0};
-  /// The place that is taken next.
+  std::size_t slot_{0};
+  /// The slot that is taken next.
   std::size_t next_{0};
-  /// The triangle at each place; -1: none. And the place of a triangle, and of a vertex,
+  /// The triangle in each slot; -1: none. And the slot of a triangle, and of a vertex,
   /// by the last bits of its number, if it is in the store.
   std::vector<int> stored_;
-  std::vector<std::uint16_t> place_of_, place_of_vertex_;
+  std::vector<std::uint16_t> slot_of_, slot_of_vertex_;
   std::unique_ptr<TreeTriangle[]> triangles_;
   std::unique_ptr<TreeVertex[]> vertices_;
 };

@@ -118,7 +118,8 @@ void lowerToSafe(const MeshInstance& a, const MeshInstance& b, double min_distan
                  double most, std::vector<double>& bounds_a,
                  std::vector<double>& bounds_b) {
   SafeBounds bounds(min_distance, most, bounds_a, bounds_b);
-  const CandidateSink sink = [&bounds](const FeatureCandidate* pairs, std::size_t count) {
+  const FeatureCandidateSink sink = [&bounds](const FeatureCandidate* pairs,
+                                              std::size_t count) {
     bounds.lower(pairs, count);
     return true;
   };

@@ -12,8 +12,8 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// What is added to a half-axis: 0 in place of a negative number, infinity in place of a
-/// NaN.
+/// What is added to a half-axis: 0 in center of a negative number, infinity in center of
+/// a NaN.
 Float4 outward(const Float4& reach) {
   const Float4 least = reach < 0.f ? Float4{} : reach;
   return least == least ? least : Float4{} + std::numeric_limits<float>::infinity();
@@ -50,16 +50,16 @@ double sizeOf(const Bend& bend, const double (&middle)[3]) {
 // With p the mean of the origins and translations the bend is M (p + r) + offset.
 BentBoxes::BentBoxes(const Bend& bend, const double (&origin)[2][3],
                      const double (&translation)[2][3]) {
-  double place[3], size[3], s[3], change = 0, diagonal = 0;
+  double center[3], size[3], s[3], change = 0, diagonal = 0;
   for (int k = 0; k < 3; ++k) {
-    place[k] = size[k] = 0;
+    center[k] = size[k] = 0;
     for (auto frame : {0, 1})
       for (const double x : {origin[frame][k], translation[frame][k]}) {
-        place[k] += 0.5 * x;
+        center[k] += 0.5 * x;
         size[k] += 0.5 * std::abs(x);
       }
   }
-  bendAt(bend, place, s);
+  bendAt(bend, center, s);
   for (int i = 0; i < 3; ++i) at_origin_[i] = static_cast<float>(s[i]);
   for (int k = 0; k < 3; ++k) {
     double along[8];

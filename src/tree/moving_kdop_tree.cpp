@@ -93,7 +93,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
 /// Takes over a structure, and finds fans and owners.
 void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* triangles,
                              std::size_t num_vertices, int num_threads) {
-  place(structure, triangles, num_vertices, num_threads);
+  assignPlaces(structure, triangles, num_vertices, num_threads);
   setNodes(structure, num_threads);
   UninitializedVector<TreeVertex>(vertex_ids_.size()).swap(vertices_);
   const VertexCorners corners(triangles_, vertex_ids_.size(), num_threads);
@@ -102,8 +102,9 @@ void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* tri
 }
 
 /// Takes over the triangles of a structure, and gives the vertices their places.
-void MovingKdopTree::place(const TreeStructure& structure, const Triangle* triangles,
-                           std::size_t num_vertices, int num_threads) {
+void MovingKdopTree::assignPlaces(const TreeStructure& structure,
+                                  const Triangle* triangles, std::size_t num_vertices,
+                                  int num_threads) {
   const std::vector<std::uint32_t>& leaves = structure.leaves;
   triangles_.resize(leaves.size());
   parallelForBlocks(leaves.size(), kTriangleBlock, num_threads,

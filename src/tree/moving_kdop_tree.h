@@ -142,8 +142,8 @@ class MovingKdopTree {
   void markFreeLeaves();
   void arrange(const TreeStructure& structure, const Triangle* triangles,
                std::size_t num_vertices, int num_threads);
-  void place(const TreeStructure& structure, const Triangle* triangles,
-             std::size_t num_vertices, int num_threads);
+  void assignPlaces(const TreeStructure& structure, const Triangle* triangles,
+                    std::size_t num_vertices, int num_threads);
   void takeMemory(const MovingKdopTree& other, const TreeStructure& structure);
   void become(MovingKdopTree&& next, const TreeStructure& structure) noexcept;
   void inherit(const MovingKdopTree& before, const TopologyDifference& difference,

@@ -335,7 +335,7 @@ void MovingKdopTree::changeTopology(const Triangle* triangles, std::size_t num_t
   MovingKdopTree next;
   const TreeStructure structure = TopologyUpdate(*this, difference, triangles, frames)
                                       .structure(num_triangles, next.first_sizes_);
-  next.place(structure, triangles, frames.size(), num_threads);
+  next.assignPlaces(structure, triangles, frames.size(), num_threads);
   next.inherit(*this, difference, num_threads);
   next.takeMemory(*this, structure);
   become(std::move(next), structure);

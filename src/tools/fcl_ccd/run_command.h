@@ -17,7 +17,7 @@ struct RunOptions {
   std::vector<std::string> frames;   ///< frames of mesh A, in the form of listFrames()
   std::vector<std::string> against;  ///< of mesh B: none, one frame, or as many as of A
   FrameRange range;
-  QuerySettings settings;      ///< num_threads is not used
+  StepSettings settings;       ///< num_threads is not used
   std::optional<int> jobs;     ///< steps at the same time; 0: as many as cores
   std::optional<int> threads;  ///< threads of a step; 0: as many as cores
   std::optional<double> weld;  ///< distance at which vertices are joined

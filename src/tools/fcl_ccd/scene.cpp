@@ -123,7 +123,7 @@ const SceneContact* StepResult::first() const {
 }
 
 Scene::Scene(const SceneTriangles& triangles, const SceneFrame& frame,
-             const QuerySettings& settings)
+             const StepSettings& settings)
     : settings_(settings) {
   build_time_ = std::numeric_limits<double>::infinity();
   for (int i = 0; i < settings_.repeat; ++i) build(triangles, frame);

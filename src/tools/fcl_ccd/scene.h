@@ -15,7 +15,7 @@
 
 namespace fcl_ccd {
 
-struct QuerySettings {
+struct StepSettings {
   fcl::ContinuousQuery query{fcl::ContinuousQuery::kAll};
   double toc_err{1e-4};
   bool self{true};     ///< whether A is tested against itself
@@ -41,7 +41,7 @@ struct SceneContact {
   double toc_hi{0};
   /// The triangles of the first feature (vertex, or edge a) and of the second one.
   std::array<std::intptr_t, 2> triangles{{-1, -1}};
-  /// Position at toc_lo; only with QuerySettings::points.
+  /// Position at toc_lo; only with StepSettings::points.
   std::array<double, 3> position{};
   std::array<double, 3> normal{};  ///< from A to B; within A to feature 2
 };
@@ -86,7 +86,7 @@ class Scene {
   /// @throws std::runtime_error with the name of the mesh ("A", "B") that the library
   /// refuses.
   Scene(const SceneTriangles& triangles, const SceneFrame& frame,
-        const QuerySettings& settings);
+        const StepSettings& settings);
 
   /// @brief The shortest time of building the models, in seconds.
   double buildTime() const { return build_time_; }
@@ -103,7 +103,7 @@ class Scene {
   void build(const SceneTriangles& triangles, const SceneFrame& frame);
   void query(const Model& o1, const Model& o2, StepResult& step) const;
 
-  QuerySettings settings_;
+  StepSettings settings_;
   double build_time_{0};
   std::unique_ptr<Model> a_;
   std::unique_ptr<Model> b_;

@@ -45,7 +45,7 @@ class StepMaker {
   const RunOptions& options_;
   const FramePaths& paths_;
   const RunInputs& inputs_;
-  QuerySettings settings_;
+  StepSettings settings_;
   StepShare share_;
   FrameStore frames_a_;
   std::optional<FrameStore> frames_b_;
