@@ -66,9 +66,9 @@ PreparedMesh prepared(const PlacedGeometry<S>& placed, const char* name) {
 template <typename S>
 PreparedMotion preparedMotion(const PlacedGeometry<S>& placed, const char* name) {
   // A reference point that rounds by more than this part of the step is refused.
-  constexpr double kTocErr = 1e-9;
+  constexpr double kStrictTocErr = 1e-9;
   const deformable::DefaultFloatingPoint mode;
-  return PreparedMotion(placed, name, kTocErr, 1);
+  return PreparedMotion(placed, name, kStrictTocErr, 1);
 }
 
 template <typename S>

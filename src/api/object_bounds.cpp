@@ -11,6 +11,7 @@
 #include "api/query_arguments.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
@@ -19,7 +20,6 @@ namespace {
 using namespace deformable;
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
-constexpr double kUpward = 1 + 0x1p-40;
 /// A pair query adds up to 2^-44 of the coordinates of both objects, for rounding and for
 /// its tolerance (motion_query.cpp, numerics.md). The boxes of both have room for it.
 constexpr double kRoom = 0x1p-40;
@@ -29,7 +29,7 @@ constexpr double kDeviation = 0x1p-4;
 constexpr int kMostSpans = 16;
 /// FCL's default. A larger rounding error of an InterpMotion's reference point is
 /// refused.
-constexpr double kTocErr = 1e-4;
+constexpr double kDefaultTocErr = 1e-4;
 
 double norm(const double (&v)[3]) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -188,7 +188,7 @@ void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   if (placed.isShape()) return appendShape(placed, list);
   if (!placed.isMesh() && !placed.isOctree()) return appendUnbounded(list);
   requireFinite(placed.beginning(), placed.end(), "object");
-  const PreparedMotion motion(placed, "object", kTocErr, 1);
+  const PreparedMotion motion(placed, "object", kDefaultTocErr, 1);
   if (motion.isEmpty())
     return appendBody({{MotionBox(), MotionBox()}, motionPathOf(placed, "object")}, list);
   const MotionBody& body = motion.body();

@@ -16,14 +16,14 @@ namespace {
 using deformable::ConvexShape;
 
 /// Paths of numbers up to this are in the range of PreparedMotion.
-constexpr double kMostSize = 0x1p40;
+constexpr double kMostPlainSize = 0x1p40;
 
 template <typename S>
-bool isInRange(const PoseNumbers<S>& pose) {
-  bool is_in_range = true;
-  for (const S x : pose.rotation) is_in_range &= std::abs(x) <= S(kMostSize);
-  for (const S x : pose.translation) is_in_range &= std::abs(x) <= S(kMostSize);
-  return is_in_range;
+bool isPlainSize(const PoseNumbers<S>& pose) {
+  bool is_plain_size = true;
+  for (const S x : pose.rotation) is_plain_size &= std::abs(x) <= S(kMostPlainSize);
+  for (const S x : pose.translation) is_plain_size &= std::abs(x) <= S(kMostPlainSize);
+  return is_plain_size;
 }
 
 /// Whether nothing about the path can be wrong: see PreparedMotion.
@@ -34,13 +34,14 @@ bool isPlain(const MovingGeometry<S>& o) {
   if (turns && (o.reference[0] != 0 || o.reference[1] != 0 || o.reference[2] != 0))
     return false;
   for (const PoseNumbers<S>& pose : o.pose)
-    if (!isInRange(pose) || !deformable::isRotation(toPose(pose).rotation)) return false;
+    if (!isPlainSize(pose) || !deformable::isRotation(toPose(pose).rotation))
+      return false;
   return true;
 }
 
-bool isInRange(const ConvexShape& shape) {
-  if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostSize;
-  return shape.box().radius + shape.radius() <= kMostSize;
+bool isPlainSize(const ConvexShape& shape) {
+  if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostPlainSize;
+  return shape.box().radius + shape.radius() <= kMostPlainSize;
 }
 
 }  // namespace
@@ -56,7 +57,7 @@ bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& 
   try {
     const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
                       b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
-    return isInRange(a) && isInRange(b) &&
+    return isPlainSize(a) && isPlainSize(b) &&
            deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
   } catch (const Exception&) {
     // The query tells first what is wrong with the request.

@@ -6,6 +6,7 @@
 
 #include "api/octree_nodes.h"
 #include "fcl/common/exception.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
@@ -13,7 +14,7 @@ namespace deformable {
 namespace {
 
 /// Longer paths are refused, so that no product overflows.
-constexpr double kMostSize = 0x1p200;
+constexpr double kMostPathSize = 0x1p200;
 
 double norm(const double (&v)[3]) {
   return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -140,12 +141,12 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   double way[3];
   for (int k = 0; k < 3; ++k)
     way[k] = placed.end().translation[k] - placed.beginning().translation[k];
-  constexpr double kRounding = 64 * 0x1p-53, kLeastTocErr = 1e-9;
+  constexpr double kRounding = 64 * kUnit, kInsteadOfZero = 1e-9;
   double size = body_->radius() + norm(way);
   if (shape_)
     size += shape_->radius() + norm(placed.beginning().translation) +
             norm(placed.end().translation);
-  if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kLeastTocErr) * size))
+  if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kInsteadOfZero) * size))
     throw Exception(
         name +
         ": the reference point of the InterpMotion is not finite or far too large. FCL's "
@@ -155,7 +156,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
 
 void PreparedMotion::requireInRange(const std::string& name) const {
   if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).of({0, 0, 0}, 0) <
-      kMostSize)
+      kMostPathSize)
     return;
   if (mesh_) requireFinite(mesh_->instance().frames, name);
   throw Exception(name +

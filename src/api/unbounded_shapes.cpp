@@ -10,6 +10,7 @@
 #include "fcl/geometry/shape/plane.h"
 #include "motion/convex_advance.h"
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
@@ -101,7 +102,7 @@ ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
                             maxNorm(cross(a.normal, b.normal)) <= kParallel;
   if (are_parallel) {
     const FlatGap gap(a, b);
-    const double tolerance = 128 * 0x1p-53 * (a.size + b.size),
+    const double tolerance = 128 * kUnit * (a.size + b.size),
                  distance = distanceOf(gap.at[0], tolerance, options),
                  begin = gap.at[0] - distance - tolerance,
                  end = gap.at[1] - distance - tolerance;

@@ -12,7 +12,7 @@ namespace deformable {
 namespace {
 
 /// More than the rounding of a time, a quotient of sums of doubles.
-constexpr double kWindowMargin = 0x1p-48;
+constexpr double kBoxTimeMargin = 0x1p-48;
 
 /// The box at time i of n + 1 equally spaced times.
 HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
@@ -43,9 +43,9 @@ MeetingWindow spanWindow(const HalfAxisBox& a0, const HalfAxisBox& a1,
     if (!(std::abs(change) <= DBL_MAX)) continue;  // no quotient
     const double t = s0 / change;
     if (s0 < 0)
-      window.lo = std::max(window.lo, t - kWindowMargin);
+      window.lo = std::max(window.lo, t - kBoxTimeMargin);
     else
-      window.hi = std::min(window.hi, t + kWindowMargin);
+      window.hi = std::min(window.hi, t + kBoxTimeMargin);
   }
   return window;
 }
@@ -66,8 +66,8 @@ MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
     b0 = b1;
     if (part.isEmpty()) continue;
     // n is a power of two: these quotients and sums round by 2^-53.
-    if (is_first) whole.lo = std::max(0., (i + part.lo) / n - kWindowMargin);
-    whole.hi = std::min(1., (i + part.hi) / n + kWindowMargin);
+    if (is_first) whole.lo = std::max(0., (i + part.lo) / n - kBoxTimeMargin);
+    whole.hi = std::min(1., (i + part.hi) / n + kBoxTimeMargin);
     is_first = false;
   }
   return whole;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "elementary/most_steps.h"
 #include "elementary/ordered_points.h"
 
 namespace fcl {
@@ -280,8 +281,6 @@ double proveWithin(AdvancingPair& pair, const DistanceTolerance& tolerance, doub
 /// along another at nearly this distance. A graze takes a quarter of the gap in a step:
 /// 24 steps from 1 to 2^-46.
 constexpr int kPlainSteps = 64;
-/// Steps after which a pair is given up.
-constexpr int kMaxSteps = 10000;
 
 /// Takes the bracket from what is known at the time t.
 void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
@@ -322,7 +321,7 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
     Step step{t, 0};
     if (!is_contact) {
       step = pair.longestStep(near, d, d + tolerance.margin, t, last);
-      if (!(step.until > t) || out.steps == kMaxSteps) {
+      if (!(step.until > t) || out.steps == kMostSteps) {
         is_contact = true;
         out.is_given_up =
             reached > d + (DistanceTolerance::kShare * d + tolerance.touching);

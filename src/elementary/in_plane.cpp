@@ -101,7 +101,7 @@ class PlanarQuadratic {
   Bounded blossom(double s, double t) const {
     const double w0 = (1 - s) * (1 - t), w1 = (1 - s) * t + s * (1 - t), w2 = s * t;
     return {w0 * c_[0] + w1 * c_[1] + w2 * c_[2],
-            16 * 0x1p-53 * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
+            16 * kUnit * (w0 * size_[0] + w1 * size_[1] + w2 * size_[2]) + underflow_};
   }
 
   /// Adds a product. The result is reliable if no product that is not zero can underflow,
@@ -220,7 +220,7 @@ bool areApartAt(double t, bool vf, const FeaturePoints& x, int axis) {
       const double s = 1 - t, a = s * d.x[0] + t * d.x[1], b = s * d.y[0] + t * d.y[1];
       // Four roundings of each term, and one more of the sums. Underflows are below the
       // smallest normal number.
-      const double error = 8 * 0x1p-53 *
+      const double error = 8 * kUnit *
                                (s * (std::abs(d.x[0]) + std::abs(d.y[0])) +
                                 t * (std::abs(d.x[1]) + std::abs(d.y[1]))) +
                            std::numeric_limits<double>::min();

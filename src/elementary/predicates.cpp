@@ -190,7 +190,7 @@ int crossSign(const double (&a)[3], const double (&b)[3], const double (&c)[3],
   // matters.
   const double size = std::abs(s * t) + std::abs(u * v), value = s * t - u * v;
   const bool in_range = isInRange(size);
-  if (in_range && std::abs(value) > 5 * 0x1p-53 * size) return value > 0 ? 1 : -1;
+  if (in_range && std::abs(value) > 5 * kUnit * size) return value > 0 ? 1 : -1;
   // If the products cancel, both are near size / 2.
   if (in_range && isExactDifference(b[i], a[i], s) && isExactDifference(d[j], c[j], t) &&
       isExactDifference(b[j], a[j], u) && isExactDifference(d[i], c[i], v))

@@ -343,8 +343,7 @@ FCL_CCD_INLINE PlaneGaps planeGaps(const TrianglePoints& p, const Vectors& d,
   if (distance > 0) {
     const Doubles square = dot(d, d);
     out.is_valid = out.is_valid & isInRange(square);
-    out.least =
-        out.least + squareRoot(square) * broadcast<kEight>(distance * (1 + 0x1p-40));
+    out.least = out.least + squareRoot(square) * broadcast<kEight>(distance * kUpward);
   }
   return out;
 }

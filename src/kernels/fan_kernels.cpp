@@ -92,13 +92,11 @@ template <typename Fans>
 FCL_CCD_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const Vectors& d,
                                   const Doubles& norm, const Doubles& turned,
                                   double distance) {
-  // More than the rounding of a product, a root and a quotient.
-  constexpr double kUp = 1 + 0x1p-40;
   // The rim is a difference of differences: 2^-51 of the norm in a coordinate, and it is
   // below 4 norms long.
   const Doubles rounding = broadcast<kEight>(0x1p-46) * norm * norm;
   const Doubles length = dot(d, d),
-                least = broadcast<kEight>(distance * kUp) * squareRoot(length);
+                least = broadcast<kEight>(distance * kUpward) * squareRoot(length);
   const auto longest = [](const MovingVectors& side) HWY_ATTR {
     return max(dot(side.t0, side.t0), dot(side.t1, side.t1));
   };

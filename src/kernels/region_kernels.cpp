@@ -158,9 +158,6 @@ FCL_CCD_INLINE DoubleMask hasSquare(const Doubles& size) {
   return (size >= all(0x1p-400)) & (size <= all(0x1p400));
 }
 
-/// More than the rounding of products and of lengths of differences.
-constexpr double kUp = 1 + 0x1p-40;
-
 FCL_CCD_INLINE Doubles squareOf(const Vectors& a) { return dot(a, a); }
 
 /// The largest square of a vector during the step.
@@ -173,7 +170,7 @@ FCL_CCD_INLINE Doubles largestSquare(const MovingVectors& v) {
 FCL_CCD_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& rounding) {
   const Doubles most =
       max(max(squareOf(n.first), all(0.25) * squareOf(n.middle)), squareOf(n.last));
-  const Doubles length = squareRoot(most) * all(kUp) + all(2) * rounding;
+  const Doubles length = squareRoot(most) * all(kUpward) + all(2) * rounding;
   return length * length;
 }
 
@@ -243,7 +240,7 @@ std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
       min(min(dot(n.first, along), all(0.5) * dot(n.middle, along)), dot(n.last, along)) -
       all(kFanBound) * size;
   const Doubles square = area * area,
-                least = all(distance * distance * kUp *
+                least = all(distance * distance * kUpward *
                             (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
   const DoubleMask is_seen = hasSquare(size) & (area > all(0));
   const auto lowOver = [&](const MovingVectors& side) HWY_ATTR {

@@ -107,8 +107,7 @@ FCL_CCD_INLINE DoubleMask staysAbove(const Doubles& g0, const Doubles& g1,
                                      const Doubles& bend) {
   const Doubles zero = all(0), sum = g0 + g1,
                 root = squareRoot(max(g0, zero)) * squareRoot(max(g1, zero));
-  return (g0 > zero) & (g1 > zero) &
-         (sum + (root + root) > all(-4 * (1 + 0x1p-40)) * bend);
+  return (g0 > zero) & (g1 > zero) & (sum + (root + root) > all(-4 * kUpward) * bend);
 }
 
 /// The cross product of two moving vectors, as Bernstein coefficients in t. The middle

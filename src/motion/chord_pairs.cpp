@@ -9,14 +9,13 @@
 #include "motion/posed_vector.h"
 #include "motion/sine.h"
 #include "motion/triangle_advance.h"
+#include "numerics/error_bounds.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUpward = 1 + 0x1p-40;
 
 /// Whether all points are accelerated alike, so that their chords can be moved
 /// (centerChords()) or bent (bendOf()).

@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUpward = 1 + 0x1p-40;
 
 double accelerationOf(const MovingConvex& set, double t0, double t1) {
   const AccelerationBound bound = set.path->acceleration(t0, t1);

@@ -7,13 +7,13 @@
 #include <utility>
 
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
 
-constexpr double kUpward = 1 + 0x1p-40;
 /// Pieces of a cone, a cylinder and a capsule.
 constexpr int kBase = 0, kTip = 1, kTop = 1;
 

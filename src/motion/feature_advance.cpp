@@ -5,18 +5,19 @@
 #include <cmath>
 #include <utility>
 
+#include "elementary/most_steps.h"
 #include "mesh/feature_pairs.h"
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
 
-constexpr double kUnitRounding = 0x1p-53;
 /// Steps after which features that are still apart probably move along each other at
-/// nearly the distance, and after which they are given up.
-constexpr int kPlainSteps = 64, kMostSteps = 10000;
+/// nearly the distance.
+constexpr int kPlainSteps = 64;
 
 /// An edge with its ends in the order of their ids.
 BodyTriangle edgeOf(const BodyTriangle& triangle, unsigned first) {
@@ -110,7 +111,7 @@ FeaturePairMotion::FeaturePairMotion(const MotionPath& path_a, const BodyTriangl
 // While a direction turns it is at most 1.5 long. The rest is that of straight paths: see
 // AdvancingPair in distance_advance.cpp.
 double FeaturePairMotion::margin(double size) const {
-  return 1.5 * tolerance_.position + 128 * kUnitRounding * (tolerance_.distance + size);
+  return 1.5 * tolerance_.position + 128 * kUnit * (tolerance_.distance + size);
 }
 
 // More than the margin, what a direction loses to rounding, and once more the position,

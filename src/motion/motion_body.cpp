@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fcl/common/exception.h"
+#include "numerics/error_bounds.h"
 #include "query/feature_batch.h"
 #include "tree/open_binary.h"
 
@@ -20,8 +21,6 @@ namespace {
 
 /// The largest size of a box with bounds, so that no product of sizes overflows.
 constexpr double kMostExtent = 0x1p300;
-constexpr double kUpward = 1 + 0x1p-40;
-constexpr double kUnitRounding = 0x1p-53;
 
 /// A box without bounds.
 MotionBox unboundedBox() {
@@ -48,8 +47,7 @@ MotionBox boxOfSlabs(const HalfAxis& half, const double (&origin)[3]) {
     const double lower = double{half(j)}, upper = double{half(j + 8)};
     box.center[j] = origin[j] + 0.5 * (upper - lower);
     // The center rounds by a unit of itself.
-    box.extent[j] =
-        0.5 * (upper + lower) * kUpward + 4 * kUnitRounding * std::abs(box.center[j]);
+    box.extent[j] = 0.5 * (upper + lower) * kUpward + 4 * kUnit * std::abs(box.center[j]);
     is_bounded &= box.extent[j] < kMostExtent;
     box.axis[j][j] = 1;
   }
@@ -69,8 +67,7 @@ void setSlabs(const Rows& rows, const double (&origin)[3], MotionBoxes& boxes) {
     for (int lane = 0; lane < kWidth; ++lane) {
       const double low = double{lower[lane]}, high = double{upper[lane]},
                    center = origin[j] + 0.5 * (high - low),
-                   extent = 0.5 * (high + low) * kUpward +
-                            4 * kUnitRounding * std::abs(center);
+                   extent = 0.5 * (high + low) * kUpward + 4 * kUnit * std::abs(center);
       boxes.center[j][lane] = center;
       boxes.extent[j][lane] = extent;
       square[lane] += extent * extent;
@@ -177,8 +174,8 @@ MotionBody::MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
     displacement_ = whole.displacement;
   }
   // Below this the boxes, whose numbers are floats, may be far larger than the mesh.
-  constexpr double kTiny = 0x1p-80;
-  if (!(radius_ < kTiny)) return;
+  constexpr double kLeastBoxedRadius = 0x1p-80;
+  if (!(radius_ < kLeastBoxedRadius)) return;
   radius_ = displacement_ = 0;
   const auto larger = [](double most, double x, double y, double z) {
     return std::max(most, (std::abs(x) + std::abs(y) + std::abs(z)) * kUpward);
@@ -429,7 +426,7 @@ void MotionBody::setTriangles(const MotionNode& node, MotionTriangles& out) cons
 // The interpolation of a vertex of a mesh that deforms rounds by 3 u of its coordinates.
 // Its velocity has the additional term R x', where x' is a difference that rounds once.
 double MotionBody::positionError() const {
-  const double deforming = displacement_ > 0 ? 6 * kUnitRounding * radius_ : 0;
+  const double deforming = displacement_ > 0 ? 6 * kUnit * radius_ : 0;
   return path_.positionError(radius_) + path_.stretch() * deforming;
 }
 double MotionBody::rateError() const {

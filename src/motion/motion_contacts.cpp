@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "elementary/most_steps.h"
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
 #include "motion/chord_pairs.h"
@@ -281,7 +282,6 @@ class FeatureContacts {
     std::int32_t triangle[2]{-1, -1};
     double t{-1}, last{-1}, hi{-1};
   };
-  static constexpr int kMostSteps = 10000;
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MotionBody* body_[2];
   /// With a filter and a distance; null for a mesh without free parts.

@@ -24,15 +24,13 @@
 
 #include "fcl/common/exception.h"
 #include "motion/sine.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
 
-constexpr double kUnitRounding = 0x1p-53;
-/// More than the rounding of a bound itself.
-constexpr double kUpward = 1 + 0x1p-40;
 /// A smaller rotation is only the rounding of the poses from which it was made.
 constexpr double kLeastAngle = 0x1p-50;
 
@@ -497,7 +495,7 @@ AccelerationBound MotionPath::turnAcceleration() const {
     bound.per_displacement = 2 * frobenius(turn_.linear_rotation) * kUpward;
     return bound;
   }
-  const double square = turn_.angle * turn_.angle, rounding = 64 * kUnitRounding * square;
+  const double square = turn_.angle * turn_.angle, rounding = 64 * kUnit * square;
   for (int i = 0; i < 9; ++i) bound.turn[i] = square * turn_.sine_rotation[i];
   for (int k = 0; k < 3; ++k) bound.offset[k] = square * turn_.sine_translation[k];
   bound.per_radius = (square * stretch_ + rounding) * kUpward;
@@ -560,15 +558,15 @@ AccelerationBound MotionPath::acceleration(double t0, double t1) const {
 }
 
 double MotionPath::rotationError() const {
-  return (3 * rotation_error_ + 13) * stretch_ * kUnitRounding;
+  return (3 * rotation_error_ + 13) * stretch_ * kUnit;
 }
 
 double MotionPath::positionError(double radius) const {
-  return rotationError() * radius + 35 * translation_size_ * kUnitRounding;
+  return rotationError() * radius + 35 * translation_size_ * kUnit;
 }
 
 double MotionPath::rateError(double radius) const {
-  return (80 + 4 * (rotation_error_ - 24)) * kUnitRounding * speed(radius);
+  return (80 + 4 * (rotation_error_ - 24)) * kUnit * speed(radius);
 }
 
 }  // namespace deformable

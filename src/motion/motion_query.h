@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "elementary/most_steps.h"
 #include "motion/motion_body.h"
 #include "motion/triangle_advance.h"
 #include "query/pair_filter.h"
@@ -33,7 +34,7 @@ struct MotionQueryOptions {
   bool ignores_initially_closer{false};
   /// The number of steps after which a pair of triangles is given up and counts as
   /// contact. Surfaces that slide at a distance g take about sqrt(M / 2 g) steps.
-  int max_steps{10000};
+  int max_steps{kMostSteps};
   /// After this number of tests of boxes the query is given up.
   std::uint64_t most_box_tests{kNoLimit};
   /// The largest number of threads, if `all` is set; 0: as many as the task arena has.

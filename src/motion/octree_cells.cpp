@@ -7,13 +7,12 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUpward = 1 + 0x1p-40;
 
 /// Child i of a cell. The key of a cell is that of the cell of the greatest depth at its
 /// center. A cell of the greatest depth has its own key.

@@ -6,13 +6,12 @@
 
 #include "motion/convex_distance.h"
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUpward = 1 + 0x1p-40;
 
 bool reachesFlat(const ConvexShape& flat, const Pose& pose_flat, const ConvexShape& other,
                  const Pose& pose_other) {

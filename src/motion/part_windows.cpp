@@ -7,13 +7,12 @@
 #include "motion/convex_advance.h"
 #include "motion/flat_windows.h"
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUnitRounding = 0x1p-53;
 
 void interpolate(const MotionBox& end, double t, MotionBox& box) {
   for (int k = 0; k < 3; ++k) {
@@ -63,7 +62,7 @@ PartWindows::PartWindows(const MotionBody& a, const MotionBody& b,
   // A kernel adds up no more than a hundred roundings of the sizes, and a time is
   // rounded by a few u.
   rounding_ = tolerance.position + 0x1p-44 * (a.size() + b.size()) +
-              16 * kUnitRounding * (a.speed() + b.speed());
+              16 * kUnit * (a.speed() + b.speed());
   box_margin_ = distance + rounding_;
   direction_bound_ =
       (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});

@@ -6,14 +6,12 @@
 
 #include "elementary/predicates.h"
 #include "motion/posed_vector.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-constexpr double kUnitRounding = 0x1p-53;
-constexpr double kUpward = 1 + 0x1p-40;
 
 double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 
@@ -156,11 +154,11 @@ MotionTolerance::MotionTolerance(const MotionBody& a, const MotionBody& b,
   // its foot, is part of its position error: see ConvexShape::flat().
   const double speed = a.speed() + b.speed(),
                roundings = a.shape() || b.shape() ? 48 : 16;
-  position = (a.positionError() + b.positionError() +
-              kUnitRounding *
-                  (roundings * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
-             kUpward;
-  rate = (a.rateError() + b.rateError() + roundings * kUnitRounding * speed) * kUpward;
+  position =
+      (a.positionError() + b.positionError() +
+       kUnit * (roundings * (a.size() + b.size()) + 4 * speed + 8 * wanted_distance)) *
+      kUpward;
+  rate = (a.rateError() + b.rateError() + roundings * kUnit * speed) * kUpward;
   for (const MotionBody* body : {&a, &b})
     if (body->shape() && body->shape()->flat())
       rate += body->path().rotationError() * speed * kUpward;

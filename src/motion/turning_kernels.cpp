@@ -264,7 +264,7 @@ class TurningAdvance {
  private:
   FCL_CCD_INLINE void advance() {
     // Most pairs take three or four.
-    constexpr int kMostSteps = 16;
+    constexpr int kMostStepsTogether = 16;
     const Doubles last = load<kEight>(pairs_.last);
     const double e = request_.position_error, most = request_.touching - 1.5 * e;
     for (int step = 0;; ++step) {
@@ -279,8 +279,8 @@ class TurningAdvance {
       open_ |= left & ~bits(until > t_);
       const DoubleMask is_soon = until <= last;
       left &= ~open_ & bits(is_soon);
-      if (step == kMostSteps) open_ |= left;
-      if (left == 0 || step == kMostSteps) return;
+      if (step == kMostStepsTogether) open_ |= left;
+      if (left == 0 || step == kMostStepsTogether) return;
       t_ = select((near.distance > all(most)) & (until > t_) & is_soon, until, t_);
     }
   }

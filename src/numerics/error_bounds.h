@@ -14,6 +14,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+/// Half of the distance from 1 to the next double: u in all comments about rounding.
+constexpr double kUnit = 0x1p-53;
+/// A factor for an upper bound: more than the rounding of the bound itself, of thousands
+/// of operations.
+constexpr double kUpward = 1 + 0x1p-40;
+
 // Error analysis. u = 2^-53. A difference of two coordinates is rounded once (relative
 // error u). Interpolated at a time t, its components have an absolute error of at most 4
 // u times its norm (the larger max-norm of both frames): difference, weight 1 - t,
@@ -26,7 +32,6 @@ namespace deformable {
 // u = 30 u, and sums of size 4 and 6: 100 u UVW. Inner ones, u1.(v0 x w0) + u0.(v0 x w1 +
 // v1 x w0): 100 u for the first, 3 (16 + 44 + 4) + 20 = 212 u for the second, 18 u for
 // the sum: 330 u UVW.
-constexpr double kUnit = 0x1p-53;
 // u . (v x w) with differences and products that are rounded once only: a component of v
 // x w has an error of 2 (2 + 1) + 2 = 8 u VW, the volume of 3 (2 + 8 + 2) + 10 = 46 u
 // UVW.

@@ -8,6 +8,7 @@
 
 #include "elementary/least_distance.h"
 #include "kernels/kernels.h"
+#include "numerics/error_bounds.h"
 #include "query/contact_sink.h"
 #include "query/deformable_query.h"
 
@@ -100,7 +101,6 @@ class SafeBounds {
   /// Both features may move towards each other, each by less than a half. A new
   /// coordinate, of at most 2 size, rounds by 2 u size, and a vertex by sqrt(3) of that.
   static double halfOf(double way, double size) {
-    constexpr double kUnit = 0x1p-53;
     return std::max(0., 0.5 * way * (1 - 8 * kUnit) - 4 * kUnit * size);
   }
 

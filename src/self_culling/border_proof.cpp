@@ -311,8 +311,7 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f, const Point
   // A strip is as wide as its sides are apart along the direction. The length of this is
   // largest at an end of the step. The factor is more than the rounding of the product.
   const double width =
-      distance > 0 ? distance * (1 + 0x1p-40) * std::max(lengthOf(w[0]), lengthOf(w[1]))
-                   : 0;
+      distance > 0 ? distance * kUpward * std::max(lengthOf(w[0]), lengthOf(w[1])) : 0;
   // Bernstein coefficients in t, the middle one twice.
   const auto along = [&w](const MovingPoint& p) -> std::array<double, 3> {
     return {dot(w[0], p.at[0]), dot(w[0], p.at[1]) + dot(w[1], p.at[0]),
