@@ -11,6 +11,7 @@
 
 #include "elementary/feature_points.h"
 #include "elementary/nearest_point.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
@@ -54,7 +55,6 @@ struct DistanceTolerance {
   /// twice the error. So a pair at which advancement comes to rest is recognised.
   double touching;
 
-  static constexpr double kUnit = 0x1p-53;
   /// For a pair; bounds on it for all pairs of a query are made with it too.
   static constexpr double kTouching = 512 * kUnit;
   /// The share of d within which a pair that is not decided soon is a contact.

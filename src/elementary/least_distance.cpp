@@ -11,7 +11,6 @@ namespace detail {
 namespace deformable {
 
 double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
-  constexpr double kUnit = LeastDistance::kUnit;
   const DifferencePolygon polygon(kind, x);
   Vec corners[DifferencePolygon::kMaxCorners];
   for (int k = 0; k < polygon.count(); ++k) corners[k] = polygon.t0(k);
@@ -24,7 +23,8 @@ double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
     best = std::max(best, gap);
     if (best > LeastDistance::kEnough * near.distance) break;
   }
-  const double least = best * (1 - 8 * kUnit) - 16 * kUnit * polygon.size();
+  const double least =
+      best * (1 - LeastDistance::kOfGap) - LeastDistance::kOfSize * polygon.size();
   return least > 0 ? least : 0;
 }
 

@@ -3,6 +3,7 @@
 #define FCL_CCD_ELEMENTARY_LEAST_DISTANCE_H
 
 #include "elementary/feature_points.h"
+#include "numerics/error_bounds.h"
 
 namespace fcl {
 namespace detail {
@@ -13,7 +14,7 @@ namespace deformable {
 struct LeastDistance {
   /// A product of a direction with a corner is off by 5 u L, the corner by u L, and the
   /// direction is at most 1 + 5 u long: 16 u L and 8 u of the gap are more.
-  static constexpr double kUnit = 0x1p-53;
+  static constexpr double kOfGap = 8 * kUnit, kOfSize = 16 * kUnit;
   /// Another direction could prove little more than this share of the distance.
   static constexpr double kEnough = 1 - 0x1p-40;
 };

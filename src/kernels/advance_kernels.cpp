@@ -131,8 +131,8 @@ struct Tolerances {
   Doubles distance_error, margin, touching;
 
   FCL_CCD_INLINE Tolerances(const Doubles& d, const Doubles& size)
-      : distance_error(all(64 * DistanceTolerance::kUnit) * size),
-        margin(all(128 * DistanceTolerance::kUnit) * (d + size)),
+      : distance_error(all(64 * kUnit) * size),
+        margin(all(128 * kUnit) * (d + size)),
         touching(all(DistanceTolerance::kTouching) * (d + size)) {}
 };
 
@@ -177,7 +177,7 @@ class AdvancingPairs {
   /// @return the pairs that are left, a bit each
   FCL_CCD_INLINE unsigned advance(int step, const DistanceRequest& request) {
     // Most pairs take two or three.
-    constexpr int kMostSteps = 12;
+    constexpr int kMostStepsTogether = 12;
     const double last = std::min(request.t_stop, request.t_max);
     Tolerances tolerance(d_, x_.size);
     Vectors corner[4];
@@ -197,7 +197,7 @@ class AdvancingPairs {
     open_ |= left_ & ~bits(next.until > t_);
     const DoubleMask is_soon = next.until <= all(last);
     left_ &= ~open_ & bits(is_soon);
-    if (step == kMostSteps) {
+    if (step == kMostStepsTogether) {
       open_ |= left_;
       left_ = 0;
     }
@@ -334,8 +334,9 @@ unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]) {
   const Vectors n = directionsApart(near, NearestSides(x, x.t1, near));
   Doubles gap = dot(n, x.t1[0]);
   for (int k = 1; k < x.count; ++k) gap = min(dot(n, x.t1[k]), gap);
-  constexpr double kUnit = LeastDistance::kUnit;
-  store(max(gap * all(1 - 8 * kUnit) - all(16 * kUnit) * x.size, all(0)), least);
+  store(max(gap * all(1 - LeastDistance::kOfGap) - all(LeastDistance::kOfSize) * x.size,
+            all(0)),
+        least);
   return bits(near.is_sure & (gap > all(LeastDistance::kEnough) * near.distance));
 }
 

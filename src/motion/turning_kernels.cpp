@@ -33,6 +33,7 @@
 #include "kernels/nearest_points.h"
 #include "kernels/vectors.h"
 #include "motion/sine.h"
+#include "numerics/error_bounds.h"
 #if defined(FCL_CCD_USE_HIGHWAY)
 #include "kernels/targets.h"
 #endif
@@ -270,7 +271,7 @@ class TurningAdvance {
     for (int step = 0;; ++step) {
       const TurningPolygons x(pairs_, body_, t_);
       const NearestPoints near = nearestPoints(x, x.corner);
-      const Doubles rounding = all(128 * DistanceTolerance::kUnit) * x.size;
+      const Doubles rounding = all(128 * kUnit) * x.size;
       open_ |= ~bits(near.is_sure & (rounding <= all(e)));
       is_contact_ = near.distance <= all(most);
       unsigned left = ~(open_ | bits(is_contact_)) & kAllOfEight;
