@@ -34,8 +34,9 @@ Vec mean(double t, const Vec& p, const Vec& q) { return (1 - t) * p + t * q; }
 MovingCross restrict(const MovingCross& f, double lo, double hi) {
   const Vec mid = 0.5 * f.c1;
   const Vec lo_0 = mean(lo, f.c0, mid), lo_1 = mean(lo, mid, f.c2);
-  return {mean(lo, lo_0, lo_1), 2 * mean(hi, lo_0, lo_1),
-          mean(hi, mean(hi, f.c0, mid), mean(hi, mid, f.c2)), f.size,
+  return {{mean(lo, lo_0, lo_1), 2 * mean(hi, lo_0, lo_1),
+           mean(hi, mean(hi, f.c0, mid), mean(hi, mid, f.c2))},
+          f.size,
           f.error + 8 * kUnit * f.size};
 }
 

@@ -12,6 +12,7 @@
 #include "elementary/coplanarity_filter.h"
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
+#include "elementary/interval_stack.h"
 #include "elementary/pair_table.h"
 #include "elementary/predicates.h"
 #include "elementary/separating_direction.h"
@@ -42,27 +43,25 @@ struct Difference {
   }
 };
 
-/// A vector that moves linearly from l to h, with its norm bound over the whole step.
-struct Segment {
-  Vec l, h;
+/// A vector that moves linearly, with its norm bound over the whole step.
+struct StepSegment : Segment {
   double norm;
 };
 
-Segment restrict(const Difference& d, double lo, double hi) {
+StepSegment restrict(const Difference& d, double lo, double hi) {
   assert(0 <= lo && lo <= hi && hi <= 1);
-  return {d.at(lo), d.at(hi), d.norm};
+  return {{d.at(lo), d.at(hi)}, d.norm};
 }
 
-MovingCross cross(const Segment& a, const Segment& b) {
+MovingCross cross(const StepSegment& a, const StepSegment& b) {
   const double norm = a.norm * b.norm;
-  return {cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h), 2 * norm,
-          kCrossBound * norm};
+  const Segment &of_a = a, &of_b = b;
+  return {cross(of_a, of_b), 2 * norm, kCrossBound * norm};
 }
 
-/// f(s) = b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3] s^3, the volume spanned
-/// by u, v, w: Bernstein coefficients, the inner ones times 3.
-struct Cubic {
-  double b[4];
+/// The volume spanned by u, v, w over an interval, with bounds that follow from norms
+/// over the whole step. See EndsVolume in magnified_solve.cpp.
+struct StepVolume : VolumeCubic {
   // Error bounds of the outer and inner coefficients; infinite if there is no bound.
   double outer, inner;
 
@@ -81,25 +80,18 @@ struct Cubic {
     return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
            std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
   }
-  double operator()(double s) const {
-    const double r = 1 - s;
-    return r * r * (b[0] * r + b[1] * s) + s * s * (b[2] * r + b[3] * s);
-  }
 };
 
-Cubic spannedVolume(const Segment& u, const MovingCross& n) {
+StepVolume spannedVolume(const StepSegment& u, const MovingCross& n) {
   const double size = u.norm * (0.5 * n.size);
   const double bound = isInRange(size) && isInRange(n.size)
                            ? size
                            : std::numeric_limits<double>::infinity();
-  return {{dot(u.l, n.c0), dot(u.h, n.c0) + dot(u.l, n.c1),
-           dot(u.h, n.c1) + dot(u.l, n.c2), dot(u.h, n.c2)},
-          kOuterBound * bound,
-          kInnerBound * bound};
+  return {VolumeCubic::of(u, n), kOuterBound * bound, kInnerBound * bound};
 }
 
-Cubic restrict(const AccuratePair& pair, double lo, double hi) {
-  Cubic g;
+StepVolume restrict(const AccuratePair& pair, double lo, double hi) {
+  StepVolume g;
   if (!pair.volume(lo, hi, g.b, g.outer))
     g.outer = std::numeric_limits<double>::infinity();
   g.b[1] *= 3;
@@ -108,10 +100,9 @@ Cubic restrict(const AccuratePair& pair, double lo, double hi) {
   return g;
 }
 
-enum class Side { kNegative, kPositive, kMixed, kLost };
-
-/// Sign of the quartic q . n over the whole segment; kLost if it is rounding only.
-Side sideOf(const MovingCross& q, const MovingCross& n) {
+/// Sign of the quartic q . n over the whole segment. Not the same as sideOver() in
+/// magnified_solve.cpp: the sum of three is added in another order, and rounds otherwise.
+Side sideOver(const MovingCross& q, const MovingCross& n) {
   const double size = q.size * n.size;
   if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
   const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
@@ -133,57 +124,22 @@ Side sideOf(const MovingCross& q, const MovingCross& n) {
 
 /// The pair as differences, see pair_table.h.
 struct Pair {
-  ContinuousContactKind kind;
   const PairTable& table;
   Difference difference[kNumPairDifferences];
 
-  Pair(ContinuousContactKind k, const FeaturePoints& x) : kind(k), table(pairTable(k)) {
+  Pair(ContinuousContactKind k, const FeaturePoints& x) : table(pairTable(k)) {
     for (int i = 0; i < table.num_differences; ++i) {
       const auto [to, from] = table.difference[i];
       difference[i] = {x[to], x[from]};
     }
   }
-};
-
-/// Whether the features touch at the times at which the four points of the pair are
-/// coplanar. kPositive: always; kNegative: never.
-///
-/// @param accurate  null, or the pair that n comes from; it finds signs that doubles lose
-Side insideness(const Pair& pair, double lo, double hi, const Segment& u,
-                const Segment& v, const Segment& w, const MovingCross& n,
-                AccuratePair* accurate) {
-  const Segment segments[] = {u, v, w, restrict(pair.difference[kR], lo, hi),
-                              restrict(pair.difference[kQ], lo, hi)};
-  Side side = Side::kPositive;
-  for (int i = 0; i < pair.table.num_inside; ++i) {
-    const auto& [x, y] = pair.table.inside[i];
-    Side found = sideOf(cross(segments[x], segments[y]), n);
-    if (found == Side::kLost && accurate) found = sideOf(accurate->side(i, lo, hi), n);
-    if (found == Side::kNegative) return found;
-    if (found != Side::kPositive) side = Side::kMixed;
-  }
-  return side;
-}
-
-/// The set of differences of two feature points: a triangle (VF), a parallelogram (EE).
-struct DifferenceSet {
-  bool is_triangle;
-  int num_corners;
-  const Difference* corner[4];
-  double sign[4];
-
-  explicit DifferenceSet(const Pair& pair)
-      : is_triangle(pair.kind == ContinuousContactKind::kVertexFace),
-        num_corners(is_triangle ? 3 : 4),
-        corner{&pair.difference[kU], &pair.difference[kR], &pair.difference[kQ],
-               &pair.difference[kZ]},
-        sign{1, -1, is_triangle ? -1. : 1., 1} {}
 
   /// The direction from one feature to the nearest point of the other.
   Vec directionAt(double t) const {
     Vec at_t[4] = {};
-    for (int i = 0; i < num_corners; ++i) at_t[i] = sign[i] * corner[i]->at(t);
-    return separatingDirection(at_t, is_triangle);
+    for (int i = 0; i < table.num_corners; ++i)
+      at_t[i] = table.corner[i].sign * difference[table.corner[i].difference].at(t);
+    return separatingDirection(at_t, table.isTriangle());
   }
 };
 
@@ -192,16 +148,16 @@ struct DifferenceSet {
 /// to the nearest point of the other in the middle of [lo, hi]. No other test decides
 /// pairs without a normal (parallel edges, triangles without area).
 bool areSeparated(const Pair& pair, double lo, double hi) {
-  const DifferenceSet set(pair);
-  const Vec d = set.directionAt(lo + 0.5 * (hi - lo));
+  const Vec d = pair.directionAt(lo + 0.5 * (hi - lo));
   const double size = maxNorm(d);
-  for (int i = 0; i < set.num_corners; ++i) {
-    const double scale = size * set.corner[i]->norm;
+  for (int i = 0; i < pair.table.num_corners; ++i) {
+    const auto [place, sign] = pair.table.corner[i];
+    const Difference& corner = pair.difference[place];
+    const double scale = size * corner.norm;
     if (!isInRange(scale)) return false;
-    const auto isAhead = [&](double t) {
-      return set.sign[i] * dot(d, set.corner[i]->at(t)) > kSideBound * scale;
-    };
-    if (!isAhead(lo) || !isAhead(hi)) return false;
+    if (!(sign * dot(d, corner.at(lo)) > kSideBound * scale) ||
+        !(sign * dot(d, corner.at(hi)) > kSideBound * scale))
+      return false;
   }
   return true;
 }
@@ -234,39 +190,6 @@ bool nearlyMeet(const Pair& pair) {
   return closest.s > 0 && closest.s < 1 && closest.duration < 0x1p-26;
 }
 
-/// Intervals that are still to be examined, the earliest on top. Each look replaces one
-/// interval by at most three, and the number of looks is limited, so the stack is never
-/// full.
-class IntervalStack {
- public:
-  static constexpr int kMaxLooks = 128;
-
-  struct Interval {
-    double lo, hi;
-  };
-
-  void push(double lo, double hi) {
-    if (!(lo < hi || (lo == hi && size_ == 0))) return;
-    assert(size_ < kCapacity);
-    items_[size_++] = {lo, hi};
-  }
-  Interval pop() {
-    assert(!isEmpty());
-    return items_[--size_];
-  }
-  bool isEmpty() const { return size_ == 0; }
-  double latest() const {
-    assert(!isEmpty());
-    return items_[0].hi;
-  }
-
- private:
-  static constexpr int kCapacity = 2 * kMaxLooks + 3;
-
-  Interval items_[kCapacity];
-  int size_{0};
-};
-
 /// The times that are not proved free of contact and not proved to have one.
 struct Undecided {
   bool unsure{false};
@@ -292,18 +215,167 @@ struct Undecided {
   }
 };
 
+/// The search for the first contact of a pair in a window. It examines intervals, the
+/// earliest first, and cuts those that no proof decides.
+class ContactSearch {
+ public:
+  ContactSearch(ContinuousContactKind kind, const FeaturePoints& x, double toc_err,
+                double t_stop)
+      : kind_(kind),
+        x_(x),
+        toc_err_(toc_err),
+        t_stop_(t_stop),
+        min_width_(std::min(toc_err, 1e-4) * 0x1p-10),
+        pair_(kind, x) {}
+
+  ElementaryResult firstContact(double window_lo, double window_hi) {
+    open_.push({window_lo, window_hi});
+    for (; !open_.isEmpty(); ++looks_) {
+      const auto [lo, hi] = open_.pop();
+      // An undecided interval may end in a contact that begins after t_stop.
+      if (lo > t_stop_ && !found_.unsure) break;
+      if (looks_ == Intervals::kMaxLooks) {
+        giveUp(lo, hi);
+        break;
+      }
+      if (isLast(lo, hi)) return answer_;
+    }
+    return found_.withoutProof();
+  }
+
+ private:
+  struct Interval {
+    double lo, hi;
+  };
+  using Intervals = IntervalStack<Interval, 128>;
+  /// What to do with an interval after a look at it.
+  enum class Next { kLeave, kCut, kGiveUp };
+
+  /// Proves that the interval has no contact, or cuts it, or leaves it undecided.
+  /// @return whether the search is over, with an answer
+  bool isLast(double lo, double hi) {
+    const double width = hi - lo;
+    const StepSegment u = restrict(pair_.difference[kU], lo, hi),
+                      v = restrict(pair_.difference[kV], lo, hi),
+                      w = restrict(pair_.difference[kW], lo, hi);
+    const MovingCross n = accurate_ ? accurate_->normal(lo, hi) : cross(v, w);
+    const StepVolume f = accurate_ ? restrict(*accurate_, lo, hi) : spannedVolume(u, n);
+    if (f.hasNoRoot()) return false;
+    const bool crosses = f.changesSign();
+
+    const Side side = sideIn(lo, hi, u, v, w, n);
+    if (side == Side::kNegative) return false;
+    if (side == Side::kPositive && crosses && width <= toc_err_)
+      return finish(found_.withContactIn(lo, hi, toc_err_));
+    if (accurate_ && crosses && side == Side::kMixed) {
+      const AccuratePair::RootContact contact = accurate_->contactAtRoot(lo, hi);
+      if (contact.answer == Answer::kNo) return false;
+      if (contact.answer == Answer::kYes)
+        return finish(found_.withContactIn(contact.lo, contact.hi, toc_err_));
+    }
+    // A wide interval with a root is cut close around the root, before other tests.
+    if (!(crosses && width > toc_err_)) {
+      if (areSeparated(pair_, lo, hi)) return false;
+      if (looks_ == 0 && lo == 0 && touchAtStart(kind_, x_))
+        return finish({Answer::kYes, 0, 0, DecidedBy::kSolver});
+      const Next next = nextFor(lo, hi, f);
+      if (next == Next::kGiveUp) {
+        giveUp(lo, hi);
+        return finish(found_.withoutProof());
+      }
+      if (next == Next::kLeave) return false;
+    }
+    cut(lo, hi, f, crosses);
+    return false;
+  }
+
+  /// insideness() in an interval. The accurate pair finds signs that doubles lose.
+  Side sideIn(double lo, double hi, const StepSegment& u, const StepSegment& v,
+              const StepSegment& w, const MovingCross& n) {
+    const StepSegment segments[] = {u, v, w, restrict(pair_.difference[kR], lo, hi),
+                                    restrict(pair_.difference[kQ], lo, hi)};
+    return insideness(pair_.table, [&](int i) {
+      const auto& [x, y] = pair_.table.inside[i];
+      const Side side = sideOver(cross(segments[x], segments[y]), n);
+      if (side != Side::kLost || !accurate_) return side;
+      return sideOver(accurate_->side(i, lo, hi), n);
+    });
+  }
+
+  /// Changes to the accurate pair where doubles are not expected to decide.
+  Next nextFor(double lo, double hi, const StepVolume& f) {
+    // After this many looks doubles alone are not expected to decide.
+    constexpr int kAccurateLook = 6;
+    // A flat interval (no coefficient has a certain sign) is cut only while the inside
+    // conditions may decide.
+    constexpr double kMinFlatWidth = 0x1p-2;
+    // Norms that are out of range are so in all intervals, and for the accurate pair.
+    if (!f.hasBounds() && !accurate_) return Next::kGiveUp;
+    if (!accurate_ && (f.isLost() || looks_ >= kAccurateLook)) {
+      if (nearlyMeet(pair_)) return Next::kGiveUp;
+      accurate_.emplace(kind_, x_);
+      push(lo, hi);
+      return Next::kLeave;
+    }
+    const bool flat = !f.hasBounds() || f.isLost();
+    const double width = hi - lo;
+    if (!(width <= min_width_ || (flat && width <= kMinFlatWidth))) return Next::kCut;
+    found_.addUnsure(lo, hi);
+    return Next::kLeave;
+  }
+
+  /// Cuts an interval close around a root, or in the middle.
+  void cut(double lo, double hi, const StepVolume& f, bool crosses) {
+    const double width = hi - lo;
+    if (!crosses) {
+      const double mid = lo + 0.5 * width;
+      push(mid, hi);
+      push(lo, mid);
+      return;
+    }
+    const double half = width > toc_err_ ? 0.25 * toc_err_ : width * 0x1p-6;
+    const double t =
+        lo + illinois(f, 0, 1, f.b[0], f.b[3], 0.125 * half / width, 24) * width;
+    const double a = std::max(lo, t - half), b = std::min(hi, t + half);
+    push(b, hi);
+    push(a, b);
+    push(lo, a);
+  }
+
+  void push(double lo, double hi) {
+    if (lo < hi || (lo == hi && open_.isEmpty())) open_.push({lo, hi});
+  }
+
+  /// This interval and all later ones stay undecided.
+  void giveUp(double lo, double hi) {
+    found_.addUnsure(lo, open_.isEmpty() ? hi : open_.latest().hi);
+  }
+
+  bool finish(const ElementaryResult& answer) {
+    answer_ = answer;
+    return true;
+  }
+
+  ContinuousContactKind kind_;
+  const FeaturePoints& x_;
+  double toc_err_, t_stop_;
+  /// An interval this short is not cut further.
+  double min_width_;
+  Pair pair_;
+  /// The pair in double-double, from the look on from which it is used.
+  std::optional<AccuratePair> accurate_;
+  Intervals open_;
+  int looks_{0};
+  Undecided found_;
+  ElementaryResult answer_;
+};
+
 }  // namespace
 
 ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoints& x,
                                   double window_lo, double window_hi, double toc_err,
                                   double t_stop) {
   assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1 && toc_err > 0);
-  // An interval this short is not cut further.
-  const double min_width = std::min(toc_err, 1e-4) * 0x1p-10;
-  // A flat interval (no coefficient has a certain sign) is cut only while the inside
-  // conditions may decide.
-  constexpr double kMinFlatWidth = 0x1p-2;
-
   // Features at rest that touch do so at the start.
   if (isStill(x))
     return {touchAtStart(kind, x) ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kSolver};
@@ -314,97 +386,23 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
         solveInPlane(kind, x, axis, window_lo, window_hi, toc_err);
     if (result.answer != Answer::kUnsure) return result;
   }
-
-  // After this many looks doubles alone are not expected to decide.
-  constexpr int kAccurateLook = 6;
-  std::optional<AccuratePair> accurate;
-  const Pair pair(kind, x);
-  IntervalStack open;
-  open.push(window_lo, window_hi);
-  Undecided found;
-  for (int look = 0; !open.isEmpty(); ++look) {
-    const auto [lo, hi] = open.pop();
-    // An undecided interval may end in a contact that begins after t_stop.
-    if (lo > t_stop && !found.unsure) break;
-    if (look == IntervalStack::kMaxLooks) {
-      found.addUnsure(lo, open.isEmpty() ? hi : std::max(hi, open.latest()));
-      break;
-    }
-    const double width = hi - lo;
-    const Segment u = restrict(pair.difference[kU], lo, hi),
-                  v = restrict(pair.difference[kV], lo, hi),
-                  w = restrict(pair.difference[kW], lo, hi);
-    const MovingCross n = accurate ? accurate->normal(lo, hi) : cross(v, w);
-    const Cubic f = accurate ? restrict(*accurate, lo, hi) : spannedVolume(u, n);
-    if (f.hasNoRoot()) continue;
-    const bool crosses = f.changesSign();
-
-    const Side side =
-        insideness(pair, lo, hi, u, v, w, n, accurate ? &*accurate : nullptr);
-    if (side == Side::kNegative) continue;
-    if (side == Side::kPositive && crosses && width <= toc_err)
-      return found.withContactIn(lo, hi, toc_err);
-    if (accurate && crosses && side == Side::kMixed) {
-      const AccuratePair::RootContact contact = accurate->contactAtRoot(lo, hi);
-      if (contact.answer == Answer::kNo) continue;
-      if (contact.answer == Answer::kYes)
-        return found.withContactIn(contact.lo, contact.hi, toc_err);
-    }
-    // A wide interval with a root is cut close around the root, before other tests.
-    if (!(crosses && width > toc_err)) {
-      if (areSeparated(pair, lo, hi)) continue;
-      if (look == 0 && lo == 0 && touchAtStart(kind, x))
-        return {Answer::kYes, 0, 0, DecidedBy::kSolver};
-      // Norms that are out of range are so in all intervals, and for the accurate pair.
-      if (!f.hasBounds() && !accurate) {
-        found.addUnsure(lo, open.isEmpty() ? hi : open.latest());
-        break;
-      }
-      if (!accurate && (f.isLost() || look >= kAccurateLook)) {
-        if (nearlyMeet(pair)) {
-          found.addUnsure(lo, open.isEmpty() ? hi : open.latest());
-          break;
-        }
-        accurate.emplace(kind, x);
-        open.push(lo, hi);
-        continue;
-      }
-      const bool flat = !f.hasBounds() || f.isLost();
-      if (width <= min_width || (flat && width <= kMinFlatWidth)) {
-        found.addUnsure(lo, hi);
-        continue;
-      }
-    }
-    if (crosses) {
-      const double half = width > toc_err ? 0.25 * toc_err : width * 0x1p-6;
-      const double t =
-          lo + illinois(f, 0, 1, f.b[0], f.b[3], 0.125 * half / width, 24) * width;
-      const double a = std::max(lo, t - half), b = std::min(hi, t + half);
-      open.push(b, hi);
-      open.push(a, b);
-      open.push(lo, a);
-    } else {
-      const double mid = lo + 0.5 * width;
-      open.push(mid, hi);
-      open.push(lo, mid);
-    }
-  }
-  return found.withoutProof();
+  return ContactSearch(kind, x, toc_err, t_stop).firstContact(window_lo, window_hi);
 }
 
 double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double window_lo,
                   double window_hi) {
   assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
   const Pair pair(kind, x);
-  const DifferenceSet set(pair);
-  const Vec d = set.directionAt(window_lo);
+  const Vec d = pair.directionAt(window_lo);
   const double size = maxNorm(d);
   double until = window_hi;
-  for (int i = 0; i < set.num_corners; ++i) {
-    const double scale = size * set.corner[i]->norm, bound = kSideBound * scale;
+  for (int i = 0; i < pair.table.num_corners; ++i) {
+    const auto [place, sign] = pair.table.corner[i];
+    const Difference& corner = pair.difference[place];
+    const double scale = size * corner.norm, bound = kSideBound * scale;
     if (!isInRange(scale)) return window_lo;
-    const double at_lo = set.sign[i] * dot(d, set.corner[i]->at(window_lo)) - bound,
-                 at_hi = set.sign[i] * dot(d, set.corner[i]->at(window_hi)) - bound;
+    const double at_lo = sign * dot(d, corner.at(window_lo)) - bound,
+                 at_hi = sign * dot(d, corner.at(window_hi)) - bound;
     if (!(at_lo > 0)) return window_lo;
     if (at_hi > 0) continue;
     // Both are lower bounds of a distance from the plane that changes linearly. The share

@@ -2,11 +2,13 @@
 #include "elementary/magnified_solve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
 
+#include "elementary/interval_stack.h"
 #include "elementary/pair_table.h"
 #include "elementary/separating_direction.h"
 #include "numerics/error_bounds.h"
@@ -36,33 +38,33 @@ constexpr double kEndsVolumeBound = 64 * kUnit;
 // these: 12 + 12 u.
 constexpr double kEndsInsideBound = 192 * kUnit;
 
-/// The values of a linearly moving vector at both ends of an interval.
-struct Segment {
-  Vec l, h;
+/// A vector that moves linearly, with its norms at both ends of an interval.
+struct EndsSegment : Segment {
   double l_norm, h_norm;
 };
 
-Segment segment(const Vec& l, const Vec& h) { return {l, h, maxNorm(l), maxNorm(h)}; }
+EndsSegment segment(const Vec& l, const Vec& h) {
+  return {{l, h}, maxNorm(l), maxNorm(h)};
+}
 
-/// Bernstein coefficients of a cross product, the inner one times 2, and their sizes.
-struct Cross {
-  Vec c[3];
+/// A cross product with the size of each coefficient.
+struct EndsCross : CrossCoefficients {
   double size[3];
 
-  Cross(const Segment& a, const Segment& b)
-      : c{cross(a.l, b.l), cross(a.l, b.h) + cross(a.h, b.l), cross(a.h, b.h)},
+  EndsCross(const EndsSegment& a, const EndsSegment& b)
+      : CrossCoefficients(cross(a, b)),
         size{a.l_norm * b.l_norm, a.l_norm * b.h_norm + a.h_norm * b.l_norm,
              a.h_norm * b.h_norm} {}
 };
 
-/// The volume over the interval: b[0] (1-s)^3 + b[1] s (1-s)^2 + b[2] s^2 (1-s) + b[3]
-/// s^3, with a bound on the error of each coefficient.
-struct Cubic {
-  double b[4], error[4];
+/// The volume over the interval with a bound on the error of each coefficient, from the
+/// norms at both ends. See StepVolume in elementary.cpp, which has one bound for the
+/// whole step, and is faster.
+struct EndsVolume : VolumeCubic {
+  double error[4];
 
-  Cubic(const Segment& u, const Cross& n)
-      : b{dot(u.l, n.c[0]), dot(u.h, n.c[0]) + dot(u.l, n.c[1]),
-          dot(u.h, n.c[1]) + dot(u.l, n.c[2]), dot(u.h, n.c[2])},
+  EndsVolume(const EndsSegment& u, const EndsCross& n)
+      : VolumeCubic(of(u, n)),
         error{u.l_norm * n.size[0], u.h_norm * n.size[0] + u.l_norm * n.size[1],
               u.h_norm * n.size[1] + u.l_norm * n.size[2], u.h_norm * n.size[2]} {
     for (double& e : error) e *= kEndsVolumeBound;
@@ -90,17 +92,12 @@ struct Cubic {
            (zero_at_1 || sign(3) == inside);
   }
 
-  static double mix(const double (&c)[4], double s) {
-    const double r = 1 - s;
-    return r * r * (c[0] * r + c[1] * s) + s * s * (c[2] * r + c[3] * s);
-  }
-  double operator()(double s) const { return mix(b, s); }
   /// Whether the sign at s seems to be certain.
   bool seemsKnownAt(double s) const { return std::abs(mix(b, s)) > 2 * mix(error, s); }
   /// f times (1 - x + ratio x)^3, as a function of x with s / (1 - s) = ratio x / (1 -
   /// x).
-  Cubic withRatio(double ratio) const {
-    Cubic f = *this;
+  EndsVolume withRatio(double ratio) const {
+    EndsVolume f = *this;
     double factor = 1;
     for (int i = 1; i < 4; ++i) {
       factor *= ratio;
@@ -167,7 +164,6 @@ class MagnifiedPair {
   /// Whether the integers are long enough for a useful interval.
   bool fits() const { return time_bits_ >= kLeastTimeBits; }
   unsigned timeBits() const { return static_cast<unsigned>(time_bits_); }
-  bool isVertexFace() const { return kind_ == ContinuousContactKind::kVertexFace; }
   const PairTable& table() const { return pairTable(kind_); }
 
   void moveTo(const Interval& i) {
@@ -184,7 +180,7 @@ class MagnifiedPair {
     // A power of two rounds nothing. It keeps products of four in range.
     if (largest == 0) return;
     scale_ = Integer::powerOfTwo(-std::ilogb(largest));
-    for (Segment& s : uvw_) {
+    for (EndsSegment& s : uvw_) {
       s.l = scale_ * s.l;
       s.h = scale_ * s.h;
       s.l_norm *= scale_;
@@ -192,37 +188,40 @@ class MagnifiedPair {
     }
   }
 
-  const Segment& u() const { return uvw_[0]; }
-  const Segment& v() const { return uvw_[1]; }
-  const Segment& w() const { return uvw_[2]; }
-  Segment r() const { return combined(1, -1, 0); }
-  Segment q() const { return isVertexFace() ? combined(2, -1, 0) : combined(0, 1, 2); }
-  Segment z() const { return combined(0, 1, 2, 1); }
-  Segment difference(PairDifference i) const {
-    if (i <= kW) return uvw_[i];
-    return i == kR ? r() : i == kQ ? q() : z();
+  const EndsSegment& u() const { return uvw_[0]; }
+  const EndsSegment& v() const { return uvw_[1]; }
+  const EndsSegment& w() const { return uvw_[2]; }
+  EndsSegment difference(PairDifference i) const {
+    return i <= kW ? uvw_[i] : sumOf(table().sum[i - kR]);
   }
 
  private:
   using Point = Integer[3];
   static constexpr int kLeastTimeBits = 60;
 
-  Segment rounded(const Point& lo, const Point& hi) const {
+  EndsSegment rounded(const Point& lo, const Point& hi) const {
     const auto vec = [this](const Point& p) {
       return scale_ * Vec{p[0].toDouble(), p[1].toDouble(), p[2].toDouble()};
     };
     return segment(vec(lo), vec(hi));
   }
-  /// The sum (sign 1) or difference (sign -1) of two differences, minus a third one if
-  /// `without` is given.
-  Segment combined(std::size_t a, int sign, std::size_t b, int without = -1) const {
+  /// These multiples of u, v and w, added up before they are rounded. The last one that
+  /// is not 0 is 1.
+  EndsSegment sumOf(const signed char (&multiple)[3]) const {
+    std::size_t last = 2;
+    while (multiple[last] == 0) --last;
+    assert(multiple[last] == 1);
     Point lo, hi;
     for (std::size_t k = 0; k < 3; ++k) {
-      lo[k] = sign > 0 ? at_lo_[a][k] + at_lo_[b][k] : at_lo_[a][k] - at_lo_[b][k];
-      hi[k] = sign > 0 ? at_hi_[a][k] + at_hi_[b][k] : at_hi_[a][k] - at_hi_[b][k];
-      if (without < 0) continue;
-      lo[k] = lo[k] - at_lo_[static_cast<std::size_t>(without)][k];
-      hi[k] = hi[k] - at_hi_[static_cast<std::size_t>(without)][k];
+      lo[k] = at_lo_[last][k];
+      hi[k] = at_hi_[last][k];
+    }
+    for (std::size_t j = 0; j < last; ++j) {
+      if (multiple[j] == 0) continue;
+      for (std::size_t k = 0; k < 3; ++k) {
+        lo[k] = multiple[j] > 0 ? lo[k] + at_lo_[j][k] : lo[k] - at_lo_[j][k];
+        hi[k] = multiple[j] > 0 ? hi[k] + at_hi_[j][k] : hi[k] - at_hi_[j][k];
+      }
     }
     return rounded(lo, hi);
   }
@@ -232,14 +231,16 @@ class MagnifiedPair {
   Point start_[3], change_[3];
   Point at_lo_[3], at_hi_[3];
   double scale_{1};
-  Segment uvw_[3];
+  EndsSegment uvw_[3];
 };
 
-/// Sign of a condition q . n over the whole interval; 0 if it has no certain sign.
-int signOver(const Cross& q, const Cross& n) {
-  const double c[5] = {dot(q.c[0], n.c[0]), dot(q.c[0], n.c[1]) + dot(q.c[1], n.c[0]),
-                       dot(q.c[0], n.c[2]) + dot(q.c[1], n.c[1]) + dot(q.c[2], n.c[0]),
-                       dot(q.c[1], n.c[2]) + dot(q.c[2], n.c[1]), dot(q.c[2], n.c[2])};
+/// Sign of the quartic q . n over the whole interval, kMixed if it is not certain. Not
+/// the same as sideOver() in elementary.cpp: each coefficient has its own bound, and the
+/// sum of three is added in another order.
+Side sideOver(const EndsCross& q, const EndsCross& n) {
+  const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
+                       dot(q.c0, n.c2) + dot(q.c1, n.c1) + dot(q.c2, n.c0),
+                       dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
   const double size[5] = {
       q.size[0] * n.size[0], q.size[0] * n.size[1] + q.size[1] * n.size[0],
       q.size[0] * n.size[2] + q.size[1] * n.size[1] + q.size[2] * n.size[0],
@@ -247,49 +248,30 @@ int signOver(const Cross& q, const Cross& n) {
   bool positive = true, negative = true;
   for (int i = 0; i < 5; ++i) {
     // For larger sizes underflows are far below the bounds.
-    if (size[i] < kTiny) return 0;
+    if (size[i] < kTiny) return Side::kMixed;
     positive &= c[i] > kEndsInsideBound * size[i];
     negative &= c[i] < -kEndsInsideBound * size[i];
   }
-  return positive ? 1 : negative ? -1 : 0;
-}
-
-/// Whether the features touch when the points of the pair are coplanar: 1 always, -1
-/// never in the interval, 0 not known. See insideness() in elementary.cpp.
-template <typename Pair>
-int insideness(const Pair& pair, const Cross& n) {
-  int all = 1;
-  for (int i = 0; i < pair.table().num_inside; ++i) {
-    const auto& [x, y] = pair.table().inside[i];
-    const int sign = signOver(Cross(pair.difference(x), pair.difference(y)), n);
-    if (sign < 0) return sign;
-    if (sign == 0) all = 0;
-  }
-  return all;
+  return positive ? Side::kPositive : negative ? Side::kNegative : Side::kMixed;
 }
 
 /// Whether a plane keeps the features apart over the interval. See areSeparated() in
 /// elementary.cpp.
 template <typename Pair>
 bool areSeparated(const Pair& pair) {
-  const bool vf = pair.isVertexFace();
-  const auto negated = [](Segment s) {
-    s.l = -1. * s.l;
-    s.h = -1. * s.h;
-    return s;
-  };
-  Segment corner[4] = {pair.u(), negated(pair.r()), pair.q(), {}};
-  if (vf)
-    corner[2] = negated(corner[2]);
-  else
-    corner[3] = pair.z();
-  const int num_corners = vf ? 3 : 4;
+  const PairTable& table = pair.table();
+  EndsSegment corner[4];
   Vec middle[4];
-  for (int i = 0; i < num_corners; ++i) middle[i] = 0.5 * (corner[i].l + corner[i].h);
-  const Vec d = separatingDirection(middle, vf);
+  for (int i = 0; i < table.num_corners; ++i) {
+    EndsSegment& at = corner[i] = pair.difference(table.corner[i].difference);
+    at.l = table.corner[i].sign * at.l;
+    at.h = table.corner[i].sign * at.h;
+    middle[i] = 0.5 * (at.l + at.h);
+  }
+  const Vec d = separatingDirection(middle, table.isTriangle());
   const double bound = kSideBound * maxNorm(d);
   if (!(bound > kTiny)) return false;
-  for (int i = 0; i < num_corners; ++i)
+  for (int i = 0; i < table.num_corners; ++i)
     if (!(dot(d, corner[i].l) > bound * corner[i].l_norm &&
           dot(d, corner[i].h) > bound * corner[i].h_norm))
       return false;
@@ -312,7 +294,7 @@ std::optional<Place> meetingPlace(const Pair& pair) {
   // The points seem to meet if they are seen from more than this many times the distance
   // at which they pass each other.
   constexpr double kFar = 8;
-  const Segment &u = pair.u(), &v = pair.v(), &w = pair.w();
+  const EndsSegment &u = pair.u(), &v = pair.v(), &w = pair.w();
   const auto [s, duration] = ClosestApproach({u.l, v.l, w.l}, {u.h, v.h, w.h});
   if (!(s > 0 && s < 1)) return std::nullopt;
   const double half = std::max(kLeastPart, kFar * duration);
@@ -324,7 +306,7 @@ std::optional<Place> meetingPlace(const Pair& pair) {
 template <typename Pair>
 double ratioOfEnds(const Pair& pair) {
   double l = 0, h = 0;
-  for (const Segment* x : {&pair.u(), &pair.v(), &pair.w()}) {
+  for (const EndsSegment* x : {&pair.u(), &pair.v(), &pair.w()}) {
     l = std::max(l, x->l_norm);
     h = std::max(h, x->h_norm);
   }
@@ -333,7 +315,7 @@ double ratioOfEnds(const Pair& pair) {
 
 /// A part around a root or an extremum of f that seems to have certain signs on both
 /// sides.
-Place placeOfRoot(const Cubic& f) {
+Place placeOfRoot(const EndsVolume& f) {
   // The part is made wider by this factor, so that signs of derivatives are certain as
   // well.
   constexpr double kWider = 8, kMostPart = 0x1p-7;
@@ -355,7 +337,7 @@ Place placeOfRoot(const Cubic& f) {
 }
 
 template <typename Pair>
-Place placeToLook(const Pair& pair, const Cubic& f) {
+Place placeToLook(const Pair& pair, const EndsVolume& f) {
   if (const std::optional<Place> place = meetingPlace(pair)) return *place;
   if (f.isLost()) return {0, 1};
   // As a function of x with s / (1 - s) = ratio x / (1 - x), the volume has the same
@@ -366,43 +348,31 @@ Place placeToLook(const Pair& pair, const Cubic& f) {
   return {back(place.a), back(place.b)};
 }
 
-/// Intervals that are still to be examined, the earliest on top.
-class Agenda {
- public:
-  /// About eight looks are usual. Each look adds at most two intervals.
-  static constexpr int kMaxLooks = 48;
+/// About eight looks are usual.
+using Intervals = IntervalStack<Interval, 48>;
 
-  explicit Agenda(const Interval& all) { items_[size_++] = all; }
-  bool isEmpty() const { return size_ == 0; }
-  Interval pop() { return items_[--size_]; }
-
-  /// Cuts an interval at both ends of the place.
-  /// @return false if times have too few bits for this
-  bool push(const Interval& i, const Place& place, unsigned time_bits) {
-    constexpr unsigned kCutBits = 52;
-    DoubleWord width = i.hi - i.lo;
-    unsigned bits = 0;
-    while (bits < kCutBits && (width >> (kCutBits - bits)) == 0) ++bits;
-    bits = std::min(bits, time_bits - i.m);
-    width <<= bits;
-    const DoubleWord lo = i.lo << bits, hi = i.hi << bits;
-    const auto size = static_cast<double>(width);
-    if (width < 2) return false;
-    DoubleWord a = lo + static_cast<DoubleWord>(place.a * size), b = hi;
-    if (place.b < 1) b = std::min(hi, lo + static_cast<DoubleWord>(place.b * size) + 1);
-    if (place.a == place.b) a = b = std::min(hi - 1, std::max(lo + 1, a));
-    if (a == lo && b == hi) return false;
-    const unsigned m = i.m + bits;
-    if (b < hi) items_[size_++] = {b, hi, m};
-    if (a < b) items_[size_++] = {a, b, m};
-    if (lo < a) items_[size_++] = {lo, a, m};
-    return true;
-  }
-
- private:
-  Interval items_[2 * kMaxLooks + 3];
-  int size_{0};
-};
+/// Cuts an interval at both ends of the place.
+/// @return false if times have too few bits for this
+bool cut(const Interval& i, const Place& place, unsigned time_bits, Intervals& open) {
+  constexpr unsigned kCutBits = 52;
+  DoubleWord width = i.hi - i.lo;
+  unsigned bits = 0;
+  while (bits < kCutBits && (width >> (kCutBits - bits)) == 0) ++bits;
+  bits = std::min(bits, time_bits - i.m);
+  width <<= bits;
+  const DoubleWord lo = i.lo << bits, hi = i.hi << bits;
+  const auto size = static_cast<double>(width);
+  if (width < 2) return false;
+  DoubleWord a = lo + static_cast<DoubleWord>(place.a * size), b = hi;
+  if (place.b < 1) b = std::min(hi, lo + static_cast<DoubleWord>(place.b * size) + 1);
+  if (place.a == place.b) a = b = std::min(hi - 1, std::max(lo + 1, a));
+  if (a == lo && b == hi) return false;
+  const unsigned m = i.m + bits;
+  if (b < hi) open.push({b, hi, m});
+  if (a < b) open.push({a, b, m});
+  if (lo < a) open.push({lo, a, m});
+  return true;
+}
 
 /// The only root of p, simple, between lo / 2^m and hi / 2^m.
 Root rootBetween(const Polynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) {
@@ -435,8 +405,8 @@ class Solver {
   ElementaryResult solve(double t_end);
 
  private:
-  Finding look(const Interval& interval, const Cross& n, const Cubic& f);
-  Finding lookAtEnds(const Interval& interval, const Cubic& f);
+  Finding look(const Interval& interval, const EndsCross& n, const EndsVolume& f);
+  Finding lookAtEnds(const Interval& interval, const EndsVolume& f);
   Finding lookAtRoot(const Interval& interval);
   Finding contactIn(const Interval& interval);
 
@@ -450,11 +420,15 @@ class Solver {
 
 /// The decision by doubles.
 template <std::size_t kWords>
-Finding Solver<kWords>::look(const Interval& interval, const Cross& n, const Cubic& f) {
+Finding Solver<kWords>::look(const Interval& interval, const EndsCross& n,
+                             const EndsVolume& f) {
   if (f.hasNoRoot()) return Finding::kNoContact;
-  const int inside = insideness(pair_, n);
-  if (inside < 0) return Finding::kNoContact;
-  if (inside > 0 && f.changesSign()) return contactIn(interval);
+  const Side side = insideness(pair_.table(), [&](int i) {
+    const auto& [x, y] = pair_.table().inside[i];
+    return sideOver(EndsCross(pair_.difference(x), pair_.difference(y)), n);
+  });
+  if (side == Side::kNegative) return Finding::kNoContact;
+  if (side == Side::kPositive && f.changesSign()) return contactIn(interval);
   return areSeparated(pair_) ? Finding::kNoContact : Finding::kOpen;
 }
 
@@ -472,7 +446,7 @@ Finding Solver<kWords>::contactIn(const Interval& interval) {
 /// Decides features that are coplanar at t = 0 or t = 1, and at no other time of the
 /// interval.
 template <std::size_t kWords>
-Finding Solver<kWords>::lookAtEnds(const Interval& interval, const Cubic& f) {
+Finding Solver<kWords>::lookAtEnds(const Interval& interval, const EndsVolume& f) {
   const bool zero_at_lo = f.sign(0) == 0 && interval.lo == 0,
              zero_at_hi = f.sign(3) == 0 && interval.hi == DoubleWord{1} << interval.m;
   if (!zero_at_lo && !zero_at_hi) return Finding::kOpen;
@@ -501,18 +475,19 @@ ElementaryResult Solver<kWords>::solve(double t_end) {
   const BinaryDigits end(t_end);
   const auto end_bits = static_cast<unsigned>(-end.exponent);
   if (!pair_.fits() || end_bits > pair_.timeBits()) return unsure;
-  Agenda open({0, static_cast<DoubleWord>(end.digits), end_bits});
+  Intervals open;
+  open.push({0, static_cast<DoubleWord>(end.digits), end_bits});
   for (int looks = 0; !open.isEmpty(); ++looks) {
     const Interval interval = open.pop();
-    if (looks == Agenda::kMaxLooks) return unsure;
+    if (looks == Intervals::kMaxLooks) return unsure;
     pair_.moveTo(interval);
-    const Cross n(pair_.v(), pair_.w());
-    const Cubic f(pair_.u(), n);
+    const EndsCross n(pair_.v(), pair_.w());
+    const EndsVolume f(pair_.u(), n);
     Finding found = look(interval, n, f);
     if (found == Finding::kOpen) found = lookAtEnds(interval, f);
     if (found == Finding::kOpen) {
       const Place place = placeToLook(pair_, f);
-      if (place.isUseful() && open.push(interval, place, pair_.timeBits())) continue;
+      if (place.isUseful() && cut(interval, place, pair_.timeBits(), open)) continue;
       if (!f.changesSign() || !f.isMonotone()) return unsure;
       found = lookAtRoot(interval);
     }

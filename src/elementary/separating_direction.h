@@ -33,11 +33,10 @@ inline Vec nearestOnTriangle(const Vec& p, const Vec& q, const Vec& r) {
 
 /// @brief The direction from one feature to the nearest point of the other. The
 /// differences of their points form a triangle (VF) or a parallelogram (EE).
-/// @param corner  the three corners of the triangle; or u, -r, q, z with the names of
-/// solveCoplanarity()
+/// @param corner  the corners of PairTable
 inline Vec separatingDirection(const Vec* corner, bool is_triangle) {
   if (is_triangle) return nearestOnTriangle(corner[0], corner[1], corner[2]);
-  // The parallelogram's corners in order are u, -r, z, q.
+  // The parallelogram's corners in a circle are 0, 1, 3, 2.
   const Vec d = nearestOnTriangle(corner[0], corner[1], corner[3]),
             e = nearestOnTriangle(corner[0], corner[3], corner[2]);
   return dot(e, e) < dot(d, d) ? e : d;
