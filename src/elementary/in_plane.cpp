@@ -142,61 +142,77 @@ struct FirstContact {
   }
 };
 
-/// Finds times in [lo, hi] at which point p meets segment qr: either p changes sides
-/// between the segment's ends, or it comes along the line from beyond one of them.
-void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPath& r,
-                        int axis, double lo, double hi, double toc_err,
-                        FirstContact& found) {
-  const PlanarDifference qp(p, q, axis), qr(r, q, axis);
-  const PlanarQuadratic area = PlanarQuadratic::cross(qp, qr);
-  if (area.isPositive(lo, hi) || area.isNegative(lo, hi)) return;
-  const PlanarDifference rp(p, r, axis), rq(q, r, axis);
-  const PlanarQuadratic from_q = PlanarQuadratic::dot(qp, qr),
-                        from_r = PlanarQuadratic::dot(rp, rq),
-                        length = PlanarQuadratic::dot(qr, qr);
-  const bool on_line = area.isZero();
-  const auto isProved = [&](double a, double b) {
-    if (on_line) a = b;  // touching at b is enough
-    return (on_line || area.changesSign(a, b)) && length.isPositive(a, b) &&
-           from_q.isNotNegative(a, b) && from_r.isNotNegative(a, b);
-  };
-  const auto isApart = [&](double a, double b) {
-    return area.isPositive(a, b) || area.isNegative(a, b) || from_q.isNegative(a, b) ||
-           from_r.isNegative(a, b);
-  };
+/// Point p and segment qr, in the plane.
+class PointAndSegment {
+ public:
+  /// @param qp, qr, rp, rq  from the first point to the second
+  /// @param area  the cross product of qp and qr
+  PointAndSegment(const PlanarDifference& qp, const PlanarDifference& qr,
+                  const PlanarDifference& rp, const PlanarDifference& rq,
+                  const PlanarQuadratic& area)
+      : area_(area),
+        from_q_(PlanarQuadratic::dot(qp, qr)),
+        from_r_(PlanarQuadratic::dot(rp, rq)),
+        length_(PlanarQuadratic::dot(qr, qr)),
+        on_line_(area.isZero()) {}
 
+  bool isApart(double a, double b) const {
+    return area_.isPositive(a, b) || area_.isNegative(a, b) || from_q_.isNegative(a, b) ||
+           from_r_.isNegative(a, b);
+  }
+  /// Whether they touch in [a, b]: either p changes sides between the segment's ends, or
+  /// it comes along the line from beyond one of them.
+  bool touchIn(double a, double b) const {
+    if (on_line_) a = b;  // touching at b is enough
+    return (on_line_ || area_.changesSign(a, b)) && length_.isPositive(a, b) &&
+           from_q_.isNotNegative(a, b) && from_r_.isNotNegative(a, b);
+  }
+  /// Estimates where one of the signs changes.
+  /// @return whether one does
+  bool findChange(double lo, double hi, double tol, double& t) const {
+    for (const PlanarQuadratic* f : {&area_, &from_q_, &from_r_})
+      if (f->changesSign(lo, hi)) {
+        t = illinois([f](double s) { return f->at(s); }, lo, hi, f->at(lo), f->at(hi),
+                     tol, 24);
+        return true;
+      }
+    return false;
+  }
+
+ private:
+  PlanarQuadratic area_, from_q_, from_r_, length_;
+  bool on_line_;
+};
+
+/// Finds times in [lo, hi] at which the point meets the segment.
+void findContact(const PointAndSegment& pair, double lo, double hi, double toc_err,
+                 FirstContact& found) {
   // The ends of the intervals that are still to be examined, the earliest on top.
   constexpr int kMaxLooks = 32;
   double end[2 * kMaxLooks + 1];
   int open = 0;
   assert(lo <= hi && toc_err > 0);
   end[open++] = hi;
+  const auto goOn = [&] { lo = end[--open]; };
   for (int look = 0; open > 0; ++look) {
     hi = end[open - 1];
     const double width = hi - lo;
-    if (isApart(lo, hi)) {
-      lo = hi;
-      --open;
+    if (pair.isApart(lo, hi)) {
+      goOn();
       continue;
     }
-    if (width <= toc_err && isProved(lo, hi)) return found.addContact(lo, hi);
+    if (width <= toc_err && pair.touchIn(lo, hi)) return found.addContact(lo, hi);
     if (width <= 0.25 * toc_err || look >= kMaxLooks) {
       found.addUnsure(lo);
-      lo = hi;
-      --open;
+      goOn();
       continue;
     }
     // A wide interval is cut close around a change of sign, or in the middle.
-    double cut[2] = {lo + 0.5 * width, hi};
-    if (width > toc_err)
-      for (const PlanarQuadratic* f : {&area, &from_q, &from_r})
-        if (f->changesSign(lo, hi)) {
-          const double t = illinois([f](double s) { return f->at(s); }, lo, hi, f->at(lo),
-                                    f->at(hi), 0.0625 * toc_err, 24);
-          cut[0] = t - 0.125 * toc_err;
-          cut[1] = t + 0.125 * toc_err;
-          break;
-        }
+    double cut[2] = {lo + 0.5 * width, hi}, change;
+    if (width > toc_err && pair.findChange(lo, hi, 0.0625 * toc_err, change)) {
+      cut[0] = change - 0.125 * toc_err;
+      cut[1] = change + 0.125 * toc_err;
+    }
     for (const double t : {cut[1], cut[0]})
       if (t > lo && t < end[open - 1]) {
         assert(open < 2 * kMaxLooks + 1);
@@ -204,10 +220,21 @@ void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPa
       }
     if (end[open - 1] == hi) {
       found.addUnsure(lo);
-      lo = hi;
-      --open;
+      goOn();
     }
   }
+}
+
+/// Finds times in [lo, hi] at which point p meets segment qr.
+void findPointOnSegment(const VertexPath& p, const VertexPath& q, const VertexPath& r,
+                        int axis, double lo, double hi, double toc_err,
+                        FirstContact& found) {
+  const PlanarDifference qp(p, q, axis), qr(r, q, axis);
+  const PlanarQuadratic area = PlanarQuadratic::cross(qp, qr);
+  // As a rule they are apart all the time, which the area alone shows.
+  if (area.isPositive(lo, hi) || area.isNegative(lo, hi)) return;
+  const PlanarDifference rp(p, r, axis), rq(q, r, axis);
+  findContact(PointAndSegment(qp, qr, rp, rq, area), lo, hi, toc_err, found);
 }
 
 /// Whether a line of x, y, x + y or x - y = constant keeps the features apart at t.

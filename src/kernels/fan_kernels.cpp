@@ -114,82 +114,123 @@ FCL_CCD_INLINE DoubleMask areHigh(Fans& fans, std::size_t num_triangles, const V
   return high;
 }
 
+/// Eight fans, and what their proofs have in common.
 template <typename Fans>
-FCL_CCD_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed,
-                                    double distance) {
-  Doubles u_norm = broadcast<kEight>(kLeastNorm);
+struct FansToProve {
+  Fans& fans;
+  std::size_t count;
+  bool is_closed;
+  /// Bound on the norm of the spokes.
+  Doubles norm;
+  /// The sum of the normals, and its norm.
+  Vectors d;
+  Doubles d_norm;
+
+  FCL_CCD_INLINE std::size_t numTriangles() const {
+    return is_closed ? count : count - 1;
+  }
+};
+
+/// Makes the normals of the fans.
+template <typename Fans>
+FCL_CCD_INLINE FansToProve<Fans> prepare(Fans& fans, std::size_t count, bool is_closed) {
+  const Doubles zero = broadcast<kEight>(0.);
+  FansToProve<Fans> out{
+      fans, count, is_closed, broadcast<kEight>(kLeastNorm), {zero, zero, zero}, zero};
   for (std::size_t i = 0; i < count; ++i) {
     const MovingVectors spoke = fans.spoke(i);
-    u_norm = max(u_norm, max(maxNorm(spoke.t0), maxNorm(spoke.t1)));
+    out.norm = max(out.norm, max(maxNorm(spoke.t0), maxNorm(spoke.t1)));
   }
-
-  // All triangles face d.
-  const std::size_t num_triangles = is_closed ? count : count - 1;
-  const Doubles zero = broadcast<kEight>(0.);
-  Vectors d = {zero, zero, zero};
-  for (std::size_t i = 0; i < num_triangles; ++i) {
+  for (std::size_t i = 0; i < out.numTriangles(); ++i) {
     const MovingNormals normal = fans.makeNormal(i);
-    d = d + (normal.first + normal.last);
+    out.d = out.d + (normal.first + normal.last);
   }
-  const Doubles d_norm = maxNorm(d), size = u_norm * u_norm * d_norm;
+  out.d_norm = maxNorm(out.d);
+  return out;
+}
+
+/// The fans all of whose triangles face d, and are high enough for a distance.
+template <typename Fans>
+FCL_CCD_INLINE unsigned areFacing(const FansToProve<Fans>& x, double distance) {
+  const Doubles size = x.norm * x.norm * x.d_norm;
   const Doubles turned = broadcast<kEight>(kFanBound) * size;
-  DoubleMask facing = isInRange(u_norm * u_norm) & isInRange(size);
-  for (std::size_t i = 0; i < num_triangles; ++i) {
-    const MovingNormals normal = fans.normal(i);
-    facing = facing & (dot(normal.first, d) > turned) & (dot(normal.middle, d) > turned) &
-             (dot(normal.last, d) > turned);
+  DoubleMask facing = isInRange(x.norm * x.norm) & isInRange(size);
+  for (std::size_t i = 0; i < x.numTriangles(); ++i) {
+    const MovingNormals normal = x.fans.normal(i);
+    facing = facing & (dot(normal.first, x.d) > turned) &
+             (dot(normal.middle, x.d) > turned) & (dot(normal.last, x.d) > turned);
   }
   if (distance > 0)
-    facing = facing & areHigh(fans, num_triangles, d, u_norm, turned, distance);
-  const unsigned left = bits(facing);
-  if (left == 0) return 0;
+    facing = facing & areHigh(x.fans, x.numTriangles(), x.d, x.norm, turned, distance);
+  return bits(facing);
+}
 
-  // The ray goes through the middle of the first sector of a closed fan. It points away
-  // from an open fan.
-  Vectors ray = {zero, zero, zero};
-  if (is_closed) {
-    const Vectors p = fans.spoke(0).t0, q = fans.spoke(1).t0;
+/// A ray through the middle of the first sector of a closed fan, or away from an open
+/// one.
+template <typename Fans>
+FCL_CCD_INLINE Vectors rayOf(const FansToProve<Fans>& x) {
+  if (x.is_closed) {
+    const Vectors p = x.fans.spoke(0).t0, q = x.fans.spoke(1).t0;
     const Doubles a = maxNorm(p), b = maxNorm(q);
-    ray = {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
-  } else {
-    for (std::size_t i = 0; i < count; ++i) {
-      const MovingVectors spoke = fans.spoke(i);
-      ray = ray - (spoke.t0 + spoke.t1);
-    }
+    return {b * p.x + a * q.x, b * p.y + a * q.y, b * p.z + a * q.z};
   }
-  const Doubles ray_norm = maxNorm(ray), ray_size = u_norm * ray_norm * d_norm;
-  const unsigned in_range = bits(isInRange(ray_norm * d_norm) & isInRange(ray_size));
-  const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
-                minus_bound = zero - bound;
-  const Vectors across = cross(ray, d);
-  const auto side = [&](const Vectors& spoke)
-                        HWY_ATTR { return sideOfRay(spoke, across, bound, minus_bound); };
+  const Doubles zero = broadcast<kEight>(0.);
+  Vectors ray = {zero, zero, zero};
+  for (std::size_t i = 0; i < x.count; ++i) {
+    const MovingVectors spoke = x.fans.spoke(i);
+    ray = ray - (spoke.t0 + spoke.t1);
+  }
+  return ray;
+}
 
-  if (is_closed) {
-    // A fan goes round once if exactly one sector contains the ray.
-    const SideOfRay first = side(fans.spoke(0).t0);
-    SideOfRay at = first;
-    unsigned decided = ~0U, once = 0, again = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const SideOfRay next = i + 1 < count ? side(fans.spoke(i + 1).t0) : first;
-      const unsigned within = at.before & next.after;
-      decided &= at.before | at.after;
-      again |= once & within;
-      once |= within;
-      at = next;
-    }
-    return left & in_range & decided & once & ~again;
+/// The closed fans that go round once: exactly one sector contains the ray.
+/// @param side  the sides of the ray on which a vector is
+template <typename Fans, typename Side>
+FCL_CCD_INLINE unsigned goRoundOnce(const FansToProve<Fans>& x, Side&& side) {
+  const SideOfRay first = side(x.fans.spoke(0).t0);
+  SideOfRay at = first;
+  unsigned decided = ~0U, once = 0, again = 0;
+  for (std::size_t i = 0; i < x.count; ++i) {
+    const SideOfRay next = i + 1 < x.count ? side(x.fans.spoke(i + 1).t0) : first;
+    const unsigned within = at.before & next.after;
+    decided &= at.before | at.after;
+    again |= once & within;
+    once |= within;
+    at = next;
   }
-  // No sector ever covers the ray: its first spoke is after the ray all the time, or its
-  // last spoke before it.
+  return decided & once & ~again;
+}
+
+/// The open fans of which no sector ever covers the ray: its first spoke is after the ray
+/// all the time, or its last spoke before it.
+template <typename Fans, typename Side>
+FCL_CCD_INLINE unsigned leaveRayFree(const FansToProve<Fans>& x, Side&& side) {
   unsigned free = ~0U, after = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const MovingVectors spoke = fans.spoke(i);
+  for (std::size_t i = 0; i < x.count; ++i) {
+    const MovingVectors spoke = x.fans.spoke(i);
     const SideOfRay at0 = side(spoke.t0), at1 = side(spoke.t1);
     if (i > 0) free &= after | (at0.before & at1.before);
     after = at0.after & at1.after;
   }
-  return left & in_range & free;
+  return free;
+}
+
+template <typename Fans>
+FCL_CCD_INLINE unsigned areEmbedded(Fans&& fans, std::size_t count, bool is_closed,
+                                    double distance) {
+  const auto x = prepare(fans, count, is_closed);
+  const unsigned left = areFacing(x, distance);
+  if (left == 0) return 0;
+
+  const Vectors ray = rayOf(x);
+  const Doubles ray_norm = maxNorm(ray), ray_size = x.norm * ray_norm * x.d_norm;
+  const unsigned in_range = bits(isInRange(ray_norm * x.d_norm) & isInRange(ray_size));
+  const Doubles bound = broadcast<kEight>(kRayBound) * ray_size,
+                minus_bound = broadcast<kEight>(0.) - bound;
+  const Vectors across = cross(ray, x.d);
+  const auto side = [&](const Vectors& spoke)
+                        HWY_ATTR { return sideOfRay(spoke, across, bound, minus_bound); };
+  return left & in_range & (is_closed ? goRoundOnce(x, side) : leaveRayFree(x, side));
 }
 
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,

@@ -211,11 +211,22 @@ static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
   return illinois(value, 0, 1, b[0], b[n - 1], 0, 60);
 }
 
-std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
-  assert(!polynomial.isZero());
-  // A root of higher multiplicity keeps two sign changes at every depth.
-  constexpr int kMaxCuts = 12, kCutsOfTurn = 4;
-  constexpr unsigned kMaxJump = 256, kMaxTurnJump = 48;
+namespace {
+
+/// The search for the roots of a polynomial in [0, 1], by Descartes' rule of signs.
+class RootSearch {
+ public:
+  explicit RootSearch(const Polynomial& polynomial)
+      : p_(polynomial), is_square_free_(polynomial.degree() <= 1) {}
+
+  std::vector<Root> run() {
+    takeDyadic(0, 0);
+    takeDyadic(1, 0);
+    while (!isolateAll()) continue;
+    return std::move(roots_);
+  }
+
+ private:
   /// The interval (k, k + 1) / 2^m, and how it was reached.
   struct Interval {
     Integer k;
@@ -224,68 +235,93 @@ std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
     int cuts;
     unsigned jump;
   };
-  Polynomial p = polynomial;
-  bool square_free = p.degree() <= 1;
-  std::vector<Root> roots;
-  // A root that is found at a dyadic point is divided out, so that ends of intervals are
-  // never roots. The search then starts again.
-  const auto takeDyadic = [&](const Integer& k, unsigned m) {
+
+  /// Divides out a root at a dyadic point, so that ends of intervals are never roots.
+  /// @return whether there is one; then the search starts again
+  bool takeDyadic(const Integer& k, unsigned m) {
     bool taken = false;
-    while (p.degree() >= 1 && p.signAt(k, m) == 0) {
-      if (!taken) roots.emplace_back(k, m);
-      p = withoutRoot(p, k, m);
+    while (p_.degree() >= 1 && p_.signAt(k, m) == 0) {
+      if (!taken) roots_.emplace_back(k, m);
+      p_ = withoutRoot(p_, k, m);
       taken = true;
     }
     return taken;
-  };
-  takeDyadic(0, 0);
-  takeDyadic(1, 0);
-  for (bool again = true; again;) {
-    again = false;
-    std::vector<Interval> open{{0, 0, p.signChanges(0, 0), 0, 1}};
+  }
+
+  /// Finds an interval for each root.
+  /// @return false if the polynomial was divided before all were found
+  bool isolateAll() {
+    // A root of higher multiplicity keeps two sign changes at every depth.
+    constexpr int kMaxCuts = 12;
+    open_.clear();
+    open_.push_back({0, 0, p_.signChanges(0, 0), 0, 1});
     std::vector<Root> isolated;
-    // Roots may lie close together at an end (frames of very different size) or at an
-    // extremum (features that touch up to rounding). If a part of the interval has all
-    // its sign changes, the rest has no root.
-    const auto jump = [&](const Interval& i) {
-      const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
-      const auto jumpTo = [&](const Integer& k, int cuts) {
-        if (p.signChanges(k, i.m + i.jump) != i.changes) return false;
-        open.push_back(
-            {k, i.m + i.jump, i.changes, i.cuts + cuts, std::min(2 * i.jump, kMaxJump)});
-        return true;
-      };
-      if (jumpTo(first, 0) || jumpTo(last, 0)) return true;
-      if (i.jump > kMaxTurnJump) return false;
-      const double turn =
-          std::ldexp(estimateRoot(p.derivative(), i.k, i.m), static_cast<int>(i.jump));
-      return jumpTo(first + static_cast<std::int64_t>(turn), kCutsOfTurn);
-    };
-    while (!open.empty() && !again) {
-      const Interval i = std::move(open.back());
-      open.pop_back();
-      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p);
+    while (!open_.empty()) {
+      const Interval i = std::move(open_.back());
+      open_.pop_back();
+      if (i.changes == 1) isolated.emplace_back(i.k, i.m, p_);
       if (i.changes <= 1) continue;
       if (i.jump > 1 && jump(i)) continue;
-      if (i.cuts >= kMaxCuts && !square_free) {
-        const Polynomial repeated = gcd(p, p.derivative());
-        square_free = true;
-        if (repeated.degree() > 0) {
-          p = p.quotient(repeated).primitive();
-          again = true;
-          break;
-        }
-      }
-      const Integer mid = 2 * i.k + 1;
-      again = takeDyadic(mid, i.m + 1);
-      for (const Integer& k : {mid, Integer(mid - 1)}) {
-        const int changes = again ? 0 : p.signChanges(k, i.m + 1);
-        open.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
-      }
+      if (i.cuts >= kMaxCuts && !is_square_free_ && takeRepeated()) return false;
+      if (takeDyadic(2 * i.k + 1, i.m + 1)) return false;
+      cut(i);
     }
-    if (!again) roots.insert(roots.end(), isolated.begin(), isolated.end());
+    roots_.insert(roots_.end(), isolated.begin(), isolated.end());
+    return true;
   }
-  return roots;
+
+  /// Makes roots of higher multiplicity simple.
+  /// @return whether there are some
+  bool takeRepeated() {
+    const Polynomial repeated = gcd(p_, p_.derivative());
+    is_square_free_ = true;
+    if (repeated.degree() <= 0) return false;
+    p_ = p_.quotient(repeated).primitive();
+    return true;
+  }
+
+  /// Cuts an interval in the middle.
+  void cut(const Interval& i) {
+    const Integer mid = 2 * i.k + 1;
+    for (const Integer& k : {mid, Integer(mid - 1)}) {
+      const int changes = p_.signChanges(k, i.m + 1);
+      open_.push_back({k, i.m + 1, changes, i.cuts + 1, changes == i.changes ? 8U : 1U});
+    }
+  }
+
+  /// Roots may lie close together at an end (frames of very different size) or at an
+  /// extremum (features that touch up to rounding). If a part of the interval has all its
+  /// sign changes, the rest has no root.
+  /// @return whether such a part was found; it takes the place of the interval
+  bool jump(const Interval& i) {
+    constexpr int kCutsOfTurn = 4;
+    constexpr unsigned kMaxTurnJump = 48;
+    const Integer first = i.k << i.jump, last = ((i.k + 1) << i.jump) - 1;
+    if (jumpTo(i, first, 0) || jumpTo(i, last, 0)) return true;
+    if (i.jump > kMaxTurnJump) return false;
+    const double turn =
+        std::ldexp(estimateRoot(p_.derivative(), i.k, i.m), static_cast<int>(i.jump));
+    return jumpTo(i, first + static_cast<std::int64_t>(turn), kCutsOfTurn);
+  }
+  bool jumpTo(const Interval& i, const Integer& k, int cuts) {
+    constexpr unsigned kMaxJump = 256;
+    if (p_.signChanges(k, i.m + i.jump) != i.changes) return false;
+    open_.push_back(
+        {k, i.m + i.jump, i.changes, i.cuts + cuts, std::min(2 * i.jump, kMaxJump)});
+    return true;
+  }
+
+  Polynomial p_;
+  bool is_square_free_;
+  std::vector<Interval> open_;
+  std::vector<Root> roots_;
+};
+
+}  // namespace
+
+std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
+  assert(!polynomial.isZero());
+  return RootSearch(polynomial).run();
 }
 
 double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction) {
