@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/advancement.h"
 #include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 
@@ -334,37 +335,28 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
 
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {
-  while (true) {
-    const State state = stateAt(t);
-    ++counts.steps;
-    const double contact = tolerance_.distance * growthOfNormal(state) +
-                           tolerance_.touching - tolerance_.position;
-    const ConvexGap gap = gapOf(state, contact);
-    if (gap.distance <= contact) return Answer::kContact;
-    if (steps-- <= 0) return Answer::kOpen;
-    guess_ = gap.direction;
-    const double h = longestStep(t, state, gap);
-    if (h >= t1_ - t) return Answer::kApart;
-    // As in TrianglePairMotion::advance().
-    const double next = t + h * (1 - 0x1p-48);
-    if (!(next > t)) return Answer::kGivenUp;
-    t = next;
-    if (t > last) return Answer::kOpen;
-  }
+  ConvexGap gap;
+  return deformable::advance(
+      t, t1_, last, steps, counts, [this](double time) { return stateAt(time); },
+      [this, &gap](const State& state) {
+        const double contact = tolerance_.distance * growthOfNormal(state) +
+                               tolerance_.touching - tolerance_.position;
+        gap = gapOf(state, contact);
+        return gap.distance <= contact;
+      },
+      [this, &gap](double time, const State& state) {
+        guess_ = gap.direction;
+        return longestStep(time, state, gap);
+      });
 }
 
 double ConvexPairMotion::proveContact(double t, double width) const {
-  const double longest = std::min(width, 1 - t), speed = set_[0]->speed + set_[1]->speed;
-  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
-       h *= 4) {
-    const double time = std::min(t + std::min(h, longest), 1.);
-    if (!(time > t)) return t;
+  const double speed = set_[0]->speed + set_[1]->speed;
+  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
     const ConvexGap gap = gapOf(stateAt(time), 0);
-    if (gap.depth > 4 * tolerance_.position ||
-        gap.distance + tolerance_.position <= tolerance_.distance)
-      return time;
-    if (h >= longest) return t;
-  }
+    return gap.depth > 4 * tolerance_.position ||
+           gap.distance + tolerance_.position <= tolerance_.distance;
+  });
 }
 
 }  // namespace deformable

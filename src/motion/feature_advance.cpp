@@ -7,6 +7,7 @@
 
 #include "elementary/most_steps.h"
 #include "mesh/feature_pairs.h"
+#include "motion/advancement.h"
 #include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 
@@ -63,7 +64,7 @@ BodyTriangle featureOf(const BodyTriangle& triangle, unsigned first, unsigned se
 
 struct FeaturePairMotion::Moment {
   TrianglePairMotion::State state;
-  /// Of the points at this time.
+  /// The differences of the points at this time.
   DifferencePolygon polygon;
   Vec corners[DifferencePolygon::kMaxCorners];
   Vec velocities[DifferencePolygon::kMaxCorners];
@@ -133,22 +134,17 @@ void FeaturePairMotion::ignoreInitiallyCloser() {
 
 FeaturePairMotion::Answer FeaturePairMotion::advance(double& t,
                                                      MotionCounts& counts) const {
-  for (int steps = 0;; ++steps) {
-    const Moment moment(*this, t);
-    ++counts.steps;
-    const double d = tolerance_.distance,
-                 share = steps < kPlainSteps ? 0 : DistanceTolerance::kShare;
-    if (moment.near.distance <= d + (share * d + touching(moment.polygon.size())))
-      return Answer::kContact;
-    if (steps == kMostSteps) return Answer::kGivenUp;
-    const double h = longestStep(t, moment);
-    if (h >= t1_ - t) return Answer::kApart;
-    // Rounded down by more than the rounding of the step. The tolerance includes the
-    // rounding of the time.
-    const double next = t + h * (1 - 0x1p-48);
-    if (!(next > t)) return Answer::kGivenUp;
-    t = next;
-  }
+  int left = kMostSteps;
+  const Answer answer = deformable::advance(
+      t, t1_, HUGE_VAL, left, counts, [this](double time) { return Moment(*this, time); },
+      [this, &left](const Moment& moment) {
+        const double d = tolerance_.distance, share = kMostSteps - left < kPlainSteps
+                                                          ? 0
+                                                          : DistanceTolerance::kShare;
+        return moment.near.distance <= d + (share * d + touching(moment.polygon.size()));
+      },
+      [this](double time, const Moment& moment) { return longestStep(time, moment); });
+  return answer == Answer::kOpen ? Answer::kGivenUp : answer;
 }
 
 double FeaturePairMotion::longestStep(double t, const Moment& moment) const {
@@ -212,19 +208,12 @@ double FeaturePairMotion::proveWithin(double t, double width) const {
   double speed = 0;
   for (int k = 0; k < moment.polygon.count(); ++k)
     speed = std::max(speed, norm(moment.velocities[k]));
-  const double longest = std::min(width, 1 - t), factor = 4;
-  // A double has fewer than 1100 doublings.
-  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
-       h *= factor) {
-    const double time = std::min(t + std::min(h, longest), 1.);
-    if (!(time > t)) return t;
+  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
     const Moment later(*this, time);
     const double error =
         DistanceTolerance(tolerance_.distance, later.polygon.size()).distance_error;
-    if (later.near.distance + error + tolerance_.position <= tolerance_.distance)
-      return time;
-    if (h >= longest) return t;
-  }
+    return later.near.distance + error + tolerance_.position <= tolerance_.distance;
+  });
 }
 
 }  // namespace deformable

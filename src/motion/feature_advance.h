@@ -58,7 +58,8 @@ class FeaturePairMotion {
   double longestStep(double t, const Moment& moment) const;
   double turningStep(const Moment& moment, const Vec& n, const Vec& turn,
                      double longest) const;
-  /// What is apart by d + margin along a direction, as computed, is further apart than d.
+  /// Features whose computed gap along a direction is at least d + this are further apart
+  /// than d.
   double margin(double size) const;
   /// Features whose computed distance is at most d + this are in contact.
   double touching(double size) const;

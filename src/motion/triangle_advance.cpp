@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "elementary/predicates.h"
+#include "motion/advancement.h"
 #include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 
@@ -263,14 +264,9 @@ double TrianglePairMotion::greatestApproach(double t, const Vec& direction) cons
   for (int body = 0; body < 2; ++body) {
     const double side = body == 0 ? 1 : -1;
     const PoseRate bend = path_[body]->turnAccelerationAt(t);
-    const double(&r)[9] = bend.rotation;
     // Turned into the frame of the body: three products a corner.
-    const Vec n = side * direction;
-    const Vec along = {r[0] * n.x + r[3] * n.y + r[6] * n.z,
-                       r[1] * n.x + r[4] * n.y + r[7] * n.z,
-                       r[2] * n.x + r[5] * n.y + r[8] * n.z};
-    const double all =
-        n.x * bend.translation[0] + n.y * bend.translation[1] + n.z * bend.translation[2];
+    const Vec n = side * direction, along = rotatedBack(bend.rotation, n);
+    const double all = dot(n, vecOf(bend.translation));
     for (int i = 0; i < count_.of(body); ++i)
       most[body] = std::max(most[body], dot(along, triangle_[body]->corner[0][i]) + all);
   }
@@ -302,44 +298,40 @@ double TrianglePairMotion::step(double t, const State& state,
   return best;
 }
 
+/// A direction along which the nearest features, which were found before, are apart. All
+/// others are tried only if it shows less than half of the distance.
+Vec TrianglePairMotion::directionOfNearest(const State& state) const {
+  const auto &a = state.p[0], &b = state.p[1];
+  Vec direction = nearest_.between;
+  double gap = -HUGE_VAL;
+  tryDirection(directionOf(nearest_, a, b), a, b, direction, gap);
+  if (gap > 0.5 * std::sqrt(nearest_.square)) return direction;
+  tryDirection(nearest_.between, a, b, direction, gap);
+  // For parallel edges.
+  tryDirection(across(edge(a, nearest_.a), nearest_.between), a, b, direction, gap);
+  tryDirection(across(edge(b, nearest_.b), nearest_.between), a, b, direction, gap);
+  tryDirection(normal(a), a, b, direction, gap);
+  tryDirection(normal(b), a, b, direction, gap);
+  for (int i = 0; i < 9; ++i)
+    tryDirection(cross(edge(a, i / 3), edge(b, i % 3)), a, b, direction, gap);
+  return direction;
+}
+
 TrianglePairMotion::Answer TrianglePairMotion::advance(double& t, double last, int& steps,
                                                        MotionCounts& counts) {
-  while (true) {
-    const State state = at(t);
-    ++counts.steps;
-    nearest_ = nearestFeatures(state.p[0], state.p[1], count_);
-    const double distance = std::sqrt(nearest_.square);
-    if (distance + tolerance_.position <= tolerance_.distance + tolerance_.touching)
-      return Answer::kContact;
-    if (steps-- <= 0) return Answer::kOpen;
-    Vec direction = nearest_.between;
-    double gap = -HUGE_VAL;
-    tryDirection(directionOf(nearest_, state.p[0], state.p[1]), state.p[0], state.p[1],
-                 direction, gap);
-    if (!(gap > 0.5 * distance)) {
-      ++counts.all_directions;
-      tryDirection(nearest_.between, state.p[0], state.p[1], direction, gap);
-      // For parallel edges.
-      for (int body = 0; body < 2; ++body)
-        tryDirection(across(edge(state.p[body], body == 0 ? nearest_.a : nearest_.b),
-                            nearest_.between),
-                     state.p[0], state.p[1], direction, gap);
-      tryDirection(normal(state.p[0]), state.p[0], state.p[1], direction, gap);
-      tryDirection(normal(state.p[1]), state.p[0], state.p[1], direction, gap);
-      for (int i = 0; i < 9; ++i)
-        tryDirection(cross(edge(state.p[0], i / 3), edge(state.p[1], i % 3)), state.p[0],
-                     state.p[1], direction, gap);
-    }
-    const double h = step(t, state, direction);
-    if (h >= t1_ - t) return Answer::kApart;
-    // Rounded down by more than the rounding of the step. The tolerance includes the
-    // rounding of the time.
-    const double next = t + h * (1 - 0x1p-48);
-    if (!(next > t))
-      return t == 0 && isCrossingAt(state) ? Answer::kContact : Answer::kGivenUp;
-    t = next;
-    if (t > last) return Answer::kOpen;
-  }
+  const Answer answer = deformable::advance(
+      t, t1_, last, steps, counts, [this](double time) { return at(time); },
+      [this](const State& state) {
+        nearest_ = nearestFeatures(state.p[0], state.p[1], count_);
+        return std::sqrt(nearest_.square) + tolerance_.position <=
+               tolerance_.distance + tolerance_.touching;
+      },
+      [this](double time, const State& state) {
+        return step(time, state, directionOfNearest(state));
+      });
+  if (answer == Answer::kGivenUp && t == 0 && isCrossingAt(at(0)))
+    return Answer::kContact;
+  return answer;
 }
 
 Vec TrianglePairMotion::directionAt(double t) const {
@@ -415,24 +407,13 @@ double TrianglePairMotion::proveContact(double t, double width) const {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
-  const double longest = std::min(width, 1 - t);
-  // Doubles have fewer than 1100 powers of two.
-  const double factor = 4;
-  for (double h = std::max(tolerance_.position / std::max(speed, 0x1p-500), 0x1p-52);;
-       h *= factor) {
-    const double time = std::min(t + std::min(h, longest), 1.);
-    if (!(time > t)) return t;
+  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
     Vec later[2][3];
     cornersAt(time, later);
-    if (tolerance_.distance > 0) {
-      const NearestFeatures near = nearestFeatures(later[0], later[1], count_);
-      if (std::sqrt(near.square) + tolerance_.position <= tolerance_.distance)
-        return time;
-    } else if (provesCrossing(later)) {
-      return time;
-    }
-    if (h >= longest) return t;
-  }
+    if (!(tolerance_.distance > 0)) return provesCrossing(later);
+    const NearestFeatures near = nearestFeatures(later[0], later[1], count_);
+    return std::sqrt(near.square) + tolerance_.position <= tolerance_.distance;
+  });
 }
 
 }  // namespace deformable

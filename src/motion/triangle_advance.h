@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "motion/advancement.h"
 #include "motion/motion_body.h"
 
 namespace fcl {
@@ -50,29 +51,14 @@ struct NearestFeatures {
 
 /// @brief A contact of two triangles.
 struct MotionContact {
-  /// Of a shape kNoTriangle; of an octree the place of the cell.
+  /// The triangles of both bodies. A shape has kNoTriangle, an octree the place of the
+  /// cell.
   std::int32_t triangle[2];
   /// The places of the triangles in the trees.
   std::int32_t place[2];
   double toc_lo, toc_hi;
   MotionCertainty certainty;
   NearestFeatures nearest;
-};
-
-struct MotionCounts {
-  std::uint64_t box_tests{0};
-  std::uint64_t triangle_pairs{0};
-  std::uint64_t steps{0};
-  /// The number of steps in which the direction of the nearest features was not enough.
-  std::uint64_t all_directions{0};
-
-  MotionCounts& operator+=(const MotionCounts& other) {
-    box_tests += other.box_tests;
-    triangle_pairs += other.triangle_pairs;
-    steps += other.steps;
-    all_directions += other.all_directions;
-    return *this;
-  }
 };
 
 /// @brief The number of corners of two triangles, of which one or both may stand for an
@@ -107,15 +93,11 @@ class TrianglePairMotion {
                      const MotionPath& path_b, const BodyTriangle& b, double t0,
                      double t1, const MotionTolerance& tolerance);
 
-  enum class Answer {
-    kApart,    ///< provably apart in all of [t, t1]
-    kContact,  ///< within the tolerance at t, or crossing at t = 0; apart before
-    kOpen,     ///< provably apart before t, no more steps wanted
-    kGivenUp   ///< provably apart before t, no direction that leads on
-  };
+  using Answer = AdvanceAnswer;
 
   /// @brief Advances from t to the first time at which the triangles are within the
-  /// tolerance. Unless t is 0, they are apart or just touch at t.
+  /// tolerance. Unless t is 0, they are apart or just touch at t. Triangles that cross at
+  /// t = 0 are in contact.
   /// @param[in,out] t  in: the time at which to start; out: the time that was reached
   /// @param last  stops after the first step that reaches this time
   /// @param[in,out] steps  the number of steps left
@@ -151,6 +133,7 @@ class TrianglePairMotion {
   /// Positions, velocities and accelerations of the corners along a direction.
   struct Projection;
   double greatestApproach(double t, const Vec& direction) const;
+  Vec directionOfNearest(const State& state) const;
   static bool isCrossingAt(const State& state);
   void cornersAt(double t, Vec (&p)[2][3]) const;
   bool provesCrossing(const Vec (&p)[2][3]) const;
