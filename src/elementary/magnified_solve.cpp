@@ -291,8 +291,8 @@ constexpr double kLeastPart = 0x1p-48;
 /// The place where u, v and w together are shortest, if they nearly vanish there.
 template <typename Pair>
 std::optional<Place> meetingPlace(const Pair& pair) {
-  // The points seem to meet if they are seen from more than this many times the distance
-  // at which they pass each other.
+  // At both ends of the place the vectors are about this many times as long as where they
+  // are shortest. The points nearly meet if the place is a small part of the interval.
   constexpr double kFar = 8;
   const EndsSegment &u = pair.u(), &v = pair.v(), &w = pair.w();
   const auto [s, duration] = ClosestApproach({u.l, v.l, w.l}, {u.h, v.h, w.h});

@@ -79,7 +79,8 @@ FCL_CCD_INLINE NearestPoints nearestPoints(const Polygons& x,
       (x.count == 3 ? along + across < square : (along < square) & (across < square));
   const Doubles share = along / square;
   const Vectors point = p + share * v + (across / square) * w;
-  // No number is shorter than one of a lane that is inside.
+  // A lane whose nearest point is inside begins with the square 0, so that no side takes
+  // its place.
   sides.square = select(is_inside, all(0), all(HUGE_VAL));
   sides.part = all(kInside);
   sides.along = share;

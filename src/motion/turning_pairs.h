@@ -18,12 +18,12 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A body as these pairs need it.
+/// @brief What the advancement of these pairs needs to know of a body.
 struct TurningBody {
   const Turn* turn;
   /// Whether vertices move in the frame of the body.
   bool deforms;
-  /// During the whole step.
+  /// Bound on the acceleration of its points during the whole step.
   AccelerationBound acceleration;
 };
 
@@ -72,8 +72,8 @@ struct TurningAnswers {
   unsigned open;
   /// Those that come within `touching` of each other; the others are apart.
   unsigned yes;
-  /// Of each contact: the features are apart before toc_lo. If toc_hi is larger, the
-  /// triangles provably cross then.
+  /// The bracket of each contact: the features are apart before toc_lo. If toc_hi is
+  /// larger, the triangles provably cross at toc_hi.
   double toc_lo[TurningPairs::kWidth];
   double toc_hi[TurningPairs::kWidth];
 };
