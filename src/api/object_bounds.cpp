@@ -11,6 +11,7 @@
 #include "api/query_arguments.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
+#include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 
 namespace fcl {
@@ -30,10 +31,6 @@ constexpr int kMostSpans = 16;
 /// FCL's default. A larger rounding error of an InterpMotion's reference point is
 /// refused.
 constexpr double kDefaultTocErr = 1e-4;
-
-double norm(const double (&v)[3]) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 /// What the bounds of a body are made from: boxes in its frame, at t = 0 and t = 1, and
 /// its path.

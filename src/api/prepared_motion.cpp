@@ -6,6 +6,7 @@
 
 #include "api/octree_nodes.h"
 #include "fcl/common/exception.h"
+#include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 
 namespace fcl {
@@ -15,10 +16,6 @@ namespace {
 
 /// Longer paths are refused, so that no product overflows.
 constexpr double kMostPathSize = 0x1p200;
-
-double norm(const double (&v)[3]) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-}
 
 bool haveSameRotation(const Pose& x, const Pose& y) {
   return std::equal(x.rotation, x.rotation + 9, y.rotation);
@@ -30,12 +27,6 @@ template <typename S>
 bool isPosed(const PlacedGeometry<S>& placed) {
   return placed.goesStraight() && !placed.isRigid() &&
          !haveSameRotation(placed.beginning(), placed.end());
-}
-
-Vec applied(const double (&m)[9], const double (&x)[3]) {
-  return {m[0] * x[0] + m[1] * x[1] + m[2] * x[2],
-          m[3] * x[0] + m[4] * x[1] + m[5] * x[2],
-          m[6] * x[0] + m[7] * x[1] + m[8] * x[2]};
 }
 
 /// @param name  in errors
@@ -184,8 +175,8 @@ VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
     x[k] = (1 - t) * from.t0[k] + t * from.t1[k];
     moving[k] = from.t1[k] - from.t0[k];
   }
-  const Vec p = applied(pose.rotation, x);
-  const Vec v = applied(rate.rotation, x) + applied(pose.rotation, moving);
+  const Vec p = rotated(pose.rotation, vecOf(x));
+  const Vec v = rotated(rate.rotation, vecOf(x)) + rotated(pose.rotation, vecOf(moving));
   const double position[3] = {p.x, p.y, p.z}, velocity[3] = {v.x, v.y, v.z};
   VertexPath out;
   for (int k = 0; k < 3; ++k) {

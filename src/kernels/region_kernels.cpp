@@ -64,12 +64,18 @@ FCL_CCD_INLINE bool areNumbers(const Vectors& a) {
   return bits(sum == sum) == (1U << kEight) - 1;
 }
 
-std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
-                              std::size_t count) {
-  const TreeVertex* x[3][kEight];
+/// The corners of up to eight triangles. The first one fills up the lanes beyond them.
+FCL_CCD_INLINE void findCorners(const TreeVertex* vertices, const TreeTriangle* triangles,
+                                std::size_t count, const TreeVertex* (&x)[3][kEight]) {
   for (std::size_t i = 0; i < kEight; ++i)
     for (std::size_t k = 0; k < 3; ++k)
       x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+}
+
+std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
+                              std::size_t count) {
+  const TreeVertex* x[3][kEight];
+  findCorners(vertices, triangles, count, x);
   const MovingVectors first = loadPaths(x[0]), v = loadPaths(x[1]) - first,
                       w = loadPaths(x[2]) - first;
   const MovingNormals n = cross(v, w);
@@ -122,9 +128,7 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
                     const TreeVertex* vertices, const TreeTriangle* triangles,
                     std::size_t count) {
   const TreeVertex* x[3][kEight];
-  for (std::size_t i = 0; i < kEight; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+  findCorners(vertices, triangles, count, x);
   const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
                       u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
                       w = loadPaths(x[2]) - center;
@@ -181,9 +185,7 @@ FCL_CCD_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& roun
 LeastSight leastSightFrom(const TreeVertex& point, const TreeVertex* vertices,
                           const TreeTriangle* triangles, std::size_t count) {
   const TreeVertex* x[3][kEight];
-  for (std::size_t i = 0; i < kEight; ++i)
-    for (std::size_t k = 0; k < 3; ++k)
-      x[k][i] = &vertices[triangles[i < count ? i : 0].place[k]];
+  findCorners(vertices, triangles, count, x);
   const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
                       u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
                       w = loadPaths(x[2]) - center;

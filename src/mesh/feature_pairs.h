@@ -76,6 +76,13 @@ inline FeaturePair featurePair(int bit) {
   return {ContinuousContactKind::kEdgeEdge, true, (k - 6) / 3, (k - 6) % 3};
 }
 
+/// @brief The number of a pair: the inverse of featurePair().
+inline int pairNumber(const FeaturePair& pair) {
+  if (pair.kind == ContinuousContactKind::kEdgeEdge)
+    return static_cast<int>(kNumVertexFacePairs + 3 * pair.first + pair.second);
+  return static_cast<int>(pair.first_on_a ? pair.first : 3 + pair.first);
+}
+
 /// @brief The four points of each pair of features, the vertices of a counted 0-2 and b's
 /// 3-5: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
 constexpr unsigned char kFeaturePoints[kNumFeaturePairs + 1][4] = {

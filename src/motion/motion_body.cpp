@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fcl/common/exception.h"
+#include "motion/posed_vector.h"
 #include "numerics/error_bounds.h"
 #include "query/feature_batch.h"
 #include "tree/open_binary.h"
@@ -31,10 +32,6 @@ MotionBox unboundedBox() {
   }
   box.radius = 2 * kMostExtent;
   return box;
-}
-
-double norm(const double (&v)[3]) {
-  return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 /// The axis-aligned box of the first six half-axes of a 16-DOP.

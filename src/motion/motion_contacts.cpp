@@ -72,7 +72,7 @@ class FeatureContacts {
         if (body_[k]->hasFree()) parts_[k] = std::make_shared<FreeParts>(*body_[k]);
   }
 
-  /// Of the same bodies, without contacts: for a part of the pairs.
+  /// An empty list of contacts of the same bodies, for a part of the pairs.
   FeatureContacts ofPart() const { return FeatureContacts(*this, Part()); }
 
   /// The contacts of features of pairs of triangles that touch. They do not depend on the
@@ -221,20 +221,23 @@ class FeatureContacts {
   /// has one edge or one vertex.
   static int pairOf(const NearestFeatures& near, const BodyTriangle& a,
                     const BodyTriangle& b) {
-    constexpr int kVertexOfA = 0, kVertexOfB = 3, kEdges = 6;
     assert(!(a.isFreePoint() && b.isFree()) && !(b.isFreePoint() && a.isFree()));
-    if (a.isFreePoint()) return kVertexOfA;
-    if (b.isFreePoint()) return kVertexOfB;
-    const auto vertexOf = [](const BodyTriangle& triangle, int k) {
-      return triangle.isFree() ? std::min(k, 1) : k;
+    const auto vertexFace = [](bool first_on_a, const BodyTriangle& triangle, int k) {
+      const int corner = triangle.isFree() ? std::min(k, 1) : k;
+      return pairNumber({ContinuousContactKind::kVertexFace, first_on_a,
+                         static_cast<unsigned>(corner), 0});
     };
+    if (a.isFreePoint()) return vertexFace(true, a, 0);
+    if (b.isFreePoint()) return vertexFace(false, b, 0);
     switch (near.kind) {
       case NearestFeatures::Kind::kVertexOfA:
-        return kVertexOfA + vertexOf(a, near.a);
+        return vertexFace(true, a, near.a);
       case NearestFeatures::Kind::kVertexOfB:
-        return kVertexOfB + vertexOf(b, near.b);
+        return vertexFace(false, b, near.b);
       default:
-        return kEdges + 3 * (a.isFree() ? 0 : near.a) + (b.isFree() ? 0 : near.b);
+        return pairNumber({ContinuousContactKind::kEdgeEdge, true,
+                           static_cast<unsigned>(a.isFree() ? 0 : near.a),
+                           static_cast<unsigned>(b.isFree() ? 0 : near.b)});
     }
   }
 
@@ -284,7 +287,8 @@ class FeatureContacts {
   };
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MotionBody* body_[2];
-  /// With a filter and a distance; null for a mesh without free parts.
+  /// The free parts of each mesh, in queries with a filter and a distance. Null if the
+  /// mesh has none.
   std::shared_ptr<const FreeParts> parts_[2];
   const QueryOptions& options_;
   MotionTolerance tolerance_;
@@ -368,15 +372,16 @@ class ChordContacts {
                       const BodyTriangle& b) {
     const auto vertexOf = [&pair](const BodyTriangle& triangle, int i) {
       const auto id = static_cast<std::int32_t>(pair.vertices[i]);
-      return triangle.vertex[0] == id ? 0 : triangle.vertex[1] == id ? 1 : 2;
+      return triangle.vertex[0] == id ? 0U : triangle.vertex[1] == id ? 1U : 2U;
     };
     const auto edgeOf = [&](const BodyTriangle& triangle, int i) {
-      const int first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
+      const unsigned first = vertexOf(triangle, i), second = vertexOf(triangle, i + 1);
       return (first + 1) % 3 == second ? first : second;
     };
     if (pair.kind == ContinuousContactKind::kEdgeEdge)
-      return 6 + 3 * edgeOf(a, 0) + edgeOf(b, 2);
-    return pair.first_on_a ? vertexOf(a, 0) : 3 + vertexOf(b, 0);
+      return pairNumber({pair.kind, true, edgeOf(a, 0), edgeOf(b, 2)});
+    return pairNumber(
+        {pair.kind, pair.first_on_a, vertexOf(pair.first_on_a ? a : b, 0), 0});
   }
 
   double lastOf(const ChordSearch::Span& span) const {

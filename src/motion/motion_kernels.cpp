@@ -18,15 +18,6 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-FCL_CCD_INLINE Vectors all(const double (&v)[3]) {
-  return {all(v[0]), all(v[1]), all(v[2])};
-}
-
-FCL_CCD_INLINE Vectors rotated(const double (&r)[9], const Vectors& v) {
-  return {all(r[0]) * v.x + all(r[1]) * v.y + all(r[2]) * v.z,
-          all(r[3]) * v.x + all(r[4]) * v.y + all(r[5]) * v.z,
-          all(r[6]) * v.x + all(r[7]) * v.y + all(r[8]) * v.z};
-}
 FCL_CCD_INLINE Vectors turnedBack(const double (&r)[9], const Vectors& v) {
   return {all(r[0]) * v.x + all(r[3]) * v.y + all(r[6]) * v.z,
           all(r[1]) * v.x + all(r[4]) * v.y + all(r[7]) * v.z,
@@ -61,11 +52,11 @@ struct Projection {
 FCL_CCD_INLINE Projection project(const WorldBox& a, const MotionBoxes& b,
                                   const Pose& pose_b, const Vectors& d) {
   const Vectors body = turnedBack(pose_b.rotation, d);
-  const Vectors from = all(pose_b.translation) - all(a.center);
+  const Vectors from = allOf(pose_b.translation) - allOf(a.center);
   Projection out{dot(body, loadVectors(b.center)) + dot(d, from), all(0)};
   for (int i = 0; i < 3; ++i)
     out.reach =
-        out.reach + (abs(dot(d, all(a.half_axis[i]))) +
+        out.reach + (abs(dot(d, allOf(a.half_axis[i]))) +
                      abs(dot(body, loadVectors(b.axis[i]))) * load<kEight>(b.extent[i]));
   return out;
 }
@@ -138,8 +129,8 @@ void meetingWindows(const MotionBox* const (&a)[3], const SpanPoses& pose_a,
   const auto left = [&]() HWY_ATTR {
     return in_use & ~bits(losses.apart | (losses.before + losses.after > one));
   };
-  const Vectors between = rotated(pose_b.middle.rotation, loadVectors(b[1]->center)) +
-                          (all(pose_b.middle.translation) - all(am.center));
+  const Vectors between = product(pose_b.middle.rotation, loadVectors(b[1]->center)) +
+                          (allOf(pose_b.middle.translation) - allOf(am.center));
   const Doubles length = squareRoot(dot(between, between));
   tryDirection((one / max(length, all(0x1p-500))) * between);
   out.mask = left();
@@ -152,12 +143,12 @@ void meetingWindows(const MotionBox* const (&a)[3], const SpanPoses& pose_a,
   }
   margins = load<kEight>(margin);
   for (int i = 0; i < 3 && out.mask != 0; ++i) {
-    const Vectors axis = all(a[0]->axis[i]);
-    tryDirection(rotated(pose_a.middle.rotation, axis));
+    const Vectors axis = allOf(a[0]->axis[i]);
+    tryDirection(product(pose_a.middle.rotation, axis));
     out.mask = left();
   }
   for (int i = 0; i < 3 && out.mask != 0; ++i) {
-    tryDirection(rotated(pose_b.middle.rotation, loadVectors(b[0]->axis[i])));
+    tryDirection(product(pose_b.middle.rotation, loadVectors(b[0]->axis[i])));
     out.mask = left();
   }
   store(losses.before, out.lo);
@@ -178,7 +169,7 @@ FCL_CCD_INLINE SpanCorners inWorld(const MotionTriangles& b, const double* times
       Vectors x = loadVectors(b.corner[0][i]);
       if (times)
         x = all(1 - times[at]) * x + all(times[at]) * loadVectors(b.corner[1][i]);
-      out.corner[at][i] = rotated(pose[at]->rotation, x) + all(pose[at]->translation);
+      out.corner[at][i] = product(pose[at]->rotation, x) + allOf(pose[at]->translation);
     }
   return out;
 }
@@ -214,7 +205,7 @@ FCL_CCD_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vector
   const Doubles zero = all(0);
   Doubles of_a[3][3], of_b[3][3];
   for (int i = 0; i < 3; ++i) {
-    of_a[1][i] = dot(d, all(a.corner[1][i]));
+    of_a[1][i] = dot(d, allOf(a.corner[1][i]));
     of_b[1][i] = dot(d, b.corner[1][i]);
   }
   const auto least = [](const Doubles(&x)[3])
@@ -235,7 +226,7 @@ FCL_CCD_INLINE void addApart(const SpanTriangle& a, const SpanCorners& b, Vector
     of_a[1][i] = turned(of_a[1][i]) + all(margin);
     of_b[1][i] = turned(of_b[1][i]);
     for (int at = 0; at < 3; at += 2) {
-      of_a[at][i] = dot(d, all(a.corner[at][i])) + all(margin);
+      of_a[at][i] = dot(d, allOf(a.corner[at][i])) + all(margin);
       of_b[at][i] = dot(d, b.corner[at][i]);
     }
   }
@@ -260,7 +251,7 @@ void meetingHalves(const SpanTriangle& a, const MotionTriangles& b, const double
     return (meeting[0] | meeting[1]) == 0;
   };
   const Vectors middle[2][3] = {
-      {all(a.corner[1][0]), all(a.corner[1][1]), all(a.corner[1][2])},
+      {allOf(a.corner[1][0]), allOf(a.corner[1][1]), allOf(a.corner[1][2])},
       {corners.corner[1][0], corners.corner[1][1], corners.corner[1][2]}};
   Vectors normal[2];
   for (int body = 0; body < 2; ++body) {

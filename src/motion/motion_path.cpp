@@ -23,6 +23,7 @@
 #include <string>
 
 #include "fcl/common/exception.h"
+#include "motion/posed_vector.h"
 #include "motion/sine.h"
 #include "numerics/error_bounds.h"
 
@@ -34,18 +35,10 @@ namespace {
 /// A smaller rotation is only the rounding of the poses from which it was made.
 constexpr double kLeastAngle = 0x1p-50;
 
-Vec vecOf(const double* v) { return {v[0], v[1], v[2]}; }
-double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
-
 void set(double (&to)[3], const Vec& v) {
   to[0] = v.x;
   to[1] = v.y;
   to[2] = v.z;
-}
-
-Vec times(const double (&m)[9], const Vec& x) {
-  return {m[0] * x.x + m[1] * x.y + m[2] * x.z, m[3] * x.x + m[4] * x.y + m[5] * x.z,
-          m[6] * x.x + m[7] * x.y + m[8] * x.z};
 }
 
 double frobenius(const double (&m)[9]) {
@@ -217,7 +210,7 @@ SineCosine cardinalSineCosine(double x) {
 
 double AccelerationBound::of(const Vec& center, double radius) const {
   if (motion) return checkedAcceleration(*motion, name, center, radius, t0, t1);
-  return (norm(times(turn, center) + vecOf(offset)) + per_radius * radius +
+  return (norm(rotated(turn, center) + vecOf(offset)) + per_radius * radius +
           per_distance * norm(center) + constant) *
          kUpward;
 }
@@ -277,8 +270,8 @@ MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
                                      const double (&reference)[3]) {
   MotionPath path = turnFrom(beginning, end);
   const Vec point = vecOf(reference);
-  set(path.turn_.sine_translation, -1. * times(path.turn_.sine_rotation, point));
-  set(path.turn_.cosine_translation, -1. * times(path.turn_.cosine_rotation, point));
+  set(path.turn_.sine_translation, -1. * rotated(path.turn_.sine_rotation, point));
+  set(path.turn_.cosine_translation, -1. * rotated(path.turn_.cosine_rotation, point));
   path.reachEnd(end);
   path.reference_size_ = norm(point);
   path.setTurnBounds();

@@ -16,6 +16,7 @@ namespace deformable {
 inline Vec vecOf(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 inline double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
+inline double norm(const double (&v)[3]) { return norm(vecOf(v)); }
 
 /// @brief The matrix times the vector; the matrix is a rotation or its derivative.
 inline Vec rotated(const double (&m)[9], const Vec& v) {

@@ -106,20 +106,6 @@ bool areFeaturesApart(const MovingKdopTree& tree, const Region& region,
   return true;
 }
 
-/// The children that have enough triangles.
-std::vector<ClosedNode> partsOf(const MovingKdopTree& tree, const ClosedNode& open) {
-  std::vector<ClosedNode> parts;
-  const MovingKdopNode& node = tree.node(open.node);
-  std::uint32_t last = open.last;
-  for (int lane = node.count; lane-- > 0;) {
-    if (node.isTriangle(lane)) continue;
-    const std::uint32_t first = tree.firstTriangle(node.child[lane]);
-    if (last - first >= kLeastBody) parts.push_back({node.child[lane], last});
-    last = first;
-  }
-  return parts;
-}
-
 /// The nodes that are closed surfaces, parents first.
 std::vector<ClosedNode> closedNodes(const MovingKdopTree& tree) {
   std::vector<ClosedNode> closed;
@@ -128,7 +114,10 @@ std::vector<ClosedNode> closedNodes(const MovingKdopTree& tree) {
     const ClosedNode node = open.back();
     open.pop_back();
     if (isClosed(tree, regionOf(tree, node.node, node.last))) closed.push_back(node);
-    for (const ClosedNode& part : partsOf(tree, node)) open.push_back(part);
+    forEachPart(tree, node.node, node.last, kLeastBody,
+                [&open](std::int32_t child, std::uint32_t last) {
+                  open.push_back({child, last});
+                });
   }
   return closed;
 }

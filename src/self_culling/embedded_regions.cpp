@@ -124,16 +124,11 @@ class RegionSearch {
   /// The children that have enough triangles and are not proved already.
   std::vector<OpenNode> partsOf(const OpenNode& open) const {
     std::vector<OpenNode> parts;
-    const MovingKdopNode& node = tree_.node(open.node);
-    std::uint32_t last = open.last;
-    for (int lane = node.count; lane-- > 0;) {
-      if (node.isTriangle(lane)) continue;
-      const std::uint32_t first = tree_.firstTriangle(node.child[lane]);
-      if (last - first >= least_triangles_ &&
-          !found_.nodes[static_cast<std::size_t>(node.child[lane])])
-        parts.push_back({node.child[lane], last});
-      last = first;
-    }
+    forEachPart(tree_, open.node, open.last, least_triangles_,
+                [&](std::int32_t child, std::uint32_t last) {
+                  if (!found_.nodes[static_cast<std::size_t>(child)])
+                    parts.push_back({child, last});
+                });
     return parts;
   }
 

@@ -28,6 +28,21 @@ inline Region regionOf(const MovingKdopTree& tree, std::int32_t node,
   return {first, last, tree.placesBefore(first), tree.placesBefore(last)};
 }
 
+/// @brief Calls visit(child, last) for each child of a node that is not a triangle and
+/// has enough triangles, the last child first.
+/// @param last  the end of the triangles below the node, then of those below the child
+template <typename Visit>
+void forEachPart(const MovingKdopTree& tree, std::int32_t parent, std::uint32_t last,
+                 std::uint32_t least_triangles, Visit&& visit) {
+  const MovingKdopNode& node = tree.node(parent);
+  for (int lane = node.count; lane-- > 0;) {
+    if (node.isTriangle(lane)) continue;
+    const std::uint32_t first = tree.firstTriangle(node.child[lane]);
+    if (last - first >= least_triangles) visit(node.child[lane], last);
+    last = first;
+  }
+}
+
 /// @brief Finds the border of one region after another.
 class BorderFinder {
  public:
