@@ -46,7 +46,7 @@ struct DistanceTolerance {
         margin(128 * kUnit * (distance + size)),
         touching(kTouching * (distance + size)) {}
 
-  /// Of the length of a computed nearest point.
+  /// Bound on the error of the length of a computed nearest point.
   double distance_error;
   /// What is apart by d + margin along a direction, as computed, is further apart than d:
   /// see AdvancingPair in distance_advance.cpp.

@@ -57,7 +57,7 @@ class OrderedPoints {
       if (p.t1[k] != q.t1[k]) return p.t1[k] < q.t1[k] ? -1 : 1;
     return 0;
   }
-  /// For two points of one feature.
+  /// Whether a point of a feature comes before another one of the same feature.
   bool isBefore(int i, int j) const {
     const int order = compare(i, j);
     return order != 0 ? order < 0 : ids_.id[number[i]] < ids_.id[number[j]];

@@ -114,7 +114,7 @@ class ConvexPairMotion {
   /// normal or not at all.
   int flat_;
   double t1_;
-  /// With the distance of contact of this pair.
+  /// The tolerance of this pair, with its distance of contact.
   MotionTolerance tolerance_;
   /// Bound on the relative acceleration of two points.
   double acceleration_{0};

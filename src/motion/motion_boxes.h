@@ -63,7 +63,7 @@ struct alignas(64) MotionBoxes {
 /// @brief Up to eight triangles in the frame of their body, stored by coordinate. A rigid
 /// body has one frame.
 struct alignas(64) MotionTriangles {
-  /// By frame, corner and coordinate.
+  /// Positions by frame, corner and coordinate.
   double corner[2][3][3][MotionBoxes::kWidth];
 };
 

@@ -188,7 +188,7 @@ class MotionPath {
   // Members of a spline.
   double translation_points_[4][3]{};
   double rotation_points_[4][3]{};
-  // Of a motion of the program.
+  // Members of a motion of the program.
   const BoundedMotion* motion_{nullptr};
   double origin_[3]{};
 

@@ -47,7 +47,7 @@ const MotionBoxes* boxesAt(const MotionBody& body, const MotionNode& node, doubl
   return &scratch;
 }
 
-/// From the center of a shape to that of a box.
+/// The vector from the center of a shape to that of a box.
 Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape, const MotionBox& box,
                const Pose& pose_box) {
   return posed(pose_box, vecOf(box.center)) - posed(pose_shape, shape.center());

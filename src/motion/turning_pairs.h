@@ -33,8 +33,8 @@ struct alignas(64) TurningPairs {
   static constexpr int kWidth = 8;
 
   ContinuousContactKind kind;
-  /// By body, frame, corner and coordinate. Where the body does not deform the second
-  /// frame has no meaning.
+  /// Positions by body, frame, corner and coordinate. Where the body does not deform the
+  /// second frame has no meaning.
   double corner[2][2][3][3][kWidth]{};
   /// Before the first time the features are apart, and after the second.
   double first[kWidth], last[kWidth];
