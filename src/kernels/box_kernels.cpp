@@ -27,7 +27,7 @@ void fitPoints(const double (&offsets)[3][8], int frame, std::size_t count,
   // As kdopCoordinates().
   const Doubles d[8] = {x, y, z, x + y, x + z, y + z, x - y, x - z};
   const Floats narrow =
-      narrowed(max(abs(z), max(abs(y), abs(x))) * broadcast<kEight>(0x1p-49));
+      narrowed(max(abs(z), max(abs(y), abs(x))) * broadcast<kEight>(kOffsetPad));
   const Floats infinity = broadcast<kEight>(std::numeric_limits<float>::infinity());
   const Floats pad = select(narrow >= broadcast<kEight>(FLT_MAX), infinity, narrow) +
                      broadcast<kEight>(FLT_MIN);

@@ -245,7 +245,8 @@ struct Kernels {
   const char* name;
 
   /// Sets the boxes in one frame of up to eight vertices that lie at
-  /// offsets[axis][vertex] from the origin: roundUp() with a pad of offsetPad().
+  /// offsets[axis][vertex] from the origin: roundUp() with kOffsetPad times the farthest
+  /// coordinate as pad.
   /// @param count  1 to 8, the number of vertices that are written
   void (*fitPoints)(const double (&offsets)[3][8], int frame, std::size_t count,
                     TreeVertex* vertices);

@@ -76,13 +76,10 @@ inline float roundUp(double value, float pad) {
 }
 
 /// @brief The pad of roundUp() for a coordinate that was rounded before, of a point at
-/// most `size` away from the origin along an axis. The difference to the origin rounds by
+/// most 1 away from the origin along an axis. The difference to the origin rounds by
 /// 2^-53 of itself, the pose in relativeShift() by the same, and a sum of two by 2^-52 of
 /// the larger: 6 * 2^-53 in all.
-inline float offsetPad(double size) {
-  const auto pad = static_cast<float>(size * 0x1p-49);
-  return pad >= FLT_MAX ? std::numeric_limits<float>::infinity() : pad;
-}
+constexpr double kOffsetPad = 0x1p-49;
 
 /// @brief A half-axis of a box that is moved, not less than the exact sum. The float sum
 /// loses at most 2^-24 of itself if it is a normal number, and nothing if it is

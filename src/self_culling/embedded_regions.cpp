@@ -174,13 +174,6 @@ class RegionSearch {
 
 }  // namespace
 
-EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
-                                    int num_threads, std::uint32_t least_triangles) {
-  EmbeddedRegions found(tree);
-  addEmbeddedRegions(tree, kernels, num_threads, found, least_triangles);
-  return found;
-}
-
 void addEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                         int num_threads, EmbeddedRegions& found,
                         std::uint32_t least_triangles) {

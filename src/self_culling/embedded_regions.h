@@ -43,18 +43,13 @@ struct EmbeddedRegions {
 /// longer than it saves.
 constexpr std::uint32_t kLeastRegion = 128;
 
-/// @brief Finds the largest embedded regions.
+/// @brief Finds the largest embedded regions, and adds them to what is known.
 /// @param kernels  the answer is the same for all
 /// @param num_threads  as in parallelFor(); the answer does not depend on it
+/// @param[in,out] found  nodes that are proved already. They are not searched
 /// @param least_triangles  smaller regions are not searched for, except for the whole
 /// mesh
 /// @pre the tree has been refit
-EmbeddedRegions findEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
-                                    int num_threads,
-                                    std::uint32_t least_triangles = kLeastRegion);
-
-/// @brief The same, added to what is known.
-/// @param[in,out] found  nodes that are proved already. They are not searched
 void addEmbeddedRegions(const MovingKdopTree& tree, const Kernels& kernels,
                         int num_threads, EmbeddedRegions& found,
                         std::uint32_t least_triangles = kLeastRegion);

@@ -8,7 +8,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "mesh_io.h"
+#include "mesh_files.h"
 
 namespace fcl {
 namespace test {
@@ -56,7 +56,7 @@ std::set<PairName> readTruePairs(const std::string& path) {
 }
 
 FramePairMesh readFramePair(const std::string& previous, const std::string& current) {
-  const fcl_ccd::Mesh a = fcl_ccd::readMesh(previous), b = fcl_ccd::readMesh(current);
+  const fcl_ccd::Mesh a = readMesh(previous), b = readMesh(current);
   if (a.triangles != b.triangles || a.vertices.size() != b.vertices.size())
     throw std::runtime_error(current + ": topology differs from " + previous);
   FramePairMesh mesh{toVectors(a), toVectors(b), {}};

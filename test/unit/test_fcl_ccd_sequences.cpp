@@ -24,6 +24,7 @@
 #include "ccd_sequence.h"
 #include "csv_rows.h"
 #include "frame_list.h"
+#include "mesh_files.h"
 #include "mesh_io.h"
 #include "triangulate.h"
 
@@ -550,7 +551,7 @@ TEST_F(CcdSequence, ReadsStlOfBothKinds) {
   writeText(path("a.stl"), toAsciiStl(soup));
   writeText(path("b.STL"), toBinaryStl(soup));
   for (const char* name : {"a.stl", "b.STL"}) {
-    const Mesh read = fcl_ccd::readMesh(path(name).string());
+    const Mesh read = readMesh(path(name).string());
     EXPECT_EQ(read.vertices, soup.vertices) << name;
     EXPECT_EQ(read.triangles, soup.triangles) << name;
   }
@@ -564,7 +565,7 @@ TEST_F(CcdSequence, ReadsStlOfBothKinds) {
   for (const auto& [bytes, cause] : broken) {
     writeText(path("c.stl"), bytes);
     try {
-      fcl_ccd::readMesh(path("c.stl").string());
+      readMesh(path("c.stl").string());
       FAIL() << cause;
     } catch (const std::runtime_error& error) {
       EXPECT_NE(std::string(error.what()).find(cause), std::string::npos) << error.what();
@@ -753,9 +754,9 @@ TEST_F(CcdSequence, FacesAreDividedAsInTheFirstFrame) {
   writeText(path("a.obj"), frame(0.5));
   writeText(path("b.obj"), frame(1.5));
   ASSERT_EQ(run("run a.obj b.obj --paint p.ply").exit_code, 0);
-  const Mesh painted = fcl_ccd::readMesh(path("p.ply").string());
-  const Mesh a = fcl_ccd::readMesh(path("a.obj").string());
-  const Mesh b = fcl_ccd::readMesh(path("b.obj").string());
+  const Mesh painted = readMesh(path("p.ply").string());
+  const Mesh a = readMesh(path("a.obj").string());
+  const Mesh b = readMesh(path("b.obj").string());
   EXPECT_NE(a.triangles, b.triangles);
   EXPECT_EQ(painted.triangles, a.triangles);
 }
@@ -787,7 +788,7 @@ TEST_F(CcdSequence, BinaryPlyIsReadWithWhatElseItHas) {
     appendBytes(0.5f, true, ply);
   }
   writeText(path("m.ply"), ply);
-  const Mesh mesh = fcl_ccd::readMesh(path("m.ply").string());
+  const Mesh mesh = readMesh(path("m.ply").string());
   EXPECT_EQ(mesh.vertices, vertices);
   EXPECT_EQ(mesh.triangles, (Triangles{{0, 1, 2}, {0, 2, 3}, {3, 2, 4}}));
 }

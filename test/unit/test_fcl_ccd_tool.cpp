@@ -20,6 +20,7 @@
 
 #include "ccd_tool.h"
 #include "csv_rows.h"
+#include "mesh_files.h"
 #include "mesh_io.h"
 #include "output_file.h"
 
@@ -67,7 +68,7 @@ TEST_F(CcdTool, ReadsEveryFormatWithFullPrecision) {
   for (const auto& [name, text] : encodings) {
     SCOPED_TRACE(name);
     writeText(path(name), text);
-    expectSame(fcl_ccd::readMesh(path(name).string()), mesh);
+    expectSame(readMesh(path(name).string()), mesh);
   }
 }
 
@@ -76,7 +77,7 @@ TEST_F(CcdTool, ReadsFloatsExactly) {
   for (auto& p : mesh.vertices) p[0] = static_cast<double>(static_cast<float>(p[0] / 3));
   for (const bool big_endian : {false, true}) {
     writeText(path("f.ply"), toBinaryPly<float>(mesh, big_endian));
-    expectSame(fcl_ccd::readMesh(path("f.ply").string()), mesh);
+    expectSame(readMesh(path("f.ply").string()), mesh);
   }
 }
 
@@ -105,7 +106,7 @@ TEST_F(CcdTool, ReadsVariantsOfTheFormats) {
   for (const auto& [name, text] : encodings) {
     SCOPED_TRACE(name);
     writeText(path(name), text);
-    expectSame(fcl_ccd::readMesh(path(name).string()), square);
+    expectSame(readMesh(path(name).string()), square);
   }
 }
 
@@ -184,7 +185,7 @@ TEST_F(CcdTool, RefusesBrokenFilesByNameAndCause) {
     SCOPED_TRACE(file.name);
     writeText(path(file.name), file.text);
     try {
-      fcl_ccd::readMesh(path(file.name).string());
+      readMesh(path(file.name).string());
       FAIL() << "no exception";
     } catch (const std::runtime_error& error) {
       const std::string what = error.what();
@@ -192,20 +193,19 @@ TEST_F(CcdTool, RefusesBrokenFilesByNameAndCause) {
       EXPECT_NE(what.find(file.cause), std::string::npos) << what;
     }
   }
-  EXPECT_THROW(fcl_ccd::readMesh(path("missing.ply").string()), std::runtime_error);
+  EXPECT_THROW(readMesh(path("missing.ply").string()), std::runtime_error);
   fs::create_directory(path("folder.ply"));
-  EXPECT_THROW(fcl_ccd::readMesh(path("folder.ply").string()), std::runtime_error);
+  EXPECT_THROW(readMesh(path("folder.ply").string()), std::runtime_error);
 }
 
 TEST_F(CcdTool, PaintedPlyReadsBack) {
   const Mesh mesh = unevenMesh();
   const std::vector<fcl_ccd::Colour> colours(mesh.vertices.size(), {1, 2, 3});
-  fcl_ccd::writePaintedPly(path("p.ply").string(), mesh, colours);
-  expectSame(fcl_ccd::readMesh(path("p.ply").string()), mesh);
+  writePaintedPly(path("p.ply").string(), mesh, colours);
+  expectSame(readMesh(path("p.ply").string()), mesh);
   EXPECT_EQ(files(), std::set<std::string>{"p.ply"});
-  EXPECT_THROW(fcl_ccd::writePaintedPly(path("q.ply").string(), mesh, {}),
-               std::invalid_argument);
-  EXPECT_THROW(fcl_ccd::writePaintedPly(path("no/q.ply").string(), mesh, colours),
+  EXPECT_THROW(writePaintedPly(path("q.ply").string(), mesh, {}), std::invalid_argument);
+  EXPECT_THROW(writePaintedPly(path("no/q.ply").string(), mesh, colours),
                std::runtime_error);
   EXPECT_EQ(files(), std::set<std::string>{"p.ply"});
 }
@@ -438,7 +438,7 @@ TEST_F(CcdTool, FirstAndAnyAgreeWithAll) {
 TEST_F(CcdTool, PaintsTheVerticesOfContacts) {
   writeTip();
   ASSERT_EQ(run("run tip0.obj tip1.obj --paint p.ply").exit_code, 0);
-  expectSame(fcl_ccd::readMesh(path("p.ply").string()), floorAndTip(2));
+  expectSame(readMesh(path("p.ply").string()), floorAndTip(2));
   const std::string file = readText(path("p.ply"));
   const std::string end = "end_header\n";
   const std::size_t body = file.find(end) + end.size();

@@ -23,6 +23,7 @@
 #include "mesh/feature_pairs.h"
 #include "moving_mesh.h"
 #include "query/deformable_query.h"
+#include "regions_of.h"
 #include "sanitizer.h"
 #include "traverse.h"
 
@@ -38,7 +39,7 @@ using test::Random;
 const double kPi = std::acos(-1.0);
 
 EmbeddedRegions regionsOf(const MovingKdopTree& tree, std::uint32_t least = 1) {
-  return findEmbeddedRegions(tree, kernels(), 1, least);
+  return test::regionsOf(tree, kernels(), 1, least);
 }
 
 /// The triangles below a node, by their places in the tree.
@@ -630,12 +631,12 @@ TEST(FCL_EMBEDDED_REGIONS, doNotDependOnThreadsOrKernels) {
     EXPECT_GT(std::count(one.nodes.begin(), one.nodes.end(), 1), 2);
     for (const int num_threads : {2, 4}) {
       const EmbeddedRegions more =
-          findEmbeddedRegions(prepared.tree(), kernels(), num_threads, least);
+          test::regionsOf(prepared.tree(), kernels(), num_threads, least);
       EXPECT_EQ(more.nodes, one.nodes) << num_threads;
       EXPECT_EQ(more.interior, one.interior) << num_threads;
     }
     for (const Kernels* k : allKernels()) {
-      const EmbeddedRegions others = findEmbeddedRegions(prepared.tree(), *k, 1, least);
+      const EmbeddedRegions others = test::regionsOf(prepared.tree(), *k, 1, least);
       EXPECT_EQ(others.nodes, one.nodes) << k->name;
       EXPECT_EQ(others.interior, one.interior) << k->name;
     }
@@ -664,7 +665,7 @@ TEST(FCL_EMBEDDED_REGIONS, layersAreNotSearchedInVain) {
     const MovingMesh moving{scene.previous, scene.current, scene.triangles};
     const PreparedMovingMesh prepared(moving);
     triangles_asked = boxes_compared = 0;
-    const EmbeddedRegions found = findEmbeddedRegions(prepared.tree(), counting, 1);
+    const EmbeddedRegions found = test::regionsOf(prepared.tree(), counting, 1);
     return std::count(found.nodes.begin(), found.nodes.end(), 1);
   };
   test::FramePairMesh tiles = test::makeTiles(120000);

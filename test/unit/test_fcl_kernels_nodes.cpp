@@ -19,6 +19,7 @@
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh_generators.h"
+#include "offset_pad.h"
 #include "query/leading_contact.h"
 #include "random_boxes.h"
 #include "tree/box_position.h"
@@ -189,7 +190,7 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
       for (int k = 1; k < 3; ++k)
         size = size < std::abs(point[k]) ? std::abs(point[k]) : size;
       Kdop16 box;
-      fitPoint(point, origin, offsetPad(size), box);
+      fitPoint(point, origin, test::offsetPad(size), box);
       const Kdop16& same = boxOf(before[n], 1 - frame);
       for (std::size_t j = 0; j < 16; ++j) {
         const float expected = n < count ? box.half[j] : boxOf(before[n], frame).half[j];

@@ -27,6 +27,7 @@
 #include "api/prepared_mesh.h"
 #include "components.h"
 #include "moving_mesh.h"
+#include "offset_pad.h"
 #include "query/deformable_query.h"
 #include "test_models.h"
 #include "tree/box_position.h"
@@ -289,7 +290,7 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
         double d[8], farthest = 0;
         kdopCoordinates(offset, d);
         for (const double x : offset) farthest = std::max(farthest, std::abs(x));
-        const float pad = offsetPad(farthest);
+        const float pad = test::offsetPad(farthest);
         for (int j = 0; j < 8; ++j) {
           ASSERT_EQ(box.half[j], roundUp(-d[j], pad));
           ASSERT_EQ(box.half[j + 8], roundUp(d[j], pad));

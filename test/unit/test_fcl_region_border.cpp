@@ -19,6 +19,7 @@
 #include "kernels/kernels.h"
 #include "mesh_generators.h"
 #include "moving_mesh.h"
+#include "regions_of.h"
 #include "self_culling/embedded_regions.h"
 #include "tree_checks.h"
 
@@ -45,7 +46,7 @@ MovingKdopTree treeOf(const test::TestMesh& mesh) {
 }
 
 EmbeddedRegions regionsOf(const MovingKdopTree& tree) {
-  return findEmbeddedRegions(tree, kernels(), 1, 8);
+  return test::regionsOf(tree, kernels(), 1, 8);
 }
 
 // Edges of one triangle to many, twice in the same direction, from a vertex to itself.

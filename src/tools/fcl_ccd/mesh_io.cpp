@@ -15,10 +15,8 @@
 
 #include "binary_ply.h"
 #include "file_bytes.h"
-#include "output_file.h"
 #include "plain_mesh.h"
 #include "stl.h"
-#include "triangulate.h"
 
 namespace fcl_ccd {
 namespace {
@@ -168,12 +166,6 @@ PolygonMesh readPolygonMesh(const std::string& path) {
   }
 }
 
-Mesh readMesh(const std::string& path) {
-  PolygonMesh mesh = readPolygonMesh(path);
-  Triangles triangles = triangulate(mesh.vertices, mesh.faces);
-  return {std::move(mesh.vertices), std::move(triangles)};
-}
-
 std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours) {
   if (colours.size() != mesh.vertices.size())
     throw std::invalid_argument("a painted mesh needs one colour a vertex");
@@ -194,15 +186,6 @@ std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colour
     for (const int id : triangle) appendLittleEndian(static_cast<std::uint32_t>(id), out);
   }
   return out;
-}
-
-void writePaintedPly(const std::string& path, const Mesh& mesh,
-                     const std::vector<Colour>& colours) {
-  const std::string bytes = encodePaintedPly(mesh, colours);
-  OutputFile file(path);
-  file.write(bytes);
-  file.finish();
-  file.publish();
 }
 
 }  // namespace fcl_ccd

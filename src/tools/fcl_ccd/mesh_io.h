@@ -62,18 +62,10 @@ bool isMeshFormat(const std::string& extension);
 /// @throws std::runtime_error that names the file and the error.
 PolygonMesh readPolygonMesh(const std::string& path);
 
-/// @brief readPolygonMesh() with faces divided by triangulate().
-Mesh readMesh(const std::string& path);
-
 /// @brief The bytes of a binary little-endian PLY of the mesh, with coordinates in double
 /// and one colour per vertex.
 /// @throws std::invalid_argument if the number of colours is not the number of vertices.
 std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours);
-
-/// @brief Writes encodePaintedPly() to a file. If it fails, the file stays as it was.
-/// @throws std::runtime_error that names the file and the cause.
-void writePaintedPly(const std::string& path, const Mesh& mesh,
-                     const std::vector<Colour>& colours);
 
 }  // namespace fcl_ccd
 
