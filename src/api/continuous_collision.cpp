@@ -366,6 +366,14 @@ void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2) {
              "in their current frame"));
 }
 
+void refuseTransforms(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2) {
+  const DefaultFloatingPoint mode;
+  throw Exception(whyFclAnswers(PlacedGeometry<float>(o1), PlacedGeometry<float>(o2)) +
+                  ", so FCL answers this pair. In float FCL has no query between "
+                  "transforms. Give TranslationMotion or SplineMotion objects in their "
+                  "place, or use double");
+}
+
 template <typename S>
 void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
                 QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts) {

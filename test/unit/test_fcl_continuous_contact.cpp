@@ -6,6 +6,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <thread>
 #include <type_traits>
 #include <vector>
@@ -438,6 +439,39 @@ TEST(ContinuousContacts, FloatIsDoubleOfTheFloats) {
   EXPECT_LE(static_cast<double>(pair_f.time_of_contact), pair_d.time_of_contact);
   expectIdentical(selfContacts<float>(*af, request_f),
                   selfContacts<double>(*ad, request_d), false);
+}
+
+// FCL answers such pairs. In float its query between transforms does not compile.
+TEST(ContinuousContacts, TransformsInFloatAreRefusedWhereFclAnswers) {
+  struct OwnGeometry : CollisionGeometry<float> {
+    void computeLocalAABB() override {}
+  };
+  const auto own = std::make_shared<OwnGeometry>();
+  const auto mesh = makeModel<BVHModel<AABB<float>>>(kSheet),
+             cloud = std::make_shared<BVHModel<AABB<float>>>();
+  cloud->beginModel();
+  cloud->addSubModel(pointsAs<float>(kSheet.vertices));
+  cloud->endModel();
+  const std::string way_out =
+      ", not a triangle mesh, a shape or an octree, so FCL answers this pair. In float "
+      "FCL has no query between transforms. Give TranslationMotion or SplineMotion "
+      "objects in their place, or use double";
+  const Transform3<float> here = Transform3<float>::Identity();
+  const CollisionObject<float> object(mesh, here), own_object(own, here);
+  for (const CCDMotionType type : {CCDM_TRANS, CCDM_LINEAR, CCDM_SCREW, CCDM_SPLINE}) {
+    ContinuousCollisionRequest<float> request;
+    request.ccd_motion_type = type;
+    ContinuousCollisionResult<float> result;
+    expectRefused(
+        [&] {
+          continuousCollide(cloud.get(), here, here, mesh.get(), here, here, request,
+                            result);
+        },
+        "o1 is a point cloud" + way_out);
+    expectRefused(
+        [&] { continuousCollide(&object, here, &own_object, here, request, result); },
+        "o2 is a geometry that is none of FCL's" + way_out);
+  }
 }
 
 TEST(ContinuousContacts, UnusableInputIsRefusedByName) {

@@ -309,15 +309,19 @@ TYPED_TEST_SUITE(DropInThreads, AllBVs, );
 TYPED_TEST(DropInThreads, DiscreteQueriesOfOneModel) {
   using S = typename TypeParam::S;
   const auto model = makeModel<DeformableBVHModel<TypeParam>>(makeIcosphere(2, 1));
+  const auto plain = makeModel<BVHModel<TypeParam>>(makeIcosphere(2, 1));
   Transform3<S> tf1 = Transform3<S>::Identity(), tf2 = tf1;
   tf1.translation() = Vector3<S>(S(0.1), 0, 0);
   tf2.translation() = Vector3<S>(0, S(1.9), S(0.1));
-  expectSameInThreads(200, [&] {
-    CollisionRequest<S> request(1000, true);
+  const auto numContactsOf = [&](const BVHModel<TypeParam>& o) {
     CollisionResult<S> result;
-    collide(model.get(), tf1, model.get(), tf2, request, result);
+    collide(&o, tf1, &o, tf2, CollisionRequest<S>(1000, true), result);
     return result.numContacts();
-  });
+  };
+  const std::size_t expected = numContactsOf(*plain);
+  EXPECT_GT(expected, 0u);
+  EXPECT_EQ(numContactsOf(*model), expected);
+  expectSameInThreads(200, [&] { return numContactsOf(*model); });
 }
 
 TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
@@ -339,7 +343,10 @@ TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
   };
   for (const auto& model : {std::static_pointer_cast<CollisionGeometry<S>>(deformable),
                             std::static_pointer_cast<CollisionGeometry<S>>(plain)}) {
-    expectSameInThreads(20, [&] { return timeOf(*model, box, CCDC_NAIVE); });
+    // In float tests have FCL's functions of two models only (fcl_in_float.h). What FCL
+    // writes to is copied by the same function for both.
+    if constexpr (std::is_same_v<S, double>)
+      expectSameInThreads(20, [&] { return timeOf(*model, box, CCDC_NAIVE); });
     expectSameInThreads(20, [&] { return timeOf(*model, *model, CCDC_NAIVE); });
     // Of the others FCL prints that it has no distance.
     if (detail::hasDistanceFunction(model->getNodeType(), model->getNodeType()))

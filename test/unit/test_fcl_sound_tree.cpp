@@ -16,7 +16,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "api/fcl_in_float.h"
 #include "fcl/broadphase/continuous_collision_manager.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/bvh/refit_top_down.h"

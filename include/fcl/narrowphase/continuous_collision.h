@@ -120,7 +120,8 @@ float continuousCollide(const CollisionGeometry<float>* o1,
 
 /// @brief The first contact of two geometries that go from one transform to another.
 /// request.ccd_motion_type chooses the path of a mesh that turns. In float FCL has no
-/// interpolated and no screw motion: they throw for a pair that FCL answers.
+/// query between transforms: a pair that FCL answers throws fcl::Exception. Give it
+/// TranslationMotion or SplineMotion objects.
 double continuousCollide(const CollisionGeometry<double>* o1,
                          const Transform3<double>& tf1_beg,
                          const Transform3<double>& tf1_end,

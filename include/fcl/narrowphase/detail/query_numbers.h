@@ -198,6 +198,11 @@ FCL_EXPORT bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>&
 template <typename S>
 FCL_EXPORT void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2);
 
+/// @brief Throws fcl::Exception, which tells why answerPair() returned false for a pair
+/// between transforms in float, where FCL has no query either, and the way out.
+[[noreturn]] FCL_EXPORT void refuseTransforms(const MovingGeometry<float>& o1,
+                                              const MovingGeometry<float>& o2);
+
 /// @brief The continuous query of a mesh with itself.
 template <typename S>
 FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
@@ -244,23 +249,6 @@ FCL_EXPORT bool readFclMotion(const MotionBase<double>& motion,
 template <typename S>
 FCL_EXPORT std::shared_ptr<const CollisionGeometry<S>> copyModel(
     const CollisionGeometry<S>& o);
-
-/// @brief The fields of FCL's result that FCL's function may set. It sets the poses only
-/// when there is a collision.
-struct FclOutcome {
-  bool is_collide;
-  float time_of_contact;
-  PoseNumbers<float> contact_pose[2];
-};
-
-/// @brief FCL's own answer in float. libfcl does not have it.
-/// @return the value that FCL returns
-/// @throws fcl::Exception  for CCDM_LINEAR and CCDM_SCREW: FCL has no such motions in
-/// float
-FCL_EXPORT float askFclInFloat(const MovingGeometry<float>& o1,
-                               const MovingGeometry<float>& o2,
-                               const ContinuousCollisionRequest<float>& request,
-                               FclOutcome& outcome);
 
 }  // namespace detail
 }  // namespace fcl
