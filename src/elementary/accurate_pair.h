@@ -28,7 +28,7 @@ struct AccurateDifference {
   void at(const DoubleDouble& t, DoubleDouble (&out)[3]) const;
 };
 
-/// @brief Volume and cross products of a pair, with the names of solveCoplanarity(). They
+/// @brief Volume and cross products of a pair, with the names of pair_table.h. They
 /// are computed in double-double for the whole step, rounded, and restricted to parts of
 /// the step in doubles.
 class AccuratePair {

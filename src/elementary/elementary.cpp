@@ -238,7 +238,7 @@ class ContactSearch {
         giveUp(lo, hi);
         break;
       }
-      if (isLast(lo, hi)) return answer_;
+      if (examine(lo, hi)) return answer_;
     }
     return found_.withoutProof();
   }
@@ -253,7 +253,7 @@ class ContactSearch {
 
   /// Proves that the interval has no contact, or cuts it, or leaves it undecided.
   /// @return whether the search is over, with an answer
-  bool isLast(double lo, double hi) {
+  bool examine(double lo, double hi) {
     const double width = hi - lo;
     const StepSegment u = restrict(pair_.difference[kU], lo, hi),
                       v = restrict(pair_.difference[kV], lo, hi),
