@@ -30,9 +30,20 @@ struct LatestTime {
   }
 };
 
-/// For a pair that does not touch at t = 0.
-ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double toc_err,
-                               double t_stop, double t_max) {
+/// Tests whether the features touch at t = 0. Returns whether this, or t_max = 0, decides
+/// the answer.
+bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& result) {
+  const bool touch = query.touchInFrame(0);
+  result = {touch ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kExact};
+  return touch || t_max == 0;
+}
+
+}  // namespace
+
+ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
+                               double t_max) {
+  const ExactPair& pair = query.pair();
+  const int clock_exponent = query.digits().clock_exponent;
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
@@ -54,16 +65,6 @@ ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double
   return {Answer::kYes, lo, hi, DecidedBy::kExact};
 }
 
-/// Tests whether the features touch at t = 0. Returns whether this, or t_max = 0, decides
-/// the answer.
-bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& result) {
-  const bool touch = query.touchInFrame(0);
-  result = {touch ? Answer::kYes : Answer::kNo, 0, 0, DecidedBy::kExact};
-  return touch || t_max == 0;
-}
-
-}  // namespace
-
 ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& x,
                                double toc_err, double t_stop, double t_max) {
   assert(toc_err > 0 && 0 <= t_max && t_max <= 1);
@@ -74,17 +75,7 @@ ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& 
     result = solveMagnified(query, toc_err, t_stop, t_max);
     if (result.answer != Answer::kUnsure) return result;
   }
-  return decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, t_stop,
-                       t_max);
-}
-
-ElementaryResult decideByRoots(ContinuousContactKind kind, const FeaturePoints& x,
-                               double toc_err, double t_stop, double t_max) {
-  ExactQuery query(kind, x);
-  ElementaryResult result;
-  if (isDecidedAtStart(query, t_max, result)) return result;
-  return decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, t_stop,
-                       t_max);
+  return decideByRoots(query, toc_err, t_stop, t_max);
 }
 
 }  // namespace deformable

@@ -18,10 +18,13 @@ namespace deformable {
 ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& x,
                                double toc_err, double t_stop = 1, double t_max = 1);
 
-/// @brief decideExactly() by roots of polynomials with integer coefficients alone.
-/// decideExactly() does this if solveMagnified() cannot decide.
-ElementaryResult decideByRoots(ContinuousContactKind kind, const FeaturePoints& x,
-                               double toc_err, double t_stop = 1, double t_max = 1);
+class ExactQuery;
+
+/// @brief The stage of decideExactly() that decides by roots of polynomials with integer
+/// coefficients, where solveMagnified() cannot.
+/// @pre the features do not touch at t = 0, and t_max > 0
+ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
+                               double t_max);
 
 }  // namespace deformable
 }  // namespace detail

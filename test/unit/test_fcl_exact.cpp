@@ -36,6 +36,14 @@ ElementaryResult exact(const MovingPair& pair) {
   return decideExactly(pair.kind, pair.points(), kTocErr);
 }
 
+/// decideExactly() by roots of polynomials alone.
+ElementaryResult exactByRoots(const MovingPair& pair, double toc_err, double t_max = 1) {
+  ExactQuery query(pair.kind, pair.points());
+  if (query.touchInFrame(0)) return {Answer::kYes, 0, 0, DecidedBy::kExact};
+  if (t_max == 0) return {Answer::kNo, 0, 0, DecidedBy::kExact};
+  return decideByRoots(query, toc_err, 1, t_max);
+}
+
 /// Touching at time k / n, by integers of few digits.
 bool doTouchAt(const MovingPair& pair, std::int64_t k, std::int64_t n) {
   return test::doTouch(pair.kind, test::pointsAt<std::int64_t>(pair.x.data(), k, n));
@@ -177,7 +185,7 @@ TEST(FCL_EXACT_TEST, magnifiedSolveAgreesWithRoots) {
   for (int i = 0; i < kQueries; ++i) {
     const MovingPair pair = hardPair(random, i);
     const double toc_err = i % 2 ? 1e-4 : 1e-12;
-    const ElementaryResult truth = decideByRoots(pair.kind, pair.points(), 1e-300),
+    const ElementaryResult truth = exactByRoots(pair, 1e-300),
                            r = decideExactly(pair.kind, pair.points(), toc_err);
     ASSERT_EQ(r.answer, truth.answer) << pair << "\nseed " << kSeed << ", " << i;
     const double any = random.uniform(0, 1),
@@ -198,8 +206,7 @@ TEST(FCL_EXACT_TEST, magnifiedSolveAgreesWithRoots) {
     ElementaryResult until = solve(pair, toc_err, 1, limit);
     if (until.answer == Answer::kUnsure)
       until = decideExactly(pair.kind, pair.points(), toc_err, 1, limit);
-    ASSERT_EQ(until.answer,
-              decideByRoots(pair.kind, pair.points(), toc_err, 1, limit).answer)
+    ASSERT_EQ(until.answer, exactByRoots(pair, toc_err, limit).answer)
         << pair << "\nseed " << kSeed << ", " << i << ", until " << limit;
     ElementaryResult early = solve(pair, toc_err, limit, 1);
     if (early.answer == Answer::kUnsure)
@@ -259,7 +266,7 @@ TEST(FCL_EXACT_TEST, touchExactlyAtTheLatestTime) {
     const ElementaryResult until = decideExactly(pair.kind, pair.points(), 1e-9, 1, t);
     ASSERT_EQ(until.answer, Answer::kYes) << pair << "\nat " << t;
     ASSERT_LE(until.toc_hi, t) << pair;
-    const ElementaryResult first = decideByRoots(pair.kind, pair.points(), 1e-300);
+    const ElementaryResult first = exactByRoots(pair, 1e-300);
     if (first.toc_lo != t) continue;
     ASSERT_EQ(first.toc_hi, t) << pair;
     if (t > 0) {
