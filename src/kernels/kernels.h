@@ -230,14 +230,16 @@ struct EightViews {
   unsigned missed;
 };
 
-/// @brief Lower bounds for triangles during a step, seen from a moving point; 0 where
-/// there is none.
+/// @brief The least of lower bounds for triangles during a step, seen from a moving point,
+/// for every eighth triangle; 0 where there is none.
 struct LeastSight {
+  static constexpr double kMost = std::numeric_limits<double>::infinity();
+
   /// The square of the distance of the point from the plane of a triangle.
-  double distance_square;
+  double distance_square[8]{kMost, kMost, kMost, kMost, kMost, kMost, kMost, kMost};
   /// The square of the sine of the angle between a corner and the plane through the point
   /// and the opposite edge.
-  double sine_square;
+  double sine_square[8]{kMost, kMost, kMost, kMost, kMost, kMost, kMost, kMost};
 };
 
 struct Kernels {
@@ -354,15 +356,10 @@ struct Kernels {
   /// @param point  its path; the rest is not read
   /// @param ray  a direction, for EightViews::missed
   /// @param count  1 to 8
+  /// @param[in,out] least  takes their bounds; null: not wanted
   EightViews (*viewFrom)(const TreeVertex& point, const double (&ray)[3],
                          const TreeVertex* vertices, const TreeTriangle* triangles,
-                         std::size_t count);
-
-  /// The least of the bounds of up to eight triangles.
-  /// @param point  its path; the rest is not read
-  /// @param count  1 to 8
-  LeastSight (*leastSightFrom)(const TreeVertex& point, const TreeVertex* vertices,
-                               const TreeTriangle* triangles, std::size_t count);
+                         std::size_t count, LeastSight* least);
 
   /// Finds the corners of a node's triangles over which the height of the triangle, seen
   /// along a direction that it faces, is not proved to stay above a distance: bit 8 k + i

@@ -108,9 +108,8 @@ struct VolumeSigns {
 };
 
 /// @param size  the product of their norms, in the range of the bounds
-FCL_CCD_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNormals& n,
-                                       const Doubles& size) {
-  const auto [outer0, inner0, inner1, outer1] = MovingVolumes(u, n);
+FCL_CCD_INLINE VolumeSigns signsOf(const MovingVolumes& volumes, const Doubles& size) {
+  const auto& [outer0, inner0, inner1, outer1] = volumes;
   const Doubles outer = broadcast<kEight>(kOuterBound) * size,
                 inner = broadcast<kEight>(kInnerBound) * size;
   const Doubles zero = broadcast<kEight>(0.);
@@ -122,39 +121,6 @@ FCL_CCD_INLINE VolumeSigns volumeSigns(const MovingVectors& u, const MovingNorma
 /// The same vector eight times.
 FCL_CCD_INLINE Vectors vectorsOf(const double* x) {
   return {broadcast<kEight>(x[0]), broadcast<kEight>(x[1]), broadcast<kEight>(x[2])};
-}
-
-EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
-                    const TreeVertex* vertices, const TreeTriangle* triangles,
-                    std::size_t count) {
-  const TreeVertex* x[3][kEight];
-  findCorners(vertices, triangles, count, x);
-  const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
-                      u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
-                      w = loadPaths(x[2]) - center;
-  const Doubles u_norm = max(maxNorm(u.t0), maxNorm(u.t1)),
-                v_norm = max(maxNorm(v.t0), maxNorm(v.t1)),
-                w_norm = max(maxNorm(w.t0), maxNorm(w.t1));
-  const Doubles size = u_norm * (v_norm * w_norm);
-  const VolumeSigns signs = volumeSigns(u, cross(v, w), size);
-  const unsigned known =
-      bits(isInRange(size) & isInRange(v_norm * w_norm)) & ((1U << count) - 1);
-  EightViews views{signs.positive & known, signs.negative & known, 0};
-
-  // In terms of the corners the ray is a sum whose weights are volumes of the ray and two
-  // corners, divided by the volume of all corners. It misses if one of them is negative.
-  const Vectors r = vectorsOf(ray);
-  const Doubles most = max(max(u_norm, v_norm), w_norm),
-                ray_size = maxNorm(r) * (most * most),
-                bound = broadcast<kEight>(kVolumeBound) * ray_size,
-                minus_bound = broadcast<kEight>(0.) - bound;
-  const Doubles a = dot(r, cross(v.t0, w.t0)), b = dot(r, cross(w.t0, u.t0)),
-                c = dot(r, cross(u.t0, v.t0));
-  const unsigned below = bits((a < minus_bound) | (b < minus_bound) | (c < minus_bound)),
-                 above = bits((a > bound) | (b > bound) | (c > bound));
-  views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
-                 ((views.left & below) | (views.right & above));
-  return views;
 }
 
 /// Sizes with squares in the range of the bounds.
@@ -169,32 +135,38 @@ FCL_CCD_INLINE Doubles largestSquare(const MovingVectors& v) {
   return max(squareOf(v.t0), squareOf(v.t1));
 }
 
-/// A bound on the square of a cross product during the step.
+/// A bound on the square of a cross product during the step: of its length and two times
+/// the rounding. (a + b)^2 is at most (1 + s) a^2 + (1 + 1 / s) b^2, for any s.
 /// @param rounding  of a component
 FCL_CCD_INLINE Doubles largestSquare(const MovingNormals& n, const Doubles& rounding) {
+  constexpr double kShare = 0x1p-34;
   const Doubles most =
       max(max(squareOf(n.first), all(0.25) * squareOf(n.middle)), squareOf(n.last));
-  const Doubles length = squareRoot(most) * all(kUpward) + all(2) * rounding;
-  return length * length;
+  return most * all(kUpward * (1 + kShare)) +
+         all(4 * kUpward * (1 + 1 / kShare)) * (rounding * rounding);
 }
+
+/// Eight triangles of a surface, as vectors from a point to their corners.
+struct Sights {
+  MovingVectors u, v, w;
+  MovingNormals vw;
+  MovingVolumes volumes;
+
+  FCL_CCD_INLINE Sights(const MovingVectors& a, const MovingVectors& b,
+                        const MovingVectors& c)
+      : u(a), v(b), w(c), vw(cross(b, c)), volumes(a, vw) {}
+};
 
 /// The volume of the point and a triangle is that of the vectors to its corners. Divided
 /// by the length of the normal it is the distance from the plane. Divided by the length
 /// of the cross product of two of the vectors it is the height of the third one over
 /// their plane.
-LeastSight leastSightFrom(const TreeVertex& point, const TreeVertex* vertices,
-                          const TreeTriangle* triangles, std::size_t count) {
-  const TreeVertex* x[3][kEight];
-  findCorners(vertices, triangles, count, x);
-  const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)},
-                      u = loadPaths(x[0]) - center, v = loadPaths(x[1]) - center,
-                      w = loadPaths(x[2]) - center;
-  const Doubles most =
-      max(max(max(maxNorm(u.t0), maxNorm(u.t1)), max(maxNorm(v.t0), maxNorm(v.t1))),
-          max(maxNorm(w.t0), maxNorm(w.t1)));
+/// @param most  a bound on the coordinates of the vectors
+FCL_CCD_INLINE void takeLeast(const Sights& x, const Doubles& most, LeastSight& sight) {
+  const auto& [u, v, w, vw, volumes] = x;
+  const auto& [outer0, inner0, inner1, outer1] = volumes;
   const Doubles size = most * most * most;
-  const MovingNormals vw = cross(v, w), wu = cross(w, u), uv = cross(u, v);
-  const auto [outer0, inner0, inner1, outer1] = MovingVolumes(u, vw);
+  const MovingNormals wu = cross(w, u), uv = cross(u, v);
   const Doubles third = all(1. / 3),
                 least =
                     max(min(min(outer0, outer1), third * min(inner0, inner1)),
@@ -212,16 +184,46 @@ LeastSight leastSightFrom(const TreeVertex& point, const TreeVertex* vertices,
                                 largestSquare(v) * largestSquare(wu, rounding)),
                             largestSquare(w) * largestSquare(uv, rounding));
   const DoubleMask is_known = volume > all(0);
-  double distances[kEight], angles[kEight];
-  store(select(is_known, square / largestSquare(normal, all(4) * rounding), all(0)),
-        distances);
-  store(select(is_known, square / sines, all(0)), angles);
-  LeastSight sight{distances[0], angles[0]};
-  for (std::size_t i = 1; i < kEight; ++i) {
-    if (distances[i] < sight.distance_square) sight.distance_square = distances[i];
-    if (angles[i] < sight.sine_square) sight.sine_square = angles[i];
-  }
-  return sight;
+  const auto take = [&is_known](const Doubles& bound, double (&least)[kEight]) HWY_ATTR {
+    store(min(load<kEight>(least), select(is_known, bound, all(0))), least);
+  };
+  take(square / largestSquare(normal, all(4) * rounding), sight.distance_square);
+  take(square / sines, sight.sine_square);
+}
+
+EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
+                    const TreeVertex* vertices, const TreeTriangle* triangles,
+                    std::size_t count, LeastSight* least) {
+  const TreeVertex* x[3][kEight];
+  findCorners(vertices, triangles, count, x);
+  const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)};
+  const Sights sights(loadPaths(x[0]) - center, loadPaths(x[1]) - center,
+                      loadPaths(x[2]) - center);
+  const MovingVectors &u = sights.u, &v = sights.v, &w = sights.w;
+  const Doubles u_norm = max(maxNorm(u.t0), maxNorm(u.t1)),
+                v_norm = max(maxNorm(v.t0), maxNorm(v.t1)),
+                w_norm = max(maxNorm(w.t0), maxNorm(w.t1)),
+                most = max(max(u_norm, v_norm), w_norm);
+  const Doubles size = u_norm * (v_norm * w_norm);
+  const VolumeSigns signs = signsOf(sights.volumes, size);
+  const unsigned known =
+      bits(isInRange(size) & isInRange(v_norm * w_norm)) & ((1U << count) - 1);
+  EightViews views{signs.positive & known, signs.negative & known, 0};
+  if (least) takeLeast(sights, most, *least);
+
+  // In terms of the corners the ray is a sum whose weights are volumes of the ray and two
+  // corners, divided by the volume of all corners. It misses if one of them is negative.
+  const Vectors r = vectorsOf(ray);
+  const Doubles ray_size = maxNorm(r) * (most * most),
+                bound = broadcast<kEight>(kVolumeBound) * ray_size,
+                minus_bound = broadcast<kEight>(0.) - bound;
+  const Doubles a = dot(r, sights.vw.first), b = dot(r, cross(w.t0, u.t0)),
+                c = dot(r, cross(u.t0, v.t0));
+  const unsigned below = bits((a < minus_bound) | (b < minus_bound) | (c < minus_bound)),
+                 above = bits((a > bound) | (b > bound) | (c > bound));
+  views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
+                 ((views.left & below) | (views.right & above));
+  return views;
 }
 
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,

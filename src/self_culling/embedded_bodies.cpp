@@ -56,8 +56,9 @@ TreeVertex centerOf(const MovingKdopTree& tree, std::int32_t i) {
 
 /// Whether a closed surface stays star-shaped.
 /// @param center  the point to try
+/// @param[out] least  of all triangles; null: not wanted
 bool isStarShaped(const MovingKdopTree& tree, const Region& region,
-                  const TreeVertex& center, const Kernels& kernels) {
+                  const TreeVertex& center, const Kernels& kernels, LeastSight* least) {
   // A closed surface has about twice as many triangles as vertices, and these are in the
   // order of the triangles. So this number of vertices is prefetched for a block.
   constexpr std::size_t kAhead = 48, kEach = 5;
@@ -76,7 +77,7 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
     for (std::size_t k = ahead; k < ahead + kEach && k < region.last_place; ++k)
       __builtin_prefetch(&vertices[k]);
     const EightViews views =
-        kernels.viewFrom(center, ray, vertices, triangles + i, count);
+        kernels.viewFrom(center, ray, vertices, triangles + i, count, least);
     left = left && views.left == all;
     right = right && views.right == all;
     if (!(left || right)) return false;
@@ -89,21 +90,15 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
   return true;
 }
 
-/// Whether the features of a surface that stays star-shaped stay apart.
-bool areFeaturesApart(const MovingKdopTree& tree, const Region& region,
-                      const TreeVertex& center, const Kernels& kernels, double distance) {
-  LeastSight least{HUGE_VAL, HUGE_VAL};
-  for (std::size_t i = region.first; i < region.last; i += 8) {
-    const LeastSight sight = kernels.leastSightFrom(
-        center, tree.vertices().data(), tree.triangles().data() + i,
-        std::min<std::size_t>(8, region.last - i));
-    least.distance_square = std::min(least.distance_square, sight.distance_square);
-    least.sine_square = std::min(least.sine_square, sight.sine_square);
-    if (!(least.distance_square * least.sine_square >
-          distance * distance * (1 + 0x1p-30)))
-      return false;
-  }
-  return true;
+/// Whether a closed surface stays star-shaped, and its features stay further apart than a
+/// distance.
+bool isApartBody(const MovingKdopTree& tree, const Region& region,
+                 const TreeVertex& center, const Kernels& kernels, double distance) {
+  LeastSight least;
+  if (!isStarShaped(tree, region, center, kernels, &least)) return false;
+  const auto leastOf = [](const double(&x)[8]) { return *std::min_element(x, x + 8); };
+  return leastOf(least.distance_square) * leastOf(least.sine_square) >
+         distance * distance * (1 + 0x1p-30);
 }
 
 /// The nodes that are closed surfaces, parents first.
@@ -137,9 +132,9 @@ EmbeddedRegions findEmbeddedBodies(const MovingKdopTree& tree, const Kernels& ke
         for (; i < last; ++i) {
           const Region region = regionOf(tree, closed[i].node, closed[i].last);
           const TreeVertex center = centerOf(tree, closed[i].node);
-          is_body[i] = isStarShaped(tree, region, center, kernels) &&
-                       (distance == 0 ||
-                        areFeaturesApart(tree, region, center, kernels, distance));
+          is_body[i] = distance > 0
+                           ? isApartBody(tree, region, center, kernels, distance)
+                           : isStarShaped(tree, region, center, kernels, nullptr);
         }
       });
   for (std::size_t i = 0; i < closed.size(); ++i) {

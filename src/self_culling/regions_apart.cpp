@@ -77,15 +77,15 @@ class RegionMarks {
     int direction[3];
     // Children come after their parents.
     for (std::size_t i = 0; i < count; ++i) {
-      prefetch(std::min(i + kAhead, count - 1));
       if (regions_.nodes[i]) apart_.nodes[i] = static_cast<std::uint32_t>(i);
       const std::uint32_t region = apart_.nodes[i];
-      if (region == kNone) continue;
+      if (region == kNone || isBody(region)) continue;
+      prefetch(std::min(i + kAhead, count - 1));
       const MovingKdopNode& node = tree_.node(static_cast<int>(i));
       for (int lane = 0; lane < node.count; ++lane)
         if (!node.isTriangle(lane))
           apart_.nodes[static_cast<std::size_t>(node.child[lane])] = region;
-      if (node.triangles == 0 || isBody(region)) continue;
+      if (node.triangles == 0) continue;
       directionOf(regions_.directions[region], direction);
       markLow(node, direction);
     }
@@ -103,7 +103,7 @@ class RegionMarks {
   void keepApart() {
     std::vector<std::uint32_t>& nodes = apart_.nodes;
     for (std::size_t i = nodes.size(); i-- > 0;) {
-      if (nodes[i] == kNone) continue;
+      if (nodes[i] == kNone || isBody(nodes[i])) continue;
       const MovingKdopNode& node = tree_.node(static_cast<int>(i));
       for (int lane = 0; lane < node.count && nodes[i] != kNone; ++lane)
         if (!isApart(node, lane, nodes[i])) nodes[i] = kNone;

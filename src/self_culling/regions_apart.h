@@ -21,7 +21,8 @@ struct RegionsApart {
   /// For each node of the tree, the node of the region in which its triangles are apart,
   /// or MovingKdopNode::kNoPlace. Features of the triangles below two nodes of the same
   /// region, or below one, that have no common vertex stay further apart than the
-  /// distance during the whole step.
+  /// distance during the whole step. Only the root of a body has its region: a traversal
+  /// that leaves out this node with itself meets no other pair below it.
   std::vector<std::uint32_t> nodes;
   /// For each vertex, whether it is inside of a region and the same is true of the
   /// features of its fan.

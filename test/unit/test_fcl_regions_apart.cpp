@@ -52,13 +52,18 @@ class LeftOut {
       EXPECT_EQ(other.nodes, apart.nodes) << k->name;
       EXPECT_EQ(other.fans, apart.fans) << k->name;
     }
+    std::vector<std::uint32_t> region_of = apart.nodes;
     for (std::size_t i = 0; i < tree.numNodes(); ++i) {
       const MovingKdopNode& node = tree.node(static_cast<int>(i));
-      for (int lane = 0; lane < node.count; ++lane)
+      for (int lane = 0; lane < node.count; ++lane) {
         if (node.isTriangle(lane)) {
           const auto place = static_cast<std::size_t>(node.triangle(lane));
-          region_[tree.triangles()[place].index] = apart.nodes[i];
+          region_[tree.triangles()[place].index] = region_of[i];
+        } else if (isBody(regions, region_of[i])) {
+          // Of a body only the root has the region.
+          region_of[static_cast<std::size_t>(node.child[lane])] = region_of[i];
         }
+      }
     }
     fans_.assign(mesh.t0.size(), 0);
     for (const TreeTriangle& t : tree.triangles())
@@ -83,6 +88,10 @@ class LeftOut {
   }
 
  private:
+  static bool isBody(const EmbeddedRegions& regions, std::uint32_t node) {
+    return node != kNone && regions.directions[node] == EmbeddedRegions::kNoDirection;
+  }
+
   const MovingMesh& mesh_;
   PreparedMovingMesh prepared_;
   std::size_t bodies_{0};
