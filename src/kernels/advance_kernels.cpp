@@ -136,6 +136,14 @@ struct Tolerances {
         touching(all(DistanceTolerance::kTouching) * (d + size)) {}
 };
 
+/// Sets the part of the polygon that is nearest.
+FCL_CCD_INLINE void setPart(double part, Approach& out) {
+  const int k = static_cast<int>(part);
+  out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
+  out.corner = static_cast<std::int16_t>(
+      kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
+}
+
 /// A pair on its way to the distance.
 struct PairOnWay {
   /// Which of the pairs it is.
@@ -225,15 +233,12 @@ class AdvancingPairs {
         *on_way++ = {number_[lane], toc_lo[lane], rate[lane], distance[lane]};
         continue;
       }
-      const int k = static_cast<int>(part[lane]);
       Approach& out = answers[number_[lane]];
       out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
                    : yes >> lane & 1U ? Approach::Answer::kYes
                                       : Approach::Answer::kNo;
       out.exchanges = static_cast<std::uint8_t>(orders_.exchanges(lane));
-      out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
-      out.corner = static_cast<std::int16_t>(
-          kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
+      setPart(part[lane], out);
       out.toc_lo = toc_lo[lane];
       out.toc_hi = toc_hi[lane];
     }
@@ -324,6 +329,57 @@ void approachOfAll(ContinuousContactKind kind, const FourPoints* pairs, std::siz
     for (std::size_t i = 0; i < size; ++i)
       end = eights[i].takeAnswers(request, answers, end);
   }
+}
+
+/// Eight DifferencePolygons at t = 0.
+struct StartPolygons {
+  Vectors corner[4];
+  int count;
+
+  FCL_CCD_INLINE StartPolygons(ContinuousContactKind kind, const StartPoints& x)
+      : count(kind == ContinuousContactKind::kVertexFace ? 3 : 4) {
+    for (int k = 0; k < count; ++k) {
+      const CornerPoints p = DifferencePolygon::pointsOf(kind, k);
+      corner[k] = x.t0[p.second] - x.t0[p.first];
+    }
+  }
+
+  FCL_CCD_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
+};
+
+/// The first step of approachOfAll(), without the sizes of the pairs: a distance of at
+/// most d is a contact whatever the tolerance is. With the direction of the nearest point
+/// a gap above `reach` proves that there is none: reachOf() is larger than a distance
+/// with its tolerances by more than the rounding of this, 16 u of the largest length.
+unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs,
+                           const std::uint32_t* codes, std::size_t count, double distance,
+                           double reach, Approach (&answers)[8]) {
+  // The last one fills up the eight.
+  std::uint32_t eight_codes[kEight];
+  for (std::size_t lane = 0; lane < kEight; ++lane)
+    eight_codes[lane] = codes[lane < count ? lane : count - 1];
+  StartPoints points{EightFeatures(pairs, eight_codes)};
+  const PointOrders orders(kind, points);
+  const StartPolygons x(kind, points);
+  const NearestPoints near = nearestPoints(x, x.corner);
+  const Doubles least = near.distance * all(reach);
+  DoubleMask is_far = dot(near.point, x.corner[0]) > least;
+  for (int k = 1; k < x.count; ++k)
+    is_far = is_far & (dot(near.point, x.corner[k]) > least);
+  const unsigned left = ((1U << count) - 1) & ~bits(is_far),
+                 is_near = bits(near.is_sure & (near.distance <= all(distance))) &
+                           ~orders.unknown();
+  double part[kEight];
+  store(near.part, part);
+  for (unsigned lanes = left; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    Approach& out = answers[lane];
+    out.answer = is_near >> lane & 1U ? Approach::Answer::kYes : Approach::Answer::kOpen;
+    out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));
+    setPart(part[lane], out);
+    out.toc_lo = out.toc_hi = 0;
+  }
+  return left;
 }
 
 /// The first attempt of leastDistance(), if it is enough.

@@ -424,6 +424,7 @@ FCL_CCD_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShi
     count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
       return isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));
     });
+  if (!windows) return count;
   count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
     return !isAnyNegative(bothNegative(at0(code), at1(code)));
   });

@@ -44,6 +44,7 @@ extern const Kernels kKernels = {targetName(),
                                  &coplanarityOfFeatures,
                                  &mayComeWithinOfFeatures,
                                  &approachOfAll,
+                                 &approachAtStartOf,
                                  &leastDistancesOf,
                                  &solveEight,
                                  &divideEight};

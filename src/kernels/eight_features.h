@@ -43,6 +43,7 @@ class EightFeatures {
 
 /// The points of eight pairs at t = 0 and at t = 1.
 struct Points {
+  static constexpr bool kHaveEnd = true;
   Vectors t0[4], t1[4];
 
   FCL_CCD_INLINE explicit Points(const EightPoints& pairs) {
@@ -69,6 +70,19 @@ struct Points {
       loadColumns([&x](std::size_t lane) HWY_ATTR { return x[lane]->t1; }, t1[i].x,
                   t1[i].y, t1[i].z);
     }
+  }
+};
+
+/// The points of eight pairs at t = 0.
+struct StartPoints {
+  static constexpr bool kHaveEnd = false;
+  Vectors t0[4];
+
+  FCL_CCD_INLINE explicit StartPoints(const EightFeatures& features) {
+    for (std::size_t i = 0; i < 4; ++i)
+      loadColumns([&features, i](std::size_t lane)
+                      HWY_ATTR { return features.point(i, lane).t0; },
+                  t0[i].x, t0[i].y, t0[i].z);
   }
 };
 

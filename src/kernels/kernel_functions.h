@@ -49,6 +49,9 @@ unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair*
                                  const PairBends& bends);
 void approachOfAll(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
                    const DistanceRequest& request, Approach* answers);
+unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs,
+                           const std::uint32_t* codes, std::size_t count, double distance,
+                           double reach, Approach (&answers)[8]);
 unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]);
 unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);

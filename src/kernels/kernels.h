@@ -200,10 +200,10 @@ struct Approach {
   double toc_lo, toc_hi;
 };
 
-/// @brief So many pairs Kernels::approach() takes at a time: eight eights, so that those
-/// that are left fill eights again, and few enough for their state to stay in a near
-/// cache.
-constexpr std::size_t kMostApproaching = 64;
+/// @brief So many pairs Kernels::approach() takes at a time: sixteen eights, so that
+/// those that are left fill eights again, and few enough for their state to stay in a
+/// near cache.
+constexpr std::size_t kMostApproaching = 128;
 
 /// @brief Lanes whose features touch at no time of the window at which the points are
 /// coplanar; lanes that may be plain cases in two parts; and the times at which to divide
@@ -230,8 +230,8 @@ struct EightViews {
   unsigned missed;
 };
 
-/// @brief The least of lower bounds for triangles during a step, seen from a moving point,
-/// for every eighth triangle; 0 where there is none.
+/// @brief The least of lower bounds for triangles during a step, seen from a moving
+/// point, for every eighth triangle; 0 where there is none.
 struct LeastSight {
   static constexpr double kMost = std::numeric_limits<double>::infinity();
 
@@ -287,6 +287,7 @@ struct Kernels {
   /// further apart than this at t = 0 along one of the directions. Null: none are left
   /// out
   /// @param codes  with room for 15 more, which may be written
+  /// @param windows  null: only boxes at t = 0 are compared, with gaps
   std::size_t (*cullFeatures)(ContinuousContactKind kind, const TrianglePair* pairs,
                               const KdopShift* shift, const KdopShift* turned_shift,
                               float latest, const float* gaps, std::uint32_t* codes,
@@ -392,6 +393,18 @@ struct Kernels {
   /// @param[out] answers  as many
   void (*approach)(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
                    const DistanceRequest& request, Approach* answers);
+
+  /// approach() of up to eight pairs of features of which only a contact at t = 0
+  /// matters. Returns those that may have one, a bit each; all others are further apart
+  /// than `reach`.
+  /// @param codes  of pairs of the kind; the points are in the order of featureCode()
+  /// @param count  1 to 8
+  /// @param distance  above 2^-150
+  /// @param reach  of reachOf(), below 2^150
+  /// @param[out] answers  of those whose bit is set: kYes or kOpen
+  unsigned (*approachAtStart)(ContinuousContactKind kind, const TrianglePair* pairs,
+                              const std::uint32_t* codes, std::size_t count,
+                              double distance, double reach, Approach (&answers)[8]);
 
   /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
   /// known, a bit each. The others need more than a plain direction.

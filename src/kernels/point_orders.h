@@ -22,11 +22,14 @@ namespace deformable {
 namespace HWY_NAMESPACE {
 
 /// Puts the points of eight pairs in order. Lanes in which two points of a feature
-/// coincide are left out: their ids would decide.
+/// coincide are left out: their ids would decide. Of StartPoints also those whose order
+/// depends on t = 1.
 class PointOrders {
  public:
   PointOrders() = default;
-  FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, Points& x) {
+  /// @tparam AnyPoints  Points or StartPoints
+  template <typename AnyPoints>
+  FCL_CCD_INLINE PointOrders(ContinuousContactKind kind, AnyPoints& x) {
     if (kind == ContinuousContactKind::kVertexFace) {
       sort(x, 0, 1, 2);
       sort(x, 1, 2, 3);
@@ -35,6 +38,7 @@ class PointOrders {
       sort(x, 0, 0, 1);
       sort(x, 1, 2, 3);
       const Comparison first = compare(x, 2, 0), second = compare(x, 3, 1);
+      if (!AnyPoints::kHaveEnd) unknown_ |= bits(first.is_equal);
       const DoubleMask is_turned = first.is_less | (first.is_equal & second.is_less);
       exchanges_[2] = bits(is_turned);
       exchange(is_turned, x, 0, 2);
@@ -42,7 +46,7 @@ class PointOrders {
     }
   }
 
-  /// The lanes in which points of a feature coincide.
+  /// The lanes that are left out.
   FCL_CCD_INLINE unsigned unknown() const { return unknown_; }
   /// The exchanges of a lane, see exchangedNumbers().
   FCL_CCD_INLINE unsigned exchanges(std::size_t lane) const {
@@ -56,15 +60,18 @@ class PointOrders {
   };
 
   /// By the coordinates at t = 0, then by those at t = 1.
-  static FCL_CCD_INLINE Comparison compare(const Points& x, int i, int j) {
+  template <typename AnyPoints>
+  static FCL_CCD_INLINE Comparison compare(const AnyPoints& x, int i, int j) {
     const Vectors &p = x.t0[i], &q = x.t0[j];
     Comparison order{p.x < q.x, p.x == q.x};
     if (bits(order.is_equal) == 0) return order;
     then(p.y, q.y, order);
     then(p.z, q.z, order);
-    then(x.t1[i].x, x.t1[j].x, order);
-    then(x.t1[i].y, x.t1[j].y, order);
-    then(x.t1[i].z, x.t1[j].z, order);
+    if constexpr (AnyPoints::kHaveEnd) {
+      then(x.t1[i].x, x.t1[j].x, order);
+      then(x.t1[i].y, x.t1[j].y, order);
+      then(x.t1[i].z, x.t1[j].z, order);
+    }
     return order;
   }
   static FCL_CCD_INLINE void then(const Doubles& p, const Doubles& q, Comparison& order) {
@@ -72,19 +79,24 @@ class PointOrders {
     order.is_equal = order.is_equal & (p == q);
   }
 
-  FCL_CCD_INLINE void sort(Points& x, int step, int i, int j) {
+  template <typename AnyPoints>
+  FCL_CCD_INLINE void sort(AnyPoints& x, int step, int i, int j) {
     const Comparison order = compare(x, j, i);
     exchanges_[step] = bits(order.is_less);
     unknown_ |= bits(order.is_equal);
     exchange(order.is_less, x, i, j);
   }
-  static FCL_CCD_INLINE void exchange(const DoubleMask& condition, Points& points, int i,
-                                      int j) {
-    for (Vectors* x : {points.t0, points.t1}) {
-      const Vectors p = x[i], q = x[j];
-      x[i] = select(condition, q, p);
-      x[j] = select(condition, p, q);
-    }
+  template <typename AnyPoints>
+  static FCL_CCD_INLINE void exchange(const DoubleMask& condition, AnyPoints& points,
+                                      int i, int j) {
+    exchange(condition, points.t0[i], points.t0[j]);
+    if constexpr (AnyPoints::kHaveEnd) exchange(condition, points.t1[i], points.t1[j]);
+  }
+  static FCL_CCD_INLINE void exchange(const DoubleMask& condition, Vectors& x,
+                                      Vectors& y) {
+    const Vectors p = x, q = y;
+    x = select(condition, q, p);
+    y = select(condition, p, q);
   }
 
   unsigned exchanges_[3];

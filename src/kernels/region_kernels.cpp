@@ -184,7 +184,7 @@ FCL_CCD_INLINE void takeLeast(const Sights& x, const Doubles& most, LeastSight& 
                                 largestSquare(v) * largestSquare(wu, rounding)),
                             largestSquare(w) * largestSquare(uv, rounding));
   const DoubleMask is_known = volume > all(0);
-  const auto take = [&is_known](const Doubles& bound, double (&least)[kEight]) HWY_ATTR {
+  const auto take = [&is_known](const Doubles& bound, double(&least)[kEight]) HWY_ATTR {
     store(min(load<kEight>(least), select(is_known, bound, all(0))), least);
   };
   take(square / largestSquare(normal, all(4) * rounding), sight.distance_square);

@@ -314,18 +314,50 @@ unsigned FeatureBatch::edgePairsToTest() {
   return kEePairs | kFree;
 }
 
-void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& counts) {
-  List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
+/// Lists the pairs of features of one kind, and returns their number.
+std::size_t FeatureBatch::listPairs(ContinuousContactKind kind, StageCounts& counts) {
   const std::size_t size = kernels_.listFeatures(
       owned_.get(), num_pairs_,
       kind == ContinuousContactKind::kVertexFace ? kVfPairs : edgePairsToTest(),
-      list.codes.get());
+      lists_[kind == ContinuousContactKind::kEdgeEdge].codes.get());
+  counts.feature_pairs += size;
+  return size;
+}
+
+void FeatureBatch::cullAtStart(ContinuousContactKind kind, StageCounts& counts) {
+  List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
+  const std::size_t size = listPairs(kind, counts);
+  list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_, 0,
+                                    gaps_.get(), list.codes.get(), size, nullptr);
+  counts.box_culled += size - list.size;
+}
+
+void FeatureBatch::cull(ContinuousContactKind kind, double latest, StageCounts& counts) {
+  List& list = lists_[kind == ContinuousContactKind::kEdgeEdge];
+  const std::size_t size = listPairs(kind, counts);
   list.size = kernels_.cullFeatures(kind, pairs_.get(), shift_, &turned_shift_,
                                     roundUp(latest, 0.f),
                                     isBeginning(latest) ? gaps_.get() : nullptr,
                                     list.codes.get(), size, list.windows.get());
-  counts.feature_pairs += size;
   counts.box_culled += size - list.size;
+}
+
+std::uint8_t FeatureBatch::exchangesOf(std::uint32_t code,
+                                       const FeatureCandidate& candidate,
+                                       std::uint8_t exchanges) const {
+  if (candidate.kind != ContinuousContactKind::kEdgeEdge) return exchanges;
+  const unsigned char(&corners)[4] = kFeaturePoints[code % 16];
+  const TreeVertex* const* x = pairs_[code / 16].x;
+  const TreeVertex *first = x[corners[0]], *second = x[corners[2]];
+  const bool is_turned = candidate.x[2] == first || candidate.x[3] == first;
+  const unsigned all = exchanges;
+  // Of the first edge of the code, and of the second one.
+  const unsigned of_first =
+                     (all & 1U) ^ unsigned { candidate.x[is_turned ? 2 : 0] != first },
+                 of_second = (all >> 1 & 1U) ^
+                             unsigned { candidate.x[is_turned ? 0 : 2] != second };
+  return static_cast<std::uint8_t>(is_turned ? of_second | of_first << 1 | (~all & 4U)
+                                             : of_first | of_second << 1 | (all & 4U));
 }
 
 std::size_t FeatureBatch::keep(ContinuousContactKind kind, const PairFilter& filter) {

@@ -16,6 +16,7 @@
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/moving_kdop.h"
+#include "query/leading_contact.h"
 #include "query/pair_filter.h"
 #include "tree/mesh_instance.h"
 
@@ -182,6 +183,17 @@ class FeatureBatch {
   /// @param counts  feature_pairs and box_culled are counted
   void cull(ContinuousContactKind kind, double latest, StageCounts& counts);
 
+  /// @brief The same without windows, if only t = 0 matters: lists the pairs whose boxes
+  /// overlap then.
+  /// @pre isAtStart(latest)
+  void cullAtStart(ContinuousContactKind kind, StageCounts& counts);
+
+  /// @brief Whether nothing but t = 0 matters to a query to which this time is the
+  /// latest, as far as boxes know it.
+  bool isAtStart(double latest) const {
+    return latest <= latestLeading(0) && isBeginning(latest);
+  }
+
   /// @brief Keeps the pairs of features of one kind that the filter accepts.
   /// @return the number of the others
   std::size_t keep(ContinuousContactKind kind, const PairFilter& filter);
@@ -203,6 +215,11 @@ class FeatureBatch {
   /// the pair is found in.
   void setCandidate(std::uint32_t code, const TimeWindow& window,
                     FeatureCandidate& out) const;
+
+  /// @brief The exchanges (exchangedNumbers()) that put the points of a candidate in the
+  /// order in which these put the points of its code.
+  std::uint8_t exchangesOf(std::uint32_t code, const FeatureCandidate& candidate,
+                           std::uint8_t exchanges) const;
 
   /// @brief An edge of one triangle and the face of the other one.
   struct EdgeAndFace {
@@ -241,6 +258,7 @@ class FeatureBatch {
   void leaveOutApart(double latest, StageCounts& counts);
   void leaveOutFar(StageCounts& counts);
   void leaveOutEdges();
+  std::size_t listPairs(ContinuousContactKind kind, StageCounts& counts);
   unsigned edgePairsToTest();
   void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
 

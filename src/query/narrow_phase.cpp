@@ -158,14 +158,20 @@ void NarrowPhase::flush() {
   setReach(shifts_.reach(latest));
   batch_.cullTriangles(latest, counts_);
   testCrossings();
+  const bool is_at_start = onlyStartMatters(latest);
   for (const ContinuousContactKind kind :
        {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     BlockPairs pairs{*this, kind, latest};
     if (!(options_.min_distance > 0)) {
       runStages(pairs);
     } else if (sink_.mayKeepAtStart(kind)) {
-      pairs.cullByBoxes();
-      testDistances(kind);
+      if (is_at_start) {
+        batch_.cullAtStart(kind, counts_);
+        testDistancesAtStart(kind);
+      } else {
+        pairs.cullByBoxes();
+        testDistances(kind);
+      }
     }
   }
   batch_.clear();
@@ -348,6 +354,49 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
       } else if (candidates_.size() == kMostApproaching) {
         testManyDistances();
       }
+    }
+  }
+  if (!candidates_.empty()) testManyDistances();
+}
+
+/// Whether a contact at a distance is known at t = 0, so that only others at t = 0
+/// matter. Kernels::approachAtStart() knows numbers that are not extreme.
+bool NarrowPhase::onlyStartMatters(double latest) const {
+  return options_.query == ContinuousQuery::kFirst && options_.min_distance > 0x1p-150 &&
+         reach_ < 0x1p150 && firstHi() == 0 && batch_.isAtStart(latest) &&
+         !options_.filter && !options_.ignores_initially_closer &&
+         !options_.lists_near_pairs;
+}
+
+/// The same if only t = 0 matters.
+void NarrowPhase::testDistancesAtStart(ContinuousContactKind kind) {
+  const std::uint32_t* codes = batch_.codes(kind);
+  const std::size_t size = batch_.size(kind);
+  candidates_.clear();
+  for (std::size_t first = 0; first < size && !isDone(); first += 8) {
+    const std::size_t count = std::min<std::size_t>(8, size - first);
+    Approach found[8];
+    unsigned left = kernels_.approachAtStart(kind, batch_.pairs(), codes + first, count,
+                                             options_.min_distance, reach_, found);
+    counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left));
+    for (; left != 0 && !isDone(); left &= left - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+      const std::uint32_t code = codes[first + lane];
+      FeatureCandidate& candidate = candidates_.emplace_back();
+      batch_.setCandidate(code, {0, 1}, candidate);
+      if (!sink_.mayKeep(candidate, 0)) {
+        ++counts_.box_culled;
+      } else if (isPart(candidate.kind)) {
+        testDistance(candidate);
+      } else if (found[lane].answer == Approach::Answer::kYes) {
+        found[lane].exchanges =
+            batch_.exchangesOf(code, candidate, found[lane].exchanges);
+        addNear(candidate, contactOf(kind, found[lane]));
+      } else {
+        if (candidates_.size() == kMostApproaching) testManyDistances();
+        continue;
+      }
+      candidates_.pop_back();
     }
   }
   if (!candidates_.empty()) testManyDistances();

@@ -167,6 +167,8 @@ class NarrowPhase {
   void solve(const FeatureCandidate& candidate);
   void add(const FeatureCandidate& candidate, TimeBracket bracket);
   void testDistances(ContinuousContactKind kind);
+  bool onlyStartMatters(double latest) const;
+  void testDistancesAtStart(ContinuousContactKind kind);
   DistanceRequest distanceRequest() const;
   void testManyDistances();
   void testDistance(const FeatureCandidate& candidate);

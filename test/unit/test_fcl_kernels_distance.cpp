@@ -368,6 +368,86 @@ TEST(FCL_KERNELS, advancesDegeneratePairsAsTheScalarTest) {
   EXPECT_GT(sum.apart, 2000);
 }
 
+/// What the test of eight pairs at t = 0 has found.
+struct AtStart {
+  int contacts{0}, far{0}, open{0};
+};
+
+/// Each instruction set gives the answers of the scalar test where only t = 0 matters, or
+/// leaves the same pairs open.
+AtStart expectSameAtStart(const MovingPair (&queries)[8], double distance) {
+  const DistanceBlock block(queries);
+  const ContinuousContactKind kind = queries[0].kind;
+  // As reachOf(), for coordinates of this size.
+  constexpr double kSize = 100;
+  const double reach = distance * (1 + 2 * DistanceTolerance::kShare) +
+                       2 * DistanceTolerance::kTouching * (distance + 2 * kSize);
+  const auto test = [&](const Kernels& k, std::size_t count, Approach(&found)[8]) {
+    return k.approachAtStart(kind, block.pairs, block.codes, count, distance, reach,
+                             found);
+  };
+  Approach first[8];
+  const unsigned left = test(*allSets().front(), 8, first);
+  AtStart sum;
+  for (const Kernels* k : allSets())
+    for (const std::size_t count : {1, 3, 8}) {
+      Approach found[8];
+      EXPECT_EQ(test(*k, count, found), left & ((1U << count) - 1)) << k->name;
+      sum = {};
+      for (std::size_t n = 0; n < count; ++n) {
+        SCOPED_TRACE(std::string(k->name) + " pair " + std::to_string(n));
+        const DistanceContact expected =
+            advanceToDistance(kind, queries[n].points(), requestUntil(0, distance));
+        if ((left >> n & 1U) == 0) {
+          EXPECT_FALSE(expected.is_contact);
+          ++sum.far;
+        } else if (found[n].answer == Approach::Answer::kYes) {
+          EXPECT_TRUE(expected.is_contact);
+          EXPECT_EQ(first[n].answer, Approach::Answer::kYes);
+          expectSameContact(contactOf(kind, found[n]), expected);
+          ++sum.contacts;
+        } else {
+          EXPECT_EQ(first[n].answer, Approach::Answer::kOpen);
+          EXPECT_EQ(found[n].answer, Approach::Answer::kOpen);
+          ++sum.open;
+        }
+      }
+    }
+  return sum;
+}
+
+/// Nearly all pairs are decided, but for those whose points coincide at t = 0 or whose
+/// distance is the wanted one up to rounding.
+TEST(FCL_KERNELS, findsContactsAtStartAsTheScalarTest) {
+  Random random(77);
+  AtStart sum[2];
+  for (int i = 0; i < 6000 && !testing::Test::HasFailure(); ++i) {
+    const ContinuousContactKind kind = test::randomKind(random);
+    const bool is_degenerate = i % 2;
+    MovingPair queries[8];
+    for (MovingPair& pair : queries) {
+      pair = scatteredPair(random, kind);
+      if (!is_degenerate) continue;
+      auto& p = pair.x[random.index(4)];
+      const auto& q = pair.x[random.index(4)];
+      if (random.index(2)) std::copy(q.t0, q.t0 + 3, p.t0);
+      const int axis = static_cast<int>(random.index(3));
+      if (random.index(2))
+        for (auto& x : pair.x) x.t0[axis] = 0.25;
+    }
+    const AtStart n = expectSameAtStart(queries, std::pow(10, random.uniform(-3, 0)));
+    sum[is_degenerate].contacts += n.contacts;
+    sum[is_degenerate].far += n.far;
+    sum[is_degenerate].open += n.open;
+  }
+  for (const AtStart& n : sum) {
+    EXPECT_GT(n.contacts, 2000);
+    EXPECT_GT(n.far, 2000);
+  }
+  EXPECT_LT(sum[0].open, 240);
+  EXPECT_GT(sum[1].open, 300);
+}
+
 /// Sizes over all of double's range: the scalar test scales those that are extreme.
 TEST(FCL_KERNELS, advancesAllSizesAsTheScalarTest) {
   Random random(76);

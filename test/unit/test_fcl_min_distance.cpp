@@ -506,6 +506,53 @@ TEST(FCL_MIN_DISTANCE, fewOfManyContactsAtStart) {
   }
 }
 
+/// Expects the contacts at t = 0 of all contacts, if only the first ones are wanted. Adds
+/// their numbers by kind.
+template <typename Query>
+void expectContactsAtStart(Request request, Query&& query, std::map<Kind, int>& found) {
+  const Result all = query(request);
+  request.query = ContinuousQuery::kFirst;
+  const Result first = query(request);
+  std::size_t k = 0;
+  for (; k < all.contacts.size() && all.contacts[k].toc_lo == 0; ++k) {
+    ASSERT_LT(k, first.contacts.size());
+    const Contact &x = first.contacts[k], &y = all.contacts[k];
+    ASSERT_EQ(x.kind, y.kind);
+    ASSERT_EQ(x.vertices, y.vertices);
+    ASSERT_EQ(x.first_on_o1, y.first_on_o1);
+    ASSERT_EQ(x.b1, y.b1);
+    ASSERT_EQ(x.b2, y.b2);
+    ASSERT_EQ(x.toc_lo, 0);
+    ASSERT_EQ(x.toc_hi, 0);
+    ++found[x.kind];
+  }
+  EXPECT_EQ(first.contacts.size(), k);
+}
+
+// A query for the first contact, which knows one at t = 0, decides pairs by their
+// distance then. Points of two sheets coincide, or have equal coordinates.
+TEST(FCL_MIN_DISTANCE, contactsAtStartAreThoseOfAllContacts) {
+  Random random(91);
+  std::map<Kind, int> found;
+  for (const Vector3<double>& offset :
+       {Vector3<double>(0.01, 0.02, 0.01), Vector3<double>(0, 0, 0.01),
+        Vector3<double>(0, 0, 0)}) {
+    const MovingMesh sheet = crumpledSheet(random, 12, 0.05),
+                     other = moved(sheet, offset);
+    MovingMesh both = sheet;
+    append(both, other);
+    const auto a = modelOf(sheet), b = modelOf(other), ab = modelOf(both);
+    const Request request = requestAt(0.02);
+    expectContactsAtStart(
+        request, [&](const Request& r) { return selfContacts<double>(*ab, r); }, found);
+    expectContactsAtStart(
+        request, [&](const Request& r) { return pairContacts(*a, *b, r); }, found);
+  }
+  for (const Kind kind :
+       {Kind::kVertexFace, Kind::kEdgeEdge, Kind::kVertexEdge, Kind::kVertexVertex})
+    EXPECT_GT(found[kind], 100);
+}
+
 /// Two crumpled sheets, whose vertices are mostly nearer to the other sheet than 0.06.
 /// Some vertices of the second one are as far above faces of the first one as `gaps`, 0
 /// for those that touch.
