@@ -57,9 +57,9 @@ unsigned areFansEmbedded(const TreeVertex* vertices, const EightFans& fans,
                          double distance);
 std::uint32_t facedDirections(const TreeVertex* vertices, const TreeTriangle* triangles,
                               std::size_t count);
-EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
-                    const TreeVertex* vertices, const TreeTriangle* triangles,
-                    std::size_t count, LeastSight* least);
+EightViews viewFromPoint(const TreeVertex& point, const double (&ray)[3],
+                         const TreeVertex* vertices, const TreeTriangle* triangles,
+                         std::size_t count, LeastSight* least);
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
                          const int (&direction)[3], double distance);
 EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,

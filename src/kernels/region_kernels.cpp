@@ -191,9 +191,11 @@ FCL_CCD_INLINE void takeLeast(const Sights& x, const Doubles& most, LeastSight& 
   take(square / sines, sight.sine_square);
 }
 
-EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
-                    const TreeVertex* vertices, const TreeTriangle* triangles,
-                    std::size_t count, LeastSight* least) {
+template <bool kWithLeast>
+FCL_CCD_INLINE EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
+                                   const TreeVertex* vertices,
+                                   const TreeTriangle* triangles, std::size_t count,
+                                   LeastSight* least) {
   const TreeVertex* x[3][kEight];
   findCorners(vertices, triangles, count, x);
   const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)};
@@ -209,7 +211,7 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
   const unsigned known =
       bits(isInRange(size) & isInRange(v_norm * w_norm)) & ((1U << count) - 1);
   EightViews views{signs.positive & known, signs.negative & known, 0};
-  if (least) takeLeast(sights, most, *least);
+  if (kWithLeast) takeLeast(sights, most, *least);
 
   // In terms of the corners the ray is a sum whose weights are volumes of the ray and two
   // corners, divided by the volume of all corners. It misses if one of them is negative.
@@ -224,6 +226,13 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
   views.missed = bits(isInRange(ray_size) & isInRange(most * most)) &
                  ((views.left & below) | (views.right & above));
   return views;
+}
+
+EightViews viewFromPoint(const TreeVertex& point, const double (&ray)[3],
+                         const TreeVertex* vertices, const TreeTriangle* triangles,
+                         std::size_t count, LeastSight* least) {
+  return least ? viewFrom<true>(point, ray, vertices, triangles, count, least)
+               : viewFrom<false>(point, ray, vertices, triangles, count, nullptr);
 }
 
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
