@@ -363,8 +363,9 @@ unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs
   const StartPolygons x(kind, points);
   const NearestPoints near = nearestPoints(x, x.corner);
   const Doubles least = near.distance * all(reach);
-  DoubleMask is_far = dot(near.point, x.corner[0]) > least;
-  for (int k = 1; k < x.count; ++k)
+  // A distance whose square is in range.
+  DoubleMask is_far = near.square > all(0x1p-900);
+  for (int k = 0; k < x.count; ++k)
     is_far = is_far & (dot(near.point, x.corner[k]) > least);
   const unsigned left = ((1U << count) - 1) & ~bits(is_far),
                  is_near = bits(near.is_sure & (near.distance <= all(distance))) &

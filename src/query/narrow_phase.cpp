@@ -359,8 +359,9 @@ void NarrowPhase::testDistances(ContinuousContactKind kind) {
   if (!candidates_.empty()) testManyDistances();
 }
 
-/// Whether a contact at a distance is known at t = 0, so that only others at t = 0
-/// matter. Kernels::approachAtStart() knows numbers that are not extreme.
+/// Whether an answer at t = 0 is known (a contact, a crossing or an error), so that only
+/// contacts at t = 0 matter. Kernels::approachAtStart() takes numbers that are not
+/// extreme.
 bool NarrowPhase::onlyStartMatters(double latest) const {
   return options_.query == ContinuousQuery::kFirst && options_.min_distance > 0x1p-150 &&
          reach_ < 0x1p150 && firstHi() == 0 && batch_.isAtStart(latest) &&
@@ -368,8 +369,9 @@ bool NarrowPhase::onlyStartMatters(double latest) const {
          !options_.lists_near_pairs;
 }
 
-/// The same if only t = 0 matters.
+/// As testDistances(), where only t = 0 matters: without windows and without the filter.
 void NarrowPhase::testDistancesAtStart(ContinuousContactKind kind) {
+  assert(options_.min_distance > 0x1p-150 && reach_ < 0x1p150);
   const std::uint32_t* codes = batch_.codes(kind);
   const std::size_t size = batch_.size(kind);
   candidates_.clear();

@@ -375,13 +375,13 @@ struct AtStart {
 
 /// Each instruction set gives the answers of the scalar test where only t = 0 matters, or
 /// leaves the same pairs open.
-AtStart expectSameAtStart(const MovingPair (&queries)[8], double distance) {
+/// @param size  no coordinate is larger
+AtStart expectSameAtStart(const MovingPair (&queries)[8], double distance, double size) {
   const DistanceBlock block(queries);
   const ContinuousContactKind kind = queries[0].kind;
   // As reachOf(), for coordinates of this size.
-  constexpr double kSize = 100;
   const double reach = distance * (1 + 2 * DistanceTolerance::kShare) +
-                       2 * DistanceTolerance::kTouching * (distance + 2 * kSize);
+                       2 * DistanceTolerance::kTouching * (distance + 2 * size);
   const auto test = [&](const Kernels& k, std::size_t count, Approach(&found)[8]) {
     return k.approachAtStart(kind, block.pairs, block.codes, count, distance, reach,
                              found);
@@ -435,7 +435,8 @@ TEST(FCL_KERNELS, findsContactsAtStartAsTheScalarTest) {
       if (random.index(2))
         for (auto& x : pair.x) x.t0[axis] = 0.25;
     }
-    const AtStart n = expectSameAtStart(queries, std::pow(10, random.uniform(-3, 0)));
+    const AtStart n =
+        expectSameAtStart(queries, std::pow(10, random.uniform(-3, 0)), 100);
     sum[is_degenerate].contacts += n.contacts;
     sum[is_degenerate].far += n.far;
     sum[is_degenerate].open += n.open;
@@ -446,6 +447,38 @@ TEST(FCL_KERNELS, findsContactsAtStartAsTheScalarTest) {
   }
   EXPECT_LT(sum[0].open, 240);
   EXPECT_GT(sum[1].open, 300);
+}
+
+/// All sizes that the kernel takes, and points that are nearer to each other than the
+/// squares of doubles reach.
+TEST(FCL_KERNELS, findsContactsAtStartOfAllSizes) {
+  Random random(79);
+  AtStart sum;
+  for (int exponent = -140; exponent <= 140; ++exponent)
+    for (int i = 0; i < 8 && !testing::Test::HasFailure(); ++i) {
+      const ContinuousContactKind kind = test::randomKind(random);
+      const double size = std::ldexp(1, exponent);
+      MovingPair queries[8];
+      for (MovingPair& pair : queries) {
+        pair = scatteredPair(random, kind);
+        scale(pair, size);
+        if (random.index(4)) continue;
+        // Near the origin, and near the point.
+        auto &p = pair.x[0], &q = pair.x[3];
+        for (int k = 0; k < 3; ++k) {
+          p.t0[k] = 0;
+          q.t0[k] = random.uniform(-1, 1) * std::pow(10, random.uniform(-170, -150));
+        }
+      }
+      const AtStart n =
+          expectSameAtStart(queries, size * random.uniform(0.01, 0.5), 100 * size);
+      sum.contacts += n.contacts;
+      sum.far += n.far;
+      sum.open += n.open;
+    }
+  EXPECT_GT(sum.contacts, 2000);
+  EXPECT_GT(sum.far, 2000);
+  EXPECT_LT(sum.open, 2000);
 }
 
 /// Sizes over all of double's range: the scalar test scales those that are extreme.
