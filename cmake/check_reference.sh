@@ -15,7 +15,7 @@ command -v ctags >/dev/null || { echo "Install the package universal-ctags" >&2;
 declared=$(
   find include -name '*.h' -not -path '*/detail/*' -print0 |
     xargs -0 ctags -x --language-force=C++ --kinds-C++=pf -I FCL_EXPORT --_xformat='%a %s %N %K %F:%n' |
-    grep -E '^(public fcl::[A-Za-z]+|- fcl) [~A-Za-z]+ ' | grep -v ' operator' |
+    { grep -E '^(public fcl::[A-Za-z]+|- fcl) [~A-Za-z0-9_]+ ' || true; } | grep -v ' operator' |
     awk '
       { ++count[$2 " " $3, $4]; names[$2 " " $3] }
       END {
@@ -35,7 +35,7 @@ missing_functions() {
     /<name>/ {
       name = $0
       gsub(/ *<\/?name>/, "", name)
-      if (scope == "") { scope = name; sub(/<.*/, "", scope) } else if (is_function) ++listed[scope " " name]
+      if (scope == "") { scope = name; sub(/ *&lt;.*/, "", scope) } else if (is_function) ++listed[scope " " name]
     }
     /<member / { is_function = /kind="function"/ }
     END {

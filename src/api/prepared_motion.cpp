@@ -132,12 +132,13 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   double way[3];
   for (int k = 0; k < 3; ++k)
     way[k] = placed.end().translation[k] - placed.beginning().translation[k];
-  constexpr double kRounding = 64 * kUnit, kInsteadOfZero = 1e-9;
+  constexpr double kRounding = 64 * kUnit, kLeastRelevantTocErr = 1e-9;
   double size = body_->radius() + norm(way);
   if (shape_)
     size += shape_->radius() + norm(placed.beginning().translation) +
             norm(placed.end().translation);
-  if (!(kRounding * norm(moving.reference) <= std::max(toc_err, kInsteadOfZero) * size))
+  if (!(kRounding * norm(moving.reference) <=
+        std::max(toc_err, kLeastRelevantTocErr) * size))
     throw Exception(
         name +
         ": the reference point of the InterpMotion is not finite or far too large. FCL's "

@@ -367,7 +367,7 @@ class ContactSearch {
   Intervals open_;
   int looks_{0};
   Undecided found_;
-  ElementaryResult answer_;
+  ElementaryResult answer_{Answer::kUnsure, 0, 1, DecidedBy::kSolver};
 };
 
 }  // namespace

@@ -31,9 +31,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Index of a difference in PairTable::difference. r and q are those that only the
-/// inside conditions use; z, of EE pairs only, is the fourth corner of all differences of
-/// a point of one edge and a point of the other.
+/// @brief Index of a difference in PairTable::difference. r, q and z are sums of u, v and
+/// w, for the inside conditions and the corners. Only EE pairs have z.
 enum PairDifference : unsigned char { kU, kV, kW, kR, kQ, kZ };
 constexpr int kNumPairDifferences = 6;
 

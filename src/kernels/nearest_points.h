@@ -5,7 +5,8 @@
 // distance_advance.h, with the same bits.
 //
 // Polygons is a type with the number of corners `count`, the number next(k) of the corner
-// behind corner k, and the velocities of the corners.
+// behind corner k, and the velocities of the corners, which nearestPoints() does not
+// read.
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
 #include "elementary/nearest_point.h"

@@ -20,8 +20,8 @@ OctreeCellNumber childOf(const OctreeCellNumber& parent, unsigned i) {
   OctreeCellNumber child{{}, parent.depth + 1};
   const unsigned below = OctreeCellNumber::kDepth - child.depth;
   for (unsigned k = 0; k < 3; ++k) {
-    const unsigned half = 2 * (unsigned{parent.key[k]} >> (below + 1)) + (i >> k & 1U);
-    child.key[k] = static_cast<std::uint16_t>((half << below) + (1U << below) / 2);
+    const unsigned number = 2 * (unsigned{parent.key[k]} >> (below + 1)) + (i >> k & 1U);
+    child.key[k] = static_cast<std::uint16_t>((number << below) + (1U << below) / 2);
   }
   return child;
 }

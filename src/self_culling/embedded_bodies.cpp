@@ -2,8 +2,6 @@
 #include "self_culling/embedded_bodies.h"
 
 #include <algorithm>
-#include <cassert>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -56,7 +54,7 @@ TreeVertex centerOf(const MovingKdopTree& tree, std::int32_t i) {
 
 /// Whether a closed surface stays star-shaped.
 /// @param center  the point to try
-/// @param[out] least  of all triangles; null: not wanted
+/// @param[in,out] least  begins as LeastSight(); of all triangles. Null: not wanted
 bool isStarShaped(const MovingKdopTree& tree, const Region& region,
                   const TreeVertex& center, const Kernels& kernels, LeastSight* least) {
   // A closed surface has about twice as many triangles as vertices, and these are in the

@@ -12,7 +12,7 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// What is added to a half-axis: 0 in center of a negative number, infinity in center of
+/// What is added to a half-axis: 0 in place of a negative number, infinity in place of
 /// a NaN.
 Float4 outward(const Float4& reach) {
   const Float4 least = reach < 0.f ? Float4{} : reach;

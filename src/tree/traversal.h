@@ -81,8 +81,8 @@ struct SelfCulling {
   /// of triangles in one such fan are left out.
   const std::uint8_t* fans{nullptr};
   /// For each node, the vertex whose embedded fan contains it (findNodesInFans()), or the
-  /// region in which its features are apart (findRegionsApart()). Pairs below two nodes
-  /// in the same one are left out.
+  /// region in which its features are apart (findRegionsApart(); of a body only the root
+  /// has it). Pairs below two nodes in the same one are left out.
   const std::uint32_t* nodes_in_fans{nullptr};
   /// For each node, whether it is an embedded region (EmbeddedRegions::nodes). Pairs
   /// below it are left out.

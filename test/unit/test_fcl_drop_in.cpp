@@ -343,8 +343,7 @@ TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
   };
   for (const auto& model : {std::static_pointer_cast<CollisionGeometry<S>>(deformable),
                             std::static_pointer_cast<CollisionGeometry<S>>(plain)}) {
-    // In float tests have FCL's functions of two models only (fcl_in_float.h). What FCL
-    // writes to is copied by the same function for both.
+    // In float tests have FCL's functions of two models only (fcl_in_float.h).
     if constexpr (std::is_same_v<S, double>)
       expectSameInThreads(20, [&] { return timeOf(*model, box, CCDC_NAIVE); });
     expectSameInThreads(20, [&] { return timeOf(*model, *model, CCDC_NAIVE); });
@@ -356,6 +355,27 @@ TYPED_TEST(DropInThreads, ContinuousQueriesThatFclAnswers) {
         expectSameInThreads(
             4, [&] { return timeOf(*model, *other, CCDC_CONSERVATIVE_ADVANCEMENT); });
   }
+}
+
+TYPED_TEST(DropInThreads, FclGetsCopiesOfWhatItWritesTo) {
+  using S = typename TypeParam::S;
+  const auto model = makeModel<BVHModel<TypeParam>>(makeIcosphere(1, 1));
+  const Box<S> box(1, 1, 1);
+  const NODE_TYPE volume = model->getNodeType();
+  const bool turns = volume == BV_OBB || volume == BV_kIOS || volume == BV_OBBRSS;
+  const auto isCopied = [&](const CollisionGeometry<S>& other, CCDSolverType solver) {
+    ContinuousCollisionRequest<S> request;
+    request.ccd_solver_type = solver;
+    const CollisionGeometry<S>* o = model.get();
+    return detail::geometryForFcl<S>(o, &other, request).get() != o;
+  };
+  EXPECT_EQ(isCopied(*model, CCDC_NAIVE), !turns);
+  EXPECT_EQ(isCopied(box, CCDC_NAIVE), !turns && volume != BV_RSS);
+  for (const CCDSolverType solver :
+       {CCDC_CONSERVATIVE_ADVANCEMENT, CCDC_POLYNOMIAL_SOLVER})
+    EXPECT_TRUE(isCopied(*model, solver) && isCopied(box, solver));
+  ContinuousCollisionRequest<S> request;
+  EXPECT_EQ(detail::geometryForFcl<S>(&box, model.get(), request).get(), &box);
 }
 
 /// A geometry of a type, which is all that FCL reads to choose a function.
