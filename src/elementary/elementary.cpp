@@ -436,7 +436,7 @@ struct SinglePair {
     const bool may_meet = narrowWindow(kind, x, window_lo, window_hi);
     result = {may_meet ? Answer::kUnsure : Answer::kNo, 0, 0, DecidedBy::kBox};
   }
-  void filter() {
+  void filterCoplanarity() {
     if (result.answer == Answer::kUnsure &&
         !mayBecomeCoplanar(kind, x, window_lo, window_hi))
       result = {Answer::kNo, 0, 0, DecidedBy::kFilter};

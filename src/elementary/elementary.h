@@ -50,7 +50,7 @@ void runStages(Pairs&& pairs) {
   pairs.cullByBoxes();
   // Coplanarity filter: the signs of the coefficients of the coplanarity cubic over the
   // window. If all are the same, there is no root and no contact.
-  pairs.filter();
+  pairs.filterCoplanarity();
   // Certified solve of eight pairs at a time: pairs with one root at which the inside
   // conditions are clear.
   pairs.solvePlainCases();

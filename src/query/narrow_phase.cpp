@@ -141,7 +141,7 @@ struct NarrowPhase::BlockPairs {
     if (const PairFilter* filter = phase.options_.filter)
       phase.counts_.mask_culled += phase.batch_.keep(kind, *filter);
   }
-  void filter() { phase.filter(kind); }
+  void filterCoplanarity() { phase.filterCoplanarity(kind); }
   void solvePlainCases() { phase.solvePlainCases(); }
   void solveRest() { phase.solveRest(); }
 };
@@ -180,7 +180,7 @@ void NarrowPhase::flush() {
 /// Makes candidates of the pairs that may become coplanar before latest(). A candidate
 /// has its whole window, so that the bracket of a contact does not depend on what was
 /// found before.
-void NarrowPhase::filter(ContinuousContactKind kind) {
+void NarrowPhase::filterCoplanarity(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);
   const std::size_t size = batch_.size(kind);
@@ -324,7 +324,7 @@ void NarrowPhase::add(const FeatureContact& contact) {
   if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
 }
 
-/// In place of filter() and solve(), with a distance.
+/// In place of filterCoplanarity() and solve(), with a distance.
 void NarrowPhase::testDistances(ContinuousContactKind kind) {
   const std::uint32_t* codes = batch_.codes(kind);
   const TimeWindow* windows = batch_.windows(kind);

@@ -151,7 +151,7 @@ class NarrowPhase {
   Crossing crossingAt(std::size_t i) const;
   bool accept(Crossing& crossing) const;
   struct BlockPairs;
-  void filter(ContinuousContactKind kind);
+  void filterCoplanarity(ContinuousContactKind kind);
   void solvePlainCases();
   void solveRest();
   template <typename OnNo, typename OnOpen>
