@@ -14,6 +14,7 @@
 #include "api/request_filter.h"
 #include "api/unbounded_shapes.h"
 #include "base/default_floating_point.h"
+#include "base/large_pages.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "fcl/common/exception.h"
@@ -119,8 +120,13 @@ void fillContacts(const QueryAnswer& answer, const QuerySettings& settings,
     return convert(answer.contacts[i]);
   };
   // Allocate first: an exception must leave the result unchanged.
-  result.contacts.reserve(count);
   result.crossings.reserve(settings.enable_crossings ? answer.crossings.size() : 0);
+  if (result.contacts.capacity() < count) {
+    std::vector<ContinuousContact<S>> room;
+    room.reserve(count);
+    deformable::preferLargePages(room.data(), count * sizeof(ContinuousContact<S>));
+    result.contacts.swap(room);
+  }
   if (deformable::numThreads(settings.num_threads) == 1) {
     result.contacts.clear();
     for (std::size_t i = 0; i < count; ++i) result.contacts.push_back(contactAt(i));
