@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <limits>
 #include <tuple>
 
 namespace fcl {
@@ -36,15 +37,12 @@ void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists
   for (auto& list : lists) {
     auto end = list.begin();
     for (const FeatureContact& contact : list) {
-      const bool is_once = isOnce(contact);
-      FeatureContact* kept = is_once ? nullptr : seen.find(contact);
-      if (!kept) {
-        if (&*end != &contact) *end = contact;
-        if (!is_once) seen.add(*end);
+      if (&*end != &contact) *end = contact;
+      FeatureContact* kept = isOnce(*end) ? nullptr : seen.findOrAdd(*end);
+      if (!kept)
         ++end;
-      } else if (isPreferred(contact, *kept)) {
-        *kept = contact;
-      }
+      else if (isPreferred(*end, *kept))
+        *kept = *end;
     }
     list.erase(end, list.end());
   }
@@ -68,21 +66,26 @@ void ContactSink::replace(FeatureContact& kept, const FeatureContact& contact) {
   if (cut_) order_.insert(&kept);
 }
 
+/// Takes another contact of the same features, if it is the one to keep.
+bool ContactSink::improve(FeatureContact& kept, const FeatureContact& contact) {
+  if (!isPreferred(contact, kept)) return false;
+  replace(kept, contact);
+  return true;
+}
+
 bool ContactSink::add(const FeatureContact& contact) {
   assert(0 <= contact.toc_lo && contact.toc_lo <= contact.toc_hi && contact.toc_hi <= 1);
   first_hi_ = std::min(first_hi_, contact.toc_hi);
   const bool may_repeat = mayRepeat(contact);
-  if (may_repeat)
-    if (FeatureContact* kept = seen_.find(contact)) {
-      if (!isPreferred(contact, *kept)) return false;
-      replace(*kept, contact);
-      return true;
-    }
   if (contacts_.size() < capacity_) {
     contacts_.push_back(contact);
-    if (may_repeat) seen_.add(contacts_.back());
-    return true;
+    FeatureContact* kept = may_repeat ? seen_.findOrAdd(contacts_.back()) : nullptr;
+    if (!kept) return true;
+    contacts_.pop_back();
+    return improve(*kept, contact);
   }
+  if (may_repeat)
+    if (FeatureContact* kept = seen_.find(contact)) return improve(*kept, contact);
   cut();
   FeatureContact& latest = **order_.rbegin();
   if (!isEarlier(contact, latest)) return false;
@@ -181,15 +184,22 @@ SortedContacts::SortedContacts(std::vector<std::deque<FeatureContact>> lists)
     : lists_(std::move(lists)) {
   const Buckets bucketOf(lists_);
   const std::size_t count = bucketOf.count();
+  assert(count <= std::numeric_limits<std::uint32_t>::max());
   std::vector<std::size_t> ends(count + 1, 0);
+  UninitializedVector<std::uint32_t> buckets(count);
+  auto bucket = buckets.begin();
   for (const auto& list : lists_)
-    for (const FeatureContact& c : list) ++ends[bucketOf(c) + 1];
+    for (const FeatureContact& c : list) {
+      *bucket = static_cast<std::uint32_t>(bucketOf(c));
+      ++ends[*bucket++ + 1];
+    }
   for (std::size_t i = 1; i <= count; ++i) ends[i] += ends[i - 1];
   sorted_.resize(count);
+  bucket = buckets.begin();
   // After this loop ends[i] is the end of bucket i; before, it is its beginning.
   for (const auto& list : lists_)
     for (const FeatureContact& c : list)
-      sorted_[ends[bucketOf(c)]++] = {Buckets::keyOf(c), &c};
+      sorted_[ends[*bucket++]++] = {Buckets::keyOf(c), &c};
   const auto at = [this](std::size_t i) {
     return sorted_.begin() + static_cast<std::ptrdiff_t>(i);
   };

@@ -102,6 +102,7 @@ class ContactSink {
   };
   void cut();
   void replace(FeatureContact& kept, const FeatureContact& contact);
+  bool improve(FeatureContact& kept, const FeatureContact& contact);
   bool mayRepeat(const FeatureContact& contact) const;
 
   std::size_t capacity_;

@@ -42,12 +42,25 @@ class ContactTable {
     if (2 * count > slots_.size()) grow(2 * count);
   }
 
+  /// @brief Adds a contact, unless one with the same features is there.
+  /// @return the contact that is there; null if this one has been added
+  Contact* findOrAdd(Contact& contact) {
+    reserve(size_ + 1);
+    const Key key(contact);
+    const std::uint64_t hash = key.hash();
+    std::size_t i = hash & mask();
+    for (; slots_[i].contact; i = next(i))
+      if (slots_[i].hash == hash && Key(*slots_[i].contact) == key)
+        return slots_[i].contact;
+    slots_[i] = {hash, &contact};
+    ++size_;
+    return nullptr;
+  }
+
   /// @pre none with the same features is in the table
   void add(Contact& contact) {
-    assert(!find(contact));
-    reserve(size_ + 1);
-    insert({Key(contact).hash(), &contact});
-    ++size_;
+    [[maybe_unused]] const Contact* known = findOrAdd(contact);
+    assert(!known);
   }
 
   /// @pre the contact is in the table
