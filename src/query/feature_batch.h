@@ -170,9 +170,18 @@ class FeatureBatch {
 
   void clear();
 
+  /// @brief Keeps the triangle pairs for which keeps(a, b) is true.
+  template <typename Keeps>
+  void keepTriangles(const Keeps& keeps) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < num_pairs_; ++i)
+      if (keeps(*pairs_[i].a, *pairs_[i].b)) keepPair(i, kept);
+    num_pairs_ = kept;
+  }
+
   /// @brief Culls triangle pairs that are apart until `latest`, with a distance those
-  /// that stay further apart than it, and lists the edges and faces whose boxes overlap
-  /// at t = 0.
+  /// that stay further apart than it (where this pays), and lists the edges and faces
+  /// whose boxes overlap at t = 0.
   /// @param latest  later contacts do not matter to the query
   /// @param counts  plane_culled is counted
   void cullTriangles(double latest, StageCounts& counts);

@@ -663,7 +663,11 @@ void expectSameWithFourThreads(const Model& model, Request request, std::size_t 
     const Result four = selfContacts<double>(model, request);
     ASSERT_EQ(one.contacts.size(), four.contacts.size());
     ASSERT_GE(one.contacts.size(), least);
+    EXPECT_EQ(one.initially_crossing, four.initially_crossing);
     EXPECT_EQ(one.counts.triangle_pairs, four.counts.triangle_pairs);
+    EXPECT_EQ(one.counts.feature_pairs, four.counts.feature_pairs);
+    EXPECT_EQ(one.counts.box_culled, four.counts.box_culled);
+    EXPECT_EQ(one.counts.filter_culled, four.counts.filter_culled);
     for (std::size_t i = 0; i < one.contacts.size(); ++i) {
       const Contact &x = one.contacts[i], &y = four.contacts[i];
       EXPECT_TRUE(nameOf(x, true) == nameOf(y, true));
@@ -691,6 +695,11 @@ TEST(FCL_MIN_DISTANCE, threadsDoNotMatter) {
   append(mesh, {sheet(0.4).vertices, sheet(0.02).vertices, sheet(0).triangles});
   append(mesh, moved(still(makeIcosphere(3, 0.3)), {0.5, 0.5, -0.4}));
   expectSameWithFourThreads(*modelOf(mesh), requestAt(0.025), 1000);
+  // Sheets that cross at t = 0.
+  append(mesh, moved(still(sheet(0)), {0.3, 0, 0}));
+  const auto crossing = modelOf(mesh);
+  EXPECT_TRUE(selfContacts<double>(*crossing, requestAt(0.025)).initially_crossing);
+  expectSameWithFourThreads(*crossing, requestAt(0.025), 1000);
 }
 
 bool holds(const Triangle& t, int v) {
