@@ -196,6 +196,21 @@ class AdvancingPair {
     return nearestPoint(polygon_, corners_);
   }
 
+  /// The distance at t of the point that is nearest at another time: the pair is not
+  /// further apart.
+  double distanceOf(const NearestPoint& near, double t) const {
+    const int first = std::max({near.corner, near.side, 0}), last = polygon_.count() - 1;
+    const Vec p = polygon_.at(first, t);
+    Vec point = p;
+    if (near.side >= 0) {
+      point = p + near.along * (polygon_.at(polygon_.next(first), t) - p);
+    } else if (near.corner < 0) {
+      point = p + near.along * (polygon_.at(1, t) - p) +
+              near.across * (polygon_.at(last, t) - p);
+    }
+    return std::sqrt(dot(point, point));
+  }
+
   Vec direction(const NearestPoint& near, int attempt) const {
     return directionApart(polygon_, corners_, near, attempt);
   }
@@ -264,14 +279,21 @@ class AdvancingPair {
 
 /// A time in (t, t + width] at which the features provably are within d; t if none is
 /// found.
-/// @param gap  above d, at t
+/// @param near  at t, above d
 double proveWithin(AdvancingPair& pair, const DistanceTolerance& tolerance, double d,
-                   double t, double width, double gap, double rate) {
+                   double t, double width, const NearestPoint& near, double rate) {
   if (!(width > 0) || !(rate > 0)) return t;
-  for (double h = Advance::kFirstGuess * gap / rate;; h *= Advance::kFactor) {
+  const double gap = near.distance + tolerance.distance_error - d;
+  const auto isWithin = [&](double distance) {
+    return distance + tolerance.distance_error <= d;
+  };
+  for (double first = Advance::kFirstGuess * gap / rate, h = first;;
+       h *= Advance::kFactor) {
     double time = t + std::min(h, width);
     if (time - t > width) time = std::nextafter(time, t);
-    if (time > t && pair.nearestAt(time).distance + tolerance.distance_error <= d)
+    // The points that are nearest at t are a proof as a rule, and quicker to follow.
+    if (time > t && ((h == first && isWithin(pair.distanceOf(near, time))) ||
+                     isWithin(pair.nearestAt(time).distance)))
       return time;
     if (!(h < width)) return t;
   }
@@ -284,14 +306,14 @@ constexpr int kPlainSteps = 64;
 
 /// Takes the bracket from what is known at the time t.
 void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
-                const DistanceRequest& request, double d, double t, double reached,
-                double rate, DistanceContact& out) {
+                const DistanceRequest& request, double d, double t,
+                const NearestPoint& near, double rate, DistanceContact& out) {
   out.is_contact = true;
   out.toc_lo = out.toc_hi = t;
-  if (t == 0 || reached <= d) return;
+  if (t == 0 || near.distance + tolerance.distance_error <= d) return;
   const double width =
       std::min(std::min(request.toc_err, Advance::kShareOfTime * t), request.t_max - t);
-  out.toc_hi = proveWithin(pair, tolerance, d, t, width, reached - d, rate);
+  out.toc_hi = proveWithin(pair, tolerance, d, t, width, near, rate);
 }
 
 DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
@@ -311,7 +333,7 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
       if (!(d > 0)) {
         // They touch, and may pass through each other without coming nearer.
         setPart(kind, near, number, out);
-        setBracket(pair, tolerance, request, request.distance, 0, reached, rate, out);
+        setBracket(pair, tolerance, request, request.distance, 0, near, rate, out);
         return out;
       }
       tolerance = DistanceTolerance(d, pair.size());
@@ -329,7 +351,7 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
     }
     if (is_contact) {
       setPart(kind, near, number, out);
-      setBracket(pair, tolerance, request, d, t, reached, rate, out);
+      setBracket(pair, tolerance, request, d, t, near, rate, out);
       return out;
     }
     if (step.until > last) return out;

@@ -136,14 +136,6 @@ struct Tolerances {
         touching(all(DistanceTolerance::kTouching) * (d + size)) {}
 };
 
-/// Sets the part of the polygon that is nearest.
-FCL_CCD_INLINE void setPart(double part, Approach& out) {
-  const int k = static_cast<int>(part);
-  out.side = static_cast<std::int16_t>(k < kCorner ? k : -1);
-  out.corner = static_cast<std::int16_t>(
-      kCorner <= k && k < kInside ? k - static_cast<int>(kCorner) : -1);
-}
-
 /// A pair on its way to the distance.
 struct PairOnWay {
   /// Which of the pairs it is.
@@ -228,17 +220,19 @@ class AdvancingPairs {
     store(rate_, rate);
     store(d_, distance);
     const unsigned open = open_ | orders_.unknown(), yes = bits(is_contact_) & ~open;
-    for (std::size_t lane = 0; lane < count_; ++lane) {
-      if (left_ >> lane & 1U) {
-        *on_way++ = {number_[lane], toc_lo[lane], rate[lane], distance[lane]};
-        continue;
-      }
+    // Each mask is read by itself: a branch for each lane would be unpredictable.
+    for (unsigned lanes = left_; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+      *on_way++ = {number_[lane], toc_lo[lane], rate[lane], distance[lane]};
+    }
+    for (unsigned lanes = ~left_ & ((1U << count_) - 1); lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
       Approach& out = answers[number_[lane]];
       out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
                    : yes >> lane & 1U ? Approach::Answer::kYes
                                       : Approach::Answer::kNo;
       out.exchanges = static_cast<std::uint8_t>(orders_.exchanges(lane));
-      setPart(part[lane], out);
+      out.part = static_cast<std::uint8_t>(part[lane]);
       out.toc_lo = toc_lo[lane];
       out.toc_hi = toc_hi[lane];
     }
@@ -255,6 +249,15 @@ class AdvancingPairs {
     Doubles hi = t_, h = all(Advance::kFirstGuess) * gap / rate_;
     DoubleMask is_left = is_contact_ & (t_ > all(0)) & (reached_ > d_) &
                          (width > all(0)) & (rate_ > all(0));
+    if ((bits(is_left) & ~open_) == 0) return hi;
+    const auto take = [&](const Doubles& time, const Doubles& distance) HWY_ATTR {
+      const DoubleMask is_within = is_left & (time > t_) & (time - t_ <= width) &
+                                   (distance + distance_error <= d_);
+      hi = select(is_within, time, hi);
+      is_left = is_left & (hi == t_);
+    };
+    const Doubles guess = t_ + min(h, width);
+    take(guess, distancesOfNearest(guess));
     for (unsigned left = bits(is_left) & ~open_; left != 0; left &= bits(is_left)) {
       const Doubles time = t_ + min(h, width);
       Vectors corner[4];
@@ -262,14 +265,25 @@ class AdvancingPairs {
       const NearestPoints there = nearestPoints(x_, corner);
       // A sum that is rounded up to more than the width, and a sliver.
       open_ |= left & ~bits((time - t_ <= width) & there.is_sure);
-      const DoubleMask is_within =
-          is_left & (time > t_) & (there.distance + distance_error <= d_);
-      hi = select(is_within, time, hi);
-      is_left = is_left & (hi == t_) & (h < width);
+      take(time, there.distance);
+      is_left = is_left & (h < width);
       left &= ~open_;
       h = h * all(Advance::kFactor);
     }
     return hi;
+  }
+
+  /// AdvancingPair::distanceOf() the nearest points at t_.
+  FCL_CCD_INLINE Doubles distancesOfNearest(const Doubles& time) const {
+    Vectors corner[4];
+    x_.cornersAt(time, corner);
+    const NearestSides sides(x_, corner, near_);
+    const Vectors inside = corner[0] + near_.along * (corner[1] - corner[0]) +
+                           near_.across * (corner[x_.count - 1] - corner[0]),
+                  on_side = sides.from + near_.along * (sides.to - sides.from);
+    const Vectors point =
+        select(near_.isInside(), inside, select(near_.isSide(), on_side, sides.from));
+    return squareRoot(dot(point, point));
   }
 
   /// Sets the distance of each pair that is nearer than it at t = 0.
@@ -377,7 +391,7 @@ unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs
     Approach& out = answers[lane];
     out.answer = is_near >> lane & 1U ? Approach::Answer::kYes : Approach::Answer::kOpen;
     out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));
-    setPart(part[lane], out);
+    out.part = static_cast<std::uint8_t>(part[lane]);
     out.toc_lo = out.toc_hi = 0;
   }
   return left;

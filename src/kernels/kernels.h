@@ -194,10 +194,12 @@ struct Approach {
   Answer answer;
   /// How its points were put in order: exchangedNumbers().
   std::uint8_t exchanges;
-  /// Of a contact, what of its polygon is nearest then, as NearestPoint has it; and its
-  /// bracket.
-  std::int16_t side, corner;
+  /// Of a contact, what of its polygon is nearest then; and its bracket.
+  std::uint8_t part;
   double toc_lo, toc_hi;
+
+  /// Parts: side k is k, corner k is kCorner + k.
+  static constexpr std::uint8_t kCorner = 4, kInside = 8;
 };
 
 /// @brief So many pairs Kernels::approach() takes at a time: sixteen eights, so that

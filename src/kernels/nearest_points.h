@@ -10,6 +10,7 @@
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
 #include "elementary/nearest_point.h"
+#include "kernels/kernels.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
 
@@ -26,14 +27,14 @@ namespace detail {
 namespace deformable {
 namespace HWY_NAMESPACE {
 
-/// What of the polygon is nearest, as a number: side k is k, corner k is kCorner + k.
-constexpr double kCorner = 4, kInside = 8;
+/// The numbers of parts as Doubles have them.
+constexpr double kCorner = Approach::kCorner, kInside = Approach::kInside;
 
 /// NearestPoint of eight polygons.
 struct NearestPoints {
   Vectors point, normal;
   Doubles square, distance;
-  Doubles part, along;
+  Doubles part, along, across;
   /// The lanes whose nearest point is not inside of a sliver.
   DoubleMask is_sure;
 
@@ -79,7 +80,8 @@ FCL_CCD_INLINE NearestPoints nearestPoints(const Polygons& x,
       (along > zero) & (across > zero) &
       (x.count == 3 ? along + across < square : (along < square) & (across < square));
   const Doubles share = along / square;
-  const Vectors point = p + share * v + (across / square) * w;
+  near.across = across / square;
+  const Vectors point = p + share * v + near.across * w;
   // A lane whose nearest point is inside begins with the square 0, so that no side takes
   // its place.
   sides.square = select(is_inside, all(0), all(HUGE_VAL));

@@ -48,15 +48,17 @@ class PartTable {
   PartTable() {
     for (const bool is_edges : {false, true})
       for (unsigned exchanges = 0; exchanges < kExchanges; ++exchanges)
-        for (int part = 0; part < kParts; ++part) {
+        for (int part = 0; part <= Approach::kInside; ++part) {
           const ContinuousContactKind kind = is_edges
                                                  ? ContinuousContactKind::kEdgeEdge
                                                  : ContinuousContactKind::kVertexFace;
           // A triangle has three sides and corners.
-          if (!is_edges && part % kCorner == 3) continue;
+          if (!is_edges && part % Approach::kCorner == 3) continue;
           NearestPoint near;
-          near.side = part < kCorner ? part : -1;
-          near.corner = kCorner <= part && part < kInside ? part - kCorner : -1;
+          if (part < Approach::kCorner)
+            near.side = part;
+          else if (part < Approach::kInside)
+            near.corner = part - Approach::kCorner;
           int number[4];
           exchangedNumbers(kind, exchanges, number);
           DistanceContact& contact = contacts_[is_edges][exchanges][part];
@@ -66,18 +68,14 @@ class PartTable {
   }
 
   const DistanceContact& find(ContinuousContactKind kind, const Approach& found) const {
-    const int part = found.side >= 0     ? found.side
-                     : found.corner >= 0 ? kCorner + found.corner
-                                         : kInside;
-    return contacts_[kind == ContinuousContactKind::kEdgeEdge][found.exchanges][part];
+    return contacts_[kind == ContinuousContactKind::kEdgeEdge][found.exchanges]
+                    [found.part];
   }
 
  private:
   static constexpr unsigned kExchanges = 8;
-  /// Sides, then corners, then the inside.
-  static constexpr int kCorner = 4, kInside = 8, kParts = 9;
 
-  DistanceContact contacts_[2][kExchanges][kParts];
+  DistanceContact contacts_[2][kExchanges][Approach::kInside + 1];
 };
 
 }  // namespace
