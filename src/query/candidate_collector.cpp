@@ -6,6 +6,7 @@ namespace detail {
 namespace deformable {
 
 void CandidateCollector::flush() {
+  if (is_wanted_) batch_.keepTriangles(is_wanted_);
   batch_.cullTriangles(latest(), counts_);
   block_.clear();
   for (const ContinuousContactKind kind :

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
@@ -19,6 +20,10 @@ namespace deformable {
 using FeatureCandidateSink =
     std::function<bool(const FeatureCandidate* block, std::size_t count)>;
 
+/// @brief Whether pairs of features of two triangles are wanted. Empty: of all.
+using TrianglePairTest =
+    std::function<bool(const TreeTriangle& a, const TreeTriangle& b)>;
+
 /// @brief Takes the place of NarrowPhase in a query for candidates: it hands them to the
 /// caller and does not test them.
 class CandidateCollector {
@@ -26,10 +31,14 @@ class CandidateCollector {
   /// @param a, b, sink  kept by reference; a and b are the same object for a
   /// self-collision
   /// @param reach  as of FeatureBatch
+  /// @param is_wanted  asked for each block, so that its answer may change
   /// @pre both meshes have owners; otherwise the sink would get pairs repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                     const FeatureCandidateSink& sink, double reach)
-      : batch_(a, b, shift, kernels(), reach), sink_(sink) {
+                     const FeatureCandidateSink& sink, double reach,
+                     TrianglePairTest is_wanted)
+      : batch_(a, b, shift, kernels(), reach),
+        sink_(sink),
+        is_wanted_(std::move(is_wanted)) {
     assert(a.hasOwners() && b.hasOwners());
   }
 
@@ -59,6 +68,7 @@ class CandidateCollector {
  private:
   FeatureBatch batch_;
   const FeatureCandidateSink& sink_;
+  const TrianglePairTest is_wanted_;
   std::vector<FeatureCandidate> block_;
   bool stopped_{false};
   StageCounts counts_;

@@ -149,10 +149,12 @@ class ContactQuery {
 };
 
 bool candidates(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
-                const FeatureCandidateSink& sink, double min_distance) {
+                const FeatureCandidateSink& sink, double min_distance,
+                const TrianglePairTest& is_wanted = {}) {
   const double reach = shifts.reach(1);
   const KdopShift shift = shifts.shift(reach);
-  CandidateCollector leaves(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach);
+  CandidateCollector leaves(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach,
+                            is_wanted);
   const MeshPair meshes{a, b, shifts,
                         &a == &b ? proveSelf(a, true, min_distance, 1) : SelfProofs{},
                         min_distance};
@@ -213,6 +215,15 @@ bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const FeatureCandidateSink& sink, double min_distance) {
   const DefaultFloatingPoint mode;
   return candidates(a, b, shiftsOf(a, b, min_distance, false), sink, min_distance);
+}
+
+void candidatesAtEnd(const MeshInstance& a, const MeshInstance& b,
+                     const FeatureCandidateSink& sink, double distance,
+                     const TrianglePairTest& is_wanted) {
+  const DefaultFloatingPoint mode;
+  BoxShifts shifts = shiftsOf(a, b, distance, false);
+  shifts.leaveOutStart();
+  candidates(a, b, shifts, sink, distance, is_wanted);
 }
 
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b) {

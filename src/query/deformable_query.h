@@ -38,6 +38,15 @@ bool candidatesSelf(const MeshInstance& a, const FeatureCandidateSink& sink,
 bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
                     const FeatureCandidateSink& sink, double min_distance = 0);
 
+/// @brief Hands the pairs that may be within a distance at t = 1 to the sink, with some
+/// others. The windows of the former end at 1.
+/// @param a, b  the same object for a mesh with itself
+/// @param distance  above 0
+/// @pre a and b have owners
+void candidatesAtEnd(const MeshInstance& a, const MeshInstance& b,
+                     const FeatureCandidateSink& sink, double distance,
+                     const TrianglePairTest& is_wanted);
+
 /// @brief The shift between the boxes of two meshes, which may have different origins and
 /// translations. overlapWindow() adds it.
 KdopShift relativeShift(const MeshInstance& a, const MeshInstance& b);

@@ -122,6 +122,13 @@ BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
   speed_ = 2 / DistanceTolerance::kShare * (displacementOf(a) + displacementOf(b));
 }
 
+void BoxShifts::leaveOutStart() {
+  assert(!(speed_ < std::numeric_limits<double>::infinity()));
+  // shifted() keeps a half-axis at kLeastHalf or above, so that the sum of two boxes is
+  // finite or plus infinity, where nothing of a window is cut off.
+  for (float& half : between_.t0.half) half = 0.5f * kLeastHalf;
+}
+
 double BoxShifts::reach(double latest) const {
   const double share = speed_ * latest;
   return share < reach_ ? std::min(reach_, std::max(almost_, share)) : reach_;

@@ -42,6 +42,12 @@ class BoxShifts {
   BoxShifts(const MeshInstance& a, const MeshInstance& b, const KdopShift* between,
             double distance, bool ignores_initially_closer);
 
+  /// @brief Moves all boxes so far apart at t = 0 that those which overlap at some time
+  /// do so at t = 1, except for boxes of extreme size. So pairs that are near at an
+  /// earlier time only are left out.
+  /// @pre initially closer pairs are not ignored, and the query looks at the whole step
+  void leaveOutStart();
+
   /// @brief Whether nothing is added.
   bool isEmpty() const { return is_empty_; }
   /// @brief Features further apart at t = 0 have no contact until `latest`, which comes

@@ -23,12 +23,21 @@ class SafeBounds {
              std::vector<double>& bounds_b)
       : min_distance_(min_distance), most_(most), bounds_{&bounds_a, &bounds_b} {}
 
+  /// Whether a bound of the vertices of two triangles can become less.
+  bool isWanted(const TreeTriangle& a, const TreeTriangle& b) const {
+    double most = 0;
+    for (int k = 0; k < 3; ++k)
+      most = std::max({most, (*bounds_[0])[a.id[k]], (*bounds_[1])[b.id[k]]});
+    return most > 0;
+  }
+
   /// Takes the pairs of a block.
   void lower(const FeatureCandidate* pairs, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
       const FeatureCandidate& pair = pairs[i];
       // Boxes that are apart at the end keep more than the needed distance.
       if (pair.window_hi < 1) continue;
+      if (isZero(pair)) continue;
       if (isPart(pair.kind)) {
         lower(pair, leastDistanceAlone(pair));
         continue;
@@ -41,6 +50,21 @@ class SafeBounds {
   }
 
  private:
+  /// The bound of a vertex of a pair.
+  double& boundOf(const FeatureCandidate& pair, int i) {
+    const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+    const int side = (i < num_first) == pair.first_on_a ? 0 : 1;
+    return (*bounds_[side])[pair.vertices[i]];
+  }
+
+  /// Whether no bound of a pair can become less.
+  bool isZero(const FeatureCandidate& pair) {
+    const int count = static_cast<int>(numVertices(pair.kind));
+    for (int i = 0; i < count; ++i)
+      if (boundOf(pair, i) > 0) return false;
+    return true;
+  }
+
   /// The points of a pair. Two edges are put in order, so that rounding does not depend
   /// on the order of the meshes.
   struct EndPoints {
@@ -76,15 +100,13 @@ class SafeBounds {
   }
 
   void lower(const FeatureCandidate& pair, double least) {
-    const int num_first = pair.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1,
-              count = static_cast<int>(numVertices(pair.kind));
+    const int count = static_cast<int>(numVertices(pair.kind));
     double size = most_;
     for (int i = 0; i < count; ++i)
       for (int k = 0; k < 3; ++k) size = std::max(size, std::abs(pair.x[i]->t1[k]));
     const double safe = halfOf(least - min_distance_, size);
     for (int i = 0; i < count; ++i) {
-      const int side = (i < num_first) == pair.first_on_a ? 0 : 1;
-      double& bound = (*bounds_[side])[pair.vertices[i]];
+      double& bound = boundOf(pair, i);
       bound = std::min(bound, safe);
     }
   }
@@ -125,10 +147,10 @@ void lowerToSafe(const MeshInstance& a, const MeshInstance& b, double min_distan
   };
   // Pairs that are further apart do not lower a bound.
   const double reach = (min_distance + 2 * most) * (1 + 0x1p-50);
-  if (&a == &b)
-    candidatesSelf(a, sink, reach);
-  else
-    candidatesPair(a, b, sink, reach);
+  const TrianglePairTest isWanted = [&bounds](const auto& in_a, const auto& in_b) {
+    return bounds.isWanted(in_a, in_b);
+  };
+  candidatesAtEnd(a, b, sink, reach, isWanted);
 }
 
 }  // namespace deformable

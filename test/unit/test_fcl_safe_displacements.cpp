@@ -10,11 +10,13 @@
 #include <memory>
 #include <vector>
 
+#include "api/prepared_mesh.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/safe_displacements.h"
 #include "feature_distance.h"
 #include "moving_mesh.h"
+#include "query/deformable_query.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -122,7 +124,7 @@ std::shared_ptr<Model> modelOf(const MovingMesh& mesh) {
 }
 
 TEST(FCL_SAFE_DISPLACEMENTS, ofAMeshWithItself) {
-  int low = 0;
+  int low = 0, zero = 0;
   for (std::uint64_t seed = 0; seed < 12; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
@@ -134,11 +136,77 @@ TEST(FCL_SAFE_DISPLACEMENTS, ofAMeshWithItself) {
     low += expectBounds(random, mesh.t1,
                         allPairs({mesh.t1, mesh.triangles}, mesh.triangles.size()), most,
                         d, bounds);
+    // Pairs whose vertices have this bound already are left out.
+    zero += static_cast<int>(std::count(bounds.begin(), bounds.end(), 0.));
     MovingMesh still = mesh;
     still.t0 = still.t1;
     EXPECT_EQ(safeSelfDisplacements(modelOf(still).get(), most, d), bounds);
+    // Near the largest floats, which boxes have, and beyond.
+    for (const int shift : {122, 126, 130}) {
+      const double scale = std::ldexp(1, shift);
+      MovingMesh huge = mesh;
+      std::vector<double> scaled = bounds;
+      for (std::size_t i = 0; i < bounds.size(); ++i) {
+        huge.t0[i] *= scale;
+        huge.t1[i] *= scale;
+        scaled[i] *= scale;
+      }
+      EXPECT_EQ(safeSelfDisplacements(modelOf(huge).get(), scale * most, scale * d),
+                scaled);
+    }
   }
   EXPECT_GE(low, 200);
+  EXPECT_GE(zero, 50);
+}
+
+// Two sheets that are far apart at t = 0 and close at t = 1, and the other way round.
+TEST(FCL_SAFE_DISPLACEMENTS, onlyTheEndOfTheStepCounts) {
+  constexpr double kGap = 0.01, kMost = 0.02, kD = 0.002;
+  const TestMesh sheet = makeSheet(8, 8);
+  const std::size_t count = sheet.vertices.size();
+  for (const bool is_near_at_end : {true, false}) {
+    MovingMesh mesh;
+    for (const bool is_upper : {false, true}) {
+      for (const V& p : sheet.vertices) {
+        const V far = p + V(0, 0, is_upper ? 1e6 : 0),
+                near = p + V(0, 0, is_upper ? kGap : 0);
+        mesh.t0.push_back(is_near_at_end ? far : near);
+        mesh.t1.push_back(is_near_at_end ? near : far);
+      }
+      const std::size_t first = is_upper ? count : 0;
+      for (const Triangle& t : sheet.triangles)
+        mesh.triangles.emplace_back(first + t[0], first + t[1], first + t[2]);
+    }
+    const double expected = is_near_at_end ? (kGap - kD) / 2 : kMost;
+    const auto bounds = safeSelfDisplacements(modelOf(mesh).get(), kMost, kD);
+    EXPECT_EQ(bounds.size(), 2 * count);
+    for (const double bound : bounds) {
+      EXPECT_LE(bound, expected);
+      EXPECT_NEAR(bound, expected, 1e-12);
+    }
+
+    const auto model = modelOf(mesh);
+    const detail::deformable::PreparedMesh prepared(
+        *model, {}, {}, "o", 1, detail::deformable::FeatureOwners::kAlways);
+    std::size_t met = 0;
+    const auto countPairs = [&met](const auto* pairs, std::size_t number) {
+      for (std::size_t i = 0; i < number; ++i) EXPECT_EQ(pairs[i].window_hi, 1);
+      met += number;
+      return true;
+    };
+    const auto meet = [&](bool is_wanted) {
+      met = 0;
+      detail::deformable::candidatesAtEnd(
+          prepared.instance(), prepared.instance(), countPairs, kD + 2 * kMost,
+          [is_wanted](const auto&, const auto&) { return is_wanted; });
+      return met;
+    };
+    EXPECT_EQ(meet(true) > 2 * count, is_near_at_end);
+    EXPECT_EQ(meet(false), 0U);
+    if (!is_near_at_end) {
+      EXPECT_EQ(meet(true), 0U);
+    }
+  }
 }
 
 TEST(FCL_SAFE_DISPLACEMENTS, ofTwoMeshes) {
@@ -170,8 +238,15 @@ TEST(FCL_SAFE_DISPLACEMENTS, ofTwoMeshes) {
         safeDisplacements(rigid.get(), tf2, modelOf(a).get(), tf1, most, d);
     EXPECT_EQ(swapped.of_o1, found.of_o2);
     EXPECT_EQ(swapped.of_o2, found.of_o1);
+
+    const SafeDisplacements moving =
+        safeDisplacements(modelOf(a).get(), tf1, modelOf(b).get(), tf2, most, d);
+    bounds = moving.of_o1;
+    bounds.insert(bounds.end(), moving.of_o2.begin(), moving.of_o2.end());
+    low += expectBounds(random, both.vertices, allPairs(both, a.triangles.size()), most,
+                        d, bounds);
   }
-  EXPECT_GE(low, 100);
+  EXPECT_GE(low, 200);
 }
 
 // Two parallel triangles of the distance 1, and one far away.

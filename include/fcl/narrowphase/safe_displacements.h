@@ -54,10 +54,9 @@ FCL_EXPORT void findSafeSelfDisplacements(const CollisionGeometry<S>* o,
 /// mesh itself and one with each obstacle. Surfaces that cross already are not found:
 /// only distances of VF and EE pairs count.
 ///
-/// A DeformableBVHModel is read in its current frame. The motion from its previous frame
-/// makes the call slower: after updateFrames(x, x) there is none. Models and
-/// thread-safety are those of the @ref continuous_queries; the call runs in the caller's
-/// thread.
+/// A DeformableBVHModel is read in its current frame; its previous frame does not count.
+/// Models and thread-safety are those of the @ref continuous_queries; the call runs in
+/// the caller's thread.
 ///
 /// @param max_displacement  the largest bound, finite, above 0
 /// @param min_distance  not negative, finite
