@@ -115,6 +115,37 @@ void setErrors(const FramePairMesh& mesh, const Request& request, const Result& 
   for (const Contact& c : result.contacts) row.extra += !isWithin(mesh, c, request);
 }
 
+/// The time of the bounds of all vertices beside that of a first contact at the distance
+/// up to which pairs are looked at. Missed: bounds above half of the way to the nearest
+/// feature at t = 1. Extra: bounds below it by more than what the formulas leave open.
+OptionRow measureSafeDisplacements(const SpeedScene& scene, const OptionQuery& query,
+                                   double d, const Effort& effort) {
+  const double most = d;
+  Request off = OptionQuery::request(ContinuousQuery::kFirst);
+  off.min_distance = d + 2 * most;
+  OptionRow row =
+      query.measureSafeDisplacements("safe displacements", off, most, d, effort);
+
+  FramePairMesh at_end = scene.a;
+  at_end.previous = at_end.current;
+  std::vector<double> expected(at_end.current.size(), most);
+  for (const PairWithin& pair : findPairsWithin(at_end, d + 2 * most, false)) {
+    const double way = distanceAt(at_end, pair.kind, pair.vertices, 1) - d;
+    for (const int v : pair.vertices) {
+      double& bound = expected[static_cast<std::size_t>(v)];
+      bound = std::min(bound, std::max(0., 0.5 * way));
+    }
+  }
+  const std::vector<double> bounds = query.safeDisplacements(most, d);
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    const double open = 1e-5 * most;
+    row.contacts += bounds[i] < most;
+    row.missed += bounds[i] > expected[i] + 1e-9 * most;
+    row.extra += bounds[i] < expected[i] - open;
+  }
+  return row;
+}
+
 }  // namespace
 
 void addDistances(const SpeedScene& scene, const OptionQuery& query, const Effort& effort,
@@ -134,8 +165,15 @@ void addDistances(const SpeedScene& scene, const OptionQuery& query, const Effor
           ignores ? "min_distance and ignore_initially_closer" : "min_distance", off, on,
           effort));
       setErrors(scene.a, on, query(on), truth, rows.back());
+      if (kind == ContinuousQuery::kAll || ignores) continue;
+      // Many pairs may be within d at t = 0, all of which the row above lists.
+      on.num_max_contacts = 1;
+      rows.push_back(
+          query.measure("min_distance and num_max_contacts 1", off, on, effort));
+      setErrors(scene.a, on, query(on), truth, rows.back());
     }
   }
+  rows.push_back(measureSafeDisplacements(scene, query, d, effort));
 }
 
 }  // namespace test

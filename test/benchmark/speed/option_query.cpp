@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "fcl/narrowphase/continuous_collision.h"
+#include "fcl/narrowphase/safe_displacements.h"
 #include "timing.h"
 
 namespace fcl {
@@ -30,18 +31,39 @@ OptionQuery::Result OptionQuery::operator()(const Request& request) const {
 }
 
 OptionRow OptionQuery::measure(const std::string& option, const Request& off,
-                               const Request& on, const Effort& effort) const {
+                               const std::function<void()>& on,
+                               const Effort& effort) const {
   OptionRow row;
   row.scene = scene_;
   row.triangles = triangles_;
   row.option = option;
-  row.query = on.query == ContinuousQuery::kAll ? "all" : "first";
+  row.query = off.query == ContinuousQuery::kAll ? "all" : "first";
   row.off = row.on = std::numeric_limits<double>::infinity();
   repeat(effort, [&] {
     row.off = std::min(row.off, millisecondsOf([&] { (*this)(off); }));
-    row.on = std::min(row.on, millisecondsOf([&] { (*this)(on); }));
+    row.on = std::min(row.on, millisecondsOf(on));
   });
   return row;
+}
+
+OptionRow OptionQuery::measure(const std::string& option, const Request& off,
+                               const Request& on, const Effort& effort) const {
+  return measure(
+      option, off, [&] { (*this)(on); }, effort);
+}
+
+OptionRow OptionQuery::measureSafeDisplacements(const std::string& option,
+                                                const Request& off,
+                                                double max_displacement,
+                                                double min_distance,
+                                                const Effort& effort) const {
+  return measure(
+      option, off, [&] { safeDisplacements(max_displacement, min_distance); }, effort);
+}
+
+std::vector<double> OptionQuery::safeDisplacements(double max_displacement,
+                                                   double min_distance) const {
+  return safeSelfDisplacements(a_.get(), max_displacement, min_distance);
 }
 
 OptionQuery::Request OptionQuery::request(ContinuousQuery query, double toc_err) {

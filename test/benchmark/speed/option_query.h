@@ -4,6 +4,7 @@
 #ifndef FCL_BENCHMARK_SPEED_OPTION_QUERY_H
 #define FCL_BENCHMARK_SPEED_OPTION_QUERY_H
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -30,6 +31,14 @@ class OptionQuery {
   OptionRow measure(const std::string& option, const Request& off, const Request& on,
                     const Effort& effort) const;
 
+  /// @brief The bounds of safeSelfDisplacements() beside a query, in the same way.
+  OptionRow measureSafeDisplacements(const std::string& option, const Request& off,
+                                     double max_displacement, double min_distance,
+                                     const Effort& effort) const;
+
+  std::vector<double> safeDisplacements(double max_displacement,
+                                        double min_distance) const;
+
   /// @brief A request without options, for one thread.
   static Request request(ContinuousQuery query, double toc_err = 1e-4);
 
@@ -37,6 +46,9 @@ class OptionQuery {
   using Model = DeformableBVHModel<>;
 
   static std::unique_ptr<Model> modelOf(const FramePairMesh& mesh);
+
+  OptionRow measure(const std::string& option, const Request& off,
+                    const std::function<void()>& on, const Effort& effort) const;
 
   std::string scene_;
   std::size_t triangles_;
