@@ -22,15 +22,15 @@ namespace deformable {
 inline void preferLargePages([[maybe_unused]] void* data,
                              [[maybe_unused]] std::size_t bytes) {
 #if defined(__linux__) && defined(MADV_HUGEPAGE)
-  constexpr std::uintptr_t kSmall = std::uintptr_t{1} << 12,
-                           kLarge = std::uintptr_t{1} << 21;
+  constexpr std::size_t kSmall = std::size_t{1} << 12, kLarge = std::size_t{1} << 21;
   if (bytes < 4 * kLarge) return;
-  const auto address = reinterpret_cast<std::uintptr_t>(data),
-             begin = (address + kSmall - 1) / kSmall * kSmall,
-             end = (address + bytes) / kSmall * kSmall;
+  // From the first beginning of a page.
+  const std::size_t before =
+      (kSmall - reinterpret_cast<std::uintptr_t>(data) % kSmall) % kSmall;
   // Nothing depends on whether the system has such pages.
   const int error = errno;
-  static_cast<void>(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE));
+  static_cast<void>(
+      madvise(static_cast<char*>(data) + before, bytes - before, MADV_HUGEPAGE));
   errno = error;
 #endif
 }
