@@ -41,7 +41,9 @@ bool candidatesPair(const MeshInstance& a, const MeshInstance& b,
 /// @brief Hands the pairs that may be within a distance at t = 1 to the sink, with some
 /// others. The windows of the former end at 1.
 /// @param a, b  the same object for a mesh with itself
+/// @param sink  takes all
 /// @param distance  above 0
+/// @param is_wanted  triangles for which it is false are left out
 /// @pre a and b have owners
 void candidatesAtEnd(const MeshInstance& a, const MeshInstance& b,
                      const FeatureCandidateSink& sink, double distance,
