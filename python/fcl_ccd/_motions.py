@@ -23,7 +23,8 @@ class LinearMotion(Motion):
     """A motion that turns at constant speed about a point, which goes straight.
 
     begin, end : (4, 4) arrays, the poses at t = 0 and t = 1. The mesh turns the shorter
-        way round, by at most 180 degrees.
+        way round, by at most 180 degrees. Both ways of a half turn are equally long up to
+        rounding: give two steps of 90 degrees if the way matters.
     reference : (3,) array, the point about which it turns, in the frame of the mesh
 
     A mesh that deforms does so in the frame that turns.
@@ -44,7 +45,8 @@ class LinearMotion(Motion):
 class ScrewMotion(Motion):
     """A motion that turns about an axis and slides along it, at constant speed.
 
-    begin, end : (4, 4) arrays, the poses at t = 0 and t = 1, which determine the axis
+    begin, end : (4, 4) arrays, the poses at t = 0 and t = 1, which determine the axis. Of
+        a half turn rounding decides the sign of the axis, as for LinearMotion.
     """
 
     def __init__(self, begin: ArrayLike, end: ArrayLike) -> None:

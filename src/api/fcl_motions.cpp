@@ -43,13 +43,15 @@ const Motion* as(const MotionBase<double>& motion) {
 /// More than Eigen's alignment on any machine, and so right for any libfcl.
 constexpr std::size_t kMostAlignment = 64;
 
+PoseNumbers<double> integrate(const MotionBase<double>& motion, double t) {
+  alignas(kMostAlignment) Transform3<double> tf;
+  motion.integrate(t);
+  motion.getCurrentTransform(tf);
+  return toNumbers(tf);
+}
+
 void integrate(const MotionBase<double>& motion, PoseNumbers<double> (&pose)[2]) {
-  for (int end = 1; end >= 0; --end) {
-    alignas(kMostAlignment) Transform3<double> tf;
-    motion.integrate(end);
-    motion.getCurrentTransform(tf);
-    pose[end] = toNumbers(tf);
-  }
+  for (int end = 1; end >= 0; --end) pose[end] = integrate(motion, end);
 }
 
 template <typename Motion>
@@ -107,17 +109,50 @@ class SplineControl : public SplineMotion<double> {
   }
 };
 
+void setAxis(const Vector3<double>& axis, MovingGeometry<double>& moving) {
+  for (int k = 0; k < 3; ++k) moving.axis[k] = axis[k];
+}
+
+/// The axis of an interpolation. Its constructor of (tf1, tf2, O) sets neither the axis
+/// nor the velocities, so that they have any value from memory. Then there is none: those
+/// that a constructor computed are a unit vector and the way of the reference point.
+void readAxis(const InterpMotion<double>& motion, MovingGeometry<double>& moving) {
+  constexpr double kRounding = 0x1p-20;
+  const Vector3<double>&axis = motion.getAngularAxis(),
+        &reference = motion.getReferencePoint();
+  const Transform3<double> from = toTransform(moving.pose[0]),
+                           to = toTransform(moving.pose[1]);
+  const Vector3<double> begin = from * reference, end = to * reference;
+  const bool is_set = std::abs(axis.norm() - 1) <= kRounding &&
+                      (motion.getLinearVelocity() - (end - begin)).norm() <=
+                          kRounding * (begin.norm() + end.norm()) &&
+                      motion.getAngularVelocity() >= 0 &&
+                      motion.getAngularVelocity() <= 4;
+  if (is_set) setAxis(axis, moving);
+}
+
+/// The axis of a rotation by less than a full turn, times twice the sine of half of its
+/// angle, from the poses at t = 0 and t = 0.5.
+void setAxisFromHalf(const PoseNumbers<double>& half, MovingGeometry<double>& moving) {
+  const Matrix3<double> turn =
+      toTransform(half).linear() * toTransform(moving.pose[0]).linear().transpose();
+  setAxis({turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)},
+          moving);
+}
+
 /// If libfcl was compiled for another machine, only its own functions can read its
-/// motions. They give the ends of all motions, but no reference point and no control
-/// points.
+/// motions. They give the ends of all motions and the axis of a screw, but no reference
+/// point and no control points.
 bool readForeignMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
   const bool is_turn = as<InterpMotion<double>>(motion),
              is_screw = as<ScrewMotion<double>>(motion),
              is_spline = as<SplineMotion<double>>(motion);
   if (!is_turn && !is_screw && !is_spline && !as<TranslationMotion<double>>(motion))
     return false;
+  const PoseNumbers<double> half = integrate(motion, 0.5);
   integrate(motion, moving.pose);
   moving.path = is_screw ? PathKind::kScrew : PathKind::kStraight;
+  if (is_screw) setAxisFromHalf(half, moving);
   if (is_spline || (is_turn && !isConstantRotation(moving.pose[0], moving.pose[1])))
     moving.path = PathKind::kUnknown;
   return true;
@@ -136,9 +171,11 @@ bool readFclMotion(const MotionBase<double>& motion, MovingGeometry<double>& mov
     MotionEnds<InterpMotion<double>>::read(*interpolation, moving.pose);
     const Vector3<double>& reference = interpolation->getReferencePoint();
     for (int k = 0; k < 3; ++k) moving.reference[k] = reference[k];
+    readAxis(*interpolation, moving);
   } else if (const auto* screw = as<ScrewMotion<double>>(motion)) {
     moving.path = PathKind::kScrew;
     MotionEnds<ScrewMotion<double>>::read(*screw, moving.pose);
+    setAxis(screw->getAxis(), moving);
   } else if (const auto* spline = as<SplineMotion<double>>(motion)) {
     moving.path = PathKind::kSpline;
     integrateCopy(*spline, moving.pose);

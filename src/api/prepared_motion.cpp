@@ -29,6 +29,24 @@ bool isPosed(const PlacedGeometry<S>& placed) {
          !haveSameRotation(placed.beginning(), placed.end());
 }
 
+/// About which axis a half turn goes: about that of the motion object, which
+/// `integrate()` follows. Between two transforms about the one that FCL's constructors
+/// compute, by the same operations in the same order: at a half turn the last rounding
+/// decides its sign.
+template <typename S>
+Vec halfTurnAxis(const MovingGeometry<S>& moving) {
+  const double(&own)[3] = moving.axis;
+  if (own[0] != 0 || own[1] != 0 || own[2] != 0) return vecOf(own);
+  Transform3<double> tf[2];
+  for (int end = 0; end < 2; ++end)
+    for (int i = 0; i < 3; ++i)
+      for (int k = 0; k < 3; ++k)
+        tf[end].linear()(i, k) =
+            static_cast<double>(moving.pose[end].rotation[3 * i + k]);
+  const AngleAxis<double> turn(tf[1].linear() * tf[0].linear().transpose());
+  return {turn.axis().x(), turn.axis().y(), turn.axis().z()};
+}
+
 /// @param name  in errors
 template <typename S>
 MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
@@ -36,19 +54,21 @@ MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
   const double origin[3] = {0, 0, 0};
   if (isPosed(placed)) return MotionPath::still(Pose());
   if (placed.goesStraight())
-    return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
+    return MotionPath::interpolation(placed.beginning(), placed.end(), origin,
+                                     halfTurnAxis(moving));
   switch (moving.path) {
     case PathKind::kBounded:
       return MotionPath::bounded(*moving.motion, name);
     case PathKind::kSpline:
       return MotionPath::spline(moving.control[0], moving.control[1], name);
     case PathKind::kScrew:
-      return MotionPath::screw(placed.beginning(), placed.end());
+      return MotionPath::screw(placed.beginning(), placed.end(), halfTurnAxis(moving));
     case PathKind::kTurn:
-      return MotionPath::interpolation(placed.beginning(), placed.end(),
-                                       moving.reference);
+      return MotionPath::interpolation(placed.beginning(), placed.end(), moving.reference,
+                                       halfTurnAxis(moving));
     default:
-      return MotionPath::interpolation(placed.beginning(), placed.end(), origin);
+      return MotionPath::interpolation(placed.beginning(), placed.end(), origin,
+                                       halfTurnAxis(moving));
   }
 }
 

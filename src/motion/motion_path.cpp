@@ -35,6 +35,13 @@ namespace {
 /// A smaller rotation is only the rounding of the poses from which it was made.
 constexpr double kLeastAngle = 0x1p-50;
 
+/// From this angle on, a turn may go either way round. Poses that are rotations up to
+/// rounding need a few u below pi. But FCL's axis and this one may be computed from
+/// matrices that differ as a matrix and its nearest rotation, by 0.047 in the sine of the
+/// angle (poses that deviate by 2^-6 in each entry of R^T R). The other way round is
+/// shorter than 3.2, as the bounds on rounding above assume.
+constexpr double kLeastHalfTurn = 3.09;
+
 void set(double (&to)[3], const Vec& v) {
   to[0] = v.x;
   to[1] = v.y;
@@ -228,15 +235,20 @@ bool AccelerationBound::isZero() const {
 }
 
 MotionPath MotionPath::still(const Pose& pose) {
-  MotionPath path = turnFrom(pose, pose);
+  MotionPath path = turnFrom(pose, pose, {0, 0, 0});
   path.setTurnBounds();
   return path;
 }
 
-MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end) {
+MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end,
+                                const Vec& half_turn_axis) {
   MotionPath path;
   path.turn_.beginning = beginning;
   path.turn_.angle = turnBetween(beginning, end, path.turn_.axis);
+  if (path.turn_.angle > kLeastHalfTurn && dot(path.turn_.axis, half_turn_axis) < 0) {
+    path.turn_.axis = -1. * path.turn_.axis;
+    path.turn_.angle = 2 * M_PI - path.turn_.angle;
+  }
   path.stretch_ =
       std::max(spectralBound(beginning.rotation), spectralBound(end.rotation));
   if (path.turn_.angle > 0) {
@@ -267,8 +279,9 @@ void MotionPath::reachEnd(const Pose& end) {
 }
 
 MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
-                                     const double (&reference)[3]) {
-  MotionPath path = turnFrom(beginning, end);
+                                     const double (&reference)[3],
+                                     const Vec& half_turn_axis) {
+  MotionPath path = turnFrom(beginning, end, half_turn_axis);
   const Vec point = vecOf(reference);
   set(path.turn_.sine_translation, -1. * rotated(path.turn_.sine_rotation, point));
   set(path.turn_.cosine_translation, -1. * rotated(path.turn_.cosine_rotation, point));
@@ -282,8 +295,9 @@ MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
 // for the part o of the way T2 - T1 that is perpendicular to the axis a, so that P = a x
 // (T1 - p) and Q = a x P. For a small angle these are large, |o| / w, but P sin(w t) and
 // Q (1 - cos(w t)) are not, and lose nothing.
-MotionPath MotionPath::screw(const Pose& beginning, const Pose& end) {
-  MotionPath path = turnFrom(beginning, end);
+MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
+                             const Vec& half_turn_axis) {
+  MotionPath path = turnFrom(beginning, end, half_turn_axis);
   if (path.turn_.angle > 0) {
     const Vec way = vecOf(end.translation) - vecOf(beginning.translation);
     const Vec across = way - dot(way, path.turn_.axis) * path.turn_.axis;

@@ -84,11 +84,16 @@ class MotionPath {
   static MotionPath still(const Pose& pose);
 
   /// @brief Turns about a reference point (body frame) that goes straight.
+  /// @param half_turn_axis  a turn goes the shorter way round. Both ways of a half turn
+  /// are as long, up to rounding: it goes about this vector, not about its negative.
   static MotionPath interpolation(const Pose& beginning, const Pose& end,
-                                  const double (&reference)[3]);
+                                  const double (&reference)[3],
+                                  const Vec& half_turn_axis = {0, 0, 0});
 
   /// @brief Turns about an axis and slides along it, both at constant speed.
-  static MotionPath screw(const Pose& beginning, const Pose& end);
+  /// @param half_turn_axis  as for interpolation()
+  static MotionPath screw(const Pose& beginning, const Pose& end,
+                          const Vec& half_turn_axis = {0, 0, 0});
 
   /// @brief The control points of the translation and of the rotation vector.
   /// @param name  the name of the object in errors
@@ -169,7 +174,8 @@ class MotionPath {
  private:
   enum class Kind { kTurn, kSpline, kBounded };
 
-  static MotionPath turnFrom(const Pose& beginning, const Pose& end);
+  static MotionPath turnFrom(const Pose& beginning, const Pose& end,
+                             const Vec& half_turn_axis);
   void reachEnd(const Pose& end);
   void setTurnBounds();
   AccelerationBound turnAcceleration() const;

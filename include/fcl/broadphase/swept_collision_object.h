@@ -135,7 +135,7 @@ MovingGeometry<S> readObject(const void* object) {
   const auto& o = *static_cast<const ContinuousCollisionObject<S>*>(object);
   const MotionBase<S>& motion = *o.getMotion();
   MovingGeometry<S> moving{
-      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr};
+      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr, {}};
   if (readMotion(motion, moving)) return moving;
   if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
     readBoundedMotion(*bounded, moving);

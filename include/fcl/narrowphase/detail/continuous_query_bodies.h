@@ -168,7 +168,7 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
                                  const CollisionGeometry<S>* other) {
-  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr};
+  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr, {}};
   if (readMotion(*motion, moving)) return moving;
   if (const auto* bounded = dynamic_cast<const BoundedMotion*>(motion)) {
     readBoundedMotion(*bounded, moving);

@@ -102,6 +102,9 @@ struct MovingGeometry {
   double control[2][4][3];
   /// kBounded: the motion.
   const BoundedMotion* motion;
+  /// kTurn, kScrew: the axis of the motion object, which tells which way round a half
+  /// turn goes. Zero: the way of FCL's constructors.
+  double axis[3];
 };
 
 /// @brief A geometry that goes from one transform to another. Compiled with the caller.
@@ -109,7 +112,7 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
                                  PathKind path = PathKind::kStraight) {
-  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}, nullptr};
+  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}, nullptr, {}};
 }
 
 /// @brief What a geometry of this type is, for messages.
