@@ -190,7 +190,6 @@ ChordSearch::ChordSearch(const MotionBody& a, const MotionBody& b,
                          const QueryOptions& options)
     : body_{&a, &b}, options_(options), mesh_{ChordMesh(a), ChordMesh(b)} {
   constexpr double kMostOfEdge = 0x1p-4, kMostOfBentEdge = 0x1p-2, kLeastBent = 0x1p-7;
-  constexpr int kMostSpans = 16;
   assert(isFor(a, b, options));
   for (auto k : {0, 1}) whole_[k] = deviationOf(*body_[k]) * kUpward;
   const double edge = std::min(sampledEdge(a), sampledEdge(b));
@@ -198,28 +197,36 @@ ChordSearch::ChordSearch(const MotionBody& a, const MotionBody& b,
   const auto shareOf = [&](int k) {
     return whole_[k] / ((isBent(k) ? kMostOfBentEdge : kMostOfEdge) * edge);
   };
-  const double share = shareOf(0) + shareOf(1);
-  int count = 1;
-  while (count <= kMostSpans && !(share <= static_cast<double>(count) * count))
-    count *= 2;
-  if (count > kMostSpans) return;
-  num_spans_ = count;
+  num_spans_ = enoughSpans(shareOf(0) + shareOf(1));
   // What is within the tolerance counts as contact. A chord has the error of its ends.
   const MotionTolerance tolerance(a, b, options.min_distance);
   error_ = tolerance.touching + tolerance.position;
 }
 
-bool ChordSearch::isBent(int k) const {
-  // bendOf() needs less than pi. Such large turns are rare.
+// A few spans are a power of two, so that their ends are dyadic. More than these are as
+// many as are needed: their number, and with it the time of a query, grows in proportion
+// to the angle of a turn. A span in which the meshes are apart takes less than a
+// microsecond. Meshes that need more than the most have edges of less than 2^-24 of their
+// way, or of half of it without bends.
+int ChordSearch::enoughSpans(double share) const {
+  constexpr int kMostDyadic = 16, kMostSpans = 4096;
+  // bendOf() needs less than pi in a span.
   constexpr double kMostTurn = 2.5;
-  return has_bends_ && turnsAsOne(*body_[k]) &&
-         body_[k]->path().turn()->angle < kMostTurn;
+  if (!(share <= double{kMostSpans} * kMostSpans)) return 0;
+  int count = 1;
+  for (auto k : {0, 1})
+    while (isBent(k) && body_[k]->path().turn()->angle >= kMostTurn * count) count *= 2;
+  while (count <= kMostDyadic && !(share <= static_cast<double>(count) * count))
+    count *= 2;
+  return count <= kMostDyadic ? count : static_cast<int>(std::ceil(std::sqrt(share)));
 }
 
+bool ChordSearch::isBent(int k) const { return has_bends_ && turnsAsOne(*body_[k]); }
+
 /// Bound on the deviation of a mesh from its chords in a span.
-double ChordSearch::deviationIn(int k, int i) const {
-  const double dt = 1. / num_spans_;
-  const bool is_centered = i > 0 && !isBent(k) && turnsAsOne(*body_[k]);
+double ChordSearch::deviationIn(int k, const Span& span) const {
+  const double dt = span.t1 - span.t0;
+  const bool is_centered = span.t0 > 0 && !isBent(k) && turnsAsOne(*body_[k]);
   const double share = is_centered ? 0.5 + 0.5 * body_[k]->path().turn()->angle * dt : 1;
   return share * whole_[k] * dt * dt;
 }
@@ -257,7 +264,7 @@ ChordSearch::Span ChordSearch::find(int i) {
   Span span;
   span.t0 = static_cast<double>(i) / num_spans_;
   span.t1 = static_cast<double>(i + 1) / num_spans_;
-  const double deviation[2] = {deviationIn(0, i), deviationIn(1, i)};
+  const double deviation[2] = {deviationIn(0, span), deviationIn(1, span)};
   if (span.t0 > options_.t_max ||
       !mayMeet(span.t0, span.t1, (deviation[0] + deviation[1] + error_) * kUpward))
     return span;
@@ -275,7 +282,7 @@ ChordSearch::Span ChordSearch::find(int i) {
   }
   near.min_distance = (options_.min_distance + add * kUpward) * kUpward;
   near.max_contacts = static_cast<std::size_t>(-1);
-  near.t_max = std::min(1., (options_.t_max - span.t0) * num_spans_ * kUpward);
+  near.t_max = std::min(1., (options_.t_max - span.t0) / (span.t1 - span.t0) * kUpward);
   near.all_crossings &= i == 0;
   // A bracket need not be narrow.
   near.toc_err = 1;

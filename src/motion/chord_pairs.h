@@ -97,8 +97,10 @@ class ChordSearch {
   Span find(int i);
 
  private:
+  /// @param share  the deviation in one span beside the largest one in a span
+  int enoughSpans(double share) const;
   bool isBent(int k) const;
-  double deviationIn(int k, int i) const;
+  double deviationIn(int k, const Span& span) const;
   bool mayMeet(double t0, double t1, double deviation) const;
 
   const MotionBody* body_[2];

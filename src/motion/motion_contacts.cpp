@@ -387,20 +387,26 @@ class ChordContacts {
   double lastOf(const ChordSearch::Span& span) const {
     return std::min(span.t1, options_.t_max);
   }
+  /// The time at a share of a span, moved towards an end of the step by more than its
+  /// rounding. The length of a span is exact. If it is a power of two only the sum below
+  /// rounds, else the product too, by half a unit of less than the sum.
+  static double timeBeyond(const ChordSearch::Span& span, double share, double end) {
+    const double dt = span.t1 - span.t0, t = std::nextafter(span.t0 + share * dt, end);
+    int exponent;
+    return std::frexp(dt, &exponent) == 0.5 ? t : std::nextafter(t, end);
+  }
   /// A time before which the pair is apart during the span.
   static double firstOf(const FeatureContact& pair, const ChordSearch::Span& span) {
     if (pair.toc_lo == 0) return span.t0;
-    const double t = span.t0 + pair.toc_lo * (span.t1 - span.t0);
-    return std::max(std::nextafter(t, 0), span.t0);
+    return std::max(timeBeyond(span, pair.toc_lo, 0), span.t0);
   }
 
   template <typename Take>
   void addTurning(const FeatureContact& pair, const ChordSearch::Span& span,
                   TurningBatch& turning, Take&& take) const {
     const BodyTriangle a = triangleOf(pair, 0), b = triangleOf(pair, 1);
-    const double end = span.t0 + pair.toc_hi * (span.t1 - span.t0);
     turning.add({pair, a, b, featurePair(numberOf(pair, a, b)), firstOf(pair, span),
-                 std::min(std::nextafter(end, 1), lastOf(span))},
+                 std::min(timeBeyond(span, pair.toc_hi, 1), lastOf(span))},
                 take);
   }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <deque>
 #include <memory>
+#include <unordered_map>
+#include <utility>
 
 #include "base/parallel.h"
 #include "motion/convex_advance.h"
@@ -74,7 +76,7 @@ class MotionTraversal {
            kMost;
   }
 
-  void begin() { testAlone({0, 0, 1, body(0).root(), body(1).root(), 0, 0}); }
+  void begin() { testAlone({0, 0, 1, body(0).root(), body(1).root(), 0, 0, false}); }
 
   /// Calls visit(work) for pairs of triangles.
   template <typename Visit>
@@ -157,19 +159,11 @@ class MotionTraversal {
 
   /// Tests the pair in its span, and adds the parts that may overlap.
   void testAlone(const MotionWork& work) {
-    const int many = windows_.side(1).flat ? 0 : 1;
-    const MotionBody& opened = body(many);
+    const int many = windows_.openedAlone();
     const BodyPart &part = many == 1 ? work.b : work.a,
                    &other = many == 1 ? work.a : work.b;
-    MotionNode node;
-    node.count = 1;
-    for (int frame = 0; frame < (opened.isRigid() ? 1 : 2); ++frame) {
-      const MotionBox box = opened.box(part, frame);
-      for (int lane = 0; lane < MotionBoxes::kWidth; ++lane)
-        node.box[frame].set(lane, box);
-    }
-    std::fill(node.part, node.part + MotionBoxes::kWidth, part);
-    test(work, many, node, nullptr, windows_.partSpan(1 - many, other, work.t0, work.t1));
+    test(work, many, windows_.alone(many, part), nullptr,
+         windows_.partSpan(1 - many, other, work.t0, work.t1));
   }
 
   /// Tests the children of one side's part against the other side's part.
@@ -225,7 +219,7 @@ class MotionTraversal {
 
   void divide(MotionWork& work) {
     // In the shortest span the deviation is 2^-43 of the acceleration.
-    constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6;
+    constexpr double kShortest = 0x1p-20, kLeastShare = 0x1p-6, kMuch = 0x1p6;
     const double most_deviation = mostDeviation(work);
     work.t1 = std::min(work.t1, std::max(latest_, work.t0));
     const PartWindows::PartSpan span[2] = {
@@ -237,23 +231,52 @@ class MotionTraversal {
     // Small meshes that are within the distance still are in half of the span. Nothing is
     // gained where rounding is larger than both parts.
     const double least = std::max(std::min(radius[0], radius[1]),
-                                  kLeastShare * std::max(radius[opened], apart_));
+                                  kLeastShare * std::max(radius[opened], apart_)),
+                 deviation = span[0].deviation + span[1].deviation;
     if (work.t1 - work.t0 > kShortest && least > windows_.rounding() &&
-        span[0].deviation + span[1].deviation > most_deviation * least)
-      return halve(work);
+        deviation > most_deviation * least) {
+      if (!(deviation > kMuch * least)) return halve(work);
+      if (mayPart(work, span)) return halveTiny(work);
+    }
     const BodyPart& part = opened == 1 ? work.b : work.a;
     test(work, opened, windows_.side(opened).reader.open(part), &part, span[1 - opened]);
   }
 
+  /// Whether short spans may show that parts are apart which are tiny beside their
+  /// deviations. As many spans would be needed as the square root of that ratio, for each
+  /// part again, and a triangle that touches in all of them has a contact in each. Where
+  /// the boxes overlap at both ends of the span they do so in shorter spans too: most
+  /// likely the parts touch from the beginning, and advancing them shows it at once. Else
+  /// spans are halved towards the times at which the parts come near each other. Parts
+  /// that stay near each other without a touch get 4,096 spans at most. More would take
+  /// longer than to advance a pair, which gives up after 10,000 steps.
+  bool mayPart(const MotionWork& work, const PartWindows::PartSpan (&span)[2]) {
+    constexpr double kShortestOfTiny = 0x1p-12;
+    return work.t1 - work.t0 > kShortestOfTiny && !windows_.overlapAtEnds(work, span);
+  }
+
   void halve(const MotionWork& work) {
+    const auto [first, second] = halvesOf(work);
+    if (first.start < first.t1) testAlone(first);
+    testAlone(second);
+  }
+
+  /// Halves the span of parts that may have very many. Where the order does not matter
+  /// the work that was added last comes first: then that is the first half, and what is
+  /// found in it may end the second one.
+  void halveTiny(const MotionWork& work) {
+    auto [first, second] = halvesOf(work);
+    first.is_one_of_many = second.is_one_of_many = true;
+    testAlone(second);
+    if (first.start < first.t1) testAlone(first);
+  }
+
+  static std::pair<MotionWork, MotionWork> halvesOf(const MotionWork& work) {
     const double middle = 0.5 * (work.t0 + work.t1);
-    MotionWork half = work;
-    half.t1 = middle;
-    if (half.start < middle) testAlone(half);
-    half = work;
-    half.t0 = middle;
-    half.start = std::max(half.start, middle);
-    testAlone(half);
+    std::pair<MotionWork, MotionWork> halves(work, work);
+    halves.first.t1 = halves.second.t0 = middle;
+    halves.second.start = std::max(work.start, middle);
+    return halves;
   }
 
   /// Whether a free point meets a free edge or another one: they do at a distance only.
@@ -287,8 +310,30 @@ class MotionTraversal {
     parting_.set(pair.directionAt(t));
   }
 
+  /// A pair that is advanced in many spans.
+  struct PairOfManySpans {
+    /// The earliest contact that was found. HUGE_VAL: none.
+    double toc{HUGE_VAL};
+    /// All steps that it took.
+    int steps{0};
+  };
+
+  static std::uint64_t keyOf(const MotionWork& work) {
+    const auto half = [](std::int32_t x) {
+      return std::uint64_t{static_cast<std::uint32_t>(x)};
+    };
+    return half(work.a.child) << 32 | half(work.b.child);
+  }
+
+  /// Whether a pair had a contact in an earlier span: only the first one counts.
+  bool touchedBefore(const MotionWork& work) const {
+    const auto it = seen_.find(keyOf(work));
+    return it != seen_.end() && it->second.toc <= work.start;
+  }
+
   /// Advances a pair of triangles, shapes or cells of an octree.
   void advance(const MotionWork& work) {
+    if (work.is_one_of_many && touchedBefore(work)) return;
     const MotionBody &a = body(0), &b = body(1);
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
@@ -317,8 +362,11 @@ class MotionTraversal {
     if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
     const double last = std::min(end, works_.nextTurn(work));
-    int left = options_.max_steps - work.steps;
+    PairOfManySpans* const known = work.is_one_of_many ? &seen_[keyOf(work)] : nullptr;
+    int left = std::max(options_.max_steps - (known ? known->steps : work.steps), 0);
+    const int most = left;
     const auto answer = pair.advance(work.start, last, left, counts_);
+    if (known) known->steps += most - left;
     setPartingDirection(pair, answer, work.start);
     if (answer == TrianglePairMotion::Answer::kApart) return nullptr;
     if (answer == TrianglePairMotion::Answer::kOpen && left > 0) {
@@ -326,6 +374,7 @@ class MotionTraversal {
       push(work);
       return nullptr;
     }
+    if (known) known->toc = std::min(known->toc, work.start);
     MotionContact contact{};
     contact.place[0] = ~work.a.child;
     contact.place[1] = ~work.b.child;
@@ -388,6 +437,8 @@ class MotionTraversal {
   Vec last_direction_{0, 0, 0};
   /// The number of pairs that did not touch earlier than the contact that was found.
   int num_apart_{0};
+  /// The pairs that are advanced in many spans.
+  std::unordered_map<std::uint64_t, PairOfManySpans> seen_;
   std::vector<MotionContact> contacts_;
   MotionCounts counts_;
 };

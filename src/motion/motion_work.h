@@ -23,6 +23,8 @@ struct MotionWork {
   std::int32_t steps;
   /// How often it was divided since the dive began that it belongs to; 0: to none.
   std::int32_t dive;
+  /// Whether its span is one of many for parts that are tiny beside their deviations.
+  bool is_one_of_many;
 };
 
 /// @brief Hands out work. Where one contact is enough, the earliest comes first, but for

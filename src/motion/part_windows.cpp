@@ -233,22 +233,18 @@ bool PartWindows::narrowByShape(int opened, const MotionWork& work,
   return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
 }
 
-MeetingWindows PartWindows::windows(const MotionWork& work, int opened,
-                                    const MotionNode& node, const BodyPart* part,
-                                    const PartSpan& other) {
+/// @param halves  what is known of the triangles of the node
+MeetingWindows PartWindows::windowsOfBoxes(const MotionWork& work, int opened,
+                                           const MotionNode& node, const PartSpan& other,
+                                           const Margins& margins,
+                                           TriangleHalves halves) {
   MeetingWindows windows;
   windows.mask = 0;
-  const MotionSide& one = side_[1 - opened];
-  MotionSide& many = side_[opened];
+  const MotionSide &one = side_[1 - opened], &many = side_[opened];
   const SpanTimes times(work.t0, work.t1);
-  const auto& acceleration = many.accelerations(part, node, work.t0, work.t1);
-  TriangleHalves halves;
-  if (part) halves = testTriangles(work, opened, node, *part, acceleration);
-  if ((halves.left() & ((1U << node.count) - 1)) == 0) return windows;
   MotionBoxes moving[3];
   const MotionBoxes* boxes[3];
   for (int k = 0; k < 3; ++k) boxes[k] = boxesAt(many.body, node, times.at[k], moving[k]);
-  const Margins margins = marginsOf(work, opened, node, other, acceleration);
   setWindows(opened, node, other, times, margins, boxes, windows);
   halves.narrow(windows);
   if (!one.body.shape() || one.flat || one.body.shape()->fillsBox()) return windows;
@@ -258,6 +254,46 @@ MeetingWindows PartWindows::windows(const MotionWork& work, int opened,
       windows.mask &= ~(1U << lane);
   }
   return windows;
+}
+
+MeetingWindows PartWindows::windows(const MotionWork& work, int opened,
+                                    const MotionNode& node, const BodyPart* part,
+                                    const PartSpan& other) {
+  const auto& acceleration = side_[opened].accelerations(part, node, work.t0, work.t1);
+  TriangleHalves halves;
+  if (part) halves = testTriangles(work, opened, node, *part, acceleration);
+  if ((halves.left() & ((1U << node.count) - 1)) == 0) {
+    MeetingWindows none;
+    none.mask = 0;
+    return none;
+  }
+  return windowsOfBoxes(work, opened, node, other,
+                        marginsOf(work, opened, node, other, acceleration), halves);
+}
+
+MotionNode PartWindows::alone(int k, const BodyPart& part) const {
+  const MotionBody& body = side_[k].body;
+  MotionNode node;
+  node.count = 1;
+  for (int frame = 0; frame < (body.isRigid() ? 1 : 2); ++frame) {
+    const MotionBox box = body.box(part, frame);
+    for (int lane = 0; lane < MotionBoxes::kWidth; ++lane) node.box[frame].set(lane, box);
+  }
+  std::fill(node.part, node.part + MotionBoxes::kWidth, part);
+  return node;
+}
+
+// The windows of boxes whose points deviate by nothing: the gap at the ends counts as it
+// is.
+bool PartWindows::overlapAtEnds(const MotionWork& work, const PartSpan (&span)[2]) {
+  const int opened = openedAlone();
+  const MotionNode node = alone(opened, opened == 1 ? work.b : work.a);
+  const PartSpan& other = span[1 - opened];
+  Margins margins;
+  margins.fixed[0] =
+      direction_bound_ * (other.frame[0].pad + box_margin_ + node.box[0].pad[0]);
+  const MeetingWindows windows = windowsOfBoxes(work, opened, node, other, margins, {});
+  return windows.mask != 0 && !(windows.lo[0] > 0) && !(windows.hi[0] < 1);
 }
 
 }  // namespace deformable

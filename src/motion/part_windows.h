@@ -49,6 +49,17 @@ class PartWindows {
   MeetingWindows windows(const MotionWork& work, int opened, const MotionNode& node,
                          const BodyPart* part, const PartSpan& other);
 
+  /// @brief The side whose part testing a pair alone takes for the opened one.
+  int openedAlone() const { return side_[1].flat ? 0 : 1; }
+  /// @brief A part as the only child of a node.
+  MotionNode alone(int k, const BodyPart& part) const;
+
+  /// @brief Whether no direction shows that the boxes of two parts are apart at an end of
+  /// a span. Then they may overlap at both ends of the span, and of the parts of it that
+  /// begin or end there, however short these are.
+  /// @param span  of both parts in the span of the work
+  bool overlapAtEnds(const MotionWork& work, const PartSpan (&span)[2]);
+
  private:
   using Accelerations = double[MotionBoxes::kWidth];
 
@@ -77,6 +88,9 @@ class PartWindows {
   void setWindows(int opened, const MotionNode& node, const PartSpan& other,
                   const SpanTimes& times, const Margins& margins,
                   const MotionBoxes* const (&boxes)[3], MeetingWindows& windows);
+  MeetingWindows windowsOfBoxes(const MotionWork& work, int opened,
+                                const MotionNode& node, const PartSpan& other,
+                                const Margins& margins, TriangleHalves halves);
   TriangleHalves testTriangles(const MotionWork& work, int opened, const MotionNode& node,
                                const BodyPart& part, const Accelerations& acceleration);
   bool narrowByShape(int opened, const MotionWork& work,
