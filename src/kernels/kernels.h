@@ -319,7 +319,7 @@ struct Kernels {
   /// during the whole step, a bit each. A direction proves it at both ends of the step:
   /// the normal of one of the two triangles in its middle.
   /// @param count  1 to 8
-  /// @param distance  above 0
+  /// @param distance  0: only apart. Then paths are not bent
   unsigned (*stayApart)(const TrianglePair* pairs, std::size_t count, double distance,
                         const PairBends& bends);
 

@@ -92,7 +92,7 @@ class BlockTraversal {
   /// @param[out] pieces  the pieces of work that are left, one for each task
   void divide(std::vector<NodePair>& pieces) {
     std::size_t next = 0;
-    open_.cut(0);
+    beginPart();
     traversal_.start(open_);
     for (; next < open_.size() && open_.size() - next < schedule_.tasks &&
            !leaves_.isDone();
@@ -109,7 +109,7 @@ class BlockTraversal {
 
   /// @brief Does a piece of work to its end, or until it has taken this number of steps.
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
-    open_.cut(0);
+    beginPart();
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
     while (open_.size() > 0 && !leaves_.isDone() && steps-- > 0) {
       const std::size_t first = open_.size() - 1;
@@ -125,6 +125,13 @@ class BlockTraversal {
   }
 
  private:
+  /// What is tested from here on depends on nothing that came before.
+  void beginPart() {
+    open_.cut(0);
+    traversal_.beginTask();
+    leaves_.beginPart();
+  }
+
   void setLatest(double latest) {
     if (latest != latest_) changeLatest(latest);
   }
@@ -229,8 +236,7 @@ void traverse(const MeshPair& meshes, const Schedule& schedule, Leaves& leaves,
   if (moving_a && moving_b) return of(kTwo, *moving_a, *moving_b, nullptr);
   if (moving_a) return of(kTwo, *moving_a, rigid_b, nullptr);
   if (moving_b) return of(kTwo, rigid_a, *moving_b, nullptr);
-  if (meshes.min_distance > 0) return of(kTwo, rigid_a, rigid_b, nullptr);
-  const SeparatingAxes axes(meshes.a, meshes.b);
+  const SeparatingAxes axes(meshes.a, meshes.b, meshes.shifts.reach(1));
   of(kTwo, rigid_a, rigid_b, &axes);
 }
 

@@ -42,6 +42,9 @@ class CandidateCollector {
     assert(a.hasOwners() && b.hasOwners());
   }
 
+  /// @brief Begins a part of the traversal: FeatureBatch::beginTask().
+  void beginPart() { batch_.beginTask(); }
+
   /// @brief Takes pairs of triangles. The limit between two calls of flush() is
   /// FeatureBatch::kMaxPairs.
   /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not

@@ -236,10 +236,9 @@ void FeatureBatch::add(const LeafPair*& next, const LeafPair* last, const Wanted
 void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
   if (isBeginning(latest))
     leaveOutApart(latest, counts);
-  else if (reach_ > 0)
+  else
     leaveOutFar(counts);
-  else if (has_edges_)
-    leaveOutEdges();
+  if (reach_ == 0 && !isBeginning(latest) && has_edges_) leaveOutEdges();
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
@@ -275,13 +274,23 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   num_pairs_ = kept;
 }
 
+void FeatureBatch::beginTask() { pause_ = wait_ = 0; }
+
 /// Leaves out the triangle pairs that stay further apart than the distance during the
 /// whole step: six of seven of those of a cloth beside a body, but only one of ten of
 /// those of a crumpled cloth. A test costs a quarter of what a pair costs that is left,
 /// so the first pairs of a block tell whether it pays. They are pairs that own features:
-/// of the others, threads may add more or fewer.
+/// of the others, threads may add more or fewer. Without a distance most scenes have few
+/// such pairs (those of close surfaces that slide along each other are such pairs), and
+/// the boxes of features do the same work nearly as fast. So a block without them lets
+/// the next ones go untested, up to kLongestPause blocks.
 void FeatureBatch::leaveOutFar(StageCounts& counts) {
   constexpr std::size_t kSample = 16;
+  constexpr int kLongestPause = 15;
+  if (wait_ > 0) {
+    --wait_;
+    return;
+  }
   std::uint8_t apart[kMaxPairs / 8];
   std::size_t tried = 0, left_out = 0, culled = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
@@ -292,9 +301,12 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
     for (std::size_t i = 0; i < count && tried < kSample; ++i) {
       if (owned_[first + i] == 0) continue;
       left_out += mask >> i & 1U;
-      if (++tried == kSample && 4 * left_out < kSample) return;
+      if (++tried < kSample || 4 * left_out >= kSample) continue;
+      if (reach_ == 0) wait_ = pause_ = std::min(2 * pause_ + 1, kLongestPause);
+      return;
     }
   }
+  pause_ = 0;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < num_pairs_; ++i)
     if ((apart[i / 8] >> i % 8 & 1U) == 0) keepPair(i, kept);

@@ -149,6 +149,9 @@ class FeatureBatch {
 
   bool isSelf() const { return self_; }
 
+  /// @brief Begins a task: what is culled depends on nothing that came before.
+  void beginTask();
+
   /// @brief What a query still looks for.
   struct Wanted {
     /// Later contacts do not matter.
@@ -179,9 +182,9 @@ class FeatureBatch {
     num_pairs_ = kept;
   }
 
-  /// @brief Culls triangle pairs that are apart until `latest`, with a distance those
-  /// that stay further apart than it (where this pays), and lists the edges and faces
-  /// whose boxes overlap at t = 0.
+  /// @brief Culls triangle pairs that are apart until `latest`; if the whole step
+  /// matters, where this pays, those that stay apart, or further apart than the distance;
+  /// and lists the edges and faces whose boxes overlap at t = 0.
   /// @param latest  later contacts do not matter to the query
   /// @param counts  plane_culled is counted
   void cullTriangles(double latest, StageCounts& counts);
@@ -291,6 +294,8 @@ class FeatureBatch {
   /// = 0, they do not touch until `latest`.
   std::unique_ptr<float[]> gaps_;
   std::size_t num_pairs_{0};
+  /// For how many more blocks leaveOutFar() does nothing, and for how many it did last.
+  int wait_{0}, pause_{0};
   List lists_[2];
   std::unique_ptr<std::uint32_t[]> crossings_;
   std::size_t num_crossings_{0};

@@ -40,6 +40,9 @@ class NarrowPhase {
   /// @param task  the number of that task
   void begin(std::size_t task);
 
+  /// @brief Begins a part of the traversal: FeatureBatch::beginTask().
+  void beginPart() { batch_.beginTask(); }
+
   /// @brief Takes pairs of triangles. The limit between two calls of flush() is
   /// FeatureBatch::kMaxPairs.
   /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not

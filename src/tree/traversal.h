@@ -127,6 +127,9 @@ class Traversal {
     }
   }
 
+  /// @brief Begins a task: what it does depends on nothing that came before.
+  void beginTask() { trials_.begin(); }
+
   /// @brief Adds the first work: the whole of both trees.
   void start(WorkList& open) {
     if (kSelf)
@@ -248,15 +251,25 @@ class Traversal {
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
       if (both_nodes && areInFan(mine, node.child[k])) continue;
       const float other = both_nodes ? extentOf(node, k) : 0.f;
-      if (both_nodes && axes_ && axes_->mayHelp(size + other) &&
-          axes_->areApart(kSwapped ? node.child[k] : mine,
-                          kSwapped ? mine : node.child[k]))
+      if (both_nodes && axes_ &&
+          areKeptApart(kSwapped ? node.child[k] : mine, kSwapped ? mine : node.child[k],
+                       size + other))
         continue;
       if (is_triangle || (both_nodes && size < other))
         open.add(i, lane, node.child[k], kSwapped, earliest[k]);
       else
         open.add(j, k, mine, !kSwapped, earliest[k]);
     }
+  }
+
+  /// Whether an axis of one of the boxes of two nodes provably keeps them apart.
+  /// @param extents  the sum of those of both
+  bool areKeptApart(std::int32_t a, std::int32_t b, float extents) {
+    if (axes_->mayHelp(extents)) return axes_->areApart(a, b);
+    if (!axes_->areOriented() || !trials_.isDue(extents)) return false;
+    const bool is_apart = axes_->areApart(a, b);
+    trials_.note(extents, is_apart);
+    return is_apart;
   }
 
   /// Compares the triangles `lanes` of a node of tree a (kSwapped: b) with those of a
@@ -282,6 +295,7 @@ class Traversal {
   TreeB& tree_b_;
   const SelfCulling culling_;
   const SeparatingAxes* axes_;
+  AxisTrials trials_;
   const Kernels& kernels_;
   OverlapRequest request_;
   bool is_shifted_;

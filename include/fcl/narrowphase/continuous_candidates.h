@@ -51,8 +51,8 @@ using ContinuousCandidateSink =
 
 /// @defgroup continuous_candidates Candidates of continuous collision queries
 ///
-/// They hand out, in blocks, every feature pair that culling leaves: the pairs whose
-/// moving boxes overlap. On straight paths continuousSelfCollide() and
+/// They hand out, in blocks, every feature pair that culling leaves: pairs whose moving
+/// boxes overlap, without some that a plane keeps apart during the whole step. On straight paths continuousSelfCollide() and
 /// continuousCollide() with ContinuousQuery::kAll give the same pairs to their
 /// coplanarity filter.
 ///

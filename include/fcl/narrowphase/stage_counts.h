@@ -46,10 +46,9 @@ struct StageCounts {
   /// around the shared vertex stay a fan; pairs below a node that lies in one fan are not
   /// counted
   std::uint64_t fan_culled{0};
-  /// triangle pairs that a plane separates until the latest time that matters. Without a
-  /// distance only once the contacts found so far leave only the beginning of the step;
-  /// with one, if the whole step matters, only where the first pairs of a block show that
-  /// it pays
+  /// triangle pairs that a plane separates until the latest time that matters. If that is
+  /// more than the beginning of the step, only where the first pairs of a block show that
+  /// it pays, as for close surfaces that slide along each other
   std::uint64_t plane_culled{0};
   /// VF and EE pairs without a common vertex that the remaining triangle pairs own; with
   /// min_distance also pairs of free points with free edges and with each other. Without
