@@ -20,6 +20,8 @@ bool hostIsBigEndian() {
   return first_byte == 0;
 }
 
+std::uint8_t swapped(std::uint8_t bits) { return bits; }
+std::uint16_t swapped(std::uint16_t bits) { return __builtin_bswap16(bits); }
 std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
 std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
 
@@ -38,8 +40,25 @@ Value load(const char* at) {
 
 template <bool kSwap>
 double loadCoordinate(const char* at, PlyType type) {
-  if (type == PlyType::kDouble) return load<kSwap, double, std::uint64_t>(at);
-  return static_cast<double>(load<kSwap, float, std::uint32_t>(at));
+  switch (type) {
+    case PlyType::kDouble:
+      return load<kSwap, double, std::uint64_t>(at);
+    case PlyType::kFloat:
+      return static_cast<double>(load<kSwap, float, std::uint32_t>(at));
+    case PlyType::kInt8:
+      return load<kSwap, std::int8_t, std::uint8_t>(at);
+    case PlyType::kUint8:
+      return load<kSwap, std::uint8_t, std::uint8_t>(at);
+    case PlyType::kInt16:
+      return load<kSwap, std::int16_t, std::uint16_t>(at);
+    case PlyType::kUint16:
+      return load<kSwap, std::uint16_t, std::uint16_t>(at);
+    case PlyType::kInt32:
+      return load<kSwap, std::int32_t, std::uint32_t>(at);
+    case PlyType::kUint32:
+      return load<kSwap, std::uint32_t, std::uint32_t>(at);
+  }
+  return 0;
 }
 
 template <bool kSwap>
@@ -174,7 +193,11 @@ bool parseBody(const PlyHeader& header, std::string_view file, std::string_view 
       mesh.vertices = decodeVertices(file, block);
       body.remove_prefix(block.end() - block.begin);
     } else if (element.isFace()) {
-      if (!lists.readFaces(element, mesh.faces)) return false;
+      if (sizeOf(vertexIds(element)->type) != sizeof(std::uint32_t) ||
+          !lists.readFaces(element, mesh.faces))
+        return false;
+    } else if (element.isStrips() || element.isEdge()) {
+      return false;
     } else if (!lists.skipItems(element)) {
       return false;
     }
@@ -193,6 +216,11 @@ std::optional<PlyVertexBlock> findVertexBlock(std::string_view file) {
     return std::nullopt;
   return blockOf(first, header.format == PlyFormat::kBigEndian,
                  static_cast<std::size_t>(body.data() - file.data()));
+}
+
+double loadPlyValue(const char* at, PlyType type, bool big_endian) {
+  return big_endian != hostIsBigEndian() ? loadCoordinate<true>(at, type)
+                                         : loadCoordinate<false>(at, type);
 }
 
 Vertices decodeVertices(std::string_view file, const PlyVertexBlock& block) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Binary PLY is the format of long sequences, for which CGAL's reader is too slow (35
-// MB/s).
+// Binary PLY is the format of long sequences. What they have in common is read here, in
+// blocks; parsePly() reads any PLY, one value after the other.
 #ifndef FCL_CCD_BINARY_PLY_H
 #define FCL_CCD_BINARY_PLY_H
 
@@ -29,6 +29,9 @@ struct PlyVertexBlock {
 /// element is the first one and has no lists. Nothing for any other file.
 std::optional<PlyVertexBlock> findVertexBlock(std::string_view file);
 
+/// @brief A value of any type, without rounding.
+double loadPlyValue(const char* at, PlyType type, bool big_endian);
+
 /// @brief The vertices of the block, without rounding.
 Vertices decodeVertices(std::string_view file, const PlyVertexBlock& block);
 
@@ -36,7 +39,8 @@ Vertices decodeVertices(std::string_view file, const PlyVertexBlock& block);
 /// there is one.
 void requireFinite(const Vertices& vertices);
 
-/// @brief Reads a binary PLY that is complete and whose vertices have no lists.
+/// @brief Reads a binary PLY that is complete, whose vertices have no lists and whose
+/// faces have ids of 32 bits, and no strips and edges.
 /// @return false for any other file; the content of `mesh` is then undefined
 bool parseBinaryPly(std::string_view file, PolygonMesh& mesh);
 

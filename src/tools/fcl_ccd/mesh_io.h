@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace fcl_ccd {
@@ -13,10 +14,26 @@ namespace fcl_ccd {
 using Vertices = std::vector<std::array<double, 3>>;
 using Triangles = std::vector<std::array<int, 3>>;
 
-/// @brief A triangle mesh.
+/// @brief Vertex ids of edges that belong to no face: pieces of cables.
+using FreeEdges = std::vector<std::array<int, 2>>;
+
+/// @brief What a mesh has beside its faces: cables, rods and points.
+struct FreeElements {
+  FreeEdges edges;
+  std::vector<int> points;  ///< vertices that are points of their own
+
+  bool empty() const { return edges.empty() && points.empty(); }
+  bool operator==(const FreeElements& other) const {
+    return edges == other.edges && points == other.points;
+  }
+  bool operator!=(const FreeElements& other) const { return !(*this == other); }
+};
+
+/// @brief A triangle mesh, perhaps with free edges.
 struct Mesh {
   Vertices vertices;
   Triangles triangles;
+  FreeEdges edges{};
 };
 
 /// @brief The faces of a mesh as they are in a file.
@@ -43,6 +60,7 @@ struct Faces {
 struct PolygonMesh {
   Vertices vertices;
   Faces faces;
+  FreeElements free;
 };
 
 using Colour = std::array<std::uint8_t, 3>;
@@ -54,16 +72,23 @@ std::string extensionOf(const std::string& path);
 bool isMeshFormat(const std::string& extension);
 
 /// @brief Reads a mesh; the extension names the format: .obj, .ply (ascii, binary of
-/// either byte order, coordinates float or double), .off (text) or .stl (ascii, binary).
-/// (1) Vertices keep their order and their full double precision. The vertices of an STL
+/// either byte order), .off (text) or .stl (ascii, binary). Lines of text end with LF,
+/// CR LF or CR.
+/// (1) Vertices keep their order. Their coordinates are the nearest doubles to the
+/// numbers of the file, or the nearest floats where a PLY says so. The vertices of an STL
 /// are the corners of its facets, three for each, in their order.
-/// (2) A returned mesh has at least one face, each face has at least three vertices,
-/// coordinates are finite and vertex ids in range.
+/// (2) A returned mesh has at least one face, free edge or free point (`l` and `p` of
+/// OBJ, the element `edge` of PLY). Each face has at least three vertices, coordinates
+/// are finite and vertex ids in range.
+/// (3) Time and memory are in proportion to the length of the file.
 /// @throws std::runtime_error that names the file and the error.
 PolygonMesh readPolygonMesh(const std::string& path);
 
+/// @brief The same for a file whose contents were read before.
+PolygonMesh parsePolygonMesh(const std::string& path, std::string_view bytes);
+
 /// @brief The bytes of a binary little-endian PLY of the mesh, with coordinates in double
-/// and one colour per vertex.
+/// and one colour per vertex. Free edges are its element `edge`.
 /// @throws std::invalid_argument if the number of colours is not the number of vertices.
 std::string encodePaintedPly(const Mesh& mesh, const std::vector<Colour>& colours);
 

@@ -64,12 +64,18 @@ bool isPly(const std::string& path) { return extensionOf(path) == "ply"; }
 }  // namespace
 
 MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(paths)) {
-  PolygonMesh first = readPolygonMesh(paths_[0]);
+  const std::string& path = paths_[0];
+  // Another extension is refused before the file is opened.
+  const std::string bytes =
+      isMeshFormat(extensionOf(path))
+          ? namingPlace([&] { return path; }, [&] { return readRegularFile(path); })
+          : std::string();
+  PolygonMesh first = parsePolygonMesh(path, bytes);
   triangles_ = triangulate(first.vertices, first.faces);
   faces_ = std::move(first.faces);
+  free_ = std::move(first.free);
   vertices_ = std::move(first.vertices);
-  if (!isPly(paths_[0])) return;
-  const std::string bytes = readRegularFile(paths_[0]);
+  if (!isPly(path)) return;
   const auto block = findVertexBlock(bytes);
   if (!block) return;
   head_ = bytes.substr(0, block->begin);
@@ -77,9 +83,16 @@ MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(pa
   tail_ = bytes.substr(tail_begin_);
 }
 
+/// Whether the frame may be a binary PLY with the layout of the first one.
+bool MeshSequence::hasFastLayout(const std::string& path) const {
+  return !head_.empty() && isPly(path);
+}
+
 Vertices MeshSequence::read(std::size_t frame) const {
+  if (frame == 0) return vertices_;
+  if (auto kept = takeKept(frame)) return std::move(*kept);
   const std::string& path = paths_[frame];
-  if (!head_.empty() && isPly(path)) {
+  if (hasFastLayout(path)) {
     const auto vertices = namingPlace(
         [&] { return path; },
         [&]() -> std::optional<Vertices> {
@@ -94,6 +107,10 @@ Vertices MeshSequence::read(std::size_t frame) const {
         });
     if (vertices) return *vertices;
   }
+  return readWhole(path);
+}
+
+Vertices MeshSequence::readWhole(const std::string& path) const {
   PolygonMesh mesh = readPolygonMesh(path);
   if (mesh.vertices.size() != vertices_.size())
     throw std::runtime_error(path + ": has " + std::to_string(mesh.vertices.size()) +
@@ -103,18 +120,40 @@ Vertices MeshSequence::read(std::size_t frame) const {
   if (mesh.faces != faces_)
     throw std::runtime_error(path + ": its faces differ from those of " + paths_[0] +
                              ". All frames need the same faces in the same order");
+  if (mesh.free != free_)
+    throw std::runtime_error(path + ": its lines or points differ from those of " +
+                             paths_[0] +
+                             ". All frames need the same lines and points in the same "
+                             "order");
   return std::move(mesh.vertices);
 }
 
 void MeshSequence::check(std::size_t frame) const {
   const std::string& path = paths_[frame];
-  if (!head_.empty() && isPly(path)) {
+  if (hasFastLayout(path)) {
     const InputFile file(path);
     if (file.isRegularOfSize(tail_begin_ + tail_.size()) && file.has(head_, 0) &&
         file.has(tail_, tail_begin_))
       return;
   }
-  read(frame);
+  // The frame is parsed once if there is room for it until its step.
+  constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+  Vertices vertices = readWhole(path);
+  const std::size_t bytes = vertices.size() * sizeof vertices[0];
+  const std::lock_guard<std::mutex> lock(kept_->mutex);
+  if (frame == 0 || kept_->bytes + bytes > kMostBytes) return;
+  if (kept_->frames.insert_or_assign(frame, std::move(vertices)).second)
+    kept_->bytes += bytes;
+}
+
+std::optional<Vertices> MeshSequence::takeKept(std::size_t frame) const {
+  const std::lock_guard<std::mutex> lock(kept_->mutex);
+  const auto at = kept_->frames.find(frame);
+  if (at == kept_->frames.end()) return std::nullopt;
+  Vertices vertices = std::move(at->second);
+  kept_->bytes -= vertices.size() * sizeof vertices[0];
+  kept_->frames.erase(at);
+  return vertices;
 }
 
 void MeshSequence::announce(std::size_t frame) const {
@@ -122,6 +161,9 @@ void MeshSequence::announce(std::size_t frame) const {
   if (file.descriptor() >= 0) posix_fadvise(file.descriptor(), 0, 0, POSIX_FADV_WILLNEED);
 }
 
-void MeshSequence::join(const std::vector<int>& map) { joinVertices(map, triangles_); }
+void MeshSequence::join(const std::vector<int>& map) {
+  joinVertices(map, triangles_);
+  joinVertices(map, free_);
+}
 
 }  // namespace fcl_ccd

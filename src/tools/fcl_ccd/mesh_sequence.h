@@ -3,6 +3,10 @@
 #define FCL_CCD_MESH_SEQUENCE_H
 
 #include <cstddef>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +15,8 @@
 namespace fcl_ccd {
 
 /// @brief The frames of one mesh: files with the same faces and different positions of
-/// the vertices. Only the first frame is kept in memory.
+/// the vertices. The first frame is kept in memory. Frames in text and STL that check()
+/// has read are kept, up to 64 MB, until read() takes them.
 ///
 /// Faces are divided into triangles by their shape in the first frame, and in the same
 /// way in all others. All functions throw std::runtime_error that names the file and the
@@ -25,13 +30,16 @@ class MeshSequence {
   std::size_t size() const { return paths_.size(); }
   const std::string& path(std::size_t frame) const { return paths_[frame]; }
   const Triangles& triangles() const { return triangles_; }
+  const FreeElements& free() const { return free_; }
   const Vertices& firstVertices() const { return vertices_; }
 
-  /// @brief The vertices of a frame. It must fit the first one.
+  /// @brief The vertices of a frame. It must fit the first one. The first frame is not
+  /// read again, and no frame that check() has kept.
   Vertices read(std::size_t frame) const;
 
   /// @brief Throws if the frame does not fit the first one. If a binary PLY has the
-  /// layout of the first frame, its vertices are not read, only the rest.
+  /// layout of the first frame, its vertices are not read, only the rest. A frame of any
+  /// other kind is read, and kept for read().
   void check(std::size_t frame) const;
 
   /// @brief Tells the operating system that the frame will be read soon.
@@ -41,13 +49,26 @@ class MeshSequence {
   void join(const std::vector<int>& map);
 
  private:
+  /// Frames that are read and wait to be used.
+  struct Kept {
+    std::mutex mutex;
+    std::map<std::size_t, Vertices> frames;
+    std::size_t bytes{0};
+  };
+
+  bool hasFastLayout(const std::string& path) const;
+  Vertices readWhole(const std::string& path) const;
+  std::optional<Vertices> takeKept(std::size_t frame) const;
+
   std::vector<std::string> paths_;
   Faces faces_;
+  FreeElements free_;
   Triangles triangles_;
   Vertices vertices_;
   /// For a binary PLY that begins with its vertices: the bytes before and behind them.
   std::string head_, tail_;
   std::size_t tail_begin_{0};
+  std::unique_ptr<Kept> kept_{std::make_unique<Kept>()};
 };
 
 }  // namespace fcl_ccd

@@ -69,33 +69,47 @@ PlyProperty parseProperty(const Tokens& tokens) {
 void requireVertex(const PlyElement& element) {
   for (const char* name : {"x", "y", "z"}) {
     const PlyProperty* property = element.find(name);
-    if (property == nullptr || property->is_list || !isFloating(property->type))
-      throw std::runtime_error("the vertices have no coordinate " + std::string(name) +
-                               " of type float or double");
+    if (property == nullptr || property->is_list)
+      throw std::runtime_error("the vertices have no coordinate " + std::string(name));
   }
 }
 
-void requireFace(const PlyElement& element) {
+void requireFaces(const PlyElement& element) {
   const PlyProperty* ids = vertexIds(element);
-  if (ids == nullptr || !ids->is_list ||
-      (ids->type != PlyType::kInt32 && ids->type != PlyType::kUint32))
-    throw std::runtime_error(
-        "the faces have no list vertex_indices or vertex_index of type int or uint");
+  if (ids == nullptr || !ids->is_list || isFloating(ids->type))
+    throw std::runtime_error("the element '" + element.name +
+                             "' has no list vertex_indices or vertex_index of integers");
+}
+
+void requireEdge(const PlyElement& element) {
+  for (const char* name : {"vertex1", "vertex2"}) {
+    const PlyProperty* id = element.find(name);
+    if (id == nullptr || id->is_list || isFloating(id->type))
+      throw std::runtime_error("the element '" + element.name + "' has no property " +
+                               name + " of an integer type");
+  }
 }
 
 void requireMesh(const PlyHeader& header) {
-  int vertex_elements = 0, face_elements = 0;
+  int vertex_elements = 0, face_elements = 0, others = 0;
   for (const PlyElement& element : header.elements) {
     if (element.isVertex()) {
       requireVertex(element);
       ++vertex_elements;
     } else if (element.isFace()) {
-      requireFace(element);
+      requireFaces(element);
       ++face_elements;
+    } else if (element.isStrips()) {
+      requireFaces(element);
+      ++others;
+    } else if (element.isEdge() && element.count > 0) {
+      requireEdge(element);
+      ++others;
     }
   }
   if (vertex_elements != 1) throw std::runtime_error("expected one element 'vertex'");
-  if (face_elements != 1) throw std::runtime_error("expected one element 'face'");
+  if (face_elements > 1 || face_elements + others == 0)
+    throw std::runtime_error("expected one element 'face' (or 'tristrips', or 'edge')");
 }
 
 /// @return whether the header ends with this line.
@@ -116,6 +130,32 @@ bool parseLine(const Tokens& tokens, bool& format_known, PlyHeader& header) {
   return false;
 }
 
+/// The lines of a header. All end as the first one does: LF, CR LF or CR. The body may
+/// begin with any byte, also with LF, so that CR alone ends a line only if the first line
+/// has no LF.
+class HeaderLines {
+ public:
+  explicit HeaderLines(std::string_view& file) : file_(file) {
+    const std::size_t end = file.find_first_of("\r\n");
+    const bool is_cr = end != file.npos && file[end] == '\r' &&
+                       (end + 1 == file.size() || file[end + 1] != '\n');
+    end_ = is_cr ? '\r' : '\n';
+  }
+
+  bool take(std::string_view& line) {
+    if (file_.empty()) return false;
+    const std::size_t end = file_.find(end_);
+    line = file_.substr(0, end);
+    file_.remove_prefix(end == file_.npos ? file_.size() : end + 1);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    return true;
+  }
+
+ private:
+  std::string_view& file_;
+  char end_;
+};
+
 }  // namespace
 
 std::size_t sizeOf(PlyType type) { return info(type).size; }
@@ -135,22 +175,23 @@ const PlyProperty* PlyElement::find(std::string_view property) const {
   return nullptr;
 }
 
-const PlyProperty* vertexIds(const PlyElement& face) {
-  const PlyProperty* ids = face.find("vertex_indices");
-  return ids != nullptr ? ids : face.find("vertex_index");
+const PlyProperty* vertexIds(const PlyElement& faces) {
+  const PlyProperty* ids = faces.find("vertex_indices");
+  return ids != nullptr ? ids : faces.find("vertex_index");
 }
 
 PlyHeader takePlyHeader(std::string_view& file) {
   PlyHeader header;
   Tokens tokens;
+  HeaderLines lines(file);
   std::string_view line;
-  takeLine(file, line);
+  lines.take(line);
   splitTokens(line, tokens);
   if (tokens.size() != 1 || tokens[0] != "ply")
     throw std::runtime_error("line 1: a PLY file begins with 'ply'");
 
   bool format_known = false;
-  for (std::size_t line_no = 2; takeLine(file, line); ++line_no) {
+  for (std::size_t line_no = 2; lines.take(line); ++line_no) {
     splitTokens(line, tokens);
     if (tokens.empty()) continue;
     const bool ended =
@@ -162,39 +203,6 @@ PlyHeader takePlyHeader(std::string_view& file) {
     return header;
   }
   throw std::runtime_error("the file ends before 'end_header'");
-}
-
-std::string plainPlyHeader(const PlyHeader& header) {
-  constexpr const char* kFormats[] = {"ascii", "binary_little_endian",
-                                      "binary_big_endian"};
-  std::string out = "ply\nformat ";
-  out.append(kFormats[static_cast<int>(header.format)]).append(" 1.0\n");
-  int hidden = 0;
-  for (const PlyElement& element : header.elements) {
-    if (element.properties.empty()) continue;
-    const char* name =
-        element.isVertex() ? "vertex" : (element.isFace() ? "face" : "other");
-    out.append("element ").append(name).append(1, ' ');
-    out.append(std::to_string(element.count)).append(1, '\n');
-    for (const PlyProperty& property : element.properties) {
-      const bool coordinate = element.isVertex() && (&property == element.find("x") ||
-                                                     &property == element.find("y") ||
-                                                     &property == element.find("z"));
-      const bool ids = element.isFace() && &property == vertexIds(element);
-      out.append("property ");
-      if (property.is_list)
-        out.append("list ").append(info(property.count_type).name) += ' ';
-      out.append(info(property.type).name).append(1, ' ');
-      if (coordinate)
-        out.append(property.name);
-      else if (ids)
-        out.append("vertex_indices");
-      else
-        out.append("hidden").append(std::to_string(hidden++));
-      out += '\n';
-    }
-  }
-  return out + "end_header\n";
 }
 
 }  // namespace fcl_ccd

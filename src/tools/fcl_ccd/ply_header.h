@@ -31,6 +31,8 @@ struct PlyElement {
 
   bool isVertex() const { return name == "vertex" || name == "vertices"; }
   bool isFace() const { return name == "face" || name == "faces"; }
+  bool isStrips() const { return name == "tristrips" || name == "tristrip"; }
+  bool isEdge() const { return name == "edge" || name == "edges"; }
   const PlyProperty* find(std::string_view property) const;
 };
 
@@ -40,16 +42,13 @@ struct PlyHeader {
 };
 
 /// @brief Removes the header from the front of a PLY file and returns it. It has one
-/// vertex element with scalar x, y, z, and one face element with a list of vertex ids.
+/// vertex element with scalar x, y, z, and at least one of: a face element and an element
+/// of strips with a list of vertex ids, an edge element with vertex1 and vertex2.
 /// @throws std::runtime_error with the line and the cause.
 PlyHeader takePlyHeader(std::string_view& file);
 
-/// @brief The list of vertex ids of a face element, or null.
-const PlyProperty* vertexIds(const PlyElement& face);
-
-/// @brief The header as text, without comments and elements that have no property. Only
-/// coordinates and vertex ids keep their names, so that a reader ignores the rest.
-std::string plainPlyHeader(const PlyHeader& header);
+/// @brief The list of vertex ids of an element of faces or strips, or null.
+const PlyProperty* vertexIds(const PlyElement& faces);
 
 }  // namespace fcl_ccd
 

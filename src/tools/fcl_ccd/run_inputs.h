@@ -38,7 +38,8 @@ struct RunInputs {
   std::optional<MeshSequence> b;
 
   SceneTriangles triangles() const {
-    return {&a.triangles(), b ? &b->triangles() : nullptr};
+    return {&a.triangles(), b ? &b->triangles() : nullptr, &a.free(),
+            b ? &b->free() : nullptr};
   }
 };
 

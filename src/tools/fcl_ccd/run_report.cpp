@@ -38,6 +38,18 @@ const char* nameOf(Kind kind) {
   }
 }
 
+/// What is before the number of a triangle, a free edge or a free point.
+const char* nameOf(fcl::PrimitiveKind kind) {
+  switch (kind) {
+    case fcl::PrimitiveKind::kFreeEdge:
+      return "e";
+    case fcl::PrimitiveKind::kFreePoint:
+      return "p";
+    default:
+      return "";
+  }
+}
+
 std::string nameOf(const SceneVertex& vertex) {
   return (vertex.of_b ? "b" : "") + std::to_string(vertex.id);
 }
@@ -84,11 +96,15 @@ Json toJson(const StepTimes& times) {
           {"total", milliseconds(times.total())}};
 }
 
-void append(const Vertices& vertices, const Triangles& triangles, Mesh& whole) {
+void append(const Vertices& vertices, const Triangles& triangles,
+            const FreeElements* free, Mesh& whole) {
   const int offset = static_cast<int>(whole.vertices.size());
   whole.vertices.insert(whole.vertices.end(), vertices.begin(), vertices.end());
   for (const auto& t : triangles)
     whole.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
+  if (free == nullptr) return;
+  for (const auto& edge : free->edges)
+    whole.edges.push_back({edge[0] + offset, edge[1] + offset});
 }
 
 }  // namespace
@@ -163,6 +179,7 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
       // The first and the last vertex tell the mesh of each feature.
       for (const std::size_t i : {0u, 1u})
         lines.append(contact.vertices[i * (num_vertices - 1)].of_b ? ",b" : ",")
+            .append(nameOf(contact.triangle_kinds[i]))
             .append(std::to_string(contact.triangles[i]));
     if (columns.position) addNumbers(contact.position);
     if (columns.normal) addNumbers(contact.normal);
@@ -276,8 +293,8 @@ Json toJson(const StepReport& report) {
 PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
                   const StepResult& result) {
   PaintedMesh painted;
-  append(*frame.a, *triangles.a, painted.mesh);
-  if (frame.b != nullptr) append(*frame.b, *triangles.b, painted.mesh);
+  append(*frame.a, *triangles.a, triangles.free_a, painted.mesh);
+  if (frame.b != nullptr) append(*frame.b, *triangles.b, triangles.free_b, painted.mesh);
   painted.colours.assign(painted.mesh.vertices.size(), kGrey);
 
   const auto colour = [&](const SceneContact& contact, const Colour& value) {

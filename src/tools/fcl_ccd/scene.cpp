@@ -32,36 +32,61 @@ void requireSuccess(int code, const std::string& error, const char* mesh) {
     throw std::runtime_error(std::string("mesh ") + mesh + ": " + error);
 }
 
-template <typename Model>
-std::unique_ptr<Model> buildModel(const std::vector<fcl::Vector3d>& points,
-                                  const std::vector<fcl::Triangle>& triangles,
-                                  const char* mesh, int num_threads) {
-  auto model = std::make_unique<Model>();
-  requireSuccess(model->setNumThreads(num_threads), model->lastError(), mesh);
-  requireSuccess(model->beginModel(static_cast<int>(triangles.size()),
-                                   static_cast<int>(points.size())),
-                 model->lastError(), mesh);
-  requireSuccess(model->addSubModel(points, triangles), model->lastError(), mesh);
-  const int code = model->endModel(fcl::FclTree::kSkip);
-  requireSuccess(code, model->lastError(), mesh);
-  return model;
+/// @brief A mesh in FCL's own types.
+struct ModelInput {
+  std::vector<fcl::Vector3d> vertices;
+  std::vector<fcl::Triangle> triangles;
+  std::vector<fcl::FreeEdge> edges;
+  std::vector<std::size_t> points;
+};
+
+ModelInput toInput(const Vertices& vertices, const Triangles& triangles) {
+  ModelInput input;
+  input.vertices.reserve(vertices.size());
+  for (const auto& p : vertices) input.vertices.emplace_back(p[0], p[1], p[2]);
+  input.triangles.reserve(triangles.size());
+  for (const auto& t : triangles)
+    input.triangles.emplace_back(static_cast<std::size_t>(t[0]),
+                                 static_cast<std::size_t>(t[1]),
+                                 static_cast<std::size_t>(t[2]));
+  return input;
 }
 
-/// @brief Builds a model from FCL's own types, so that their conversion is not timed.
+/// @brief Adds free edges and points. An edge whose ends were joined is a point.
+/// @return what the model's numbers of them stand for
+std::vector<fcl::Primitive> addFree(const FreeElements& free, ModelInput& input) {
+  using fcl::PrimitiveKind;
+  std::vector<fcl::Primitive> edges, points;
+  for (std::size_t i = 0; i < free.edges.size(); ++i) {
+    const auto from = static_cast<std::size_t>(free.edges[i][0]),
+               to = static_cast<std::size_t>(free.edges[i][1]);
+    if (from == to)
+      input.points.push_back(from);
+    else
+      input.edges.push_back({from, to});
+    (from == to ? points : edges).push_back({PrimitiveKind::kFreeEdge, i});
+  }
+  for (std::size_t i = 0; i < free.points.size(); ++i) {
+    input.points.push_back(static_cast<std::size_t>(free.points[i]));
+    points.push_back({PrimitiveKind::kFreePoint, i});
+  }
+  edges.insert(edges.end(), points.begin(), points.end());
+  return edges;
+}
+
 template <typename Model>
-std::unique_ptr<Model> timeBuild(const Vertices& vertices, const Triangles& faces,
-                                 const char* name, int num_threads, double& seconds) {
-  std::vector<fcl::Vector3d> points;
-  points.reserve(vertices.size());
-  for (const auto& p : vertices) points.emplace_back(p[0], p[1], p[2]);
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(faces.size());
-  for (const auto& t : faces)
-    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
-                           static_cast<std::size_t>(t[2]));
-  const Stopwatch watch;
-  auto model = buildModel<Model>(points, triangles, name, num_threads);
-  seconds += watch.seconds();
+std::unique_ptr<Model> buildModel(const ModelInput& input, const char* mesh,
+                                  int num_threads) {
+  auto model = std::make_unique<Model>();
+  requireSuccess(model->setNumThreads(num_threads), model->lastError(), mesh);
+  requireSuccess(model->beginModel(static_cast<int>(input.triangles.size()),
+                                   static_cast<int>(input.vertices.size())),
+                 model->lastError(), mesh);
+  requireSuccess(
+      model->addSubModel(input.vertices, input.triangles, input.edges, input.points),
+      model->lastError(), mesh);
+  const int code = model->endModel(fcl::FclTree::kSkip);
+  requireSuccess(code, model->lastError(), mesh);
   return model;
 }
 
@@ -79,15 +104,23 @@ std::size_t firstFeatureSize(Kind kind) {
   return kind == Kind::kEdgeEdge || kind == Kind::kCrossing ? 2 : 1;
 }
 
+/// Sets the triangle of a feature from the number b of a contact.
+void setTriangle(std::intptr_t b, std::intptr_t num_triangles,
+                 const std::vector<fcl::Primitive>& free, std::size_t feature,
+                 SceneContact& out) {
+  out.triangles[feature] = b;
+  if (b < num_triangles) return;
+  const fcl::Primitive& primitive = free[static_cast<std::size_t>(b - num_triangles)];
+  out.triangles[feature] = static_cast<std::intptr_t>(primitive.index);
+  out.triangle_kinds[feature] = primitive.kind;
+}
+
 SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) {
   SceneContact out;
   out.kind = contact.kind;
   out.num_vertices = contact.numVertices();
   out.toc_lo = contact.toc_lo;
   out.toc_hi = contact.toc_hi;
-  const bool in_order = contact.kind == Kind::kEdgeEdge || contact.first_on_o1;
-  out.triangles = {
-      {in_order ? contact.b1 : contact.b2, in_order ? contact.b2 : contact.b1}};
   for (int k = 0; k < 3; ++k) {
     out.position[static_cast<std::size_t>(k)] = contact.pos[k];
     out.normal[static_cast<std::size_t>(k)] = contact.normal[k];
@@ -129,15 +162,28 @@ Scene::Scene(const SceneTriangles& triangles, const SceneFrame& frame,
   for (int i = 0; i < settings_.repeat; ++i) build(triangles, frame);
 }
 
+Scene::Body Scene::build(const Triangles& triangles, const FreeElements* free,
+                         const Vertices& vertices, const char* name,
+                         double& seconds) const {
+  Body body;
+  ModelInput input = toInput(vertices, triangles);
+  if (free != nullptr) body.free = addFree(*free, input);
+  // The conversion is not timed.
+  const Stopwatch watch;
+  body.model = buildModel<Model>(input, name, settings_.num_threads);
+  seconds += watch.seconds();
+  return body;
+}
+
 void Scene::build(const SceneTriangles& triangles, const SceneFrame& frame) {
   double seconds = 0;
-  a_ = timeBuild<Model>(*frame.a, *triangles.a, "A", settings_.num_threads, seconds);
+  a_ = build(*triangles.a, triangles.free_a, *frame.a, "A", seconds);
   if (frame.b != nullptr)
-    b_ = timeBuild<Model>(*frame.b, *triangles.b, "B", settings_.num_threads, seconds);
+    b_ = build(*triangles.b, triangles.free_b, *frame.b, "B", seconds);
   build_time_ = std::min(build_time_, seconds);
 }
 
-void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
+void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   fcl::ContinuousContactRequestd request;
   request.query = settings_.query;
   request.toc_err = settings_.toc_err;
@@ -147,18 +193,25 @@ void Scene::query(const Model& o1, const Model& o2, StepResult& step) const {
   request.ignore_initially_closer = settings_.ignore_initially_closer;
   fcl::ContinuousContactResultd result;
   const fcl::Transform3d identity = fcl::Transform3d::Identity();
+  const Model &model1 = *o1.model, &model2 = *o2.model;
   if (&o1 == &o2)
-    fcl::continuousSelfCollide(&o1, request, result);
+    fcl::continuousSelfCollide(&model1, request, result);
   else
-    fcl::continuousCollide(&o1, identity, identity, &o2, identity, identity, request,
-                           result);
+    fcl::continuousCollide(&model1, identity, identity, &model2, identity, identity,
+                           request, result);
 
-  const bool o1_is_b = &o1 == b_.get(), o2_is_b = &o2 == b_.get();
+  const auto convert = [&](const Contact& contact) {
+    SceneContact out = toSceneContact(contact, &o1 == &b_, &o2 == &b_);
+    const bool in_order = contact.kind == Kind::kEdgeEdge || contact.first_on_o1;
+    setTriangle(contact.b1, model1.num_tris, o1.free, in_order ? 0 : 1, out);
+    setTriangle(contact.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
+    return out;
+  };
   for (const Contact& contact : result.contacts)
-    step.contacts.push_back(toSceneContact(contact, o1_is_b, o2_is_b));
+    step.contacts.push_back(convert(contact));
   if (result.initially_crossing && !step.initially_crossing) {
     step.initially_crossing = true;
-    step.crossing = toSceneContact(result.crossing, o1_is_b, o2_is_b);
+    step.crossing = convert(result.crossing);
   }
   for (const StageField& stage : kStages)
     step.counts.*stage.count += result.counts.*stage.count;
@@ -171,15 +224,15 @@ StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
   StepResult step;
   step.at_distance = settings_.min_distance > 0;
   const Stopwatch watch;
-  updateModel(*a_, *from.a, *to.a, "A");
-  if (b_ != nullptr) updateModel(*b_, *from.b, *to.b, "B");
+  updateModel(*a_.model, *from.a, *to.a, "A");
+  if (b_.model) updateModel(*b_.model, *from.b, *to.b, "B");
   step.times.update = watch.seconds();
 
-  if (settings_.self) query(*a_, *a_, step);
+  if (settings_.self) query(a_, a_, step);
   const bool answered = settings_.query == fcl::ContinuousQuery::kAny &&
                         (!step.contacts.empty() || step.initially_crossing);
-  if (b_ != nullptr && !answered) {
-    query(*a_, *b_, step);
+  if (b_.model && !answered) {
+    query(a_, b_, step);
     sortContacts(step.contacts);
     if (settings_.query == fcl::ContinuousQuery::kFirst) keepFirst(step.contacts);
   }

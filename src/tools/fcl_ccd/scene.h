@@ -39,8 +39,10 @@ struct SceneContact {
   int num_vertices{4};
   double toc_lo{0};
   double toc_hi{0};
-  /// The triangles of the first feature (vertex, or edge a) and of the second one.
+  /// The triangles of the first feature (vertex, or edge a) and of the second one; or the
+  /// free edges or points, by their numbers in the order of the file.
   std::array<std::intptr_t, 2> triangles{{-1, -1}};
+  std::array<fcl::PrimitiveKind, 2> triangle_kinds{};
   /// Position at toc_lo; only with StepSettings::points.
   std::array<double, 3> position{};
   std::array<double, 3> normal{};  ///< from A to B; within A to feature 2
@@ -67,10 +69,13 @@ struct StepResult {
   const SceneContact* first() const;
 };
 
-/// @brief The triangles of mesh A, and of B if there is one.
+/// @brief The triangles of mesh A, and of B if there is one, and what is free in them;
+/// null if nothing is.
 struct SceneTriangles {
   const Triangles* a{nullptr};
   const Triangles* b{nullptr};
+  const FreeElements* free_a{nullptr};
+  const FreeElements* free_b{nullptr};
 };
 
 /// @brief The vertex positions of one frame: mesh A, and B if there is one.
@@ -99,14 +104,23 @@ class Scene {
  private:
   using Model = fcl::DeformableBVHModel<fcl::AABBd>;
 
+  /// A mesh of the scene.
+  struct Body {
+    std::unique_ptr<Model> model;
+    /// What the numbers of contacts from the triangles on stand for.
+    std::vector<fcl::Primitive> free;
+  };
+
+  Body build(const Triangles& triangles, const FreeElements* free,
+             const Vertices& vertices, const char* name, double& seconds) const;
   StepResult runOnce(const SceneFrame& from, const SceneFrame& to);
   void build(const SceneTriangles& triangles, const SceneFrame& frame);
-  void query(const Model& o1, const Model& o2, StepResult& step) const;
+  void query(const Body& o1, const Body& o2, StepResult& step) const;
 
   StepSettings settings_;
   double build_time_{0};
-  std::unique_ptr<Model> a_;
-  std::unique_ptr<Model> b_;
+  Body a_;
+  Body b_;  ///< without a model if there is no B
 };
 
 }  // namespace fcl_ccd

@@ -36,10 +36,29 @@ bool isDecimal(std::string_view token) {
   }
   if (digits == 0) return false;
   if (token.empty()) return true;
-  if (token[0] != 'e' && token[0] != 'E') return false;
+  if (std::string_view("eEdD").find(token[0]) == std::string_view::npos) return false;
   token.remove_prefix(1);
   takeSign(token);
   return takeDigits(token) > 0 && token.empty();
+}
+
+/// A decimal with an exponent as strtod() reads it.
+std::string asInC(std::string_view decimal) {
+  std::string text(decimal);
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == 'd' || c == 'D'; }, 'e');
+  return text;
+}
+
+template <typename Value>
+Value parseInC(const std::string& text);
+template <>
+float parseInC<float>(const std::string& text) {
+  return std::strtof(text.c_str(), nullptr);
+}
+template <>
+double parseInC<double>(const std::string& text) {
+  return std::strtod(text.c_str(), nullptr);
 }
 
 }  // namespace
@@ -70,13 +89,14 @@ void splitTokens(std::string_view line, std::vector<std::string_view>& tokens) {
 
 NumberToken classifyNumber(std::string_view token) {
   if (isDecimal(token))
-    return std::isfinite(std::strtod(std::string(token).c_str(), nullptr))
-               ? NumberToken::kFinite
-               : NumberToken::kNotFinite;
+    return std::isfinite(parseInC<double>(asInC(token))) ? NumberToken::kFinite
+                                                         : NumberToken::kNotFinite;
   takeSign(token);
   std::string word(token.substr(0, 9));
   for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const bool named = word == "inf" || word == "infinity" || word.rfind("nan", 0) == 0;
+  // The last one is how some programs write them: 1.#INF, 1.#QNAN, 1.#IND.
+  const bool named = word == "inf" || word == "infinity" || word.rfind("nan", 0) == 0 ||
+                     word.rfind("1.#", 0) == 0;
   return named ? NumberToken::kNotFinite : NumberToken::kNotANumber;
 }
 
@@ -87,16 +107,23 @@ bool parseInteger(std::string_view token, long long& value) {
   return parsed.ec == std::errc() && parsed.ptr == end;
 }
 
-void requireFinite(std::string_view token) {
+template <typename Value>
+Value requireNumber(std::string_view token) {
   switch (classifyNumber(token)) {
     case NumberToken::kFinite:
-      return;
+      break;
     case NumberToken::kNotFinite:
       throw std::runtime_error(quoted(token) + " is not finite");
     case NumberToken::kNotANumber:
       throw std::runtime_error(quoted(token) + " is not a number");
   }
+  const Value value = parseInC<Value>(asInC(token));
+  if (!std::isfinite(value))
+    throw std::runtime_error(quoted(token) + " does not fit its type");
+  return value;
 }
+template float requireNumber<float>(std::string_view);
+template double requireNumber<double>(std::string_view);
 
 std::string quoted(std::string_view token) {
   constexpr std::size_t kLongest = 40;

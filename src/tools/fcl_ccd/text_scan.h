@@ -2,10 +2,12 @@
 #ifndef FCL_CCD_TEXT_SCAN_H
 #define FCL_CCD_TEXT_SCAN_H
 
+#include <charconv>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace fcl_ccd {
@@ -35,8 +37,26 @@ NumberToken classifyNumber(std::string_view token);
 /// @brief Whether the token is a decimal integer, with its value.
 bool parseInteger(std::string_view token, long long& value);
 
-/// @brief Throws std::runtime_error if the token is not a finite number.
-void requireFinite(std::string_view token);
+/// @brief The value of a token, rounded once to the nearest Value (float or double). An
+/// exponent may have the letter D of Fortran.
+/// @throws std::runtime_error if the token is not a finite number, or too large.
+template <typename Value>
+Value requireNumber(std::string_view token);
+extern template float requireNumber<float>(std::string_view);
+extern template double requireNumber<double>(std::string_view);
+
+/// @brief std::from_chars() of a float or double. Where the standard library has none
+/// (libc++ before 20), it fails, and requireNumber() has to read the token.
+template <typename Value>
+std::from_chars_result parseDecimal(const char* begin, const char* end, Value& value) {
+#ifdef __cpp_lib_to_chars
+  return std::from_chars(begin, end, value);
+#else
+  static_cast<void>(end);
+  static_cast<void>(value);
+  return {begin, std::errc::invalid_argument};
+#endif
+}
 
 /// @brief Runs `read`. If it throws a std::runtime_error, puts "PLACE: " before its
 /// message; `place` makes this text.

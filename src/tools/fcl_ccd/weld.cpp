@@ -8,6 +8,7 @@
 namespace fcl_ccd {
 
 bool isSoup(const Vertices& vertices, const Triangles& triangles) {
+  if (triangles.empty()) return false;
   std::vector<char> used(vertices.size(), 0);
   for (const auto& triangle : triangles)
     for (const int id : triangle) {
@@ -22,6 +23,12 @@ bool isSoup(const Vertices& vertices, const Triangles& triangles) {
 void joinVertices(const std::vector<int>& map, Triangles& triangles) {
   for (auto& triangle : triangles)
     for (int& id : triangle) id = map[static_cast<std::size_t>(id)];
+}
+
+void joinVertices(const std::vector<int>& map, FreeElements& free) {
+  for (auto& edge : free.edges)
+    for (int& id : edge) id = map[static_cast<std::size_t>(id)];
+  for (int& id : free.points) id = map[static_cast<std::size_t>(id)];
 }
 
 }  // namespace fcl_ccd

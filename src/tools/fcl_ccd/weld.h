@@ -17,6 +17,9 @@ bool isSoup(const Vertices& vertices, const Triangles& triangles);
 /// their numbers.
 void joinVertices(const std::vector<int>& map, Triangles& triangles);
 
+/// @brief The same for free edges and points. An edge whose ends are joined stays, too.
+void joinVertices(const std::vector<int>& map, FreeElements& free);
+
 }  // namespace fcl_ccd
 
 #endif
