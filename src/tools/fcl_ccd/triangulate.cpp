@@ -3,7 +3,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
+
+#include "sweep_triangulation.h"
 
 namespace fcl_ccd {
 namespace {
@@ -51,15 +54,26 @@ std::array<double, 3> newellNormal(const Vertices& vertices,
   return normal;
 }
 
-/// @brief The polygon projected to the coordinate plane in which it is largest, turning
-/// to the left.
-std::vector<Point2> project(const Vertices& vertices, const std::vector<int>& corners) {
+/// @brief The coordinate plane in which a polygon is largest.
+struct View {
+  std::size_t axis{0};  ///< across the plane
+  bool turns_left{true};
+};
+
+View viewOf(const Vertices& vertices, const std::vector<int>& corners) {
   const std::array<double, 3> normal = newellNormal(vertices, corners);
-  std::size_t axis = 0;
+  View view;
   for (std::size_t k = 1; k < 3; ++k)
-    if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
-  std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-  if (normal[axis] < 0) std::swap(u, v);
+    if (std::abs(normal[k]) > std::abs(normal[view.axis])) view.axis = k;
+  view.turns_left = !(normal[view.axis] < 0);
+  return view;
+}
+
+/// @brief The polygon in this plane, turning to the left.
+std::vector<Point2> project(const Vertices& vertices, const std::vector<int>& corners,
+                            const View& view) {
+  std::size_t u = (view.axis + 1) % 3, v = (view.axis + 2) % 3;
+  if (!view.turns_left) std::swap(u, v);
   std::vector<Point2> points;
   for (const int id : corners) {
     const auto& p = vertices[static_cast<std::size_t>(id)];
@@ -78,22 +92,35 @@ bool isStrictlyConvex(const std::vector<Point2>& points) {
   return true;
 }
 
+/// Faces of up to so many corners lose their ears without a limit: this takes less than
+/// 64^3 tests of a point and a triangle, 4,096 a corner.
+constexpr std::size_t kFewCorners = 64;
+/// The tests for each corner of a larger face, of which only those come here that cross
+/// themselves. 512 are enough to find the ears of 500 corners in one pass over all.
+constexpr std::size_t kTestsACorner = 512;
+
 /// @brief A ring of corners from which ears are cut, one at a time.
 class Ring {
  public:
   Ring(std::vector<int> corners, std::vector<Point2> points)
-      : corners_(std::move(corners)), points_(std::move(points)) {}
+      : most_tests_(corners.size() <= kFewCorners
+                        ? std::numeric_limits<std::size_t>::max()
+                        : kTestsACorner * corners.size()),
+        corners_(std::move(corners)),
+        points_(std::move(points)) {}
 
   std::size_t size() const { return corners_.size(); }
 
   /// Whether the triangle at corner i turns to the left and contains no other corner, not
   /// on its edges either.
   /// @param straight  the sine of an angle below which three corners are on a line.
-  bool isEar(std::size_t i, double straight) const {
+  bool isEar(std::size_t i, double straight) {
     const std::size_t before = (i + size() - 1) % size(), after = (i + 1) % size();
     const Point2 &a = points_[before], &b = points_[i], &c = points_[after];
+    ++num_tests_;
     if (!(turn(a, b, c) > leastTurn(straight, a, b, c))) return false;
     for (std::size_t k = 0; k < size(); ++k) {
+      ++num_tests_;
       const int id = corners_[k];
       if (id == corners_[before] || id == corners_[i] || id == corners_[after]) continue;
       const Point2& p = points_[k];
@@ -106,9 +133,9 @@ class Ring {
     return true;
   }
 
-  /// The first ear at corner i or behind it; size() if there is none.
-  std::size_t findEar(std::size_t i, double straight) const {
-    for (std::size_t k = 0; k < size(); ++k)
+  /// The first ear at corner i or behind it; size() if there is none, or no test left.
+  std::size_t findEar(std::size_t i, double straight) {
+    for (std::size_t k = 0; k < size() && hasTestsLeft(); ++k)
       if (isEar((i + k) % size(), straight)) return (i + k) % size();
     return size();
   }
@@ -116,6 +143,7 @@ class Ring {
   void cut(std::size_t i, Triangles& out) {
     out.push_back(
         {corners_[(i + size() - 1) % size()], corners_[i], corners_[(i + 1) % size()]});
+    num_tests_ += size() / 64;  // moving 64 corners takes the time of a test or less
     corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(i));
     points_.erase(points_.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -123,6 +151,10 @@ class Ring {
   const std::vector<int>& corners() const { return corners_; }
 
  private:
+  bool hasTestsLeft() const { return num_tests_ < most_tests_; }
+
+  std::size_t most_tests_;
+  std::size_t num_tests_{0};
   std::vector<int> corners_;
   std::vector<Point2> points_;
 };
@@ -134,8 +166,13 @@ void addFan(const std::vector<int>& corners, Triangles& out) {
 
 void addPolygon(const Vertices& vertices, const std::vector<int>& corners,
                 Triangles& out) {
-  std::vector<Point2> points = project(vertices, corners);
+  const View view = viewOf(vertices, corners);
+  std::vector<Point2> points = project(vertices, corners, view);
   if (isStrictlyConvex(points)) return addFan(corners, out);
+  if (corners.size() > kFewCorners &&
+      addSweptTriangles(vertices, corners, static_cast<int>(view.axis), view.turns_left,
+                        out))
+    return;
   Ring ring(corners, std::move(points));
   std::size_t i = 0;
   for (const double straight : kStraightOfEars) {
