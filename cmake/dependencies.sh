@@ -26,7 +26,8 @@ fcl_ccd_install_dependencies() {
   fi
   # These are for the tests of the Python package that a user can do without.
   if [ "$1" = all ]; then
-    packages+=(mypy python3-matplotlib python3-pip python3-setuptools python3-wheel)
+    packages+=(mypy python3-matplotlib python3-pandas python3-pip python3-setuptools
+      python3-wheel)
   fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.
   if [ "$1" = all ]; then

@@ -26,11 +26,16 @@ Result. Many objects: CollisionManager. With min_distance features are in contac
 distance. For your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(),
 vertex_edge() and vertex_vertex() on arrays.
 
+Tables: to_dataframe() makes a pandas.DataFrame of contacts. Meshes, shapes, motions, filters
+and results can be copied and pickled.
+
 Errors: ValueError with the words of the library, TypeError for arguments of another type,
 RuntimeError for an update of a mesh while a query of it runs.
 """
 
+from . import _requirements  # isort: skip - it says what is missing for the rest
 from ._core import version as __version__
+from ._dataframes import to_dataframe
 from ._manager import CollisionManager, ManagerResult, Pair
 from ._meshes import DeformableMesh, RigidMesh, weld_vertices
 from ._motions import BoundedMotion, LinearMotion, Motion, ScrewMotion, SplineMotion
@@ -98,6 +103,7 @@ __all__ = [
     "octree_cell_dtype",
     "self_candidates",
     "self_collide",
+    "to_dataframe",
     "vertex_edge",
     "vertex_face",
     "vertex_vertex",

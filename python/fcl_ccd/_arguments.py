@@ -10,7 +10,7 @@ import math
 import operator
 import sys
 from numbers import Real
-from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Sequence, Tuple
+from typing import TYPE_CHECKING, Any, Iterable, List, Optional, Protocol, Sequence, Tuple, Union
 
 import numpy as np
 
@@ -20,6 +20,16 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 _WANTED = {"f": "numbers", "i": "integers"}
+
+
+class TriangleMesh(Protocol):
+    """A mesh of another package, for example a trimesh.Trimesh."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def faces(self) -> Any: ...
 
 
 class Built:
@@ -119,8 +129,31 @@ def _wrong_elements(values: object, array: NDArray[Any], name: str, kind: str) -
     )
 
 
-def points(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    return _array(values, name, "f", (None, 3))
+def _faces_of(values: Any) -> Any:
+    """The triangles of a mesh of another package; None: it is no such mesh."""
+    if isinstance(values, (np.ndarray, list, tuple)) or not hasattr(values, "vertices"):
+        return None
+    found = getattr(values, "faces", None)  # trimesh: its triangles are positions
+    return getattr(values, "triangles", None) if found is None else found  # Open3D
+
+
+def is_mesh(values: Any) -> bool:
+    return _faces_of(values) is not None
+
+
+def points(values: Union[ArrayLike, TriangleMesh], name: str) -> NDArray[np.float64]:
+    """Positions, also those of a mesh of another package."""
+    if type(values) is not np.ndarray and is_mesh(values):
+        values = values.vertices  # type: ignore[union-attr]
+    return _array(values, name, "f", (None, 3))  # type: ignore[arg-type]
+
+
+def triangles_of(vertices: Any, triangles: Any, name: str = "triangles") -> Any:
+    """The given triangles, or those of the mesh that is given in place of vertices."""
+    found = _faces_of(vertices)
+    if found is not None and triangles is not None:
+        raise type_error(f"vertices is a mesh that has {name}, and {name} is given. Give one of them")
+    return triangles if found is None else found
 
 
 def triangles(values: ArrayLike, name: str = "triangles") -> NDArray[np.int64]:
@@ -267,7 +300,9 @@ def origins(values: Optional[ArrayLike]) -> Sequence[int]:
     return _in_range(_array(values, "origins", "i", (None,)), "origins", -1, 2**31 - 1, wanted)
 
 
-def frames(given: Tuple[ArrayLike, ...]) -> Tuple[Optional[NDArray[np.float64]], NDArray[np.float64]]:
+def frames(
+    given: Tuple[Union[ArrayLike, TriangleMesh], ...],
+) -> Tuple[Optional[NDArray[np.float64]], NDArray[np.float64]]:
     """The previous frame, or None, and the current frame."""
     if len(given) == 1:
         return None, points(given[0], "current")

@@ -2,15 +2,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Callable, Dict, Hashable, List, Mapping, Optional, Union
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    Hashable,
+    List,
+    Literal,
+    Mapping,
+    Optional,
+    Union,
+)
+
+import numpy as np
 
 from . import _arguments, _core
+from ._dataframes import columns_of, frame_of
 from ._motions import MotionLike, path_of
 from ._queries import Filter, Result, filter_of, geometry_of, request_of
 
 if TYPE_CHECKING:
     from typing import Iterable, Iterator
 
+    from ._arguments import TriangleMesh
     from ._core import Geometry
 
 
@@ -50,6 +65,21 @@ class ManagerResult(_arguments.Built):
 
     def __bool__(self) -> bool:
         return self.is_collide
+
+    def to_dataframe(self) -> Any:
+        """The contacts of all pairs as one pandas.DataFrame, see fcl_ccd.to_dataframe().
+
+        The first columns, o1 and o2, are the names of the objects.
+        """
+        contacts = [pair.result.contacts for pair in self.pairs]
+        columns: Dict[str, Any] = {}
+        for side in ("o1", "o2"):
+            names = [getattr(p, side) for p, c in zip(self.pairs, contacts) for _ in range(len(c))]
+            columns[side] = np.empty(len(names), dtype=object)
+            columns[side][:] = names
+        empty = np.empty(0, _core.contact_dtype)
+        columns.update(columns_of(np.concatenate([empty, *contacts])))
+        return frame_of(columns)
 
     def __repr__(self) -> str:
         return (
@@ -95,7 +125,7 @@ class CollisionManager(_arguments.Built):
     def register(
         self,
         name: Hashable,
-        o: Geometry,
+        o: Union[Geometry, TriangleMesh],
         motion: MotionLike = None,
         *,
         filter: Optional[Filter] = None,
@@ -165,11 +195,11 @@ class CollisionManager(_arguments.Built):
 
     def collide(
         self,
-        other: Union[None, Geometry, CollisionManager] = None,
+        other: Union[None, Geometry, TriangleMesh, CollisionManager] = None,
         motion: MotionLike = None,
         *,
         name: Optional[Hashable] = None,
-        query: str = "all",
+        query: Literal["all", "first", "any"] = "all",
         toc_err: float = 1e-4,
         t_max: float = 1.0,
         min_distance: float = 0.0,
@@ -216,15 +246,16 @@ class CollisionManager(_arguments.Built):
 
     def _ask(
         self,
-        other: Union[None, Geometry, CollisionManager],
+        other: Union[None, Geometry, TriangleMesh, CollisionManager],
         motion: MotionLike,
         name: Optional[Hashable],
         request: _core.Request,
     ) -> Dict[str, Any]:
         if name is not None and other is not None:
             raise ValueError("name and other are given. Give one of them")
-        if isinstance(other, _core.Geometry):
-            return self._manager._collide_geometry(other, path_of(motion, "motion"), request)
+        if isinstance(other, _core.Geometry) or _arguments.is_mesh(other):
+            geometry = geometry_of(other, "other")  # type: ignore[arg-type]
+            return self._manager._collide_geometry(geometry, path_of(motion, "motion"), request)
         if other is not None and not isinstance(other, CollisionManager):
             wanted = "a mesh, a shape, an OcTree or a CollisionManager"
             raise _arguments.wrong_type("other", other, wanted)
@@ -248,6 +279,12 @@ class CollisionManager(_arguments.Built):
         if not self._is_registered(name):
             raise ValueError(f"{name!r} is not registered. Call register() first")
         return self._objects[name]
+
+    def __reduce_ex__(self, protocol: Any) -> Any:
+        raise TypeError(
+            "a CollisionManager cannot be copied or pickled. Make another one, and register the "
+            "objects there"
+        )
 
     def __len__(self) -> int:
         return len(self._objects)

@@ -1,16 +1,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Optional, Sequence, overload
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Tuple, Union, overload
 
 from . import _arguments, _core
+from ._copies import Copied
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from ._arguments import TriangleMesh
 
-class DeformableMesh(_core.DeformableMesh):
+
+class DeformableMesh(Copied, _core.DeformableMesh):
     """A triangle mesh that deforms between two frames, t = 0 and t = 1.
 
     Build it once, then give each next step with update(). Until the first update() both
@@ -21,7 +24,8 @@ class DeformableMesh(_core.DeformableMesh):
     ----------
     vertices : (n, 3) array of float64
         Positions in any unit of length, which positions of contacts have too. Other
-        numbers are converted.
+        numbers are converted. Or a mesh of another package with vertices and faces, for
+        example a trimesh.Trimesh, without triangles then.
     triangles : (m, 3) array of integers, or None
         Vertex numbers, from 0. None: only edges and points.
     edges : (e, 2) array of integers, optional
@@ -43,20 +47,24 @@ class DeformableMesh(_core.DeformableMesh):
     ----------------------
     previous, current : (n, 3) float64, copies of the two frames
     triangles : (m, 3) int64, a copy
+    edges, points : (e, 2) and (p,) int64, copies
     num_vertices, num_triangles, num_edges, num_points : int
+    num_threads : int
     is_deforming : bool, whether the frames differ
     num_restructurings : int, how many updates have made parts of the tree anew
 
     Threads: queries of one mesh may run side by side. An update while a query of the mesh
     runs, or the reverse, raises RuntimeError and changes nothing.
+
+    copy.deepcopy() and pickle make a mesh of the same two frames, with a new tree.
     """
 
     _is_built = False  # Compiled attributes exist only after __init__.
 
     def __init__(
         self,
-        vertices: ArrayLike,
-        triangles: Optional[ArrayLike],
+        vertices: Union[ArrayLike, TriangleMesh],
+        triangles: Optional[ArrayLike] = None,
         *,
         edges: Optional[ArrayLike] = None,
         points: Optional[ArrayLike] = None,
@@ -64,7 +72,7 @@ class DeformableMesh(_core.DeformableMesh):
     ) -> None:
         super().__init__(
             _arguments.points(vertices, "vertices"),
-            _arguments.triangles_or_none(triangles),
+            _arguments.triangles_or_none(_arguments.triangles_of(vertices, triangles)),
             _arguments.free_edges(edges),
             _arguments.free_points(points),
             _arguments.integer(num_threads, "num_threads"),
@@ -72,12 +80,17 @@ class DeformableMesh(_core.DeformableMesh):
         self._is_built = True
 
     @overload
-    def update(self, current: ArrayLike, /) -> None: ...
+    def update(self, current: Union[ArrayLike, TriangleMesh], /) -> None: ...
 
     @overload
-    def update(self, previous: ArrayLike, current: ArrayLike, /) -> None: ...
+    def update(
+        self,
+        previous: Union[ArrayLike, TriangleMesh],
+        current: Union[ArrayLike, TriangleMesh],
+        /,
+    ) -> None: ...
 
-    def update(self, *frames: ArrayLike) -> None:
+    def update(self, *frames: Union[ArrayLike, TriangleMesh]) -> None:
         """Give the next step: update(current) or update(previous, current).
 
         With one frame, what was the current frame becomes the previous one. Frames are
@@ -86,6 +99,19 @@ class DeformableMesh(_core.DeformableMesh):
         """
         previous, current = _arguments.frames(frames)
         self._update(previous, current)
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.previous, self.triangles, self.edges, self.points, self.num_threads
+
+    def __reduce_ex__(self, protocol: Any) -> Tuple[Any, ...]:
+        rebuilt, arguments, state = super().__reduce_ex__(protocol)
+        return rebuilt, arguments, (state, self.current)
+
+    def __setstate__(self, given: Tuple[Any, ...]) -> None:
+        state, current = given
+        self.__dict__.update(state)
+        if (self.current != current).any():  # The mesh was built in its previous frame.
+            self._update(None, current)
 
     def update_topology(
         self,
@@ -132,13 +158,14 @@ class DeformableMesh(_core.DeformableMesh):
         )
 
 
-class RigidMesh(_core.RigidMesh):
+class RigidMesh(Copied, _core.RigidMesh):
     """A triangle mesh that does not deform. Queries take its motion as an argument.
 
     Parameters
     ----------
     vertices : (n, 3) array of float64
-        Positions in the frame of the mesh.
+        Positions in the frame of the mesh. Or a mesh of another package with vertices and
+        faces, for example a trimesh.Trimesh, without triangles then.
     triangles : (m, 3) array of integers
         Vertex numbers, from 0. At least one triangle.
 
@@ -148,9 +175,20 @@ class RigidMesh(_core.RigidMesh):
 
     _is_built = False  # Compiled attributes exist only after __init__.
 
-    def __init__(self, vertices: ArrayLike, triangles: ArrayLike) -> None:
-        super().__init__(_arguments.points(vertices, "vertices"), _arguments.triangles(triangles))
+    def __init__(
+        self,
+        vertices: Union[ArrayLike, TriangleMesh],
+        triangles: Optional[ArrayLike] = None,
+    ) -> None:
+        positions = _arguments.points(vertices, "vertices")
+        found = _arguments.triangles_of(vertices, triangles)
+        if found is None:
+            raise _arguments.wrong_type("triangles", None, "an array of integers")
+        super().__init__(positions, _arguments.triangles(found))
         self._is_built = True
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.vertices, self.triangles
 
     def __repr__(self) -> str:
         if not self._is_built:
@@ -158,7 +196,9 @@ class RigidMesh(_core.RigidMesh):
         return f"RigidMesh({self.num_vertices} vertices, {self.num_triangles} triangles)"
 
 
-def weld_vertices(frames: Sequence[ArrayLike], *, eps: float = 0.0) -> NDArray[np.int64]:
+def weld_vertices(
+    frames: Sequence[Union[ArrayLike, TriangleMesh]], *, eps: float = 0.0
+) -> NDArray[np.int64]:
     """Find the vertices that coincide in all frames of a mesh.
 
     In a triangle soup (STL files, exports with split vertices) no two triangles have a

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Callable, Optional, Tuple, Union
+from typing import TYPE_CHECKING, Any, Callable, Dict, Optional, Tuple, Union
 
 import numpy as np
 
@@ -17,6 +17,24 @@ class Motion(_arguments.Built):
     """The path of an object during a step: Linear-, Screw-, Spline- or BoundedMotion."""
 
     _path: _core.Motion
+    _made_by: Tuple[str, Tuple[Any, ...]]
+
+    def _make(self, kind: str, *given: Any) -> None:
+        """Arrays of the user are copied: copies of the motion are made from them."""
+        kept = [np.array(x) if isinstance(x, np.ndarray) else x for x in given]
+        self._path, self._made_by = _MAKERS[kind](*kept), (kind, tuple(kept))
+
+    def __reduce_ex__(self, protocol: Any) -> Tuple[Any, ...]:
+        kind, given = self._made_by
+        attributes = {k: v for k, v in self.__dict__.items() if k not in ("_path", "_made_by")}
+        return _remade, (type(self), kind, given), attributes
+
+
+def _remade(of: Any, kind: str, given: Tuple[Any, ...]) -> Any:
+    """A motion of the class, whose own __init__() may take other arguments."""
+    motion = of.__new__(of)
+    motion._make(kind, *given)
+    return motion
 
 
 class LinearMotion(Motion):
@@ -34,7 +52,8 @@ class LinearMotion(Motion):
         self, begin: ArrayLike, end: ArrayLike, reference: ArrayLike = (0.0, 0.0, 0.0)
     ) -> None:
         name = "a pose of LinearMotion"
-        self._path = _core.Motion.turn(
+        self._make(
+            "turn",
             _arguments.pose(begin, "begin"),
             _arguments.pose(end, "end"),
             _arguments.numbers(reference, "reference", 3),
@@ -51,8 +70,8 @@ class ScrewMotion(Motion):
 
     def __init__(self, begin: ArrayLike, end: ArrayLike) -> None:
         name = "a pose of ScrewMotion"
-        self._path = _core.Motion.screw(
-            _arguments.pose(begin, "begin"), _arguments.pose(end, "end"), name
+        self._make(
+            "screw", _arguments.pose(begin, "begin"), _arguments.pose(end, "end"), name
         )
 
 
@@ -66,7 +85,8 @@ class SplineMotion(Motion):
     """
 
     def __init__(self, translation: ArrayLike, rotation: ArrayLike) -> None:
-        self._path = _core.Motion.spline(
+        self._make(
+            "spline",
             _arguments.numbers(translation, "translation", 4, 3),
             _arguments.numbers(rotation, "rotation", 4, 3),
         )
@@ -119,12 +139,29 @@ class BoundedMotion(Motion):
         for name, function in given.items():
             if not callable(function):
                 raise _arguments.wrong_type(name, function, "a function")
-        self._path = _core.Motion.bounded(
-            lambda t: _arguments.pose(pose(t), "pose(t)"),
-            lambda t: _arguments.numbers(rate(t), "rate(t)", 4, 4),
-            lambda *ball: _arguments.bound(acceleration_bound(*ball), "acceleration_bound()"),
-            lambda *span: _arguments.bound(angular_speed_bound(*span), "angular_speed_bound()"),
-        )
+        self._make("bounded", pose, rate, acceleration_bound, angular_speed_bound)
+
+
+def _bounded(
+    pose: Callable[..., ArrayLike],
+    rate: Callable[..., ArrayLike],
+    acceleration_bound: Callable[..., float],
+    angular_speed_bound: Callable[..., float],
+) -> _core.Motion:
+    return _core.Motion.bounded(
+        lambda t: _arguments.pose(pose(t), "pose(t)"),
+        lambda t: _arguments.numbers(rate(t), "rate(t)", 4, 4),
+        lambda *ball: _arguments.bound(acceleration_bound(*ball), "acceleration_bound()"),
+        lambda *span: _arguments.bound(angular_speed_bound(*span), "angular_speed_bound()"),
+    )
+
+
+_MAKERS: Dict[str, Callable[..., _core.Motion]] = {
+    "turn": _core.Motion.turn,
+    "screw": _core.Motion.screw,
+    "spline": _core.Motion.spline,
+    "bounded": _bounded,
+}
 
 
 MotionLike = Optional[Union[Motion, "ArrayLike", "Sequence[ArrayLike]"]]

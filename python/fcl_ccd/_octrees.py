@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Tuple
 
 import numpy as np
 
 from . import _arguments, _core
+from ._copies import Copied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 octree_cell_dtype: np.dtype[np.void] = _core.octree_cell_dtype
 
 
-class OcTree(_core.OcTree):
+class OcTree(Copied, _core.OcTree):
     """A map of occupied cells, for example from a depth camera. Each cell is a solid cube.
 
     points : (n, 3) array of float64
@@ -53,6 +54,11 @@ class OcTree(_core.OcTree):
         Raises ValueError for a number that is of no cell.
         """
         return self._cells(_arguments.integers(numbers, "numbers"))
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        # The middle of a cell is in no other one: it is half a cell from each border, and
+        # rounds by less than 2^-36 of a cell.
+        return (self._finest_cells() + 0.5) * self.resolution, self.resolution
 
     def __repr__(self) -> str:
         if not self._is_built:

@@ -3,11 +3,14 @@ from __future__ import annotations
 
 import enum
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Dict, List, Optional, Union, overload
+from typing import TYPE_CHECKING, Callable, Dict, List, Literal, Optional, Tuple, Union, overload
 
 import numpy as np
 
 from . import _arguments, _core
+from ._copies import Copied
+from ._dataframes import to_dataframe
+from ._meshes import RigidMesh
 from ._motions import MotionLike, path_of
 
 if TYPE_CHECKING:
@@ -17,7 +20,9 @@ if TYPE_CHECKING:
 
     from ._core import Geometry
 
-    Mesh = Union[_core.DeformableMesh, _core.RigidMesh]
+    from ._arguments import TriangleMesh
+
+    Mesh = Union[_core.DeformableMesh, _core.RigidMesh, TriangleMesh]
     Sink = Callable[[NDArray[np.void]], Optional[bool]]
 
 contact_dtype: np.dtype[np.void] = _core.contact_dtype
@@ -42,7 +47,7 @@ class Kind(enum.IntEnum):
 _ALL_BITS = 0xFFFFFFFF
 
 
-class Filter(_core.Filter):
+class Filter(Copied, _core.Filter):
     """Which objects and triangles can be in contact.
 
     Two triangles can be in contact if the group of each one has a bit in common with the
@@ -53,6 +58,8 @@ class Filter(_core.Filter):
         Of the whole mesh.
     triangle_groups, triangle_masks : (m,) arrays of integers, optional
         One for each triangle. They replace those of the mesh.
+
+    Attributes (read-only): group, mask.
     """
 
     def __init__(
@@ -69,6 +76,9 @@ class Filter(_core.Filter):
             _arguments.bit_masks(triangle_groups, "triangle_groups"),
             _arguments.bit_masks(triangle_masks, "triangle_masks"),
         )
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.group, self.mask, self._triangle_groups, self._triangle_masks
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -141,6 +151,10 @@ class Result(_arguments.Built):
     def __bool__(self) -> bool:
         return self.is_collide
 
+    def to_dataframe(self) -> Any:
+        """The contacts as a pandas.DataFrame, see fcl_ccd.to_dataframe()."""
+        return to_dataframe(self.contacts)
+
     def __repr__(self) -> str:
         return (
             f"Result(is_collide={self.is_collide}, time_of_contact={self.time_of_contact}, "
@@ -152,7 +166,7 @@ _ACCEPTS_ALL = Filter()
 
 
 def request_of(
-    query: str,
+    query: Literal["all", "first", "any"],
     toc_err: float,
     t_max: float,
     num_max_contacts: Optional[int],
@@ -193,17 +207,21 @@ def filter_of(given: Optional[Filter], name: str) -> _core.Filter:
     return given
 
 
-def mesh_of(o: Mesh, name: str) -> Mesh:
+def mesh_of(o: Mesh, name: str) -> _core.Mesh:
     if isinstance(o, _core.Mesh):
         return o
+    if _arguments.is_mesh(o):
+        return RigidMesh(o)
     meshes = "a DeformableMesh or a RigidMesh"
     if isinstance(o, _core.Geometry):
         meshes += ", for example of its surface"
     raise _arguments.wrong_type(name, o, meshes)
 
 
-def geometry_of(o: Geometry, name: str) -> Geometry:
+def geometry_of(o: Union[Geometry, TriangleMesh], name: str) -> Geometry:
     if not isinstance(o, _core.Geometry):
+        if _arguments.is_mesh(o):
+            return RigidMesh(o)
         wanted = "a DeformableMesh, a RigidMesh, a shape or an OcTree"
         raise _arguments.wrong_type(name, o, wanted)
     return o
@@ -212,7 +230,7 @@ def geometry_of(o: Geometry, name: str) -> Geometry:
 def self_collide(
     o: Mesh,
     *,
-    query: str = "all",
+    query: Literal["all", "first", "any"] = "all",
     toc_err: float = 1e-4,
     t_max: float = 1.0,
     min_distance: float = 0.0,
@@ -248,12 +266,12 @@ def self_collide(
 
 
 def collide(
-    o1: Geometry,
-    o2: Geometry,
+    o1: Union[Geometry, TriangleMesh],
+    o2: Union[Geometry, TriangleMesh],
     motion1: MotionLike = None,
     motion2: MotionLike = None,
     *,
-    query: str = "all",
+    query: Literal["all", "first", "any"] = "all",
     toc_err: float = 1e-4,
     t_max: float = 1.0,
     min_distance: float = 0.0,
@@ -271,7 +289,9 @@ def collide(
     Parameters
     ----------
     o1, o2 : DeformableMesh, RigidMesh, a shape, for example Box, or an OcTree
-        Shapes are solid; Plane and TriangleP are surfaces.
+        Shapes are solid; Plane and TriangleP are surfaces. A mesh of another package with
+        vertices and faces, for example a trimesh.Trimesh, becomes a RigidMesh in each
+        call: make it once for more calls.
     motion1, motion2 : how each of them moves
         None             at rest, vertices are in the world frame
         (4, 4) array     at rest in this pose

@@ -3,15 +3,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Iterable
+from typing import TYPE_CHECKING, Any, Iterable, Optional, Tuple, Union
+
+import numpy as np
 
 from . import _arguments, _core
+from ._copies import Copied
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
+    from ._arguments import TriangleMesh
 
-class _Shape:
+
+class _Shape(Copied):
     """What is common to shapes for a reader. Compiled attributes exist only after __init__."""
 
     _description = "not built"
@@ -38,6 +43,9 @@ class Box(_Shape, _core.Box):
         )
         self._describe(*self.side.tolist())
 
+    def _built_from(self) -> Tuple[Any, ...]:
+        return tuple(self.side.tolist())
+
 
 class Sphere(_Shape, _core.Sphere):
     """A solid sphere about the origin of its frame.
@@ -50,6 +58,9 @@ class Sphere(_Shape, _core.Sphere):
     def __init__(self, radius: float) -> None:
         super().__init__(_arguments.size(radius, "radius"))
         self._describe(self.radius)
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return (self.radius,)
 
 
 class Ellipsoid(_Shape, _core.Ellipsoid):
@@ -66,6 +77,9 @@ class Ellipsoid(_Shape, _core.Ellipsoid):
         )
         self._describe(*self.radii.tolist())
 
+    def _built_from(self) -> Tuple[Any, ...]:
+        return tuple(self.radii.tolist())
+
 
 class Capsule(_Shape, _core.Capsule):
     """All points within radius of a segment of length lz on the z axis, about the origin.
@@ -78,6 +92,9 @@ class Capsule(_Shape, _core.Capsule):
     def __init__(self, radius: float, lz: float) -> None:
         super().__init__(_arguments.size(radius, "radius"), _arguments.size(lz, "lz"))
         self._describe(self.radius, self.lz)
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.radius, self.lz
 
 
 class Cone(_Shape, _core.Cone):
@@ -93,6 +110,9 @@ class Cone(_Shape, _core.Cone):
         super().__init__(_arguments.size(radius, "radius"), _arguments.size(lz, "lz"))
         self._describe(self.radius, self.lz)
 
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.radius, self.lz
+
 
 class Cylinder(_Shape, _core.Cylinder):
     """A solid cylinder about the z axis, from z = -lz / 2 to lz / 2.
@@ -106,6 +126,9 @@ class Cylinder(_Shape, _core.Cylinder):
         super().__init__(_arguments.size(radius, "radius"), _arguments.size(lz, "lz"))
         self._describe(self.radius, self.lz)
 
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.radius, self.lz
+
 
 class Convex(_Shape, _core.Convex):
     """A solid convex polytope.
@@ -113,19 +136,28 @@ class Convex(_Shape, _core.Convex):
     vertices : (n, 3) array of float64. The solid is their convex hull.
     faces : (m, 3) array of integers, or a list of polygons
         Vertex numbers of each face, from 0. FCL stores them; queries do not read them.
+    Or a convex mesh of another package in their place, with vertices and faces.
 
     Attributes (read-only): vertices (a copy), num_faces.
     Raises ValueError for a vertex number out of range, a face of fewer than 3 vertices or a
     position that is not finite, and TypeError for elements of another type.
     """
 
-    def __init__(self, vertices: ArrayLike, faces: Iterable[ArrayLike]) -> None:
+    def __init__(
+        self,
+        vertices: Union[ArrayLike, TriangleMesh],
+        faces: Optional[Iterable[ArrayLike]] = None,
+    ) -> None:
         points = _arguments.points(vertices, "vertices")
+        found: Any = _arguments.triangles_of(vertices, faces, "faces")
         super().__init__(
             _arguments.numbers(points, "vertices", len(points), 3),
-            _arguments.faces(faces, "faces"),
+            _arguments.faces(found, "faces"),
         )
         self._describe(f"{len(self.vertices)} vertices", f"{self.num_faces} faces")
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.vertices, self._faces
 
 
 class Plane(_Shape, _core.Plane):
@@ -139,8 +171,13 @@ class Plane(_Shape, _core.Plane):
     """
 
     def __init__(self, n: ArrayLike, d: float) -> None:
-        super().__init__(_arguments.numbers(n, "n", 3), _arguments.number(d, "d"))
+        # n and d are kept as given: to divide them a second time may change their last bit.
+        self._given = np.array(_arguments.numbers(n, "n", 3)), _arguments.number(d, "d")
+        super().__init__(*self._given)
         self._describe(self.n.tolist(), self.d)
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self._given
 
 
 class Halfspace(_Shape, _core.Halfspace):
@@ -153,8 +190,13 @@ class Halfspace(_Shape, _core.Halfspace):
     """
 
     def __init__(self, n: ArrayLike, d: float) -> None:
-        super().__init__(_arguments.numbers(n, "n", 3), _arguments.number(d, "d"))
+        # n and d are kept as given: to divide them a second time may change their last bit.
+        self._given = np.array(_arguments.numbers(n, "n", 3)), _arguments.number(d, "d")
+        super().__init__(*self._given)
         self._describe(self.n.tolist(), self.d)
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self._given
 
 
 class TriangleP(_Shape, _core.TriangleP):
@@ -173,3 +215,6 @@ class TriangleP(_Shape, _core.TriangleP):
             _arguments.numbers(c, "c", 3),
         )
         self._describe(self.a.tolist(), self.b.tolist(), self.c.tolist())
+
+    def _built_from(self) -> Tuple[Any, ...]:
+        return self.a, self.b, self.c

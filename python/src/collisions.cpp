@@ -159,7 +159,11 @@ void bindCollisions(py::module_& module) {
   module.attr("contact_dtype") = dtypeOf<Contact>();
   Class<fcl::ContinuousFilter>(module, "Filter")
       .def(py::init(&makeFilter), py::arg("group"), py::arg("mask"),
-           py::arg("triangle_groups"), py::arg("triangle_masks"));
+           py::arg("triangle_groups"), py::arg("triangle_masks"))
+      .def_readonly("group", &fcl::ContinuousFilter::group)
+      .def_readonly("mask", &fcl::ContinuousFilter::mask)
+      .def_readonly("_triangle_groups", &fcl::ContinuousFilter::triangle_groups)
+      .def_readonly("_triangle_masks", &fcl::ContinuousFilter::triangle_masks);
   Class<Request>(module, "Request")
       .def(py::init(&makeRequest), py::arg("query"), py::arg("toc_err"),
            py::arg("num_max_contacts"), py::arg("enable_contact"), py::arg("t_max"),

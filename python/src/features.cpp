@@ -5,6 +5,7 @@
 #include <string>
 
 #include "arrays.h"
+#include "errors.h"
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "meshes.h"
@@ -133,7 +134,8 @@ py::array testAll(const Doubles& t0, const Doubles& t1, const Test& test) {
         results.push_back(test(pointsAt<num_points>(t0.data() + kNumbers * i),
                                pointsAt<num_points>(t1.data() + kNumbers * i)));
       } catch (const fcl::Exception& error) {
-        throw py::value_error("query " + std::to_string(i) + ": " + error.what());
+        throw py::value_error("query " + std::to_string(i) + ": " +
+                              inPython(error.what()));
       }
   }
   return toArray(std::move(results));

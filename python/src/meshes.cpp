@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "classes.h"
+#include "errors.h"
 #include "fcl/geometry/bvh/weld_vertices.h"
 
 namespace fcl_ccd {
@@ -83,7 +84,7 @@ std::vector<std::size_t> toPoints(const Integers& array) {
 
 template <typename Model>
 void requireOk(int code, const Model& model) {
-  if (code != fcl::BVH_OK) throw py::value_error(model.lastError());
+  if (code != fcl::BVH_OK) throw py::value_error(inPython(model.lastError()));
 }
 
 std::size_t numPoints(const Doubles& array) {
@@ -103,6 +104,24 @@ py::array copyOf(const Triangle* triangles, int count) {
   std::int64_t* to = out.mutable_data();
   for (int i = 0; i < count; ++i)
     for (int k = 0; k < 3; ++k) *to++ = static_cast<std::int64_t>(triangles[i][k]);
+  return out;
+}
+
+py::array edgesOf(const fcl::DeformableBVHModel<>& model) {
+  const std::size_t count = model.numFreeEdges();
+  py::array_t<std::int64_t> out({static_cast<py::ssize_t>(count), py::ssize_t{2}});
+  std::int64_t* to = out.mutable_data();
+  for (std::size_t i = 0; i < count; ++i)
+    for (const std::size_t vertex : model.freeEdge(i))
+      *to++ = static_cast<std::int64_t>(vertex);
+  return out;
+}
+
+py::array pointsOf(const fcl::DeformableBVHModel<>& model) {
+  const std::size_t count = model.numFreePoints();
+  py::array_t<std::int64_t> out(static_cast<py::ssize_t>(count));
+  for (std::size_t i = 0; i < count; ++i)
+    out.mutable_data()[i] = static_cast<std::int64_t>(model.freePoint(i));
   return out;
 }
 
@@ -247,7 +266,12 @@ void bindMeshes(py::module_& module) {
       .def_property_readonly("triangles",
                              readModel<DeformableMesh>([](const Deformable& m) {
                                return copyOf(m.tri_indices, m.num_tris);
-                             }));
+                             }))
+      .def_property_readonly("edges", readModel<DeformableMesh>(&edgesOf))
+      .def_property_readonly("points", readModel<DeformableMesh>(&pointsOf))
+      .def_property_readonly(
+          "num_threads",
+          readModel<DeformableMesh>([](const Deformable& m) { return m.numThreads(); }));
   Class<RigidMesh, Mesh>(module, "RigidMesh")
       .defInit<const Doubles&, const Integers&>(py::arg("vertices"), py::arg("triangles"))
       .def_property_readonly("num_vertices",

@@ -4,6 +4,9 @@
 // files *.py convert and check the arguments of users.
 #include <pybind11/pybind11.h>
 
+#include <string>
+
+#include "errors.h"
 #include "fcl/ccd_version.h"
 #include "fcl/common/exception.h"
 #include "meshes.h"
@@ -19,10 +22,12 @@ PYBIND11_MODULE(_core, module) {
     try {
       if (error) std::rethrow_exception(error);
     } catch (const fcl::Exception& exception) {
-      PyErr_SetString(PyExc_ValueError, exception.what());
+      const std::string text = python::inPython(exception.what());
+      PyErr_SetString(PyExc_ValueError, text.c_str());
     }
   });
   module.attr("version") = FCL_CCD_VERSION;
+  module.def("_in_python", &python::inPython);
   python::bindMeshes(module);
   python::bindShapes(module);
   python::bindOctrees(module);

@@ -20,9 +20,9 @@ using fcl::Vector3d;
 using fcl::detail::PathKind;
 using fcl::detail::PoseNumbers;
 
-/// A rotation that was computed or stored in single precision is taken, one that scales
-/// is not.
-constexpr double kMostDeviation = 1e-5;
+/// As the library: a rotation that was typed with a few digits is taken, a matrix that
+/// scales is not.
+constexpr double kMostDeviation = 0x1p-6;
 
 double determinant(const double (&r)[9]) {
   return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
@@ -32,14 +32,38 @@ double determinant(const double (&r)[9]) {
 /// What BoundedMotion asks for.
 constexpr double kMostDeviationOfOwn = 0x1p-40;
 
-bool isRotation(const double (&r)[9], double most_deviation) {
+/// How far the rows are from length 1 and right angles: the most that a product of two
+/// rows is off.
+double deviationOf(const double (&r)[9]) {
+  double most = 0;
   for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k <= i; ++k) {
       const double product =
           r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
-      if (std::abs(product - (i == k)) > most_deviation) return false;
+      most = std::max(most, std::abs(product - (i == k)));
     }
-  return determinant(r) > 0;
+  return most;
+}
+
+/// @param name  what the exception calls the pose
+void requireRotation(const double (&r)[9], const std::string& name,
+                     double most_deviation) {
+  if (determinant(r) < 0)
+    throw py::value_error(name +
+                          " is not a rotation and a translation: it mirrors. Mirror the "
+                          "vertices instead");
+  const double deviation = deviationOf(r);
+  if (deviation <= most_deviation) return;
+  if (deviation <= kMostDeviation)
+    throw py::value_error(name +
+                          " is a rotation only up to more than 2^-40. Compute it in "
+                          "double precision, or normalise it");
+  throw py::value_error(name +
+                        " is not a rotation and a translation: the products of its rows "
+                        "are off by " +
+                        std::to_string(deviation) +
+                        ", more than 2^-6. Normalise its rotation, or scale the "
+                        "vertices instead");
 }
 
 /// The rotation and the translation of a matrix.
@@ -61,15 +85,7 @@ PoseNumbers<double> toPose(const double* matrix, const std::string& name,
   if (matrix[12] != 0 || matrix[13] != 0 || matrix[14] != 0 || matrix[15] != 1)
     throw py::value_error(name + ": the last row of a pose is 0 0 0 1");
   const PoseNumbers<double> pose = partsOf(matrix);
-  if (isRotation(pose.rotation, kMostDeviation) &&
-      !isRotation(pose.rotation, most_deviation))
-    throw py::value_error(name +
-                          " is a rotation only up to more than 2^-40. Compute it in "
-                          "double precision");
-  if (!isRotation(pose.rotation, most_deviation))
-    throw py::value_error(name +
-                          " is not a rotation and a translation. Scale or mirror the "
-                          "vertices instead");
+  requireRotation(pose.rotation, name, most_deviation);
   return pose;
 }
 

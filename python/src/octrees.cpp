@@ -88,6 +88,27 @@ class OcTree : public Geometry {
     return toArray(std::move(cells));
   }
 
+  /// The occupied cells, none of which was joined with others: their numbers along x, y
+  /// and z, from the origin. Each of them had a point, so they are no more than these.
+  Integers finestCells() const {
+    std::vector<std::int64_t> numbers;
+    const unsigned depth = map_->getTreeDepth();
+    for (auto cell = map_->begin_leafs(), end = map_->end_leafs(); cell != end; ++cell) {
+      const octomap::OcTreeKey first = cell.getIndexKey();
+      const std::int64_t width = std::int64_t{1} << (depth - cell.getDepth());
+      for (std::int64_t i = 0; i < width * width * width; ++i) {
+        const std::int64_t in_cell[3] = {i / (width * width), i / width % width,
+                                         i % width};
+        for (int k = 0; k < 3; ++k)
+          numbers.push_back(first[static_cast<unsigned>(k)] + in_cell[k] -
+                            static_cast<std::int64_t>(kMostCells));
+      }
+    }
+    Integers out({static_cast<py::ssize_t>(numbers.size() / 3), py::ssize_t{3}});
+    std::copy(numbers.begin(), numbers.end(), out.mutable_data());
+    return out;
+  }
+
  private:
   static std::shared_ptr<const octomap::OcTree> makeWithoutLock(const Doubles& points,
                                                                 double resolution) {
@@ -107,7 +128,8 @@ void bindOctrees(py::module_& module) {
       .defInit<const Doubles&, double>(py::arg("points"), py::arg("resolution"))
       .def_property_readonly("resolution", &OcTree::resolution)
       .def_property_readonly("num_cells", &OcTree::numCells)
-      .def("_cells", &OcTree::cells);
+      .def("_cells", &OcTree::cells)
+      .def("_finest_cells", &OcTree::finestCells);
 }
 
 }  // namespace python

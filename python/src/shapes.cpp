@@ -148,8 +148,11 @@ void bindShapes(py::module_& module) {
   bindShape<fcl::Convexd>(module, "Convex")
       .def(py::init(&makeConvex), py::arg("vertices"), py::arg("faces"))
       .def_property_readonly("vertices", &verticesOf)
-      .def_property_readonly("num_faces", [](const Shape<fcl::Convexd>& convex) {
-        return convex.shape().getFaceCount();
+      .def_property_readonly(
+          "num_faces",
+          [](const Shape<fcl::Convexd>& convex) { return convex.shape().getFaceCount(); })
+      .def_property_readonly("_faces", [](const Shape<fcl::Convexd>& convex) {
+        return convex.shape().getFaces();
       });
   bindFlat<fcl::Planed>(module, "Plane");
   bindFlat<fcl::Halfspaced>(module, "Halfspace");

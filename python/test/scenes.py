@@ -1,7 +1,22 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Meshes and poses of the tests."""
+"""Meshes and poses of the tests, and what a test may need."""
+
+import importlib.util
+import os
 
 import numpy as np
+import pytest
+
+
+def require(*modules):
+    """Skips a test for which a package is missing, but not in CI."""
+    missing = [name for name in modules if importlib.util.find_spec(name) is None]
+    if not missing:
+        return
+    message = f"missing: {', '.join(missing)} (cmake/dependencies.sh has the packages)"
+    if os.environ.get("CI") == "true":
+        pytest.fail(message)
+    pytest.skip(message)
 
 
 def grid(n, size=1.0):

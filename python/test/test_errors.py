@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Wrong inputs of each kind: the exception, and what its text says."""
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scenes import grid, pose
 
 import fcl_ccd
+from fcl_ccd import _core
 
 VERTICES, TRIANGLES = grid(4)
 NAN, INF = float("nan"), float("inf")
@@ -148,8 +152,9 @@ MIRROR = np.diag([1.0, 1.0, -1.0, 1.0])
         (lambda: np.eye(3), r"motion1 has the shape \(3, 3\)"),
         (lambda: np.eye(4)[None], r"motion1 has the shape \(1, 4, 4\)"),
         (lambda: 2 * np.eye(4), "the last row of a pose"),
-        (lambda: np.diag([2.0, 2.0, 2.0, 1.0]), "motion1 is not a rotation and a translation"),
-        (lambda: MIRROR, "motion1 is not a rotation and a translation"),
+        (lambda: np.diag([2.0, 2.0, 2.0, 1.0]), "motion1 is not a rotation and a translation.* scale"),
+        (lambda: pose(angle=1) * (1.02, 1.02, 1.02, 1), "off by 0.0404.* Normalise its rotation"),
+        (lambda: MIRROR, "motion1 is not a rotation and a translation: it mirrors. Mirror the vert"),
         (lambda: (np.eye(4), pose((NAN, 0, 0))), "motion1 has a number that is not finite"),
         (lambda: fcl_ccd.LinearMotion(np.eye(4), MIRROR), "a pose of LinearMotion is not"),
         (lambda: fcl_ccd.LinearMotion(np.eye(4), np.eye(4), (0, 0)), "reference has the shape"),
@@ -165,6 +170,21 @@ def test_motions(make, text):
     mesh = fcl_ccd.RigidMesh(VERTICES, TRIANGLES)
     with pytest.raises(ValueError, match=text):
         fcl_ccd.collide(mesh, mesh, make())
+
+
+@pytest.mark.parametrize("digits", [3, 4, 7])
+def test_rotations_of_a_few_digits(digits):
+    """As C++ takes them."""
+    turned = np.round(pose((0.2, 0.3, 0.1), (1, 2, 3), np.pi / 4), digits)
+    mesh = fcl_ccd.RigidMesh(VERTICES, TRIANGLES)
+    assert fcl_ccd.collide(mesh, fcl_ccd.RigidMesh(VERTICES + (0, 0, 0.1), TRIANGLES), turned)
+    with pytest.raises(ValueError, match=r"pose\(t\) is a rotation only up to .* or normalise it"):
+        fcl_ccd.BoundedMotion(
+            lambda t: turned,
+            lambda t: np.zeros((4, 4)),
+            lambda center, radius, t0, t1: 0,
+            lambda t0, t1: 0,
+        )
 
 
 @pytest.mark.parametrize(
@@ -223,6 +243,69 @@ def test_feature_tests(test):
     with pytest.raises(ValueError, match="min_distance"):
         test(t0, t0, min_distance=NAN)
     assert test(t0[:0], t0[:0]).shape == (0,)
+
+
+SOURCE = Path(__file__).resolve().parent.parent.parent
+FOLDERS = "src/api", "src/elementary", "src/mesh", "src/motion", "src/tree", "include/fcl"
+NAMES_OF_CPP = r"::|\b[a-z]+[A-Z]\w*|\bk[A-Z]\w+|BVH|CCDM|request\.|Continuous[A-Z]|\bmodel\b"
+# What the package never does: a mesh is built and updated in one call, in double, without
+# FCL's tree; it has FCL's motions or a BoundedMotion; a null pointer is None.
+NOT_REACHED = (
+    r"[a-z]\w*\.*Model\(|[aA]ddSub|updateFclTree|FclTree|between begin|null|ccd_motion_type|In float|"
+    r"none of FCL's|motion class|one of FCL's motions|base class|safe\w*Displacements|traversal can|"
+    r"models of the same BV|the other manager|[vV]ertices given for|refitTopDown|distance query"
+)
+
+
+def texts_of_the_library():
+    """The strings of each statement that makes an exception, joined."""
+    statement = r"(?:throw Exception|refuse|require\w*|checked\w*)\s*\(((?:[^;\"]|\"(?:[^\"\\]|\\.)*\")*);"
+    for folder in FOLDERS:
+        for path in sorted((SOURCE / folder).rglob("*.[ch]*")):
+            for found in re.finditer(statement, path.read_text(encoding="utf-8")):
+                parts = re.sub(r'"\s*"', "", found[1])
+                text = " ".join(re.findall(r'"((?:[^"\\]|\\.)*)"', parts))
+                if text:
+                    yield f"{path.name}: {text}"
+
+
+def test_names_of_python():
+    """No text that can reach a user of the package has names that only C++ has."""
+    texts = list(texts_of_the_library())
+    assert len(texts) > 80
+    for text in texts:
+        if not re.search(NOT_REACHED, text):
+            name, words = text.split(": ", 1)
+            assert not re.search(NAMES_OF_CPP, _core._in_python(words)), (name, words)
+
+
+def test_words_of_python():
+    mesh = mesh_at_rest()
+    for call, text in (
+        (lambda: fcl_ccd.DeformableMesh(VERTICES, None), "the mesh has no triangles. Give some, or free"),
+        (lambda: fcl_ccd.self_collide(mesh, num_max_contacts=0), "^num_max_contacts is 0.*query='any'$"),
+        (
+            lambda: fcl_ccd.self_collide(mesh, query="any", enable_crossings=True),
+            "^enable_crossings lists all crossings, which query='any' does not .* use 'first' or 'all'",
+        ),
+        (
+            lambda: fcl_ccd.self_collide(mesh, ignore_initially_closer=True),
+            "^ignore_initially_closer is about pairs that are nearer than min_distance, which is 0",
+        ),
+        (lambda: fcl_ccd.weld_vertices([]), r"^weld_vertices\(\): there is no frame"),
+        (
+            lambda: fcl_ccd.OcTree(VERTICES, 0.1).cells([-1]),
+            r"^cells\(\): a number is not the number of a cell. Give b1 or b2 of a contact",
+        ),
+        (
+            lambda: fcl_ccd.collide(
+                mesh, mesh, fcl_ccd.LinearMotion(np.eye(4), pose(angle=1), (0, 0, 1e300))
+            ),
+            "reference point of the LinearMotion is far too large. Give a point near the object",
+        ),
+    ):
+        with pytest.raises(ValueError, match=text):
+            call()
 
 
 def test_exceptions_of_callbacks_reach_the_caller():

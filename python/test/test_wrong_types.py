@@ -60,6 +60,7 @@ CALLS = {
     "vertex_edge": (T0[3], T0[3]),
     "vertex_face": (T0[4], T0[4]),
     "vertex_vertex": (T0[2], T0[2]),
+    "to_dataframe": (fcl_ccd.collide(MESH, MESH).contacts,),
     "weld_vertices": ([VERTICES],),
 }
 REQUIRED = {"vertex_edge": {"min_distance": 1.0}, "vertex_vertex": {"min_distance": 1.0}}
@@ -82,9 +83,9 @@ def public_calls():
 
 def wrong_values(annotation):
     values = [object()]
-    if annotation != "str" and "Hashable" not in annotation:
+    if "Literal" not in annotation and "Hashable" not in annotation:
         values.append("text")
-    if annotation in ("float", "int", "bool", "str"):
+    if annotation in ("float", "int", "bool") or "Literal" in annotation:
         values += [None, [1], np.zeros(2), b"1"]
     if annotation in ("float", "int"):
         values += [True, "1"]
