@@ -63,5 +63,28 @@ if(TARGET fcl_ccd_python)
        "${CPACK_PACKAGING_INSTALL_PREFIX}/${FCL_CCD_PYTHON_DIR}\n")
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-ccd.pth
           DESTINATION /usr/lib/python3/dist-packages COMPONENT python EXCLUDE_FROM_ALL)
+  # Who imports the package as root would write compiled files beside its modules, of which dpkg
+  # does not know. So the package compiles them, and cleans up before it goes, as Debian's do.
+  # DPKG_ROOT: a system in a folder (dpkg --root with --force-script-chrootless).
+  set(package_dir ${CPACK_PACKAGING_INSTALL_PREFIX}/${FCL_CCD_PYTHON_DIR}/fcl_ccd)
+  set(scripts ${CMAKE_CURRENT_BINARY_DIR}/python_package)
+  file(WRITE ${scripts}/postinst "#!/bin/sh
+set -e
+if [ \"$1\" = configure ] && command -v py3compile >/dev/null; then
+  py3compile -V ${minor} \"$DPKG_ROOT${package_dir}\"
+fi
+")
+  file(WRITE ${scripts}/prerm "#!/bin/sh
+set -e
+if command -v py3clean >/dev/null; then
+  py3clean \"$DPKG_ROOT${package_dir}\"
+else
+  rm -rf \"$DPKG_ROOT${package_dir}/__pycache__\"
+fi
+")
+  file(CHMOD ${scripts}/postinst ${scripts}/prerm
+       PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ
+                   WORLD_EXECUTE)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${scripts}/postinst ${scripts}/prerm)
 endif()
 include(CPack)

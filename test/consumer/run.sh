@@ -13,6 +13,9 @@ shift 3
 project_dir=$(cd "$source_dir/../.." && pwd)
 python=${PYTHON:-/usr/bin/python3}
 
+# As on a machine where nobody has set it: Python writes what it compiles.
+unset PYTHONDONTWRITEBYTECODE
+
 step() { echo "== $*"; }
 fail() {
   echo "$*" >&2
@@ -200,12 +203,14 @@ door_python_extension() { # a Python module of the program that binds FCL's name
 
 door_uninstall() { # nothing is left; the file of another program is
   local gone=$work/gone component
-  for component in library dev; do
+  for component in library dev python; do
     cmake --install "$build_dir" --prefix "$gone" --component "$component" >/dev/null
   done
   [ -f "$gone/$lib/libfcl.a" ] || fail "The components library and dev install no library"
   touch "$gone/$lib/libother.so"
-  for component in library dev; do
+  PYTHONPATH=$(dirname "$(dirname "$(find "$gone" -path '*/fcl_ccd/_core*.so')")") "$python" \
+    -c "import fcl_ccd"
+  for component in library dev python; do
     cmake -DMANIFEST="$build_dir/install_manifest_$component.txt" \
       -P "$project_dir/cmake/uninstall.cmake"
   done
@@ -225,7 +230,7 @@ door_deb() { # Debian packages: no file of stock FCL, installed beside it, used,
   mkdir -p "$root/var/lib/dpkg"/{info,updates,triggers}
   touch "$root/var/lib/dpkg/status"
   local dpkg=(dpkg --root="$root" --log=/dev/null --force-depends --force-not-root
-    --force-bad-path)
+    --force-bad-path --force-script-chrootless)
   "${dpkg[@]}" -i "$deb"/*.deb >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; fail "dpkg -i"; }
   # What is installed is used from there. The links lead to the place without the root.
   local name
@@ -235,8 +240,16 @@ door_deb() { # Debian packages: no file of stock FCL, installed beside it, used,
   done
   "$root/usr/lib/fcl-ccd/bin/fcl-ccd" --version
   configure_and_run deb_program "$root/usr/lib/fcl-ccd"
-  PYTHONPATH=$root$(cat "$root/usr/lib/python3/dist-packages/fcl-ccd.pth") "$python" \
-    -c "import fcl_ccd; print(fcl_ccd.__file__)"
+  # Installed modules are compiled. To import them, in other ways too, leaves no more files than
+  # the package removes.
+  local modules compiled
+  modules=$root$(cat "$root/usr/lib/python3/dist-packages/fcl-ccd.pth")
+  compiled=$(find "$modules" -name '*.pyc' | LC_ALL=C sort)
+  [ -n "$compiled" ] || fail "The modules of the Python package are not compiled"
+  PYTHONPATH=$modules "$python" -c "import fcl_ccd; print(fcl_ccd.__file__)"
+  [ "$compiled" = "$(find "$modules" -name '*.pyc' | LC_ALL=C sort)" ] ||
+    fail "An import writes files beside the modules"
+  PYTHONPATH=$modules "$python" -OO -c "import fcl_ccd"
   [ "$root$(cat "$root/etc/ld.so.conf.d/fcl-ccd.conf")" = "$root/usr/lib/fcl-ccd/$lib" ]
 
   "${dpkg[@]}" -P fcl-ccd python3-fcl-ccd libfcl-ccd-dev libfcl-ccd0.1 >>"$work/dpkg.log" 2>&1
