@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/class_cast.h"
 #include "api/contact_conversion.h"
 #include "api/overlapping_shapes.h"
 #include "api/prepared_mesh.h"
@@ -410,7 +411,7 @@ bool isDeformingMesh(const CollisionGeometry<S>& o) {
 
 template <typename S>
 bool isDeformableModel(const CollisionGeometry<S>& o) {
-  return dynamic_cast<const DeformableMesh*>(&o) != nullptr;
+  return classCast<DeformableMesh>(o) != nullptr;
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                      \

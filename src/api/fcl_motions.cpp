@@ -3,8 +3,8 @@
 // Reads FCL's motions in double. They are compiled in libfcl, which decides their layout.
 #include <cstddef>
 #include <new>
-#include <typeinfo>
 
+#include "api/class_cast.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
@@ -37,7 +37,7 @@ class MotionEnds : public Motion {
 /// A derived class may move differently: only this class itself is read.
 template <typename Motion>
 const Motion* as(const MotionBase<double>& motion) {
-  return typeid(motion) == typeid(Motion) ? static_cast<const Motion*>(&motion) : nullptr;
+  return isExactly<Motion>(motion) ? static_cast<const Motion*>(&motion) : nullptr;
 }
 
 /// More than Eigen's alignment on any machine, and so right for any libfcl.

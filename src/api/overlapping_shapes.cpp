@@ -34,7 +34,8 @@ bool isPlain(const MovingGeometry<S>& o) {
   if (turns && (o.reference[0] != 0 || o.reference[1] != 0 || o.reference[2] != 0))
     return false;
   for (const PoseNumbers<S>& pose : o.pose)
-    if (!isPlainSize(pose) || !deformable::isRotation(toPose(pose).rotation))
+    if (!isPlainSize(pose) || !isRotationAsGiven(pose.rotation) ||
+        deformable::determinantOf(toPose(pose).rotation) <= 0)
       return false;
   return true;
 }

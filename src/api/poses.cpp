@@ -28,18 +28,29 @@ PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
   if (!placed.goesStraight())
     return toNumbers<S>(
         deformable::motionPathOf(placed, "the object").pose(static_cast<double>(t)));
-  Transform3<S> tf = toTransform(o.pose[0]);
-  const Transform3<S> end = toTransform(o.pose[1]);
+  const PoseNumbers<S> first = toNumbers<S>(placed.beginning()),
+                       last = toNumbers<S>(placed.end());
+  Transform3<S> tf = toTransform(first);
+  const Transform3<S> end = toTransform(last);
   tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();
-  if (!isConstantRotation(o.pose[0], o.pose[1]))
+  if (!isConstantRotation(first, last))
     tf.linear() = Quaternion<S>(tf.linear())
                       .slerp(t, Quaternion<S>(end.linear()))
                       .toRotationMatrix();
   return toNumbers(tf);
 }
 
+template <typename S>
+PoseNumbers<S> lastPose(const MovingGeometry<S>& o) {
+  const deformable::DefaultFloatingPoint mode;
+  const PlacedGeometry<S> placed(o);
+  return placed.hasReplacedRotation() ? toNumbers<S>(placed.end()) : o.pose[1];
+}
+
 template PoseNumbers<double> poseAt(const MovingGeometry<double>&, double);
 template PoseNumbers<float> poseAt(const MovingGeometry<float>&, float);
+template PoseNumbers<double> lastPose(const MovingGeometry<double>&);
+template PoseNumbers<float> lastPose(const MovingGeometry<float>&);
 
 }  // namespace detail
 }  // namespace fcl

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <utility>
 
+#include "api/class_cast.h"
 #include "base/default_floating_point.h"
 #include "base/stopwatch.h"
 #include "fcl/common/exception.h"
@@ -60,7 +61,7 @@ bool isDeforming(const BVHModel<BV>& model) {
 /// The geometry as a DeformableBVHModel whose moving tree is up to date; null otherwise.
 template <typename S>
 const DeformableMesh* deformableMeshOf(const CollisionGeometry<S>& geometry) {
-  const auto* mesh = dynamic_cast<const DeformableMesh*>(&geometry);
+  const auto* mesh = classCast<DeformableMesh>(geometry);
   return mesh && mesh->isInStep() ? mesh : nullptr;
 }
 
@@ -154,7 +155,7 @@ PreparedMesh::PreparedMesh(const CollisionGeometry<S>& geometry, const Pose& beg
     instance_.translation[0][k] = beginning.translation[k];
     instance_.translation[1][k] = end.translation[k];
   }
-  const auto* any = dynamic_cast<const DeformableMesh*>(&geometry);
+  const auto* any = classCast<DeformableMesh>(geometry);
   if (any && any->isUpdateOpen())
     throw Exception(name +
                     ": an update of the model has begun and not ended. Call "

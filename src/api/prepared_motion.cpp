@@ -74,28 +74,13 @@ MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
 
 }  // namespace
 
-bool isRotation(const double (&r)[9]) {
-  constexpr double kMostDeviation = 0x1p-10;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k <= i; ++k) {
-      const double product =
-          r[3 * i] * r[3 * k] + r[3 * i + 1] * r[3 * k + 1] + r[3 * i + 2] * r[3 * k + 2];
-      if (std::abs(product - (i == k)) > kMostDeviation) return false;
-    }
-  return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
-             r[2] * (r[3] * r[7] - r[4] * r[6]) >
-         0;
-}
-
-/// A turn is defined between rotations only, and a sphere that is sheared is no sphere.
 template <typename S>
 void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
-  if (placed.isMesh() && placed.goesStraight()) return;
-  for (const Pose& pose : {placed.beginning(), placed.end()})
-    if (!isRotation(pose.rotation))
-      throw Exception(std::string(name) + ", " + kindOf(placed.geometry()) +
-                      ": a transform scales, mirrors or shears. Give a rotation and a "
-                      "translation, and change the geometry instead");
+  if (!placed.areRotations())
+    throw Exception(std::string(name) + ", " + kindOf(placed.geometry()) +
+                    ": a transform scales, mirrors or shears, by more than 2^-6. Give a "
+                    "rotation and a translation: normalise the rotation, for example by "
+                    "Eigen::Quaterniond(R).normalized(), or change the geometry instead");
 }
 
 template <typename S>
@@ -112,7 +97,7 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
-    // In the body frame. A matrix that is just a rotation shrinks by less than 2^-9.
+    // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
     const double reach_in_body = (1 + 0x1p-8) * (reach + path.translationReach());
     shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
     body_.emplace(*shape_, path);

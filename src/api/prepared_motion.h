@@ -15,12 +15,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Whether a matrix is a rotation up to 2^-10. One that was computed in float, or
-/// typed with four digits, is.
-bool isRotation(const double (&matrix)[9]);
-
-/// @brief Refuses transforms that scale, mirror or shear. Only the vertices of a mesh may
-/// go straight between any two places.
+/// @brief Refuses transforms that scale, mirror or shear: see
+/// PlacedGeometry::areRotations().
 /// @param name  the name of the geometry in errors
 template <typename S>
 void requireRotations(const PlacedGeometry<S>& placed, const char* name);

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "api/convex_shapes.h"
+#include "api/nearest_rotation.h"
 #include "api/octree_nodes.h"
 #include "api/prepared_mesh.h"
 #include "fcl/common/exception.h"
@@ -88,6 +89,13 @@ class PlacedGeometry {
     if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
     if (isRigid())
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
+    if (isMesh() && goes_straight_) return;
+    // A turn is defined between rotations only, and a sphere that is sheared is no
+    // sphere.
+    const bool has_poses =
+        moving.path != PathKind::kBounded && moving.path != PathKind::kSpline;
+    for (deformable::Pose* pose : {&beginning_, &end_})
+      are_rotations_ &= takeRotation(pose->rotation, has_poses);
   }
 
   const CollisionGeometry<S>& geometry() const { return *moving_.geometry; }
@@ -105,6 +113,13 @@ class PlacedGeometry {
   /// Whether all vertices move on straight lines.
   bool goesStraight() const { return goes_straight_; }
 
+  /// Whether both poses are rotations, or were replaced by the nearest ones. Always true
+  /// for a mesh whose vertices go straight: it may be scaled, mirrored or sheared.
+  bool areRotations() const { return are_rotations_; }
+
+  /// Whether a pose was replaced by the nearest rotation.
+  bool hasReplacedRotation() const { return has_replaced_rotation_; }
+
   /// Whether this library can follow the path.
   bool isKnown() const {
     return (isMesh() || isShape() || isOctree()) &&
@@ -116,12 +131,26 @@ class PlacedGeometry {
     return moving_.path == PathKind::kTurn || moving_.path == PathKind::kScrew;
   }
 
+  /// Replaces a matrix by the nearest rotation if it is none as it is. The numbers of a
+  /// BoundedMotion are not replaced: it promises rotations.
+  bool takeRotation(double (&matrix)[9], bool may_replace) {
+    if (isRotationAsGiven(matrix)) return deformable::determinantOf(matrix) > 0;
+    if (!may_replace)
+      return deformable::deviationFromRotation(matrix) <= 0x1p-10 &&
+             deformable::determinantOf(matrix) > 0;
+    if (!deformable::toNearestRotation(matrix)) return false;
+    has_replaced_rotation_ = true;
+    return true;
+  }
+
   const MovingGeometry<S>& moving_;
   deformable::MeshKind kind_;
   bool is_shape_;
   bool is_octree_;
   deformable::Pose beginning_, end_;
   bool goes_straight_{false};
+  bool are_rotations_{true};
+  bool has_replaced_rotation_{false};
 };
 
 enum class Answerer {

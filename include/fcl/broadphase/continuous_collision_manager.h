@@ -174,7 +174,9 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   /// @overload
   void collide(Object* object, void* cdata, CollisionCallBack<S> callback) const override;
   /// @overload
-  /// @throws fcl::Exception  the other manager is no ContinuousCollisionManager
+  /// @throws fcl::Exception  the other manager is no ContinuousCollisionManager. (In a
+  /// program that is compiled with -fno-rtti also: it is of a derived class, and not of
+  /// the class of this one.)
   void collide(BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
                CollisionCallBack<S> callback) const override;
 
@@ -219,6 +221,9 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   static void callBack(const Pairs& pairs, void* cdata,
                        ContinuousCollisionCallBack<S> callback);
   CollisionObject<S>* sweptObject(Object* object) const;
+  /// The other manager as one of this class; null if it is none.
+  const ContinuousCollisionManager* managerOf(
+      const BroadPhaseContinuousCollisionManager<S>& other) const;
   void callBack(const Pairs& pairs, const ContinuousCollisionManager& other, void* cdata,
                 CollisionCallBack<S> callback) const;
 
@@ -383,7 +388,8 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
   ++result.num_tested;
   try {
     if (pair.o1 == pair.o2)
-      continuousSelfCollide(tested.o1->collisionGeometry().get(), request, tested.result);
+      fcl::continuousSelfCollide(tested.o1->collisionGeometry().get(), request,
+                                 tested.result);
     else
       fcl::collide(tested.o1, tested.o2, request, tested.result);
   } catch (const Exception& error) {
@@ -541,12 +547,27 @@ void ContinuousCollisionManager<S>::collide(
     BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
     CollisionCallBack<S> callback) const {
   if (other == this) return collide(cdata, callback);
-  const auto* manager = dynamic_cast<const ContinuousCollisionManager*>(other);
+  const ContinuousCollisionManager* manager = other ? managerOf(*other) : nullptr;
   if (!manager)
     throw Exception(
         "collide: the other manager is not a ContinuousCollisionManager, so its objects "
         "have no boxes that move. Register its objects in one");
   callBack(boxes_.pairsWith(manager->boxes_, allBoxPairs()), *manager, cdata, callback);
+}
+
+template <typename S>
+const ContinuousCollisionManager<S>* ContinuousCollisionManager<S>::managerOf(
+    const BroadPhaseContinuousCollisionManager<S>& other) const {
+  using Base = BroadPhaseContinuousCollisionManager<S>;
+  static const ContinuousCollisionManager plain;
+  if (detail::haveSameClass<Base>(*this, other) ||
+      detail::haveSameClass<Base>(plain, other))
+    return static_cast<const ContinuousCollisionManager*>(&other);
+#if defined(__GXX_RTTI) || defined(__cpp_rtti)
+  if (detail::typeInfoOf(&other))
+    return dynamic_cast<const ContinuousCollisionManager*>(&other);
+#endif
+  return nullptr;
 }
 
 template <typename S>

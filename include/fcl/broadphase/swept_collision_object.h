@@ -116,9 +116,9 @@ namespace detail {
 
 template <typename S>
 void requireUsable(const ContinuousCollisionObject<S>* object) {
-  requireNotNull(object, "object");
-  requireNotNull(object->collisionGeometry().get(), "object: the geometry");
-  requireNotNull(object->getMotion(), "object: the motion");
+  detail::requireNotNull(object, "object");
+  detail::requireNotNull(object->collisionGeometry().get(), "object: the geometry");
+  detail::requireNotNull(object->getMotion(), "object: the motion");
 }
 
 template <typename S>
@@ -136,9 +136,9 @@ MovingGeometry<S> readObject(const void* object) {
   const MotionBase<S>& motion = *o.getMotion();
   MovingGeometry<S> moving{
       o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr, {}};
-  if (readMotion(motion, moving)) return moving;
-  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(&motion))
-    readBoundedMotion(*bounded, moving);
+  if (detail::readMotion(motion, moving)) return moving;
+  if (const BoundedMotion* bounded = detail::asBoundedMotion(motion))
+    detail::readBoundedMotion(*bounded, moving);
   else
     moving.path = PathKind::kUnknown;
   return moving;

@@ -52,9 +52,9 @@ using ContinuousCandidateSink =
 /// @defgroup continuous_candidates Candidates of continuous collision queries
 ///
 /// They hand out, in blocks, every feature pair that culling leaves: pairs whose moving
-/// boxes overlap, without some that a plane keeps apart during the whole step. On straight paths continuousSelfCollide() and
-/// continuousCollide() with ContinuousQuery::kAll give the same pairs to their
-/// coplanarity filter.
+/// boxes overlap, without some that a plane keeps apart during the whole step. On
+/// straight paths continuousSelfCollide() and continuousCollide() with
+/// ContinuousQuery::kAll give the same pairs to their coplanarity filter.
 ///
 /// (1) Every pair that touches is among them. (A pair that crosses at t = 0 and never
 /// touches may be missing.) (2) No pair is handed out twice. Faces with the same three
@@ -167,12 +167,13 @@ template <typename S>
 bool motionCandidates(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
                       const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
                       const ContinuousCandidateSink& sink, double min_distance) {
-  requireNotNull(o1, "o1");
-  requireNotNull(o2, "o2");
-  requireNotNull(motion1, "motion1");
-  requireNotNull(motion2, "motion2");
-  return answerCandidates(movingGeometry(o1, motion1, o2),
-                          movingGeometry(o2, motion2, o1), sink, min_distance);
+  detail::requireNotNull(o1, "o1");
+  detail::requireNotNull(o2, "o2");
+  detail::requireNotNull(motion1, "motion1");
+  detail::requireNotNull(motion2, "motion2");
+  return detail::answerCandidates(detail::movingGeometry(o1, motion1, o2),
+                                  detail::movingGeometry(o2, motion2, o1), sink,
+                                  min_distance);
 }
 
 }  // namespace detail

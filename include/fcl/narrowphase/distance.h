@@ -77,14 +77,14 @@ void requireDistanceFunction(const CollisionGeometry<S>& o1,
                              const CollisionGeometry<S>& o2) {
   const bool is_first_the_mesh = o1.getObjectType() == OT_BVH,
              is_second_a_mesh = o2.getObjectType() == OT_BVH;
-  if (!(is_first_the_mesh && isDeformableModel(o1)) &&
-      !(is_second_a_mesh && isDeformableModel(o2)))
+  if (!(is_first_the_mesh && detail::isDeformableModel(o1)) &&
+      !(is_second_a_mesh && detail::isDeformableModel(o2)))
     return;
   const NODE_TYPE mesh = (is_first_the_mesh ? o1 : o2).getNodeType(),
                   other = (is_first_the_mesh ? o2 : o1).getNodeType();
-  if (!hasDistanceFunction(mesh, other))
-    throw Exception(std::string("distance: o1 is ") + kindOf(o1.getNodeType()) +
-                    " and o2 is " + kindOf(o2.getNodeType()) +
+  if (!detail::hasDistanceFunction(mesh, other))
+    throw Exception(std::string("distance: o1 is ") + detail::kindOf(o1.getNodeType()) +
+                    " and o2 is " + detail::kindOf(o2.getNodeType()) +
                     ". FCL has no distance function for these two. Use two models of the "
                     "same BV: AABB, RSS, kIOS or OBBRSS");
 }
@@ -98,13 +98,13 @@ class DistanceBodies {
   friend S distance(const CollisionObject<S>* o1, const CollisionObject<S>* o2,
                     const DistanceRequest<S>& request, DistanceResult<S>& result) {
     detail::requireDistanceFunction(*o1->collisionGeometry(), *o2->collisionGeometry());
-    return distance<S>(o1, o2, request, result);
+    return fcl::distance<S>(o1, o2, request, result);
   }
   friend S distance(const CollisionGeometry<S>* o1, const Transform3<S>& tf1,
                     const CollisionGeometry<S>* o2, const Transform3<S>& tf2,
                     const DistanceRequest<S>& request, DistanceResult<S>& result) {
     detail::requireDistanceFunction(*o1, *o2);
-    return distance<S>(o1, tf1, o2, tf2, request, result);
+    return fcl::distance<S>(o1, tf1, o2, tf2, request, result);
   }
 };
 

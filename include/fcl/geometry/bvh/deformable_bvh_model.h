@@ -19,6 +19,12 @@
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
 
+#if defined(__GXX_RTTI) || defined(__cpp_rtti)
+#define FCL_CCD_FINAL_WITHOUT_RTTI
+#else
+#define FCL_CCD_FINAL_WITHOUT_RTTI final
+#endif
+
 namespace fcl {
 
 /// @brief Two vertices that an edge without a triangle joins: a piece of a cable or rod.
@@ -318,10 +324,15 @@ enum class FclTree {
 /// the model with its own bv_splitter and bv_fitter.) Copies are deep and independent. A
 /// build or an update runs in the caller's thread unless setNumThreads() allows more.
 ///
+/// A class of the program that derives from this one needs RTTI: queries know the model
+/// by it. In a program that is compiled with -fno-rtti this class is final.
+///
 /// @tparam BV  a bounding volume of FCL: AABB, OBB, RSS, kIOS, OBBRSS or KDOP of 16, 18
 /// or 24, in double or float. It is used by FCL's own tree only.
 template <typename BV = KDOP<double, 16>>
-class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::DeformableMesh {
+class FCL_EXPORT DeformableBVHModel FCL_CCD_FINAL_WITHOUT_RTTI
+    : public BVHModel<BV>,
+      public detail::DeformableMesh {
  public:
   using S = typename BV::S;
   using Base = BVHModel<BV>;
@@ -497,6 +508,7 @@ class FCL_EXPORT DeformableBVHModel : public BVHModel<BV>, public detail::Deform
 FCL_CCD_EXTERN_MODELS(double)
 FCL_CCD_EXTERN_MODELS(float)
 #undef FCL_CCD_EXTERN_MODELS
+#undef FCL_CCD_FINAL_WITHOUT_RTTI
 
 }  // namespace fcl
 

@@ -19,6 +19,8 @@ namespace fcl {
 /// If a bound is too small, contacts may be missed. If it is too large, queries are
 /// slower.
 ///
+/// Queries know a BoundedMotion by its RTTI, so it does not compile with -fno-rtti.
+///
 /// Thread-safety: queries call the functions from their threads, possibly several at the
 /// same time. What a function throws reaches the caller of the query.
 class BoundedMotion {
@@ -28,6 +30,10 @@ class BoundedMotion {
     double rotation[9];
     double translation[3];
   };
+
+#if !defined(__GXX_RTTI) && !defined(__cpp_rtti)
+  BoundedMotion() = delete;  // Queries know it by its RTTI: compile without -fno-rtti
+#endif
 
   virtual ~BoundedMotion() = default;
 

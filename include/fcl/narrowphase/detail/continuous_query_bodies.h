@@ -5,10 +5,12 @@
 // The bodies of the queries. They convert FCL's types into numbers, ask the library, and
 // convert its answer back. Where the library does not answer, they call FCL's own
 // queries, which are compiled with the program, as with stock FCL.
+//
+// Calls name their namespace. Without it the compiler also looks in the namespaces of the
+// arguments: a function of the same name in Eigen's would make the call ambiguous.
 
 #include <memory>
 #include <string>
-#include <typeinfo>
 
 #include "fcl/common/exception.h"
 #include "fcl/math/motion/interp_motion.h"
@@ -72,11 +74,19 @@ ContinuousContacts<S>* contactsOf(ContinuousContactResult<S>& result) {
 
 /// The pose of an object where it touches.
 template <typename S>
-Transform3<S> contactPose(const MovingGeometry<S>& o, S t) {
+PoseNumbers<S> contactPose(const MovingGeometry<S>& o, S t) {
   // Other paths begin within rounding of the first pose only.
   const bool begins_there = o.path == PathKind::kStraight || o.path == PathKind::kTurn ||
                             o.path == PathKind::kScrew;
-  return toTransform(t == 0 && begins_there ? o.pose[0] : poseAt(o, t));
+  const bool is_first_pose =
+      t == 0 && begins_there && detail::isRotationAsGiven(o.pose[0].rotation);
+  return is_first_pose ? o.pose[0] : detail::poseAt(o, t);
+}
+
+/// The pose at t = 1.
+template <typename S>
+PoseNumbers<S> endPose(const MovingGeometry<S>& o) {
+  return detail::isRotationAsGiven(o.pose[1].rotation) ? o.pose[1] : detail::lastPose(o);
 }
 
 /// Fills the fields of FCL's own result.
@@ -86,12 +96,12 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
   result.is_collide = outcome.is_collide;
   result.time_of_contact = outcome.toc_lo;
   if (!outcome.is_collide) {
-    result.contact_tf1 = toTransform(o1.pose[1]);
-    result.contact_tf2 = toTransform(o2.pose[1]);
+    detail::setTransform(detail::endPose(o1), result.contact_tf1);
+    detail::setTransform(detail::endPose(o2), result.contact_tf2);
     return;
   }
-  result.contact_tf1 = contactPose(o1, outcome.toc_hi);
-  result.contact_tf2 = contactPose(o2, outcome.toc_hi);
+  detail::setTransform(detail::contactPose(o1, outcome.toc_hi), result.contact_tf1);
+  detail::setTransform(detail::contactPose(o2, outcome.toc_hi), result.contact_tf2);
 }
 
 /// The path between two transforms that a request asks for.
@@ -105,14 +115,15 @@ inline PathKind pathOf(CCDMotionType type) {
 template <typename Motion, typename S>
 bool readMotionAs(const MotionBase<S>& motion, PoseNumbers<S> (&pose)[2]) {
   // A derived class may move differently: only this class itself is read.
-  if (typeid(motion) != typeid(Motion)) return false;
+  static const Motion example(Transform3<S>::Identity(), Transform3<S>::Identity());
+  if (!detail::haveSameClass<MotionBase<S>>(motion, example)) return false;
   // integrate() changes the motion.
   const Motion copy(static_cast<const Motion&>(motion));
   for (int end = 0; end < 2; ++end) {
     Transform3<S> tf;
     copy.integrate(S(end));
     copy.getCurrentTransform(tf);
-    pose[end] = toNumbers(tf);
+    pose[end] = detail::toNumbers(tf);
   }
   return true;
 }
@@ -136,15 +147,15 @@ class SplineControl : public SplineMotion<S> {
 template <typename S>
 bool readMotion(const MotionBase<S>& motion, MovingGeometry<S>& moving) {
   moving.path = PathKind::kStraight;
-  if (readMotionAs<TranslationMotion<S>>(motion, moving.pose)) return true;
-  if (!readMotionAs<SplineMotion<S>>(motion, moving.pose)) return false;
+  if (detail::readMotionAs<TranslationMotion<S>>(motion, moving.pose)) return true;
+  if (!detail::readMotionAs<SplineMotion<S>>(motion, moving.pose)) return false;
   moving.path = PathKind::kSpline;
   SplineControl<S>::read(static_cast<const SplineMotion<S>&>(motion), moving.control);
   return true;
 }
 
 inline bool readMotion(const MotionBase<double>& motion, MovingGeometry<double>& moving) {
-  return readFclMotion(motion, moving);
+  return detail::readFclMotion(motion, moving);
 }
 
 /// The ends of a motion class of the program that is a BoundedMotion.
@@ -169,29 +180,28 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
                                  const CollisionGeometry<S>* other) {
   MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr, {}};
-  if (readMotion(*motion, moving)) return moving;
-  if (const auto* bounded = dynamic_cast<const BoundedMotion*>(motion)) {
-    readBoundedMotion(*bounded, moving);
+  if (detail::readMotion(*motion, moving)) return moving;
+  if (const BoundedMotion* bounded = detail::asBoundedMotion(*motion)) {
+    detail::readBoundedMotion(*bounded, moving);
     return moving;
   }
   Transform3<S> tf = Transform3<S>::Identity();
-  moving.pose[0] = moving.pose[1] = toNumbers(tf);
+  moving.pose[0] = moving.pose[1] = detail::toNumbers(tf);
   moving.path = PathKind::kUnknown;
   const OBJECT_TYPE type = other->getObjectType();
-  if ((type == OT_BVH || type == OT_GEOM || type == OT_OCTREE) && isDeformingMesh(*o))
+  if ((type == OT_BVH || type == OT_GEOM || type == OT_OCTREE) &&
+      detail::isDeformingMesh(*o))
     for (int end = 1; end >= 0; --end) {
       motion->integrate(S(end));
       motion->getCurrentTransform(tf);
-      moving.pose[end] = toNumbers(tf);
+      moving.pose[end] = detail::toNumbers(tf);
     }
   return moving;
 }
 
-/// The pose of an object. It is read as numbers, since libfcl decides the layout of the
-/// object's transform.
-template <typename S>
-Transform3<S> transformOf(const CollisionObject<S>& o) {
-  return toTransform(toNumbers<S>(o.getRotation(), o.getTranslation()));
+/// In float, objects are compiled with the program.
+inline PoseNumbers<float> transformOf(const CollisionObject<float>& o) {
+  return detail::toNumbers(o.getTransform());
 }
 
 /// The motion that FCL makes of two transforms. FCL's own getMotionBase() does not set
@@ -202,15 +212,15 @@ std::shared_ptr<MotionBase<S>> makeFclMotion(const Transform3<S>& beg,
                                              CCDMotionType type) {
   switch (type) {
     case CCDM_TRANS:
-      return make_aligned_shared<TranslationMotion<S>>(beg, end);
+      return fcl::make_aligned_shared<TranslationMotion<S>>(beg, end);
     case CCDM_LINEAR:
-      return make_aligned_shared<InterpMotion<S>>(beg.linear(), beg.translation(),
-                                                  end.linear(), end.translation(),
-                                                  Vector3<S>::Zero());
+      return fcl::make_aligned_shared<InterpMotion<S>>(beg.linear(), beg.translation(),
+                                                       end.linear(), end.translation(),
+                                                       Vector3<S>::Zero());
     case CCDM_SCREW:
-      return make_aligned_shared<ScrewMotion<S>>(beg, end);
+      return fcl::make_aligned_shared<ScrewMotion<S>>(beg, end);
     case CCDM_SPLINE:
-      return make_aligned_shared<SplineMotion<S>>(beg, end);
+      return fcl::make_aligned_shared<SplineMotion<S>>(beg, end);
   }
   throw Exception(
       "request.ccd_motion_type is not a value of CCDMotionType. Use CCDM_TRANS, "
@@ -238,8 +248,8 @@ std::shared_ptr<const CollisionGeometry<S>> geometryForFcl(
     const CollisionGeometry<S>* o, const CollisionGeometry<S>* other,
     const ContinuousCollisionRequest<S>& request) {
   if (o->getObjectType() == OT_BVH &&
-      isWrittenTo(o->getNodeType(), other->getObjectType(), request))
-    return copyModel(*o);
+      detail::isWrittenTo(o->getNodeType(), other->getObjectType(), request))
+    return detail::copyModel(*o);
   return {std::shared_ptr<const CollisionGeometry<S>>(), o};
 }
 
@@ -249,9 +259,10 @@ S askFcl(const MovingGeometry<S>& o1, const MotionBase<S>* motion1,
          const MovingGeometry<S>& o2, const MotionBase<S>* motion2,
          const ContinuousCollisionRequest<S>& request,
          ContinuousCollisionResult<S>& result) {
-  return continuousCollide<S>(
-      geometryForFcl(o1.geometry, o2.geometry, request).get(), motion1,
-      geometryForFcl(o2.geometry, o1.geometry, request).get(), motion2, request, result);
+  return fcl::continuousCollide<S>(
+      detail::geometryForFcl(o1.geometry, o2.geometry, request).get(), motion1,
+      detail::geometryForFcl(o2.geometry, o1.geometry, request).get(), motion2, request,
+      result);
 }
 
 /// FCL's answer about geometries that go from one transform to another.
@@ -260,10 +271,11 @@ S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
          const ContinuousCollisionRequest<S>& request,
          ContinuousCollisionResult<S>& result) {
   const auto motionOf = [&request](const MovingGeometry<S>& o) {
-    return makeFclMotion<S>(toTransform(o.pose[0]), toTransform(o.pose[1]),
-                            request.ccd_motion_type);
+    return detail::makeFclMotion<S>(detail::toTransform(o.pose[0]),
+                                    detail::toTransform(o.pose[1]),
+                                    request.ccd_motion_type);
   };
-  return askFcl(o1, motionOf(o1).get(), o2, motionOf(o2).get(), request, result);
+  return detail::askFcl(o1, motionOf(o1).get(), o2, motionOf(o2).get(), request, result);
 }
 
 /// In float FCL's query between transforms does not compile.
@@ -271,7 +283,7 @@ template <>
 inline float askFcl(const MovingGeometry<float>& o1, const MovingGeometry<float>& o2,
                     const ContinuousCollisionRequest<float>&,
                     ContinuousCollisionResult<float>&) {
-  refuseTransforms(o1, o2);
+  detail::refuseTransforms(o1, o2);
 }
 
 /// FCL reports no contacts.
@@ -279,13 +291,13 @@ template <typename S>
 S askFcl(const MovingGeometry<S>& o1, const MotionBase<S>*, const MovingGeometry<S>& o2,
          const MotionBase<S>*, const ContinuousContactRequest<S>&,
          ContinuousContactResult<S>& result) {
-  refuseContacts(o1, o2);
+  detail::refuseContacts(o1, o2);
   return result.time_of_contact;
 }
 template <typename S>
 S askFcl(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
          const ContinuousContactRequest<S>&, ContinuousContactResult<S>& result) {
-  refuseContacts(o1, o2);
+  detail::refuseContacts(o1, o2);
   return result.time_of_contact;
 }
 
@@ -294,8 +306,10 @@ template <typename S, typename Request, typename Result>
 bool collideHere(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                  const Request& request, Result& result) {
   QueryOutcome<S> outcome;
-  if (!answerPair(o1, o2, settingsOf(request), outcome, contactsOf(result))) return false;
-  fillResult(outcome, o1, o2, result);
+  if (!detail::answerPair(o1, o2, detail::settingsOf(request), outcome,
+                          detail::contactsOf(result)))
+    return false;
+  detail::fillResult(outcome, o1, o2, result);
   return true;
 }
 
@@ -303,14 +317,15 @@ template <typename S, typename Request, typename Result>
 S collideMotions(const CollisionGeometry<S>* o1, const MotionBase<S>* motion1,
                  const CollisionGeometry<S>* o2, const MotionBase<S>* motion2,
                  const Request& request, Result& result) {
-  requireNotNull(o1, "o1");
-  requireNotNull(o2, "o2");
-  requireNotNull(motion1, "motion1");
-  requireNotNull(motion2, "motion2");
-  const MovingGeometry<S> moving1 = movingGeometry(o1, motion1, o2),
-                          moving2 = movingGeometry(o2, motion2, o1);
-  if (collideHere(moving1, moving2, request, result)) return result.time_of_contact;
-  return askFcl(moving1, motion1, moving2, motion2, request, result);
+  detail::requireNotNull(o1, "o1");
+  detail::requireNotNull(o2, "o2");
+  detail::requireNotNull(motion1, "motion1");
+  detail::requireNotNull(motion2, "motion2");
+  const MovingGeometry<S> moving1 = detail::movingGeometry(o1, motion1, o2),
+                          moving2 = detail::movingGeometry(o2, motion2, o1);
+  if (detail::collideHere(moving1, moving2, request, result))
+    return result.time_of_contact;
+  return detail::askFcl(moving1, motion1, moving2, motion2, request, result);
 }
 
 template <typename S, typename Request, typename Result>
@@ -318,44 +333,46 @@ S collideTransforms(const CollisionGeometry<S>* o1, const Transform3<S>& tf1_beg
                     const Transform3<S>& tf1_end, const CollisionGeometry<S>* o2,
                     const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
                     const Request& request, Result& result) {
-  requireNotNull(o1, "o1");
-  requireNotNull(o2, "o2");
-  const PathKind path = pathOf(request.ccd_motion_type);
-  const MovingGeometry<S> moving1 = movingGeometry(o1, tf1_beg, tf1_end, path),
-                          moving2 = movingGeometry(o2, tf2_beg, tf2_end, path);
-  if (collideHere(moving1, moving2, request, result)) return result.time_of_contact;
-  return askFcl(moving1, moving2, request, result);
+  detail::requireNotNull(o1, "o1");
+  detail::requireNotNull(o2, "o2");
+  const PathKind path = detail::pathOf(request.ccd_motion_type);
+  const MovingGeometry<S> moving1 = detail::movingGeometry(o1, tf1_beg, tf1_end, path),
+                          moving2 = detail::movingGeometry(o2, tf2_beg, tf2_end, path);
+  if (detail::collideHere(moving1, moving2, request, result))
+    return result.time_of_contact;
+  return detail::askFcl(moving1, moving2, request, result);
 }
 
 template <typename S, typename Request, typename Result>
 S collideObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
                  const CollisionObject<S>* o2, const Transform3<S>& tf2_end,
                  const Request& request, Result& result) {
-  requireNotNull(o1, "o1");
-  requireNotNull(o2, "o2");
-  return collideTransforms<S>(o1->collisionGeometry().get(), transformOf(*o1), tf1_end,
-                              o2->collisionGeometry().get(), transformOf(*o2), tf2_end,
-                              request, result);
+  detail::requireNotNull(o1, "o1");
+  detail::requireNotNull(o2, "o2");
+  return detail::collideTransforms<S>(
+      o1->collisionGeometry().get(), detail::toTransform(detail::transformOf(*o1)),
+      tf1_end, o2->collisionGeometry().get(),
+      detail::toTransform(detail::transformOf(*o2)), tf2_end, request, result);
 }
 
 template <typename S, typename Request, typename Result>
 S collideMovingObjects(const ContinuousCollisionObject<S>* o1,
                        const ContinuousCollisionObject<S>* o2, const Request& request,
                        Result& result) {
-  requireNotNull(o1, "o1");
-  requireNotNull(o2, "o2");
-  return collideMotions<S>(o1->collisionGeometry().get(), o1->getMotion(),
-                           o2->collisionGeometry().get(), o2->getMotion(), request,
-                           result);
+  detail::requireNotNull(o1, "o1");
+  detail::requireNotNull(o2, "o2");
+  return detail::collideMotions<S>(o1->collisionGeometry().get(), o1->getMotion(),
+                                   o2->collisionGeometry().get(), o2->getMotion(),
+                                   request, result);
 }
 
 template <typename S, typename Request, typename Result>
 S collideSelf(const CollisionGeometry<S>* o, const Request& request, Result& result) {
   const Transform3<S> still = Transform3<S>::Identity();
-  const MovingGeometry<S> moving = movingGeometry(o, still, still);
+  const MovingGeometry<S> moving = detail::movingGeometry(o, still, still);
   QueryOutcome<S> outcome;
-  answerSelf(o, settingsOf(request), outcome, contactsOf(result));
-  fillResult(outcome, moving, moving, result);
+  detail::answerSelf(o, detail::settingsOf(request), outcome, detail::contactsOf(result));
+  detail::fillResult(outcome, moving, moving, result);
   return result.time_of_contact;
 }
 

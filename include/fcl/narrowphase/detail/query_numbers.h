@@ -14,14 +14,17 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <memory>
+#include <typeinfo>
 
 #include "fcl/common/types.h"
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/math/motion/bounded_motion.h"
 #include "fcl/math/motion/motion_base.h"
+#include "fcl/narrowphase/collision_object.h"
 #include "fcl/narrowphase/continuous_contact.h"
 
 namespace fcl {
@@ -37,20 +40,33 @@ struct PoseNumbers {
   S translation[3];
 };
 
-/// @brief FCL's transform as numbers. Compiled with the caller.
+/// @brief Copies the 16 numbers of a Transform3. With AVX, Eigen aligns it to 32 bytes.
+/// Before C++17 `new` and std::make_shared align to 16 only, and FCL's own functions, in
+/// libfcl, need no more. Eigen would stop the program if it read such a transform here,
+/// and the compiler may choose instructions that need the alignment. So it is copied in
+/// the library, which knows nothing of the type.
 template <typename S>
-PoseNumbers<S> toNumbers(const Matrix3<S>& rotation, const Vector3<S>& translation) {
-  PoseNumbers<S> pose;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) pose.rotation[3 * i + k] = rotation(i, k);
-    pose.translation[i] = translation[i];
-  }
-  return pose;
+FCL_EXPORT void copyEntries(const S* from, S* to);
+
+/// @brief The place of an entry in the numbers of a Transform3.
+template <typename S>
+constexpr int entryOf(int row, int column) {
+  return Transform3<S>::MatrixType::IsRowMajor ? 4 * row + column : 4 * column + row;
 }
 
+/// @brief FCL's transform as numbers. Compiled with the caller.
+/// @param tf  may lack the alignment of its type
 template <typename S>
 PoseNumbers<S> toNumbers(const Transform3<S>& tf) {
-  return toNumbers<S>(tf.linear(), tf.translation());
+  S entries[16];
+  detail::copyEntries(tf.data(), entries);
+  PoseNumbers<S> pose;
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k)
+      pose.rotation[3 * i + k] = entries[detail::entryOf<S>(i, k)];
+    pose.translation[i] = entries[detail::entryOf<S>(i, 3)];
+  }
+  return pose;
 }
 
 /// @brief Numbers as FCL's transform. Compiled with the caller.
@@ -62,6 +78,38 @@ Transform3<S> toTransform(const PoseNumbers<S>& pose) {
     tf.translation()[i] = pose.translation[i];
   }
   return tf;
+}
+
+/// @brief Numbers into a transform of the program.
+/// @param tf  may lack the alignment of its type
+template <typename S>
+void setTransform(const PoseNumbers<S>& pose, Transform3<S>& tf) {
+  S entries[16] = {};
+  for (int i = 0; i < 3; ++i) {
+    for (int k = 0; k < 3; ++k)
+      entries[detail::entryOf<S>(i, k)] = pose.rotation[3 * i + k];
+    entries[detail::entryOf<S>(i, 3)] = pose.translation[i];
+  }
+  entries[15] = 1;
+  detail::copyEntries(entries, tf.data());
+}
+
+/// @brief Whether the rows of a matrix have length 1 and are at right angles, as far as
+/// rotations that were computed in float: up to 2^-18. (An entry is then wrong by up to 6
+/// units of 2^-24, and a product of two rows by 2 * 3 * 6 of them.) Queries take such a
+/// matrix as it is. The sign of its determinant is not looked at.
+template <typename S>
+bool isRotationAsGiven(const S (&r)[9]) {
+  constexpr double kRounding = 1. / (1 << 18);
+  bool is_rotation = true;
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k <= i; ++k) {
+      double product = i == k ? -1 : 0;
+      for (int c = 0; c < 3; ++c)
+        product += static_cast<double>(r[3 * i + c]) * static_cast<double>(r[3 * k + c]);
+      is_rotation &= std::abs(product) <= kRounding;
+    }
+  return is_rotation;
 }
 
 /// @brief Whether two poses have the same rotation. Rotations are computed from
@@ -112,7 +160,9 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
                                  PathKind path = PathKind::kStraight) {
-  return {o, {toNumbers(tf_beg), toNumbers(tf_end)}, path, {}, {}, nullptr, {}};
+  return {
+      o, {detail::toNumbers(tf_beg), detail::toNumbers(tf_end)}, path, {}, {}, nullptr,
+      {}};
 }
 
 /// @brief What a geometry of this type is, for messages.
@@ -221,6 +271,11 @@ using CandidateSink =
 template <typename S>
 FCL_EXPORT PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t);
 
+/// @brief The pose at t = 1 as the query takes it: with the nearest rotation if it is
+/// none.
+template <typename S>
+FCL_EXPORT PoseNumbers<S> lastPose(const MovingGeometry<S>& o);
+
 /// @brief The candidates of a pair.
 template <typename S>
 FCL_EXPORT bool answerCandidates(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
@@ -246,6 +301,41 @@ FCL_EXPORT bool isDeformableModel(const CollisionGeometry<S>& o);
 /// two transforms does not set, and a ScrewMotion without rotation goes too far.
 FCL_EXPORT bool readFclMotion(const MotionBase<double>& motion,
                               MovingGeometry<double>& moving);
+
+// A program may be compiled with -fno-rtti. Then its headers can use neither typeid nor
+// dynamic_cast, and the classes that it compiles have no typeinfo: to read it would
+// crash.
+
+/// @brief The table of virtual functions of an object whose first base has one.
+inline const void* const* virtualTableOf(const void* object) {
+  const void* const* table;
+  std::memcpy(&table, object, sizeof table);
+  return table;
+}
+
+/// @brief The typeinfo of the class of an object: the entry before the virtual functions
+/// (Itanium C++ ABI, 2.5.2). Null if the class was compiled with -fno-rtti.
+inline const std::type_info* typeInfoOf(const void* object) {
+  return static_cast<const std::type_info*>(virtualTableOf(object)[-1]);
+}
+
+/// @brief Whether two objects have exactly the same class. Without a typeinfo, their
+/// tables of virtual functions tell.
+/// @tparam Base  the polymorphic class through which both are known
+template <typename Base>
+bool haveSameClass(const Base& x, const Base& y) {
+  if (detail::virtualTableOf(&x) == detail::virtualTableOf(&y)) return true;
+  const std::type_info *of_x = detail::typeInfoOf(&x), *of_y = detail::typeInfoOf(&y);
+  return of_x && of_y && *of_x == *of_y;
+}
+
+/// @brief The motion as a BoundedMotion; null if it is none.
+template <typename S>
+FCL_EXPORT const BoundedMotion* asBoundedMotion(const MotionBase<S>& motion);
+
+/// @brief The transform of an object. libfcl decides the layout of the object, so it is
+/// read by libfcl's functions.
+FCL_EXPORT PoseNumbers<double> transformOf(const CollisionObject<double>& o);
 
 /// @brief A copy of a BVHModel that shares nothing with it. Returns the model itself when
 /// its bounding volumes are not FCL's.

@@ -110,9 +110,9 @@ class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNode
              const Transform3<S>& tf1_end, const CollisionGeometry<S>& model2,
              const Transform3<S>& tf2_beg, const Transform3<S>& tf2_end,
              const CollisionRequest<S>& request, CollisionResult<S>& result) {
-    if (!traversal_.start(movingGeometry(&model1, tf1_beg, tf1_end),
-                          movingGeometry(&model2, tf2_beg, tf2_end), toc_err, request,
-                          result))
+    if (!traversal_.start(detail::movingGeometry(&model1, tf1_beg, tf1_end),
+                          detail::movingGeometry(&model2, tf2_beg, tf2_end), toc_err,
+                          request, result))
       return false;
     begin(tf1_beg, tf2_beg, request, result);
     return true;
@@ -129,8 +129,9 @@ class DeformableContinuousCollisionTraversalNode : public CollisionTraversalNode
  private:
   void begin(const Transform3<S>& tf1, const Transform3<S>& tf2,
              const CollisionRequest<S>& request, CollisionResult<S>& result) {
-    this->tf1 = tf1;
-    this->tf2 = tf2;
+    // The arguments may lack the alignment of their type: see copyEntries().
+    detail::setTransform(detail::toNumbers(tf1), this->tf1);
+    detail::setTransform(detail::toNumbers(tf2), this->tf2);
     this->request = request;
     this->result = &result;
     time_of_contact = 1;
@@ -163,7 +164,7 @@ bool initialize(DeformableContinuousCollisionTraversalNode<S>& node,
                 const CollisionGeometry<S>& model1, const Transform3<S>& tf1,
                 const CollisionGeometry<S>& model2, const Transform3<S>& tf2,
                 const CollisionRequest<S>& request, CollisionResult<S>& result) {
-  return initialize(node, model1, tf1, tf1, model2, tf2, tf2, request, result);
+  return detail::initialize(node, model1, tf1, tf1, model2, tf2, tf2, request, result);
 }
 
 /// @brief Makes the node ready for FCL's selfCollide(&node).
