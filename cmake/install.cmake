@@ -24,9 +24,10 @@ endif()
 # From here on everything is for those who compile with the library.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 install(EXPORT fcl_ccd-targets DESTINATION ${package_dir})
+# refuse_stock_prefix.cmake sets the variable when it installs.
 install(
   DIRECTORY ${PROJECT_SOURCE_DIR}/include/fcl
-  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  DESTINATION "\${fcl_ccd_header_dir}"
   FILES_MATCHING
   PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
@@ -71,10 +72,12 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake
         DESTINATION ${package_dir})
 
-# The flag -lfcl must mean both libraries. So a linker script has the name of an archive,
-# libfcl.a. A linker accepts it in place of libfcl.so. A program that loads "libfcl.so" at run
-# time does not find it, and finds FCL's own library. The linker searches the folder of the
-# script for the library first.
+# The flag -lfcl and CMake's find_library(fcl) must mean both libraries. With a static library a
+# linker script in the place of an archive, libfcl.a, names them. With a shared one the script is
+# for who names this file. All others find libfcl.so: a linker script would do for -lfcl, but a
+# program that loads "libfcl.so" at run time would fail, and CMake gives a program the folder of
+# the library at run time only if it ends in ".so". The linker searches the folder of the script
+# for the library first.
 file(
   GENERATE
   OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
@@ -83,6 +86,10 @@ GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_FILE_DIR:fcl>/$<TARGET_SONAME_FILE_NAME:
 ")
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
         DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+if(library_type STREQUAL "SHARED_LIBRARY" AND UNIX AND NOT APPLE)
+  include(${CMAKE_CURRENT_LIST_DIR}/link_library.cmake)
+endif()
 
 # pkg-config cannot refer to another package of the same name. So fcl.pc repeats the flags of
 # stock FCL.
@@ -97,10 +104,17 @@ if(NOT stock_prefix STREQUAL "/usr")
   string(APPEND FCL_CCD_STOCK_PC_CFLAGS " -I${FCL_INCLUDE_DIRS}")
   string(APPEND FCL_CCD_STOCK_PC_LIBS " -L${FCL_LIBRARY_DIRS}")
 endif()
-configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in ${CMAKE_CURRENT_BINARY_DIR}/fcl.pc
-               @ONLY)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl.pc
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+# One with the headers in their usual place, and one with the place of their own.
+foreach(FCL_CCD_PC_HEADERS IN ITEMS "" "/fcl-ccd")
+  configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in
+                 ${CMAKE_CURRENT_BINARY_DIR}/pkgconfig${FCL_CCD_PC_HEADERS}/fcl.pc @ONLY)
+endforeach()
+install(
+  DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/pkgconfig\${fcl_ccd_header_subdir}/"
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+  FILES_MATCHING
+  PATTERN fcl.pc
+  PATTERN fcl-ccd EXCLUDE)
 
 add_custom_target(
   uninstall

@@ -288,8 +288,8 @@ class Checks {
     request.num_max_contacts = 100;
     request.enable_contact = true;
     fcl::CollisionResult<S> result;
-    check(initialize(*node, *rest, at<S>(0, 0, 0), at<S>(0, 0, 0), *fall,
-                     at<S>(.25, .5, 3), at<S>(.25, .5, -5), request, result),
+    check(fcl::detail::initialize(*node, *rest, at<S>(0, 0, 0), at<S>(0, 0, 0), *fall,
+                                  at<S>(.25, .5, 3), at<S>(.25, .5, -5), request, result),
           "initialize(node)");
     fcl::detail::collide<S>(node.get());
     check(result.isCollision() && node->time_of_contact <= S(.375) &&
@@ -297,7 +297,8 @@ class Checks {
           "collide(node)");
     fcl::CollisionResult<S> self_result;
     const auto fold = makeFold();
-    check(initialize(*node, *fold, request, self_result), "initialize(node, self)");
+    check(fcl::detail::initialize(*node, *fold, request, self_result),
+          "initialize(node, self)");
     fcl::detail::selfCollide<S>(node.get());
     check(self_result.isCollision() && node->time_of_contact <= S(.5) &&
               node->time_of_contact > S(.4998),

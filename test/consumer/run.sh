@@ -24,10 +24,10 @@ fail() {
 
 all_doors=(
   package stock_gone taken_prefix stock
-  cmake_target cmake_variables pkg_config plain_flags lfcl dlopen
+  cmake_target cmake_variables pkg_config plain_flags lfcl dlopen find_library system_prefix
   python_package python_extension uninstall deb
-  spaces standards cxx14_message two_consumers examples lto
-  flags_cxx11 flags_baseline flags_v3 flags_native flags_native_O0
+  spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti
+  flags_cxx11 flags_cxx11_avx flags_baseline flags_v3 flags_native flags_native_O0
   add_subdirectory add_subdirectory_native add_subdirectory_static
 )
 doors=("$@")
@@ -172,9 +172,37 @@ door_lfcl() { # the flag -lfcl; also the library's path, other linkers, and a pl
   run_with "$prefix" "$work/load" "$work/plugin.so" run_deforming
 }
 
-door_dlopen() { # a program that loads "libfcl.so" at run time gets FCL's own
+door_dlopen() { # a program that loads "libfcl.so" at run time gets FCL's own functions
   "$CXX" -std=c++17 "$source_dir/load.cpp" -o "$work/load" -ldl
   run_with "$prefix" "$work/load" libfcl.so ""
+  local name='_ZN3fcl3BoxIdEC1Eddd' library
+  library=$(run_with "$prefix" "$work/load" libfcl.so "" "$name")
+  [[ $library == */libfcl.so.0.7* ]] || fail "libfcl.so gives $name of $library"
+}
+
+door_find_library() { # CMake's find_path and find_library; the program has no other path
+  cmake -S "$source_dir/find_library" -B "$work/find_library" \
+    -DCMAKE_PREFIX_PATH="$prefix" >/dev/null
+  cmake --build "$work/find_library" >/dev/null
+  "$work/find_library/app"
+  "$work/find_library/app_to_file"
+}
+
+# Where the compiler looks for headers by itself, but the linker looks for stock FCL first.
+# There g++ -lfcl is stock FCL, headers and library; what names the prefix is this package.
+door_system_prefix() {
+  local root=$work/system_root cflags libs
+  DESTDIR=$root cmake --install "$build_dir" --prefix /usr/local >"$work/system_prefix.log"
+  local system=$root/usr/local
+  [ ! -e "$system/include/fcl" ] || fail "g++ finds headers in /usr/local/include"
+  "$CXX" -std=c++17 -isystem "$system/include" "${around[@]}" "$source_dir/stock_or_not.cpp" \
+    -o "$work/system_plain" -lfcl -L"$system/$lib" -lccd
+  "$work/system_plain" stock
+  PKG_CONFIG_PATH=$system/$lib/pkgconfig pkg-config --cflags --libs fcl >"$work/system_flags"
+  read -ra libs <"$work/system_flags"
+  "$CXX" -std=c++17 "$source_dir/stock_or_not.cpp" -o "$work/system_pc" "${libs[@]}"
+  run_with "$system" "$work/system_pc" extended
+  configure_and_run system_cmake "$system"
 }
 
 door_python_package() { # the Python package in the prefix
@@ -299,6 +327,38 @@ door_examples() { # the examples on their own
   ctest --test-dir "$work/examples" --output-on-failure
 }
 
+# Functions of our names in Eigen's namespace, which the compiler also looks in if a call does
+# not name a namespace. DART has one, make_aligned_shared().
+door_eigen_names() {
+  local names
+  names=$(grep -rhoE '^[A-Za-z][^=;]*\b[a-z][A-Za-z]+\(' "$prefix/include/fcl" |
+    grep -oE '[a-z][A-Za-z]+\($' | tr -d '(' | grep -vE '^(sizeof|test|size|clear|update)$' | sort -u)
+  {
+    echo '#include <memory>'
+    echo 'namespace Eigen {'
+    echo 'template <typename T, typename... A> std::shared_ptr<T> make_aligned_shared(A&&...);'
+    for name in $names; do
+      echo "template <typename... A> void $name(A&&...) = delete;"
+      echo "template <typename T, typename... A> T $name(A&&...) = delete;"
+    done
+    echo '}'
+  } >"$work/eigen_names.h"
+  # FCL's own templates in float have such calls.
+  "$CXX" -std=c++17 -DFCL_CCD_ONLY_DOUBLE -fsyntax-only -include "$work/eigen_names.h" \
+    -I"$prefix/include" "${around[@]}" "$source_dir/every_overload.cpp"
+  "$CXX" -std=c++11 -fsyntax-only -include "$work/eigen_names.h" -I"$prefix/include" \
+    "${around[@]}" "$source_dir/main.cpp"
+}
+
+door_no_rtti() { # a program without RTTI
+  local standard
+  for standard in 11 17; do
+    "$CXX" -std=c++$standard -fno-rtti -I"$prefix/include" "${around[@]}" \
+      "$source_dir/no_rtti.cpp" -o "$work/no_rtti_$standard" -L"$prefix/$lib" -lfcl -lccd
+    run_with "$prefix" "$work/no_rtti_$standard"
+  done
+}
+
 door_lto() {
   "$CXX" -std=c++17 -O2 -flto -I"$prefix/include" "${around[@]}" \
     "$source_dir"/{main,fcl_header}.cpp -o "$work/lto_app" -L"$prefix/$lib" -lfcl -lccd
@@ -318,6 +378,13 @@ door_flags_cxx11() { # FCL's names in C++11, where new does not align memory as 
   "$CXX" -std=c++11 -O1 -march=native -I"$prefix/include" "${around[@]}" \
     "$source_dir/rotation.cpp" -o "$work/flags_cxx11" -L"$prefix/$lib" -lfcl -lccd
   run_with "$prefix" "$work/flags_cxx11"
+}
+# Objects of std::make_shared have half of the alignment that Eigen wants with AVX.
+door_flags_cxx11_avx() {
+  grep -qw avx /proc/cpuinfo || return 0
+  "$CXX" -std=c++11 -O1 -mavx -I"$prefix/include" "${around[@]}" \
+    "$source_dir/unaligned.cpp" -o "$work/flags_cxx11_avx" -L"$prefix/$lib" -lfcl -lccd
+  run_with "$prefix" "$work/flags_cxx11_avx"
 }
 door_flags_baseline() { # with and without assertions, as the next doors
   every_overload baseline -O1

@@ -36,6 +36,12 @@ namespace fcl {
 /// way out: derive the motion class from BoundedMotion too. doc/choosing.md has the
 /// limits.
 ///
+/// Rotations: the matrix of a shape, an octree or a mesh that turns is taken as it is if
+/// no entry of |R R' - I| is above 2^-18, the rounding of float. Up to 2^-6 (.71 for
+/// .7071) the nearest rotation is taken in its place, and contact_tf1 and contact_tf2
+/// have it. Beyond, and if it mirrors, the query throws. A mesh whose matrix does not
+/// change may be scaled, mirrored or sheared (doc/errors.md).
+///
 /// t runs from 0 (the beginning of the step) to 1 (its end). A path is defined by the
 /// given doubles, evaluated without rounding. A contact of two meshes is a VF or EE pair
 /// of closed features without a common vertex that touch at some t in [0, 1].
@@ -94,7 +100,8 @@ namespace fcl {
 ///   unnoticed, for any number of threads alike.
 /// - Shapes and octrees: a size of the shape is negative or not finite; the resolution of
 ///   the octree is not positive or not finite.
-/// - Motions: the reference point of an InterpMotion is not finite, or so large that its
+/// - Motions: a matrix is further from a rotation than 2^-6; the reference point of an
+/// InterpMotion is not finite, or so large that its
 ///   rounding exceeds toc_err; a path that turns has coordinates beyond 2^200.
 /// - The request: toc_err is negative or NaN, num_max_contacts is 0, num_threads is
 ///   negative, t_max is not in [0, 1]; min_distance is negative or not finite.
