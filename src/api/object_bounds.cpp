@@ -132,32 +132,92 @@ void appendUnbounded(BoundsList& list) {
   list.boxes.insert(list.boxes.end(), 2, box);
 }
 
-/// A plane, or the halfspace n x <= d: bounded along an axis that is parallel to the
-/// normal at all times.
-template <typename Shape>
-void appendFlat(const Shape& shape, bool is_plane, const MotionPath& path,
-                BoundsList& list) {
-  const double n[3] = {double{shape.n[0]}, double{shape.n[1]}, double{shape.n[2]}};
-  const double d = double{shape.d};
-  if (!std::isfinite(norm(n)) || !std::isfinite(d)) refuse();
-  appendUnbounded(list);
-  if (!path.isTranslation()) return;
+/// A plane, or the halfspace n x <= d. Its normal is along an axis at all times: then it
+/// is bounded along this axis.
+/// @return whether it is
+bool appendFlatAlongAxis(const FlatShape& shape, const MotionPath& path,
+                         BoundsList& list) {
+  if (!path.isTranslation()) return false;
   for (int end = 0; end < 2; ++end) {
     const Pose pose = path.pose(end);
-    double normal[3];
-    for (int k = 0; k < 3; ++k)
-      normal[k] = pose.rotation[3 * k] * n[0] + pose.rotation[3 * k + 1] * n[1] +
-                  pose.rotation[3 * k + 2] * n[2];
+    const Vec turned = rotated(pose.rotation, shape.normal);
+    const double normal[3] = {turned.x, turned.y, turned.z};
     HalfAxisBox& box = list.boxes[list.items.back().first + std::size_t(end)];
+    bool is_bounded = false;
     for (int k = 0; k < 3; ++k) {
       if (normal[k] == 0 || normal[(k + 1) % 3] != 0 || normal[(k + 2) % 3] != 0)
         continue;
-      const double at = d / normal[k] + pose.translation[k],
-                   room = kRoom * (std::abs(d / normal[k]) + path.translationReach());
-      if (is_plane || normal[k] > 0) box.half[k + 3] = at + room;
-      if (is_plane || normal[k] < 0) box.half[k] = room - at;
+      const double at = shape.offset / normal[k] + pose.translation[k],
+                   room = kRoom *
+                          (std::abs(shape.offset / normal[k]) + path.translationReach());
+      if (!shape.is_solid || normal[k] > 0) box.half[k + 3] = at + room;
+      if (!shape.is_solid || normal[k] < 0) box.half[k] = room - at;
+      is_bounded = true;
     }
+    if (!is_bounded) return false;
   }
+  return true;
+}
+
+/// The plane through the foot p(t) = R f + T with the normal n(t) = R m. The height of a
+/// point x is n . (x - p) = n . (x - o) - n . (p - o), o the pivot. For x that goes
+/// straight with the velocity v its second derivative is
+///
+///   n'' . (x - o) + 2 n' . v - (n'' . (p - o) + 2 n' . p' + n . p''),
+///
+/// with |n| <= stretch, |n'| <= w, |n''| <= A. The pivot is p(1/2), so that |p - o| is at
+/// most half of the way of p. A bounds p'' of the body's point m, less that of its
+/// origin. A turn and a spline have a number for this; a motion of the program may give
+/// up to the sum of both.
+MovingFlat movingFlat(const FlatShape& shape, const MotionPath& path) {
+  const Vec foot = shape.foot();
+  const double distance = norm(foot) * kUpward;
+  const AccelerationBound bound = path.acceleration(0, 1);
+  const double of_foot = bound.of(foot, 0), w = path.turnSpeed(),
+               of_normal = bound.motion
+                               ? bound.of(shape.normal, 0) + bound.of({0, 0, 0}, 0)
+                               : bound.per_radius + bound.per_distance,
+               speed = path.speed(distance);
+  MovingFlat flat;
+  flat.is_solid = shape.is_solid;
+  flat.stretch = path.stretch() * kUpward;
+  flat.bend = flat.bend_per_distance = flat.bend_per_speed = 0;
+  if (!path.isTranslation() || of_foot > 0) {
+    flat.bend_per_distance = of_normal * kUpward;
+    flat.bend_per_speed = 2 * w * kUpward;
+    flat.bend =
+        (0.5 * of_normal * speed + 2 * w * speed + flat.stretch * of_foot) * kUpward;
+  }
+  // A query adds four times the error of a position (numerics.md).
+  const double size = path.translationReach() + flat.stretch * distance;
+  flat.room =
+      kRoom * size + 8 * (path.positionError(distance) + path.rotationError() * speed);
+  flat.room_per_distance = kRoom + 8 * path.rotationError();
+  const int n = flat.goesStraight() ? 1 : kMostSpans;
+  const Vec pivot = posed(path.pose(0.5), foot);
+  flat.pivot[0] = pivot.x;
+  flat.pivot[1] = pivot.y;
+  flat.pivot[2] = pivot.z;
+  for (int i = 0; i <= n; ++i) {
+    const Pose pose = path.pose(double(i) / n);
+    const Vec normal = rotated(pose.rotation, shape.normal);
+    flat.knots.push_back(
+        {{normal.x, normal.y, normal.z}, dot(normal, posed(pose, foot) - pivot)});
+  }
+  return flat;
+}
+
+template <typename Shape>
+void appendFlat(const Shape& flat, const MotionPath& path, BoundsList& list) {
+  const double length =
+      norm(Vec{double{flat.n[0]}, double{flat.n[1]}, double{flat.n[2]}});
+  if (!std::isfinite(length) || !std::isfinite(flat.d)) refuse();
+  appendUnbounded(list);
+  if (!(length > 0)) return;  // a query refuses it
+  const ConvexShape shape = convexShapeOf(flat, "object", 0);
+  if (appendFlatAlongAxis(*shape.flat(), path, list)) return;
+  list.items.back().flat = list.flats.size();
+  list.flats.push_back(movingFlat(*shape.flat(), path));
 }
 
 template <typename S>
@@ -166,9 +226,9 @@ void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
   const CollisionGeometry<S>& o = placed.geometry();
   const MotionPath path = motionPathOf(placed, "object");
   if (o.getNodeType() == GEOM_PLANE)
-    return appendFlat(static_cast<const Plane<S>&>(o), true, path, list);
+    return appendFlat(static_cast<const Plane<S>&>(o), path, list);
   if (o.getNodeType() == GEOM_HALFSPACE)
-    return appendFlat(static_cast<const Halfspace<S>&>(o), false, path, list);
+    return appendFlat(static_cast<const Halfspace<S>&>(o), path, list);
   const ConvexShape shape = convexShapeOf(o, "object", 0);
   MotionBox box = shape.box();
   box.pad += shape.radius();

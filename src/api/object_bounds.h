@@ -20,7 +20,8 @@ namespace detail {
 /// about a tenth of the size of the map.
 ///
 /// No bounds: a motion that is not known (PathKind::kUnknown), point clouds, geometries
-/// of the program. A plane or halfspace has bounds if its normal is along an axis.
+/// of the program. A plane or halfspace whose normal is along an axis at all times has a
+/// box; another one is bounded by itself (MovingFlat).
 ///
 /// @pre the floating-point mode is the default one
 /// @throws fcl::Exception  a mesh as in PreparedMotion; a pose or a shape is not finite

@@ -34,6 +34,16 @@ bool isSameAtAllTimes(const MovingBounds& bounds) {
   return true;
 }
 
+/// The objects of a tree that an object may meet.
+template <typename Visit>
+void visitMeeting(const MovingBoxTree& tree, const LinearBox& box, const MovingFlat* flat,
+                  const LinearQuery& query, Visit&& visit) {
+  if (flat)
+    tree.visitMeeting(*flat, query, visit);
+  else
+    tree.visitMeeting(box, query, visit);
+}
+
 LinearQuery linearQuery(const MeetingQuery& query) {
   return LinearQuery(query.distance, query.latest);
 }
@@ -74,7 +84,8 @@ BroadPhase::SlotNumber BroadPhase::newSlot(void* object) {
 
 void BroadPhase::setBounds(const MovingBounds& bounds, Slot& slot) {
   slot.boxes.assign(bounds.boxes, bounds.boxes + bounds.num_spans + 1);
-  slot.rests = isSameAtAllTimes(bounds);
+  slot.flat = bounds.flat ? std::make_unique<MovingFlat>(*bounds.flat) : nullptr;
+  slot.rests = isSameAtAllTimes(bounds) && (!bounds.flat || bounds.flat->rests());
   slot.box = linearBox(bounds);
   slot.mobility = !isBounded(slot.box) ? kUnbounded : slot.rests ? kResting : kMoving;
 }
@@ -183,6 +194,7 @@ void BroadPhase::remove(const void* object) {
   leave(i, at(i).mobility);
   if (at(i).mobility != kUnbounded) tree_[at(i).mobility].remove(i);
   at(i).object = nullptr;
+  at(i).flat.reset();
   free_.push_back(i);
 }
 
@@ -247,8 +259,9 @@ void BroadPhase::findMoving(const LinearQuery& query, std::vector<SlotPair>& nea
   for (std::size_t i = 0; i < unbounded.size(); ++i) {
     const SlotNumber a = unbounded[i];
     const auto add_to = [&](SlotNumber b) { add(a, b); };
-    tree_[kMoving].visitMeeting(at(a).box, query, add_to);
-    if (!at(a).rests) tree_[kResting].visitMeeting(at(a).box, query, add_to);
+    visitMeeting(tree_[kMoving], at(a).box, at(a).flat.get(), query, add_to);
+    if (!at(a).rests)
+      visitMeeting(tree_[kResting], at(a).box, at(a).flat.get(), query, add_to);
     for (std::size_t k = 0; k < i; ++k)
       if (!at(a).rests || !at(unbounded[k]).rests) add(a, unbounded[k]);
   }
@@ -263,7 +276,8 @@ void BroadPhase::findResting(const LinearQuery& query,
   for (std::size_t i = 0; i < unbounded.size(); ++i) {
     const SlotNumber a = unbounded[i];
     if (!at(a).rests) continue;
-    tree_[kResting].visitMeeting(at(a).box, query, [&](SlotNumber b) { add(a, b); });
+    visitMeeting(tree_[kResting], at(a).box, at(a).flat.get(), query,
+                 [&](SlotNumber b) { add(a, b); });
     for (std::size_t k = 0; k < i; ++k)
       if (at(unbounded[k]).rests) add(a, unbounded[k]);
   }
@@ -276,7 +290,7 @@ void BroadPhase::findRestingOf(SlotNumber i, std::vector<SlotPair>& near) const 
     if (k != i && !(is_stale_[static_cast<std::size_t>(k)] && k < i))
       near.emplace_back(i, k);
   };
-  tree_[kResting].visitMeeting(at(i).box, LinearQuery(0, 1), add_to);
+  visitMeeting(tree_[kResting], at(i).box, at(i).flat.get(), LinearQuery(0, 1), add_to);
   for (const SlotNumber k : members_[kUnbounded])
     if (at(k).rests) add_to(k);
 }
@@ -384,7 +398,8 @@ std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds
     if (!window.isEmpty() && window.lo <= query.latest)
       found.push_back({window, slot.serial, slot.serial, i, i});
   };
-  for (const MovingBoxTree& tree : tree_) tree.visitMeeting(box, linear, add);
+  for (const MovingBoxTree& tree : tree_)
+    visitMeeting(tree, box, bounds.flat, linear, add);
   for (const SlotNumber i : members_[kUnbounded]) add(i);
   std::vector<MeetingObjects> out = sorted(found, *this);
   for (MeetingObjects& pair : out) pair.o1 = object;
@@ -401,12 +416,13 @@ std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,
   for (const SlotNumber a : members_[kUnbounded]) {
     const auto add_to = [&](SlotNumber b) { add(a, b); };
     for (const MovingBoxTree& two : other.tree_)
-      two.visitMeeting(at(a).box, linear, add_to);
+      visitMeeting(two, at(a).box, at(a).flat.get(), linear, add_to);
     for (const SlotNumber b : other.members_[kUnbounded]) add(a, b);
   }
   for (const SlotNumber b : other.members_[kUnbounded])
     for (const MovingBoxTree& one : tree_)
-      one.visitMeeting(other.at(b).box, linear, [&](SlotNumber a) { add(a, b); });
+      visitMeeting(one, other.at(b).box, other.at(b).flat.get(), linear,
+                   [&](SlotNumber a) { add(a, b); });
   std::vector<Found> found;
   addMeeting(*this, other, near, query, found);
   return sorted(found, other);

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <unordered_map>
 #include <utility>
@@ -29,17 +30,24 @@ struct ObjectFilter {
 /// @brief The moving bounds of many objects in one array.
 struct BoundsList {
   struct Item {
+    static constexpr std::size_t kNoFlat = ~std::size_t{0};
+
     std::size_t first;
     int num_spans;
+    std::size_t flat{kNoFlat};
   };
   std::vector<HalfAxisBox> boxes;
+  std::vector<MovingFlat> flats;
   std::vector<Item> items;
 
   MovingBounds at(std::size_t i) const {
-    return {boxes.data() + items[i].first, items[i].num_spans};
+    const Item& item = items[i];
+    return {boxes.data() + item.first, item.num_spans,
+            item.flat == Item::kNoFlat ? nullptr : &flats[item.flat]};
   }
   void clear() {
     boxes.clear();
+    flats.clear();
     items.clear();
   }
 };
@@ -60,8 +68,9 @@ struct MeetingQuery {
 
 /// @brief Finds the pairs of objects whose moving boxes meet. Objects that move, and
 /// those that rest, have a tree each; objects without bounds are in a list and are tested
-/// against all others. The pairs of two objects that rest are remembered: they cost
-/// nothing until such an object is added, changed or removed.
+/// against all others. Planes and halfspaces are in this list too: they go down the
+/// trees. The pairs of two objects that rest are remembered: they cost nothing until such
+/// an object is added, changed or removed.
 ///
 /// Thread-safety: const functions may run at the same time.
 class BroadPhase {
@@ -118,9 +127,11 @@ class BroadPhase {
     std::size_t member{0};
     LinearBox box;
     std::vector<HalfAxisBox> boxes;
+    /// Null as a rule.
+    std::unique_ptr<MovingFlat> flat;
 
     MovingBounds bounds() const {
-      return {boxes.data(), static_cast<int>(boxes.size()) - 1};
+      return {boxes.data(), static_cast<int>(boxes.size()) - 1, flat.get()};
     }
   };
   using SlotPair = std::pair<SlotNumber, SlotNumber>;

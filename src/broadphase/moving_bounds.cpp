@@ -6,6 +6,8 @@
 #include <cfloat>
 #include <cmath>
 
+#include "numerics/error_bounds.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -29,39 +31,137 @@ HalfAxisBox boxAt(const MovingBounds& bounds, int i, int n) {
   return box;
 }
 
+/// Cuts a window, in fractions of a span, to the part in which a depth is not negative.
+/// It is linear, with these values at both ends.
+void cut(double s0, double s1, MeetingWindow& window) {
+  if (!(s0 < 0) && !(s1 < 0)) return;
+  if (s0 < 0 && s1 < 0) {
+    window = {1, 0};
+    return;
+  }
+  const double change = s0 - s1;
+  if (!(std::abs(change) <= DBL_MAX)) return;  // no quotient
+  const double t = s0 / change;
+  if (s0 < 0)
+    window.lo = std::max(window.lo, t - kBoxTimeMargin);
+  else
+    window.hi = std::min(window.hi, t + kBoxTimeMargin);
+}
+
 /// The window in a span between two boxes of each object, as fractions of the span.
 MeetingWindow spanWindow(const HalfAxisBox& a0, const HalfAxisBox& a1,
                          const HalfAxisBox& b0, const HalfAxisBox& b1, double distance) {
   MeetingWindow window{0, 1};
-  for (int j = 0; j < HalfAxisBox::kSides; ++j) {
+  for (int j = 0; j < HalfAxisBox::kSides && !window.isEmpty(); ++j) {
     const int k = HalfAxisBox::opposite(j);
-    const double s0 = a0.half[j] + b0.half[k] + distance,
-                 s1 = a1.half[j] + b1.half[k] + distance;
-    if (s0 >= 0 && s1 >= 0) continue;
-    if (s0 < 0 && s1 < 0) return {1, 0};
-    const double change = s0 - s1;
-    if (!(std::abs(change) <= DBL_MAX)) continue;  // no quotient
-    const double t = s0 / change;
-    if (s0 < 0)
-      window.lo = std::max(window.lo, t - kBoxTimeMargin);
-    else
-      window.hi = std::min(window.hi, t + kBoxTimeMargin);
+    cut(a0.half[j] + b0.half[k] + distance, a1.half[j] + b1.half[k] + distance, window);
   }
   return window;
+}
+
+/// The boxes of an object and the knots of a flat at both ends of a span of the length
+/// dt.
+struct FlatSpan {
+  HalfAxisBox box[2];
+  MovingFlat::Knot knot[2];
+  double dt;
+};
+
+/// The heights of the points of a box above a flat.
+struct Heights {
+  double least, most;
+};
+
+Heights heightsOf(const HalfAxisBox& box, const MovingFlat& flat,
+                  const MovingFlat::Knot& knot) {
+  Heights out{-knot.offset, -knot.offset};
+  for (int k = 0; k < 3; ++k) {
+    const double n = knot.normal[k], lower = -box.half[k] - flat.pivot[k],
+                 upper = box.half[k + 3] - flat.pivot[k];
+    if (n == 0) continue;  // the bounds may be infinite
+    out.least += n * (n > 0 ? lower : upper);
+    out.most += n * (n > 0 ? upper : lower);
+  }
+  return out;
+}
+
+/// Bound on the distance of the points of both boxes from the pivot. Those in between are
+/// not further.
+double reachOf(const FlatSpan& span, const MovingFlat& flat) {
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    double most = 0;
+    for (const HalfAxisBox& box : span.box)
+      most = std::max({most, std::abs(-box.half[k] - flat.pivot[k]),
+                       std::abs(box.half[k + 3] - flat.pivot[k])});
+    square += most * most;
+  }
+  return std::sqrt(square) * kUpward;
+}
+
+/// Bound on the speed of points at fixed shares of the sides of the box that moves.
+double speedOf(const FlatSpan& span) {
+  double square = 0;
+  for (int k = 0; k < 3; ++k) {
+    double most = 0;
+    for (const int j : {k, k + 3}) {
+      const double from = span.box[0].half[j], to = span.box[1].half[j];
+      // Ends that are equal may be infinite, and have no difference then.
+      if (from != to) most = std::max(most, std::abs(to - from));
+    }
+    square += most * most;
+  }
+  return std::sqrt(square) / span.dt * kUpward;
+}
+
+/// Cuts the window of a span to the part in which a box may be within a distance of a
+/// flat. A point at fixed shares of the sides of the box moves straight. So its height is
+/// at least the line between the heights at both ends, less M dt^2 / 8, where M bounds
+/// the second derivative: and this holds for the least height of all points, and likewise
+/// for the greatest. Bounds that are infinite or NaN do not cut.
+void cut(const FlatSpan& span, const MovingFlat& flat, double distance,
+         MeetingWindow& window) {
+  const double reach = reachOf(span, flat);
+  // A distance counts by up to 2^-30 more in a query.
+  double room = flat.stretch * distance * (1 + 0x1p-28) + flat.room +
+                flat.room_per_distance * reach;
+  if (!flat.goesStraight())
+    room += 0.125 * span.dt * span.dt * kUpward *
+            (flat.bend + flat.bend_per_distance * reach +
+             flat.bend_per_speed * speedOf(span));
+  const Heights at_0 = heightsOf(span.box[0], flat, span.knot[0]),
+                at_1 = heightsOf(span.box[1], flat, span.knot[1]);
+  cut(room - at_0.least, room - at_1.least, window);
+  if (!flat.is_solid && !window.isEmpty())
+    cut(room + at_0.most, room + at_1.most, window);
+}
+
+/// The flat that bounds a pair; null: none. Two flats do not bound each other.
+const MovingFlat* flatOf(const MovingBounds& a, const MovingBounds& b) {
+  if (a.flat && b.flat) return nullptr;
+  return a.flat ? a.flat : b.flat;
 }
 
 }  // namespace
 
 MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
                             double distance) {
-  const int n = std::max(a.num_spans, b.num_spans);
+  const MovingFlat* const flat = flatOf(a, b);
+  const int n = std::max({a.num_spans, b.num_spans, flat ? flat->numSpans() : 1});
   assert(n % a.num_spans == 0 && n % b.num_spans == 0);
   MeetingWindow whole{1, 0};
   bool is_first = true;
   HalfAxisBox a0 = boxAt(a, 0, n), b0 = boxAt(b, 0, n);
   for (int i = 0; i < n; ++i) {
     const HalfAxisBox a1 = boxAt(a, i + 1, n), b1 = boxAt(b, i + 1, n);
-    const MeetingWindow part = spanWindow(a0, a1, b0, b1, distance);
+    MeetingWindow part = spanWindow(a0, a1, b0, b1, distance);
+    if (flat && !part.isEmpty()) {
+      const bool is_a = flat == a.flat;
+      cut({{is_a ? b0 : a0, is_a ? b1 : a1},
+           {flat->knotAt(i, n), flat->knotAt(i + 1, n)},
+           1. / n},
+          *flat, distance, part);
+    }
     a0 = a1;
     b0 = b1;
     if (part.isEmpty()) continue;
@@ -91,6 +191,31 @@ LinearBox linearBox(const MovingBounds& bounds) {
     side[1] = roundUp(to + above, std::isfinite(pad) ? pad : 0);
   }
   return out;
+}
+
+bool mayMeet(const LinearBox& box, const MovingFlat& flat, const LinearQuery& query) {
+  HalfAxisBox ends[2];
+  for (int k = 0; k < 3; ++k)
+    for (int end = 0; end < 2; ++end) {
+      ends[end].half[k] = double{box.axis[k][end]};
+      ends[end].half[k + 3] = double{box.axis[k][2 + end]};
+    }
+  const MovingBounds bounds{ends, 1};
+  const int n = flat.numSpans();
+  FlatSpan span;
+  span.dt = 1. / n;
+  span.box[1] = ends[0];
+  span.knot[1] = flat.knotAt(0, n);
+  for (int i = 0; i < n && double(i) / n <= double{query.latest}; ++i) {
+    span.box[0] = span.box[1];
+    span.knot[0] = span.knot[1];
+    span.box[1] = boxAt(bounds, i + 1, n);
+    span.knot[1] = flat.knotAt(i + 1, n);
+    MeetingWindow part{0, 1};
+    cut(span, flat, double{query.distance}, part);
+    if (!part.isEmpty()) return true;
+  }
+  return false;
 }
 
 LinearQuery::LinearQuery(double reach, double last)

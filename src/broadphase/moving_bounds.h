@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "broadphase/moving_flat.h"
 #include "mesh/moving_kdop.h"
 
 namespace fcl {
@@ -20,11 +21,14 @@ struct HalfAxisBox {
 };
 
 /// @brief The box of an object that moves: boxes at equally spaced times from 0 to 1. At
-/// any time the object is in the box interpolated between the two neighbours.
+/// any time the object is in the box interpolated between the two neighbours. A plane or
+/// halfspace may also be bounded by itself.
 struct MovingBounds {
   const HalfAxisBox* boxes;
   /// The number of spans, a power of two; there is one box more.
   int num_spans;
+  /// Null: the object has no bounds but the boxes.
+  const MovingFlat* flat{nullptr};
 };
 
 /// @brief The part of the step in which two objects may be near each other. Empty if lo >
@@ -35,7 +39,8 @@ struct MeetingWindow {
 };
 
 /// @brief From the first to the last time at which the boxes are within a distance along
-/// all axes. It is rounded outward.
+/// all axes, and the box of one is within this distance of the flat of the other. It is
+/// rounded outward.
 MeetingWindow meetingWindow(const MovingBounds& a, const MovingBounds& b,
                             double distance);
 
@@ -65,6 +70,10 @@ struct LinearQuery {
 
   LinearQuery(double distance, double latest);
 };
+
+/// @brief Whether a linear box may come within the distance of a flat before the latest
+/// time of a query.
+bool mayMeet(const LinearBox& box, const MovingFlat& flat, const LinearQuery& query);
 
 /// More than the rounding of a quotient of sums of floats, 2^-22 of itself.
 constexpr float kFloatWindowLoss = 0x1p-20f;

@@ -40,9 +40,9 @@ class MovingBoxTree {
   void build(const std::vector<Leaf>& unordered);
   void clear();
 
-  /// @brief Calls visit(object) for each object that a box may meet.
-  template <typename Visit>
-  void visitMeeting(const LinearBox& box, const LinearQuery& query, Visit&& visit) const;
+  /// @brief Calls visit(object) for each object that a box, or a flat, may meet.
+  template <typename Bounds, typename Visit>
+  void visitMeeting(const Bounds& bounds, const LinearQuery& query, Visit&& visit) const;
 
   /// @brief Calls visit(object, object) for each two objects that may meet.
   template <typename Visit>
@@ -106,15 +106,15 @@ class MovingBoxTree {
   std::size_t count_{0};
 };
 
-template <typename Visit>
-void MovingBoxTree::visitMeeting(const LinearBox& box, const LinearQuery& query,
+template <typename Bounds, typename Visit>
+void MovingBoxTree::visitMeeting(const Bounds& bounds, const LinearQuery& query,
                                  Visit&& visit) const {
   if (root_ == kNone) return;
   std::vector<std::int32_t> stack{root_};
   while (!stack.empty()) {
     const Node& node = at(stack.back());
     stack.pop_back();
-    if (!mayMeet(node.box, box, query)) continue;
+    if (!mayMeet(node.box, bounds, query)) continue;
     if (node.isLeaf())
       visit(node.child[0]);
     else

@@ -101,7 +101,16 @@ std::vector<Geometry> makeGeometries() {
           makeOctree(random)};
 }
 
-Geometry randomGeometry(Random& random) {
+Geometry randomFlat(Random& random) {
+  const Vector normal = random.point(1).normalized();
+  const double offset = random.uniform(-2, 0);
+  if (random.index(3) == 0) return std::make_shared<Plane<double>>(normal, offset);
+  return std::make_shared<Halfspace<double>>(normal, offset);
+}
+
+/// @param flats  how many of 100 objects are tilted planes or halfspaces
+Geometry randomGeometry(Random& random, std::size_t flats) {
+  if (flats > 0 && random.index(100) < flats) return randomFlat(random);
   static const std::vector<Geometry> finite = makeGeometries();
   // What has no end touches most others: few scenes have it.
   static const std::vector<Geometry> infinite = {
@@ -154,8 +163,8 @@ Request randomRequest(Random& random, bool straight) {
 /// The objects of a manager, in the order of their registration.
 class Scene {
  public:
-  Scene(Random& random, std::size_t count)
-      : random_(random), size_(.7 * std::cbrt(double(count))) {
+  Scene(Random& random, std::size_t count, std::size_t flats = 0)
+      : random_(random), size_(.7 * std::cbrt(double(count))), flats_(flats) {
     is_straight = random.index(4) == 0;
     has_filters_ = random.index(2) == 0;
     cloth_ = makeModel<Deformable>(clothFrame(), clothFrame());
@@ -186,7 +195,7 @@ class Scene {
       filters.erase(objects[i]);
       manager.setFilter(objects[i], ContinuousFilter());
       objects[i]->~Object();
-      new (objects[i]) Object(randomGeometry(random_), randomMotion());
+      new (objects[i]) Object(randomGeometry(random_, flats_), randomMotion());
     }
     const std::size_t way = random_.index(3);
     if (way == 0)
@@ -223,8 +232,8 @@ class Scene {
     return randomObjectMotion(random_, size_, is_straight);
   }
   Object* make(bool is_cloth) {
-    owned_.push_back(makeObject(is_cloth ? Geometry(cloth_) : randomGeometry(random_),
-                                randomMotion()));
+    owned_.push_back(makeObject(
+        is_cloth ? Geometry(cloth_) : randomGeometry(random_, flats_), randomMotion()));
     objects.push_back(owned_.back().get());
     return objects.back();
   }
@@ -236,6 +245,7 @@ class Scene {
 
   Random& random_;
   double size_;
+  std::size_t flats_;
   bool has_filters_;
   std::shared_ptr<Deformable> cloth_;
   std::vector<std::unique_ptr<Object>> owned_;
@@ -380,6 +390,24 @@ char kindOf(const Object* object) {
   const bool deforms = dynamic_cast<const Deformable*>(geometry.get()) ||
                        (fcl_mesh && fcl_mesh->build_state == BVH_BUILD_STATE_UPDATED);
   return deforms ? 'd' : 'r';
+}
+
+TEST(ContinuousCollisionManager, ScenesWithTiltedFlatsAgainstAllPairs) {
+  int in_contact = 0;
+  for (int i = 0; i < numScenes() / 2; ++i) {
+    SCOPED_TRACE("scene " + std::to_string(i));
+    Random random(5000 + std::uint64_t(i));
+    Scene scene(random, 2 + random.index(15), 20);
+    for (int step = 0; step < 2; ++step) {
+      SCOPED_TRACE("step " + std::to_string(step));
+      if (step == 1) scene.change();
+      const Request request = randomRequest(random, scene.is_straight);
+      const Truth truth =
+          expectAnswers(scene, request, random.index(scene.objects.size()));
+      in_contact += !truth.empty();
+    }
+  }
+  EXPECT_GT(in_contact, numScenes() / 4);
 }
 
 TEST(ContinuousCollisionManager, ScenesOfAllKindsAgainstAllPairs) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The moving boxes of objects contain them at all times, whatever the motion, and are
-// tight where the path is straight. Objects that overlap at some time are box pairs.
+// tight where the path is straight. Objects that overlap at some time are box pairs. A
+// plane or halfspace is bounded by itself.
 #include "api/object_bounds.h"
 
 #include <gtest/gtest.h>
@@ -20,6 +21,8 @@
 #include "fcl/geometry/shape/convex.h"
 #include "fcl/geometry/shape/cylinder.h"
 #include "fcl/geometry/shape/ellipsoid.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/geometry/shape/triangle_p.h"
 #include "moving_objects.h"
@@ -250,6 +253,158 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
   EXPECT_GT(num_overlapping, 300);
   // Few box pairs beyond.
   EXPECT_LT(num_box_pairs, 1.5 * num_overlapping);
+}
+
+/// A plane or a halfspace, and its normal and offset.
+struct Flat {
+  Geometry geometry;
+  Vector normal;
+  double offset;
+  bool is_plane;
+};
+
+Flat randomFlat(Random& random) {
+  Flat flat;
+  flat.normal = random.point(1).normalized();
+  flat.offset = random.uniform(-2, 2);
+  flat.is_plane = random.index(2) == 0;
+  if (flat.is_plane)
+    flat.geometry = std::make_shared<Plane<double>>(flat.normal, flat.offset);
+  else
+    flat.geometry = std::make_shared<Halfspace<double>>(flat.normal, flat.offset);
+  return flat;
+}
+
+/// How far the points of a body are from a flat at t, by the formulas of both motions.
+double distanceAt(double t, const Flat& flat, const Path& path_flat, const Body& body,
+                  const Path& path_body) {
+  const RealPose pose_flat = path_flat.at(t), pose_body = path_body.at(t);
+  const RealVector normal = pose_flat.rotation * flat.normal.cast<Real>(),
+                   foot = pose_flat * Vector(flat.offset * flat.normal);
+  Real lowest = HUGE_VAL, highest = -HUGE_VAL;
+  for (std::size_t i = 0; i < body.begin.size(); ++i) {
+    const RealVector p = pose_body * Vector((1 - t) * body.begin[i] + t * body.end[i]);
+    const Real height = normal.dot(p - foot);
+    lowest = std::min(lowest, height);
+    highest = std::max(highest, height);
+  }
+  const Real above = flat.is_plane ? std::max(lowest, -highest) : lowest;
+  return static_cast<double>(above);
+}
+
+TEST(ObjectBounds, FlatsMeetWhatComesNearThem) {
+  Random random(3);
+  std::vector<Body> bodies = makeMeshes();
+  for (Body& body : makeShapes()) bodies.push_back(std::move(body));
+  int num_near = 0, num_apart = 0, num_culled = 0;
+  double longest = 0;
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE(i);
+    const Body& body = bodies[random.index(bodies.size())];
+    const Flat flat = randomFlat(random);
+    // Some are far from the origin.
+    const double way = i % 10 == 0 ? 1e5 : 4;
+    const Path path = randomPath(random, way), path_flat = randomPath(random, way);
+    const double distance = i % 3 == 0 ? random.uniform(0, .5) : 0;
+    BoundsList list;
+    detail::appendBounds(movingGeometry(body, path), list);
+    detail::appendBounds(movingGeometry({flat.geometry, {}, {}}, path_flat), list);
+    const MovingBounds bounds = list.at(0), of_flat = list.at(1);
+    ASSERT_TRUE(of_flat.flat);
+    const MeetingWindow window = meetingWindow(bounds, of_flat, distance),
+                        swapped = meetingWindow(of_flat, bounds, distance);
+    ASSERT_EQ(window.isEmpty(), swapped.isEmpty());
+    const bool may_meet =
+        mayMeet(linearBox(bounds), *of_flat.flat, LinearQuery(distance, 1));
+    constexpr int kSamples = 64;
+    double first = 2, last = -1;
+    for (int k = 0; k <= kSamples; ++k) {
+      const double t = double(k) / kSamples;
+      if (distanceAt(t, flat, path_flat, body, path) > distance) continue;
+      first = std::min(first, t);
+      last = t;
+    }
+    if (last < 0) {
+      ++num_apart;
+      num_culled += window.isEmpty();
+      continue;
+    }
+    ++num_near;
+    EXPECT_TRUE(may_meet);
+    EXPECT_LE(window.lo, first);
+    EXPECT_GE(window.hi, last);
+    if (way < 5) longest = std::max(longest, first - window.lo);
+  }
+  EXPECT_GT(num_near, 200);
+  EXPECT_GT(num_apart, 200);
+  EXPECT_GT(num_culled, .9 * num_apart);
+  EXPECT_LT(longest, 1);
+}
+
+// Tilted, turning or moving: the manager does not hand out what is far above a floor.
+TEST(ObjectBounds, FloorsMeetNothingThatIsFarAbove) {
+  const auto floor =
+      std::make_shared<Halfspace<double>>(Vector(.1, 0, 1).normalized(), 0);
+  const auto ball = std::make_shared<Sphere<double>>(.5);
+  const auto turn = std::make_shared<InterpMotion<double>>(
+      Matrix3<double>::Identity(), Vector::Zero(),
+      AngleAxis<double>(.5, Vector::UnitX()).matrix(), Vector::Zero(), Vector::Zero());
+  const std::vector<std::shared_ptr<MotionBase<double>>> motions = {
+      translation(Vector::Zero(), Vector::Zero()),
+      translation(Vector::Zero(), Vector(1, 2, 3)), turn};
+  for (const auto& motion : motions) {
+    ContinuousCollisionManager<double> manager;
+    std::vector<std::unique_ptr<ContinuousCollisionObject<double>>> objects;
+    objects.push_back(makeObject(floor, motion));
+    for (int i = 0; i < 20; ++i)
+      for (int k = 0; k < 20; ++k) {
+        const Vector at(2 * i - 20, 2 * k - 20, 50);
+        objects.push_back(makeObject(ball, translation(at, at + Vector(.1, .2, .3))));
+      }
+    objects.push_back(makeObject(ball, translation({0, 0, 50}, {0, 0, -1})));
+    for (auto& object : objects) manager.registerObject(object.get());
+    const ContinuousCollisionObject<double>* const of_interest[2] = {
+        objects.front().get(), objects.back().get()};
+    struct Seen {
+      const ContinuousCollisionObject<double>* const (&of_interest)[2];
+      int with_floor;
+      bool is_met;
+    } seen{of_interest, 0, false};
+    ContinuousCollisionCallBack<double> callback =
+        [](ContinuousCollisionObject<double>* o1, ContinuousCollisionObject<double>* o2,
+           void* data) {
+          Seen& all = *static_cast<Seen*>(data);
+          all.with_floor += o1 == all.of_interest[0] || o2 == all.of_interest[0];
+          all.is_met |= o1 == all.of_interest[0] && o2 == all.of_interest[1];
+          return false;
+        };
+    manager.collide(&seen, callback);
+    EXPECT_EQ(seen.with_floor, 1);
+    EXPECT_TRUE(seen.is_met);
+  }
+}
+
+// A window begins at most this much before the flat and the points meet.
+TEST(ObjectBounds, FlatsAreTightOnStraightPaths) {
+  Random random(4);
+  const Body body{
+      std::make_shared<Sphere<double>>(0), {Vector::Zero()}, {Vector::Zero()}};
+  for (int i = 0; i < 100; ++i) {
+    Flat flat = randomFlat(random);
+    const Vector from = flat.normal * (flat.offset + 2), to = flat.normal * flat.offset;
+    const auto straight = [&](const Vector& p, const Vector& q) {
+      return Path{translation(p, q), {}};
+    };
+    BoundsList list;
+    detail::appendBounds(movingGeometry(body, straight(from, to)), list);
+    detail::appendBounds(
+        movingGeometry({flat.geometry, {}, {}}, straight(Vector::Zero(), flat.normal)),
+        list);
+    EXPECT_EQ(list.at(1).flat->numSpans(), 1);
+    const MeetingWindow window = meetingWindow(list.at(0), list.at(1), 0);
+    EXPECT_NEAR(window.lo, 2. / 3, 1e-10);
+    EXPECT_LE(window.lo, 2. / 3);
+  }
 }
 
 }  // namespace

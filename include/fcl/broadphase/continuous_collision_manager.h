@@ -67,7 +67,7 @@ using ContinuousManagerResultd = ContinuousManagerResult<double>;
 ///
 /// An object has no box (SweptCollisionObject: an infinite one), and is a box pair with
 /// all others, if its motion is a class of the program that is no BoundedMotion, or if it
-/// is a point cloud, or a plane or halfspace whose normal is not along an axis.
+/// is a point cloud. A tilted plane or halfspace has none either, but bounds itself.
 ///
 /// The manager reads an object when it is registered or updated. After a change of its
 /// motion or of its geometry call update(). An object that rests (its box is the same at
