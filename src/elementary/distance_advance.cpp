@@ -6,8 +6,10 @@
 #include <limits>
 #include <utility>
 
+#include "elementary/least_length.h"
 #include "elementary/most_steps.h"
 #include "elementary/ordered_points.h"
+#include "elementary/scaled_points.h"
 
 namespace fcl {
 namespace detail {
@@ -38,11 +40,11 @@ Vec perpendicular(Vec n, Vec v, Vec w) {
   const Vec across = without(without(w, v), v);
   for (int i = 0; i < 2; ++i) {
     const double length = std::sqrt(dot(n, n));
-    if (!(length > 0)) return {0, 0, 0};
+    if (!(length > kLeastLength)) return {0, 0, 0};
     n = without(without(without((1 / length) * n, v), across), v);
   }
   const double length = std::sqrt(dot(n, n));
-  return length > 0 ? (1 / length) * n : Vec{0, 0, 0};
+  return length > kLeastLength ? (1 / length) * n : Vec{0, 0, 0};
 }
 
 /// n, of length 1 or less, without its part along v, and with length 1.
@@ -50,7 +52,7 @@ Vec perpendicular(Vec n, const Vec& v) {
   const double square = dot(v, v);
   if (square > 0) n = n - (dot(n, v) / square) * v;
   const double length = std::sqrt(dot(n, n));
-  return length > 0 ? (1 / length) * n : Vec{0, 0, 0};
+  return length > kLeastLength ? (1 / length) * n : Vec{0, 0, 0};
 }
 
 /// Until when a direction provably separates a pair.
@@ -76,7 +78,7 @@ Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
   if (is_inside && attempt == 0)
     n = (dot(near.normal, near.point) < 0 ? -1. : 1.) * near.normal;
   const double length = is_inside && attempt == 0 ? std::sqrt(dot(n, n)) : near.distance;
-  if (!(length > 0)) return {0, 0, 0};
+  if (!(length > kLeastLength)) return {0, 0, 0};
   n = (1 / length) * n;
   const int last = polygon.count() - 1;
   if (last > 1 && (attempt == 4 || (is_inside && attempt > 0)))
@@ -360,38 +362,13 @@ DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
   }
 }
 
-double sizeOf(ContinuousContactKind kind, const FeaturePoints& x, double distance) {
-  const DifferencePolygon polygon(kind, x);
-  double size = distance;
-  for (int k = 0; k < polygon.count(); ++k)
-    size = std::max(size, std::max(maxNorm(polygon.t0(k)), maxNorm(polygon.t1(k))));
-  return size;
-}
-
 /// The same for a pair whose size is extreme.
 DistanceContact advanceScaled(ContinuousContactKind kind, const OrderedPair& ordered,
                               const DistanceRequest& request) {
-  // Multiplies all coordinates by a power of two. If the size is not finite, the
-  // coordinates are near the largest number. If it is tiny, so are the coordinates, since
-  // differences of doubles are multiples of their units. What underflows is below 2^-850
-  // of the size.
-  const double size = sizeOf(kind, ordered.x, request.distance);
-  constexpr int kMostShift = 1000;
-  const int shift = std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
-  const double scale = std::ldexp(1, std::max(-kMostShift, std::min(kMostShift, shift)));
-  VertexPath scaled[4];
-  FeaturePoints points = ordered.x;
+  const ScaledPoints scaled(kind, ordered.x, request.distance);
   DistanceRequest scaled_request = request;
-  scaled_request.distance *= scale;
-  for (int i = 0; i < 4; ++i) {
-    if (!points.point[i]) continue;
-    for (int k = 0; k < 3; ++k) {
-      scaled[i].t0[k] = ordered.x[i].t0[k] * scale;
-      scaled[i].t1[k] = ordered.x[i].t1[k] * scale;
-    }
-    points.point[i] = &scaled[i];
-  }
-  AdvancingPair pair(kind, points);
+  scaled_request.distance *= scaled.scale();
+  AdvancingPair pair(kind, scaled.points());
   return advance(kind, pair, ordered.number, scaled_request);
 }
 

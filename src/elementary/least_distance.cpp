@@ -2,16 +2,20 @@
 #include "elementary/least_distance.h"
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 
 #include "elementary/distance_advance.h"
 #include "elementary/nearest_point.h"
+#include "elementary/scaled_points.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 
-double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
-  const DifferencePolygon polygon(kind, x);
+namespace {
+
+double leastDistanceOf(const DifferencePolygon& polygon) {
   Vec corners[DifferencePolygon::kMaxCorners];
   for (int k = 0; k < polygon.count(); ++k) corners[k] = polygon.t0(k);
   const NearestPoint near = nearestPoint(polygon, corners);
@@ -26,6 +30,20 @@ double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
   const double least =
       best * (1 - LeastDistance::kOfGap) - LeastDistance::kOfSize * polygon.size();
   return least > 0 ? least : 0;
+}
+
+}  // namespace
+
+double leastDistance(ContinuousContactKind kind, const FeaturePoints& x) {
+  const DifferencePolygon polygon(kind, x);
+  if (polygon.size() >= Advance::kLeastSize && polygon.size() <= Advance::kMostSize)
+    return leastDistanceOf(polygon);
+  const ScaledPoints scaled(kind, x, 0);
+  const double least =
+      leastDistanceOf(DifferencePolygon(kind, scaled.points())) / scaled.scale();
+  // A subnormal number is rounded, one that is not finite no bound.
+  if (least < DBL_MIN) return least > 0 ? std::nextafter(least, 0.) : 0;
+  return std::min(least, DBL_MAX);
 }
 
 }  // namespace deformable

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "elementary/least_length.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -79,7 +81,7 @@ bool isNearestInside(const Vec* corners, int count, NearestPoint& near, bool& is
   near.across = across / square;
   near.point = p + near.along * v + near.across * w;
   near.square = dot(near.point, near.point);
-  is_sure = square > kSliver * (dot(v, v) * dot(w, w));
+  is_sure = square > kLeastSquare && square > kSliver * (dot(v, v) * dot(w, w));
   if (is_sure) return true;
   improve(p, v, w, near);
   return near.along > 0 && near.across > 0 &&

@@ -408,7 +408,8 @@ unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]) {
   store(max(gap * all(1 - LeastDistance::kOfGap) - all(LeastDistance::kOfSize) * x.size,
             all(0)),
         least);
-  return bits(near.is_sure & (gap > all(LeastDistance::kEnough) * near.distance));
+  return bits(near.is_sure & (gap > all(LeastDistance::kEnough) * near.distance) &
+              (x.size >= all(Advance::kLeastSize)) & (x.size <= all(Advance::kMostSize)));
 }
 
 }  // namespace HWY_NAMESPACE

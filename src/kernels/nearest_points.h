@@ -9,6 +9,7 @@
 // read.
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
+#include "elementary/least_length.h"
 #include "elementary/nearest_point.h"
 #include "kernels/kernels.h"
 #include "kernels/lanes.h"
@@ -95,7 +96,8 @@ FCL_CCD_INLINE NearestPoints nearestPoints(const Polygons& x,
   near.along = sides.along;
   near.distance = squareRoot(near.square);
   near.is_sure =
-      (near.part < all(kInside)) | (square > all(kSliver) * (dot(v, v) * dot(w, w)));
+      (near.part < all(kInside)) |
+      ((square > all(kLeastSquare)) & (square > all(kSliver) * (dot(v, v) * dot(w, w))));
   return near;
 }
 

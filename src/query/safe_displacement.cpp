@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <utility>
 
@@ -122,8 +123,10 @@ class SafeBounds {
 
   /// Both features may move towards each other, each by less than a half. A new
   /// coordinate, of at most 2 size, rounds by 2 u size, and a vertex by sqrt(3) of that.
+  /// Subnormal numbers round by half of the least one here, in each of three operations.
   static double halfOf(double way, double size) {
-    return std::max(0., 0.5 * way * (1 - 8 * kUnit) - 4 * kUnit * size);
+    constexpr double kLeast = std::numeric_limits<double>::denorm_min();
+    return std::max(0., 0.5 * way * (1 - 8 * kUnit) - 4 * kUnit * size - 2 * kLeast);
   }
 
   const Kernels& kernels_{kernels()};

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "elementary/scaled_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "elementary/nearest_point.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double sizeOf(ContinuousContactKind kind, const FeaturePoints& x, double distance) {
+  const DifferencePolygon polygon(kind, x);
+  double size = distance;
+  for (int k = 0; k < polygon.count(); ++k)
+    size = std::max(size, std::max(maxNorm(polygon.t0(k)), maxNorm(polygon.t1(k))));
+  return size;
+}
+
+}  // namespace
+
+ScaledPoints::ScaledPoints(ContinuousContactKind kind, const FeaturePoints& x,
+                           double distance)
+    : points_(x) {
+  constexpr int kMostShift = 1000;
+  const double size = sizeOf(kind, x, distance);
+  const int shift = std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
+  scale_ = std::ldexp(1, std::max(-kMostShift, std::min(kMostShift, shift)));
+  for (int i = 0; i < 4; ++i) {
+    if (!x.point[i]) continue;
+    for (int k = 0; k < 3; ++k) {
+      scaled_[i].t0[k] = x[i].t0[k] * scale_;
+      scaled_[i].t1[k] = x[i].t1[k] * scale_;
+    }
+    points_.point[i] = &scaled_[i];
+  }
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
