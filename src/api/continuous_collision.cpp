@@ -12,6 +12,7 @@
 #include "api/prepared_mesh.h"
 #include "api/prepared_motion.h"
 #include "api/query_arguments.h"
+#include "api/query_range.h"
 #include "api/request_filter.h"
 #include "api/unbounded_shapes.h"
 #include "base/default_floating_point.h"
@@ -223,6 +224,7 @@ void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
+  requireProvenRange(motion1, motion2, options.min_distance);
   // Triangles stand for all their features there.
   const deformable::MeshInstance without_owners;
   options.filter = filter.prepare(without_owners, without_owners);
@@ -267,25 +269,56 @@ bool isNoObstacleFor(const PlacedGeometry<S>& octree, const PlacedGeometry<S>& o
 }
 
 template <typename S>
+ShapeAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                           QueryOptions options, double factor, double& update);
+
+template <typename S>
+bool isUnbounded(const PlacedGeometry<S>& o) {
+  return deformable::isUnbounded(o.geometry());
+}
+
+template <typename S>
+ShapeAnswer boundedAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                            const QueryOptions& options, double scale, double& update) {
+  // The part of an unbounded shape that matters depends on the other object.
+  const bool second_first = isUnbounded(o1);
+  const PreparedMotion bounded(second_first ? o2 : o1, second_first ? "o2" : "o1",
+                               options.toc_err, options.num_threads, 0, scale),
+      other(second_first ? o1 : o2, second_first ? "o1" : "o2", options.toc_err,
+            options.num_threads, bounded.isEmpty() ? 0 : bounded.body().size(), scale);
+  if (bounded.isEmpty() || other.isEmpty()) return {};
+  const PreparedMotion &motion1 = second_first ? other : bounded,
+                       &motion2 = second_first ? bounded : other;
+  if (scale == 1) {
+    const double factor =
+        scaleOf(o1.moving(), motion1, o2.moving(), motion2, options.min_distance);
+    if (factor != 1) return scaledAnswerOf(o1, o2, options, factor, update);
+  }
+  update = bounded.updateTime() + other.updateTime();
+  return answerOf(
+      [&] { return queryShapeContacts(motion1.body(), motion2.body(), options); });
+}
+
+/// Two shapes whose lengths are multiplied by a power of two: this changes no digit.
+template <typename S>
+ShapeAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                           QueryOptions options, double factor, double& update) {
+  const MovingGeometry<S> moving1 = scaledPath(o1.moving(), factor),
+                          moving2 = scaledPath(o2.moving(), factor);
+  options.min_distance *= factor;
+  ShapeAnswer answer = boundedAnswerOf(
+      PlacedGeometry<S>(moving1), PlacedGeometry<S>(moving2), options, factor, update);
+  for (auto& contact : answer.contacts)
+    contact.position = (1 / factor) * contact.position;
+  return answer;
+}
+
+template <typename S>
 ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                           const QueryOptions& options, double& update) {
-  const auto is_unbounded = [](const PlacedGeometry<S>& o) {
-    return deformable::isUnbounded(o.geometry());
-  };
   if (isNoObstacleFor(o1, o2) || isNoObstacleFor(o2, o1)) return {};
-  if (is_unbounded(o1) && is_unbounded(o2)) return queryUnbounded(o1, o2, options);
-  // The part of an unbounded shape that matters depends on the other object.
-  const bool second_first = is_unbounded(o1);
-  const PreparedMotion bounded(second_first ? o2 : o1, second_first ? "o2" : "o1",
-                               options.toc_err, options.num_threads),
-      other(second_first ? o1 : o2, second_first ? "o1" : "o2", options.toc_err,
-            options.num_threads, bounded.isEmpty() ? 0 : bounded.body().size());
-  if (bounded.isEmpty() || other.isEmpty()) return {};
-  update = bounded.updateTime() + other.updateTime();
-  return answerOf([&] {
-    return queryShapeContacts((second_first ? other : bounded).body(),
-                              (second_first ? bounded : other).body(), options);
-  });
+  if (isUnbounded(o1) && isUnbounded(o2)) return queryUnbounded(o1, o2, options);
+  return boundedAnswerOf(o1, o2, options, 1, update);
 }
 
 /// Answers a shape or an octree, and another one of these or a mesh.

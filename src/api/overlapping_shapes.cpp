@@ -16,7 +16,7 @@ namespace {
 using deformable::ConvexShape;
 
 /// Paths of numbers up to this are in the range of PreparedMotion.
-constexpr double kMostPlainSize = 0x1p40;
+constexpr double kMostPlainSize = 0x1p40, kLeastPlainSize = 0x1p-140;
 
 template <typename S>
 bool isPlainSize(const PoseNumbers<S>& pose) {
@@ -40,9 +40,11 @@ bool isPlain(const MovingGeometry<S>& o) {
   return true;
 }
 
+/// Squares of sizes are in the range of doubles; a flat has no size that counts.
 bool isPlainSize(const ConvexShape& shape) {
   if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostPlainSize;
-  return shape.box().radius + shape.radius() <= kMostPlainSize;
+  const double size = shape.box().radius + shape.radius();
+  return size >= kLeastPlainSize && size <= kMostPlainSize;
 }
 
 }  // namespace

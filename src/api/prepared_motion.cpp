@@ -14,8 +14,11 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// Longer paths are refused, so that no product overflows.
+/// Longer paths are refused. Up to this no bound overflows; a query needs less
+/// (query_range.h).
 constexpr double kMostPathSize = 0x1p200;
+/// Shapes are scaled before that. Up to this no square of a length overflows.
+constexpr double kMostShapeSize = 0x1p500;
 
 bool haveSameRotation(const Pose& x, const Pose& y) {
   return std::equal(x.rotation, x.rotation + 9, y.rotation);
@@ -93,13 +96,15 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
 
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
-                               double toc_err, int num_threads, double reach)
+                               double toc_err, int num_threads, double reach,
+                               double scale)
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
     // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
     const double reach_in_body = (1 + 0x1p-8) * (reach + path.translationReach());
     shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
+    if (scale != 1) *shape_ = shape_->scaled(scale, reach_in_body);
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));
@@ -151,14 +156,18 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
         "InterpMotion(R1, T1, R2, T2, O), with O = 0");
 }
 
+double PreparedMotion::size() const {
+  return body_->size() + body_->speed() +
+         body_->path().acceleration(0, 1).of({0, 0, 0}, 0) +
+         (shape_ ? shape_->radius() : 0);
+}
+
 void PreparedMotion::requireInRange(const std::string& name) const {
-  if (body_->size() + body_->speed() + body_->path().acceleration(0, 1).of({0, 0, 0}, 0) <
-      kMostPathSize)
-    return;
+  if (size() < (shape_ ? kMostShapeSize : kMostPathSize)) return;
   if (mesh_) requireFinite(mesh_->instance().frames, name);
-  throw Exception(name +
-                  ": its path has coordinates beyond 2^200. Use smaller units or a "
-                  "smaller translation");
+  throw Exception(name + ": its path has coordinates beyond " +
+                  (shape_ ? "2^500" : "2^200") +
+                  ". Use larger units of length or a smaller translation");
 }
 
 void PreparedMotion::requireFinite(const VertexFrames& frames,
@@ -205,7 +214,7 @@ MeshInstance PreparedMotion::beginning() const {
   template void requireRotations(const PlacedGeometry<S>&, const char*);                \
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
-                                          double, int, double);
+                                          double, int, double, double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

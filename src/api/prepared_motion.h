@@ -39,12 +39,14 @@ class PreparedMotion {
   /// @param toc_err  largest error of time that rounding of the path may cause
   /// @param reach  of a plane or halfspace: how far the other object may come from the
   /// origin of the world
+  /// @param scale  of a shape: a power of two by which its lengths are multiplied; the
+  /// pose and the reach are multiplied already
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
   /// @throws fcl::Exception  as PreparedMesh, convexShapeOf() and octreeCellsOf(); also
   /// when the path is not defined or leaves the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
-                 int num_threads, double reach = 0);
+                 int num_threads, double reach = 0, double scale = 1);
 
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;
@@ -52,6 +54,8 @@ class PreparedMotion {
   /// @brief Whether it is an octree without occupied cells. It has no body.
   bool isEmpty() const { return octree_ && octree_->isEmpty(); }
   const MotionBody& body() const { return *body_; }
+  /// @brief Bound on all lengths in a query: coordinates, radii, ways and accelerations.
+  double size() const;
   double updateTime() const { return mesh_ ? mesh_->updateTime() : 0; }
 
   /// @brief The position of a vertex at time t, and its position one unit of time later

@@ -89,6 +89,27 @@ ConvexShape ConvexShape::flat(const FlatShape& flat, double reach) {
   return shape;
 }
 
+ConvexShape ConvexShape::scaled(double factor, double reach) const {
+  if (kind_ == Kind::kFlat)
+    return flat({flat_.normal, factor * flat_.offset, flat_.is_solid}, reach);
+  if (kind_ == Kind::kHull) {
+    std::vector<Vec> points = points_;
+    for (Vec& p : points) p = factor * p;
+    return hull(std::move(points));
+  }
+  ConvexShape out(kind_, factor * size_);
+  out.radius_ = factor * radius_;
+  out.fills_box_ = fills_box_;
+  out.setBox({0, 0, 0}, out.size_);
+  return out;
+}
+
+double ConvexShape::largestLength() const {
+  double most = std::max({maxNorm(size_), radius_, std::abs(flat_.offset)});
+  for (const Vec& p : points_) most = std::max(most, maxNorm(p));
+  return most;
+}
+
 int ConvexShape::pieceAt(const Vec& d) const {
   switch (kind_) {
     case Kind::kCapsule:

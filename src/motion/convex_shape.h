@@ -47,6 +47,13 @@ class ConvexShape {
   /// @param reach  how far from the origin of its frame the other object may come
   static ConvexShape flat(const FlatShape& flat, double reach);
 
+  /// @brief All lengths times a power of two, with which none overflows or underflows.
+  /// @param reach  of a flat, after that: as for flat()
+  ConvexShape scaled(double factor, double reach) const;
+
+  /// @brief The largest of the lengths that define it.
+  double largestLength() const;
+
   /// @brief Null: another shape.
   const FlatShape* flat() const { return kind_ == Kind::kFlat ? &flat_ : nullptr; }
 

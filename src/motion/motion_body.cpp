@@ -23,6 +23,17 @@ namespace {
 /// The largest size of a box with bounds, so that no product of sizes overflows.
 constexpr double kMostExtent = 0x1p300;
 
+/// Bound on the distance of a box from the origin. A flat has a radius of its own.
+double radiusOf(const MotionBox& box) {
+  // Squares of smaller lengths underflow.
+  constexpr double kLeastLength = 0x1p-490;
+  const double radius = (norm(box.center) + box.radius) * kUpward;
+  if (!(radius < kLeastLength)) return radius;
+  double sum = std::max(box.radius, box.pad);
+  for (int k = 0; k < 3; ++k) sum += std::abs(box.center[k]) + box.extent[k];
+  return sum * kUpward;
+}
+
 /// A box without bounds.
 MotionBox unboundedBox() {
   MotionBox box{};
@@ -158,8 +169,7 @@ FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b) {
 MotionBody::MotionBody(const RigidTree& tree, const VertexFrames& frames,
                        const Triangle* triangles, const MotionPath& path)
     : rigid_(&tree), frames_(frames), triangles_(triangles), path_(path) {
-  const MotionBox whole = rigidBox(0);
-  radius_ = (norm(whole.center) + whole.radius) * kUpward;
+  radius_ = radiusOf(rigidBox(0));
 }
 
 MotionBody::MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
@@ -186,13 +196,12 @@ MotionBody::MotionBody(const MovingKdopTree& tree, const VertexFrames& frames,
 
 MotionBody::MotionBody(const ConvexShape& shape, const MotionPath& path)
     : shape_(&shape), path_(path) {
-  radius_ = (norm(shape.box().center) + shape.box().radius) * kUpward;
+  radius_ = radiusOf(shape.box());
 }
 
 MotionBody::MotionBody(OctreeCells& cells, const MotionPath& path)
     : octree_(&cells), path_(path) {
-  const MotionBox whole = cells.box(0);
-  radius_ = (norm(whole.center) + whole.radius) * kUpward;
+  radius_ = radiusOf(cells.box(0));
 }
 
 BodyPart MotionBody::root() const {

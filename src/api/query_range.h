@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The sizes of a pair on curved paths, or with a shape or an octree, for which products
+// of lengths neither overflow nor underflow.
+#ifndef FCL_CCD_API_QUERY_RANGE_H
+#define FCL_CCD_API_QUERY_RANGE_H
+
+#include "api/prepared_motion.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+
+namespace fcl {
+namespace detail {
+
+/// @brief The power of two by which the lengths of two shapes, and of their paths, are to
+/// be multiplied, so that products of lengths are in the range of doubles; 1 as a rule.
+/// @param motion1, motion2  prepared without a scale
+/// @throws fcl::Exception  one is no shape, or follows a motion of the program, and the
+/// factor is not 1
+template <typename S>
+double scaleOf(const MovingGeometry<S>& o1, const deformable::PreparedMotion& motion1,
+               const MovingGeometry<S>& o2, const deformable::PreparedMotion& motion2,
+               double distance);
+
+/// @brief The same path with all its lengths multiplied.
+template <typename S>
+MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor);
+
+/// @brief Refuses two bodies for which products of lengths overflow or underflow.
+/// @throws fcl::Exception
+void requireProvenRange(const deformable::PreparedMotion& motion1,
+                        const deformable::PreparedMotion& motion2, double distance);
+
+}  // namespace detail
+}  // namespace fcl
+
+#endif
