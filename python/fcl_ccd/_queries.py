@@ -131,8 +131,8 @@ class Result(_arguments.Built):
     counts : dict, how many candidates each stage of the query saw and removed
     times : dict, wall time of the parts of the query in seconds
     contact_tf1, contact_tf2 : (4, 4) float64
-        Poses of o1 and o2 at the upper end of the first contact's bracket; without a
-        collision, at t = 1.
+        Poses of o1 and o2 at which they overlap, up to toc_err after the first contact;
+        without a collision, at t = 1.
     """
 
     is_collide: bool

@@ -107,16 +107,16 @@ py::dict collidePair(const Geometry& o1, const Motion& motion1, const Geometry& 
                      const Motion& motion2, const Request& request) {
   const Geometry::Reading reading1(o1), reading2(o2);
   const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
-  double hi = 1;
+  double pose_time = 1;
   py::dict result =
       answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
         if (!fcl::detail::answerPair(moving1, moving2, settings, outcome, &contacts))
           fcl::detail::refuseContacts(moving1, moving2);
-        hi = outcome.is_collide ? outcome.toc_hi : 1;
+        pose_time = outcome.is_collide ? outcome.pose_time : 1;
       });
   const bool is_collide = py::cast<bool>(result["is_collide"]);
   const auto pose = [&](const auto& moving) {
-    return toArray(is_collide ? fcl::detail::poseAt(moving, hi) : moving.pose[1]);
+    return toArray(is_collide ? fcl::detail::poseAt(moving, pose_time) : moving.pose[1]);
   };
   result["contact_tf1"] = pose(moving1);
   result["contact_tf2"] = pose(moving2);

@@ -106,7 +106,7 @@ py::tuple toTuple(fcl::ContinuousPairResult<double>& pair) {
     return toArray(fcl::detail::toNumbers<double>(tf));
   };
   auto& result = pair.result;
-  py::dict fields = fieldsOf({result.is_collide, result.time_of_contact, 0},
+  py::dict fields = fieldsOf({result.is_collide, result.time_of_contact, 0, 0},
                              std::move(static_cast<Contacts&>(result)));
   fields["contact_tf1"] = pose(result.contact_tf1);
   fields["contact_tf2"] = pose(result.contact_tf2);

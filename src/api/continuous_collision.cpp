@@ -79,10 +79,10 @@ QueryOptions makeOptions(const QuerySettings& settings) {
 
 template <typename S>
 QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
-  if (answer.hasCrossing()) return {true, 0, 0};
-  if (answer.contacts.empty()) return {false, 1, 1};
-  return {true, deformable::roundTimeDown<S>(answer.first.lo),
-          deformable::roundTimeUp<S>(answer.first.hi)};
+  if (answer.hasCrossing()) return {true, 0, 0, 0};
+  if (answer.contacts.empty()) return {false, 1, 1, 1};
+  const S hi = deformable::roundTimeUp<S>(answer.first.hi);
+  return {true, deformable::roundTimeDown<S>(answer.first.lo), hi, hi};
 }
 
 /// The filter of a request for two meshes that have been checked, or for one mesh with
@@ -335,11 +335,12 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   double update = 0;
   ShapeAnswer answer;
   if (!filter.rejectsAll()) answer = shapeAnswerOf(o1, o2, options, update);
-  outcome = {false, 1, 1};
+  outcome = {false, 1, 1, 1};
   if (!answer.contacts.empty()) {
     const auto& first = answer.contacts.front();
-    outcome = {true, deformable::roundTimeDown<S>(first.toc_lo),
-               deformable::roundTimeUp<S>(first.toc_hi)};
+    const S hi = deformable::roundTimeUp<S>(first.toc_hi);
+    outcome = {true, deformable::roundTimeDown<S>(first.toc_lo), hi,
+               std::max(hi, static_cast<S>(answer.pose_time))};
   }
   if (!contacts) return;
   fillContacts(answer, o1, o2, settings.enable_contact, *contacts);
@@ -356,7 +357,7 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const DefaultFloatingPoint mode;
   if (!settings.with_contacts && areOverlappingShapes(o1, o2)) {
     requireTocErr(settings.toc_err, "request.toc_err");
-    outcome = {true, 0, 0};
+    outcome = {true, 0, 0, 0};
     return true;
   }
   const PlacedGeometry<S> placed1(o1), placed2(o2);

@@ -61,7 +61,7 @@ bool areOverlappingShapes(const MovingGeometry<S>& o1, const MovingGeometry<S>& 
     const ConvexShape a = deformable::convexShapeOf(*o1.geometry, "o1", 0),
                       b = deformable::convexShapeOf(*o2.geometry, "o2", 0);
     return isPlainSize(a) && isPlainSize(b) &&
-           deformable::overlapAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
+           deformable::overlapDeeplyAtStart(a, toPose(o1.pose[0]), b, toPose(o2.pose[0]));
   } catch (const Exception&) {
     // The query tells first what is wrong with the request.
     return false;

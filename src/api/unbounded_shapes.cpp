@@ -119,6 +119,10 @@ ShapeAnswer queryUnbounded(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
         ((1 - contact.toc_lo) * a.offset[0] + contact.toc_lo * a.offset[1]) * a.normal;
   }
   answer.contacts.push_back(contact);
+  // Two planes overlap at no other time.
+  answer.pose_time = contact.toc_hi;
+  if (contact.toc_lo > 0 && (a.is_solid || b.is_solid) && !(options.min_distance > 0))
+    answer.pose_time = std::min(options.t_max, contact.toc_lo + options.toc_err);
   answer.counts.contacts = 1;
   return answer;
 }

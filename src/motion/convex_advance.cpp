@@ -333,6 +333,10 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
   return gap;
 }
 
+double ConvexPairMotion::overlapAt(double t, double radii) const {
+  return radii + overlapOf(gapOf(stateAt(t), 0));
+}
+
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {
   ConvexGap gap;
@@ -351,8 +355,7 @@ ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& 
 }
 
 double ConvexPairMotion::proveContact(double t, double width) const {
-  const double speed = set_[0]->speed + set_[1]->speed;
-  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
+  return provedTimeAfter(t, width, tolerance_.position, speed(), [this](double time) {
     const ConvexGap gap = gapOf(stateAt(time), 0);
     return gap.depth > 4 * tolerance_.position ||
            gap.distance + tolerance_.position <= tolerance_.distance;

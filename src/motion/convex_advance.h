@@ -66,6 +66,13 @@ class ConvexPairMotion {
   /// @brief The gap of the cores at a time.
   ConvexGap gapAt(double t) const;
 
+  /// @brief How deep the sets, with these radii around their cores, overlap at a time, at
+  /// least; negative: how far they are apart, at most.
+  double overlapAt(double t, double radii) const;
+
+  /// @brief Bound on the relative speed of two points.
+  double speed() const { return set_[0]->speed + set_[1]->speed; }
+
  private:
   /// A set at a time, with the velocities of its points.
   struct Side {

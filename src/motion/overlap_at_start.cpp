@@ -13,8 +13,8 @@ namespace detail {
 namespace deformable {
 namespace {
 
-bool reachesFlat(const ConvexShape& flat, const Pose& pose_flat, const ConvexShape& other,
-                 const Pose& pose_other) {
+double overlapOfFlat(const ConvexShape& flat, const Pose& pose_flat,
+                     const ConvexShape& other, const Pose& pose_other) {
   const FlatShape& shape = *flat.flat();
   const Vec normal = rotated(pose_flat.rotation, shape.normal),
             up = (1 / norm(normal)) * normal,
@@ -22,8 +22,9 @@ bool reachesFlat(const ConvexShape& flat, const Pose& pose_flat, const ConvexSha
                   rotated(pose_flat.rotation, shape.foot()),
             in_other = rotatedBack(pose_other.rotation, up);
   const double height = dot(up, way);
-  if (!(height - other.reach(-1. * in_other) - other.radius() <= 0)) return false;
-  return shape.is_solid || height + other.reach(in_other) + other.radius() >= 0;
+  const double below = other.reach(-1. * in_other) + other.radius() - height;
+  if (shape.is_solid) return below;
+  return std::min(below, height + other.reach(in_other) + other.radius());
 }
 
 /// A radius of balls that the rotation, if it is one up to rounding, does not make
@@ -58,7 +59,8 @@ class HeightsAtStart {
   /// Goes down the tree to the triangle that is likely to be lowest; or, for a plane, to
   /// one that it is likely to cross. All triangles of a box below a halfspace are as
   /// good.
-  bool findTouch() const {
+  /// @return how deep this triangle is; negative: it does not touch
+  double findTouch() const {
     BodyPart part = mesh_.root(), children[MotionBoxes::kWidth];
     bool is_below = false;
     while (!part.isTriangle()) {
@@ -73,9 +75,9 @@ class HeightsAtStart {
         is_below = is_solid_ && heights.most() <= 0;
         part = children[i];
       }
-      if (!(least <= 0)) return false;
+      if (!(least <= 0)) return -1;
     }
-    return touches(part);
+    return depthOf(part);
   }
 
  private:
@@ -94,8 +96,8 @@ class HeightsAtStart {
     return {is_solid_ ? center : std::abs(center), reach};
   }
 
-  bool touches(const BodyPart& part) const {
-    if (!mesh_.isReadable(~part.child)) return false;
+  double depthOf(const BodyPart& part) const {
+    if (!mesh_.isReadable(~part.child)) return -1;
     const BodyTriangle triangle = mesh_.triangle(~part.child);
     double lowest = HUGE_VAL, highest = -HUGE_VAL;
     for (const Vec& corner : triangle.corner[0]) {
@@ -103,7 +105,7 @@ class HeightsAtStart {
       lowest = std::min(lowest, height);
       highest = std::max(highest, height);
     }
-    return lowest <= 0 && (is_solid_ || highest >= 0);
+    return is_solid_ ? -lowest : std::min(-lowest, highest);
   }
 
   const MotionBody& mesh_;
@@ -119,10 +121,11 @@ double outerRadius(const ConvexShape& shape) {
 
 }  // namespace
 
-bool overlapAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b,
-                    const Pose& pose_b) {
-  if (a.flat()) return reachesFlat(a, pose_a, b, pose_b);
-  if (b.flat()) return reachesFlat(b, pose_b, a, pose_a);
+bool overlapDeeplyAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b,
+                          const Pose& pose_b) {
+  if (a.flat()) return isDeepOverlap(overlapOfFlat(a, pose_a, b, pose_b), outerRadius(b));
+  if (b.flat()) return isDeepOverlap(overlapOfFlat(b, pose_b, a, pose_a), outerRadius(a));
+  const double smaller = std::min(outerRadius(a), outerRadius(b));
   // Coordinates round less in a frame with its origin in a.
   PosedConvex first{&a, nullptr, pose_a, {}}, second{&b, nullptr, pose_b, {}};
   for (int k = 0; k < 3; ++k) {
@@ -133,19 +136,22 @@ bool overlapAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape&
   const double distance = norm(way);
   if (distance > kUpward * (outerRadius(a) + outerRadius(b))) return false;
   if (a.containsCenter() && b.containsCenter() &&
-      distance <= innerRadius(a, pose_a) + innerRadius(b, pose_b))
+      isDeepOverlap(innerRadius(a, pose_a) + innerRadius(b, pose_b) - distance, smaller))
     return true;
   const double radii = a.radius() + b.radius();
-  const ConvexGap gap = convexGap(first, second, way, radii, radii);
-  return gap.depth > 0 || gap.distance <= radii;
+  // It is deep long before the distance of the cores is this small.
+  const ConvexGap gap = convexGap(first, second, way, radii, radii - 0x1p-15 * smaller);
+  return isDeepOverlap(radii + overlapOf(gap), smaller);
 }
 
-bool overlapAtStart(const MotionBody& a, const MotionBody& b) {
+bool overlapDeeplyAtStart(const MotionBody& a, const MotionBody& b) {
   const auto isFlat = [](const MotionBody& body) {
     return body.shape() && body.shape()->flat();
   };
-  if (isFlat(a) && b.isMesh()) return HeightsAtStart(a, b).findTouch();
-  return isFlat(b) && a.isMesh() && HeightsAtStart(b, a).findTouch();
+  if (isFlat(a) && b.isMesh())
+    return isDeepOverlap(HeightsAtStart(a, b).findTouch(), b.radius());
+  return isFlat(b) && a.isMesh() &&
+         isDeepOverlap(HeightsAtStart(b, a).findTouch(), a.radius());
 }
 
 }  // namespace deformable

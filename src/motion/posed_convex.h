@@ -66,6 +66,11 @@ struct ConvexGap {
   double depth;
 };
 
+/// @brief How deep the sets overlap, at least; negative: how far they are apart, at most.
+inline double overlapOf(const ConvexGap& gap) {
+  return gap.depth > 0 ? gap.depth : -gap.distance;
+}
+
 /// @brief How deep the origin is inside a tetrahedron, less what its faces round by; 0 if
 /// it is not inside by more.
 /// @param[out] weight  of the corners whose mean the origin is, if it is inside

@@ -34,6 +34,9 @@ struct ShapeAnswer {
   /// Sorted by (toc_lo, triangles).
   std::vector<ShapeContact> contacts;
   bool cut{false};
+  /// When discrete queries find the first contact, if they do within toc_err: a time in
+  /// [toc_hi, toc_lo + toc_err]. With a distance it is toc_hi. 1: there is no contact.
+  double pose_time{1};
   StageCounts counts;
 };
 

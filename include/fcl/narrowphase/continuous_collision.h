@@ -75,11 +75,11 @@ namespace fcl {
 /// request.toc_err is the largest width of the time bracket of a contact, in fractions of
 /// the step. 0: as narrow as doubles allow.
 ///
-/// Result: time_of_contact is the lower end of the first contact's bracket. contact_tf1
-/// and contact_tf2 are the poses at its upper end; without collision, at t = 1. As a rule
-/// the objects overlap there, so that collide() finds contacts. They may only touch if
-/// the bracket is as narrow as rounding, or if the objects touch without passing into
-/// each other.
+/// Result: time_of_contact is the lower end of the first contact's bracket. At the poses
+/// contact_tf1 and contact_tf2 collide() finds contacts, unless objects hardly overlap:
+/// for two meshes at its upper end; with a shape or an octree at min(1, time_of_contact +
+/// toc_err), or where they overlap most up to then; at t = 0 if they overlap well there.
+/// Without collision they are those at t = 1 (doc/differences.md, poses of contact).
 ///
 /// Models are not changed. The same call gives the same answer.
 ///
@@ -101,8 +101,8 @@ namespace fcl {
 /// - Shapes and octrees: a size of the shape is negative or not finite; the resolution of
 ///   the octree is not positive or not finite.
 /// - Motions: a matrix is further from a rotation than 2^-6; the reference point of an
-/// InterpMotion is not finite, or so large that its
-///   rounding exceeds toc_err; a path that turns has coordinates beyond 2^200.
+///   InterpMotion is not finite, or so large that its rounding exceeds toc_err;
+///   coordinates are out of range (doc/errors.md).
 /// - The request: toc_err is negative or NaN, num_max_contacts is 0, num_threads is
 ///   negative, t_max is not in [0, 1]; min_distance is negative or not finite.
 /// - FCL checks nothing in what it answers.

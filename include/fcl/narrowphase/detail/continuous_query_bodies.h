@@ -100,8 +100,8 @@ void fillResult(const QueryOutcome<S>& outcome, const MovingGeometry<S>& o1,
     detail::setTransform(detail::endPose(o2), result.contact_tf2);
     return;
   }
-  detail::setTransform(detail::contactPose(o1, outcome.toc_hi), result.contact_tf1);
-  detail::setTransform(detail::contactPose(o2, outcome.toc_hi), result.contact_tf2);
+  detail::setTransform(detail::contactPose(o1, outcome.pose_time), result.contact_tf1);
+  detail::setTransform(detail::contactPose(o2, outcome.pose_time), result.contact_tf2);
 }
 
 /// The path between two transforms that a request asks for.

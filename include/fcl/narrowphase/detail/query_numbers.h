@@ -229,12 +229,13 @@ struct QuerySettings {
 };
 
 /// @brief The answer: the fields of FCL's own result, with the time bracket of the first
-/// contact in place of the poses.
+/// contact, and the time of the poses in place of these.
 template <typename S>
 struct QueryOutcome {
   bool is_collide;
   S toc_lo;
   S toc_hi;
+  S pose_time;
 };
 
 /// @brief The continuous query of a pair.
