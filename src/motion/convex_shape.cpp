@@ -110,6 +110,25 @@ double ConvexShape::largestLength() const {
   return most;
 }
 
+bool ConvexShape::isBall() const {
+  if (kind_ == Kind::kCapsule) return size_.z == 0;
+  return kind_ == Kind::kEllipsoid && size_.x == size_.y && size_.y == size_.z;
+}
+
+int ConvexShape::axisOfRevolution() const {
+  switch (kind_) {
+    case Kind::kCapsule:
+    case Kind::kCone:
+    case Kind::kCylinder:
+      return 2;
+    case Kind::kEllipsoid:
+      if (size_.x == size_.y) return 2;
+      return size_.y == size_.z ? 0 : size_.x == size_.z ? 1 : -1;
+    default:
+      return -1;
+  }
+}
+
 int ConvexShape::pieceAt(const Vec& d) const {
   switch (kind_) {
     case Kind::kCapsule:

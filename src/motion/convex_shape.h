@@ -96,6 +96,13 @@ class ConvexShape {
   /// outside.
   bool containsCenter() const { return kind_ != Kind::kHull; }
 
+  /// @brief Whether the core is a ball around the origin of its frame.
+  bool isBall() const;
+  /// @brief Whether the core is a body of revolution about axisOfRevolution(), an axis of
+  /// its frame: 0, 1 or 2. A ball has any axis.
+  bool isRound() const { return axisOfRevolution() >= 0; }
+  int axisOfRevolution() const;
+
   /// @brief The radius of a ball around the center inside of the core; 0: none is known.
   double innerRadius() const;
 

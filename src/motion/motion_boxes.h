@@ -85,6 +85,10 @@ struct MeetingWindows {
   unsigned mask;
   double lo[MotionBoxes::kWidth];
   double hi[MotionBoxes::kWidth];
+  /// A bit for each of these boxes that is apart at the beginning, in the middle and at
+  /// the end of the span by so much that it is provably apart in parts of the span, if
+  /// that is known.
+  unsigned soon_apart{0};
 };
 
 /// @brief What is known of the triangles of a node beside a triangle of the other side.

@@ -312,6 +312,33 @@ MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
   return path;
 }
 
+MotionPath MotionPath::withFixedRotation() const {
+  MotionPath path = *this;
+  Turn& turn = path.turn_;
+  for (auto* matrix : {&turn.sine_rotation, &turn.cosine_rotation, &turn.linear_rotation})
+    std::fill(std::begin(*matrix), std::end(*matrix), 0.);
+  path.stretch_ = spectralBound(turn.beginning.rotation);
+  if (norm(turn.sine_translation) == 0 && norm(turn.cosine_translation) == 0)
+    turn.angle = 0;
+  path.setTurnBounds();
+  return path;
+}
+
+MotionPath MotionPath::withoutTurn() const {
+  MotionPath path = *this;
+  for (auto* vector : {&path.turn_.sine_translation, &path.turn_.cosine_translation})
+    std::fill(std::begin(*vector), std::end(*vector), 0.);
+  path.reference_size_ = 0;
+  return path.withFixedRotation();
+}
+
+/// Whether the rotation changes with the angle.
+bool MotionPath::hasTurningRotation() const {
+  return turn_.angle > 0 &&
+         std::any_of(std::begin(turn_.sine_rotation), std::end(turn_.sine_rotation),
+                     [](double x) { return x != 0; });
+}
+
 void MotionPath::setTurnBounds() {
   const double sine = norm(vecOf(turn_.sine_translation)),
                cosine = norm(vecOf(turn_.cosine_translation)),
@@ -321,7 +348,9 @@ void MotionPath::setTurnBounds() {
        std::min(2., w * w) * cosine + reference_size_) *
       kUpward;
   translation_reach_ = translation_size_;
-  turn_speed_ = (w * stretch_ + frobenius(turn_.linear_rotation)) * kUpward;
+  turn_speed_ =
+      ((hasTurningRotation() ? w * stretch_ : 0) + frobenius(turn_.linear_rotation)) *
+      kUpward;
   translation_speed_ = (linear + w * (sine + cosine)) * kUpward;
   rotation_error_ = 32;
 }
@@ -505,8 +534,10 @@ AccelerationBound MotionPath::turnAcceleration() const {
   const double square = turn_.angle * turn_.angle, rounding = 64 * kUnit * square;
   for (int i = 0; i < 9; ++i) bound.turn[i] = square * turn_.sine_rotation[i];
   for (int k = 0; k < 3; ++k) bound.offset[k] = square * turn_.sine_translation[k];
-  bound.per_radius = (square * stretch_ + rounding) * kUpward;
-  bound.per_distance = rounding * stretch_;
+  if (hasTurningRotation()) {
+    bound.per_radius = (square * stretch_ + rounding) * kUpward;
+    bound.per_distance = rounding * stretch_;
+  }
   bound.constant = rounding * (norm(vecOf(turn_.sine_translation)) +
                                norm(vecOf(turn_.cosine_translation)));
   bound.per_displacement = 2 * turn_speed_ * kUpward;

@@ -107,6 +107,14 @@ class MotionPath {
   /// @throws fcl::Exception  when a placement or a bound is not finite
   static MotionPath bounded(const BoundedMotion& motion, const char* name = "the object");
 
+  /// @brief The same path, but with the rotation of the beginning at all times.
+  /// @pre it is a turn
+  MotionPath withFixedRotation() const;
+
+  /// @brief The beginning of the same path and its straight part only.
+  /// @pre it is a turn
+  MotionPath withoutTurn() const;
+
   /// @brief The name of the object in errors. It must live as long as the path.
   const char* name() const { return name_; }
   void setName(const char* name) { name_ = name; }
@@ -177,6 +185,7 @@ class MotionPath {
   static MotionPath turnFrom(const Pose& beginning, const Pose& end,
                              const Vec& half_turn_axis);
   void reachEnd(const Pose& end);
+  bool hasTurningRotation() const;
   void setTurnBounds();
   AccelerationBound turnAcceleration() const;
   AccelerationBound splineAcceleration(double t0, double t1) const;

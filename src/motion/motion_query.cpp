@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "motion/calm_bodies.h"
 #include "motion/convex_advance.h"
 #include "motion/motion_work.h"
 #include "motion/part_windows.h"
@@ -37,9 +38,13 @@ class MotionTraversal {
   MotionTraversal(const MotionBody& a, const MotionBody& b,
                   const MotionQueryOptions& options)
       : options_(options),
+        body_{&a, &b},
+        calm_(a, b),
         tolerance_(a, b, options.distance),
-        windows_(a, b, tolerance_, options.distance),
-        parting_(a, b, tolerance_),
+        calm_tolerance_(tolerance_),
+        windows_(calm_.body(0), calm_.body(1), tolerance_,
+                 options.distance + calm_.deviation()),
+        parting_(calm_.body(0), calm_.body(1), withDeviation(calm_tolerance_)),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.last),
         works_(options.all ? MotionWorkQueue::Order::kAny
@@ -76,7 +81,7 @@ class MotionTraversal {
            kMost;
   }
 
-  void begin() { testAlone({0, 0, 1, body(0).root(), body(1).root(), 0, 0, false}); }
+  void begin() { testAlone({0, 0, 1, body(0).root(), body(1).root(), 0, 0}); }
 
   /// Calls visit(work) for pairs of triangles.
   template <typename Visit>
@@ -97,7 +102,12 @@ class MotionTraversal {
     return work.a.isTriangle() && work.b.isTriangle();
   }
 
-  const MotionBody& body(int k) const { return windows_.side(k).body; }
+  const MotionBody& body(int k) const { return *body_[k]; }
+
+  const MotionTolerance& withDeviation(MotionTolerance& tolerance) const {
+    tolerance.distance += calm_.deviation();
+    return tolerance;
+  }
 
   bool isCut() const { return counts_.box_tests > options_.most_box_tests; }
 
@@ -181,6 +191,7 @@ class MotionTraversal {
       const int lane = __builtin_ctz(left);
       MotionWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
+      child.is_soon_apart = (windows.soon_apart >> lane & 1U) != 0;
       child.start = std::max(work.start, work.t0 + windows.lo[lane] * dt);
       const double end = std::min(work.t1, work.t0 + windows.hi[lane] * dt);
       if (child.start > end) continue;
@@ -234,8 +245,8 @@ class MotionTraversal {
                                   kLeastShare * std::max(radius[opened], apart_)),
                  deviation = span[0].deviation + span[1].deviation;
     if (work.t1 - work.t0 > kShortest && least > windows_.rounding() &&
-        deviation > most_deviation * least) {
-      if (!(deviation > kMuch * least)) return halve(work);
+        (work.is_soon_apart || deviation > most_deviation * least)) {
+      if (work.is_soon_apart || !(deviation > kMuch * least)) return halve(work);
       if (mayPart(work, span)) return halveTiny(work);
     }
     const BodyPart& part = opened == 1 ? work.b : work.a;
@@ -331,6 +342,23 @@ class MotionTraversal {
     return it != seen_.end() && it->second.toc <= work.start;
   }
 
+  /// Whether a pair with a shape or a cell is proved apart without the turns that change
+  /// no distance. Most pairs need one step then.
+  bool areCalmlyApart(const MotionWork& work, double end) {
+    constexpr int kMostSteps = 8;
+    const MovingConvex x = movingConvexOf(calm_.body(0), ~work.a.child),
+                       y = movingConvexOf(calm_.body(1), ~work.b.child);
+    ConvexPairMotion pair(x, y, work.start, end, calm_tolerance_);
+    pair.suggest(last_direction_);
+    double t = work.start;
+    int left = kMostSteps;
+    const auto answer = pair.advance(t, end, left, counts_);
+    if (maxNorm(pair.lastDirection()) > 0) last_direction_ = pair.lastDirection();
+    if (answer != TrianglePairMotion::Answer::kApart) return false;
+    ++counts_.triangle_pairs;
+    return true;
+  }
+
   /// Advances a pair of triangles, shapes or cells of an octree.
   void advance(const MotionWork& work) {
     if (work.is_one_of_many && touchedBefore(work)) return;
@@ -341,6 +369,7 @@ class MotionTraversal {
       const MovingConvex x = movingConvexOf(a, place[0]), y = movingConvexOf(b, place[1]);
       const std::int32_t index[2] = {a.isMesh() ? x.triangle.index : kNoTriangle,
                                      b.isMesh() ? y.triangle.index : kNoTriangle};
+      if (calm_.areCalmer() && work.steps == 0 && areCalmlyApart(work, end)) return;
       ConvexPairMotion pair(x, y, work.start, end, tolerance_);
       pair.suggest(last_direction_);
       if (options_.ignores_initially_closer) pair.ignoreInitiallyCloser();
@@ -424,7 +453,11 @@ class MotionTraversal {
   }
 
   const MotionQueryOptions& options_;
-  MotionTolerance tolerance_;
+  const MotionBody* body_[2];
+  /// What boxes are compared of, and pairs with shapes first. Contacts are those of the
+  /// bodies themselves.
+  CalmBodies calm_;
+  MotionTolerance tolerance_, calm_tolerance_;
   PartWindows windows_;
   PartingDirection parting_;
   /// The distance at which meshes are in contact.

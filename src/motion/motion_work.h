@@ -24,7 +24,9 @@ struct MotionWork {
   /// How often it was divided since the dive began that it belongs to; 0: to none.
   std::int32_t dive;
   /// Whether its span is one of many for parts that are tiny beside their deviations.
-  bool is_one_of_many;
+  bool is_one_of_many{false};
+  /// Whether the parts are apart in shorter spans: MeetingWindows::soon_apart.
+  bool is_soon_apart{false};
 };
 
 /// @brief Hands out work. Where one contact is enough, the earliest comes first, but for

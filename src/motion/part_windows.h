@@ -94,8 +94,8 @@ class PartWindows {
   TriangleHalves testTriangles(const MotionWork& work, int opened, const MotionNode& node,
                                const BodyPart& part, const Accelerations& acceleration);
   bool narrowByShape(int opened, const MotionWork& work,
-                     const MotionBoxes* const (&boxes)[3], int lane, double margin,
-                     MeetingWindows& windows);
+                     const MotionBoxes* const (&boxes)[3], int lane,
+                     const Margins& margins, MeetingWindows& windows);
 
   MotionSide side_[2];
   /// The share of a body's deviation that it has along the axis of the other one.
