@@ -73,7 +73,7 @@ MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(pa
   PolygonMesh first = parsePolygonMesh(path, bytes);
   triangles_ = triangulate(first.vertices, first.faces);
   faces_ = std::move(first.faces);
-  free_ = std::move(first.free);
+  free_ = joined_free_ = std::move(first.free);
   vertices_ = std::move(first.vertices);
   if (!isPly(path)) return;
   const auto block = findVertexBlock(bytes);
@@ -163,7 +163,7 @@ void MeshSequence::announce(std::size_t frame) const {
 
 void MeshSequence::join(const std::vector<int>& map) {
   joinVertices(map, triangles_);
-  joinVertices(map, free_);
+  joinVertices(map, joined_free_);
 }
 
 }  // namespace fcl_ccd

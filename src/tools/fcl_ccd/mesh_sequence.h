@@ -30,7 +30,7 @@ class MeshSequence {
   std::size_t size() const { return paths_.size(); }
   const std::string& path(std::size_t frame) const { return paths_[frame]; }
   const Triangles& triangles() const { return triangles_; }
-  const FreeElements& free() const { return free_; }
+  const FreeElements& free() const { return joined_free_; }
   const Vertices& firstVertices() const { return vertices_; }
 
   /// @brief The vertices of a frame. It must fit the first one. The first frame is not
@@ -62,7 +62,8 @@ class MeshSequence {
 
   std::vector<std::string> paths_;
   Faces faces_;
-  FreeElements free_;
+  FreeElements free_;         ///< as in the files
+  FreeElements joined_free_;  ///< as join() has left them
   Triangles triangles_;
   Vertices vertices_;
   /// For a binary PLY that begins with its vertices: the bytes before and behind them.

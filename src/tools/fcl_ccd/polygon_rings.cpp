@@ -64,8 +64,8 @@ void PolygonRings::removeFrom(std::vector<int> candidates) {
     candidates.pop_back();
     if (isRemoved(corner)) continue;
     const int a = before(corner), b = next(corner);
-    if (a == corner || b == corner) {  // alone
-      next_[static_cast<std::size_t>(corner)] = -1;
+    if (a == b) {  // what is left of a ring without area
+      next_[static_cast<std::size_t>(a)] = next_[static_cast<std::size_t>(corner)] = -1;
       continue;
     }
     if (!isAtSamePlace(a, corner) && !isAtSamePlace(a, b)) continue;

@@ -190,12 +190,20 @@ class Sweep {
     return true;
   }
 
+  /// Whether a chain's end at a is cut off from the next corners on its two sides: it
+  /// turns to the inside, or it has no width, as where a corner lies on another edge. One
+  /// of b and c is the corner that is added, to the right of a.
+  bool isCut(int a, int b, int c) const {
+    const int side = turn(a, b, c);
+    return side > 0 || (side == 0 && !isLeftward(a, b) && !isLeftward(a, c));
+  }
+
   /// Adds a corner to the lower end of a strip's chain, with the triangles that it can
   /// make there.
   void appendLow(Strip& strip, int corner) {
     int at = strip.lo;
     for (int after = link(at).after; after != -1; after = link(at).after) {
-      if (turn(link(at).corner, corner, link(after).corner) <= 0) break;
+      if (!isCut(link(at).corner, corner, link(after).corner)) break;
       out_.push_back({link(at).corner, corner, link(after).corner});
       at = after;
     }
@@ -208,7 +216,7 @@ class Sweep {
   void appendHigh(Strip& strip, int corner) {
     int at = strip.hi;
     for (int under = link(at).before; under != -1; under = link(at).before) {
-      if (turn(link(under).corner, corner, link(at).corner) <= 0) break;
+      if (!isCut(link(at).corner, link(under).corner, corner)) break;
       out_.push_back({link(under).corner, corner, link(at).corner});
       at = under;
     }

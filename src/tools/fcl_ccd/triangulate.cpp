@@ -96,8 +96,9 @@ bool isStrictlyConvex(const std::vector<Point2>& points) {
 /// 64^3 tests of a point and a triangle, 4,096 a corner.
 constexpr std::size_t kFewCorners = 64;
 /// The tests for each corner of a larger face, of which only those come here that cross
-/// themselves. 512 are enough to find the ears of 500 corners in one pass over all.
-constexpr std::size_t kTestsACorner = 512;
+/// themselves. One pass over 1,000 corners needs as many. When none is left, the rest
+/// becomes a fan.
+constexpr std::size_t kTestsACorner = 1024;
 
 /// @brief A ring of corners from which ears are cut, one at a time.
 class Ring {
