@@ -31,7 +31,7 @@ fcl_ccd_install_dependencies() {
   fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.
   if [ "$1" = all ]; then
-    packages+=(clang libclang-rt-dev clang-format-14 clang-tidy-14 doxygen universal-ctags)
+    packages+=(clang libclang-rt-dev lld clang-format-14 clang-tidy-14 doxygen universal-ctags)
   fi
   packages+=("${@:2}")
 

@@ -68,49 +68,85 @@ if ! $all && ! $doors; then
   echo "   the tests 1.5, and the programs that link the package 7"
 fi
 
+step() { echo "== $* ($((SECONDS / 60)) min so far)"; }
+
+# watched COMMAND...: runs it. When it prints nothing for 45 seconds, a line tells what it does:
+# which tests run, or what came last.
+watched() {
+  "$@" 2>&1 | {
+    local line="" part last="" rc
+    local -A running=()
+    while true; do
+      IFS= read -r -t 45 part && rc=0 || rc=$?
+      line+=$part
+      if [ "$rc" -gt 128 ]; then
+        echo "   ... still at: ${running[*]:-$last} ($((SECONDS / 60)) min so far)"
+        continue
+      fi
+      if [ -n "$line" ] || [ "$rc" -eq 0 ]; then printf '%s\n' "$line"; fi
+      if [ "$rc" -ne 0 ]; then break; fi
+      if [[ $line =~ ^\ *Start\ +([0-9]+):\ (.*) ]]; then
+        running[${BASH_REMATCH[1]}]=${BASH_REMATCH[2]}
+      elif [[ $line =~ Test\ +\#([0-9]+): ]]; then
+        unset "running[${BASH_REMATCH[1]}]"
+      elif [ -n "$line" ]; then
+        last="after ${line:0:100}"
+      fi
+      line=""
+    done
+  }
+}
+
 build() {
   local preset=$1
   shift
-  echo "== $preset: configure and build ($((SECONDS / 60)) min so far)"
+  step "$preset: configure and build"
   cmake --preset "$preset" "$@"
-  cmake --build --preset "$preset"
+  watched cmake --build --preset "$preset"
+}
+
+# The last lines, also when a test has failed.
+tell_what_was_skipped() {
+  if [ -d "${FCL_CCD_TEST_DATA:-../shared/data}" ]; then return; fi
+  echo "Tests of the public data were skipped. doc/data.md says where to download the data."
+  echo "This line runs them: FCL_CCD_TEST_DATA=FOLDER bash cmake/test.sh"
 }
 
 if $doors; then
   build release -DFCL_CCD_BUILD_PYTHON=ON
   for compiler in g++ clang++; do
-    bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
+    watched bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
   done
   exit
 fi
 
 # The Release run comes last, so that its summary is at the end of the output.
 if $all; then
-  build asan-ubsan
-  echo "== clang-tidy ($((SECONDS / 60)) min so far)"
+  # lld links the test programs faster than the linker of the system.
+  build asan-ubsan -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
+  step "clang-tidy"
   command -v clang-tidy-14 >/dev/null ||
     { echo "clang-tidy-14 is missing. Install the package clang-tidy-14" >&2; exit 1; }
-  # Its stderr only counts findings in headers of other projects.
-  find src -name '*.cpp' -print0 |
-    xargs -0 -n 1 -P "$jobs" clang-tidy-14 --quiet -p build/asan-ubsan 2>/dev/null
-  echo "== asan-ubsan: unit tests ($((SECONDS / 60)) min so far)"
-  ctest --preset asan-ubsan -j "$jobs"
-  echo "== reference"
-  doxygen doc/Doxyfile
-  bash cmake/check_reference.sh
+  watched python3 cmake/tidy.py build/asan-ubsan "$jobs"
+  step "asan-ubsan: unit tests"
+  trap tell_what_was_skipped EXIT
+  watched ctest --preset asan-ubsan -j "$jobs"
+  step "reference"
+  watched doxygen doc/Doxyfile
+  watched bash cmake/check_reference.sh
   # The tests that compare with scalar code and brute force.
   plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
-  echo "== plain: build and tests ($((SECONDS / 60)) min so far)"
+  step "plain: build and tests"
   cmake --preset plain
-  cmake --build --preset plain --target "${plain_tests[@]}"
-  for test in "${plain_tests[@]}"; do "build/plain/test/unit/$test" --gtest_brief=1; done
+  watched cmake --build --preset plain --target "${plain_tests[@]}"
+  for test in "${plain_tests[@]}"; do
+    echo "   $test"
+    watched "build/plain/test/unit/$test" --gtest_brief=1
+  done
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON
 fi
-echo "== release: tests ($((SECONDS / 60)) min so far)"
-ctest --preset release -j "$jobs"
-if [ ! -d "${FCL_CCD_TEST_DATA:-../shared/data}" ]; then
-  echo "Tests of the public data were skipped. doc/data.md says where to download the data."
-  echo "This line runs them: FCL_CCD_TEST_DATA=FOLDER bash cmake/test.sh"
-fi
+step "release: tests"
+trap tell_what_was_skipped EXIT
+watched ctest --preset release -j "$jobs"

@@ -3,7 +3,9 @@
 # this package.
 #   run.sh BUILD_DIR COMPILER WORK_DIR [DOOR ...]
 # BUILD_DIR is the folder of a finished build of this project; it is installed into WORK_DIR.
-# Without DOORs all are run, which takes a quarter of an hour with each compiler.
+# Without DOORs all are run, which takes a quarter of an hour with each compiler. With
+# FCL_CCD_PREFIX this prefix is used, which the door `install` of another WORK_DIR has made: so
+# ctest runs doors side by side, each in a WORK_DIR of its own.
 set -euo pipefail
 source_dir=$(cd "$(dirname "$0")" && pwd)
 build_dir=$1
@@ -23,7 +25,7 @@ fail() {
 }
 
 all_doors=(
-  package stock_gone taken_prefix stock
+  install package stock_gone taken_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen find_library system_prefix
   python_package python_extension uninstall deb
   spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti
@@ -36,10 +38,13 @@ if [ $# -eq 0 ]; then doors=("${all_doors[@]}"); fi
 rm -rf "$work"
 mkdir -p "$work"
 work=$(cd "$work" && pwd)
-step "install, then move the prefix"
-cmake --install "$build_dir" --prefix "$work/installed" >/dev/null
-mv "$work/installed" "$work/prefix"
-prefix=$work/prefix
+prefix=${FCL_CCD_PREFIX-}
+if [ -z "$prefix" ]; then
+  step "install, then move the prefix"
+  cmake --install "$build_dir" --prefix "$work/installed" >/dev/null
+  mv "$work/installed" "$work/prefix"
+  prefix=$work/prefix
+fi
 lib=$(cd "$prefix" && dirname lib*/pkgconfig)
 config=$lib/cmake/fcl/fcl-config.cmake
 recorded='^set(_fcl_ccd_stock_dir "\(.*\)")$'
@@ -63,6 +68,8 @@ configure_and_run() {
 package() {
   cmake -S "$source_dir/package" -B "$work/$1" -DFCL_CCD_PREFIX="$2" "${@:3}" >/dev/null
 }
+
+door_install() { [ -f "$prefix/$lib/libfcl.a" ]; }
 
 door_package() { # the properties of the CMake package, also when configured a second time
   package package "$prefix" -DCMAKE_PREFIX_PATH="$prefix"
@@ -128,14 +135,22 @@ door_pkg_config() {
   run_with "$prefix" "$work/pc_deforming"
 }
 
-# object NAME SOURCE FLAGS...: compiles a source once, and prints the path of the object.
+# object NAME SOURCE FLAGS...: compiles a source once for all doors, and prints the path of the
+# object. Doors that run side by side wait for each other.
 object() {
-  local out=$work/objects/$1.o source=$2
+  local objects out source=$2
+  objects=$prefix-objects/$(basename "$CXX")
+  out=$objects/$1.o
   shift 2
-  mkdir -p "$work/objects"
-  if [ ! -f "$out" ]; then
-    "$CXX" "$@" -fPIC -I"$prefix/include" "${around[@]}" -c "$source_dir/$source" -o "$out"
-  fi
+  mkdir -p "$objects"
+  (
+    flock 9
+    if [ ! -f "$out" ]; then
+      "$CXX" "$@" -fPIC -I"$prefix/include" "${around[@]}" -c "$source_dir/$source" \
+        -o "$out.new"
+      mv "$out.new" "$out"
+    fi
+  ) 9>"$out.lock"
   echo "$out"
 }
 
@@ -209,7 +224,8 @@ door_python_package() { # the Python package in the prefix
   local module
   module=$(find "$prefix" -path '*/fcl_ccd/_core*.so')
   [ -n "$module" ] || fail "The prefix has no Python package. Build with FCL_CCD_BUILD_PYTHON=ON"
-  PYTHONPATH=$(dirname "$(dirname "$module")") "$python" \
+  # -B: other doors copy the prefix.
+  PYTHONPATH=$(dirname "$(dirname "$module")") "$python" -B \
     "$project_dir/python/examples/planner.py"
 }
 

@@ -206,7 +206,12 @@ INSTANTIATE_TEST_SUITE_P(Real, Scenes,
                          ::testing::Values(SceneFiles{"cloth-ball", "92.ply", "93.ply",
                                                       46598, 92230, 94822 + 19032},
                                            SceneFiles{"n-body", "18.ply", "19.ply", 73960,
-                                                      146480, 41031 + 9459}));
+                                                      146480, 41031 + 9459}),
+                         [](const testing::TestParamInfo<SceneFiles>& info) {
+                           std::string name = info.param.folder;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace test

@@ -171,7 +171,17 @@ TEST_P(InitiallyCloser, ParallelFlats) {
 
 INSTANTIATE_TEST_SUITE_P(, InitiallyCloser,
                          testing::Values(ContinuousQuery::kAll, ContinuousQuery::kFirst,
-                                         ContinuousQuery::kAny));
+                                         ContinuousQuery::kAny),
+                         [](const testing::TestParamInfo<ContinuousQuery>& info) {
+                           switch (info.param) {
+                             case ContinuousQuery::kAll:
+                               return "all";
+                             case ContinuousQuery::kFirst:
+                               return "first";
+                             default:
+                               return "any";
+                           }
+                         });
 
 /// The distance of a point from a triangle in the plane z = 0.
 double distanceOf(const Point& p, const Point (&x)[3]) {

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Runs clang-tidy-14 on the sources of src/: tidy.py BUILD_FOLDER JOBS
+
+Most of its time goes into headers of FCL, Eigen and the standard library, which each source
+reads again. So the sources of a folder are checked as one text, with #line directives that keep
+names and numbers of lines. Sources that do not compile together, for example because two of
+them have a constant of one name, are checked in smaller groups.
+"""
+
+import collections
+import concurrent.futures
+import json
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+BUILD, JOBS = Path(sys.argv[1]).resolve(), int(sys.argv[2])
+SOURCE = Path(__file__).resolve().parent.parent
+WORK = BUILD / "tidy"
+
+
+def groups():
+    """The sources that are compiled alike, by folder. One that includes itself is alone."""
+    found = collections.defaultdict(list)
+    for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
+        path = Path(entry["file"])
+        if SOURCE / "src" not in path.parents:
+            continue
+        command = shlex.split(entry["command"])
+        if "ccache" in command[0]:
+            command = command[1:]
+        for option in ("-o", "-c"):
+            at = command.index(option)
+            del command[at : at + 2]
+        alone = "foreach_target.h" in path.read_text(encoding="utf-8")
+        found[path if alone else path.parent, tuple(command)].append(path)
+    return [(list(command), sorted(paths)) for (_, command), paths in found.items()]
+
+
+def joined(command, paths):
+    """The command for all sources as one file."""
+    if len(paths) == 1:
+        return [*command, "-c", str(paths[0])]
+    folder, size = paths[0].parent, len(paths)
+    name = f"{folder.relative_to(SOURCE)}/{paths[0].stem}_and_{size - 1}_more.cpp"
+    file = WORK / name.replace("/", "_")
+    texts = [f'#line 1 "{path}"\n{path.read_text(encoding="utf-8")}' for path in paths]
+    file.write_text("\n".join(texts), encoding="utf-8")
+    return [*command, "-iquote", str(folder), "-c", str(file)]
+
+
+def compiles(command):
+    silent = [*command, "-fsyntax-only", "-w"]
+    return subprocess.run(silent, cwd=BUILD, capture_output=True, check=False).returncode == 0
+
+
+def parts(command, paths):
+    """Groups of these sources that compile."""
+    if len(paths) == 1 or compiles(joined(command, paths)):
+        return [paths]
+    half = len(paths) // 2
+    return parts(command, paths[:half]) + parts(command, paths[half:])
+
+
+def check(command, paths):
+    """What clang-tidy finds, for all parts of a group."""
+    findings = []
+    for part in parts(command, paths):
+        compile_command = joined(command, part)
+        # A database of its own: one for all would be read by all at once.
+        database = WORK / (Path(compile_command[-1]).stem + "_database")
+        database.mkdir(exist_ok=True)
+        entry = {"directory": str(BUILD), "arguments": compile_command, "file": compile_command[-1]}
+        (database / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
+        tidy = ["clang-tidy-14", "--quiet", f"--config-file={SOURCE / '.clang-tidy'}"]
+        # Its stderr only counts findings in headers of other projects.
+        done = subprocess.run(
+            [*tidy, "-p", str(database), compile_command[-1]],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode != 0:
+            findings.append(done.stdout or done.stderr)
+        names = part[0] if len(part) == 1 else f"{part[0].parent} ({len(part)} files)"
+        print(f"   {re.sub(f'^{SOURCE}/', '', str(names))}", flush=True)
+    return findings
+
+
+def main():
+    WORK.mkdir(exist_ok=True)
+    # The largest first, so that the last one is short.
+    work = sorted(groups(), key=lambda group: -sum(path.stat().st_size for path in group[1]))
+    assert sum(len(paths) for _, paths in work) == len(list((SOURCE / "src").rglob("*.cpp")))
+    with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
+        found = [text for texts in pool.map(lambda group: check(*group), work) for text in texts]
+    print("\n".join(found), end="")
+    sys.exit(1 if found else 0)
+
+
+main()
