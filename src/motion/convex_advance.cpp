@@ -333,10 +333,6 @@ ConvexGap ConvexPairMotion::gapAt(double t) const {
   return gap;
 }
 
-double ConvexPairMotion::overlapAt(double t, double radii) const {
-  return radii + overlapOf(gapOf(stateAt(t), 0));
-}
-
 ConvexPairMotion::Answer ConvexPairMotion::advance(double& t, double last, int& steps,
                                                    MotionCounts& counts) {
   ConvexGap gap;

@@ -66,9 +66,8 @@ class ConvexPairMotion {
   /// @brief The gap of the cores at a time.
   ConvexGap gapAt(double t) const;
 
-  /// @brief How deep the sets, with these radii around their cores, overlap at a time, at
-  /// least; negative: how far they are apart, at most.
-  double overlapAt(double t, double radii) const;
+  /// @brief The gap of the cores, without a look at their flat sides.
+  ConvexGap coreGapAt(double t) const { return gapOf(stateAt(t), 0); }
 
   /// @brief Bound on the relative speed of two points.
   double speed() const { return set_[0]->speed + set_[1]->speed; }

@@ -67,6 +67,7 @@ struct ConvexGap {
 };
 
 /// @brief How deep the sets overlap, at least; negative: how far they are apart, at most.
+/// (They overlap by at most -gap.gap.)
 inline double overlapOf(const ConvexGap& gap) {
   return gap.depth > 0 ? gap.depth : -gap.distance;
 }

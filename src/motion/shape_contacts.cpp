@@ -107,13 +107,16 @@ class ShapeContacts {
     const ConvexPairMotion pair(set[0], set[1], found.toc_lo, end, tolerance_);
     const double radii = radiusOf(*body_[0]) + radiusOf(*body_[1]),
                  well = kWell * pair.speed() * (end - found.toc_lo);
-    if (first == 0 && isDeepOverlap(pair.overlapAt(first, radii),
+    if (first == 0 && isDeepOverlap(radii + overlapOf(pair.coreGapAt(first)),
                                     std::min(sizeOf(*body_[0]), sizeOf(*body_[1]))))
       return first;
-    double best = end, deepest = pair.overlapAt(end, radii);
+    // An upper bound: the search for a direction may end before this is the depth. What
+    // is proved of shallow overlaps says less: it may be 0, or rounding.
+    const auto overlapAt = [&](double time) { return radii - pair.coreGapAt(time).gap; };
+    double best = end, deepest = overlapAt(end);
     for (int i = kTimes - 1; i >= 0 && !(deepest >= well); --i) {
       const double time = first + (end - first) * (double(i) / kTimes),
-                   overlap = pair.overlapAt(time, radii);
+                   overlap = overlapAt(time);
       if (!(overlap > deepest) && !(i == 0 && overlap == deepest)) continue;
       best = time;
       deepest = overlap;
