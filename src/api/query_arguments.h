@@ -135,10 +135,7 @@ class PlacedGeometry {
   /// BoundedMotion are not replaced: it promises rotations.
   bool takeRotation(double (&matrix)[9], bool may_replace) {
     if (isRotationAsGiven(matrix)) return deformable::determinantOf(matrix) > 0;
-    if (!may_replace)
-      return deformable::deviationFromRotation(matrix) <= 0x1p-10 &&
-             deformable::determinantOf(matrix) > 0;
-    if (!deformable::toNearestRotation(matrix)) return false;
+    if (!may_replace || !deformable::toNearestRotation(matrix)) return false;
     has_replaced_rotation_ = true;
     return true;
   }

@@ -211,7 +211,7 @@ door_system_prefix() {
   local system=$root/usr/local
   [ ! -e "$system/include/fcl" ] || fail "g++ finds headers in /usr/local/include"
   "$CXX" -std=c++17 -isystem "$system/include" "${around[@]}" "$source_dir/stock_or_not.cpp" \
-    -o "$work/system_plain" -lfcl -L"$system/$lib" -lccd
+    -o "$work/system_plain" -lfcl -lccd
   "$work/system_plain" stock
   PKG_CONFIG_PATH=$system/$lib/pkgconfig pkg-config --cflags --libs fcl >"$work/system_flags"
   read -ra libs <"$work/system_flags"

@@ -196,11 +196,9 @@ TYPED_TEST(TypedRotation, MeshesOnStraightPathsStayAsGiven) {
   EXPECT_TRUE(result.contact_tf1.linear() == this->typed_);
 }
 
-TYPED_TEST(TypedRotation, RotationsUpToRoundingStayAsGiven) {
+TYPED_TEST(TypedRotation, RotationsOfFourDigitsStayAsGiven) {
   using S = TypeParam;
-  const Matrix3<float> single =
-      AngleAxis<float>(.3f, Vector3<float>(1, 2, 3).normalized()).toRotationMatrix();
-  const Matrix3<S> rotation = single.cast<S>();
+  const Matrix3<S> rotation = S(1.0004) * eighthOfATurn<S>(false);
   const auto still = this->ask(this->box_, rotation, rotation, this->ball_);
   EXPECT_TRUE(still.contact_tf1.linear() == rotation);
 }

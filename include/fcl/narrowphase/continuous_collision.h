@@ -37,7 +37,7 @@ namespace fcl {
 /// limits.
 ///
 /// Rotations: the matrix of a shape, an octree or a mesh that turns is taken as it is if
-/// no entry of |R R' - I| is above 2^-18, the rounding of float. Up to 2^-6 (.71 for
+/// no entry of |R R' - I| is above 2^-10 (typed with four digits). Up to 2^-6 (.71 for
 /// .7071) the nearest rotation is taken in its place, and contact_tf1 and contact_tf2
 /// have it. Beyond, and if it mirrors, the query throws. A mesh whose matrix does not
 /// change may be scaled, mirrored or sheared (doc/errors.md).

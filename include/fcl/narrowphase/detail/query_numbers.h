@@ -94,20 +94,19 @@ void setTransform(const PoseNumbers<S>& pose, Transform3<S>& tf) {
   detail::copyEntries(entries, tf.data());
 }
 
-/// @brief Whether the rows of a matrix have length 1 and are at right angles, as far as
-/// rotations that were computed in float: up to 2^-18. (An entry is then wrong by up to 6
-/// units of 2^-24, and a product of two rows by 2 * 3 * 6 of them.) Queries take such a
-/// matrix as it is. The sign of its determinant is not looked at.
+/// @brief Whether the rows of a matrix have length 1 and are at right angles up to 2^-10.
+/// Queries take such a matrix as it is: rotations that were computed in float, or typed
+/// with four digits. The sign of its determinant is not looked at.
 template <typename S>
 bool isRotationAsGiven(const S (&r)[9]) {
-  constexpr double kRounding = 1. / (1 << 18);
+  constexpr double kMostDeviation = 1. / (1 << 10);
   bool is_rotation = true;
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k <= i; ++k) {
       double product = i == k ? -1 : 0;
       for (int c = 0; c < 3; ++c)
         product += static_cast<double>(r[3 * i + c]) * static_cast<double>(r[3 * k + c]);
-      is_rotation &= std::abs(product) <= kRounding;
+      is_rotation &= std::abs(product) <= kMostDeviation;
     }
   return is_rotation;
 }
