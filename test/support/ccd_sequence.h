@@ -4,8 +4,12 @@
 #ifndef FCL_CCD_TEST_CCD_SEQUENCE_H
 #define FCL_CCD_TEST_CCD_SEQUENCE_H
 
+#include <signal.h>
+#include <unistd.h>
+
 #include <array>
 #include <cstddef>
+#include <cstdio>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +41,23 @@ inline std::vector<std::string> commandsOf(const fs::path& page,
   }
   return commands;
 }
+
+#ifdef FCL_CCD_TOOL
+/// @brief Starts the program with the arguments; the test's folder is its working folder.
+inline pid_t start(const fs::path& folder, std::vector<std::string> arguments) {
+  const pid_t child = fork();
+  if (child != 0) return child;
+  if (chdir(folder.c_str()) != 0 || std::freopen("out.txt", "w", stdout) == nullptr ||
+      std::freopen("err.txt", "w", stderr) == nullptr)
+    _exit(99);
+  std::vector<char*> argv;
+  for (std::string& argument : arguments) argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  signal(SIGINT, SIG_DFL);
+  execv(FCL_CCD_TOOL, argv.data());
+  _exit(99);
+}
+#endif
 
 class CcdSequence : public CcdToolTest {
  protected:

@@ -159,6 +159,22 @@ TEST_F(CcdRanks, ABadFrameLeavesTheStepsBefore) {
   EXPECT_EQ(takeOutputs(), whole);
 }
 
+TEST_F(CcdRanks, AHalfWrittenLastFrameLeavesTheStepsBefore) {
+  writeFrames(12);
+  const auto whole = outputsOf("run f");
+  const std::string last = readText(path(frameName(11)));
+  writeText(path(frameName(11)), last.substr(0, 300));
+  const Outcome outcome = runShell(onRanks(3, "run f" + kOutputs));
+  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+  EXPECT_NE(outcome.err.find("f/tip11.ply: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped after 10 of 11 steps"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(linesOf(readText(path("s.jsonl"))).size(), 11u);
+  writeText(path(frameName(11)), last);
+  EXPECT_EQ(runShell(onRanks(2, "run f --resume" + kOutputs)).exit_code, 0);
+  EXPECT_EQ(takeOutputs(), whole);
+}
+
 TEST_F(CcdRanks, AnOutputThatCannotBeWrittenEndsAllRanks) {
   writeFrames(12);
   const Outcome outcome =
@@ -180,11 +196,30 @@ TEST_F(CcdRanks, RefuseBeforeTheFirstStep) {
     EXPECT_EQ(files(), (std::set<std::string>{"f"}));
   };
   expectRefused(onRanks(2, "queries q.csv --kind ee"), "runs in one process");
+  expectRefused(onRanks(2, "run f --follow=0" + kOutputs),
+                "--follow runs in one process");
   expectRefused(onRanks(1, "run f --steps s.jsonl") + " : -n 1 '" + kTool +
                     "' run f --steps t.jsonl",
                 "another command line than on rank 0");
   writeText(path(frameName(2)), toBinaryPly<double>(edgeAlongX(), false));
   expectRefused(onRanks(2, "run f" + kOutputs), "f/tip2.ply: has 3 vertices");
+}
+
+TEST_F(CcdRanks, AnOutputOfAnotherRunIsRefused) {
+  writeFrames(4);
+  const pid_t other =
+      start(path(""), {"fcl-ccd", "run", "f", "--follow", "--steps", "s.jsonl"});
+  while (linesOf(readText(path("s.jsonl"))).size() < 4 &&
+         waitpid(other, nullptr, WNOHANG) == 0)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  const std::string before = readText(path("s.jsonl"));
+  const Outcome outcome = runShell(onRanks(2, "run f --steps s.jsonl"), "out2.txt");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("s.jsonl: cannot write: another run"), std::string::npos)
+      << outcome.err;
+  EXPECT_EQ(readText(path("s.jsonl")), before);
+  kill(other, SIGINT);
+  EXPECT_EQ(waitpid(other, nullptr, 0), other);
 }
 
 /// @brief The processes that a process has started.

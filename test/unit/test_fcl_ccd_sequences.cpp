@@ -199,9 +199,9 @@ TEST_F(CcdSequence, ColumnsTellTrianglesPositionAndNormal) {
   ASSERT_EQ(run("run tip0.obj tip1.obj --toc-err 1e-9" + kOutputs).exit_code, 0);
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,t0,t1,x,y,z,nx,ny,nz");
+  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,t0,t1,x,y,z,nx,ny,nz,i4");
   const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
-  ASSERT_EQ(fields.size(), 16u);
+  ASSERT_EQ(fields.size(), 17u);
   EXPECT_EQ(fields[8], "1");
   EXPECT_EQ(fields[9], "0");
   for (const std::size_t i : {10u, 11u, 12u, 13u, 14u})
@@ -346,21 +346,6 @@ TEST_F(CcdSequence, AFullDiskLeavesWholeSteps) {
   EXPECT_EQ(whole.second.rfind(steps, 0), 0u);
   EXPECT_EQ(whole.first.rfind(contacts, 0), 0u);
   EXPECT_EQ(outputsOf("run f --resume"), whole);
-}
-
-/// @brief Starts the program with the arguments; the test's folder is its working folder.
-pid_t start(const fs::path& folder, std::vector<std::string> arguments) {
-  const pid_t child = fork();
-  if (child != 0) return child;
-  if (chdir(folder.c_str()) != 0 || std::freopen("out.txt", "w", stdout) == nullptr ||
-      std::freopen("err.txt", "w", stderr) == nullptr)
-    _exit(99);
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  signal(SIGINT, SIG_DFL);
-  execv(FCL_CCD_TOOL, argv.data());
-  _exit(99);
 }
 
 /// @brief Starts a run, or continues it, and kills it when the list of steps has some

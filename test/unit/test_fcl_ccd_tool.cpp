@@ -222,9 +222,9 @@ TEST_F(CcdTool, FindsAVertexFaceContact) {
 
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
   ASSERT_EQ(lines.size(), 2u);
-  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi");
+  EXPECT_EQ(lines[0], "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,i4");
   const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
-  ASSERT_EQ(fields.size(), 8u);
+  ASSERT_EQ(fields.size(), 9u);
   EXPECT_EQ(fields[0], "0");
   EXPECT_EQ(fields[1], "vf");
   EXPECT_EQ(fields[2], "3");
@@ -255,7 +255,8 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
                                      "initially_crossing", "first", "ms", "stages"}));
     EXPECT_EQ(step.at("vertices"), 6);
     EXPECT_EQ(step.at("triangles"), 2);
-    EXPECT_EQ(keysOf(step.at("contacts")), (std::set<std::string>{"vf", "ee"}));
+    EXPECT_EQ(keysOf(step.at("contacts")),
+              (std::set<std::string>{"vf", "ee", "crossing"}));
     const Json& ms = step.at("ms");
     EXPECT_EQ(keysOf(ms),
               (std::set<std::string>{"build", "update", "traverse", "test", "total"}));
@@ -275,16 +276,17 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
       left -= stages.at(culled).get<int>();
     EXPECT_EQ(left, stages.at("contacts").get<int>());
   }
-  EXPECT_EQ(report.at("summary"), Json({{"steps", 2},
-                                        {"contacts", {{"vf", 1}, {"ee", 0}}},
-                                        {"initially_crossing", 1},
-                                        {"first", report["summary"]["first"]},
-                                        {"complete", true}}));
+  EXPECT_EQ(report.at("summary"),
+            Json({{"steps", 2},
+                  {"contacts", {{"vf", 1}, {"ee", 0}, {"crossing", 2}}},
+                  {"initially_crossing", 1},
+                  {"first", report["summary"]["first"]},
+                  {"complete", true}}));
   EXPECT_EQ(report.at("summary").at("first").at("step"), 0);
   const Json& moving = report.at("steps").at(0);
   EXPECT_EQ(moving.at("step"), 0);
   EXPECT_EQ(moving.at("files"), Json({"tip0.obj", "tip1.obj"}));
-  EXPECT_EQ(moving.at("contacts"), Json({{"vf", 1}, {"ee", 0}}));
+  EXPECT_EQ(moving.at("contacts"), Json({{"vf", 1}, {"ee", 0}, {"crossing", 0}}));
   EXPECT_EQ(moving.at("initially_crossing"), false);
   EXPECT_EQ(keysOf(moving.at("first")),
             (std::set<std::string>{"kind", "vertices", "toc_lo", "toc_hi"}));
@@ -297,13 +299,13 @@ TEST_F(CcdTool, CrossingAtRestIsFirst) {
   ASSERT_EQ(run("run tip1.obj tip1.obj --json r.json --contacts c.csv").exit_code, 0);
   const Json step = json("r.json").at("steps").at(0);
   EXPECT_EQ(step.at("initially_crossing"), true);
-  EXPECT_EQ(step.at("contacts"), Json({{"vf", 0}, {"ee", 0}}));
+  EXPECT_EQ(step.at("contacts"), Json({{"vf", 0}, {"ee", 0}, {"crossing", 2}}));
   const Json& first = step.at("first");
   EXPECT_EQ(first.at("kind"), "crossing");
   EXPECT_EQ(first.at("vertices").size(), 5u);
   EXPECT_EQ(first.at("toc_lo"), 0.0);
   EXPECT_EQ(first.at("toc_hi"), 0.0);
-  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 1u);
+  EXPECT_EQ(linesOf(readText(path("c.csv"))).size(), 3u);
 }
 
 // For every query, and for every later contact.
@@ -366,7 +368,7 @@ TEST_F(CcdTool, TestsTwoMeshes) {
   const std::vector<std::string> lines = linesOf(readText(path("c.csv")));
   ASSERT_EQ(lines.size(), 2u);
   const std::vector<std::string> fields = fcl::test::csvFields(lines[1]);
-  ASSERT_EQ(fields.size(), 8u);
+  ASSERT_EQ(fields.size(), 9u);
   EXPECT_EQ(fields[1], "ee");
   EXPECT_EQ((std::set<std::string>{fields[2], fields[3]}),
             (std::set<std::string>{"0", "1"}));
@@ -427,7 +429,8 @@ TEST_F(CcdTool, FirstAndAnyAgreeWithAll) {
                   .exit_code,
               0);
     const Json step = json("r.json").at("steps").at(0);
-    EXPECT_EQ(step.at("contacts"), Json({{"vf", 1}, {"ee", 0}})) << query;
+    EXPECT_EQ(step.at("contacts"), Json({{"vf", 1}, {"ee", 0}, {"crossing", 0}}))
+        << query;
     toc_lo[i++] = step.at("first").at("toc_lo").get<double>();
   }
   EXPECT_EQ(toc_lo[0], toc_lo[1]);
@@ -566,8 +569,9 @@ TEST_F(CcdTool, WritesToStdoutInPlace) {
   const std::vector<std::string> lines = linesOf(outcome.out);
   // Two of the table, two of the contacts, three of the summary.
   ASSERT_EQ(lines.size(), 7u) << outcome.out;
-  EXPECT_NE(std::find(lines.begin(), lines.end(), "step,kind,i0,i1,i2,i3,toc_lo,toc_hi"),
-            lines.end());
+  EXPECT_NE(
+      std::find(lines.begin(), lines.end(), "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,i4"),
+      lines.end());
 }
 
 TEST_F(CcdTool, UsageErrorsExitWithTwo) {
@@ -589,7 +593,6 @@ TEST_F(CcdTool, UsageErrorsExitWithTwo) {
         "run tip0.obj tip1.obj --query some",
         "run tip0.obj tip1.obj --repeat 0",
         "run tip0.obj tip1.obj --repeat x",
-        "run tip0.obj tip1.obj --toc-err 0",
         "run tip0.obj tip1.obj --toc-err -1",
         "run tip0.obj tip1.obj --toc-err nan",
         "run tip0.obj tip1.obj --toc-err inf",

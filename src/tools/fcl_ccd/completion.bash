@@ -13,11 +13,11 @@ _fcl_ccd() {
     --query) words='all first any' ;;
     --kind) words='vf ee' ;;
     --columns) words='triangles position normal triangles,position,normal' ;;
-    --start | --end | --stride | --thickness | --jobs | --threads | --toc-err | --repeat) return ;;
+    --start | --end | --stride | --follow | --thickness | --jobs | --threads | --toc-err | --repeat) return ;;
     *)
       case $command:$word in
         run:-*)
-          words="$common --against --start --end --stride --no-self --query --thickness
+          words="$common --against --start --end --stride --follow --no-self --query --thickness
             --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --paint"
           ;;
         queries:-*) words="$common --kind --print" ;;

@@ -53,7 +53,7 @@ std::vector<std::string> sortedPaths(const fs::path& folder,
   return names;
 }
 
-std::vector<std::string> meshesIn(const std::string& word) {
+std::vector<std::string> meshesIn(const std::string& word, bool is_growing) {
   std::vector<std::string> meshes;
   std::set<std::string> formats;
   for (const std::string& name : filesIn(word)) {
@@ -62,7 +62,7 @@ std::vector<std::string> meshesIn(const std::string& word) {
     meshes.push_back(name);
     formats.insert(format);
   }
-  if (meshes.empty())
+  if (meshes.empty() && !is_growing)
     throw std::runtime_error(word + ": the folder has no .obj, .ply, .off or .stl file");
   if (formats.size() > 1)
     throw std::runtime_error(word + ": the folder has ." + *formats.begin() + " and ." +
@@ -72,13 +72,14 @@ std::vector<std::string> meshesIn(const std::string& word) {
   return sortedPaths(word, std::move(meshes));
 }
 
-std::vector<std::string> matchesOf(const std::string& word) {
+std::vector<std::string> matchesOf(const std::string& word, bool is_growing) {
   const fs::path path(word), folder = path.parent_path();
   const std::string pattern = path.filename().string();
   std::vector<std::string> matches;
   for (const std::string& name : filesIn(folder))
     if (fnmatch(pattern.c_str(), name.c_str(), FNM_PERIOD) == 0) matches.push_back(name);
-  if (matches.empty()) throw std::runtime_error(word + ": no file matches this pattern");
+  if (matches.empty() && !is_growing)
+    throw std::runtime_error(word + ": no file matches this pattern");
   return sortedPaths(folder, std::move(matches));
 }
 
@@ -147,7 +148,8 @@ std::optional<NumberedName> parseNumbered(const std::string& name) {
   return numbered;
 }
 
-std::vector<std::string> numbersOf(const std::string& word, const FrameRange& range) {
+std::vector<std::string> numbersOf(const std::string& word, const FrameRange& range,
+                                   FrameNumbers& numbers) {
   const fs::path path(word), folder = path.parent_path();
   const NumberedName name = *parseNumbered(path.filename().string());
   std::optional<long long> lowest, highest;
@@ -157,19 +159,23 @@ std::vector<std::string> numbersOf(const std::string& word, const FrameRange& ra
     lowest = std::min(lowest.value_or(*number), *number);
     highest = std::max(highest.value_or(*number), *number);
   }
-  if (!lowest) throw std::runtime_error(word + ": no file matches this name");
   std::vector<std::string> paths;
+  if (!lowest && range.is_growing) return paths;
+  if (!lowest) throw std::runtime_error(word + ": no file matches this name");
+  numbers.first = range.start.value_or(*lowest);
   const long long end = range.end.value_or(*highest);
   for (long long number = range.start.value_or(*lowest); number <= end;
        number += range.stride) {
     const fs::path frame = folder / name(number);
-    if (!fs::exists(frame))
+    const bool is_there = fs::exists(frame);
+    if (!is_there && range.is_growing) break;
+    if (!is_there)
       throw std::runtime_error(frame.string() + ": is missing (the files are numbered " +
                                std::to_string(*lowest) + " to " +
                                std::to_string(*highest) + ")");
     paths.push_back(frame.string());
   }
-  if (paths.empty())
+  if (paths.empty() && !range.is_growing)
     throw std::runtime_error(
         word + ": no number is between --start and --end. The files " + "are numbered " +
         std::to_string(*lowest) + " to " + std::to_string(*highest));
@@ -180,15 +186,15 @@ std::vector<std::string> select(const std::string& word,
                                 const std::vector<std::string>& paths,
                                 const FrameRange& range) {
   const long long last = static_cast<long long>(paths.size()) - 1;
-  if (range.end.value_or(last) > last)
+  const long long end = range.end.value_or(last);
+  if (end > last && !range.is_growing)
     throw std::runtime_error(word + ": has files 0 to " + std::to_string(last) +
                              ", so that --end " + std::to_string(*range.end) +
                              " is too high");
   std::vector<std::string> taken;
-  for (long long i = range.start.value_or(0); i <= range.end.value_or(last);
-       i += range.stride)
+  for (long long i = range.start.value_or(0); i <= std::min(end, last); i += range.stride)
     taken.push_back(paths[static_cast<std::size_t>(i)]);
-  if (taken.empty())
+  if (taken.empty() && !range.is_growing)
     throw std::runtime_error(word + ": no file is between --start and --end. It has " +
                              "files 0 to " + std::to_string(last));
   return taken;
@@ -201,6 +207,14 @@ void requireNotNegative(const char* option, std::optional<long long> frame) {
 }
 
 }  // namespace
+
+bool mayGrow(const std::vector<std::string>& words) {
+  if (words.size() != 1) return false;
+  const std::string name = fs::path(words[0]).filename().string();
+  std::error_code error;
+  return fs::exists(words[0], error) ? fs::is_directory(words[0], error)
+                                     : parseNumbered(name) || isPattern(name);
+}
 
 bool isBeforeNaturally(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
@@ -247,37 +261,47 @@ std::string noteOnGaps(const std::vector<std::string>& frames) {
          (num_gaps > 1 ? ". There are " + std::to_string(num_gaps) + " such places" : "");
 }
 
+std::optional<std::size_t> FrameNumbers::frameOf(std::size_t number) const {
+  const auto begin = static_cast<std::size_t>(first);
+  const auto step = static_cast<std::size_t>(stride);
+  if (number < begin || (number - begin) % step != 0) return std::nullopt;
+  return (number - begin) / step;
+}
+
 std::vector<std::string> listFrames(const std::vector<std::string>& words,
-                                    const FrameRange& range) {
+                                    const FrameRange& range, FrameNumbers* numbers) {
   requireNotNegative("--start", range.start);
   requireNotNegative("--end", range.end);
   std::vector<std::string> frames;
-  bool range_is_used = range.isWhole();
+  FrameNumbers of_word;
+  bool has_list = false;
   for (const std::string& word : words) {
     const std::string name = fs::path(word).filename().string();
     std::error_code error;
     std::vector<std::string> found;
     const bool is_there = fs::exists(word, error);
     if (!is_there) requirePlainFolder(word);
+    of_word = {range.start.value_or(0), range.stride};
     if (fs::is_directory(word, error)) {
-      found = select(word, meshesIn(word), range);
+      found = select(word, meshesIn(word, range.is_growing), range);
     } else if (!is_there && parseNumbered(name)) {
-      found = numbersOf(word, range);
+      found = numbersOf(word, range, of_word);
     } else if (!is_there && isPattern(name)) {
-      found = select(word, matchesOf(word), range);
+      found = select(word, matchesOf(word, range.is_growing), range);
     } else {
       if (!is_there)
         throw std::runtime_error(word + ": cannot open: there is no such file or folder");
       frames.push_back(word);
       continue;
     }
-    range_is_used = true;
+    has_list = true;
     frames.insert(frames.end(), found.begin(), found.end());
   }
-  if (!range_is_used)
+  if (!has_list && !range.isWhole())
     throw std::runtime_error(
         "--start, --end and --stride select frames of a folder, a pattern or a name with "
         "%d, but these files were named one by one");
+  if (numbers != nullptr && has_list && words.size() == 1) *numbers = of_word;
   return frames;
 }
 

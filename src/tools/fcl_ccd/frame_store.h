@@ -24,6 +24,9 @@ class FrameStore {
   FrameStore(const MeshSequence& meshes, const StepShare& share)
       : meshes_(meshes), share_(share) {}
 
+  /// @brief Between two shares: the next one.
+  void setShare(const StepShare& share) { share_ = share; }
+
   struct Pair {
     Frame from, to;
   };

@@ -15,14 +15,17 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "fcl/ccd_version.h"
+#include "mesh_io.h"
 #include "output_file.h"
 #include "queries_command.h"
 #include "ranks.h"
 #include "run_command.h"
 #include "run_inputs.h"
 #include "stop_signal.h"
+#include "suggestion.h"
 
 namespace {
 
@@ -48,7 +51,10 @@ constexpr const char* kRunDetails = R"(Frames:
   polygon that turns at every corner becomes the fan of triangles around its first vertex.
   All files are checked before the first step. Positions in binary PLY files are checked
   in their step.
-  Step i goes from frame i to frame i + 1, counted from 0. Vertices move on straight lines.
+  Step i goes from frame i to the next one. Vertices move on straight lines. Frames are
+  counted from 0, or have the number in their name (%04d).
+  If files at the end are not whole yet, the steps before them are done, and the exit code
+  is 6. --follow waits for frames until --end, Ctrl-C, or SECONDS without a new one.
 
 Tests:
   Without --against: A against itself. With --against: A against itself and A against B,
@@ -58,17 +64,19 @@ Tests:
   joins the vertices that coincide in all frames. Ids are those of the file.
 
 Output:
-  A contact is vf (vertex-face) or ee (edge-edge). Each contact is proved, so that
-  'uncertain' in the table is 0. 'vertices' and 'triangles' count those of all meshes.
+  A contact is vf (vertex-face) or ee (edge-edge). Each contact is proved. 'crossing' tells
+  whether an edge passes through a face at the beginning of the step. 'vertices' and
+  'triangles' count those of all meshes.
   With --thickness, features are in contact when their distance reaches D. Then ve (a vertex
   and an edge) and vv (two vertices) are contacts too.
   '--query first' reports the contacts that may be the first. '--query any' reports at most
-  one contact, not always the earliest.
-  --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi. kind is vf (i0 is
-  the vertex, i1 to i3 the face) or ee (i0 and i1 are edge a, i2 and i3 edge b); ve has no
-  i3, vv no i2 and i3. Ids count from 0; ids of B begin with b. The first time of contact
-  lies in [toc_lo, toc_hi], in fractions of the step. --columns adds t0,t1 (the triangles of
-  both features), x,y,z (the point where they touch) and nx,ny,nz (unit normal, A to B).
+  one contact. If A touches itself it does not look at B, and says what is not decided.
+  --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi,i4. kind is vf (i0 is
+  the vertex, i1 to i3 the face), ee (i0 and i1 are edge a, i2 and i3 edge b) or crossing
+  (i0 and i1 are the edge, i2 to i4 the face); ve has no i3, vv no i2 and i3. Ids count from
+  0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in fractions
+  of the step. --columns adds, before i4, t0,t1 (the triangles of both features), x,y,z (the
+  point where they touch) and nx,ny,nz (unit normal, A to B).
   --steps: JSON lines: the options, one object for each step, and a summary at the end.
   --json: JSON with all steps and their times in milliseconds. build: making the tree, in
   the first step of each job. total = update + traverse + test.
@@ -76,6 +84,7 @@ Output:
   contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come
   after A's.
   --contacts and --steps grow with each step. --json and --paint are written at the end.
+  One output may be '-', standard output. Then the table goes to standard error.
 
 Stopping:
   After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. Another signal,
@@ -83,14 +92,17 @@ Stopping:
   --resume continues after the last whole step in the files of --contacts and --steps. At
   the end the files are as if the run had never stopped. There may be more frames than
   before, but not with --weld.
+  Outputs are locked: a second run that names one of them is refused.
   Exit code: 0 done; 2 refused, no file written or changed; 3 a later frame cannot be read
-  or used; 4 an output cannot be written (disk full); 5 a rank of mpirun died; 128 + N
-  stopped by signal N. After 3, 4, 5 and 128 + N the files have all steps that were done.
+  or used; 4 an output cannot be written (disk full), or another program took it away; 5 a
+  rank of mpirun died; 6 the last frames are not whole yet; 128 + N stopped by signal N.
+  After 3 and above the files have all steps that were done, unless they were taken away.
 
 Cores:
   By default the program does as many steps at the same time as there are cores. With
   --repeat or --threads it does one step after the other, so that the times are those of a
-  step that has the machine to itself. The output is the same.
+  step that has the machine to itself. With --jobs and --threads it does so many steps at
+  the same time, with so many threads each. The output is the same.
   'mpirun -n K fcl-ccd run ...' splits the steps over K processes (ranks), also on several
   machines. Rank 0 writes the same files. Each rank does one step at a time, or --jobs.
 
@@ -113,9 +125,9 @@ constexpr const char* kQueriesDetails = R"(Input:
 
 Output:
   Without --print: a table of counts and errors.
-  --print: index,answer,toc_lo,toc_hi for each query; answer is yes, no or unsure.
-  --json: the counts. false_positives counts wrong answers 'yes' (not 'unsure'). Counts that
-  need the seventh field are null without it.
+  --print: index,answer,toc_lo,toc_hi for each query; answer is yes or no. Each answer is
+  proved, so that 'uncertain' is 0.
+  --json: the counts. Those that need the seventh field are null without it.
 
 Examples:
   fcl-ccd queries vertex-face.csv --kind vf
@@ -167,13 +179,27 @@ CLI::Validator named() {
           ""};
 }
 
+/// @brief A validator of names of PLY files. A name without extension may be a device.
+CLI::Validator namedPly() {
+  return {[](const std::string& text) {
+            const std::string extension = fcl_ccd::extensionOf(text);
+            return extension.empty() || extension == "ply"
+                       ? std::string()
+                       : text +
+                             ": cannot write: this option writes PLY. Give a name that "
+                             "ends in .ply";
+          },
+          ""};
+}
+
 void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
                       std::string& json_path) {
   command
       .add_option("--toc-err", toc_err,
-                  "Largest width of a contact's time bracket, in fractions of the step")
+                  "Largest width of a contact's time bracket, in fractions of the step; "
+                  "0: as narrow as numbers allow")
       ->type_name("X")
-      ->check(positive<double>("a positive number"))
+      ->check(notNegative<double>("a number from 0 on"))
       ->capture_default_str();
   command
       .add_option("--repeat", repeat, "Do everything N times, report the smallest time")
@@ -211,12 +237,33 @@ void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
                  "Frames of mesh B: as many as of A, or one if it does not move")
       ->type_name("FRAMES")
       ->expected(1, kUnlimited);
-  run.add_option("--start", options.range.start, "First frame")->type_name("N");
+  run.add_option("--start", options.range.start,
+                 "First frame; steps have the numbers of the frames where they begin")
+      ->type_name("N");
   run.add_option("--end", options.range.end, "Last frame")->type_name("N");
   run.add_option("--stride", options.range.stride, "Take each N-th frame")
       ->type_name("N")
       ->check(positive<int>("a positive whole number"))
       ->capture_default_str();
+}
+
+/// @brief A validator of the time of --follow.
+CLI::Validator timeLimit() {
+  return {[](std::string& text) {
+            double seconds = -1;
+            const bool valid = CLI::detail::lexical_cast(text, seconds) && seconds >= 0;
+            return valid ? std::string() : "'" + text + "' is not a number of seconds";
+          },
+          ""};
+}
+
+void addFollowOption(CLI::App& run, fcl_ccd::RunOptions& options) {
+  run.add_option("--follow", options.follow,
+                 "Wait for frames that are still to come, until none came for SECONDS")
+      ->type_name("[SECONDS]")
+      ->expected(0, 1)
+      ->default_str("inf")
+      ->check(timeLimit());
 }
 
 void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
@@ -241,13 +288,16 @@ void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
 }
 
 void addWorkOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
-  run.add_option("--jobs", options.jobs,
-                 "Steps at the same time, one thread each; 0: as many as there are cores")
+  run.add_option(
+         "--jobs", options.jobs,
+         "Steps at the same time, one thread each unless there is --threads; 0: as "
+         "many as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of jobs"));
   run.add_option(
          "--threads", options.threads,
-         "Threads of a step, one step after the other; 0: as many as there are cores")
+         "Threads of a step, one step after the other unless there is --jobs; 0: as many "
+         "as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of threads"));
   run.add_option("--weld", options.weld,
@@ -259,7 +309,8 @@ void addWorkOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
 }
 
 void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
-  run.add_option("--contacts", options.contacts_path, "Write the contacts as CSV")
+  run.add_option("--contacts", options.contacts_path,
+                 "Write the contacts as CSV; -: to standard output")
       ->type_name("FILE")
       ->check(named());
   run.add_option_function<std::string>(
@@ -277,7 +328,8 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   run.add_option("--paint", options.paint_path,
                  "Write the last frame as PLY, with contacts in colour")
       ->type_name("FILE")
-      ->check(named());
+      ->check(named())
+      ->check(namedPly());
 }
 
 // The order is that of the help.
@@ -285,6 +337,7 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   CLI::App* run = app.add_subcommand("run", "Continuous collision of meshes in motion");
   run->footer(kRunDetails);
   addFrameOptions(*run, options);
+  addFollowOption(*run, options);
   addTestOptions(*run, options);
   addWorkOptions(*run, options);
   addOutputOptions(*run, options);
@@ -349,6 +402,50 @@ int endParsing(const CLI::App& app, const CLI::ParseError& error,
   return code == 0 ? 0 : fcl_ccd::kRefused;
 }
 
+/// The command with a name, or null.
+const CLI::App* commandOf(const CLI::App& app, const std::string& name) {
+  for (const CLI::App* command : app.get_subcommands({}))
+    if (command->get_name() == name) return command;
+  return nullptr;
+}
+
+/// The first word if it is neither a command nor an option; otherwise an empty text.
+std::string unknownCommand(const CLI::App& app, int argc, char** argv) {
+  const bool is_word = argc > 1 && argv[1][0] != '-';
+  return is_word && commandOf(app, argv[1]) == nullptr ? argv[1] : "";
+}
+
+/// Refuses a word that is no command, and names the one that was perhaps meant.
+std::string refusalOf(const std::string& word, const CLI::App& app) {
+  std::vector<std::string> names;
+  std::string list;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    names.push_back(command->get_name());
+    list += (list.empty() ? "" : ", ") + command->get_name();
+  }
+  const std::string nearest = fcl_ccd::nearestName(word, names);
+  return "'" + word + "' is not a command. " +
+         (nearest.empty() ? "" : "Did you mean '" + nearest + "'? ") +
+         "The commands are: " + list + ". 'fcl-ccd --help' explains them";
+}
+
+/// "Did you mean --contacts?" if an option is mistyped; otherwise an empty text.
+std::string suggestionFor(const CLI::App& command, int argc, char** argv) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  for (int i = 2; i < argc; ++i) {
+    const std::string word =
+        std::string(argv[i]).substr(0, std::string(argv[i]).find('='));
+    if (word == "--") break;
+    if (word.rfind("--", 0) != 0 || command.get_option_no_throw(word) != nullptr)
+      continue;
+    const std::string nearest = fcl_ccd::nearestName(word, names);
+    if (!nearest.empty()) return word + ": did you mean " + nearest + "?";
+  }
+  return "";
+}
+
 /// The command line as one text.
 std::string joined(int argc, char** argv) {
   std::string text;
@@ -366,6 +463,11 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   fcl_ccd::QueriesOptions queries_options;
   const CLI::App* run = addRun(app, run_options);
   const CLI::App* queries = addQueries(app, queries_options);
+  const std::string unknown = unknownCommand(app, argc, argv);
+  if (!unknown.empty()) {
+    if (ranks.rank() == 0) reportFailure(refusalOf(unknown, app).c_str());
+    return fcl_ccd::kRefused;
+  }
   try {
     app.parse(argc, argv);
     if (run_options.resume && run_options.contacts_path.empty() &&
@@ -375,8 +477,14 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
       throw CLI::ValidationError("queries",
                                  "runs in one process: start it without mpirun");
   } catch (const CLI::ParseError& error) {
-    return endParsing(app, error, ranks);
+    const int code = endParsing(app, error, ranks);
+    const CLI::App* command = argc > 1 ? commandOf(app, argv[1]) : nullptr;
+    const std::string suggestion =
+        code != 0 && command != nullptr ? suggestionFor(*command, argc, argv) : "";
+    if (!suggestion.empty() && ranks.rank() == 0) reportFailure(suggestion.c_str());
+    return code;
   }
+  run_options.range.is_growing = run_options.follow.has_value();
 
   if (run->parsed()) {
     fcl_ccd::catchStopSignals();

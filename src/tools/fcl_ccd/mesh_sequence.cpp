@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -60,6 +62,43 @@ class InputFile {
 };
 
 bool isPly(const std::string& path) { return extensionOf(path) == "ply"; }
+
+/// @brief The last bytes of a file.
+std::string tailOf(const std::string& path) {
+  constexpr std::streamoff kSize = 512;
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = in.tellg();
+  in.seekg(std::max<std::streamoff>(0, size - kSize));
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+bool endsInALine(const std::string& tail) {
+  return !tail.empty() && tail.back() != '\n' && tail.back() != '\r';
+}
+
+/// @brief Whether faces are the first ones of others. The last one may have lost corners,
+/// and with `is_cut` its last corner may have lost digits.
+bool areFirstOf(const Faces& faces, const Faces& others, bool is_cut) {
+  const auto cornersOf = [](const Faces& list, std::size_t face) {
+    const auto endOf = [&](std::size_t i) {
+      return list.ends.empty() ? 3 * (i + 1) : list.ends[i];
+    };
+    const std::size_t begin = face == 0 ? 0 : endOf(face - 1);
+    return std::vector<int>(
+        list.corners.begin() + static_cast<std::ptrdiff_t>(begin),
+        list.corners.begin() + static_cast<std::ptrdiff_t>(endOf(face)));
+  };
+  if (faces.size() > others.size()) return false;
+  for (std::size_t i = 0; i < faces.size(); ++i) {
+    std::vector<int> mine = cornersOf(faces, i);
+    const std::vector<int> all = cornersOf(others, i);
+    if (mine == all) continue;
+    if (!is_cut || i + 1 < faces.size() || mine.size() > all.size()) return false;
+    mine.pop_back();
+    if (!std::equal(mine.begin(), mine.end(), all.begin())) return false;
+  }
+  return true;
+}
 
 }  // namespace
 
@@ -154,6 +193,32 @@ std::optional<Vertices> MeshSequence::takeKept(std::size_t frame) const {
   kept_->bytes -= vertices.size() * sizeof vertices[0];
   kept_->frames.erase(at);
   return vertices;
+}
+
+bool MeshSequence::mayBeginAFrame(std::size_t frame) const {
+  const std::string& path = paths_[frame];
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      !isMeshFormat(extensionOf(path)))
+    return false;
+  PolygonMesh mesh;
+  try {
+    mesh = readPolygonMesh(path);
+  } catch (const std::runtime_error&) {
+    return true;  // cut anywhere
+  }
+  if (mesh.vertices.size() == vertices_.size() && mesh.faces == faces_) return true;
+  // Other files tell how many vertices and faces they have, or have an end.
+  return extensionOf(path) == "obj" && mesh.vertices.size() <= vertices_.size() &&
+         areFirstOf(mesh.faces, faces_, endsInALine(tailOf(path)));
+}
+
+bool MeshSequence::mayEndInACutNumber(std::size_t frame) const {
+  if (extensionOf(paths_[frame]) != "obj") return false;
+  const std::string tail = tailOf(paths_[frame]);
+  if (!endsInALine(tail) || endsInALine(tailOf(paths_[0]))) return false;
+  const std::string line = tail.substr(tail.find_last_of("\n\r") + 1);
+  return line.size() > 1 && line[0] == 'v' && (line[1] == ' ' || line[1] == '\t');
 }
 
 void MeshSequence::announce(std::size_t frame) const {

@@ -42,6 +42,22 @@ class MeshSequence {
   /// other kind is read, and kept for read().
   void check(std::size_t frame) const;
 
+  /// @brief Whether a frame may be the beginning of one that fits, or fits: a regular
+  /// file that another program may still be writing. Reads the frame.
+  bool mayBeginAFrame(std::size_t frame) const;
+
+  /// @brief Whether a frame that fits may end in a number that is cut: it is an OBJ file
+  /// that ends in the line of a vertex, without the end of line that the first frame has.
+  bool mayEndInACutNumber(std::size_t frame) const;
+
+  /// @brief Adds frames that came later. They are not checked.
+  void add(const std::vector<std::string>& paths) {
+    paths_.insert(paths_.end(), paths.begin(), paths.end());
+  }
+
+  /// @brief Keeps the first frames only, at least one.
+  void shorten(std::size_t size) { paths_.resize(size); }
+
   /// @brief Tells the operating system that the frame will be read soon.
   void announce(std::size_t frame) const;
 

@@ -76,6 +76,12 @@ extern "C" void removeTemporariesAndRaise(int signal_number) {
 OutputFile::OutputFile(const std::string& path) : path_(path), target_(path) {
   if (path.empty()) fail("cannot write", ENOENT);
   struct stat status {};
+  if (isStandardOutput(path)) {
+    path_ = nameOfOutput(path);
+    file_ = fdopen(dup(STDOUT_FILENO), "wb");
+    if (file_ == nullptr) fail("cannot write", errno);
+    return;
+  }
   if (stat(path.c_str(), &status) != 0) {
     target_ = targetOf(path);
     openTemporary();
@@ -184,7 +190,14 @@ void OutputFile::fail(const std::string& what, int error) const {
 }
 
 void requireWritable(const std::string& path) {
-  const auto refuse = [&](int error) { throw WriteError(path, "cannot write", error); };
+  const auto refuse = [&](int error) {
+    throw WriteError(nameOfOutput(path), "cannot write", error);
+  };
+  if (isStandardOutput(path)) {
+    const int flags = fcntl(STDOUT_FILENO, F_GETFL);
+    if (flags < 0 || (flags & O_ACCMODE) == O_RDONLY) refuse(EBADF);
+    return;
+  }
   struct stat status {};
   if (stat(path.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) refuse(EISDIR);
@@ -199,6 +212,7 @@ void requireWritable(const std::string& path) {
 }
 
 int standardStreamOf(const std::string& path) {
+  if (isStandardOutput(path)) return STDOUT_FILENO;
   struct stat status {};
   return stat(path.c_str(), &status) == 0 ? standardStream(status) : -1;
 }

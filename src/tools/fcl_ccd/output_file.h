@@ -13,8 +13,8 @@ namespace fcl_ccd {
 /// finish all of them before the first is published. On Linux the temporary file has no
 /// name before finish(), so that nothing is left of it if the program is killed.
 ///
-/// A file that cannot be replaced (a device, a pipe, /dev/stdout wherever it leads) is
-/// written in place. All functions throw WriteError.
+/// A file that cannot be replaced (a device, a pipe, /dev/stdout wherever it leads, "-"
+/// for standard output) is written in place. All functions throw WriteError.
 class OutputFile {
  public:
   /// @brief Opens the temporary file. So an error in the path is found before the work is
@@ -53,6 +53,14 @@ class OutputFile {
 /// @brief Throws WriteError if the file cannot be written, as far as this is known
 /// without changing anything.
 void requireWritable(const std::string& path);
+
+/// @brief Whether the path stands for standard output: "-". (./- is a file of this name.)
+inline bool isStandardOutput(const std::string& path) { return path == "-"; }
+
+/// @brief What messages call an output.
+inline std::string nameOfOutput(const std::string& path) {
+  return isStandardOutput(path) ? "standard output" : path;
+}
 
 /// @brief The descriptor of the standard stream that writes to this file, or -1. The
 /// stream has its own position in the file. If the file were opened a second time, it

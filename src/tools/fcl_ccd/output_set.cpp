@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 /// Whether two paths name the same file, or would if it existed. Devices and pipes do not
 /// count: nothing in them is overwritten.
 bool isSameFile(const std::string& a, const std::string& b) {
+  if (isStandardOutput(a) || isStandardOutput(b)) return a == b;
   std::error_code error;
   const fs::file_status status = fs::status(a, error);
   // Paths are only compared if both are new: this looks up each folder in them, and a new
@@ -31,10 +32,14 @@ bool isSameFile(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-void print(std::string_view text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() ||
-      std::fflush(stdout) != 0)
-    throw WriteError("standard output", "writing failed", errno);
+void print(std::string_view text) { print(text, false); }
+
+void print(std::string_view text, bool to_stderr) {
+  std::FILE* const stream = to_stderr ? stderr : stdout;
+  if (std::fwrite(text.data(), 1, text.size(), stream) != text.size() ||
+      std::fflush(stream) != 0)
+    throw WriteError(to_stderr ? "standard error" : "standard output", "writing failed",
+                     errno);
 }
 
 void OutputSet::reserve(const std::string& path) {
@@ -43,9 +48,22 @@ void OutputSet::reserve(const std::string& path) {
       std::find_if(taken_.begin(), taken_.end(),
                    [&](const std::string& other) { return isSameFile(path, other); });
   if (taken != taken_.end())
-    throw std::runtime_error(path + ": cannot write: it is also given as " + *taken);
+    throw std::runtime_error(nameOfOutput(path) + ": cannot write: " +
+                             (isStandardOutput(path) ? "it can take one output only"
+                                                     : "it is also given as " + *taken));
   requireWritable(path);
+  locks_.push_back(std::make_unique<OutputLock>(path));
   taken_.push_back(path);
+}
+
+const OutputLock& OutputSet::lockOf(const std::string& path) const {
+  return **std::find_if(locks_.begin(), locks_.end(),
+                        [&](const auto& lock) { return lock->path() == path; });
+}
+
+bool OutputSet::hasStandardOutput() const {
+  return std::any_of(locks_.begin(), locks_.end(),
+                     [](const auto& lock) { return isStandardOutput(lock->path()); });
 }
 
 OutputFile* OutputSet::open(const std::string& path) {

@@ -9,7 +9,8 @@
 namespace fcl_ccd {
 
 /// @brief Shows the progress of the work on stderr: on a terminal a line that is
-/// overwritten; otherwise a new line every half minute, for a log.
+/// overwritten; otherwise a new line every half minute, for a log. No line is longer than
+/// 79 characters, or than the terminal is wide.
 class ProgressLine {
  public:
   ProgressLine();
@@ -22,6 +23,9 @@ class ProgressLine {
 
   /// @brief Starts to count steps, and tells how many were done by an earlier run.
   void begin(std::size_t num_steps, std::size_t num_done);
+
+  /// @brief Changes the number of steps.
+  void expect(std::size_t num_steps) { num_steps_ = num_steps; }
 
   /// @brief Shows a bar, the number of contacts, time per step and time left, unless it
   /// did so a moment ago.

@@ -109,16 +109,19 @@ void queriesCommand(const QueriesOptions& options) {
   const QueryList list = readQueries(options.files);
   if (list.num_rounded > 0)
     std::fprintf(stderr,
-                 "fcl-ccd: warning: %zu coordinates are not exactly doubles. They were "
-                 "rounded to the nearest double\n",
-                 list.num_rounded);
+                 "fcl-ccd: warning: %s not exactly of type double, and rounded to the "
+                 "nearest one\n",
+                 list.num_rounded == 1
+                     ? "1 coordinate is"
+                     : (std::to_string(list.num_rounded) + " coordinates are").c_str());
 
   double seconds = 0;
   const std::vector<ElementaryResult> results = runQueries(list, options, seconds);
   Summary summary = summarize(list, results);
   summary.ns_per_query = 1e9 * seconds / static_cast<double>(results.size());
 
-  print(options.print_answers ? answerLines(results) : table(list, summary));
+  print(options.print_answers ? answerLines(results) : table(list, summary),
+        outputs.hasStandardOutput());
   if (json_file != nullptr) json_file->write(toJson(list, summary).dump(2) + '\n');
   outputs.publish();
 }

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "counted.h"
 #include "file_bytes.h"
 #include "rational_text.h"
 #include "text_scan.h"
@@ -84,8 +85,8 @@ class QueryBuilder {
   void finish() const {
     if (num_rows_ == 0) throw std::runtime_error("the file has no queries");
     if (num_rows_ % kRowsAQuery != 0)
-      throw std::runtime_error("the file has " + std::to_string(num_rows_) +
-                               " rows, which is not a multiple of 8: it is cut short");
+      throw std::runtime_error("the file has " + counted(num_rows_, "row") +
+                               ", which is not a multiple of 8: it is cut short");
   }
 
  private:

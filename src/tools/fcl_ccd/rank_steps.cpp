@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "counted.h"
 #include "fcl/ccd_version.h"
 #include "run_command.h"
 
@@ -31,8 +32,8 @@ std::string hindrance(const Json& other, const Readiness& own) {
   if (other.at("command") != own.command) return "another command line than on rank 0";
   if (other.at("cause") != "") return other.at("cause");
   if (other.at("num_steps") != own.num_steps)
-    return other.at("num_steps").dump() + " steps, but " + std::to_string(own.num_steps) +
-           " on rank 0. All ranks need the same files";
+    return counted(other.at("num_steps"), "step") + ", but " +
+           std::to_string(own.num_steps) + " on rank 0. All ranks need the same files";
   return "";
 }
 
@@ -46,17 +47,33 @@ StepOutcome nextOwn(Ranks& ranks, OwnSteps& own) {
 
 }  // namespace
 
-void RankGatherer::begin(const Readiness& own, std::size_t first_step) {
+StepRange RankGatherer::begin(
+    const Readiness& own,
+    const std::function<std::size_t(const Readiness&)>& firstStepOf) {
   ranks_.beginExchange();
+  Readiness all = own;
   std::string cause;
   for (int rank = 1; rank < ranks_.size(); ++rank) {
     const Json other = Json::from_cbor(ranks_.receive(rank));
     if (!cause.empty()) continue;
     cause = hindrance(other, own);
-    if (!cause.empty()) cause.insert(0, other.at("name").get<std::string>() + ": ");
+    const std::string name = other.at("name").get<std::string>() + ": ";
+    if (!cause.empty()) cause.insert(0, name);
+    const std::size_t num_whole = other.at("num_whole_steps");
+    if (num_whole >= all.num_whole_steps) continue;
+    all.num_whole_steps = num_whole;
+    all.unfinished = name + other.at("unfinished").get<std::string>();
   }
-  ranks_.post(cause.empty() ? bytesOf(first_step) : "");
-  if (cause.empty()) return;
+  StepRange range{0, all.num_whole_steps};
+  if (cause.empty()) {
+    try {
+      range.first = firstStepOf(all);
+    } catch (const std::exception& error) {
+      cause = error.what();
+    }
+  }
+  ranks_.post(cause.empty() ? bytesOf(Json::array({range.first, range.end})) : "");
+  if (cause.empty()) return range;
   ranks_.endExchange();
   throw std::runtime_error(cause);
 }
@@ -94,15 +111,20 @@ void RankGatherer::end(OwnSteps& own) {
   ranks_.endExchange();
 }
 
-std::optional<std::size_t> awaitBegin(Ranks& ranks, const Readiness& own) {
+std::optional<StepRange> awaitBegin(Ranks& ranks, const Readiness& own) {
   ranks.beginExchange();
   ranks.send(0, bytesOf({{"name", ranks.name()},
                          {"version", FCL_CCD_VERSION},
                          {"command", own.command},
                          {"num_steps", own.num_steps},
+                         {"num_whole_steps", own.num_whole_steps},
+                         {"unfinished", own.unfinished},
                          {"cause", own.cause}}));
   const std::string answer = ranks.receive(0);
-  if (!answer.empty()) return Json::from_cbor(answer).get<std::size_t>();
+  if (!answer.empty()) {
+    const Json range = Json::from_cbor(answer);
+    return StepRange{range.at(0), range.at(1)};
+  }
   ranks.endExchange();
   return std::nullopt;
 }

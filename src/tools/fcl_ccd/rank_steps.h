@@ -4,8 +4,8 @@
 // sends them to rank 0 in order. Rank 0 makes its own, and has the outputs.
 //
 // Messages. Each rank but 0: a Readiness; then, if rank 0 begins, a StepOutcome for each
-// of its steps and one for their end. Rank 0: to all others the first step, or nothing if
-// the run is refused; at the end of the run nothing.
+// of its steps and one for their end. Rank 0: to all others the first step and the end of
+// the steps, or nothing if the run is refused; at the end of the run nothing.
 #ifndef FCL_CCD_RANK_STEPS_H
 #define FCL_CCD_RANK_STEPS_H
 
@@ -21,12 +21,20 @@
 
 namespace fcl_ccd {
 
-/// @brief What a rank tells rank 0 before a run. All ranks must tell the same, except for
-/// the cause.
+/// @brief What a rank tells rank 0 before a run. All ranks must have the same command and
+/// number of steps.
 struct Readiness {
   std::string command;       ///< the command line
   std::size_t num_steps{0};  ///< of its frames
   std::string cause;         ///< why the rank cannot begin; empty if it can
+  /// Steps of frames that are whole; another program may still be writing the last ones.
+  std::size_t num_whole_steps{0};
+  std::string unfinished;  ///< which frame is not whole, and why
+};
+
+/// @brief The steps [first, end) of a run.
+struct StepRange {
+  std::size_t first{0}, end{0};
 };
 
 /// @brief Rank 0's side of a run.
@@ -36,9 +44,12 @@ class RankGatherer {
       : ranks_(ranks), has_ended_(static_cast<std::size_t>(ranks.size()), false) {}
 
   /// @brief Begins the run on all ranks.
+  /// @param firstStepOf  the first step, if all ranks have so many whole steps and no
+  /// more. It may throw.
   /// @throws std::runtime_error that names a rank which cannot begin, and the cause. Then
   /// no rank begins.
-  void begin(const Readiness& own, std::size_t first_step);
+  StepRange begin(const Readiness& own,
+                  const std::function<std::size_t(const Readiness&)>& firstStepOf);
 
   /// @brief Instead of begin(): no rank begins.
   void refuse();
@@ -59,8 +70,8 @@ class RankGatherer {
 };
 
 /// @brief Another rank: asks to begin.
-/// @return the first step of the run, or nothing if the run is refused.
-std::optional<std::size_t> awaitBegin(Ranks& ranks, const Readiness& own);
+/// @return the steps of the run, or nothing if the run is refused.
+std::optional<StepRange> awaitBegin(Ranks& ranks, const Readiness& own);
 
 /// @brief Another rank: sends its steps until their end, and waits for the end of the
 /// run.

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <stdexcept>
 
+#include "counted.h"
 #include "text_scan.h"
 
 namespace fcl_ccd {
@@ -83,11 +85,13 @@ ContactList scanContacts(const GrowingOutputs& outputs) {
     long long step = -1;
     const std::string& line = file.line();
     const bool valid = parseInteger(line.substr(0, line.find(',')), step) && step >= 0;
-    const auto index = static_cast<std::size_t>(step);
-    if (!valid || (!list.steps.empty() && index < list.steps.rbegin()->first))
+    const std::optional<std::size_t> found =
+        outputs.numbers.frameOf(static_cast<std::size_t>(step));
+    const std::size_t index = found.value_or(0);
+    if (!valid || !found || (!list.steps.empty() && index < list.steps.rbegin()->first))
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(line) +
-                               " is not a row of a contact list. Leave out --resume to " +
-                               "overwrite the file");
+                               " is not a row of a contact list of these frames. Leave " +
+                               "out --resume to overwrite the file");
     ContactRows& rows = list.steps[index];
     if (rows.count++ == 0) rows.begin = begin;
     list.end = file.end();
@@ -112,13 +116,14 @@ std::vector<StepLine> scanSteps(const GrowingOutputs& outputs) {
     const Json line = Json::parse(file.line(), nullptr, false);
     if (line.is_object() && line.contains("summary")) break;
     const std::size_t step = steps.size();
-    if (!line.is_object() || line.value("step", Json()) != step)
+    const std::size_t number = outputs.numbers[step];
+    if (!line.is_object() || line.value("step", Json()) != number)
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(file.line()) +
-                               " is not step " + std::to_string(step) +
+                               " is not step " + std::to_string(number) +
                                ". Leave out --resume to overwrite the file");
     if (step >= outputs.num_steps ||
         line.value("files", Json()) != namesInJson(outputs.filesOf(step)))
-      throw std::runtime_error(path + ": step " + std::to_string(step) +
+      throw std::runtime_error(path + ": step " + std::to_string(number) +
                                " was of other frames than it is now. Give --resume the " +
                                "frames and options of the run that it continues");
     steps.push_back({file.end(), summaryOf(line)});
@@ -137,9 +142,9 @@ ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
   if (!contacts.steps.empty() && contacts.steps.rbegin()->first >= outputs.num_steps)
     throw std::runtime_error(
         outputs.contacts_path + ": has step " +
-        std::to_string(contacts.steps.rbegin()->first) + ", but these frames have only " +
-        std::to_string(outputs.num_steps) +
-        " steps. Give --resume the frames of the run that it " + "continues");
+        std::to_string(outputs.numbers[contacts.steps.rbegin()->first]) +
+        ", but these frames have only " + counted(outputs.num_steps, "step") +
+        ". Give --resume the frames of the run that it continues");
   if (outputs.steps_path.empty()) {
     if (!contacts.steps.empty()) point.step = contacts.steps.rbegin()->first;
   } else if (outputs.contacts_path.empty()) {

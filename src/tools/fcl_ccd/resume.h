@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "frame_list.h"
 #include "run_report.h"
 
 namespace fcl_ccd {
@@ -19,6 +20,7 @@ struct GrowingOutputs {
   std::string steps_path;  ///< empty: not written
   std::string steps_head;
   std::size_t num_steps{0};
+  FrameNumbers numbers;                                          ///< of the steps
   std::function<std::vector<std::string>(std::size_t)> filesOf;  ///< the files of a step
 };
 

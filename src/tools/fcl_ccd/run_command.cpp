@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <new>
 #include <optional>
 #include <stdexcept>
@@ -14,8 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "counted.h"
 #include "fcl/ccd_version.h"
-#include "growing_file.h"
+#include "frame_watch.h"
 #include "in_order.h"
 #include "output_set.h"
 #include "own_steps.h"
@@ -23,6 +25,7 @@
 #include "rank_steps.h"
 #include "resume.h"
 #include "run_inputs.h"
+#include "run_outputs.h"
 #include "step_maker.h"
 #include "stop_signal.h"
 #include "write_error.h"
@@ -66,108 +69,66 @@ std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
   return head.dump() + '\n';
 }
 
-/// @brief The outputs of a run: table, growing files, report and picture.
-class RunOutputs {
- public:
-  /// @brief Prints the head of the table; changes no file.
-  RunOutputs(const RunOptions& options, const RunSummary& summary) : summary_(summary) {
-    print(tableHead(options.settings.min_distance > 0));
-    if (!options.json_path.empty()) json_.emplace(options.json_path);
-    if (!options.paint_path.empty()) paint_.emplace(options.paint_path);
-  }
-
-  /// @brief Opens the growing files.
-  void open(const GrowingOutputs& growing, const ResumePoint& resume_point) {
-    open(growing.contacts_path, resume_point.contacts_size, growing.contacts_head,
-         contacts_);
-    open(growing.steps_path, resume_point.steps_size, growing.steps_head, steps_);
-    if (json_) json_->write("{\"steps\": [");
-  }
-
-  void add(const StepRecord& record) {
-    if (contacts_) contacts_->append(record.contact_lines);
-    if (steps_) steps_->append(record.step_line);
-    if (json_) json_->write((has_json_step_ ? ",\n" : "\n") + record.json);
-    has_json_step_ = true;
-    if (paint_ && !record.painted.empty()) paint_->write(record.painted);
-    is_painted_ = !record.painted.empty();
-    print(record.row);
-    summary_.add(record.summary);
-    commit();
-  }
-
-  /// @brief Ends all files. The list of steps and the report say whether they are
-  /// complete.
-  void finish(bool is_complete) {
-    Json summary = toJson(summary_);
-    if (steps_ && is_complete) steps_->append(Json{{"summary", summary}}.dump() + '\n');
-    commit();
-    for (auto* file : {&contacts_, &steps_})
-      if (*file) (*file)->finish();
-    summary["complete"] = is_complete;
-    if (json_) json_->write("\n],\n\"summary\": " + summary.dump() + "}\n");
-    for (OutputFile* file : wholeFiles()) file->finish();
-    for (OutputFile* file : wholeFiles()) file->publish();
-  }
-
-  /// @brief Removes an incomplete step from the growing files.
-  void rollBack() noexcept {
-    for (auto* file : {&contacts_, &steps_})
-      if (*file) (*file)->rollBack();
-  }
-
-  const RunSummary& summary() const { return summary_; }
-
- private:
-  static void open(const std::string& path, std::uint64_t kept_size,
-                   const std::string& head, std::optional<GrowingFile>& file) {
-    if (path.empty()) return;
-    file.emplace(path, kept_size);
-    if (kept_size == 0) file->append(head);
-    file->commit();
-  }
-
-  void commit() {
-    for (auto* file : {&contacts_, &steps_})
-      if (*file) (*file)->commit();
-  }
-
-  std::vector<OutputFile*> wholeFiles() {
-    std::vector<OutputFile*> files;
-    if (json_) files.push_back(&*json_);
-    if (paint_ && is_painted_) files.push_back(&*paint_);
-    return files;
-  }
-
-  std::optional<GrowingFile> contacts_, steps_;
-  std::optional<OutputFile> json_, paint_;
-  bool has_json_step_{false};
-  bool is_painted_{false};
-  RunSummary summary_;
-};
-
 /// @brief Gives the steps in order to a function. Returns an end: without a cause if all
 /// steps were done.
 using StepTaker = std::function<void(std::size_t, const StepRecord&)>;
 using StepSource = std::function<StepOutcome(const StepTaker&)>;
 
+/// @brief What a run needs before its first step.
+struct Preparation {
+  Preparation() = default;
+  Preparation(const Preparation&) = delete;  // `growing` refers to `paths`
+  Preparation& operator=(const Preparation&) = delete;
+
+  FramePaths paths;
+  Parallelism parallelism;
+  std::optional<RunInputs> inputs;
+  std::vector<std::string> notes;
+  std::size_t num_listed_steps{0};  ///< also those of frames that are being written
+  // Of the process that writes the outputs.
+  std::optional<OutputSet> outputs;
+  GrowingOutputs growing;
+  ResumePoint resume_point;
+
+  std::size_t numSteps() const { return paths.numSteps(); }
+
+  /// @brief Leaves out the frames that another rank cannot use.
+  void shorten(const Readiness& all) {
+    const std::size_t num_frames = all.num_whole_steps + 1;
+    if (num_frames >= paths.a.size()) return;
+    inputs->unfinished = FrameFault{num_frames, all.unfinished};
+    inputs->shorten(num_frames);
+    paths.shorten(num_frames);
+  }
+
+  /// @brief The end of a run that has done all steps: frames may be left.
+  StepOutcome end() const {
+    if (!inputs->unfinished) return {};
+    return {
+        std::nullopt, kUnfinished,
+        inputs->unfinished->cause + ". Another program may still be writing this frame"};
+  }
+};
+
+Readiness readinessOf(const Preparation& run, const std::string& command) {
+  return {command, run.num_listed_steps, "", run.numSteps(),
+          run.inputs->unfinished ? run.inputs->unfinished->cause : ""};
+}
+
 /// @brief A run that has begun: its steps, and how it ends.
 class Run {
  public:
-  Run(const RunOptions& options, const GrowingOutputs& growing,
-      const ResumePoint& resume_point)
-      : options_(options),
-        growing_(growing),
-        resume_point_(resume_point),
-        num_steps_(growing.num_steps),
-        num_done_(resume_point.step),
-        outputs_(options, resume_point.summary) {}
+  Run(const RunOptions& options, const Preparation& prepared)
+      : prepared_(prepared),
+        num_steps_(prepared.num_listed_steps),
+        num_done_(prepared.resume_point.step),
+        outputs_(options, *prepared.outputs, prepared.resume_point.summary) {}
 
   /// @return the exit code.
   int run(const StepSource& source) {
     StepOutcome last;
     try {
-      outputs_.open(growing_, resume_point_);
+      outputs_.open(prepared_.growing, prepared_.resume_point);
       last = doSteps(source);
     } catch (const WriteError& error) {
       return endAfter(error);
@@ -181,9 +142,22 @@ class Run {
     return end(last.end_code, last.cause);
   }
 
+  /// @brief Tells that more frames came, or that the run waits for them.
+  void expect(std::size_t num_steps) {
+    num_steps_ = num_steps;
+    progress_.expect(num_steps);
+  }
+  void showWaiting() {
+    progress_.show(counted(num_done_, "step") + " done, waiting for frames");
+  }
+  void tell(const std::string& line) {
+    progress_.clear();
+    std::fprintf(stderr, "fcl-ccd: %s\n", line.c_str());
+  }
+
  private:
   StepOutcome doSteps(const StepSource& source) {
-    progress_.begin(num_steps_, num_done_);
+    progress_.begin(prepared_.numSteps(), num_done_);
     return source([&](std::size_t step, const StepRecord& record) {
       progress_.clear();
       outputs_.add(record);
@@ -197,7 +171,7 @@ class Run {
     try {
       outputs_.rollBack();
       outputs_.finish(code == 0);
-      print(summaryLines(outputs_.summary()));
+      outputs_.printSummary();
     } catch (const WriteError& error) {
       return endAfter(error);
     }
@@ -213,68 +187,68 @@ class Run {
   }
 
   void report(const std::string& cause) const {
-    std::string where;
-    for (const std::string* path : {&options_.contacts_path, &options_.steps_path})
-      if (!path->empty()) where += (where.empty() ? "" : " and ") + *path;
+    const std::string where = num_done_ == 0 ? "" : outputs_.whereStepsAre();
     std::fprintf(
-        stderr, "fcl-ccd: %s\nfcl-ccd: stopped after %zu of %zu steps%s\n", cause.c_str(),
-        num_done_, num_steps_,
+        stderr, "fcl-ccd: %s\nfcl-ccd: stopped after %zu of %s%s\n", cause.c_str(),
+        num_done_, counted(num_steps_, "step").c_str(),
         where.empty()
             ? ""
             : ("; they are in " + where + ". --resume continues from there").c_str());
   }
 
-  const RunOptions& options_;
-  const GrowingOutputs& growing_;
-  const ResumePoint& resume_point_;
+  const Preparation& prepared_;
   std::size_t num_steps_;
   std::size_t num_done_;
   RunOutputs outputs_;
   ProgressLine progress_;
 };
 
-/// Refuses outputs that cannot be written or that are inputs, before any file is read.
-void reserveOutputs(const FramePaths& paths, const RunOptions& options) {
-  std::vector<std::string> inputs = paths.a;
-  inputs.insert(inputs.end(), paths.b.begin(), paths.b.end());
-  OutputSet outputs(std::move(inputs));
+/// Refuses outputs that cannot be written, that are inputs, or that another run writes,
+/// before any file is read.
+void reserveOutputs(const RunOptions& options, Preparation& run) {
+  std::vector<std::string> inputs = run.paths.a;
+  inputs.insert(inputs.end(), run.paths.b.begin(), run.paths.b.end());
+  run.outputs.emplace(std::move(inputs));
   for (const std::string* path : {&options.contacts_path, &options.steps_path,
                                   &options.json_path, &options.paint_path})
-    outputs.reserve(*path);
+    run.outputs->reserve(*path);
 }
 
-/// @brief What a run needs before its first step.
-struct Preparation {
-  Preparation() = default;
-  Preparation(const Preparation&) = delete;  // `growing` refers to `paths`
-  Preparation& operator=(const Preparation&) = delete;
-
-  FramePaths paths;
-  Parallelism parallelism;
-  std::optional<RunInputs> inputs;
-  std::vector<std::string> notes;
-  // Of the process that writes the outputs.
-  GrowingOutputs growing;
-  ResumePoint resume_point;
-};
-
 void prepareInputs(const RunOptions& options, bool is_alone, Preparation& run) {
-  run.parallelism = parallelismOf(options, is_alone, run.paths.numSteps());
+  // More frames may come than there are now.
+  const std::size_t num_steps =
+      options.follow ? std::numeric_limits<std::size_t>::max() : run.numSteps();
+  run.parallelism = parallelismOf(options, is_alone, num_steps);
+  run.num_listed_steps = run.numSteps();
   ProgressLine progress;
   progress.show("reading the frames");
   run.inputs.emplace(openInputs(run.paths, options, run.parallelism.jobs, run.notes));
+  if (options.jobs && options.threads)
+    run.notes.push_back(
+        counted(run.parallelism.jobs, "step") + " at the same time, with " +
+        (run.parallelism.threads == 0
+             ? "as many threads as cores"
+             : counted(static_cast<std::size_t>(run.parallelism.threads), "thread")) +
+        " each");
 }
 
-void prepare(const RunOptions& options, bool is_alone, Preparation& run) {
-  run.paths = listFrames(options);
-  reserveOutputs(run.paths, options);
+/// Finds the first step. The frames are those that all ranks can use.
+void prepareResume(const RunOptions& options, Preparation& run) {
   const FramePaths& paths = run.paths;
-  run.growing = {options.contacts_path, contactsHead(options.columns),
-                 options.steps_path,    stepsHead(options, paths.a.size()),
-                 paths.numSteps(),      [&](std::size_t i) { return paths.filesOf(i); }};
-  const std::size_t latest = paths.numSteps() - (options.paint_path.empty() ? 0 : 1);
-  if (options.resume) run.resume_point = findResumePoint(run.growing, latest);
-  prepareInputs(options, is_alone, run);
+  run.growing = {options.contacts_path,
+                 contactsHead(options.columns),
+                 options.steps_path,
+                 stepsHead(options, paths.a.size()),
+                 run.numSteps(),
+                 paths.numbers,
+                 [&](std::size_t i) { return paths.filesOf(i); }};
+  if (!options.resume) return;
+  for (const std::string* path : {&options.contacts_path, &options.steps_path})
+    if (isStandardOutput(*path))
+      throw std::runtime_error("--resume cannot continue standard output. Name a file");
+  const std::size_t latest =
+      run.numSteps() - (options.paint_path.empty() || run.numSteps() == 0 ? 0 : 1);
+  run.resume_point = findResumePoint(run.growing, latest);
 }
 
 void report(const std::vector<std::string>& notes) {
@@ -282,25 +256,65 @@ void report(const std::vector<std::string>& notes) {
     std::fprintf(stderr, "fcl-ccd: %s\n", note.c_str());
 }
 
+/// Makes the steps of maker.share().
+void makeSteps(StepMaker& maker, const StepTaker& take) {
+  const StepShare& share = maker.share();
+  inOrder<StepRecord>(
+      0, share.size(), std::min(maker.numJobs(), std::max<std::size_t>(1, share.size())),
+      [&](std::size_t i, std::size_t worker) { return maker.make(i, worker); },
+      [&](std::size_t i, const StepRecord& record) { take(share[i], record); },
+      [] { return stopSignal() == 0; });
+}
+
 int runAlone(const RunOptions& options) {
-  Preparation run;
-  prepare(options, true, run);
-  report(run.notes);
-  const StepShare all{run.resume_point.step, run.paths.numSteps()};
-  StepMaker maker(options, run.paths, *run.inputs, run.parallelism, all);
-  const auto source = [&](const StepTaker& take) {
-    std::size_t num_done = all.first;
-    inOrder<StepRecord>(
-        0, all.size(), maker.numJobs(),
-        [&](std::size_t i, std::size_t worker) { return maker.make(i, worker); },
-        [&](std::size_t i, const StepRecord& record) {
-          take(all[i], record);
-          num_done = all[i] + 1;
-        },
-        [] { return stopSignal() == 0; });
-    return num_done < all.end ? endBySignal() : StepOutcome();
-  };
-  return Run(options, run.growing, run.resume_point).run(source);
+  Preparation prepared;
+  Run* begun = nullptr;
+  std::optional<FrameWatch> watch;
+  if (options.follow)
+    watch.emplace(options, [&](const std::string& line) { begun->tell(line); });
+  prepared.paths = watch ? watch->waitForFirst() : listFrames(options);
+  reserveOutputs(options, prepared);
+  prepareInputs(options, true, prepared);
+  prepareResume(options, prepared);
+  report(prepared.notes);
+  FramePaths& paths = prepared.paths;
+  RunInputs& inputs = *prepared.inputs;
+  StepMaker maker(options, paths, inputs, prepared.parallelism,
+                  {prepared.resume_point.step, paths.numSteps()});
+  Run run(options, prepared);
+  begun = &run;
+  return run.run([&](const StepTaker& take) {
+    std::size_t num_done = prepared.resume_point.step;
+    const auto takeNext = [&](std::size_t step, const StepRecord& record) {
+      take(step, record);
+      num_done = step + 1;
+    };
+    makeSteps(maker, takeNext);
+    while (watch && num_done == paths.numSteps()) {
+      run.showWaiting();
+      if (!watch->waitForMore(paths, inputs, prepared.parallelism.jobs)) break;
+      run.expect(paths.numSteps());
+      maker.setShare({num_done, paths.numSteps()});
+      makeSteps(maker, takeNext);
+    }
+    if (stopSignal() != 0 && (watch || num_done < paths.numSteps())) return endBySignal();
+    return prepared.end();
+  });
+}
+
+/// @throws std::runtime_error if --follow cannot work with the other options.
+void requireFollowable(const RunOptions& options, const Ranks& ranks) {
+  if (ranks.size() > 1)
+    throw std::runtime_error("--follow runs in one process: start it without mpirun");
+  if (options.weld)
+    throw std::runtime_error(
+        "--follow cannot be combined with --weld, which needs all frames: a later one "
+        "may "
+        "part vertices. Weld the mesh before, or run without --follow");
+  if (!mayGrow(options.frames))
+    throw std::runtime_error(
+        "--follow needs frames whose number can grow: one folder, one pattern in quotes, "
+        "or one name with a number such as frame_%04d.ply");
 }
 
 /// The first rank: makes steps like the others, and has the outputs.
@@ -308,21 +322,27 @@ int runFirstRank(const RunOptions& options, Ranks& ranks, const std::string& com
   RankGatherer gatherer(ranks);
   Preparation run;
   try {
-    prepare(options, false, run);
+    run.paths = listFrames(options);
+    reserveOutputs(options, run);
+    prepareInputs(options, false, run);
   } catch (...) {
     gatherer.refuse();
     throw;
   }
-  const StepShare share{run.resume_point.step, run.paths.numSteps(), 0,
-                        static_cast<std::size_t>(ranks.size())};
-  gatherer.begin({command, share.end, ""}, share.first);
-  report(run.notes);
-  StepMaker maker(options, run.paths, *run.inputs, run.parallelism, share);
-  OwnSteps own(maker);
-  const int code =
-      Run(options, run.growing, run.resume_point).run([&](const StepTaker& take) {
-        return gatherer.take(own, share, take);
+  const StepRange range =
+      gatherer.begin(readinessOf(run, command), [&](const Readiness& all) {
+        run.shorten(all);
+        prepareResume(options, run);
+        return run.resume_point.step;
       });
+  report(run.notes);
+  StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
+                  {range.first, range.end, 0, static_cast<std::size_t>(ranks.size())});
+  OwnSteps own(maker);
+  const int code = Run(options, run).run([&](const StepTaker& take) {
+    StepOutcome end = gatherer.take(own, maker.share(), take);
+    return end.end_code == 0 ? run.end() : end;
+  });
   try {
     gatherer.end(own);
   } catch (const RankLost& error) {
@@ -333,18 +353,19 @@ int runFirstRank(const RunOptions& options, Ranks& ranks, const std::string& com
 
 int runOtherRank(const RunOptions& options, Ranks& ranks, const std::string& command) {
   Preparation run;
-  Readiness readiness{command, 0, ""};
+  Readiness readiness{command, 0, "", 0, ""};
   try {
     run.paths = listFrames(options);
-    readiness.num_steps = run.paths.numSteps();
     prepareInputs(options, false, run);
+    readiness = readinessOf(run, command);
   } catch (const std::exception& error) {
+    readiness.num_steps = run.numSteps();
     readiness.cause = error.what();
   }
-  const std::optional<std::size_t> first = awaitBegin(ranks, readiness);
-  if (!first) return 0;
+  const std::optional<StepRange> range = awaitBegin(ranks, readiness);
+  if (!range) return 0;
   StepMaker maker(options, run.paths, *run.inputs, run.parallelism,
-                  {*first, run.paths.numSteps(), static_cast<std::size_t>(ranks.rank()),
+                  {range->first, range->end, static_cast<std::size_t>(ranks.rank()),
                    static_cast<std::size_t>(ranks.size())});
   OwnSteps own(maker);
   sendSteps(ranks, own);
@@ -354,6 +375,11 @@ int runOtherRank(const RunOptions& options, Ranks& ranks, const std::string& com
 }  // namespace
 
 int runCommand(const RunOptions& options, Ranks& ranks, const std::string& command) {
+  if (options.follow) {
+    // mpirun ends all ranks when one ends with another code: rank 0 is to say why.
+    if (ranks.rank() != 0) return 0;
+    requireFollowable(options, ranks);
+  }
   if (ranks.size() == 1) return runAlone(options);
   return ranks.rank() == 0 ? runFirstRank(options, ranks, command)
                            : runOtherRank(options, ranks, command);

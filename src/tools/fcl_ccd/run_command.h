@@ -27,6 +27,14 @@ struct RunOptions {
   std::string json_path;
   std::string paint_path;
   bool resume{false};
+  /// Whether the run waits for frames that come later (range.is_growing), and the
+  /// seconds without a new one after which it ends; may be infinite.
+  std::optional<double> follow;
+
+  bool writesFiles() const {
+    return !contacts_path.empty() || !steps_path.empty() || !json_path.empty() ||
+           !paint_path.empty();
+  }
 };
 
 // Exit codes of the program.
@@ -34,6 +42,7 @@ constexpr int kRefused = 2;      ///< nothing was begun, no file was changed
 constexpr int kBadFrame = 3;     ///< a frame stopped the run
 constexpr int kNotWritten = 4;   ///< an output stopped the run
 constexpr int kRankLost = 5;     ///< a process of mpirun died
+constexpr int kUnfinished = 6;   ///< frames at the end are still being written
 constexpr int kSignalled = 128;  ///< a signal stopped the run; its number is added
 
 /// @brief `fcl-ccd run`: tests every pair of consecutive frames, prints a table to

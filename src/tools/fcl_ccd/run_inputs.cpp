@@ -26,20 +26,63 @@ std::string withCommas(std::size_t number) {
   return text;
 }
 
-void checkFrames(const MeshSequence& meshes, std::size_t num_workers) {
+/// The first of the frames from `begin` on that does not fit.
+std::optional<FrameFault> findFault(const MeshSequence& meshes, std::size_t begin,
+                                    std::size_t num_workers) {
   // Many frames are checked in one task, since a check takes less time than the change to
   // another thread.
   constexpr std::size_t kBlock = 32;
-  inOrder<bool>(
-      0, (meshes.size() + kBlock - 1) / kBlock, num_workers,
-      [&](std::size_t block, std::size_t) {
-        const std::size_t end = std::min(meshes.size(), (block + 1) * kBlock);
-        for (std::size_t frame = block * kBlock; frame < end && goOn(); ++frame)
-          if (frame > 0) meshes.check(frame);
-        return true;
+  std::optional<FrameFault> first;
+  inOrder<std::optional<FrameFault>>(
+      0, (meshes.size() - begin + kBlock - 1) / kBlock, num_workers,
+      [&](std::size_t block, std::size_t) -> std::optional<FrameFault> {
+        std::size_t frame = begin + block * kBlock;
+        const std::size_t end = std::min(meshes.size(), frame + kBlock);
+        try {
+          for (; frame < end && goOn(); ++frame) meshes.check(frame);
+        } catch (const std::runtime_error& error) {
+          return FrameFault{frame, error.what()};
+        }
+        return std::nullopt;
       },
-      [](std::size_t, bool) {}, goOn);
+      [&](std::size_t, const std::optional<FrameFault>& fault) {
+        if (!first) first = fault;
+      },
+      [&] { return !first && goOn(); });
   requireNoSignal();
+  // Two frames are those that the user has named.
+  const std::size_t last = meshes.size() - 1;
+  if (!first && last >= std::max(begin, std::size_t{2}) &&
+      meshes.mayEndInACutNumber(last))
+    first = FrameFault{last, meshes.path(last) + ": ends in the middle of a line"};
+  return first;
+}
+
+/// The frames at the end that are still being written, or nothing.
+/// @throws std::runtime_error if a frame does not fit and is none of these.
+std::optional<FrameFault> findUnfinished(const MeshSequence& meshes, std::size_t begin,
+                                         std::size_t num_workers) {
+  const std::optional<FrameFault> fault = findFault(meshes, begin, num_workers);
+  if (!fault) return fault;
+  const auto fits = [&](std::size_t frame) {
+    try {
+      meshes.check(frame);
+    } catch (const std::runtime_error&) {
+      return false;
+    }
+    return true;
+  };
+  for (std::size_t frame = fault->frame; frame < meshes.size(); ++frame)
+    if (!meshes.mayBeginAFrame(frame) || (frame > fault->frame && fits(frame)))
+      throw std::runtime_error(fault->cause);
+  return fault;
+}
+
+/// The one that comes first.
+std::optional<FrameFault> earlier(const std::optional<FrameFault>& a,
+                                  const std::optional<FrameFault>& b) {
+  if (!a || !b) return a ? a : b;
+  return b->frame < a->frame ? b : a;
 }
 
 /// Reads every frame, which also checks it. With a distance a frame may be read several
@@ -58,7 +101,8 @@ void weldFrames(MeshSequence& meshes, double eps, std::vector<std::string>& note
 
 MeshSequence openSequence(const std::vector<std::string>& paths,
                           const RunOptions& options, std::size_t num_workers,
-                          std::vector<std::string>& notes) {
+                          std::vector<std::string>& notes,
+                          std::optional<FrameFault>& unfinished) {
   const std::string gaps = noteOnGaps(paths);
   if (!gaps.empty()) notes.push_back(gaps);
   MeshSequence meshes(paths);
@@ -66,7 +110,7 @@ MeshSequence openSequence(const std::vector<std::string>& paths,
     weldFrames(meshes, *options.weld, notes);
     return meshes;
   }
-  checkFrames(meshes, num_workers);
+  unfinished = earlier(unfinished, findUnfinished(meshes, 1, num_workers));
   if (isSoup(meshes.firstVertices(), meshes.triangles()))
     notes.push_back(meshes.path(0) + ": " + withCommas(meshes.firstVertices().size()) +
                     " vertices, none shared: neighbours will be reported as contacts; " +
@@ -74,40 +118,105 @@ MeshSequence openSequence(const std::vector<std::string>& paths,
   return meshes;
 }
 
+/// Expects that the frames begin with those that were there before.
+void requireSameBeginning(const std::vector<std::string>& before,
+                          const std::vector<std::string>& now) {
+  const auto [old, other] =
+      std::mismatch(before.begin(), before.end(), now.begin(), now.end());
+  if (old == before.end()) return;
+  if (std::find(now.begin(), now.end(), *old) == now.end())
+    throw std::runtime_error(*old + ": was taken away while the run used it");
+  throw std::runtime_error(*other +
+                           ": came when later frames had been used. With a name " +
+                           "such as frame_%04d.ply the run waits for a missing number");
+}
+
 }  // namespace
+
+void FramePaths::shorten(std::size_t num_frames) {
+  a.resize(std::min(a.size(), num_frames));
+  if (!b_is_still) b.resize(std::min(b.size(), num_frames));
+}
 
 std::vector<std::string> FramePaths::filesOf(std::size_t step) const {
   std::vector<std::string> files{a[step], a[step + 1]};
-  if (b.size() == 1) files.push_back(b[0]);
-  if (b.size() > 1) files.insert(files.end(), {b[step], b[step + 1]});
+  if (b_is_still) files.push_back(b[0]);
+  if (!b_is_still && !b.empty()) files.insert(files.end(), {b[step], b[step + 1]});
   return files;
 }
 
 FramePaths listFrames(const RunOptions& options) {
   const auto isFile = [](const std::vector<std::string>& words) {
-    return words.size() == 1 && listFrames(words, {}) == words;
+    if (words.size() != 1) return false;
+    FrameRange whole;
+    whole.is_growing = true;
+    return listFrames(words, whole) == words;
   };
+  const bool is_growing = options.range.is_growing;
   FramePaths paths;
-  paths.a = listFrames(options.frames, options.range);
-  if (paths.a.size() < 2)
+  paths.a = listFrames(options.frames, options.range, &paths.numbers);
+  if (paths.a.size() < 2 && !is_growing)
     throw std::runtime_error("A needs two frames or more; there is only " + paths.a[0] +
                              ". Name two files, or a folder of frames");
   if (options.against.empty()) return paths;
-  paths.b =
-      listFrames(options.against, isFile(options.against) ? FrameRange() : options.range);
-  if (paths.b.size() != 1 && paths.b.size() != paths.a.size())
+  const bool b_is_file = isFile(options.against);
+  paths.b = listFrames(options.against, b_is_file ? FrameRange() : options.range);
+  paths.b_is_still = is_growing ? b_is_file : paths.b.size() == 1;
+  if (paths.b_is_still) return paths;
+  if (is_growing)
+    paths.shorten(std::min(paths.a.size(), paths.b.size()));
+  else if (paths.b.size() != paths.a.size())
     throw std::runtime_error("A has " + std::to_string(paths.a.size()) +
                              " frames and B " + std::to_string(paths.b.size()) +
                              "; B needs as many, or one if it does not move");
   return paths;
 }
 
-RunInputs openInputs(const FramePaths& paths, const RunOptions& options,
+void RunInputs::shorten(std::size_t num_frames) {
+  const bool b_moves = bMoves();
+  a.shorten(num_frames);
+  if (b_moves) b->shorten(num_frames);
+}
+
+RunInputs openInputs(FramePaths& paths, const RunOptions& options,
                      std::size_t num_workers, std::vector<std::string>& notes) {
-  RunInputs inputs{openSequence(paths.a, options, num_workers, notes), std::nullopt};
+  std::optional<FrameFault> unfinished;
+  RunInputs inputs{openSequence(paths.a, options, num_workers, notes, unfinished),
+                   std::nullopt, std::nullopt};
   if (!paths.b.empty())
-    inputs.b.emplace(openSequence(paths.b, options, num_workers, notes));
+    inputs.b.emplace(openSequence(paths.b, options, num_workers, notes, unfinished));
+  if (!unfinished) return inputs;
+  const std::size_t least = options.range.is_growing ? 1 : 2;
+  if (unfinished->frame < least) throw std::runtime_error(unfinished->cause);
+  inputs.unfinished = unfinished;
+  inputs.shorten(unfinished->frame);
+  paths.shorten(unfinished->frame);
   return inputs;
+}
+
+void addFrames(FramePaths& paths, RunInputs& inputs, const FramePaths& listed,
+               std::size_t num_workers) {
+  requireSameBeginning(paths.a, listed.a);
+  if (!paths.b_is_still) requireSameBeginning(paths.b, listed.b);
+  const std::size_t begin = paths.a.size();
+  const bool b_moves = !paths.b_is_still && inputs.b;
+  std::optional<FrameFault> fault;
+  const auto addTo = [&](MeshSequence& meshes, const std::vector<std::string>& all) {
+    meshes.add({all.begin() + static_cast<std::ptrdiff_t>(begin), all.end()});
+    fault = earlier(fault, findFault(meshes, begin, num_workers));
+    if (fault && fault->frame < meshes.size() && !meshes.mayBeginAFrame(fault->frame))
+      throw std::runtime_error(fault->cause);
+  };
+  addTo(inputs.a, listed.a);
+  if (b_moves) addTo(*inputs.b, listed.b);
+  const FrameNumbers numbers = paths.numbers;
+  paths = listed;
+  paths.numbers = numbers;
+  inputs.unfinished = fault;
+  if (!fault) return;
+  inputs.a.shorten(fault->frame);
+  if (b_moves) inputs.b->shorten(fault->frame);
+  paths.shorten(fault->frame);
 }
 
 }  // namespace fcl_ccd

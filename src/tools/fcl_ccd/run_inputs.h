@@ -21,35 +21,61 @@ struct StoppedBySignal : std::runtime_error {
 /// @brief The names of the frames of A and B.
 struct FramePaths {
   std::vector<std::string> a, b;
+  bool b_is_still{false};  ///< B has one frame, and does not move
+  FrameNumbers numbers;    ///< of the frames of A, and of the steps that begin there
 
-  std::size_t numSteps() const { return a.size() - 1; }
+  std::size_t numSteps() const { return a.empty() ? 0 : a.size() - 1; }
+
+  /// @brief Keeps the first frames only.
+  void shorten(std::size_t num_frames);
 
   /// @brief The files of a step: both frames of A, then both of B, or the only one of B
   /// if it stands still.
   std::vector<std::string> filesOf(std::size_t step) const;
 };
 
+/// @brief Names the frames. If they may still grow in number (options.range), there may
+/// be none, and frames without counterpart are left out.
 /// @throws std::runtime_error if a frame has no counterpart.
 FramePaths listFrames(const RunOptions& options);
+
+/// @brief A frame that cannot be used.
+struct FrameFault {
+  std::size_t frame;
+  std::string cause;  ///< names the file
+};
 
 /// @brief The meshes of a run.
 struct RunInputs {
   MeshSequence a;
   std::optional<MeshSequence> b;
+  /// The first of the frames at the end that are still being written. They were dropped.
+  std::optional<FrameFault> unfinished;
 
   SceneTriangles triangles() const {
     return {&a.triangles(), b ? &b->triangles() : nullptr, &a.free(),
             b ? &b->free() : nullptr};
   }
+  bool bMoves() const { return b && b->size() > 1; }
+  void shorten(std::size_t num_frames);
 };
 
 /// @brief Reads the first frames, checks all others on `num_workers` threads, and joins
-/// vertices if this is requested.
+/// vertices if this is requested. Frames at the end that are still being written are
+/// dropped, from `paths` too, as long as two frames are left (one if more may come).
 /// @param[out] notes  lines for the user.
 /// @throws std::runtime_error that names the first file that does not fit;
 /// StoppedBySignal.
-RunInputs openInputs(const FramePaths& paths, const RunOptions& options,
+RunInputs openInputs(FramePaths& paths, const RunOptions& options,
                      std::size_t num_workers, std::vector<std::string>& notes);
+
+/// @brief Adds the frames that came since. It ends before the first one that is still
+/// being written, which becomes inputs.unfinished.
+/// @param paths   of the run; is extended.
+/// @param listed  all frames that there are now.
+/// @throws std::runtime_error if another file does not fit, or came among earlier ones.
+void addFrames(FramePaths& paths, RunInputs& inputs, const FramePaths& listed,
+               std::size_t num_workers);
 
 }  // namespace fcl_ccd
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "counted.h"
 #include "number_text.h"
 #include "stage_list.h"
 
@@ -19,8 +20,9 @@ constexpr Colour kOrange{255, 140, 0};
 constexpr Colour kRed{220, 20, 20};
 constexpr Colour kViolet{150, 0, 200};
 
-/// The library decides every contact exactly. The table tells this to its reader.
-constexpr int kNumUncertain = 0;
+/// In JSON, in place of what a query for any contact did not decide. Unlike null it
+/// cannot be taken for "no".
+constexpr const char* kUndecided = "undecided";
 
 /// The program has no shapes.
 const char* nameOf(Kind kind) {
@@ -61,13 +63,13 @@ std::size_t countOf(Kind kind, const StepResult& result) {
 }
 
 /// VE and VV are kinds of contacts at a distance only.
-Json countsOf(const StepResult& result) {
-  Json counts = {{"vf", countOf(Kind::kVertexFace, result)},
-                 {"ee", countOf(Kind::kEdgeEdge, result)}};
-  if (result.at_distance) {
-    counts["ve"] = countOf(Kind::kVertexEdge, result);
-    counts["vv"] = countOf(Kind::kVertexVertex, result);
+Json countsOf(const RunSummary& summary) {
+  Json counts = {{"vf", summary.vf}, {"ee", summary.ee}};
+  if (summary.at_distance) {
+    counts["ve"] = summary.ve;
+    counts["vv"] = summary.vv;
   }
+  counts["crossing"] = summary.crossings;
   return counts;
 }
 
@@ -86,6 +88,17 @@ Json toJson(const SceneContact& contact) {
           {"vertices", std::move(vertices)},
           {"toc_lo", contact.toc_lo},
           {"toc_hi", contact.toc_hi}};
+}
+
+/// What the query of a step found. "any" is there only if it was for any contact.
+Json findings(const StepResult& result) {
+  const SceneContact* earliest = result.earliest();
+  const std::optional<bool> crossing = result.initiallyCrossing();
+  const Json found = earliest == nullptr ? Json(nullptr) : toJson(*earliest);
+  Json findings = {{"initially_crossing", crossing ? Json(*crossing) : Json(kUndecided)},
+                   {"first", result.isFirstDecided() ? found : Json(kUndecided)}};
+  if (result.is_any) findings["any"] = found;
+  return findings;
 }
 
 Json toJson(const StepTimes& times) {
@@ -109,45 +122,65 @@ void append(const Vertices& vertices, const Triangles& triangles,
 
 }  // namespace
 
-std::string tableHead(bool at_distance) {
-  return std::string("step  triangles        vf        ee") +
-         (at_distance ? "        ve        vv" : "") +
-         "    first time          ms  uncertain  initially crossing\n";
+std::string tableHead(bool at_distance, fcl::ContinuousQuery query) {
+  return std::string(at_distance ? "step  triangles      vf      ee      ve      vv "
+                                 : "step  triangles        vf        ee ") +
+         (query == fcl::ContinuousQuery::kAny ? "    a time" : "first time") +
+         "       ms  crossing\n";
 }
 
 std::string tableRow(const StepReport& report) {
+  constexpr std::size_t kTimeWidth = 10;
   const StepResult& result = report.result;
-  const SceneContact* first = result.first();
-  const std::string first_time = first == nullptr ? "-" : numberText(first->toc_lo, 9);
-  char counts[128], rest[128];  // each of at most four fields of at most 20 characters
-  std::snprintf(counts, sizeof counts, "%4zu  %9zu  %8zu  %8zu", report.index,
-                report.triangles, countOf(Kind::kVertexFace, result),
-                countOf(Kind::kEdgeEdge, result));
-  std::string row = counts;
-  if (result.at_distance) {
-    std::snprintf(counts, sizeof counts, "  %8zu  %8zu",
-                  countOf(Kind::kVertexEdge, result),
-                  countOf(Kind::kVertexVertex, result));
-    row += counts;
+  const RunSummary counts = summaryOf(report);
+  std::string time = "-";
+  if (const SceneContact* earliest = result.earliest()) {
+    time = numberText(earliest->toc_lo, 8);
+    if (time.size() > kTimeWidth) time = numberText(earliest->toc_lo, 5);
   }
-  std::snprintf(rest, sizeof rest, "  %12s  %10.3f  %9d  %s\n", first_time.c_str(),
-                milliseconds(result.times.total()), kNumUncertain,
-                result.initially_crossing ? "yes" : "no");
-  return row + rest;
+  char row[256];  // at most eight fields of at most 20 characters
+  if (result.at_distance)
+    std::snprintf(row, sizeof row, "%4zu  %9zu  %6zu  %6zu  %6zu  %6zu %10s %8.3f  ",
+                  report.number, report.triangles, counts.vf, counts.ee, counts.ve,
+                  counts.vv, time.c_str(), counts.slowest_ms);
+  else
+    std::snprintf(row, sizeof row, "%4zu  %9zu  %8zu  %8zu %10s %8.3f  ", report.number,
+                  report.triangles, counts.vf, counts.ee, time.c_str(),
+                  counts.slowest_ms);
+  const std::optional<bool> crossing = result.initiallyCrossing();
+  return std::string(row) + (!crossing ? "not decided" : *crossing ? "yes" : "no") + '\n';
 }
 
-std::string summaryLines(const RunSummary& summary) {
-  std::string lines =
-      std::to_string(summary.steps) + (summary.steps == 1 ? " step, " : " steps, ") +
-      std::to_string(summary.vf) + (summary.at_distance ? " vf, " : " vf and ") +
-      std::to_string(summary.ee) +
-      (summary.at_distance ? " ee, " + std::to_string(summary.ve) + " ve and " +
-                                 std::to_string(summary.vv) + " vv contacts; "
-                           : " ee contacts; ") +
-      std::to_string(summary.crossing_steps) + " steps began crossing\n";
+namespace {
+
+/// "3 vf and 1 ee contact".
+std::string contactsText(const RunSummary& summary) {
+  std::string text = std::to_string(summary.vf) + " vf";
+  if (!summary.at_distance) return text + " and " + counted(summary.ee, "ee contact");
+  return text + ", " + std::to_string(summary.ee) + " ee, " + std::to_string(summary.ve) +
+         " ve and " + counted(summary.vv, "vv contact");
+}
+
+}  // namespace
+
+std::string summaryLines(const RunSummary& summary, fcl::ContinuousQuery query) {
+  const bool is_any = query == fcl::ContinuousQuery::kAny;
+  std::string lines = counted(summary.steps, "step") + ", " + contactsText(summary);
+  if (query == fcl::ContinuousQuery::kFirst) lines += " that may be the first";
+  if (is_any) lines += ", at most one a step";
+  const std::string crossing =
+      counted(summary.crossing_steps, "step") + " began crossing";
+  constexpr std::size_t kWidth = 80;
+  lines += (lines.size() + 2 + crossing.size() <= kWidth ? "; " : "\n") + crossing + '\n';
+  if (summary.undecided_steps > 0)
+    lines += "not decided: whether " + counted(summary.undecided_steps, "other step") +
+             " began crossing\n";
   if (summary.first)
-    lines += "first contact: step " + std::to_string(summary.first->step) + " at " +
-             numberText(summary.first->toc_lo, 9) + '\n';
+    lines += std::string(is_any ? "a contact" : "first contact") + ": step " +
+             std::to_string(summary.first->step) + " at " +
+             numberText(summary.first->toc_lo, 9) +
+             (summary.first->is_decided ? "" : "; not decided: whether it is the first") +
+             '\n';
   if (summary.slowest_ms >= 0)
     lines += "slowest: step " + std::to_string(summary.slowest_step) + " with " +
              numberText(summary.slowest_ms, 4) + " ms\n";
@@ -159,12 +192,14 @@ std::string contactsHead(const ContactColumns& columns) {
   if (columns.triangles) head += ",t0,t1";
   if (columns.position) head += ",x,y,z";
   if (columns.normal) head += ",nx,ny,nz";
-  return head + '\n';
+  // The last one, so that the others are where they were before there was a fifth id.
+  return head + ",i4\n";
 }
 
 std::string contactLines(const StepReport& report, const ContactColumns& columns) {
   std::string lines;
-  const std::string step = std::to_string(report.index);
+  constexpr std::size_t kFifth = 4;
+  const std::string step = std::to_string(report.number);
   const auto addNumbers = [&](const std::array<double, 3>& numbers) {
     for (const double x : numbers) lines.append(1, ',').append(numberText(x));
   };
@@ -183,25 +218,18 @@ std::string contactLines(const StepReport& report, const ContactColumns& columns
             .append(std::to_string(contact.triangles[i]));
     if (columns.position) addNumbers(contact.position);
     if (columns.normal) addNumbers(contact.normal);
+    lines.append(1, ',');
+    if (num_vertices > kFifth) lines.append(nameOf(contact.vertices[kFifth]));
     lines += '\n';
   }
   return lines;
 }
 
 std::string stepLine(const StepReport& report) {
-  const StepResult& result = report.result;
-  Json first = nullptr;
-  // The report does not tell which of several crossings was found: this depends on the
-  // previous steps.
-  if (result.crossing)
-    first = {{"kind", "crossing"}, {"toc_lo", 0.0}, {"toc_hi", 0.0}};
-  else if (result.first() != nullptr)
-    first = toJson(*result.first());
-  const Json line = {{"step", report.index},
-                     {"files", namesInJson(report.files)},
-                     {"contacts", countsOf(result)},
-                     {"initially_crossing", result.initially_crossing},
-                     {"first", first}};
+  Json line = {{"step", report.number},
+               {"files", namesInJson(report.files)},
+               {"contacts", countsOf(summaryOf(report))}};
+  line.update(findings(report.result));
   return line.dump() + '\n';
 }
 
@@ -220,10 +248,15 @@ RunSummary summaryOf(const StepReport& report) {
   summary.at_distance = result.at_distance;
   summary.ve = countOf(Kind::kVertexEdge, result);
   summary.vv = countOf(Kind::kVertexVertex, result);
-  summary.crossing_steps = result.initially_crossing ? 1 : 0;
-  if (const SceneContact* first = result.first())
-    summary.first = RunSummary::First{report.index, first->toc_lo};
-  summary.slowest_step = report.index;
+  summary.crossings = countOf(Kind::kCrossing, result);
+  const std::optional<bool> crossing = result.initiallyCrossing();
+  summary.crossing_steps = crossing.value_or(false) ? 1 : 0;
+  summary.is_any = result.is_any;
+  summary.undecided_steps = crossing ? 0 : 1;
+  if (const SceneContact* earliest = result.earliest())
+    summary.first =
+        RunSummary::First{report.number, earliest->toc_lo, result.isFirstDecided()};
+  summary.slowest_step = report.number;
   summary.slowest_ms = milliseconds(result.times.total());
   return summary;
 }
@@ -231,16 +264,23 @@ RunSummary summaryOf(const StepReport& report) {
 RunSummary summaryOf(const Json& step_line) {
   RunSummary summary;
   summary.steps = 1;
-  summary.vf = step_line.at("contacts").at("vf");
   const Json& counts = step_line.at("contacts");
+  summary.vf = counts.at("vf");
   summary.ee = counts.at("ee");
   summary.at_distance = counts.contains("ve");
   summary.ve = counts.value("ve", std::size_t{0});
   summary.vv = counts.value("vv", std::size_t{0});
-  summary.crossing_steps = step_line.at("initially_crossing").get<bool>() ? 1 : 0;
-  const Json& first = step_line.at("first");
-  if (!first.is_null())
-    summary.first = RunSummary::First{step_line.at("step"), first.at("toc_lo")};
+  summary.crossings = counts.at("crossing");
+  const Json &crossing = step_line.at("initially_crossing"),
+             &first = step_line.at("first");
+  summary.undecided_steps = crossing == kUndecided ? 1 : 0;
+  summary.crossing_steps = crossing == true ? 1 : 0;
+  summary.is_any = step_line.contains("any");
+  const bool is_decided = first != kUndecided;
+  const Json& found = is_decided ? first : step_line.at("any");
+  if (!found.is_null())
+    summary.first =
+        RunSummary::First{step_line.at("step"), found.at("toc_lo"), is_decided};
   return summary;
 }
 
@@ -251,7 +291,10 @@ void RunSummary::add(const RunSummary& step) {
   at_distance |= step.at_distance;
   ve += step.ve;
   vv += step.vv;
+  crossings += step.crossings;
   crossing_steps += step.crossing_steps;
+  is_any |= step.is_any;
+  undecided_steps += step.undecided_steps;
   if (!first) first = step.first;
   if (step.slowest_ms > slowest_ms) {
     slowest_ms = step.slowest_ms;
@@ -260,34 +303,34 @@ void RunSummary::add(const RunSummary& step) {
 }
 
 Json toJson(const RunSummary& summary) {
-  Json first = nullptr;
+  Json found = nullptr;
   if (summary.first)
-    first = {{"step", summary.first->step}, {"toc_lo", summary.first->toc_lo}};
-  Json counts = {{"vf", summary.vf}, {"ee", summary.ee}};
-  if (summary.at_distance) {
-    counts["ve"] = summary.ve;
-    counts["vv"] = summary.vv;
+    found = {{"step", summary.first->step}, {"toc_lo", summary.first->toc_lo}};
+  const bool is_decided = !summary.first || summary.first->is_decided;
+  Json json = {{"steps", summary.steps},
+               {"contacts", countsOf(summary)},
+               {"initially_crossing", summary.crossing_steps},
+               {"first", is_decided ? found : Json(kUndecided)}};
+  if (summary.is_any) {
+    json["undecided"] = summary.undecided_steps;
+    json["any"] = found;
   }
-  return {{"steps", summary.steps},
-          {"contacts", std::move(counts)},
-          {"initially_crossing", summary.crossing_steps},
-          {"first", first}};
+  return json;
 }
 
 Json toJson(const StepReport& report) {
   const StepResult& result = report.result;
-  const SceneContact* first = result.first();
   Json stages = Json::object();
   for (const StageField& stage : kStages) stages[stage.name] = result.counts.*stage.count;
-  return {{"step", report.index},
-          {"files", namesInJson(report.files)},
-          {"vertices", report.vertices},
-          {"triangles", report.triangles},
-          {"contacts", countsOf(result)},
-          {"initially_crossing", result.initially_crossing},
-          {"first", first == nullptr ? Json(nullptr) : toJson(*first)},
-          {"ms", toJson(result.times)},
-          {"stages", std::move(stages)}};
+  Json json = {{"step", report.number},
+               {"files", namesInJson(report.files)},
+               {"vertices", report.vertices},
+               {"triangles", report.triangles},
+               {"contacts", countsOf(summaryOf(report))}};
+  json.update(findings(result));
+  json["ms"] = toJson(result.times);
+  json["stages"] = std::move(stages);
+  return json;
 }
 
 PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
@@ -309,7 +352,8 @@ PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
     if (contact.kind == Kind::kEdgeEdge) colour(contact, kOrange);
   for (const SceneContact& contact : result.contacts)
     if (contact.kind != Kind::kEdgeEdge) colour(contact, kRed);
-  if (result.crossing) colour(*result.crossing, kViolet);
+  for (const SceneContact& contact : result.contacts)
+    if (contact.kind == Kind::kCrossing) colour(contact, kViolet);
   return painted;
 }
 

@@ -13,9 +13,9 @@
 
 namespace fcl_ccd {
 
-/// @brief The report of step `index`.
+/// @brief The report of a step.
 struct StepReport {
-  std::size_t index{0};
+  std::size_t number{0};
   std::size_t vertices{0};         ///< of all meshes
   std::size_t triangles{0};        ///< of all meshes
   std::vector<std::string> files;  ///< of both frames of A, then of those of B
@@ -37,31 +37,36 @@ struct RunSummary {
   bool at_distance{false};  ///< whether the next two mean something
   std::size_t ve{0};
   std::size_t vv{0};
-  std::size_t crossing_steps{0};  ///< steps that began crossing
+  std::size_t crossings{0};        ///< of an edge and a face
+  std::size_t crossing_steps{0};   ///< steps that began crossing
+  bool is_any{false};              ///< whether the query was for any contact
+  std::size_t undecided_steps{0};  ///< may have begun crossing; only with is_any
   struct First {
     std::size_t step;
     double toc_lo;
+    bool is_decided{true};  ///< false: another contact of the step may be earlier
   };
   std::optional<First> first;  ///< the first step with a contact or crossing
   std::size_t slowest_step{0};
   double slowest_ms{-1};  ///< of steps that have a time; negative: none has
 
-  /// @brief The contacts of all kinds: the rows of the contact list.
-  std::size_t contacts() const { return vf + ee + ve + vv; }
+  /// @brief The contacts and crossings: the rows of the contact list.
+  std::size_t contacts() const { return vf + ee + ve + vv + crossings; }
 
   /// @brief Adds a step that is after all others.
   void add(const RunSummary& step);
 };
 RunSummary summaryOf(const StepReport& report);
 
-/// @brief Head and rows of the table for the terminal, each with its line end.
+/// @brief Head and rows of the table for the terminal, each with its line end. A line has
+/// at most 80 characters, unless a number is longer than its column.
 /// @param at_distance  whether there are contacts of a vertex and an edge, and of two
 /// vertices
-std::string tableHead(bool at_distance);
+std::string tableHead(bool at_distance, fcl::ContinuousQuery query);
 std::string tableRow(const StepReport& report);
 
 /// @brief The summary as lines for the terminal.
-std::string summaryLines(const RunSummary& summary);
+std::string summaryLines(const RunSummary& summary, fcl::ContinuousQuery query);
 
 /// @brief Head and lines of the contact list, each with its line end.
 std::string contactsHead(const ContactColumns& columns);
@@ -85,7 +90,7 @@ nlohmann::ordered_json toJson(const RunSummary& summary);
 nlohmann::ordered_json toJson(const StepReport& report);
 
 /// @brief A frame of the scene as one mesh, with B's vertices after A's. Vertices of
-/// contacts have a colour: vertex-face red, edge-edge orange, crossing at t = 0 violet.
+/// contacts have a colour: vertex-face red, edge-edge orange, all crossings violet.
 struct PaintedMesh {
   Mesh mesh;
   std::vector<Colour> colours;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "fcl/narrowphase/continuous_collision.h"
 #include "stage_list.h"
@@ -133,13 +134,17 @@ SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) 
   return out;
 }
 
-/// Sorts the contacts of two queries by time.
+/// Sorts the contacts of two queries by time, and crossings before all others.
 void sortContacts(std::vector<SceneContact>& contacts) {
+  const auto order = [](const SceneContact& contact) {
+    return std::make_pair(contact.kind != Kind::kCrossing, contact.toc_lo);
+  };
   std::stable_sort(contacts.begin(), contacts.end(),
-                   [](const auto& a, const auto& b) { return a.toc_lo < b.toc_lo; });
+                   [&](const auto& a, const auto& b) { return order(a) < order(b); });
 }
 
-/// Keeps the contacts of two first-contact queries that may be the first one of both.
+/// Keeps the contacts of first-contact queries that may be the first one of all. Nothing
+/// is before a crossing.
 void keepFirst(std::vector<SceneContact>& contacts) {
   double first_hi = std::numeric_limits<double>::infinity();
   for (const SceneContact& c : contacts) first_hi = std::min(first_hi, c.toc_hi);
@@ -150,9 +155,13 @@ void keepFirst(std::vector<SceneContact>& contacts) {
 
 }  // namespace
 
-const SceneContact* StepResult::first() const {
-  if (crossing) return &*crossing;
-  return contacts.empty() ? nullptr : &contacts.front();
+std::optional<bool> StepResult::initiallyCrossing() const {
+  if (!contacts.empty() && contacts.front().kind == Kind::kCrossing) return true;
+  return is_decided ? std::optional<bool>(false) : std::nullopt;
+}
+
+bool StepResult::isFirstDecided() const {
+  return is_decided || (!contacts.empty() && contacts.front().toc_hi == 0);
 }
 
 Scene::Scene(const SceneTriangles& triangles, const SceneFrame& frame,
@@ -185,7 +194,12 @@ void Scene::build(const SceneTriangles& triangles, const SceneFrame& frame) {
 
 void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   fcl::ContinuousContactRequestd request;
-  request.query = settings_.query;
+  // Which contact a query for any finds depends on the tree, and the tree on the steps
+  // before. The first contact does not. It also decides whether an edge and a face cross.
+  const bool is_any = settings_.query == fcl::ContinuousQuery::kAny;
+  request.query = is_any ? fcl::ContinuousQuery::kFirst : settings_.query;
+  if (is_any) request.num_max_contacts = 1;
+  request.enable_crossings = settings_.all_crossings;
   request.toc_err = settings_.toc_err;
   request.enable_contact = settings_.points;
   request.num_threads = settings_.num_threads;
@@ -207,12 +221,12 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
     setTriangle(contact.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
     return out;
   };
-  for (const Contact& contact : result.contacts)
-    step.contacts.push_back(convert(contact));
-  if (result.initially_crossing && !step.initially_crossing) {
-    step.initially_crossing = true;
-    step.crossing = convert(result.crossing);
-  }
+  if (!settings_.all_crossings && result.initially_crossing)
+    result.crossings = {result.crossing};
+  step.contacts.reserve(step.contacts.size() + result.crossings.size() +
+                        result.contacts.size());
+  for (const auto* found : {&result.crossings, &result.contacts})
+    for (const Contact& contact : *found) step.contacts.push_back(convert(contact));
   for (const StageField& stage : kStages)
     step.counts.*stage.count += result.counts.*stage.count;
   step.times.update += result.times.update;
@@ -228,14 +242,16 @@ StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
   if (b_.model) updateModel(*b_.model, *from.b, *to.b, "B");
   step.times.update = watch.seconds();
 
+  step.is_any = settings_.query == fcl::ContinuousQuery::kAny;
+
   if (settings_.self) query(a_, a_, step);
-  const bool answered = settings_.query == fcl::ContinuousQuery::kAny &&
-                        (!step.contacts.empty() || step.initially_crossing);
-  if (b_.model && !answered) {
-    query(a_, b_, step);
+  if (b_.model) {
+    step.is_decided = !step.is_any || step.contacts.empty();
+    if (step.is_decided) query(a_, b_, step);
     sortContacts(step.contacts);
-    if (settings_.query == fcl::ContinuousQuery::kFirst) keepFirst(step.contacts);
   }
+  if (settings_.query == fcl::ContinuousQuery::kFirst) keepFirst(step.contacts);
+  if (step.is_any && step.contacts.size() > 1) step.contacts.resize(1);
   return step;
 }
 

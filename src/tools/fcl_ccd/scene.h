@@ -20,6 +20,8 @@ struct StepSettings {
   double toc_err{1e-4};
   bool self{true};     ///< whether A is tested against itself
   bool points{false};  ///< whether contacts have a position and a normal
+  /// Whether all crossings are wanted. Otherwise one tells that there are some.
+  bool all_crossings{false};
   double min_distance{0};
   bool ignore_initially_closer{false};
   int repeat{1};
@@ -32,7 +34,7 @@ struct SceneVertex {
   bool of_b{false};
 };
 
-/// @brief A contact of the scene, with the data that the program reports.
+/// @brief A contact of the scene, or a crossing, with the data that the program reports.
 struct SceneContact {
   fcl::ContinuousContactKind kind{fcl::ContinuousContactKind::kVertexFace};
   std::array<SceneVertex, 5> vertices;
@@ -58,15 +60,27 @@ struct StepTimes {
 };
 
 struct StepResult {
-  std::vector<SceneContact> contacts;  ///< earliest first
-  bool at_distance{false};             ///< whether features that come near are contacts
-  bool initially_crossing{false};
-  std::optional<SceneContact> crossing;
+  /// The crossings at t = 0, then the contacts, earliest first.
+  std::vector<SceneContact> contacts;
+  bool at_distance{false};  ///< whether features that come near are contacts
+  /// Whether the query was for any contact: then there is at most one.
+  bool is_any{false};
+  /// Whether all meshes were tested. Not if the query for any contact ended before.
+  bool is_decided{true};
   fcl::StageCounts counts;
   StepTimes times;  ///< `build` is 0
 
-  /// @brief The earliest contact. If there is none, the crossing at t = 0, if any.
-  const SceneContact* first() const;
+  /// @brief The earliest contact or crossing that was found, or null.
+  const SceneContact* earliest() const {
+    return contacts.empty() ? nullptr : &contacts.front();
+  }
+
+  /// @brief Whether an edge passes through a triangle at t = 0; nothing if this is not
+  /// decided.
+  std::optional<bool> initiallyCrossing() const;
+
+  /// @brief Whether nothing can come before earliest().
+  bool isFirstDecided() const;
 };
 
 /// @brief The triangles of mesh A, and of B if there is one, and what is free in them;

@@ -20,7 +20,14 @@ StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
       scenes_(parallelism.jobs) {
   settings_.num_threads = parallelism.threads;
   settings_.points = options.columns.position || options.columns.normal;
+  settings_.all_crossings = options.writesFiles();
   if (inputs.b) frames_b_.emplace(*inputs.b, share);
+}
+
+void StepMaker::setShare(const StepShare& share) {
+  share_ = share;
+  frames_a_.setShare(share);
+  if (frames_b_) frames_b_->setShare(share);
 }
 
 StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
@@ -31,13 +38,13 @@ StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
   if (frames_b_) b = frames_b_->take(step);
   const SceneFrame from{a.from.get(), b.from.get()}, to{a.to.get(), b.to.get()};
   StepReport report;
-  report.index = step;
+  report.number = paths_.numbers[step];
   report.files = paths_.filesOf(step);
   report.vertices = a.to->size() + (b.to ? b.to->size() : 0);
   report.triangles =
       inputs_.a.triangles().size() + (inputs_.b ? inputs_.b->triangles().size() : 0);
   report.result = query(from, to, scenes_[worker], step);
-  return record(report, to);
+  return record(report, step + 1 == share_.end, to);
 }
 
 void StepMaker::announce(std::size_t i) const {
@@ -61,9 +68,7 @@ StepResult StepMaker::query(const SceneFrame& from, const SceneFrame& to,
     return std::runtime_error(name + ' ' + what);
   };
   try {
-    // A query for any contact may find another one in another tree. So each step has
-    // its own tree, and the answer does not depend on the step with which a run began.
-    const bool is_new = scene == nullptr || settings_.query == fcl::ContinuousQuery::kAny;
+    const bool is_new = scene == nullptr;
     if (is_new) scene = std::make_unique<Scene>(inputs_.triangles(), from, settings_);
     StepResult result = scene->step(from, to);
     if (is_new) result.times.build = scene->buildTime();
@@ -75,7 +80,8 @@ StepResult StepMaker::query(const SceneFrame& from, const SceneFrame& to,
   }
 }
 
-StepRecord StepMaker::record(const StepReport& report, const SceneFrame& to) const {
+StepRecord StepMaker::record(const StepReport& report, bool is_last,
+                             const SceneFrame& to) const {
   StepRecord record;
   record.summary = summaryOf(report);
   record.row = tableRow(report);
@@ -83,7 +89,7 @@ StepRecord StepMaker::record(const StepReport& report, const SceneFrame& to) con
     record.contact_lines = contactLines(report, options_.columns);
   if (!options_.steps_path.empty()) record.step_line = stepLine(report);
   if (!options_.json_path.empty()) record.json = toJson(report).dump();
-  if (!options_.paint_path.empty() && report.index + 1 == paths_.numSteps()) {
+  if (!options_.paint_path.empty() && is_last) {
     const PaintedMesh painted = paint(inputs_.triangles(), to, report.result);
     record.painted = encodePaintedPly(painted.mesh, painted.colours);
   }

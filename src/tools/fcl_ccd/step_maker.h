@@ -34,13 +34,17 @@ class StepMaker {
   StepRecord make(std::size_t i, std::size_t worker);
 
   const StepShare& share() const { return share_; }
+
+  /// @brief Goes on with other steps, between two calls of make(). Trees are kept.
+  void setShare(const StepShare& share);
+
   std::size_t numJobs() const { return scenes_.size(); }
 
  private:
   void announce(std::size_t i) const;
   StepResult query(const SceneFrame& from, const SceneFrame& to,
                    std::unique_ptr<Scene>& scene, std::size_t step) const;
-  StepRecord record(const StepReport& report, const SceneFrame& to) const;
+  StepRecord record(const StepReport& report, bool is_last, const SceneFrame& to) const;
 
   const RunOptions& options_;
   const FramePaths& paths_;

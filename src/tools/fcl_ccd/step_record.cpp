@@ -13,9 +13,12 @@ using Json = nlohmann::json;
 
 Json encode(const RunSummary& summary) {
   Json first = nullptr;
-  if (summary.first) first = Json::array({summary.first->step, summary.first->toc_lo});
+  if (summary.first)
+    first = Json::array(
+        {summary.first->step, summary.first->toc_lo, summary.first->is_decided});
   return Json::array({summary.steps, summary.vf, summary.ee, summary.at_distance,
-                      summary.ve, summary.vv, summary.crossing_steps, first,
+                      summary.ve, summary.vv, summary.crossings, summary.crossing_steps,
+                      summary.is_any, summary.undecided_steps, first,
                       summary.slowest_step, summary.slowest_ms});
 }
 
@@ -28,9 +31,13 @@ RunSummary decodeSummary(const Json& fields) {
   fields.at(i++).get_to(summary.at_distance);
   fields.at(i++).get_to(summary.ve);
   fields.at(i++).get_to(summary.vv);
+  fields.at(i++).get_to(summary.crossings);
   fields.at(i++).get_to(summary.crossing_steps);
+  fields.at(i++).get_to(summary.is_any);
+  fields.at(i++).get_to(summary.undecided_steps);
   const Json& first = fields.at(i++);
-  if (!first.is_null()) summary.first = RunSummary::First{first.at(0), first.at(1)};
+  if (!first.is_null())
+    summary.first = RunSummary::First{first.at(0), first.at(1), first.at(2)};
   fields.at(i++).get_to(summary.slowest_step);
   fields.at(i++).get_to(summary.slowest_ms);
   return summary;

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "run_outputs.h"
+
+#include <utility>
+
+namespace fcl_ccd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+}  // namespace
+
+RunOutputs::RunOutputs(const RunOptions& options, const OutputSet& reserved,
+                       const RunSummary& summary)
+    : options_(options), reserved_(reserved), summary_(summary) {
+  const StepSettings& settings = options.settings;
+  print(tableHead(settings.min_distance > 0, settings.query));
+  if (!options.json_path.empty()) json_.emplace(options.json_path);
+  if (!options.paint_path.empty()) paint_.emplace(options.paint_path);
+}
+
+void RunOutputs::open(const GrowingOutputs& growing, const ResumePoint& resume_point) {
+  open(growing.contacts_path, resume_point.contacts_size, growing.contacts_head,
+       contacts_);
+  open(growing.steps_path, resume_point.steps_size, growing.steps_head, steps_);
+  if (json_) json_->write("{\"steps\": [");
+}
+
+void RunOutputs::open(const std::string& path, std::uint64_t kept_size,
+                      const std::string& head, std::optional<GrowingFile>& file) {
+  if (path.empty()) return;
+  file.emplace(reserved_.lockOf(path), kept_size);
+  if (kept_size == 0) file->append(head);
+  file->commit();
+}
+
+void RunOutputs::add(const StepRecord& record) {
+  if (contacts_) contacts_->append(record.contact_lines);
+  if (steps_) steps_->append(record.step_line);
+  if (json_) json_->write((has_json_step_ ? ",\n" : "\n") + record.json);
+  has_json_step_ = true;
+  painted_ = record.painted;
+  print(record.row);
+  commit();
+  summary_.add(record.summary);
+}
+
+void RunOutputs::finish(bool is_complete) {
+  Json summary = toJson(summary_);
+  if (steps_ && is_complete) steps_->append(Json{{"summary", summary}}.dump() + '\n');
+  commit();
+  for (auto* file : {&contacts_, &steps_})
+    if (*file) (*file)->finish();
+  summary["complete"] = is_complete;
+  if (json_) json_->write("\n],\n\"summary\": " + summary.dump() + "}\n");
+  if (paint_ && !painted_.empty()) paint_->write(painted_);
+  for (OutputFile* file : wholeFiles()) file->finish();
+  for (OutputFile* file : wholeFiles()) file->publish();
+}
+
+void RunOutputs::printSummary() const {
+  print(summaryLines(summary_, options_.settings.query));
+}
+
+void RunOutputs::rollBack() noexcept {
+  for (auto* file : {&contacts_, &steps_})
+    if (*file) (*file)->rollBack();
+}
+
+std::string RunOutputs::whereStepsAre() const {
+  std::string where;
+  for (const auto* file : {&contacts_, &steps_})
+    if (*file && (*file)->isLost()) return "";
+  for (const std::string* path : {&options_.contacts_path, &options_.steps_path}) {
+    if (path->empty() || isStandardOutput(*path)) continue;
+    where += (where.empty() ? "" : " and ") + *path;
+  }
+  return where;
+}
+
+void RunOutputs::commit() {
+  for (auto* file : {&contacts_, &steps_})
+    if (*file) (*file)->commit();
+}
+
+std::vector<OutputFile*> RunOutputs::wholeFiles() {
+  std::vector<OutputFile*> files;
+  if (json_) files.push_back(&*json_);
+  if (paint_ && !painted_.empty()) files.push_back(&*paint_);
+  return files;
+}
+
+void RunOutputs::print(std::string_view text) const {
+  fcl_ccd::print(text, reserved_.hasStandardOutput());
+}
+
+}  // namespace fcl_ccd
