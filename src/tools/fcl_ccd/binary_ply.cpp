@@ -196,9 +196,7 @@ bool parseBody(const PlyHeader& header, std::string_view file, std::string_view 
       if (sizeOf(vertexIds(element)->type) != sizeof(std::uint32_t) ||
           !lists.readFaces(element, mesh.faces))
         return false;
-    } else if (element.isStrips() || element.isEdge()) {
-      return false;
-    } else if (!lists.skipItems(element)) {
+    } else if (element.isStrips() || element.isEdge() || !lists.skipItems(element)) {
       return false;
     }
   }

@@ -49,6 +49,8 @@ constexpr const char* kRunDetails = R"(Frames:
   Formats: OBJ, PLY (ascii and binary, float and double), OFF (text), STL (ascii and
   binary). Polygons are divided into triangles, in all frames as in the first. A convex
   polygon that turns at every corner becomes the fan of triangles around its first vertex.
+  Lines and points of OBJ, and edges of PLY, are cables and points. With --columns
+  triangles their numbers begin with e and p.
   All files are checked before the first step. Positions in binary PLY files are checked
   in their step.
   Step i goes from frame i to the next one. Vertices move on straight lines. Frames are

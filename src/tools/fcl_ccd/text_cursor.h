@@ -21,9 +21,10 @@ enum class TextKind : std::uint8_t { kOther, kBlank, kLineEnd, kHash, kBackslash
 template <bool kComments, bool kContinuations>
 constexpr std::array<TextKind, 256> makeTextKinds() {
   std::array<TextKind, 256> kinds{};
-  for (const unsigned char blank : {' ', '\t', '\v', '\f'})
-    kinds[blank] = TextKind::kBlank;
-  for (const unsigned char end : {'\n', '\r'}) kinds[end] = TextKind::kLineEnd;
+  for (const char blank : {' ', '\t', '\v', '\f'})
+    kinds[static_cast<unsigned char>(blank)] = TextKind::kBlank;
+  for (const char end : {'\n', '\r'})
+    kinds[static_cast<unsigned char>(end)] = TextKind::kLineEnd;
   if (kComments) kinds['#'] = TextKind::kHash;
   if (kContinuations) kinds['\\'] = TextKind::kBackslash;
   return kinds;
