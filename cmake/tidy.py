@@ -11,7 +11,6 @@ them have a constant of one name, are checked in smaller groups.
 import collections
 import concurrent.futures
 import json
-import re
 import shlex
 import subprocess
 import sys
@@ -65,29 +64,32 @@ def parts(command, paths):
     return parts(command, paths[:half]) + parts(command, paths[half:])
 
 
+def findings(command):
+    """What clang-tidy says, or nothing."""
+    source = command[-1]
+    # A database of its own: clang-tidy reads all of it.
+    database = WORK / (source.replace("/", "_") + "_database")
+    database.mkdir(exist_ok=True)
+    entry = {"directory": str(BUILD), "arguments": command, "file": source}
+    (database / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
+    tidy = ["clang-tidy-14", "--quiet", f"--config-file={SOURCE / '.clang-tidy'}", "-p", str(database)]
+    # Its stderr only counts findings in headers of other projects.
+    done = subprocess.run([*tidy, source], capture_output=True, text=True, check=False)
+    return (done.stdout or done.stderr) if done.returncode != 0 else ""
+
+
 def check(command, paths):
-    """What clang-tidy finds, for all parts of a group."""
-    findings = []
+    """The findings of a group. Those of sources that were joined are looked for in each one."""
+    found = []
     for part in parts(command, paths):
-        compile_command = joined(command, part)
-        # A database of its own: one for all would be read by all at once.
-        database = WORK / (Path(compile_command[-1]).stem + "_database")
-        database.mkdir(exist_ok=True)
-        entry = {"directory": str(BUILD), "arguments": compile_command, "file": compile_command[-1]}
-        (database / "compile_commands.json").write_text(json.dumps([entry]), encoding="utf-8")
-        tidy = ["clang-tidy-14", "--quiet", f"--config-file={SOURCE / '.clang-tidy'}"]
-        # Its stderr only counts findings in headers of other projects.
-        done = subprocess.run(
-            [*tidy, "-p", str(database), compile_command[-1]],
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        if done.returncode != 0:
-            findings.append(done.stdout or done.stderr)
-        names = part[0] if len(part) == 1 else f"{part[0].parent} ({len(part)} files)"
-        print(f"   {re.sub(f'^{SOURCE}/', '', str(names))}", flush=True)
-    return findings
+        text = findings(joined(command, part))
+        if text and len(part) > 1:
+            found += [findings(joined(command, [path])) for path in part]
+        else:
+            found.append(text)
+        place = part[0] if len(part) == 1 else part[0].parent
+        print(f"   {place.relative_to(SOURCE)} ({len(part)} of {len(paths)} files)", flush=True)
+    return found
 
 
 def main():
@@ -96,7 +98,8 @@ def main():
     work = sorted(groups(), key=lambda group: -sum(path.stat().st_size for path in group[1]))
     assert sum(len(paths) for _, paths in work) == len(list((SOURCE / "src").rglob("*.cpp")))
     with concurrent.futures.ThreadPoolExecutor(JOBS) as pool:
-        found = [text for texts in pool.map(lambda group: check(*group), work) for text in texts]
+        texts = [text for found in pool.map(lambda group: check(*group), work) for text in found]
+    found = [text for text in texts if text]
     print("\n".join(found), end="")
     sys.exit(1 if found else 0)
 
