@@ -46,23 +46,42 @@ double deviationOf(const MotionBody& body) {
   return 0.125 * side.accelerationOf(begin, end, 0, 1);
 }
 
-/// About the mean length of an edge of the mesh, from a few triangles.
-double sampledEdge(const MotionBody& body) {
-  constexpr int kSamples = 8;
-  double sum = 0;
+/// A triangle of the mesh below children that a number chooses; the sum of its edges.
+double sampledPerimeter(const MotionBody& body, int number) {
   MotionNode node;
-  for (int i = 0; i < kSamples; ++i) {
-    BodyPart part = body.root();
-    for (int depth = 0; !part.isTriangle(); ++depth) {
-      body.open(part, node);
-      part = node.part[(3 * i + 5 * depth) % node.count];
-    }
-    if (!body.isReadable(~part.child)) continue;
-    const BodyTriangle triangle = body.triangle(~part.child);
-    for (int k = 0; k < 3; ++k)
-      sum += norm(triangle.corner[0][(k + 1) % 3] - triangle.corner[0][k]);
+  BodyPart part = body.root();
+  for (int depth = 0; !part.isTriangle(); ++depth) {
+    body.open(part, node);
+    part = node.part[(3 * number + 5 * depth) % node.count];
   }
-  return sum / (3 * kSamples);
+  if (!body.isReadable(~part.child)) return 0;
+  const BodyTriangle triangle = body.triangle(~part.child);
+  double sum = 0;
+  for (int k = 0; k < 3; ++k)
+    sum += norm(triangle.corner[0][(k + 1) % 3] - triangle.corner[0][k]);
+  return sum;
+}
+
+/// About the mean length of an edge of the mesh, from a few triangles. Those without
+/// extent beside the mesh do not count, unless no other one is found.
+double sampledEdge(const MotionBody& body) {
+  constexpr int kSamples = 8, kMostRounds = 16;
+  constexpr double kNoExtent = 0x1p-20;
+  const double least = kNoExtent * body.box(body.root(), 0).radius;
+  double largest = 0;
+  for (int round = 0; round < kMostRounds; ++round) {
+    double sum = 0;
+    int count = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const double perimeter = sampledPerimeter(body, kSamples * round + i);
+      largest = std::max(largest, perimeter);
+      if (!(perimeter > least)) continue;
+      sum += perimeter;
+      ++count;
+    }
+    if (count > 0) return sum / (3 * count);
+  }
+  return largest / 3;
 }
 
 /// The center of a body at a time, in the world, and the radius around it.

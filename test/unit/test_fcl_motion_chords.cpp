@@ -16,6 +16,8 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/motion/interp_motion.h"
+#include "fcl/math/motion/screw_motion.h"
+#include "fcl/math/motion/spline_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
 #include "test_models.h"
@@ -27,7 +29,7 @@ namespace {
 using Rigid = BVHModel<OBBRSS<double>>;
 using Deforming = DeformableBVHModel<>;
 using Geometry = std::shared_ptr<CollisionGeometry<double>>;
-using Motion = InterpMotion<double>;
+using Motion = std::shared_ptr<MotionBase<double>>;
 using Request = ContinuousContactRequest<double>;
 using Result = ContinuousContactResult<double>;
 
@@ -50,11 +52,16 @@ TestMesh sheetAt(double height, double phase) {
   });
 }
 
-/// Two meshes and their motions. How far they turn is between 1e-4 and 2.
+/// Two meshes and their motions.
 struct Scene {
   Geometry a, b;
   Motion motion_a, motion_b;
 };
+
+Motion motionBetween(const Matrix3<double>& begin, const Vector3<double>& from,
+                     const Matrix3<double>& end, const Vector3<double>& to) {
+  return std::make_shared<InterpMotion<double>>(begin, from, end, to, kOrigin);
+}
 
 Motion randomMotion(Random& random, double angle, const Vector3<double>& at,
                     const Vector3<double>& way) {
@@ -62,9 +69,10 @@ Motion randomMotion(Random& random, double angle, const Vector3<double>& at,
     return AngleAxis<double>(by, random.point(1).normalized()).toRotationMatrix();
   };
   const Matrix3<double> begin = turn(1), end = turn(angle) * begin;
-  return {begin, at, end, at + way, kOrigin};
+  return motionBetween(begin, at, end, at + way);
 }
 
+/// How far they turn is between 1e-4 and 2.
 Scene randomScene(Random& random, int number) {
   Scene scene;
   const auto motionAt = [&](const Vector3<double>& at, const Vector3<double>& way) {
@@ -81,11 +89,11 @@ Scene randomScene(Random& random, int number) {
     case 0:  // a sheet that deforms
       scene.a = makeModel<Deforming>(sheetAt(height, 0),
                                      sheetAt(height - 0.2, random.uniform(0, 1)));
-      scene.motion_a = Motion(unit, far, unit, far, kOrigin);
+      scene.motion_a = motionBetween(unit, far, unit, far);
       break;
     case 1:  // one that is moved while it deforms
       scene.a = makeModel<Deforming>(sheetAt(height, 0), sheetAt(height - 0.1, 1));
-      scene.motion_a = Motion(unit, far, unit, far - Vector3<double>(0, 0, 0.1), kOrigin);
+      scene.motion_a = motionBetween(unit, far, unit, far - Vector3<double>(0, 0, 0.1));
       break;
     case 2:  // one that turns while it deforms
       scene.a = makeModel<Deforming>(sheetAt(height, 0), sheetAt(height - 0.1, 1));
@@ -101,8 +109,8 @@ Scene randomScene(Random& random, int number) {
 
 Result ask(const Scene& scene, const Request& request) {
   Result result;
-  continuousCollide(scene.a.get(), &scene.motion_a, scene.b.get(), &scene.motion_b,
-                    request, result);
+  continuousCollide(scene.a.get(), scene.motion_a.get(), scene.b.get(),
+                    scene.motion_b.get(), request, result);
   return result;
 }
 
@@ -164,6 +172,55 @@ TEST(FCL_MOTION_CHORDS, contactsAreThoseOfTheTruePaths) {
   EXPECT_GT(num_contacts, 10000);
   EXPECT_GT(num_crossings, 100);
   EXPECT_GT(num_other_way, kScenes / 2);
+}
+
+/// A body that turns by up to pi, or several times along a spline, about a point at rest.
+Motion largeTurn(Random& random, int kind, const Vector3<double>& at) {
+  const Vector3<double> axis = random.point(1).normalized();
+  if (kind == 2) {
+    // From one full turn to the opposite one.
+    const Vector3<double> turn = 2 * M_PI * axis;
+    return std::make_shared<SplineMotion<double>>(at, at, at, at, -2 * turn, -turn, turn,
+                                                  2 * turn);
+  }
+  const double angle = random.uniform(2.4, 3.14);
+  const Matrix3<double> unit = Matrix3<double>::Identity(),
+                        end = AngleAxis<double>(angle, axis).toRotationMatrix();
+  if (kind == 0) return motionBetween(unit, at, end, at);
+  Transform3<double> from = Transform3<double>::Identity(), to = from;
+  from.translation() = at;
+  to.linear() = end;
+  to.translation() = at + 0.1 * axis;
+  return std::make_shared<ScrewMotion<double>>(from, to);
+}
+
+TEST(FCL_MOTION_CHORDS, contactsOfLargeTurns) {
+  Random random(143);
+  int num_other_way = 0;
+  constexpr int kScenes = 12;
+  for (int i = 0; i < kScenes; ++i) {
+    SCOPED_TRACE(i);
+    const int kind = i % 3;
+    Scene scene;
+    scene.b = makeModel<Rigid>(bumpyBall(1));
+    scene.motion_b = largeTurn(random, kind, kOrigin);
+    // The balls touch with their bumps. In every fourth scene one deforms and turns.
+    const Vector3<double> at = random.uniform(2.02, 2.06) * random.point(1).normalized();
+    scene.a = makeModel<Rigid>(bumpyBall(2));
+    if (i % 4 == 3) scene.a = makeModel<Deforming>(bumpyBall(2), bumpyBall(2.2));
+    scene.motion_a = i % 2 == 0 ? motionBetween(Matrix3<double>::Identity(), at,
+                                                Matrix3<double>::Identity(), at)
+                                : largeTurn(random, (kind + 1) % 3, at);
+    Request request;
+    request.query = ContinuousQuery::kAll;
+    request.num_max_contacts = static_cast<std::size_t>(-1);
+    if (i % 5 == 4) request.min_distance = 0.01;
+    if (i % 4 == 2) request.t_max = random.uniform(0.3, 0.9);
+    num_other_way += expectSame(scene, request);
+  }
+  // None of them takes the true paths, unless these show at once that the balls are
+  // apart.
+  EXPECT_GT(num_other_way, kScenes - 3);
 }
 
 /// The earliest ones are kept, and the answer does not depend on the number of threads.

@@ -6,10 +6,8 @@
 // contacts.
 #include "motions/cloth.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <set>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -20,6 +18,7 @@
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
+#include "motions/contact_features.h"
 #include "motions/row.h"
 #include "timing.h"
 
@@ -106,51 +105,20 @@ class ClothScene {
   /// The number of pairs that overlap at the end although none of their features are
   /// among the contacts.
   int numMissedAtEnd(const Vector3<double>& turn, const Contacts& contacts) const {
-    std::set<Features> found;
-    for (const auto& contact : contacts.contacts)
-      found.insert(featuresOf(contact.kind, contact.first_on_o1, contact.vertices));
+    const ContactFeatures found(contacts);
     int missed = 0;
     for (const auto& overlap : overlapsAt(turn, 1, static_cast<std::size_t>(-1)))
-      missed += !isAmong(found, frame_[0].triangles[static_cast<std::size_t>(overlap.b1)],
-                         body_.triangles[static_cast<std::size_t>(overlap.b2)]);
+      missed +=
+          !found.haveBy(1, frame_[0].triangles[static_cast<std::size_t>(overlap.b1)],
+                        body_.triangles[static_cast<std::size_t>(overlap.b2)]);
     return missed;
   }
 
  private:
-  /// The kind of features, then their vertices, sorted.
-  using Features = std::array<int, 5>;
-
   static Matrix3<double> rotation(const Vector3<double>& turn, double t) {
     const double angle = turn.norm();
     if (angle == 0) return Matrix3<double>::Identity();
     return AngleAxis<double>(t * angle, turn / angle).toRotationMatrix();
-  }
-
-  static Features featuresOf(ContinuousContactKind kind, bool is_first,
-                             const std::array<int, 5>& v) {
-    if (kind == ContinuousContactKind::kEdgeEdge)
-      return {0, std::min(v[0], v[1]), std::max(v[0], v[1]), std::min(v[2], v[3]),
-              std::max(v[2], v[3])};
-    Features out{is_first ? 1 : 2, v[0], v[1], v[2], v[3]};
-    std::sort(out.begin() + 2, out.end());
-    return out;
-  }
-
-  static bool isAmong(const std::set<Features>& found, const Triangle& a,
-                      const Triangle& b) {
-    const auto id = [](const Triangle& x, int k) { return static_cast<int>(x[k % 3]); };
-    for (int i = 0; i < 3; ++i) {
-      const std::array<int, 5> of_a{id(a, i), id(b, 0), id(b, 1), id(b, 2), -1},
-          of_b{id(b, i), id(a, 0), id(a, 1), id(a, 2), -1};
-      if (found.count(featuresOf(ContinuousContactKind::kVertexFace, true, of_a)) ||
-          found.count(featuresOf(ContinuousContactKind::kVertexFace, false, of_b)))
-        return true;
-      for (int j = 0; j < 3; ++j)
-        if (found.count(featuresOf(ContinuousContactKind::kEdgeEdge, true,
-                                   {id(a, i), id(a, i + 1), id(b, j), id(b, j + 1), -1})))
-          return true;
-    }
-    return false;
   }
 
   TestMesh frame_[2], body_;

@@ -28,6 +28,7 @@
 #include "mesh_generators.h"
 #include "motion/triangle_advance.h"
 #include "motions/cloth.h"
+#include "motions/deep.h"
 #include "motions/row.h"
 #include "reference_motion.h"
 #include "timing.h"
@@ -363,6 +364,7 @@ void run(const Options& options) {
   measureLink(options, csv);
   measureShell(options, csv);
   measureCloth(csv);
+  measureDeep(csv);
   if (!csv.flush()) throw std::runtime_error(options.out + ": cannot be written to");
 }
 
