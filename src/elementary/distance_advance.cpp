@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "elementary/accurate_nearest.h"
+#include "elementary/following_direction.h"
 #include "elementary/least_length.h"
 #include "elementary/most_steps.h"
 #include "elementary/ordered_points.h"
@@ -98,6 +100,13 @@ Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
   // The side from the end of this one to the lowest corner.
   return perpendicular(perpendicular(n, near.along < 0.5 ? other : other - side),
                        near.along < 0.5 ? other : other - side);
+}
+
+NearestPoint sureNearest(const DifferencePolygon& polygon, const Vec* corners,
+                         const NearestPoint& near, double error) {
+  const Vec n = directionApart(polygon, corners, near, 0);
+  const double height = lowestAlong(n, corners, polygon.count());
+  return height >= near.distance - error ? near : accurateNearest(polygon, corners).near;
 }
 
 Vec turnApart(const DifferencePolygon& polygon, const Vec* corners, const Vec* velocities,
@@ -217,24 +226,54 @@ class AdvancingPair {
     return directionApart(polygon_, corners_, near, attempt);
   }
 
+  NearestPoint sureNearest(const NearestPoint& near, double error) const {
+    return deformable::sureNearest(polygon_, corners_, near, error);
+  }
+
+  AccurateNearest accurate() const { return accurateNearest(polygon_, corners_); }
+
+  /// A distance, and that plus the margin.
+  struct Apart {
+    double d, least;
+  };
+
   /// The longest step that a direction of the nearest points proves.
-  /// @param least  d and the margin
-  Step longestStep(const NearestPoint& near, double d, double least, double t,
+  Step longestStep(const NearestPoint& near, const Apart& apart, double t,
                    double t_max) const {
     Step best{t, 0};
     for (int attempt = 0; attempt < kDirectionAttempts; ++attempt) {
-      const Vec n = direction(near, attempt);
-      best = fixedStep(n, least, t);
-      if (best.until > t_max) return best;
-      const Step turned = turningStep(
-          {n, turnApart(polygon_, corners_, velocities_, near, n)}, d, least, t);
-      if (turned.until > best.until) best = turned;
+      best = longerStep(near, direction(near, attempt), apart, t, t_max);
       if (best.until > t) return best;
     }
     return best;
   }
 
+  /// The same for a direction that was found with twice the digits.
+  Step accurateStep(const AccurateNearest& nearest, const Apart& apart, double t,
+                    double t_max) const {
+    const Step step = longerStep(nearest.near, nearest.direction, apart, t, t_max);
+    if (step.until > t_max) return step;
+    // A little more than the rest, so that it is behind t_max if all of it is proved.
+    const double rest = (t_max - t) * (1 + 0x1p-40) + 0x1p-1000,
+                 longest = followingStep(polygon_, corners_, velocities_, nearest, size(),
+                                         apart.least, rest);
+    if (longest == rest) return {kInfinity, 0};
+    const double until = (t + longest) * Advance::kDown;
+    return until > step.until ? Step{until, step.rate} : step;
+  }
+
  private:
+  /// The longer one of the steps that a direction proves, fixed or while it turns.
+  Step longerStep(const NearestPoint& near, const Vec& n, const Apart& apart, double t,
+                  double t_max) const {
+    const Step fixed = fixedStep(n, apart.least, t);
+    if (fixed.until > t_max) return fixed;
+    const Step turned =
+        turningStep({n, turnApart(polygon_, corners_, velocities_, near, n)}, apart.d,
+                    apart.least, t);
+    return turned.until > fixed.until ? turned : fixed;
+  }
+
   Step fixedStep(const Vec& n, double least, double t) const {
     Step step{kInfinity, 0};
     for (int k = 0; k < polygon_.count(); ++k) {
@@ -318,49 +357,82 @@ void setBracket(AdvancingPair& pair, const DistanceTolerance& tolerance,
   out.toc_hi = proveWithin(pair, tolerance, d, t, width, near, rate);
 }
 
-DistanceContact advance(ContinuousContactKind kind, AdvancingPair& pair,
-                        const int (&number)[4], const DistanceRequest& request) {
-  DistanceContact out;
-  double d = request.distance, t = 0, rate = 0;
-  DistanceTolerance tolerance(d, pair.size());
-  const double last = std::min(request.t_max, request.t_stop);
-  for (;; ++out.steps) {
-    const NearestPoint near = pair.nearestAt(t);
-    const double reached = near.distance + tolerance.distance_error;
-    if (out.steps == 0 && request.ignores_initially_closer &&
-        reached <= d * (1 + DistanceTolerance::kShare) + tolerance.touching) {
-      // This is further from the distance at t = 0 than the tolerance. Otherwise each
-      // pair would be a contact at t = 0.
-      d = reached * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance.touching;
-      if (!(d > 0)) {
-        // They touch, and may pass through each other without coming nearer.
-        setPart(kind, near, number, out);
-        setBracket(pair, tolerance, request, request.distance, 0, near, rate, out);
-        return out;
+/// The advancement of a pair, from the time 0 on.
+class Advancement {
+ public:
+  Advancement(ContinuousContactKind kind, AdvancingPair& pair, const int (&number)[4],
+              const DistanceRequest& request)
+      : kind_(kind),
+        pair_(pair),
+        number_(number),
+        request_(request),
+        last_(std::min(request.t_max, request.t_stop)),
+        d_(request.distance),
+        tolerance_(d_, pair.size()) {}
+
+  DistanceContact run() {
+    for (;; ++out_.steps) {
+      near_ = pair_.nearestAt(t_);
+      if (out_.steps == 0 && request_.ignores_initially_closer && areTouching()) {
+        // They may pass through each other without coming nearer.
+        d_ = request_.distance;
+        return contact();
       }
-      tolerance = DistanceTolerance(d, pair.size());
-    }
-    const double share = out.steps < kPlainSteps ? 0 : DistanceTolerance::kShare;
-    bool is_contact = reached <= d + (share * d + tolerance.touching);
-    Step step{t, 0};
-    if (!is_contact) {
-      step = pair.longestStep(near, d, d + tolerance.margin, t, last);
-      if (!(step.until > t) || out.steps == kMostSteps) {
-        is_contact = true;
-        out.is_given_up =
-            reached > d + (DistanceTolerance::kShare * d + tolerance.touching);
+      const double share = out_.steps < kPlainSteps ? 0 : DistanceTolerance::kShare,
+                   most = d_ + (share * d_ + tolerance_.touching);
+      if (reached() <= most) return contact();
+      const AdvancingPair::Apart apart{d_, d_ + tolerance_.margin};
+      Step step = pair_.longestStep(near_, apart, t_, last_);
+      if (!(step.until > t_) || (out_.steps >= kPlainSteps && !(step.until > last_))) {
+        const AccurateNearest nearest = pair_.accurate();
+        near_ = nearest.near;
+        if (reached() <= most) return contact();
+        const Step accurate = pair_.accurateStep(nearest, apart, t_, last_);
+        if (accurate.until > step.until) step = accurate;
       }
+      if (step.until > last_) return out_;
+      if (!(step.until > t_) || out_.steps == kMostSteps) {
+        out_.is_given_up =
+            reached() > d_ + (DistanceTolerance::kShare * d_ + tolerance_.touching);
+        return contact();
+      }
+      t_ = step.until;
+      rate_ = step.rate;
     }
-    if (is_contact) {
-      setPart(kind, near, number, out);
-      setBracket(pair, tolerance, request, d, t, near, rate, out);
-      return out;
-    }
-    if (step.until > last) return out;
-    t = step.until;
-    rate = step.rate;
   }
-}
+
+ private:
+  double reached() const { return near_.distance + tolerance_.distance_error; }
+
+  /// Takes the distance at t = 0, less the tolerance, as that of a pair that is nearer
+  /// than the wanted one then. Otherwise each such pair would be a contact at t = 0.
+  /// @return whether nothing is left
+  bool areTouching() {
+    near_ = pair_.sureNearest(near_, tolerance_.distance_error);
+    if (reached() > d_ * (1 + DistanceTolerance::kShare) + tolerance_.touching)
+      return false;
+    d_ = reached() * (1 - 2 * DistanceTolerance::kShare) - 2 * tolerance_.touching;
+    if (!(d_ > 0)) return true;
+    tolerance_ = DistanceTolerance(d_, pair_.size());
+    return false;
+  }
+
+  DistanceContact contact() {
+    setPart(kind_, near_, number_, out_);
+    setBracket(pair_, tolerance_, request_, d_, t_, near_, rate_, out_);
+    return out_;
+  }
+
+  ContinuousContactKind kind_;
+  AdvancingPair& pair_;
+  const int (&number_)[4];
+  const DistanceRequest& request_;
+  double last_;
+  double d_, t_{0}, rate_{0};
+  DistanceTolerance tolerance_;
+  NearestPoint near_;
+  DistanceContact out_;
+};
 
 /// The same for a pair whose size is extreme.
 DistanceContact advanceScaled(ContinuousContactKind kind, const OrderedPair& ordered,
@@ -369,7 +441,7 @@ DistanceContact advanceScaled(ContinuousContactKind kind, const OrderedPair& ord
   DistanceRequest scaled_request = request;
   scaled_request.distance *= scaled.scale();
   AdvancingPair pair(kind, scaled.points());
-  return advance(kind, pair, ordered.number, scaled_request);
+  return Advancement(kind, pair, ordered.number, scaled_request).run();
 }
 
 /// Where the nearest point of a pair of edges is on the first one, as a fraction.
@@ -397,7 +469,7 @@ DistanceContact advanceToDistance(ContinuousContactKind kind, const FeaturePoint
   AdvancingPair pair(kind, ordered.x);
   const double size = std::max(pair.size(), request.distance);
   if (size >= Advance::kLeastSize && size <= Advance::kMostSize)
-    return advance(kind, pair, ordered.number, request);
+    return Advancement(kind, pair, ordered.number, request).run();
   return advanceScaled(kind, ordered, request);
 }
 

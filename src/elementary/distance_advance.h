@@ -75,8 +75,8 @@ struct DistanceContact {
   ContinuousContactKind kind{ContinuousContactKind::kVertexFace};
   /// Their points, as numbers in FeaturePoints. VE: v, e0, e1. VV: the points of both.
   int points[4]{0, 1, 2, 3};
-  /// More than the largest number of steps were needed, or rounding hides the distance.
-  /// The pair may be further apart than the tolerance.
+  /// More than the largest number of steps were needed. The pair may be further apart
+  /// than the tolerance.
   bool is_given_up{false};
   int steps{0};
 };
@@ -125,6 +125,13 @@ constexpr int kDirectionAttempts = 5;
 /// @param corners  of the polygon, at this time
 Vec directionApart(const DifferencePolygon& polygon, const Vec* corners,
                    const NearestPoint& near, int attempt);
+
+/// @brief The nearest point itself, if its plain direction shows that no point is nearer
+/// by more than the error; otherwise the one that accurateNearest() finds. Where
+/// coordinates differ by many powers of ten nearestPoint() may be another point of the
+/// polygon, which is further away than the error.
+NearestPoint sureNearest(const DifferencePolygon& polygon, const Vec* corners,
+                         const NearestPoint& near, double error);
 
 /// @brief How the direction n of the nearest points turns with the features, by time. For
 /// a proof any turn would be right.

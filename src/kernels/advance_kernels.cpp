@@ -110,17 +110,29 @@ FCL_CCD_INLINE Steps turningSteps(const Polygons& x, const Vectors (&corner)[4],
   return where(proves, {t + longest * all(Advance::kDown), rate});
 }
 
+/// The plain directions of the nearest points.
+struct PlainDirections {
+  NearestSides sides;
+  Vectors n;
+
+  FCL_CCD_INLINE void set(const Polygons& x, const Vectors (&corner)[4],
+                          const NearestPoints& near) {
+    sides = NearestSides(x, corner, near);
+    n = directionsApart(near, sides);
+  }
+};
+
 /// AdvancingPair::longestStep(), its first attempt.
 FCL_CCD_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
-                                  const NearestPoints& near, const Doubles& d,
-                                  const Doubles& least, const Doubles& t, double last) {
-  const NearestSides sides(x, corner, near);
-  const Vectors n = directionsApart(near, sides);
+                                  const NearestPoints& near, const PlainDirections& plain,
+                                  const Doubles& d, const Doubles& least,
+                                  const Doubles& t, double last) {
+  const Vectors& n = plain.n;
   const Steps fixed = fixedSteps(x, n, least, t);
   const DoubleMask is_enough = fixed.until > all(last);
   if (isAll(is_enough)) return fixed;
-  const Steps turning =
-      turningSteps(x, corner, n, turnsApart(x, corner, near, sides, n), d, least, t);
+  const Steps turning = turningSteps(
+      x, corner, n, turnsApart(x, corner, near, plain.sides, n), d, least, t);
   const DoubleMask is_longer = (fixed.until <= all(last)) & (turning.until > fixed.until);
   return {select(is_longer, turning.until, fixed.until),
           select(is_longer, turning.rate, fixed.rate)};
@@ -185,15 +197,20 @@ class AdvancingPairs {
     near_ = nearestPoints(x_, corner);
     open_ |= ~bits(near_.is_sure);
     reached_ = near_.distance + tolerance.distance_error;
-    if (step == 0 && request.ignores_initially_closer) {
+    const bool ignores = step == 0 && request.ignores_initially_closer;
+    PlainDirections plain;
+    if (ignores) {
+      plain.set(x_, corner, near_);
+      open_ |= ~bits(areSure(corner, plain.n, tolerance.distance_error));
       ignoreInitiallyCloser(tolerance);
       tolerance = Tolerances(d_, x_.size);
     }
     is_contact_ = reached_ <= d_ + tolerance.touching;
     left_ = ~(open_ | bits(is_contact_)) & ((1U << count_) - 1);
     if (left_ == 0) return 0;
+    if (!ignores) plain.set(x_, corner, near_);
     const Steps next =
-        longestSteps(x_, corner, near_, d_, d_ + tolerance.margin, t_, last);
+        longestSteps(x_, corner, near_, plain, d_, d_ + tolerance.margin, t_, last);
     open_ |= left_ & ~bits(next.until > t_);
     const DoubleMask is_soon = next.until <= all(last);
     left_ &= ~open_ & bits(is_soon);
@@ -284,6 +301,14 @@ class AdvancingPairs {
     const Vectors point =
         select(near_.isInside(), inside, select(near_.isSide(), on_side, sides.from));
     return squareRoot(dot(point, point));
+  }
+
+  /// AdvancingPair::sureNearest(): the lanes whose nearest points it takes as they are.
+  FCL_CCD_INLINE DoubleMask areSure(const Vectors (&corner)[4], const Vectors& n,
+                                    const Doubles& error) const {
+    Doubles height = dot(n, corner[0]);
+    for (int k = 1; k < x_.count; ++k) height = min(dot(n, corner[k]), height);
+    return height >= near_.distance - error;
   }
 
   /// Sets the distance of each pair that is nearer than it at t = 0.

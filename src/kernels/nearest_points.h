@@ -106,6 +106,7 @@ struct NearestSides {
   /// The corner, or where the side begins; and where it ends.
   Vectors from, to, from_velocity, to_velocity;
 
+  NearestSides() = default;
   template <typename Polygons>
   FCL_CCD_INLINE NearestSides(const Polygons& x, const Vectors (&corner)[4],
                               const NearestPoints& near)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "elementary/accurate_nearest.h"
 #include "elementary/most_steps.h"
 #include "mesh/feature_pairs.h"
 #include "motion/advancement.h"
@@ -125,10 +126,12 @@ double FeaturePairMotion::touching(double size) const {
 
 void FeaturePairMotion::ignoreInitiallyCloser() {
   const Moment start(*this, 0);
-  const double most = touching(start.polygon.size());
-  if (start.near.distance > tolerance_.distance * (1 + DistanceTolerance::kShare) + most)
+  const double size = start.polygon.size(), most = touching(size),
+               error = DistanceTolerance(tolerance_.distance, size).distance_error;
+  const NearestPoint near = sureNearest(start.polygon, start.corners, start.near, error);
+  if (near.distance > tolerance_.distance * (1 + DistanceTolerance::kShare) + most)
     return;
-  const double own = start.near.distance * (1 - 2 * DistanceTolerance::kShare) - 2 * most;
+  const double own = near.distance * (1 - 2 * DistanceTolerance::kShare) - 2 * most;
   if (own > 0) tolerance_.distance = own;
 }
 
@@ -148,17 +151,23 @@ FeaturePairMotion::Answer FeaturePairMotion::advance(double& t,
 }
 
 double FeaturePairMotion::longestStep(double t, const Moment& moment) const {
-  const double longest = t1_ - t;
-  double best = -1;
-  for (int attempt = 0; attempt < kDirectionAttempts && !(best > 0); ++attempt) {
+  for (int attempt = 0; attempt < kDirectionAttempts; ++attempt) {
     const Vec n = directionApart(moment.polygon, moment.corners, moment.near, attempt);
-    best = std::max(best, motion_.step(t, moment.state, pair_.first_on_a ? n : -1. * n));
-    if (best >= longest) return best;
-    const Vec turn =
-        turnApart(moment.polygon, moment.corners, moment.velocities, moment.near, n);
-    best = std::max(best, turningStep(moment, n, turn, longest));
+    const double step = longerStep(t, moment, moment.near, n);
+    if (step > 0) return step;
   }
-  return best;
+  const AccurateNearest nearest = accurateNearest(moment.polygon, moment.corners);
+  return longerStep(t, moment, nearest.near, nearest.direction);
+}
+
+/// The longer one of the steps that a direction proves, fixed or while it turns.
+double FeaturePairMotion::longerStep(double t, const Moment& moment,
+                                     const NearestPoint& near, const Vec& n) const {
+  const double longest = t1_ - t,
+               fixed = motion_.step(t, moment.state, pair_.first_on_a ? n : -1. * n);
+  if (fixed >= longest) return fixed;
+  const Vec turn = turnApart(moment.polygon, moment.corners, moment.velocities, near, n);
+  return std::max(fixed, turningStep(moment, n, turn, longest));
 }
 
 // A direction n + h m that turns, for h |m| <= 1/2. For each corner c with the velocity

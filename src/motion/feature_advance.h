@@ -56,6 +56,8 @@ class FeaturePairMotion {
 
   double proveWithin(double t, double width) const;
   double longestStep(double t, const Moment& moment) const;
+  double longerStep(double t, const Moment& moment, const NearestPoint& near,
+                    const Vec& n) const;
   double turningStep(const Moment& moment, const Vec& n, const Vec& turn,
                      double longest) const;
   /// Features whose computed gap along a direction is at least d + this are further apart

@@ -17,6 +17,7 @@
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
 #include "motion/chord_pairs.h"
+#include "motion/common_motion.h"
 #include "motion/feature_advance.h"
 #include "motion/turning_pairs.h"
 #include "query/contact_sink.h"
@@ -565,7 +566,10 @@ QueryAnswer contactsBy(ChordSearch& chords, const MotionBody& a, const MotionBod
 }  // namespace
 
 QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
-                                const QueryOptions& options) {
+                                const QueryOptions& requested) {
+  QueryOptions options = requested;
+  const BodiesNearOrigin near(a, b);
+  if (moveAsOne(near.a, near.b, options.min_distance)) options.t_max = 0;
   MotionQueryOptions wanted = motionOptionsOf(options);
   if (ChordSearch::isFor(a, b, options)) wanted.most_box_tests = kFewBoxTests;
   MotionAnswer touching = queryMotions(a, b, wanted);
@@ -579,7 +583,6 @@ QueryAnswer queryMotionContacts(const MotionBody& a, const MotionBody& b,
   QueryAnswer answer;
   count(touching.counts, answer.counts);
   if (touching.contacts.empty()) return answer;
-  const BodiesNearOrigin near(a, b);
   // Rigid meshes have no owners.
   FeatureContacts features(near.a, near.b, options,
                            options.filter || a.isRigid() || b.isRigid());

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "motion/common_motion.h"
 #include "motion/convex_advance.h"
 #include "motion/motion_query.h"
 #include "motion/overlap_at_start.h"
@@ -182,8 +183,11 @@ void keepFirst(std::vector<MotionContact>& contacts) {
 }  // namespace
 
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
-                               const QueryOptions& options) {
+                               const QueryOptions& requested) {
   ShapeAnswer answer;
+  QueryOptions options = requested;
+  const BodiesNearOrigin near(a, b);
+  if (moveAsOne(near.a, near.b, options.min_distance)) options.t_max = 0;
   if (options.only_time && overlapDeeplyAtStart(a, b)) {
     answer.contacts.emplace_back();
     answer.pose_time = 0;

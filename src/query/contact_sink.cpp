@@ -14,13 +14,29 @@ namespace deformable {
 namespace {
 
 /// Of two contacts of the same features, or with a distance of the same parts, whether x
-/// is the one to keep.
+/// is the one to keep: the earlier one. Faces with the same vertices are one face, whose
+/// vertices may be in another order. The order in which contacts are found decides
+/// nothing.
 bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
-  if (!isPart(x.kind)) return isEarlier(x, y);
   const auto key = [](const FeatureContact& c) {
-    return std::make_tuple(c.toc_lo, c.toc_hi, c.triangles[0], c.triangles[1]);
+    return std::make_tuple(c.toc_lo, c.vertices[0], c.vertices[1], c.vertices[2],
+                           c.vertices[3], c.toc_hi, c.triangles[0], c.triangles[1]);
   };
   return key(x) < key(y);
+}
+
+/// The contact to keep of the same features. Where no triangle owns them, several may
+/// have them, and the first triangles are named: a pair of triangles that turn may find
+/// them a little later than another one, and may be left out then.
+FeatureContact better(const FeatureContact& x, const FeatureContact& y) {
+  FeatureContact out = isPreferred(y, x) ? y : x;
+  if (isPart(out.kind) || !std::equal(x.vertices, x.vertices + 4, y.vertices)) return out;
+  const auto triangles = [](const FeatureContact& c) {
+    return std::make_pair(c.triangles[0], c.triangles[1]);
+  };
+  const FeatureContact& named = triangles(y) < triangles(x) ? y : x;
+  std::copy(named.triangles, named.triangles + 2, out.triangles);
+  return out;
 }
 
 }  // namespace
@@ -41,8 +57,8 @@ void dropRepeats(bool may_repeat, std::vector<std::deque<FeatureContact>>& lists
       FeatureContact* kept = isOnce(*end) ? nullptr : seen.findOrAdd(*end);
       if (!kept)
         ++end;
-      else if (isPreferred(*end, *kept))
-        *kept = *end;
+      else
+        *kept = better(*kept, *end);
     }
     list.erase(end, list.end());
   }
@@ -68,9 +84,9 @@ void ContactSink::replace(FeatureContact& kept, const FeatureContact& contact) {
 
 /// Takes another contact of the same features, if it is the one to keep.
 bool ContactSink::improve(FeatureContact& kept, const FeatureContact& contact) {
-  if (!isPreferred(contact, kept)) return false;
-  replace(kept, contact);
-  return true;
+  const bool is_preferred = isPreferred(contact, kept);
+  replace(kept, better(kept, contact));
+  return is_preferred;
 }
 
 bool ContactSink::add(const FeatureContact& contact) {
@@ -96,7 +112,7 @@ bool ContactSink::add(const FeatureContact& contact) {
 }
 
 bool ContactSink::mayKeep(const FeatureIds& pair, double earliest) const {
-  return !cut_ || isEarlier(FeatureContact{pair, earliest, earliest}, **order_.rbegin());
+  return !cut_ || !isEarlier(**order_.rbegin(), FeatureContact{pair, earliest, earliest});
 }
 
 /// A contact of another kind, or of a face of a, comes behind all of a vertex of a with a

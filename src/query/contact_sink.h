@@ -75,8 +75,9 @@ class ContactSink {
   double latestKept() const { return cut_ ? (*order_.rbegin())->toc_lo : 1; }
 
   /// @brief Whether a contact of the pair, or of parts of it, could be kept if its
-  /// bracket begins at this time or later. It could not if the sink has dropped contacts,
-  /// and all that it keeps come before this one.
+  /// bracket begins at this time or later, or could name other triangles of one that is.
+  /// It could not if the sink has dropped contacts, and all that it keeps come before
+  /// this one.
   bool mayKeep(const FeatureIds& pair, double earliest) const;
 
   /// @brief The same at t = 0 for any pair of a kind.
