@@ -350,14 +350,14 @@ TEST_F(CcdAnswers, TheTableFitsEightyColumns) {
 
 /// @brief Runs the program with a terminal of some columns as its stderr; returns what it
 /// shows there.
-std::string shownOn(unsigned short columns, const fs::path& folder) {
+std::string shownOn(int columns, const fs::path& folder) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);
   EXPECT_GE(terminal, 0);
   EXPECT_EQ(grantpt(terminal), 0);
   EXPECT_EQ(unlockpt(terminal), 0);
   const int screen = open(ptsname(terminal), O_RDWR | O_NOCTTY);
   winsize size{};
-  size.ws_col = columns;
+  size.ws_col = static_cast<unsigned short>(columns);
   size.ws_row = 24;
   EXPECT_EQ(ioctl(screen, TIOCSWINSZ, &size), 0);
   const pid_t child = fork();
@@ -382,13 +382,13 @@ std::string shownOn(unsigned short columns, const fs::path& folder) {
 
 TEST_F(CcdAnswers, TheProgressLineFitsTheTerminal) {
   writeFrames(20);
-  for (const unsigned short columns : {200, 80, 60, 30, 10}) {
+  for (const int columns : {200, 80, 60, 30, 10}) {
     const std::string shown = shownOn(columns, path(""));
     EXPECT_TRUE(contains(shown, columns < 30 ? "of 19" : "of 19 steps")) << shown;
     std::istringstream lines(shown);
     for (std::string line; std::getline(lines, line, '\r');) {
       const std::string text = line.substr(0, line.find('\x1b'));
-      EXPECT_LT(text.size(), std::min<std::size_t>(columns, 80)) << text;
+      EXPECT_LT(text.size(), static_cast<std::size_t>(std::min(columns, 80))) << text;
     }
     if (columns >= 80) EXPECT_TRUE(contains(shown, " left")) << shown;
   }
