@@ -108,7 +108,8 @@ bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& si
                                 PathKind::kStraight,
                                 {},
                                 {},
-                                nullptr};
+                                nullptr,
+                                {}};
   const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesSelf(mesh.instance(), inner, min_distance);

@@ -207,6 +207,7 @@ struct Format {
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"obj", toObj},
+      {"obj", [](const Mesh& mesh) { return toObj(mesh) + "l 1 2 4\np 1\nl 5 6\n"; }},
       {"off", toOff},
       {"ply", toAsciiPly},
       {"ply", [](const Mesh& mesh) { return toBinaryPly<double>(mesh, false); }},

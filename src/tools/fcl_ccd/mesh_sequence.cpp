@@ -100,6 +100,15 @@ bool areFirstOf(const Faces& faces, const Faces& others, bool is_cut) {
   return true;
 }
 
+/// @brief The same for free edges or points.
+template <typename List>
+bool areFirstOf(const List& list, const List& others, bool is_cut) {
+  if (list.size() > others.size()) return false;
+  const auto first_different = std::mismatch(list.begin(), list.end(), others.begin());
+  const auto same = first_different.first - list.begin();
+  return static_cast<std::size_t>(same) + (is_cut ? 1 : 0) >= list.size();
+}
+
 }  // namespace
 
 MeshSequence::MeshSequence(std::vector<std::string> paths) : paths_(std::move(paths)) {
@@ -207,10 +216,15 @@ bool MeshSequence::mayBeginAFrame(std::size_t frame) const {
   } catch (const std::runtime_error&) {
     return true;  // cut anywhere
   }
-  if (mesh.vertices.size() == vertices_.size() && mesh.faces == faces_) return true;
+  if (mesh.vertices.size() == vertices_.size() && mesh.faces == faces_ &&
+      mesh.free == free_)
+    return true;
   // Other files tell how many vertices and faces they have, or have an end.
-  return extensionOf(path) == "obj" && mesh.vertices.size() <= vertices_.size() &&
-         areFirstOf(mesh.faces, faces_, endsInALine(tailOf(path)));
+  if (extensionOf(path) != "obj" || mesh.vertices.size() > vertices_.size()) return false;
+  const bool is_cut = endsInALine(tailOf(path));
+  return areFirstOf(mesh.faces, faces_, is_cut) &&
+         areFirstOf(mesh.free.edges, free_.edges, is_cut) &&
+         areFirstOf(mesh.free.points, free_.points, is_cut);
 }
 
 bool MeshSequence::mayEndInACutNumber(std::size_t frame) const {
