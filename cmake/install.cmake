@@ -104,17 +104,13 @@ if(NOT stock_prefix STREQUAL "/usr")
   string(APPEND FCL_CCD_STOCK_PC_CFLAGS " -I${FCL_INCLUDE_DIRS}")
   string(APPEND FCL_CCD_STOCK_PC_LIBS " -L${FCL_LIBRARY_DIRS}")
 endif()
-# One with the headers in their usual place, and one with the place of their own.
+# One with the headers in their usual place, and one with the folder of their own.
 foreach(FCL_CCD_PC_HEADERS IN ITEMS "" "/fcl-ccd")
   configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in
-                 ${CMAKE_CURRENT_BINARY_DIR}/pkgconfig${FCL_CCD_PC_HEADERS}/fcl.pc @ONLY)
+                 ${CMAKE_CURRENT_BINARY_DIR}/headers${FCL_CCD_PC_HEADERS}/pkgconfig/fcl.pc @ONLY)
 endforeach()
-install(
-  DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/pkgconfig\${fcl_ccd_header_subdir}/"
-  DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
-  FILES_MATCHING
-  PATTERN fcl.pc
-  PATTERN fcl-ccd EXCLUDE)
+install(DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/headers\${fcl_ccd_header_subdir}/pkgconfig"
+        DESTINATION ${CMAKE_INSTALL_LIBDIR})
 
 add_custom_target(
   uninstall
