@@ -200,7 +200,8 @@ MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
 }
 
 /// In float, objects are compiled with the program.
-inline PoseNumbers<float> transformOf(const CollisionObject<float>& o) {
+template <typename S>
+PoseNumbers<S> transformOf(const CollisionObject<S>& o) {
   return detail::toNumbers(o.getTransform());
 }
 
