@@ -224,7 +224,7 @@ void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter = filterOf(settings, o1.geometry(), o2.geometry(), false);
-  requireProvenRange(motion1, motion2, options.min_distance);
+  requireProvenRange(motion1, motion2);
   // Triangles stand for all their features there.
   const deformable::MeshInstance without_owners;
   options.filter = filter.prepare(without_owners, without_owners);

@@ -14,8 +14,8 @@ namespace detail {
 /// @brief The power of two by which the lengths of two shapes, and of their paths, are to
 /// be multiplied, so that products of lengths are in the range of doubles; 1 as a rule.
 /// @param motion1, motion2  prepared without a scale
-/// @throws fcl::Exception  one is no shape, or follows a motion of the program, and the
-/// factor is not 1
+/// (Other bodies, and paths of motions of the program, are not scaled.)
+/// @throws fcl::Exception  as requireProvenRange(), where they are not scaled
 template <typename S>
 double scaleOf(const MovingGeometry<S>& o1, const deformable::PreparedMotion& motion1,
                const MovingGeometry<S>& o2, const deformable::PreparedMotion& motion2,
@@ -25,10 +25,11 @@ double scaleOf(const MovingGeometry<S>& o1, const deformable::PreparedMotion& mo
 template <typename S>
 MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor);
 
-/// @brief Refuses two bodies for which products of lengths overflow or underflow.
+/// @brief Refuses two bodies for which products of lengths overflow. (Where they
+/// underflow, contacts can be reported early, never late.)
 /// @throws fcl::Exception
 void requireProvenRange(const deformable::PreparedMotion& motion1,
-                        const deformable::PreparedMotion& motion2, double distance);
+                        const deformable::PreparedMotion& motion2);
 
 }  // namespace detail
 }  // namespace fcl
