@@ -27,8 +27,9 @@ struct SpaceMotion {
     cosine = vecOf(turn.cosine_translation) - cross(axis, across);
     double square = 0;
     for (const double x : turn.linear_rotation) square += x * x;
-    // C and D are [a] R and [a]^2 R up to 16 u each.
-    rest = (std::sqrt(square) + std::min(1., angle) * 64 * kUnit) * size;
+    // Entries of C = [a] R round by 3 u, those of D = [a] C by 6 u: 9 u and 18 u as the
+    // root of the sum of nine squares.
+    rest = (std::sqrt(square) + std::min(1., angle) * 32 * kUnit) * size;
   }
 };
 
@@ -38,7 +39,9 @@ struct SpaceMotion {
 // motion, so that all distances stay what they are. The difference of two motions of a
 // point no further than `size` from the origin is at most that of L, and of the
 // parameters of both turns times the sine and 1 - cosine of the angle. Then a distance of
-// points of both bodies changes by no more than this and the rest.
+// points of both bodies changes by no more than this and the rest. What is within the
+// distance and the tolerance, three times `position` or more, is in contact at t = 0. All
+// else stays further apart than the distance if it changes by less.
 bool moveAsOne(const MotionBody& a, const MotionBody& b, double distance) {
   const Turn *turn_a = a.path().turn(), *turn_b = b.path().turn();
   const auto isRigid = [](const MotionBody& body) {
@@ -56,7 +59,7 @@ bool moveAsOne(const MotionBody& a, const MotionBody& b, double distance) {
       std::abs(x.angle - y.angle) * (2 * size + std::max(norm(x.sine), norm(y.sine)) +
                                      std::max(norm(x.cosine), norm(y.cosine))) +
       x.rest + y.rest;
-  return moves * kUpward <= MotionTolerance(a, b, distance).position;
+  return moves * kUpward <= 2 * MotionTolerance(a, b, distance).position;
 }
 
 }  // namespace deformable

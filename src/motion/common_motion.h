@@ -9,7 +9,7 @@ namespace detail {
 namespace deformable {
 
 /// @brief Whether two bodies move as one, such as a gripper and what it holds: no two
-/// points of them come nearer to each other, or part, by more than a small part of the
+/// points of them come nearer to each other, or part, by more than a part of the
 /// tolerance of their query. Then what is not in contact at t = 0 never is.
 ///
 /// It is known of bodies that do not deform, with paths that are a Turn. Others may move

@@ -15,6 +15,7 @@
 #include "elementary/distance_advance.h"
 #include "elementary/following_direction.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
+#include "fcl/geometry/shape/box.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_features.h"
@@ -53,32 +54,30 @@ Wide distanceOf(const WideVector& x, const WideVector& from, const WideVector& t
   return (x - (from + share * way)).norm();
 }
 
-/// Of two features by textbook formulas. No point of them is nearer, and those of
-/// slivers may be further away.
+/// Of two features, as the distance of two points of them: where rounding hides which
+/// points are nearest it is too large, never too small.
 Wide distanceAt(Kind kind, const FeaturePoints& x, Wide t) {
   WideVector p[4];
   for (int i = 0; i < 4 && x.point[i]; ++i)
     for (int k = 0; k < 3; ++k) p[i][k] = (1 - t) * x[i].t0[k] + t * x[i].t1[k];
   if (kind == Kind::kVertexVertex) return (p[1] - p[0]).norm();
   if (kind == Kind::kVertexEdge) return distanceOf(p[0], p[1], p[2]);
-  if (kind == Kind::kVertexFace) {
-    Wide best = std::min({distanceOf(p[0], p[1], p[2]), distanceOf(p[0], p[2], p[3]),
-                          distanceOf(p[0], p[3], p[1])});
-    const WideVector n = (p[2] - p[1]).cross(p[3] - p[1]);
-    bool is_inside = n.squaredNorm() > 0;
-    for (int k = 0; k < 3; ++k)
-      is_inside &= (p[1 + (k + 1) % 3] - p[1 + k]).cross(p[0] - p[1 + k]).dot(n) > 0;
-    return is_inside ? std::min(best, std::abs(n.dot(p[0] - p[1])) / n.norm()) : best;
-  }
+  const bool is_face = kind == Kind::kVertexFace;
   const Wide best =
-      std::min({distanceOf(p[0], p[2], p[3]), distanceOf(p[1], p[2], p[3]),
-                distanceOf(p[2], p[0], p[1]), distanceOf(p[3], p[0], p[1])});
-  const WideVector u = p[1] - p[0], v = p[3] - p[2], w = p[2] - p[0], n = u.cross(v);
+      is_face ? std::min({distanceOf(p[0], p[1], p[2]), distanceOf(p[0], p[2], p[3]),
+                          distanceOf(p[0], p[3], p[1])})
+              : std::min({distanceOf(p[0], p[2], p[3]), distanceOf(p[1], p[2], p[3]),
+                          distanceOf(p[2], p[0], p[1]), distanceOf(p[3], p[0], p[1])});
+  // The points w + along u + across v, and of these the nearest one to the origin.
+  const WideVector u = is_face ? p[2] - p[1] : p[0] - p[1],
+                   v = is_face ? p[3] - p[1] : p[3] - p[2],
+                   w = is_face ? p[1] - p[0] : p[2] - p[0], n = u.cross(v);
   const Wide square = n.squaredNorm();
   if (!(square > 0)) return best;
-  const Wide along = w.cross(v).dot(n) / square, across = w.cross(u).dot(n) / square;
-  const bool is_inside = along > 0 && along < 1 && across > 0 && across < 1;
-  return is_inside ? std::min(best, std::abs(n.dot(w)) / std::sqrt(square)) : best;
+  const Wide along = v.cross(w).dot(n) / square, across = w.cross(u).dot(n) / square;
+  const bool is_inside =
+      along > 0 && across > 0 && (is_face ? along + across < 1 : along < 1 && across < 1);
+  return is_inside ? std::min(best, (w + along * u + across * v).norm()) : best;
 }
 
 /// What approaches of single pairs were seen.
@@ -368,6 +367,42 @@ TEST(FCL_APPROACH, mixedSizesAgainstElementaryTests) {
   }
   EXPECT_GT(vf, 100);
   EXPECT_GT(ee, 100);
+}
+
+/// A gripper and what it holds turn together on a screw. All distances stay the same; a
+/// little more turn of one of them brings it nearer.
+TEST(FCL_APPROACH, bodiesThatMoveAsOne) {
+  using RigidModel = BVHModel<OBBRSS<double>>;
+  const auto box = makeModel<RigidModel>(makeBox(Vector3<double>(0.05, 0.05, 0.05), 2));
+  const Box<double> shape(0.1, 0.1, 0.1);
+  const auto turn = [](double angle) {
+    Transform3<double> out = Transform3<double>::Identity();
+    out.linear() = AngleAxis<double>(angle, Vector3<double>(0, 0, 1)).toRotationMatrix();
+    return out;
+  };
+  ContinuousContactRequest<double> request;
+  request.ccd_motion_type = CCDM_SCREW;
+  request.min_distance = 0.01;
+  request.ignore_initially_closer = true;
+  for (const double angle : {0.1, 1., 2., 3.})
+    for (const double tilt : {0., 0.02})
+      for (const CollisionGeometry<double>* held :
+           {static_cast<const CollisionGeometry<double>*>(box.get()),
+            static_cast<const CollisionGeometry<double>*>(&shape)}) {
+        SCOPED_TRACE(std::to_string(angle) + ", " + std::to_string(tilt));
+        Transform3<double> tf1 = Transform3<double>::Identity(), tf2 = turn(tilt);
+        tf1.translation() = Vector3<double>(1, 0, 0);
+        tf2.translation() = Vector3<double>(1, 0.104, 0);
+        ContinuousContactResult<double> result;
+        const auto ask = [&](double more) {
+          continuousCollide(box.get(), tf1, turn(angle + more) * tf1, held, tf2,
+                            turn(angle) * tf2, request, result);
+          return result.contacts.size();
+        };
+        EXPECT_EQ(ask(0), 0U);
+        EXPECT_GT(ask(0.003), 0U);
+        EXPECT_GT(result.time_of_contact, 0);
+      }
 }
 
 /// The direction of the nearest point, for slivers and polygons of mixed sizes, and how
