@@ -262,9 +262,11 @@ class Traversal {
     }
   }
 
-  /// Whether an axis of one of the boxes of two nodes provably keeps them apart.
+  /// Whether an axis of one of the boxes of two nodes provably keeps them apart. Not
+  /// inlined: most traversals have no axes.
   /// @param extents  the sum of those of both
-  bool areKeptApart(std::int32_t a, std::int32_t b, float extents) {
+  __attribute__((noinline)) bool areKeptApart(std::int32_t a, std::int32_t b,
+                                              float extents) {
     if (axes_->mayHelp(extents)) return axes_->areApart(a, b);
     if (!axes_->areOriented() || !trials_.isDue(extents)) return false;
     const bool is_apart = axes_->areApart(a, b);
@@ -295,12 +297,12 @@ class Traversal {
   TreeB& tree_b_;
   const SelfCulling culling_;
   const SeparatingAxes* axes_;
-  AxisTrials trials_;
   const Kernels& kernels_;
   OverlapRequest request_;
   bool is_shifted_;
   float shift_[2][2][16];
   LanePairs pairs_;
+  AxisTrials trials_;
 };
 
 }  // namespace deformable
