@@ -92,10 +92,12 @@ PlyVertexBlock blockOf(const PlyElement& element, bool big_endian, std::size_t b
   block.count = static_cast<std::size_t>(element.count);
   block.stride = itemSize(element);
   block.big_endian = big_endian;
+  const PlyProperty* const coordinates[3] = {element.find("x"), element.find("y"),
+                                             element.find("z")};
   std::size_t offset = 0;
   for (const PlyProperty& property : element.properties) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (&property != element.find(std::string_view("xyz").substr(k, 1))) continue;
+      if (&property != coordinates[k]) continue;
       block.offsets[k] = offset;
       block.types[k] = property.type;
     }
