@@ -11,6 +11,7 @@ them have a constant of one name, are checked in smaller groups.
 import collections
 import concurrent.futures
 import json
+import re
 import shlex
 import subprocess
 import sys
@@ -51,17 +52,26 @@ def joined(command, paths):
     return [*command, "-iquote", str(folder), "-c", str(file)]
 
 
-def compiles(command):
-    silent = [*command, "-fsyntax-only", "-w"]
-    return subprocess.run(silent, cwd=BUILD, capture_output=True, check=False).returncode == 0
+def refused(command, paths):
+    """The sources in which the compiler finds errors, or all if they are elsewhere."""
+    silent = [*command, "-fsyntax-only", "-w", "-ferror-limit=0"]
+    done = subprocess.run(silent, cwd=BUILD, capture_output=True, text=True, check=False)
+    named = [path for path in paths if re.search(f"^{path}:[0-9:]* error", done.stderr, re.MULTILINE)]
+    return named if named or done.returncode == 0 else paths
 
 
 def parts(command, paths):
     """Groups of these sources that compile."""
-    if len(paths) == 1 or compiles(joined(command, paths)):
+    if len(paths) == 1:
         return [paths]
-    half = len(paths) // 2
-    return parts(command, paths[:half]) + parts(command, paths[half:])
+    wrong = refused(joined(command, paths), paths)
+    if not wrong:
+        return [paths]
+    # What is left compiles, most often; if not, the halves.
+    left = [path for path in paths if path not in wrong]
+    if not left:
+        left, wrong = paths[: len(paths) // 2], paths[len(paths) // 2 :]
+    return parts(command, left) + parts(command, wrong)
 
 
 def findings(command):
