@@ -236,6 +236,8 @@ void traverse(const MeshPair& meshes, const Schedule& schedule, Leaves& leaves,
   if (moving_a && moving_b) return of(kTwo, *moving_a, *moving_b, nullptr);
   if (moving_a) return of(kTwo, *moving_a, rigid_b, nullptr);
   if (moving_b) return of(kTwo, rigid_a, *moving_b, nullptr);
+  if (meshes.a.rigid.turns() || meshes.b.rigid.turns() || meshes.a.bend || meshes.b.bend)
+    return of(kTwo, rigid_a, rigid_b, nullptr);
   const SeparatingAxes axes(meshes.a, meshes.b, meshes.shifts.reach(1));
   of(kTwo, rigid_a, rigid_b, &axes);
 }

@@ -11,9 +11,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief Proves boxes of two rigid meshes apart whose 16-DOPs overlap. The meshes
-/// translate, or each vertex goes straight between two poses, or on a path that is bent.
-/// A 16-DOP around an OBB is much wider than the OBB. So without this test two to three
+/// @brief Proves boxes of two translating rigid meshes apart whose 16-DOPs overlap. A
+/// 16-DOP around an OBB is much wider than the OBB. So without this test two to three
 /// times as many boxes overlap.
 class SeparatingAxes {
  public:
@@ -22,7 +21,7 @@ class SeparatingAxes {
   SeparatingAxes(const MeshInstance& a, const MeshInstance& b, double distance = 0);
 
   /// @brief Whether areApart() is worth its time for two boxes with this sum of extents.
-  /// It is not for AABBs. Of boxes that turn, or that move far relative to their size few
+  /// It is not for AABBs. Of boxes that move far relative to their size few
   /// are proved apart as a rule: AxisTrials tells where it is worth its time.
   bool mayHelp(float extents) const { return least_extents_ <= extents; }
 
@@ -38,18 +37,15 @@ class SeparatingAxes {
 
  private:
   double padOf(double sizes) const;
-  bool turnApart(int i, int j) const;
 
-  const MeshInstance& a_;
-  const MeshInstance& b_;
+  const RigidTree& a_;
+  const RigidTree& b_;
   /// Translation of b relative to a in both frames, and a bound on the coordinates of all
   /// translations.
   double translation_[2][3];
   double size_{0};
   double distance_;
-  bool are_oriented_, turn_;
-  /// Bound on the factor by which a bend changes more than the place of a point.
-  double stretch_{1};
+  bool are_oriented_;
   float least_extents_;
 };
 
