@@ -115,7 +115,8 @@ void setAxis(const Vector3<double>& axis, MovingGeometry<double>& moving) {
 
 /// The axis of an interpolation. Its constructor of (tf1, tf2, O) sets neither the axis
 /// nor the velocities, so that they have any value from memory. Then there is none: those
-/// that a constructor computed are a unit vector and the way of the reference point.
+/// that a constructor computed are the turn between the poses, in one of two directions,
+/// and the way of the reference point.
 void readAxis(const InterpMotion<double>& motion, MovingGeometry<double>& moving) {
   constexpr double kRounding = 0x1p-20;
   const Vector3<double>&axis = motion.getAngularAxis(),
@@ -123,11 +124,12 @@ void readAxis(const InterpMotion<double>& motion, MovingGeometry<double>& moving
   const Transform3<double> from = toTransform(moving.pose[0]),
                            to = toTransform(moving.pose[1]);
   const Vector3<double> begin = from * reference, end = to * reference;
-  const bool is_set = std::abs(axis.norm() - 1) <= kRounding &&
+  const AngleAxis<double> turn(to.linear() * from.linear().transpose());
+  const bool is_set = std::abs(motion.getAngularVelocity() - turn.angle()) <= kRounding &&
+                      std::abs(axis.norm() - 1) <= kRounding &&
+                      std::abs(std::abs(axis.dot(turn.axis())) - 1) <= kRounding &&
                       (motion.getLinearVelocity() - (end - begin)).norm() <=
-                          kRounding * (begin.norm() + end.norm()) &&
-                      motion.getAngularVelocity() >= 0 &&
-                      motion.getAngularVelocity() <= 4;
+                          kRounding * (begin.norm() + end.norm());
   if (is_set) setAxis(axis, moving);
 }
 

@@ -30,6 +30,8 @@ PoseNumbers<S> poseAt(const MovingGeometry<S>& o, S t) {
         deformable::motionPathOf(placed, "the object").pose(static_cast<double>(t)));
   const PoseNumbers<S> first = toNumbers<S>(placed.beginning()),
                        last = toNumbers<S>(placed.end());
+  // A matrix that scales is no quaternion.
+  if (t == 0) return first;
   Transform3<S> tf = toTransform(first);
   const Transform3<S> end = toTransform(last);
   tf.translation() = ((1 - t) * tf.translation() + t * end.translation()).eval();

@@ -26,7 +26,8 @@ ScaledPoints::ScaledPoints(ContinuousContactKind kind, const FeaturePoints& x,
     : points_(x) {
   constexpr int kMostShift = 1000;
   const double size = sizeOf(kind, x, distance);
-  const int shift = std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
+  // Features that are one point at all times have no size.
+  const int shift = size == 0 ? 0 : std::isfinite(size) ? -std::ilogb(size) : -kMostShift;
   scale_ = std::ldexp(1, std::max(-kMostShift, std::min(kMostShift, shift)));
   for (int i = 0; i < 4; ++i) {
     if (!x.point[i]) continue;

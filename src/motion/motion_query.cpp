@@ -46,7 +46,7 @@ class MotionTraversal {
                  options.distance + calm_.deviation()),
         parting_(calm_.body(0), calm_.body(1), withDeviation(calm_tolerance_)),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
-        latest_(options.last),
+        latest_(options.only_at_start ? 0 : options.last),
         works_(options.all ? MotionWorkQueue::Order::kAny
                            : MotionWorkQueue::Order::kEarliestFirst) {}
 

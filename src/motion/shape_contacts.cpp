@@ -183,11 +183,8 @@ void keepFirst(std::vector<MotionContact>& contacts) {
 }  // namespace
 
 ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
-                               const QueryOptions& requested) {
+                               const QueryOptions& options) {
   ShapeAnswer answer;
-  QueryOptions options = requested;
-  const BodiesNearOrigin near(a, b);
-  if (moveAsOne(near.a, near.b, options.min_distance)) options.t_max = 0;
   if (options.only_time && overlapDeeplyAtStart(a, b)) {
     answer.contacts.emplace_back();
     answer.pose_time = 0;
@@ -200,6 +197,8 @@ ShapeAnswer queryShapeContacts(const MotionBody& a, const MotionBody& b,
     return std::move(found.contacts);
   };
   MotionQueryOptions wanted = motionOptionsOf(a, b, options);
+  const BodiesNearOrigin near(a, b);
+  wanted.only_at_start = moveAsOne(near.a, near.b, options.min_distance);
   std::vector<MotionContact> touching = ask(wanted);
   if (options.query == ContinuousQuery::kFirst && !touching.empty()) {
     // All that begin before the first bracket ends.

@@ -15,7 +15,7 @@ namespace {
 
 /// Of two contacts of the same features, or with a distance of the same parts, whether x
 /// is the one to keep: the earlier one. Faces with the same vertices are one face, whose
-/// vertices may be in another order. The order in which contacts are found decides
+/// vertices may be in another order. The order in which two contacts are found decides
 /// nothing.
 bool isPreferred(const FeatureContact& x, const FeatureContact& y) {
   const auto key = [](const FeatureContact& c) {

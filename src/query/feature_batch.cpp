@@ -300,7 +300,8 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     const unsigned mask = kernels_.stayApart(&pairs_[first], count, reach_, bends_);
     apart[first / 8] = static_cast<std::uint8_t>(mask);
-    culled += static_cast<unsigned>(__builtin_popcount(mask));
+    for (std::size_t i = 0; i < count; ++i)
+      culled += owned_[first + i] != 0 ? mask >> i & 1U : 0;
     for (std::size_t i = 0; i < count && tried < kSample; ++i) {
       if (owned_[first + i] == 0) continue;
       left_out += mask >> i & 1U;

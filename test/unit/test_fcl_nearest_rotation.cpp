@@ -15,6 +15,7 @@
 #include "api/nearest_rotation.h"
 #include "fcl/broadphase/continuous_collision_manager.h"
 #include "fcl/geometry/bvh/BVH_model.h"
+#include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/box.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/sphere.h"
@@ -254,6 +255,33 @@ TEST(NearestRotation, MotionObjects) {
   };
   EXPECT_NEAR(timeOf(eighthOfATurn<double>(true)), timeOf(eighthOfATurn<double>(false)),
               1e-12);
+}
+
+// The vertices of a mesh that deforms go straight between any two matrices.
+TEST(NearestRotation, AScaledMeshKeepsItsPoseAtTheBeginning) {
+  DeformableBVHModel<> mesh;
+  mesh.beginModel();
+  mesh.addTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+  ASSERT_EQ(mesh.endModel(), BVH_OK);
+  mesh.beginUpdateModel();
+  for (int i = 0; i < 3; ++i)
+    mesh.updateVertex(mesh.vertices[i] + Vector3<double>(0, 0, 0.25));
+  ASSERT_EQ(mesh.endUpdateModel(), BVH_OK);
+  const Transform3<double> still = Transform3<double>::Identity();
+  const Transform3<double> twice =
+                               posed<double>(2 * Matrix3<double>::Identity(), {0, 0, 0}),
+                           more = posed<double>(2.1 * Matrix3<double>::Identity(),
+                                                {0, 0, 0});
+  BVHModel<OBBRSS<double>> wall;
+  wall.beginModel();
+  wall.addTriangle({0.5, 0.5, -1}, {0.5, 0.5, 1}, {1, 1, 0});
+  wall.endModel();
+  ContinuousCollisionRequest<double> request;
+  ContinuousCollisionResult<double> result;
+  continuousCollide(&mesh, twice, more, &wall, still, still, request, result);
+  EXPECT_TRUE(result.is_collide);
+  EXPECT_EQ(result.time_of_contact, 0);
+  EXPECT_TRUE(result.contact_tf1.linear() == twice.linear());
 }
 
 }  // namespace

@@ -250,6 +250,7 @@ TEST(ShapeCollide, WhatIsInsideTouchesAtTheBeginning) {
       ASSERT_EQ(result.contacts.size(), 1u);
       EXPECT_EQ(result.contacts[0].toc_hi, 0);
       EXPECT_EQ(result.contacts[0].kind, ContinuousContactKind::kShapes);
+      EXPECT_FALSE(result.contacts[0].within_tolerance);
     }
   }
   // A surface has no inside.
