@@ -97,8 +97,7 @@ namespace fcl {
 ///   an update, has more than 2^29 triangles or vertices, has a coordinate that is not
 ///   finite or a triangle index out of range. A coordinate of a rigid mesh is checked
 ///   where boxes overlap. So a bad coordinate that cannot change the answer may stay
-///   unnoticed. Of all contacts without a limit this is so for any number of threads
-///   alike.
+///   unnoticed; of all contacts without a limit, for any number of threads alike.
 /// - Shapes and octrees: a size of the shape is negative or not finite; the resolution of
 ///   the octree is not positive or not finite.
 /// - Motions: a matrix is further from a rotation than 2^-6; the reference point of an
