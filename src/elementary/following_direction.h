@@ -28,10 +28,11 @@ namespace deformable {
 /// Rounding, with u = 2^-53 and n made so long that |n(0)| = 1. Let S be the sum of the
 /// lengths of the coefficients of n, times powers of h; L bounds corners. A corner is off
 /// by 8 u L and a velocity, below 2 L, by 4 u L; products with n and their sums round by
-/// 12 u L: 24 u L S in a height, twice that times q. Sums of at most 8 terms with 16
-/// roundings, of all sizes together below 8 L S^2: 128 u L S^2, and as much for the
-/// coefficients of Bernstein. 384 u L S^2 is more than all. It is subtracted. At h = 0 it
-/// is 192 u L of the height, which has more: DistanceTolerance.
+/// 12 u L: 24 u L S in a height, twice that times q, which is at most S: 48 u L S^2. The
+/// terms of the polynomial are below 8 L S^2 together. Each is a sum with 16 roundings,
+/// 128 u L S^2; coefficients of Bernstein have 18 more, 144 u L S^2. 384 u L S^2 is more
+/// than all. It is subtracted. At h = 0 it is 192 u L of the height, which has more:
+/// DistanceTolerance.
 /// @param corners, velocities  at h = 0
 /// @param nearest  at h = 0
 /// @param size  L
