@@ -18,10 +18,12 @@ def grid_pose(roll, pitch, yaw):
 
 def is_backward(begin, end):
     """Whether FCL turns about the axis -z of the body, by the quaternion of R2 R1^T."""
-    m = [
-        [end[i, 0] * begin[j, 0] + (end[i, 1] * begin[j, 1] + end[i, 2] * begin[j, 2]) for j in range(3)]
-        for i in range(3)
-    ]
+    m = [[0.0] * 3 for _ in range(3)]
+    for i in range(3):
+        for j in range(3):
+            a, b, c = (end[i, n] * begin[j, n] for n in range(3))
+            # Eigen computes the first two rows as vectors, the last one by itself.
+            m[i][j] = (a + b) + c if i < 2 else a + (b + c)
     trace = m[0][0] + m[1][1] + m[2][2]
     assert trace < 0
     i = 1 if m[1][1] > m[0][0] else 0

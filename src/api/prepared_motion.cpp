@@ -32,22 +32,36 @@ bool isPosed(const PlacedGeometry<S>& placed) {
          !haveSameRotation(placed.beginning(), placed.end());
 }
 
+/// A vector along the axis that FCL's constructors compute for half a turn between two
+/// poses: that of Eigen's quaternion of R2 R1^T. Rounding decides its sign, so the
+/// operations are those of libfcl, in the same order: Eigen computes the first two rows
+/// of the product as vectors, the last one by itself.
+Vec halfTurnAxisOfFcl(const Pose& from, const Pose& to) {
+  double m[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double a = to.rotation[3 * i] * from.rotation[3 * j],
+                   b = to.rotation[3 * i + 1] * from.rotation[3 * j + 1],
+                   c = to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
+      m[i][j] = i < 2 ? (a + b) + c : a + (b + c);
+    }
+  int i = m[1][1] > m[0][0] ? 1 : 0;
+  if (m[2][2] > m[i][i]) i = 2;
+  const int j = (i + 1) % 3, k = (i + 2) % 3;
+  double axis[3];
+  axis[i] = 1 + m[i][i] - m[j][j] - m[k][k];
+  axis[j] = m[j][i] + m[i][j];
+  axis[k] = m[k][i] + m[i][k];
+  return (m[k][j] - m[j][k] < 0 ? -1. : 1.) * vecOf(axis);
+}
+
 /// About which axis a half turn goes: about that of the motion object, which
-/// `integrate()` follows. Between two transforms about the one that FCL's constructors
-/// compute, by the same operations in the same order: at a half turn the last rounding
-/// decides its sign.
+/// `integrate()` follows. Between two transforms about that of FCL's constructors.
 template <typename S>
 Vec halfTurnAxis(const MovingGeometry<S>& moving) {
   const double(&own)[3] = moving.axis;
   if (own[0] != 0 || own[1] != 0 || own[2] != 0) return vecOf(own);
-  Transform3<double> tf[2];
-  for (int end = 0; end < 2; ++end)
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 3; ++k)
-        tf[end].linear()(i, k) =
-            static_cast<double>(moving.pose[end].rotation[3 * i + k]);
-  const AngleAxis<double> turn(tf[1].linear() * tf[0].linear().transpose());
-  return {turn.axis().x(), turn.axis().y(), turn.axis().z()};
+  return halfTurnAxisOfFcl(toPose(moving.pose[0]), toPose(moving.pose[1]));
 }
 
 /// @param name  in errors
@@ -82,8 +96,8 @@ void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
   if (!placed.areRotations())
     throw Exception(std::string(name) + ", " + kindOf(placed.geometry()) +
                     ": a transform scales, mirrors or shears, by more than 2^-6. Give a "
-                    "rotation and a translation: normalise the rotation, for example by "
-                    "Eigen::Quaterniond(R).normalized(), or change the geometry instead");
+                    "rotation and a translation: normalise the rotation, or change the "
+                    "geometry instead");
 }
 
 template <typename S>
