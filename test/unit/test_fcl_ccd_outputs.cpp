@@ -204,6 +204,29 @@ struct Format {
   std::function<std::string(const Mesh&)> encode;
 };
 
+/// @brief An ascii PLY with its faces before its vertices.
+std::string facesFirst(const std::string& text, const Mesh& mesh) {
+  const std::string end = "end_header\n";
+  const std::size_t head = text.find("element vertex"),
+                    head_faces = text.find("element face"), head_end = text.find(end),
+                    body = head_end + end.size();
+  std::size_t faces = body;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    faces = text.find('\n', faces) + 1;
+  return text.substr(0, head) + text.substr(head_faces, head_end - head_faces) +
+         text.substr(head, head_faces - head) + end + text.substr(faces) +
+         text.substr(body, faces - body);
+}
+
+/// @brief The mesh and a triangle far away, whose ids have two digits.
+Mesh withManyVertices(Mesh mesh) {
+  while (mesh.vertices.size() < 30)
+    mesh.vertices.push_back({static_cast<double>(mesh.vertices.size()), 100, 100});
+  mesh.vertices.back()[1] = 200;
+  mesh.triangles.push_back({27, 28, 29});
+  return mesh;
+}
+
 const std::vector<Format>& formats() {
   static const std::vector<Format> all{
       {"obj", toObj},
@@ -213,12 +236,17 @@ const std::vector<Format>& formats() {
       {"ply", [](const Mesh& mesh) { return toBinaryPly<double>(mesh, false); }},
       {"ply", [](const Mesh& mesh) { return toBinaryPly<float>(mesh, true); }},
       // Vertices behind the faces: the last number may be cut.
-      {"obj", [](const Mesh& mesh) {
+      {"obj",
+       [](const Mesh& mesh) {
          const std::string text = toObj(mesh);
          const std::size_t faces = text.find("\nf ") + 1,
                            vertices = text.find("\nv ") + 1;
          return text.substr(faces) + text.substr(vertices, faces - vertices);
-       }}};
+       }},
+      {"ply", [](const Mesh& mesh) { return facesFirst(toAsciiPly(mesh), mesh); }},
+      // The last id of a face has two digits.
+      {"off", [](const Mesh& mesh) { return toOff(withManyVertices(mesh)); }},
+      {"ply", [](const Mesh& mesh) { return toAsciiPly(withManyVertices(mesh)); }}};
   return all;
 }
 
@@ -383,6 +411,78 @@ TEST_F(CcdOutputs, FollowEndsAsItSays) {
   for (const std::string arguments :
        {"f/tip0.ply f/tip1.ply", "f f", "f --weld", "none", "f --follow=x"})
     EXPECT_EQ(run("run --follow=0.1 " + arguments).exit_code, 2) << arguments;
+  // With a range of one frame.
+  for (const std::string range : {"--end 0", "--start 3 --end 3", "--end 2 --stride 3"})
+    for (const std::string word : {"f", "f/tip%d.ply", "'f/t*'"})
+      expectFailure("run " + word + " --follow " + range, "not more than one is between");
+}
+
+TEST_F(CcdOutputs, FollowTellsWhatItWaitsFor) {
+  writeFrames(3);
+  fs::create_directory(path("b"));
+  fs::copy(path("f/tip0.ply"), path("b/tip0.ply"));
+  expectFailure("run f --against b --follow=0.1",
+                "b: B needs two frames or more. There is 1, and none came");
+  const pid_t child = start(path(""), {"fcl-ccd", "run", "f/typ*", "--follow"});
+  const std::string line =
+      "fcl-ccd: waiting for frames: f/typ*: A needs two frames or more. There are 0\n";
+  awaitThat([&] { return readText(path("err.txt")) == line; });
+  kill(child, SIGINT);
+  EXPECT_EQ(exitCodeOf(child), 128 + SIGINT);
+  // A first frame that is bad, and one that is still being written.
+  cutFrame(0, 300);
+  expectFailure("run f --follow", "f/tip0.ply: ");
+  cutFrame(1, 0);
+  expectFailure("run f --follow=0.1", "and nothing came in 0.1 seconds");
+  const pid_t other = start(path(""), {"fcl-ccd", "run", "f", "--follow", "--end", "2"});
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  writeFrame(0);
+  writeFrame(1);
+  EXPECT_EQ(exitCodeOf(other), 0) << readText(path("err.txt"));
+}
+
+// Also if they are seen at the same time.
+TEST_F(CcdOutputs, FollowDoesTheStepsBeforeABadFrame) {
+  writeFrames(8);
+  const auto expected = outputsOf("run f --end 6");
+  const auto late = [&](std::size_t frame) {
+    return path("late" + std::to_string(frame));
+  };
+  for (std::size_t frame = 3; frame < 8; ++frame)
+    fs::rename(path(frameName(frame)), late(frame));
+  const pid_t child =
+      startWaitingRun({"--jobs", "100000", "--contacts", "c.csv", "--steps", "s.jsonl",
+                       "--columns", "triangles,position,normal"},
+                      2);
+  writeText(late(7), toBinaryPly<double>(edgeAlongX(), false));
+  for (std::size_t frame = 3; frame < 8; ++frame)
+    fs::rename(late(frame), path(frameName(frame)));
+  EXPECT_EQ(exitCodeOf(child), 3);
+  const std::string error = readText(path("err.txt"));
+  EXPECT_TRUE(contains(error, "f/tip7.ply: has 3 vertices")) << error;
+  EXPECT_TRUE(contains(error, "stopped after 6 of 6 steps")) << error;
+  const auto outputs = takeOutputs();
+  EXPECT_EQ(outputs.first, expected.first);
+  EXPECT_EQ(expected.second.rfind(outputs.second, 0), 0u);
+}
+
+// The names of files that are gone, and of frames that come under the name of an output.
+TEST_F(CcdOutputs, FollowNamesTheFileThatOthersChanged) {
+  writeFrames(4);
+  fs::copy(path("f"), path("b"));
+  const pid_t child = startWaitingRun({"--against", "b"}, 3);
+  fs::remove(path("b/tip3.ply"));
+  EXPECT_EQ(exitCodeOf(child), 3);
+  EXPECT_TRUE(contains(readText(path("err.txt")), "b/tip3.ply: was taken away"))
+      << readText(path("err.txt"));
+
+  const pid_t other = startWaitingRun({"--end", "4", "--paint", "f/tip4.ply"}, 3);
+  writeFrame(4);
+  const std::string frame = readText(path(frameName(4)));
+  EXPECT_EQ(exitCodeOf(other), 4);
+  EXPECT_TRUE(contains(readText(path("err.txt")), "f/tip4.ply: cannot write: another"))
+      << readText(path("err.txt"));
+  EXPECT_EQ(readText(path(frameName(4))), frame);
 }
 
 // A number that is missing is waited for; in a folder the frames come in their order.

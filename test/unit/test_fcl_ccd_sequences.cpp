@@ -301,6 +301,17 @@ TEST_F(CcdSequence, ResumeRefusesWhatAnotherRunWrote) {
   expectFailure("run f --resume --contacts f/../c.csv --steps c.csv", "also given as");
   writeText(path("n.jsonl"), linesOf(steps)[0] + "\n{\"step\":1}\n");
   expectFailure("run f --resume --steps n.jsonl", "is not step 0");
+  // Lines of an older form: with another head, and with this one.
+  const std::string without = ". Leave out --resume to overwrite";
+  for (const std::string part : {"\"format\":2,", ",\"crossing\":0", "\"vf\":0"}) {
+    std::string old = steps;
+    const std::size_t at = old.find(part);
+    ASSERT_NE(at, std::string::npos) << part;
+    old.replace(at, part.size(), part[1] == 'v' ? "\"vf\":[]" : "");
+    writeText(path("n.jsonl"), old);
+    expectFailure("run f --resume --steps n.jsonl",
+                  part[1] == 'f' ? "written with other options or by another" : without);
+  }
   EXPECT_EQ(readText(path("c.csv")), contacts);
   EXPECT_EQ(readText(path("s.jsonl")), steps);
 }
@@ -544,7 +555,7 @@ TEST_F(CcdSequence, ReadsStlOfBothKinds) {
   const std::vector<std::pair<std::string, const char*>> broken{
       {ascii.substr(0, ascii.rfind(" endloop")), "cut short"},
       {ascii.substr(0, ascii.rfind("  vertex")) + " endloop\n", "three vertices"},
-      {binary.substr(0, binary.size() - 1), "is not a word of STL"},
+      {binary.substr(0, binary.size() - 1), "The file is not ascii STL: its beginning"},
       {"solid\nendsolid\n", "no faces"},
       {"solid\nfacet\nouter loop\nvertex 0 0 nan\n", "line 4: 'nan' is not finite"}};
   for (const auto& [bytes, cause] : broken) {

@@ -30,20 +30,86 @@ FrameWatch::FrameWatch(const RunOptions& options,
     : options_(options), tell_(std::move(tell)) {}
 
 FramePaths FrameWatch::waitForFirst() {
+  // A run that is started together with its solver is not mentioned. A wrong name is.
+  constexpr std::chrono::seconds kPatience(1);
+  const Clock::time_point start = Clock::now();
+  bool is_told = false;
   while (true) {
     const Clock::time_point begin = Clock::now();
     FramePaths paths = listFrames(options_);
-    if (paths.a.size() >= 2) return paths;
+    if (endsBeforeTwo(paths))
+      throw std::runtime_error(options_.frames[0] +
+                               ": A needs two frames or more, but not more than one is "
+                               "between --start and --end");
+    const bool has_two = paths.a.size() >= 2;
+    const std::optional<FrameFault> unfinished =
+        has_two ? firstUnfinished(paths) : std::nullopt;
+    if (has_two && !unfinished) return paths;
     if (stopSignal() != 0)
       throw StoppedBySignal(
           "stopped by a signal before the first step. No file was written");
-    if (isIdle(paths.a.size(), ""))
-      throw std::runtime_error(options_.frames[0] +
-                               ": A needs two frames or more. There are " +
-                               std::to_string(paths.a.size()) + ", and none came in " +
-                               numberText(*options_.follow, 6) + " seconds");
+    const std::string cause = unfinished ? unfinished->cause : shortage(paths);
+    const std::string state =
+        unfinished
+            ? stateOf(paths.a[0]) + (paths.b.empty() ? "" : ' ' + stateOf(paths.b[0]))
+            : cause;
+    if (isIdle(paths.a.size(), state))
+      throw std::runtime_error(
+          cause + (unfinished ? ", and nothing came in " : ", and none came in ") +
+          numberText(*options_.follow, 6) + " seconds");
+    if (unfinished) tellOnce(*unfinished);
+    if (!has_two && !is_told && Clock::now() - start >= kPatience) {
+      is_told = true;
+      tell_("waiting for frames: " + cause);
+    }
     pause(begin);
   }
+}
+
+bool FrameWatch::endsBeforeTwo(const FramePaths& paths) const {
+  const FrameRange& range = options_.range;
+  if (!range.end) return false;
+  const long long first = paths.a.empty() ? range.start.value_or(0) : paths.numbers.first;
+  return *range.end - first < range.stride;
+}
+
+std::string FrameWatch::shortage(const FramePaths& paths) const {
+  // The lists of A and B are as long as the shorter one.
+  const auto count = [&](const std::vector<std::string>& words) {
+    return listFrames(words, options_.range).size();
+  };
+  std::size_t number = count(options_.frames);
+  const bool is_b = number >= 2 && !options_.against.empty() && !paths.b_is_still;
+  if (is_b) number = count(options_.against);
+  const std::string& word = is_b ? options_.against[0] : options_.frames[0];
+  return word + ": " + (is_b ? "B" : "A") + " needs two frames or more. There " +
+         (number == 1 ? "is " : "are ") + std::to_string(number);
+}
+
+std::optional<FrameFault> FrameWatch::firstUnfinished(const FramePaths& paths) const {
+  const auto faultOf = [](const std::string& path) -> std::optional<FrameFault> {
+    try {
+      readPolygonMesh(path);
+    } catch (const std::runtime_error& error) {
+      return FrameFault{0, error.what()};
+    }
+    return std::nullopt;
+  };
+  const auto isRegularMesh = [](const std::string& path) {
+    struct stat status {};
+    return stat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) &&
+           isMeshFormat(extensionOf(path));
+  };
+  for (const auto* frames : {&paths.a, &paths.b}) {
+    if (frames->size() < 2) continue;  // B stands still, or there is none
+    const std::optional<FrameFault> fault = faultOf((*frames)[0]);
+    if (!fault) continue;
+    // A frame with a whole one behind it is not half-written.
+    if (!isRegularMesh((*frames)[0]) || !faultOf((*frames)[1]))
+      throw std::runtime_error(fault->cause);
+    return fault;
+  }
+  return std::nullopt;
 }
 
 bool FrameWatch::waitForMore(FramePaths& paths, RunInputs& inputs,

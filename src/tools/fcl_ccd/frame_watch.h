@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,13 @@ namespace fcl_ccd {
 /// for the time of options.follow: no file, and no byte of the file that is next.
 class FrameWatch {
  public:
-  /// @param tell  is called with a line for the user if a frame is waited for that was
-  /// begun and does not grow.
+  /// @param tell  is called with a line for the user if the first frames do not come, or
+  /// if a frame is waited for that was begun and does not grow.
   FrameWatch(const RunOptions& options, std::function<void(const std::string&)> tell);
 
-  /// @brief Waits for the first two frames.
-  /// @throws std::runtime_error if they do not come; StoppedBySignal.
+  /// @brief Waits for two frames, of which the first is whole.
+  /// @throws std::runtime_error if they do not come, or cannot come (range.end), or if
+  /// the first one cannot be read and the second one can; StoppedBySignal.
   FramePaths waitForFirst();
 
   /// @brief Waits for frames and adds those that are whole.
@@ -37,6 +39,11 @@ class FrameWatch {
   /// @brief Notes what there is now. Returns whether it is time to give up.
   bool isIdle(std::size_t num_frames, const std::string& next);
   bool isLast(const FramePaths& paths) const;
+  bool endsBeforeTwo(const FramePaths& paths) const;
+  /// @brief Why the first frames are not there yet: "A needs two frames or more ...".
+  std::string shortage(const FramePaths& paths) const;
+  /// @brief The first frame that is still being written.
+  std::optional<FrameFault> firstUnfinished(const FramePaths& paths) const;
   void tellOnce(const FrameFault& fault);
   void pause(Clock::time_point begin) const;
 

@@ -9,6 +9,7 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -23,7 +24,7 @@ namespace fcl_ccd {
 /// is begun; items that were begun are finished and taken. An exception of make(i) is
 /// thrown after all items before i have been taken. An exception of take() is thrown at
 /// once. At most 2 * num_workers results are kept. With one worker there is no other
-/// thread.
+/// thread. If the system gives fewer threads, those that there are do the work.
 template <typename Result, typename Make, typename Take, typename Pause>
 class InOrder {
  public:
@@ -38,12 +39,9 @@ class InOrder {
         pause_(pause) {}
 
   void run() {
-    if (num_workers_ == 1) {
-      for (; next_ < end_ && pause_(); ++next_)
-        take_(next_, make_(next_, std::size_t{0}));
-      return;
-    }
+    if (num_workers_ <= 1) return runHere();
     const Workers workers(*this);
+    if (workers.empty()) return runHere();
     std::unique_lock<std::mutex> lock(mutex_);
     while (!isDone()) {
       const auto found = results_.find(taken_);
@@ -67,6 +65,10 @@ class InOrder {
   }
 
  private:
+  void runHere() {
+    for (; next_ < end_ && pause_(); ++next_) take_(next_, make_(next_, std::size_t{0}));
+  }
+
   struct Outcome {
     std::optional<Result> result;
     std::exception_ptr error;
@@ -76,8 +78,13 @@ class InOrder {
   class Workers {
    public:
     explicit Workers(InOrder& all) : all_(all) {
-      for (std::size_t i = 0; i < all_.num_workers_; ++i)
-        threads_.emplace_back([this, i] { all_.work(i); });
+      threads_.reserve(all_.num_workers_);
+      try {
+        for (std::size_t i = 0; i < all_.num_workers_; ++i)
+          threads_.emplace_back([this, i] { all_.work(i); });
+      } catch (const std::system_error&) {
+        // The system gives no more threads.
+      }
     }
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
@@ -89,6 +96,8 @@ class InOrder {
       all_.changed_.notify_all();
       for (std::thread& thread : threads_) thread.join();
     }
+
+    bool empty() const { return threads_.empty(); }
 
    private:
     InOrder& all_;

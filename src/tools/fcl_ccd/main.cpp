@@ -254,7 +254,9 @@ CLI::Validator timeLimit() {
   return {[](std::string& text) {
             double seconds = -1;
             const bool valid = CLI::detail::lexical_cast(text, seconds) && seconds >= 0;
-            return valid ? std::string() : "'" + text + "' is not a number of seconds";
+            return valid ? std::string()
+                         : "'" + text + "' is not a number of seconds. Write the " +
+                               "frames before --follow";
           },
           ""};
 }

@@ -15,6 +15,7 @@
 
 #include "binary_ply.h"
 #include "file_bytes.h"
+#include "ply_header.h"
 #include "text_scan.h"
 #include "triangulate.h"
 #include "weld.h"
@@ -74,6 +75,28 @@ std::string tailOf(const std::string& path) {
 
 bool endsInALine(const std::string& tail) {
   return !tail.empty() && tail.back() != '\n' && tail.back() != '\r';
+}
+
+/// "1 vertex".
+std::string countedVertices(std::size_t number) {
+  return std::to_string(number) + (number == 1 ? " vertex" : " vertices");
+}
+
+/// @brief Whether a file has text and tells how many vertices and faces it has.
+/// @param[out] ends_with_vertices  whether the vertices are the last part of the file
+bool isTextWithCounts(const std::string& path, bool& ends_with_vertices) {
+  ends_with_vertices = false;
+  if (!isPly(path)) return extensionOf(path) == "off";
+  try {
+    const std::string bytes = readRegularFile(path);
+    std::string_view rest = bytes;
+    const PlyHeader header = takePlyHeader(rest);
+    for (const PlyElement& element : header.elements)
+      if (element.count > 0) ends_with_vertices = element.isVertex();
+    return header.format == PlyFormat::kAscii;
+  } catch (const std::runtime_error&) {
+    return false;  // another program has changed it
+  }
 }
 
 /// @brief Whether faces are the first ones of others. The last one may have lost corners,
@@ -161,8 +184,8 @@ Vertices MeshSequence::read(std::size_t frame) const {
 Vertices MeshSequence::readWhole(const std::string& path) const {
   PolygonMesh mesh = readPolygonMesh(path);
   if (mesh.vertices.size() != vertices_.size())
-    throw std::runtime_error(path + ": has " + std::to_string(mesh.vertices.size()) +
-                             " vertices, but " + paths_[0] + " has " +
+    throw std::runtime_error(path + ": has " + countedVertices(mesh.vertices.size()) +
+                             ", but " + paths_[0] + " has " +
                              std::to_string(vertices_.size()) +
                              ". All frames need the same vertices");
   if (mesh.faces != faces_)
@@ -219,20 +242,43 @@ bool MeshSequence::mayBeginAFrame(std::size_t frame) const {
   if (mesh.vertices.size() == vertices_.size() && mesh.faces == faces_ &&
       mesh.free == free_)
     return true;
-  // Other files tell how many vertices and faces they have, or have an end.
-  if (extensionOf(path) != "obj" || mesh.vertices.size() > vertices_.size()) return false;
+  const bool is_obj = extensionOf(path) == "obj";
   const bool is_cut = endsInALine(tailOf(path));
-  return areFirstOf(mesh.faces, faces_, is_cut) &&
+  // Other files tell how many vertices and faces they have, or have an end: only their
+  // last number can be cut without being missed. (The last part of a strip may then have
+  // a repeated corner, and be no face.)
+  bool ends_with_vertices = false;
+  if (!is_obj && (!is_cut || endsInALine(tailOf(paths_[0])) ||
+                  !isTextWithCounts(path, ends_with_vertices) ||
+                  mesh.vertices.size() != vertices_.size() ||
+                  mesh.faces.size() + 1 < faces_.size() ||
+                  mesh.free.edges.size() != free_.edges.size()))
+    return false;
+  return mesh.vertices.size() <= vertices_.size() &&
+         areFirstOf(mesh.faces, faces_, is_cut) &&
          areFirstOf(mesh.free.edges, free_.edges, is_cut) &&
          areFirstOf(mesh.free.points, free_.points, is_cut);
 }
 
 bool MeshSequence::mayEndInACutNumber(std::size_t frame) const {
-  if (extensionOf(paths_[frame]) != "obj") return false;
-  const std::string tail = tailOf(paths_[frame]);
+  const std::string& path = paths_[frame];
+  const std::string tail = tailOf(path);
   if (!endsInALine(tail) || endsInALine(tailOf(paths_[0]))) return false;
+  bool ends_with_vertices = false;
+  if (extensionOf(path) != "obj")
+    return isTextWithCounts(path, ends_with_vertices) && ends_with_vertices;
   const std::string line = tail.substr(tail.find_last_of("\n\r") + 1);
   return line.size() > 1 && line[0] == 'v' && (line[1] == ' ' || line[1] == '\t');
+}
+
+void MeshSequence::shorten(std::size_t size) {
+  paths_.resize(size);
+  // A frame that comes later may have this number and be another one.
+  const std::lock_guard<std::mutex> lock(kept_->mutex);
+  const auto first = kept_->frames.lower_bound(size);
+  for (auto at = first; at != kept_->frames.end(); ++at)
+    kept_->bytes -= at->second.size() * sizeof at->second[0];
+  kept_->frames.erase(first, kept_->frames.end());
 }
 
 void MeshSequence::announce(std::size_t frame) const {

@@ -46,8 +46,8 @@ class MeshSequence {
   /// file that another program may still be writing. Reads the frame.
   bool mayBeginAFrame(std::size_t frame) const;
 
-  /// @brief Whether a frame that fits may end in a number that is cut: it is an OBJ file
-  /// that ends in the line of a vertex, without the end of line that the first frame has.
+  /// @brief Whether a frame that fits may end in a number that is cut: it is a text that
+  /// ends in the line of a vertex, without the end of line that the first frame has.
   bool mayEndInACutNumber(std::size_t frame) const;
 
   /// @brief Adds frames that came later. They are not checked.
@@ -56,7 +56,7 @@ class MeshSequence {
   }
 
   /// @brief Keeps the first frames only, at least one.
-  void shorten(std::size_t size) { paths_.resize(size); }
+  void shorten(std::size_t size);
 
   /// @brief Tells the operating system that the frame will be read soon.
   void announce(std::size_t frame) const;

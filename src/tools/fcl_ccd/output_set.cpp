@@ -42,6 +42,15 @@ void print(std::string_view text, bool to_stderr) {
                      errno);
 }
 
+void requireNotAmong(const std::vector<std::string>& inputs, const std::string& output) {
+  std::error_code error;
+  if (output.empty() || !fs::is_regular_file(output, error)) return;
+  for (const std::string& input : inputs)
+    if (isSameFile(output, input))
+      throw WriteError(output + ": cannot write: another program wrote the frame " +
+                       input + " under this name");
+}
+
 void OutputSet::reserve(const std::string& path) {
   if (path.empty()) return;
   const auto taken =

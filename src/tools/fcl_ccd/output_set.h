@@ -19,6 +19,10 @@ void print(std::string_view text);
 /// @brief Prints to stdout, or to stderr if stdout has an output.
 void print(std::string_view text, bool to_stderr);
 
+/// @brief Throws WriteError if an output that is written at the end is a file that came
+/// as an input meanwhile.
+void requireNotAmong(const std::vector<std::string>& inputs, const std::string& output);
+
 /// @brief The output files of one run of the program. Each file has one name. Either all
 /// files that it opens appear, or none.
 class OutputSet {

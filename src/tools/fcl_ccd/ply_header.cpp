@@ -108,8 +108,11 @@ void requireMesh(const PlyHeader& header) {
     }
   }
   if (vertex_elements != 1) throw std::runtime_error("expected one element 'vertex'");
-  if (face_elements > 1 || face_elements + others == 0)
-    throw std::runtime_error("expected one element 'face' (or 'tristrips', or 'edge')");
+  if (face_elements > 1) throw std::runtime_error("expected one element 'face'");
+  if (face_elements + others == 0)
+    throw std::runtime_error(
+        "expected an element 'face', 'tristrips' or 'edge'. Free points are 'p' "
+        "statements of an OBJ file");
 }
 
 /// @return whether the header ends with this line.

@@ -33,7 +33,9 @@ std::string hindrance(const Json& other, const Readiness& own) {
   if (other.at("cause") != "") return other.at("cause");
   if (other.at("num_steps") != own.num_steps)
     return counted(other.at("num_steps"), "step") + ", but " +
-           std::to_string(own.num_steps) + " on rank 0. All ranks need the same files";
+           std::to_string(own.num_steps) +
+           " on rank 0. All ranks need the same files. "
+           "If more frames are still to come, name the last one with --end";
   return "";
 }
 

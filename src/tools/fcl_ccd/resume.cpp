@@ -117,16 +117,22 @@ std::vector<StepLine> scanSteps(const GrowingOutputs& outputs) {
     if (line.is_object() && line.contains("summary")) break;
     const std::size_t step = steps.size();
     const std::size_t number = outputs.numbers[step];
-    if (!line.is_object() || line.value("step", Json()) != number)
+    const auto refuse = [&] {
       throw std::runtime_error(path + ": " + fcl_ccd::quoted(file.line()) +
                                " is not step " + std::to_string(number) +
                                ". Leave out --resume to overwrite the file");
+    };
+    if (!line.is_object() || line.value("step", Json()) != number) refuse();
     if (step >= outputs.num_steps ||
         line.value("files", Json()) != namesInJson(outputs.filesOf(step)))
       throw std::runtime_error(path + ": step " + std::to_string(number) +
                                " was of other frames than it is now. Give --resume the " +
                                "frames and options of the run that it continues");
-    steps.push_back({file.end(), summaryOf(line)});
+    try {
+      steps.push_back({file.end(), summaryOf(line)});
+    } catch (const Json::exception&) {
+      refuse();
+    }
   }
   return steps;
 }

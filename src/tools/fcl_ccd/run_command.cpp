@@ -49,13 +49,24 @@ Parallelism parallelismOf(const RunOptions& options, bool is_alone,
                                   : std::size_t{times_count || !is_alone ? 1u : 0u};
   if (parallelism.jobs == 0) parallelism.jobs = cores;
   parallelism.jobs = std::min(parallelism.jobs, num_steps);
+  // The number of steps of --follow is not known. More jobs than cores read frames while
+  // others wait for a disk; four a core are plenty. 64: also on a small machine a number
+  // that is meant is taken as it is.
+  constexpr std::size_t kJobsOfCore = 4, kLeastLimit = 64;
+  if (options.follow)
+    parallelism.jobs =
+        std::min(parallelism.jobs, std::max(kJobsOfCore * cores, kLeastLimit));
   return parallelism;
 }
 
 /// @brief The first line of the list of steps: the options on which answers depend.
 std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
   constexpr const char* kQueries[] = {"all", "first", "any"};
+  // The form of the lines. A higher one for each change: lines of another form cannot be
+  // continued. (1, without crossings in "contacts", was not written.)
+  constexpr int kFormat = 2;
   Json head = {{"fcl_ccd", FCL_CCD_VERSION},
+               {"format", kFormat},
                {"query", kQueries[static_cast<int>(options.settings.query)]},
                {"toc_err", options.settings.toc_err},
                {"self", options.settings.self},
@@ -119,7 +130,8 @@ Readiness readinessOf(const Preparation& run, const std::string& command) {
 class Run {
  public:
   Run(const RunOptions& options, const Preparation& prepared)
-      : prepared_(prepared),
+      : options_(options),
+        prepared_(prepared),
         num_steps_(prepared.num_listed_steps),
         num_done_(prepared.resume_point.step),
         outputs_(options, *prepared.outputs, prepared.resume_point.summary) {}
@@ -170,6 +182,7 @@ class Run {
     progress_.clear();
     try {
       outputs_.rollBack();
+      if (options_.follow) requireNoFrameIsOutput();
       outputs_.finish(code == 0);
       outputs_.printSummary();
     } catch (const WriteError& error) {
@@ -177,6 +190,23 @@ class Run {
     }
     if (code != 0) report(cause);
     return code;
+  }
+
+  /// Frames that came since the outputs were reserved may have the name of one. Also
+  /// those count that were not used.
+  void requireNoFrameIsOutput() const {
+    FramePaths listed;
+    try {
+      listed = listFrames(options_);
+    } catch (const std::runtime_error&) {
+      return;  // a folder that is gone has no frames
+    }
+    const FramePaths* const lists[] = {&prepared_.paths, &listed};
+    for (const FramePaths* list : lists)
+      for (const std::string* path : {&options_.json_path, &options_.paint_path}) {
+        requireNotAmong(list->a, *path);
+        requireNotAmong(list->b, *path);
+      }
   }
 
   int endAfter(const WriteError& error) {
@@ -196,6 +226,7 @@ class Run {
             : ("; they are in " + where + ". --resume continues from there").c_str());
   }
 
+  const RunOptions& options_;
   const Preparation& prepared_;
   std::size_t num_steps_;
   std::size_t num_done_;
@@ -271,7 +302,10 @@ int runAlone(const RunOptions& options) {
   Run* begun = nullptr;
   std::optional<FrameWatch> watch;
   if (options.follow)
-    watch.emplace(options, [&](const std::string& line) { begun->tell(line); });
+    watch.emplace(options, [&](const std::string& line) {
+      if (begun == nullptr) return report({line});
+      begun->tell(line);
+    });
   prepared.paths = watch ? watch->waitForFirst() : listFrames(options);
   reserveOutputs(options, prepared);
   prepareInputs(options, true, prepared);

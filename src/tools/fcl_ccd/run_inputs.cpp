@@ -2,6 +2,8 @@
 #include "run_inputs.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "in_order.h"
 #include "mesh/vertex_weld.h"
@@ -32,9 +34,11 @@ std::optional<FrameFault> findFault(const MeshSequence& meshes, std::size_t begi
   // Many frames are checked in one task, since a check takes less time than the change to
   // another thread.
   constexpr std::size_t kBlock = 32;
+  if (meshes.size() <= begin) return std::nullopt;
+  const std::size_t num_blocks = (meshes.size() - begin + kBlock - 1) / kBlock;
   std::optional<FrameFault> first;
   inOrder<std::optional<FrameFault>>(
-      0, (meshes.size() - begin + kBlock - 1) / kBlock, num_workers,
+      0, num_blocks, std::min(num_workers, num_blocks),
       [&](std::size_t block, std::size_t) -> std::optional<FrameFault> {
         std::size_t frame = begin + block * kBlock;
         const std::size_t end = std::min(meshes.size(), frame + kBlock);
@@ -118,14 +122,18 @@ MeshSequence openSequence(const std::vector<std::string>& paths,
   return meshes;
 }
 
-/// Expects that the frames begin with those that were there before.
-void requireSameBeginning(const std::vector<std::string>& before,
-                          const std::vector<std::string>& now) {
+/// Whether the frames begin with those that were there before.
+/// @throws std::runtime_error if they do not, and a file of theirs is the cause. A list
+/// of A may also be shorter because a file of B is missing, or the other way round.
+bool haveSameBeginning(const std::vector<std::string>& before,
+                       const std::vector<std::string>& now) {
   const auto [old, other] =
       std::mismatch(before.begin(), before.end(), now.begin(), now.end());
-  if (old == before.end()) return;
-  if (std::find(now.begin(), now.end(), *old) == now.end())
+  if (old == before.end()) return true;
+  std::error_code error;
+  if (!std::filesystem::exists(*old, error))
     throw std::runtime_error(*old + ": was taken away while the run used it");
+  if (std::find(now.begin(), now.end(), *old) == now.end()) return false;
   throw std::runtime_error(*other +
                            ": came when later frames had been used. With a name " +
                            "such as frame_%04d.ply the run waits for a missing number");
@@ -196,26 +204,38 @@ RunInputs openInputs(FramePaths& paths, const RunOptions& options,
 
 void addFrames(FramePaths& paths, RunInputs& inputs, const FramePaths& listed,
                std::size_t num_workers) {
-  requireSameBeginning(paths.a, listed.a);
-  if (!paths.b_is_still) requireSameBeginning(paths.b, listed.b);
+  // If it is not known why frames are missing, the next list tells it.
+  const bool has_a = haveSameBeginning(paths.a, listed.a);
+  const bool has_b = paths.b_is_still || haveSameBeginning(paths.b, listed.b);
+  if (!has_a || !has_b) return;
   const std::size_t begin = paths.a.size();
   const bool b_moves = !paths.b_is_still && inputs.b;
+  const auto shorten = [&](std::size_t num_frames) {
+    inputs.a.shorten(num_frames);
+    if (b_moves) inputs.b->shorten(num_frames);
+  };
   std::optional<FrameFault> fault;
   const auto addTo = [&](MeshSequence& meshes, const std::vector<std::string>& all) {
     meshes.add({all.begin() + static_cast<std::ptrdiff_t>(begin), all.end()});
-    fault = earlier(fault, findFault(meshes, begin, num_workers));
-    if (fault && fault->frame < meshes.size() && !meshes.mayBeginAFrame(fault->frame))
-      throw std::runtime_error(fault->cause);
+    const std::optional<FrameFault> found = findFault(meshes, begin, num_workers);
+    // Steps before a bad frame are done first. Then it is the next one.
+    if (found && found->frame == begin && !meshes.mayBeginAFrame(begin))
+      throw std::runtime_error(found->cause);
+    fault = earlier(fault, found);
   };
-  addTo(inputs.a, listed.a);
-  if (b_moves) addTo(*inputs.b, listed.b);
+  try {
+    addTo(inputs.a, listed.a);
+    if (b_moves) addTo(*inputs.b, listed.b);
+  } catch (const StoppedBySignal&) {
+    shorten(begin);
+    return;
+  }
   const FrameNumbers numbers = paths.numbers;
   paths = listed;
   paths.numbers = numbers;
   inputs.unfinished = fault;
   if (!fault) return;
-  inputs.a.shorten(fault->frame);
-  if (b_moves) inputs.b->shorten(fault->frame);
+  shorten(fault->frame);
   paths.shorten(fault->frame);
 }
 

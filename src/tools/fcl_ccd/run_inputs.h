@@ -70,10 +70,12 @@ RunInputs openInputs(FramePaths& paths, const RunOptions& options,
                      std::size_t num_workers, std::vector<std::string>& notes);
 
 /// @brief Adds the frames that came since. It ends before the first one that is still
-/// being written, which becomes inputs.unfinished.
+/// being written, or does not fit; this one becomes inputs.unfinished. Adds nothing if a
+/// signal came.
 /// @param paths   of the run; is extended.
 /// @param listed  all frames that there are now.
-/// @throws std::runtime_error if another file does not fit, or came among earlier ones.
+/// @throws std::runtime_error if the next frame does not fit and none is being written,
+/// or if a file came among earlier ones or is gone.
 void addFrames(FramePaths& paths, RunInputs& inputs, const FramePaths& listed,
                std::size_t num_workers);
 

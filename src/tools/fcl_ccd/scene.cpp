@@ -223,6 +223,8 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   };
   if (!settings_.all_crossings && result.initially_crossing)
     result.crossings = {result.crossing};
+  // One is kept of them: the first by its ids.
+  if (is_any && result.crossings.size() > 1) result.crossings.resize(1);
   step.contacts.reserve(step.contacts.size() + result.crossings.size() +
                         result.contacts.size());
   for (const auto* found : {&result.crossings, &result.contacts})

@@ -61,8 +61,8 @@ void requireWholeBinary(std::string_view file) {
     throw std::runtime_error(
         "the file ends before facet " + std::to_string(whole) + " of " +
         std::to_string(numFacets(file)) +
-        " (counted from 0): it is cut short. (It is no ascii file: a byte of its head is "
-        "not a word of STL)");
+        " (counted from 0): it is cut short. (The file is not ascii STL: its beginning "
+        "has bytes that are not text)");
   if (numFacets(file) == 0 && whole > 0)
     throw std::runtime_error("the title promises no facets, but " +
                              std::to_string(file.size() - kBodyBegin) +
@@ -82,8 +82,8 @@ Vertices parseBinary(std::string_view file) {
 
 /// Reads the words of `solid NAME facet normal X Y Z outer loop vertex X Y Z ... endloop
 /// endfacet ... endsolid NAME`, in any case of letters. A file may hold several solids.
-/// Each of them has its end, so that a file that is cut short is noticed. Words may stand
-/// on lines as they like, but a name ends with its line.
+/// Each of them has its end, so that a file that is cut short is noticed. The numbers of
+/// a vertex or normal are on the line of its word, and a name ends with its line.
 class AsciiStl {
  public:
   explicit AsciiStl(std::string_view file) : cursor_(file) {}
