@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Writes a C++ file that defines each name that some libraries export, see src/CMakeLists.txt.
+# Writes a C++ file that defines each name that some libraries export, see
+# cmake/link_library.cmake.
 #   cmake -DNM=nm -DLIBRARIES=lib1.so,lib2.so -DOUTPUT=names.cpp -P link_names.cmake
 string(REPLACE "," ";" LIBRARIES "${LIBRARIES}")
 set(lines "")

@@ -40,7 +40,9 @@ try_compiler() {
     -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DFCL_CCD_WERROR=ON \
     -DFCL_CCD_BUILD_BENCHMARKS=OFF -DFCL_CCD_BUILD_PYTHON=OFF >"$dir.log" ||
     { cat "$dir.log"; return 1; }
-  cmake --build "$dir" --target fcl_ccd fcl-ccd examples/all fcl_ccd_test_oracle "${tests[@]}"
+  # The doors install the package, so they need all that is installed.
+  cmake --build "$dir" --target fcl_ccd fcl_with_ccd fcl-ccd examples/all fcl_ccd_test_oracle \
+    "${tests[@]}"
   local test
   for test in "${tests[@]}"; do "$dir/test/unit/$test" --gtest_brief=1; done
   ctest --test-dir "$dir" -L examples --output-on-failure

@@ -206,7 +206,12 @@ door_find_library() { # CMake's find_path and find_library; the program has no o
 # Where the compiler looks for headers by itself, but the linker looks for stock FCL first.
 # There g++ -lfcl is stock FCL, headers and library; what names the prefix is this package.
 door_system_prefix() {
-  local root=$work/system_root cflags libs
+  local root=$work/system_root libs
+  if [ -e /usr/local/include/fcl/config.h ]; then
+    # There the installation refuses this prefix: door_taken_prefix.
+    echo "Stock FCL is in /usr/local, so this door cannot be tried on this machine"
+    return
+  fi
   DESTDIR=$root cmake --install "$build_dir" --prefix /usr/local >"$work/system_prefix.log"
   local system=$root/usr/local
   [ ! -e "$system/include/fcl" ] || fail "g++ finds headers in /usr/local/include"
