@@ -139,7 +139,7 @@ std::vector<Pair> allPairs() {
 class ContactPoses : public testing::TestWithParam<Pair> {};
 
 TEST_P(ContactPoses, AreThoseAtWhichObjectsOverlap) {
-  constexpr int kHits = rounds(70);
+  constexpr int kHits = rounds(200);
   const Pair& pair = GetParam();
   for (int type = 0; type < kNumMotions; ++type) {
     SCOPED_TRACE(type);
