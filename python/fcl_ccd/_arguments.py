@@ -22,14 +22,28 @@ if TYPE_CHECKING:
 _WANTED = {"f": "numbers", "i": "integers"}
 
 
-class TriangleMesh(Protocol):
-    """A mesh of another package, for example a trimesh.Trimesh."""
+class _MeshOfFaces(Protocol):
+    """A mesh as a trimesh.Trimesh."""
 
     @property
     def vertices(self) -> Any: ...
 
     @property
     def faces(self) -> Any: ...
+
+
+class _MeshOfTriangles(Protocol):
+    """A mesh as Open3D's TriangleMesh."""
+
+    @property
+    def vertices(self) -> Any: ...
+
+    @property
+    def triangles(self) -> Any: ...
+
+
+# A mesh of another package.
+TriangleMesh = Union[_MeshOfFaces, _MeshOfTriangles]
 
 
 class Built:

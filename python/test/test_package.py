@@ -72,12 +72,21 @@ def test_types(tmp_path):
 import numpy as np
 import fcl_ccd
 
+class Trimesh:
+    vertices, faces = np.zeros((3, 3)), np.array([(0, 1, 2)])
+
+class Open3d:
+    vertices, triangles = [(0.0, 0.0, 0.0)], [(0, 1, 2)]
+
 mesh = fcl_ccd.DeformableMesh(np.zeros((3, 3)), [(0, 1, 2)])
 mesh.update(np.ones((3, 3)))
 time: float = fcl_ccd.collide(mesh, mesh, np.eye(4), (np.eye(4), np.eye(4))).time_of_contact
 done: bool = fcl_ccd.self_candidates(mesh, lambda block: None)
 number: int = fcl_ccd.self_candidates(mesh).size
 first = fcl_ccd.collide(mesh, mesh, query="first")
+fcl_ccd.DeformableMesh(Trimesh()).update(Open3d())
+fcl_ccd.collide(fcl_ccd.RigidMesh(Open3d()), Open3d())
+fcl_ccd.collide(fcl_ccd.RigidMesh(Trimesh()), Trimesh())
 fcl_ccd.self_collide(3)
 fcl_ccd.self_collide(mesh, query="last")
 fcl_ccd.CollisionManager().collide(query="last")
@@ -94,8 +103,8 @@ fcl_ccd.CollisionManager().collide(query="last")
         cwd=package.parent,
     )
     of_mesh, *of_queries = [line for line in found.stdout.splitlines() if ": error: " in line]
-    assert "program.py:11:" in of_mesh and 'incompatible type "int"' in of_mesh, found.stdout
-    for line, error in zip((12, 13), of_queries):
+    assert "program.py:20:" in of_mesh and 'incompatible type "int"' in of_mesh, found.stdout
+    for line, error in zip((21, 22), of_queries):
         assert f"program.py:{line}:" in error and "Literal['last']" in error, found.stdout
     assert len(of_queries) == 2, found.stdout
 
