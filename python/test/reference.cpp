@@ -270,6 +270,28 @@ std::unique_ptr<fcl::MotionBased> readMotion() {
   throw std::runtime_error("no such motion: " + kind);
 }
 
+void print(const Transform3d& tf) {
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column)
+      std::printf("%a ", tf.matrix()(row, column));
+  std::printf("\n");
+}
+
+/// FCL's own motions between two poses, as they interpolate, at t = 0.5.
+void printHalfway() {
+  const Transform3d begin = readPose(), end = readPose();
+  const fcl::ScrewMotion<double> screw(begin, end);
+  const fcl::InterpMotion<double> turn(begin.linear(), begin.translation(), end.linear(),
+                                       end.translation(), Vector3d::Zero());
+  const fcl::MotionBase<double>* const motions[] = {&screw, &turn};
+  for (const auto* motion : motions) {
+    Transform3d tf;
+    motion->integrate(0.5);
+    motion->getCurrentTransform(tf);
+    print(tf);
+  }
+}
+
 void print(const fcl::ContinuousContactd& c) {
   std::printf("%d %ld %ld", static_cast<int>(c.kind), static_cast<long>(c.b1),
               static_cast<long>(c.b2));
@@ -277,13 +299,6 @@ void print(const fcl::ContinuousContactd& c) {
   std::printf(" %d %d %a %a", c.first_on_o1, c.within_tolerance, c.toc_lo, c.toc_hi);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.pos[k]);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.normal[k]);
-  std::printf("\n");
-}
-
-void print(const Transform3d& tf) {
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column)
-      std::printf("%a ", tf.matrix()(row, column));
   std::printf("\n");
 }
 
@@ -407,6 +422,8 @@ class Commands {
       Transform3d tf[4];
       for (auto& t : tf) t = readPose();
       fcl::continuousCandidates(o1, tf[0], tf[1], o2, tf[2], tf[3], kPrint, readNumber());
+    } else if (command == "halfway") {
+      printHalfway();
     } else if (command == "time_step") {
       timeStep();
     } else if (command == "time_vf") {
