@@ -42,6 +42,16 @@ class DeformableMesh(Mesh):
         edges: NDArray[np.int64],
         points: NDArray[np.int64],
     ) -> None: ...
+    def _parts(
+        self,
+    ) -> Tuple[
+        NDArray[np.float64],
+        NDArray[np.int64],
+        NDArray[np.int64],
+        NDArray[np.int64],
+        int,
+        NDArray[np.float64],
+    ]: ...
     @property
     def num_vertices(self) -> int: ...
     @property

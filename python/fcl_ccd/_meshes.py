@@ -101,11 +101,12 @@ class DeformableMesh(Copied, _core.DeformableMesh):
         self._update(previous, current)
 
     def _built_from(self) -> Tuple[Any, ...]:
-        return self.previous, self.triangles, self.edges, self.points, self.num_threads
+        """The arguments, then the current frame."""
+        return self._parts()  # all of one step, also while another thread gives the next
 
     def __reduce_ex__(self, protocol: Any) -> Tuple[Any, ...]:
-        rebuilt, arguments, state = super().__reduce_ex__(protocol)
-        return rebuilt, arguments, (state, self.current)
+        rebuilt, (of, (*given, current)), state = super().__reduce_ex__(protocol)
+        return rebuilt, (of, tuple(given)), (state, current)
 
     def __setstate__(self, given: Tuple[Any, ...]) -> None:
         state, current = given

@@ -132,7 +132,8 @@ class Result(_arguments.Built):
     times : dict, wall time of the parts of the query in seconds
     contact_tf1, contact_tf2 : (4, 4) float64
         Poses of o1 and o2 at which they overlap, up to toc_err after the first contact;
-        without a collision, at t = 1.
+        without a collision, at t = 1. With min_distance they are still apart there, and
+        meshes that only touch may not overlap.
     """
 
     is_collide: bool

@@ -125,6 +125,14 @@ py::array pointsOf(const fcl::DeformableBVHModel<>& model) {
   return out;
 }
 
+/// What a copy is built from, and its current frame.
+py::tuple partsOf(const fcl::DeformableBVHModel<>& model) {
+  return py::make_tuple(copyOf(model.prev_vertices, model.num_vertices),
+                        copyOf(model.tri_indices, model.num_tris), edgesOf(model),
+                        pointsOf(model), model.numThreads(),
+                        copyOf(model.vertices, model.num_vertices));
+}
+
 /// A property that reads the model, while no update runs.
 template <typename MeshType, typename Read>
 auto readModel(Read&& read) {
@@ -236,6 +244,7 @@ void bindMeshes(py::module_& module) {
       .def("_update_topology", &DeformableMesh::updateTopology, py::arg("triangles"),
            py::arg("previous"), py::arg("current"), py::arg("origins"), py::arg("edges"),
            py::arg("points"))
+      .def("_parts", readModel<DeformableMesh>(&partsOf))
       .def_property_readonly(
           "num_vertices",
           readModel<DeformableMesh>([](const Deformable& m) { return m.num_vertices; }))

@@ -113,6 +113,25 @@ def test_parts_of_meshes():
     assert not copy.copy(GEOMETRIES["at_rest"]).is_deforming
 
 
+def test_a_copy_is_of_one_step():
+    """No step comes in between its parts, here one that comes when triangles are read."""
+
+    class Stepping(fcl_ccd.DeformableMesh):
+        @property
+        def triangles(self):
+            found = super().triangles
+            self.update(self.current * 2)
+            return found
+
+    mesh = Stepping(PREVIOUS, TRIANGLES)
+    mesh.update(PREVIOUS * 2)
+    same = copy.copy(mesh)
+    np.testing.assert_array_equal(same.previous, PREVIOUS)
+    np.testing.assert_array_equal(same.current, PREVIOUS * 2)
+    assert mesh.triangles.tolist() == TRIANGLES.tolist()
+    np.testing.assert_array_equal(mesh.current, PREVIOUS * 4)
+
+
 @pytest.mark.parametrize("resolution", [1 / 3, 1.0, 1e-3])
 def test_cells_of_octrees(resolution):
     """Also cells that were joined, negative ones, and those at the border of the map."""
