@@ -272,8 +272,8 @@ Vertices spiral(int half) {
   return p;
 }
 
-// These took 0.3 s together; to cut off ears took over a minute for each. The test does not
-// measure time.
+// These took 0.3 s together; to cut off ears took over a minute for each. The test does
+// not measure time.
 TEST(CcdPolygons, LargeOnesAreCovered) {
   for (const Vertices& p : {comb(50000), star(100000, 0.3), spiral(50000)}) {
     const std::vector<int> ids = numbers(p.size());

@@ -198,7 +198,6 @@ TEST_F(FCL_HALF_TURNS, queriesHitWhatIsOnTheWay) {
   mesh.vertices = {{1.01, 0, 0}, {0.99, 0.01, 0}, {0.99, -0.01, 0}, {1, 0, 0.01}};
   mesh.triangles = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
   const auto model = makeModel<BVHModel<OBBRSS<double>>>(mesh);
-  const Pose still = Pose::Identity();
   int queries = 0;
   for (int i = 0; i < 24 * 24 * 24; i += 3 * stepOfPoses()) {
     const Pose begin = gridPose(i, 24), end = halfTurned(begin, i / 24);

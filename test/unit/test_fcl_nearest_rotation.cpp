@@ -157,7 +157,7 @@ class TypedRotation : public ::testing::Test {
 };
 
 using Scalars = ::testing::Types<double, float>;
-TYPED_TEST_SUITE(TypedRotation, Scalars);
+TYPED_TEST_SUITE(TypedRotation, Scalars, );
 
 TYPED_TEST(TypedRotation, ShapesAndTurningMeshes) {
   for (const auto& o : {this->box_, this->ball_, this->mesh_})
