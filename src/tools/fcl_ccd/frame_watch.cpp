@@ -102,7 +102,7 @@ std::optional<FrameFault> FrameWatch::firstUnfinished(const FramePaths& paths) c
   };
   for (const auto* frames : {&paths.a, &paths.b}) {
     if (frames->size() < 2) continue;  // B stands still, or there is none
-    const std::optional<FrameFault> fault = faultOf((*frames)[0]);
+    std::optional<FrameFault> fault = faultOf((*frames)[0]);
     if (!fault) continue;
     // A frame with a whole one behind it is not half-written.
     if (!isRegularMesh((*frames)[0]) || !faultOf((*frames)[1]))

@@ -445,7 +445,8 @@ std::string suggestionFor(const CLI::App& command, int argc, char** argv) {
     if (word.rfind("--", 0) != 0 || command.get_option_no_throw(word) != nullptr)
       continue;
     const std::string nearest = fcl_ccd::nearestName(word, names);
-    if (!nearest.empty()) return word + ": did you mean " + nearest + "?";
+    if (!nearest.empty())
+      return std::string(word).append(": did you mean ").append(nearest).append("?");
   }
   return "";
 }

@@ -45,10 +45,12 @@ void print(std::string_view text, bool to_stderr) {
 void requireNotAmong(const std::vector<std::string>& inputs, const std::string& output) {
   std::error_code error;
   if (output.empty() || !fs::is_regular_file(output, error)) return;
-  for (const std::string& input : inputs)
-    if (isSameFile(output, input))
-      throw WriteError(output + ": cannot write: another program wrote the frame " +
-                       input + " under this name");
+  const auto input =
+      std::find_if(inputs.begin(), inputs.end(),
+                   [&](const std::string& name) { return isSameFile(output, name); });
+  if (input != inputs.end())
+    throw WriteError(output + ": cannot write: another program wrote the frame " +
+                     *input + " under this name");
 }
 
 void OutputSet::reserve(const std::string& path) {

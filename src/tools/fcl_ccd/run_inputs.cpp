@@ -66,7 +66,7 @@ std::optional<FrameFault> findFault(const MeshSequence& meshes, std::size_t begi
 /// @throws std::runtime_error if a frame does not fit and is none of these.
 std::optional<FrameFault> findUnfinished(const MeshSequence& meshes, std::size_t begin,
                                          std::size_t num_workers) {
-  const std::optional<FrameFault> fault = findFault(meshes, begin, num_workers);
+  std::optional<FrameFault> fault = findFault(meshes, begin, num_workers);
   if (!fault) return fault;
   const auto fits = [&](std::size_t frame) {
     try {
