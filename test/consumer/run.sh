@@ -301,7 +301,9 @@ door_deb() { # Debian packages: no file of stock FCL, installed beside it, used,
   PYTHONPATH=$modules "$python" -OO -c "import fcl_ccd"
   [ "$root$(cat "$root/etc/ld.so.conf.d/fcl-ccd.conf")" = "$root/usr/lib/fcl-ccd/$lib" ]
 
-  "${dpkg[@]}" -P fcl-ccd python3-fcl-ccd libfcl-ccd-dev libfcl-ccd0.1 >>"$work/dpkg.log" 2>&1
+  local packages
+  mapfile -t packages < <(for package in "$deb"/*.deb; do dpkg-deb -f "$package" Package; done)
+  "${dpkg[@]}" -P "${packages[@]}" >>"$work/dpkg.log" 2>&1
   [ -z "$(find "$root" -path "$root/var" -prune -o \( -type f -o -type l \) -print)" ] ||
     fail "Removed packages leave files"
 }

@@ -57,7 +57,7 @@ TEST(DropIn, VersionIsTheSameInWordsAndNumbers) {
   EXPECT_EQ(FCL_CCD_VERSION, std::to_string(FCL_CCD_MAJOR_VERSION) + "." +
                                  std::to_string(FCL_CCD_MINOR_VERSION) + "." +
                                  std::to_string(FCL_CCD_PATCH_VERSION));
-  EXPECT_TRUE(FCL_CCD_VERSION_AT_LEAST(0, 1, 0));
+  EXPECT_TRUE(FCL_CCD_VERSION_AT_LEAST(0, 2, 0));
   EXPECT_FALSE(FCL_CCD_VERSION_AT_LEAST(FCL_CCD_MAJOR_VERSION + 1, 0, 0));
   EXPECT_FALSE(FCL_CCD_VERSION_AT_LEAST(FCL_CCD_MAJOR_VERSION, FCL_CCD_MINOR_VERSION + 1,
                                         FCL_CCD_PATCH_VERSION));
