@@ -14,7 +14,7 @@ command -v ctags >/dev/null || { echo "Install the package universal-ctags" >&2;
 # have no access there and are left out, as operators are.
 declared=$(
   find include -name '*.h' -not -path '*/detail/*' -print0 |
-    xargs -0 ctags -x --language-force=C++ --kinds-C++=pf -I FCL_EXPORT --_xformat='%a %s %N %K %F:%n' |
+    xargs -0 ctags -x --language-force=C++ --kinds-C++=pf -I FCL_EXPORT,FCL_CCD_FINAL_WITHOUT_RTTI --_xformat='%a %s %N %K %F:%n' |
     { grep -E '^(public fcl::[A-Za-z]+|- fcl) [~A-Za-z0-9_]+ ' || true; } | grep -v ' operator' |
     awk '
       { ++count[$2 " " $3, $4]; names[$2 " " $3] }
