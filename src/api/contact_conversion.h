@@ -2,10 +2,10 @@
 #ifndef FCL_CCD_API_CONTACT_CONVERSION_H
 #define FCL_CCD_API_CONTACT_CONVERSION_H
 
-#include "api/prepared_motion.h"
+#include "curved/shape_contacts.h"
 #include "fcl/narrowphase/contact.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "motion/shape_contacts.h"
+#include "prepare/prepared_motion.h"
 #include "query/contact_sink.h"
 #include "query/crossing.h"
 #include "tree/mesh_instance.h"

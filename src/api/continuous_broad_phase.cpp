@@ -4,11 +4,11 @@
 #include <string>
 #include <unordered_set>
 
-#include "api/object_bounds.h"
-#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "broadphase/broad_phase.h"
 #include "fcl/broadphase/swept_collision_object.h"
+#include "prepare/object_bounds.h"
+#include "prepare/query_arguments.h"
 
 namespace fcl {
 namespace detail {

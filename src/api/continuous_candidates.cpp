@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "api/prepared_mesh.h"
-#include "api/prepared_motion.h"
-#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
+#include "curved/curved_candidates.h"
 #include "fcl/common/exception.h"
-#include "motion/motion_candidates.h"
+#include "prepare/prepared_mesh.h"
+#include "prepare/prepared_motion.h"
+#include "prepare/query_arguments.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -88,8 +88,8 @@ bool motionCandidates(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                        motion2 = preparedMotion(o2, "o2");
   return handOut(sink, [&](const auto& inner) {
     const deformable::DefaultFloatingPoint mode;
-    return deformable::candidatesOfMotions(motion1.body(), motion2.body(), inner,
-                                           min_distance);
+    return deformable::curvedCandidates(motion1.body(), motion2.body(), inner,
+                                        min_distance);
   });
 }
 

@@ -6,25 +6,25 @@
 #include <utility>
 #include <vector>
 
-#include "api/class_cast.h"
 #include "api/contact_conversion.h"
-#include "api/overlapping_shapes.h"
-#include "api/prepared_mesh.h"
-#include "api/prepared_motion.h"
-#include "api/query_arguments.h"
-#include "api/query_range.h"
-#include "api/request_filter.h"
-#include "api/unbounded_shapes.h"
 #include "base/default_floating_point.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
+#include "curved/curved_contacts.h"
+#include "curved/shape_contacts.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "mesh/triangle_soup.h"
-#include "motion/motion_contacts.h"
-#include "motion/shape_contacts.h"
+#include "prepare/class_cast.h"
+#include "prepare/overlapping_shapes.h"
+#include "prepare/posed_flat.h"
+#include "prepare/prepared_mesh.h"
+#include "prepare/prepared_motion.h"
+#include "prepare/query_arguments.h"
+#include "prepare/query_range.h"
+#include "prepare/request_filter.h"
 #include "query/deformable_query.h"
 
 namespace fcl {
@@ -229,7 +229,7 @@ void answerMotions(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const deformable::MeshInstance without_owners;
   options.filter = filter.prepare(without_owners, without_owners);
   const QueryAnswer answer = filteredAnswerOf(filter, [&] {
-    return queryMotionContacts(motion1.body(), motion2.body(), options);
+    return queryCurvedContacts(motion1.body(), motion2.body(), options);
   });
   if (contacts) {
     const MotionConverter<S> converter(motion1, motion2, settings);
@@ -317,7 +317,9 @@ template <typename S>
 ShapeAnswer shapeAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                           const QueryOptions& options, double& update) {
   if (isNoObstacleFor(o1, o2) || isNoObstacleFor(o2, o1)) return {};
-  if (isUnbounded(o1) && isUnbounded(o2)) return queryUnbounded(o1, o2, options);
+  if (isUnbounded(o1) && isUnbounded(o2))
+    return queryFlats(deformable::posedFlatOf(o1, "o1"),
+                      deformable::posedFlatOf(o2, "o2"), options);
   return boundedAnswerOf(o1, o2, options, 1, update);
 }
 

@@ -7,11 +7,11 @@
 #include <string>
 
 #include "api/contact_conversion.h"
-#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
 #include "fcl/common/exception.h"
+#include "prepare/query_arguments.h"
 
 namespace fcl {
 namespace {

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "api/contact_conversion.h"
-#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
+#include "mesh/non_finite_vertex.h"
+#include "prepare/query_arguments.h"
 #include "query/deformable_query.h"
 #include "query/narrow_phase.h"
 #include "tree/traversal.h"
@@ -116,8 +117,8 @@ struct DeformableTraversal<S>::State {
     return second_view ? *second_view : view1;
   }
 
-  TimeWindow window(int b1, int b2) const {
-    const MovingKdop box1 = view1.box(b1), box2 = view2().box(b2);
+  deformable::TimeWindow window(int b1, int b2) const {
+    const deformable::MovingKdop box1 = view1.box(b1), box2 = view2().box(b2);
     return prepared2 ? deformable::overlapWindow<true>(box1, box2, shift.get())
                      : deformable::overlapWindow<false>(box1, box2, nullptr);
   }
@@ -210,7 +211,7 @@ template <typename S>
 bool DeformableTraversal<S>::firstOverSecond(int b1, int b2) const {
   if (isSecondLeaf(b2)) return true;
   if (isFirstLeaf(b1)) return false;
-  const auto extent = [](const MovingKdop& box) {
+  const auto extent = [](const deformable::MovingKdop& box) {
     float sum = 0;
     for (int k = 0; k < 3; ++k) sum += box.t0.half[k] + box.t0.half[k + 8];
     return sum;
@@ -233,7 +234,7 @@ bool DeformableTraversal<S>::areApart(int b1, int b2) {
   const deformable::DefaultFloatingPoint mode;
   if (state_->view1.isEmpty(b1) || state_->view2().isEmpty(b2)) return true;
   ++state_->test->counts().node_pairs;
-  const TimeWindow w = state_->window(b1, b2);
+  const deformable::TimeWindow w = state_->window(b1, b2);
   return w.isEmpty() || w.lo > deformable::lastBeginning(state_->test->latest());
 }
 

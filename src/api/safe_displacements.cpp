@@ -5,10 +5,10 @@
 #include <string>
 #include <utility>
 
-#include "api/prepared_mesh.h"
-#include "api/query_arguments.h"
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
+#include "prepare/prepared_mesh.h"
+#include "prepare/query_arguments.h"
 #include "query/safe_displacement.h"
 
 namespace fcl {

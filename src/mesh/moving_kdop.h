@@ -18,6 +18,8 @@
 #include <limits>
 
 namespace fcl {
+namespace detail {
+namespace deformable {
 
 /// @brief Half-axis bounds: entries 0-7 are minus the lower, 8-15 the upper bound along
 /// x, y, z, x+y, x+z, y+z, x-y, x-z; relative to an origin that its owner knows; rounded
@@ -39,9 +41,6 @@ struct TimeWindow {
   float hi;
   bool isEmpty() const { return lo > hi; }
 };
-
-namespace detail {
-namespace deformable {
 
 /// @brief The 8 directions applied to a point, or to points in the lanes of vectors.
 template <typename T>

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/stopwatch.h"
+#include "mesh/non_finite_vertex.h"
 #include "query/narrow_phase.h"
 #include "query/self_proofs.h"
 #include "tree/traversal.h"

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
+#include "mesh/non_finite_vertex.h"
 #include "query/feature_batch.h"
 #include "tree/mesh_instance.h"
 

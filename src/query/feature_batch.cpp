@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "fcl/common/exception.h"
+#include "mesh/non_finite_vertex.h"
 #include "tree/bent_boxes.h"
 #include "tree/box_position.h"
 
@@ -30,12 +31,6 @@ bool isFinite(const TreeVertex& x) {
 }
 
 }  // namespace
-
-NonFiniteVertex::NonFiniteVertex(const char* mesh, std::size_t vertex)
-    : std::domain_error(std::string(mesh) + ": vertex " + std::to_string(vertex) +
-                        " is not finite. Correct it"),
-      mesh_(mesh),
-      vertex_(vertex) {}
 
 TriangleReader::TriangleReader(const MeshInstance& mesh) : mesh_(mesh) {
   if (!mesh.isInPlace()) return;

@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
@@ -23,20 +22,6 @@
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-/// @brief The error for a vertex whose coordinates are not finite.
-class NonFiniteVertex : public std::domain_error {
- public:
-  /// @param mesh  MeshInstance::name
-  NonFiniteVertex(const char* mesh, std::size_t vertex);
-
-  const char* mesh() const { return mesh_; }
-  std::size_t vertex() const { return vertex_; }
-
- private:
-  const char* mesh_;
-  std::size_t vertex_;
-};
 
 /// @brief Two triangles, by their numbers in the trees, whose boxes overlap from
 /// `earliest` on.

@@ -9,6 +9,7 @@
 #include "elementary/elementary.h"
 #include "elementary/magnified_solve.h"
 #include "elementary/predicates.h"
+#include "mesh/non_finite_vertex.h"
 #include "query/distance_contact.h"
 
 namespace fcl {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
+#include "mesh/non_finite_vertex.h"
 #include "query/contact_sink.h"
 #include "query/crossing.h"
 #include "query/decided_pairs.h"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/non_finite_vertex.h"
 #include "query/leading_contact.h"
 #include "query/narrow_phase.h"
 

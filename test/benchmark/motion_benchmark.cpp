@@ -6,12 +6,12 @@
 #include <cstdio>
 #include <vector>
 
+#include "curved/curved_query.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
-#include "motion/motion_query.h"
 #include "reference_motion.h"
 #include "timing.h"
 
@@ -39,16 +39,16 @@ struct TurningPair {
   void setOffset(double offset) { place.translation() = offset * direction; }
 };
 
-MotionAnswer firstContact(const Body& a, const Body& b, const TurningPair& pair) {
+CurvedAnswer firstContact(const Body& a, const Body& b, const TurningPair& pair) {
   const auto framesOf = [](const Body& body) {
     const double* points = body.model.vertices->data();
     return VertexFrames(points, points,
                         static_cast<std::size_t>(body.model.num_vertices));
   };
   const RigidTree tree_a(a.model, Pose()), tree_b(b.model, Pose());
-  return queryMotions(
-      MotionBody(tree_a, framesOf(a), a.model.tri_indices, pair.turn.path()),
-      MotionBody(tree_b, framesOf(b), b.model.tri_indices,
+  return queryCurved(
+      MovingBody(tree_a, framesOf(a), a.model.tri_indices, pair.turn.path()),
+      MovingBody(tree_b, framesOf(b), b.model.tri_indices,
                  MotionPath::still(toPose(pair.place))),
       {});
 }
@@ -116,14 +116,14 @@ void benchmarkMotions(int repeats) {
     for (int i = 0; i < kMotions; ++i) {
       const TurningPair pair =
           makeTurningPair(100 + static_cast<std::uint64_t>(i), a, b, gap);
-      MotionAnswer answer;
+      CurvedAnswer answer;
       ours.push_back(
           leastMilliseconds(repeats, [&] { answer = firstContact(a, b, pair); }));
       double sampled = 2;
       fcl.push_back(leastMilliseconds(1, [&] { sampled = sample(a, b, pair, 1000); }));
       if (answer.contacts.empty()) continue;
       ++contacts;
-      given_up += answer.contacts[0].certainty == MotionCertainty::kGivenUp;
+      given_up += answer.contacts[0].certainty == ContactCertainty::kGivenUp;
       missed += sampled > 1;
       if (sampled <= 1) late = std::max(late, sampled - answer.contacts[0].toc_lo);
     }

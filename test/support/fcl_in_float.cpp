@@ -3,8 +3,8 @@
 
 #include <stdexcept>
 
-#include "api/model_instances.h"
 #include "fcl/narrowphase/detail/collision_func_matrix.h"
+#include "model/model_instances.h"
 
 namespace fcl {
 namespace {

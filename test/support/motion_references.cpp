@@ -315,7 +315,7 @@ std::string turnDisagreement(std::uint64_t number, MotionTally& tally) {
   if (grazes) graze(random, pair);
   const Body a(meshOf(pair.turning)), b(meshOf(pair.resting));
   const bool swapped = random.index(2);
-  const MotionAnswer answer = swapped
+  const CurvedAnswer answer = swapped
                                   ? ask(b, MotionPath::still(Pose()), a, motion.path())
                                   : ask(a, motion.path(), b, MotionPath::still(Pose()));
   const double toc = timeOf(answer);
@@ -405,7 +405,7 @@ std::string meshDisagreement(const std::vector<Body>& bodies, std::uint64_t numb
   ReferenceMotion motion_b = randomMotion(random, 1);
   const bool grazes = number % 2;
   if (grazes) makeGrazing(random, a, motion_a, b, motion_b);
-  const MotionAnswer answer = ask(a, motion_a.path(), b, motion_b.path());
+  const CurvedAnswer answer = ask(a, motion_a.path(), b, motion_b.path());
   const double toc = timeOf(answer);
   const double apart = provedApart(a, motion_a, b, motion_b, kNear),
                sampled = sampledTime(a, motion_a, b, motion_b, samples);
@@ -419,8 +419,8 @@ std::string meshDisagreement(const std::vector<Body>& bodies, std::uint64_t numb
   if (toc < apart)
     return complaint(apart > 1 ? "false: " : "early: ", toc, ", apart until ", apart);
   if (toc <= 1) {
-    const MotionContact& contact = answer.contacts[0];
-    if (contact.certainty == MotionCertainty::kGivenUp)
+    const CurvedContact& contact = answer.contacts[0];
+    if (contact.certainty == ContactCertainty::kGivenUp)
       return complaint("given up: ", toc);
     if (!(contact.toc_hi - contact.toc_lo <= kTocErr))
       return complaint("bracket of ", contact.toc_hi - contact.toc_lo);

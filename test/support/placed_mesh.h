@@ -4,7 +4,7 @@
 #ifndef FCL_TEST_SUPPORT_PLACED_MESH_H
 #define FCL_TEST_SUPPORT_PLACED_MESH_H
 
-#include "api/prepared_mesh.h"
+#include "prepare/prepared_mesh.h"
 
 namespace fcl {
 namespace test {

@@ -8,7 +8,7 @@
 
 #include "fcl/common/types.h"
 #include "mesh_generators.h"
-#include "motion/motion_path.h"
+#include "paths/motion_path.h"
 
 namespace fcl {
 namespace test {

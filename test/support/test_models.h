@@ -13,12 +13,12 @@
 #include <vector>
 
 // FCL's templates that are in the library are not compiled again.
-#include "api/model_instances.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl_in_float.h"
 #include "mesh_generators.h"
+#include "model/model_instances.h"
 
 namespace fcl {
 namespace test {

@@ -11,12 +11,12 @@
 #include <vector>
 
 // FCL's templates that are in the library are not compiled again.
-#include "api/model_instances.h"
+#include "curved/curved_query.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/collision.h"
-#include "motion/motion_query.h"
+#include "model/model_instances.h"
 #include "reference_motion.h"
 
 namespace fcl {
@@ -37,29 +37,29 @@ struct Body {
 };
 
 /// @brief A body on its path.
-struct MovingBody {
-  MovingBody(const Body& from, const detail::deformable::MotionPath& path)
+struct BodyOnPath {
+  BodyOnPath(const Body& from, const detail::deformable::MotionPath& path)
       : tree(*from.model, detail::deformable::Pose()),
         body(tree,
              detail::deformable::VertexFrames(from.model->vertices->data(),
                                               from.model->vertices->data(),
                                               from.mesh.vertices.size()),
              from.model->tri_indices, path) {}
-  MovingBody(const MovingBody&) = delete;
-  MovingBody& operator=(const MovingBody&) = delete;
+  BodyOnPath(const BodyOnPath&) = delete;
+  BodyOnPath& operator=(const BodyOnPath&) = delete;
   detail::deformable::RigidTree tree;
-  detail::deformable::MotionBody body;
+  detail::deformable::MovingBody body;
 };
 
-inline detail::deformable::MotionAnswer ask(
+inline detail::deformable::CurvedAnswer ask(
     const Body& a, const detail::deformable::MotionPath& path_a, const Body& b,
     const detail::deformable::MotionPath& path_b,
-    const detail::deformable::MotionQueryOptions& options = {}) {
-  return queryMotions(MovingBody(a, path_a).body, MovingBody(b, path_b).body, options);
+    const detail::deformable::CurvedOptions& options = {}) {
+  return queryCurved(BodyOnPath(a, path_a).body, BodyOnPath(b, path_b).body, options);
 }
 
 /// @brief The first time of contact; 2 without a contact.
-inline double timeOf(const detail::deformable::MotionAnswer& answer) {
+inline double timeOf(const detail::deformable::CurvedAnswer& answer) {
   return answer.contacts.empty() ? 2 : answer.contacts[0].toc_lo;
 }
 

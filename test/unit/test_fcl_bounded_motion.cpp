@@ -16,8 +16,8 @@
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
-#include "motion/motion_path.h"
 #include "moving_mesh.h"
+#include "paths/motion_path.h"
 #include "test_models.h"
 
 namespace fcl {

@@ -3,7 +3,7 @@
 // The gap of two convex sets that are placed so that it is known: the point of one set
 // that is farthest along a direction lies at a distance from the one of the other set
 // that is farthest in the opposite direction.
-#include "motion/convex_distance.h"
+#include "shapes/convex_distance.h"
 
 #include <gtest/gtest.h>
 
@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "mesh_generators.h"
-#include "motion/curved_gap.h"
-#include "motion/posed_vector.h"
+#include "paths/posed_vector.h"
 #include "posed_shape.h"
+#include "shapes/curved_gap.h"
 
 namespace fcl {
 namespace test {

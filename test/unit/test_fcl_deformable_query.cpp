@@ -19,7 +19,6 @@
 #include <utility>
 #include <vector>
 
-#include "api/prepared_mesh.h"
 #include "elementary/exact.h"
 #include "elementary/predicates.h"
 #include "fcl/math/bv/OBBRSS.h"
@@ -28,6 +27,7 @@
 #include "moving_mesh.h"
 #include "named_contacts.h"
 #include "placed_mesh.h"
+#include "prepare/prepared_mesh.h"
 #include "sanitizer.h"
 #include "test_models.h"
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "bodies/parting_direction.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/octree/octree.h"
 #include "fcl/geometry/shape/box.h"
@@ -20,7 +21,6 @@
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "fcl/math/bv/OBBRSS.h"
-#include "motion/parting_direction.h"
 #include "test_models.h"
 #include "turning_bodies.h"
 
@@ -211,10 +211,10 @@ TEST(FlatContacts, BarsThatTurnAboutATiltedAxis) {
       }
 }
 
+using detail::deformable::BodyTolerance;
 using detail::deformable::ConvexShape;
 using detail::deformable::FlatShape;
-using detail::deformable::MotionBody;
-using detail::deformable::MotionTolerance;
+using detail::deformable::MovingBody;
 using detail::deformable::PartingDirection;
 using detail::deformable::Vec;
 
@@ -250,8 +250,8 @@ TEST(FlatContacts, GapsOfMeshes) {
   const Body ball(makeIcosphere(2, 0.5));
   const ReferenceMotion motion_a = turnNear(Point(0, 0, 0), random),
                         motion_b = turnNear(Point(0, 0, 5), random);
-  const MovingBody a(ball, motion_a.path()), b(ball, motion_b.path());
-  const MotionTolerance tolerance(a.body, b.body, 0.25);
+  const BodyOnPath a(ball, motion_a.path()), b(ball, motion_b.path());
+  const BodyTolerance tolerance(a.body, b.body, 0.25);
   PartingDirection parting(a.body, b.body, tolerance);
   Point direction;
   for (int i = 0; i < 2000; ++i) {
@@ -279,12 +279,12 @@ TEST(FlatContacts, GapsBesidePlanes) {
     for (const bool is_first : {false, true}) {
       const ReferenceMotion motion = turnNear(Point(0, 0, 4 * side), random),
                             turn = turnNear(Point(0, 0, 0), random);
-      const MovingBody moving(ball, motion.path());
+      const BodyOnPath moving(ball, motion.path());
       const ConvexShape plane = ConvexShape::flat({Vec{0, 0, 1}, 0.5, false}, 9);
-      const MotionBody flat(plane, turn.path());
-      const MotionBody &a = is_first ? flat : moving.body,
+      const MovingBody flat(plane, turn.path());
+      const MovingBody &a = is_first ? flat : moving.body,
                        &b = is_first ? moving.body : flat;
-      PartingDirection parting(a, b, MotionTolerance(a, b, 0));
+      PartingDirection parting(a, b, BodyTolerance(a, b, 0));
       setDirection(Point(0, 0, is_first ? side : -side), parting);
       for (int i = 0; i < 100; ++i) {
         const double t[2] = {random.uniform(0, 0.3), random.uniform(0, 0.3)};
@@ -315,12 +315,12 @@ TEST(FlatContacts, GapsBesideAPlaneThatTurnsOver) {
       ReferenceMotion still, turn;
       still.beginning.translation() = still.end.translation() = Point(0, 0, 4 - offset);
       turn.turn(Point(1, 0, 0), 2.6);
-      const MovingBody moving(ball, still.path());
+      const BodyOnPath moving(ball, still.path());
       const ConvexShape plane = ConvexShape::flat({Vec{0, 0, 1}, 0.5, false}, 9);
-      const MotionBody flat(plane, turn.path());
-      const MotionBody &a = is_first ? flat : moving.body,
+      const MovingBody flat(plane, turn.path());
+      const MovingBody &a = is_first ? flat : moving.body,
                        &b = is_first ? moving.body : flat;
-      PartingDirection parting(a, b, MotionTolerance(a, b, 0));
+      PartingDirection parting(a, b, BodyTolerance(a, b, 0));
       setDirection(Point(0, 0, is_first ? 1 : -1), parting);
       const double above[2] = {0, 0.2}, under[2] = {0.9, 1}, over[2] = {0, 1};
       double gap[2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// All contacts of meshes that turn, found along chords (motion/chord_pairs.h): they are
+// All contacts of meshes that turn, found along chords (curved/chord_pairs.h): they are
 // those that are found on the true paths from the beginning. A query with a callback
 // takes the true paths.
 #include <gtest/gtest.h>

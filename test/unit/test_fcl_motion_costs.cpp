@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "curved/chord_pairs.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/box.h"
 #include "fcl/geometry/shape/cylinder.h"
@@ -24,7 +25,6 @@
 #include "fcl/math/motion/spline_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
-#include "motion/chord_pairs.h"
 #include "test_models.h"
 #include "turning_bodies.h"
 
@@ -65,7 +65,7 @@ MotionPath splineBy(double angle) {
 /// The number of spans beyond 16 grows in proportion to the angle.
 TEST(FCL_MOTION_COSTS, spansOfTurnsGrowInProportion) {
   const Body ball(makeGeodesicSphere(16, 1));
-  const MovingBody resting(ball, MotionPath::still(detail::deformable::Pose()));
+  const BodyOnPath resting(ball, MotionPath::still(detail::deformable::Pose()));
   for (const double distance : {0., 0.01})
     for (const bool is_spline : {false, true}) {
       SCOPED_TRACE(is_spline);
@@ -74,7 +74,7 @@ TEST(FCL_MOTION_COSTS, spansOfTurnsGrowInProportion) {
       options.min_distance = distance;
       double spans_per_angle = 0;
       for (double angle = 0.1; angle < (is_spline ? 20 : M_PI); angle += 0.1) {
-        const MovingBody turning(ball, is_spline ? splineBy(angle) : turnBy(angle));
+        const BodyOnPath turning(ball, is_spline ? splineBy(angle) : turnBy(angle));
         ASSERT_TRUE(ChordSearch::isFor(turning.body, resting.body, options));
         const int spans = ChordSearch(turning.body, resting.body, options).numSpans();
         ASSERT_GT(spans, 0) << angle;

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "mesh_generators.h"
-#include "motion/motion_boxes.h"
 #include "numerics/moving_vector.h"
+#include "shapes/body_boxes.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -34,8 +34,8 @@ Vec turnedBack(const double (&r)[9], const Vec& v) {
 struct Projection {
   double between, reach;
 
-  Projection(const MotionBox& a, const Pose& pose_a, const MotionBox& b,
-             const Pose& pose_b, const Vec& d) {
+  Projection(const BodyBox& a, const Pose& pose_a, const BodyBox& b, const Pose& pose_b,
+             const Vec& d) {
     const Vec center =
         rotated(pose_a.rotation, vecOf(a.center)) + vecOf(pose_a.translation);
     const Vec body = turnedBack(pose_b.rotation, d);
@@ -51,7 +51,7 @@ struct Projection {
 /// The kernel's computation for one pair, in the order of the kernel.
 class ScalarWindow {
  public:
-  ScalarWindow(const MotionBox (&a)[3], const SpanPoses& pose_a, const MotionBox (&b)[3],
+  ScalarWindow(const BodyBox (&a)[3], const SpanPoses& pose_a, const BodyBox (&b)[3],
                const SpanPoses& pose_b, double margin, const Vec& calm,
                double calm_margin)
       : a_(a),
@@ -110,8 +110,8 @@ class ScalarWindow {
     if (before_ + after_ > 1) may_meet_ = false;
   }
 
-  const MotionBox (&a_)[3];
-  const MotionBox (&b_)[3];
+  const BodyBox (&a_)[3];
+  const BodyBox (&b_)[3];
   const Pose* pose_a_[3];
   const Pose* pose_b_[3];
   double margin_;
@@ -148,8 +148,8 @@ SpanPoses randomPoses(Random& random, double reach, double turn) {
   return {at(0), at(0.5), at(1)};
 }
 
-MotionBox randomBox(Random& random) {
-  MotionBox box{};
+BodyBox randomBox(Random& random) {
+  BodyBox box{};
   const Matrix3<double> axes = randomRotation(random, 3);
   const Vector3<double> center = random.point(0.5);
   for (int i = 0; i < 3; ++i) {
@@ -160,19 +160,19 @@ MotionBox randomBox(Random& random) {
   return box;
 }
 
-TEST(MotionKernels, EqualScalarCode) {
+TEST(BodyKernels, EqualScalarCode) {
   Random random(1);
   int met = 0, apart = 0, part = 0;
   for (int round = 0; round < 4000; ++round) {
     const double reach = random.uniform(0.2, 4);
     const SpanPoses pose_a = randomPoses(random, reach, 1),
                     pose_b = randomPoses(random, reach, 1);
-    MotionBox a[3] = {randomBox(random), {}, {}};
+    BodyBox a[3] = {randomBox(random), {}, {}};
     a[1] = a[2] = a[0];
     a[1].extent[0] *= 1.05;
     a[2].extent[0] *= 1.1;
-    MotionBox b[8][3];
-    MotionBoxes boxes[3] = {};
+    BodyBox b[8][3];
+    BodyBoxes boxes[3] = {};
     double margin[8];
     const int count = 1 + static_cast<int>(random.index(8));
     for (int lane = 0; lane < 8; ++lane) {
@@ -190,11 +190,11 @@ TEST(MotionKernels, EqualScalarCode) {
     CalmDirection& used = calms[random.index(2)];
     used.direction = &calm;
     for (int lane = 0; lane < 8; ++lane) used.margin[lane] = 0.5 * margin[lane];
-    const MotionBox* const of_a[3] = {&a[0], &a[1], &a[2]};
-    const MotionBoxes* const of_b[3] = {&boxes[0], &boxes[1], &boxes[2]};
+    const BodyBox* const of_a[3] = {&a[0], &a[1], &a[2]};
+    const BodyBoxes* const of_b[3] = {&boxes[0], &boxes[1], &boxes[2]};
     MeetingWindows windows;
-    motionKernels().meetingWindows(of_a, pose_a, of_b, pose_b, margin, calms, count,
-                                   windows);
+    bodyKernels().meetingWindows(of_a, pose_a, of_b, pose_b, margin, calms, count,
+                                 windows);
     for (int lane = 0; lane < count; ++lane) {
       const ScalarWindow scalar(a, pose_a, b[lane], pose_b, margin[lane], calm,
                                 used.margin[lane]);
@@ -298,7 +298,7 @@ SpanCorners inWorld(const Vec (&x)[2][3], const double (&times)[3],
   return out;
 }
 
-TEST(MotionKernels, HalvesEqualScalarCode) {
+TEST(BodyKernels, HalvesEqualScalarCode) {
   const double times[3] = {0.25, 0.375, 0.5};
   Random random(2);
   int met = 0, apart = 0, one = 0;
@@ -320,7 +320,7 @@ TEST(MotionKernels, HalvesEqualScalarCode) {
     const double margin = random.uniform(0, 0.01);
     Vec of_b[8][2][3];
     double deviation[8];
-    MotionTriangles triangles;
+    BodyTriangles triangles;
     for (int lane = 0; lane < 8; ++lane) {
       deviation[lane] = random.index(4) == 0 ? 0 : random.uniform(0, 0.03);
       randomTriangle(random, size, 0.1, of_b[lane]);
@@ -334,8 +334,8 @@ TEST(MotionKernels, HalvesEqualScalarCode) {
     }
     const auto tested = static_cast<unsigned>(1 + random.index(255));
     unsigned meeting[2];
-    motionKernels().meetingHalves(triangle, triangles, times, pose_b, deviation, margin,
-                                  tested, meeting);
+    bodyKernels().meetingHalves(triangle, triangles, times, pose_b, deviation, margin,
+                                tested, meeting);
     for (int lane = 0; lane < 8; ++lane) {
       const ScalarHalf scalar(a, inWorld(of_b[lane], times, pose_b), deviation[lane],
                               margin);
@@ -359,9 +359,9 @@ TEST(MotionKernels, HalvesEqualScalarCode) {
 
 // Triangles at the same height above each other at all three times. In between a corner
 // deviates by less than the height, or by more.
-TEST(MotionKernels, DeviationBetweenTheEndsOfAHalf) {
+TEST(BodyKernels, DeviationBetweenTheEndsOfAHalf) {
   SpanTriangle floor;
-  MotionTriangles above = {};
+  BodyTriangles above = {};
   const double corner[3][3] = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
   constexpr double kHeight = 0.25;
   double deviation[8];
@@ -374,13 +374,13 @@ TEST(MotionKernels, DeviationBetweenTheEndsOfAHalf) {
   for (int lane = 0; lane < 8; ++lane)
     deviation[lane] = kHeight * (1 + (lane < 4 ? -0x1p-30 : 0x1p-30));
   unsigned meeting[2];
-  motionKernels().meetingHalves(floor, above, nullptr, SpanPoses(), deviation, 0, 0xff,
-                                meeting);
+  bodyKernels().meetingHalves(floor, above, nullptr, SpanPoses(), deviation, 0, 0xff,
+                              meeting);
   EXPECT_EQ(meeting[0], 0xf0u);
   EXPECT_EQ(meeting[1], 0xf0u);
   // The requested distance is taken off first.
-  motionKernels().meetingHalves(floor, above, nullptr, SpanPoses(), deviation, 0x1p-20,
-                                0xff, meeting);
+  bodyKernels().meetingHalves(floor, above, nullptr, SpanPoses(), deviation, 0x1p-20,
+                              0xff, meeting);
   EXPECT_EQ(meeting[0], 0xffu);
 }
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Paths of motions against their formulas, and the bounds on which queries rely.
-#include "motion/motion_path.h"
+#include "paths/motion_path.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "curved/chord_pairs.h"
 #include "fcl/common/exception.h"
-#include "motion/chord_pairs.h"
-#include "motion/sine.h"
+#include "paths/sine.h"
 #include "reference_motion.h"
 
 namespace fcl {

@@ -2,7 +2,7 @@
 //
 // First contacts of meshes that turn: against dense samples, against closed forms, and
 // against the same query in another form.
-#include "motion/motion_query.h"
+#include "curved/curved_query.h"
 
 #include <gtest/gtest.h>
 
@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "bodies/part_work.h"
+#include "curved/curved_contacts.h"
 #include "fcl/narrowphase/collision.h"
-#include "motion/motion_contacts.h"
-#include "motion/motion_work.h"
 #include "reference_motion.h"
 #include "turning_bodies.h"
 
@@ -65,16 +65,16 @@ TEST(FCL_MOTION_QUERY, againstDenseSamples) {
     const ReferenceMotion motion_a = randomMotion(random, 1);
     ReferenceMotion motion_b = randomMotion(random, 1);
     if (i % 2) makeGrazing(random, a, motion_a, b, motion_b);
-    const MotionAnswer answer = ask(a, motion_a.path(), b, motion_b.path());
+    const CurvedAnswer answer = ask(a, motion_a.path(), b, motion_b.path());
     const double toc = timeOf(answer);
     const double sampled = sampledTime(a, motion_a, b, motion_b, 200);
     EXPECT_LE(toc, sampled + 1e-9);
     hits += sampled <= 1;
     if (answer.contacts.empty()) continue;
     ++contacts;
-    const MotionContact& contact = answer.contacts[0];
-    EXPECT_NE(contact.certainty, MotionCertainty::kGivenUp);
-    crossing += contact.certainty == MotionCertainty::kCrossing;
+    const CurvedContact& contact = answer.contacts[0];
+    EXPECT_NE(contact.certainty, ContactCertainty::kGivenUp);
+    crossing += contact.certainty == ContactCertainty::kCrossing;
     EXPECT_LE(contact.toc_hi - contact.toc_lo, 1e-4);
     EXPECT_LT(answer.touching, 1e-12);
     if (toc > 0) {
@@ -86,7 +86,7 @@ TEST(FCL_MOTION_QUERY, againstDenseSamples) {
         EXPECT_NEAR(toc, sampled, 1e-4);
       }
     }
-    const MotionAnswer swapped = ask(b, motion_b.path(), a, motion_a.path());
+    const CurvedAnswer swapped = ask(b, motion_b.path(), a, motion_a.path());
     EXPECT_NEAR(timeOf(swapped), toc, 1e-6);
   }
   EXPECT_GE(contacts, hits);
@@ -155,7 +155,7 @@ TEST(FCL_MOTION_QUERY, spinningRodAndPoint) {
       ReferenceMotion turn;
       turn.turn(Vector3<double>::UnitZ(), M_PI / 2);
       // A triangle of the rod's plane reaches 2 at z = 0; the needle begins at radius 1.
-      const MotionAnswer answer =
+      const CurvedAnswer answer =
           ask(rod, turn.path(), needle, MotionPath::still(Pose()));
       ASSERT_EQ(answer.contacts.size(), 1u);
       const double expected =
@@ -179,7 +179,7 @@ TEST(FCL_MOTION_QUERY, tipsOntoAPlane) {
     // far.
     const auto height = [](double v) { return 0.6 + 0.1 * std::cos(v) - std::sin(v); };
     double lo = -angle, hi = std::min(2.9 - angle, M_PI / 2);
-    const MotionAnswer answer = ask(flap, turn.path(), plane, MotionPath::still(Pose()));
+    const CurvedAnswer answer = ask(flap, turn.path(), plane, MotionPath::still(Pose()));
     if (height(hi) > 0) {
       EXPECT_TRUE(answer.contacts.empty());
       continue;
@@ -202,7 +202,7 @@ TEST(FCL_MOTION_QUERY, screwAgainstAFloor) {
     screw.kind = Kind::kScrew;
     screw.turn(Vector3<double>::UnitZ(), angle);
     screw.end.translation() = Vector3<double>(0, 0, -1);
-    const MotionAnswer answer =
+    const CurvedAnswer answer =
         ask(needle, screw.path(), floor, MotionPath::still(Pose()));
     EXPECT_NEAR(timeOf(answer), 0.25, 1e-12);
     EXPECT_LE(timeOf(answer), 0.25);
@@ -236,7 +236,7 @@ TEST(FCL_MOTION_QUERY, rollingBallAgainstAWall) {
       first = std::min(first, hi);
     }
     ASSERT_LE(first, 1);
-    const MotionAnswer answer = ask(ball, roll.path(), wall, MotionPath::still(Pose()));
+    const CurvedAnswer answer = ask(ball, roll.path(), wall, MotionPath::still(Pose()));
     EXPECT_NEAR(timeOf(answer), first, 1e-12);
     EXPECT_LE(timeOf(answer), first + 1e-15);
   }
@@ -273,9 +273,9 @@ TEST(FCL_MOTION_QUERY, firstOfManyContactsInAShell) {
     turn.beginning.linear() = randomRotation(random);
     turn.turn(randomDirection(random), M_PI / 2);
     rest.beginning.linear() = rest.end.linear() = randomRotation(random);
-    MotionQueryOptions all;
+    CurvedOptions all;
     all.all = true;
-    const MotionAnswer every = ask(ball, turn.path(), outer, rest.path(), all);
+    const CurvedAnswer every = ask(ball, turn.path(), outer, rest.path(), all);
     ASSERT_GT(every.contacts.size(), 50u);
     const double first = every.contacts.front().toc_lo;
     EXPECT_GT(first, 0);
@@ -285,9 +285,9 @@ TEST(FCL_MOTION_QUERY, firstOfManyContactsInAShell) {
 
 /// Visits all nodes below a part.
 template <typename Visit>
-void forEachNode(MotionBodyReader& reader, const BodyPart& part, const Visit& visit) {
+void forEachNode(MovingBodyReader& reader, const BodyPart& part, const Visit& visit) {
   if (part.isTriangle()) return;
-  const MotionNode node = reader.open(part);
+  const BodyNode node = reader.open(part);
   visit(part, node);
   for (int lane = 0; lane < node.count; ++lane)
     forEachNode(reader, node.part[lane], visit);
@@ -300,14 +300,14 @@ TEST(FCL_MOTION_QUERY, trianglesThatCannotBeRead) {
   const std::size_t missing = 17, infinite = 43;
   sphere.model->tri_indices[missing][1] = sphere.mesh.vertices.size() + 7;
   sphere.model->vertices[sphere.mesh.triangles[infinite][0]][2] = HUGE_VAL;
-  const MovingBody moving(sphere, MotionPath::still(Pose()));
+  const BodyOnPath moving(sphere, MotionPath::still(Pose()));
   EXPECT_FALSE(moving.body.isReadable(missing));
   EXPECT_FALSE(moving.body.isReadable(infinite));
   std::size_t num_readable = 0, num_not = 0;
-  MotionBodyReader reader(moving.body);
+  MovingBodyReader reader(moving.body);
   forEachNode(reader, moving.body.root(),
-              [&](const BodyPart& part, const MotionNode& node) {
-                const MotionTriangles& triangles = reader.triangles(part);
+              [&](const BodyPart& part, const BodyNode& node) {
+                const BodyTriangles& triangles = reader.triangles(part);
                 for (int lane = 0; lane < node.count; ++lane) {
                   if (!node.part[lane].isTriangle()) continue;
                   const bool is_readable = moving.body.isReadable(~node.part[lane].child);
@@ -323,36 +323,36 @@ TEST(FCL_MOTION_QUERY, trianglesThatCannotBeRead) {
 }
 
 /// A piece of work of which only the start is known.
-MotionWork workAt(double start) {
-  MotionWork work{};
+PartWork workAt(double start) {
+  PartWork work{};
   work.start = start;
   return work;
 }
 
 TEST(FCL_MOTION_QUERY, earliestWorkFirst) {
-  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  PartWorkQueue queue(PartWorkQueue::Order::kEarliestFirst);
   for (double start : {0.5, 0.25, 0.75, 0.625}) queue.push(workAt(start));
-  const MotionWork first = queue.pop();
+  const PartWork first = queue.pop();
   EXPECT_EQ(first.start, 0.25);
   EXPECT_EQ(queue.nextTurn(first), 0.5);
   queue.keepEarlier(0.625);
   EXPECT_EQ(queue.pop().start, 0.5);
   EXPECT_TRUE(queue.isEmpty());
 
-  MotionWorkQueue any(MotionWorkQueue::Order::kAny);
+  PartWorkQueue any(PartWorkQueue::Order::kAny);
   for (double start : {0.5, 0.25, 0.75}) any.push(workAt(start));
   for (double start : {0.75, 0.25, 0.5}) EXPECT_EQ(any.pop().start, start);
 }
 
 TEST(FCL_MOTION_QUERY, divesGoOnUntilAContact) {
-  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  PartWorkQueue queue(PartWorkQueue::Order::kEarliestFirst);
   for (int i = 0; i < 1000; ++i) queue.push(workAt(i * 1e-4));
   while (!queue.isLong()) {
-    const MotionWork work = queue.pop();
+    const PartWork work = queue.pop();
     EXPECT_EQ(work.dive, queue.isLong() ? 1 : 0);
   }
   // The first piece had no parts.
-  MotionWork part = queue.pop();
+  PartWork part = queue.pop();
   EXPECT_EQ(part.dive, 1);
   part.start = 0.9;
   queue.push(part);
@@ -364,9 +364,9 @@ TEST(FCL_MOTION_QUERY, divesGoOnUntilAContact) {
 }
 
 TEST(FCL_MOTION_QUERY, longQueueStaysAtOnePlace) {
-  MotionWorkQueue queue(MotionWorkQueue::Order::kEarliestFirst);
+  PartWorkQueue queue(PartWorkQueue::Order::kEarliestFirst);
   for (int i = 0; i < 5000; ++i) queue.push(workAt(i * 1e-5));
-  const MotionWork first = queue.pop();
+  const PartWork first = queue.pop();
   for (double start : {0.12, 0.06, 0.13}) queue.push(workAt(start));
   EXPECT_EQ(queue.nextTurn(first), 0.125);
   for (double start : {0.06, 0.12, 1e-5}) EXPECT_EQ(queue.pop().start, start);
@@ -374,7 +374,7 @@ TEST(FCL_MOTION_QUERY, longQueueStaysAtOnePlace) {
 
 TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
-  MotionQueryOptions all;
+  CurvedOptions all;
   all.all = true;
   std::size_t contacts = 0;
   for (int i = 0; i < 20; ++i) {
@@ -382,7 +382,7 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
     Random random(9000 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.5),
                           motion_b = randomMotion(random, 0.5);
-    const MotionAnswer answer = ask(a, motion_a.path(), b, motion_b.path(), all);
+    const CurvedAnswer answer = ask(a, motion_a.path(), b, motion_b.path(), all);
     EXPECT_NEAR(timeOf(answer), timeOf(ask(a, motion_a.path(), b, motion_b.path())),
                 1e-6);
     contacts += answer.contacts.size();
@@ -397,10 +397,10 @@ TEST(FCL_MOTION_QUERY, allPairsOfTriangles) {
           mesh.triangles = {Triangle(0, 1, 2)};
           return Body(mesh);
         };
-        const MotionAnswer one =
+        const CurvedAnswer one =
             ask(alone(a, j), motion_a.path(), alone(b, k), motion_b.path());
         expected += one.contacts.size();
-        for (const MotionContact& contact : answer.contacts)
+        for (const CurvedContact& contact : answer.contacts)
           if (contact.triangle[0] == static_cast<int>(j) &&
               contact.triangle[1] == static_cast<int>(k)) {
             ++found;
@@ -423,7 +423,7 @@ std::vector<std::uint32_t> nameOf(bool is_vertex_face, bool first_on_a,
 }
 
 std::vector<std::uint32_t> nearestName(const Body& a, const Body& b,
-                                       const MotionContact& contact) {
+                                       const CurvedContact& contact) {
   const Triangle &x = a.mesh.triangles[contact.triangle[0]],
                  &y = b.mesh.triangles[contact.triangle[1]];
   const NearestFeatures& near = contact.nearest;
@@ -460,12 +460,12 @@ double distanceOf(const FeatureContact& contact, const Body& a,
   return std::sqrt(nearestFeatures(first, other).square);
 }
 
-void expectSame(const MotionAnswer& found, const MotionAnswer& expected) {
+void expectSame(const CurvedAnswer& found, const CurvedAnswer& expected) {
   EXPECT_EQ(found.counts.box_tests, expected.counts.box_tests);
   EXPECT_EQ(found.counts.triangle_pairs, expected.counts.triangle_pairs);
   ASSERT_EQ(found.contacts.size(), expected.contacts.size());
   for (std::size_t i = 0; i < found.contacts.size(); ++i) {
-    const MotionContact &x = found.contacts[i], &y = expected.contacts[i];
+    const CurvedContact &x = found.contacts[i], &y = expected.contacts[i];
     EXPECT_EQ(x.toc_lo, y.toc_lo);
     EXPECT_EQ(x.toc_hi, y.toc_hi);
     for (int k = 0; k < 2; ++k) EXPECT_EQ(x.triangle[k], y.triangle[k]);
@@ -477,19 +477,19 @@ void expectSame(const MotionAnswer& found, const MotionAnswer& expected) {
 /// not.
 TEST(FCL_MOTION_QUERY, tasksFindWhatOneTraversalFinds) {
   const Body a(makeIcosphere(4, 0.5)), b(makeIcosphere(3, 0.45));
-  MotionQueryOptions whole;
+  CurvedOptions whole;
   whole.all = true;
-  whole.most_box_tests = MotionQueryOptions::kNoLimit - 1;
+  whole.most_box_tests = CurvedOptions::kNoLimit - 1;
   std::size_t contacts = 0;
   for (int i = 0; i < 4; ++i) {
     Random random(9100 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.4),
                           motion_b = randomMotion(random, 0.4);
     whole.distance = i % 2 ? 0.01 : 0;
-    const MotionAnswer expected = ask(a, motion_a.path(), b, motion_b.path(), whole);
+    const CurvedAnswer expected = ask(a, motion_a.path(), b, motion_b.path(), whole);
     contacts += expected.contacts.size();
-    MotionQueryOptions divided = whole;
-    divided.most_box_tests = MotionQueryOptions::kNoLimit;
+    CurvedOptions divided = whole;
+    divided.most_box_tests = CurvedOptions::kNoLimit;
     for (const int threads : {1, 3}) {
       SCOPED_TRACE(std::to_string(i) + " with threads: " + std::to_string(threads));
       divided.num_threads = threads;
@@ -522,7 +522,7 @@ TEST(FCL_MOTION_QUERY, tasksRunSideBySide) {
   };
   PairRules rules;
   rules.accepts = &accepts;
-  MotionQueryOptions options;
+  CurvedOptions options;
   options.all = true;
   options.rules = &rules;
   options.num_threads = 2;
@@ -541,22 +541,22 @@ TEST(FCL_MOTION_QUERY, tasksBesideAShape) {
     Random random(9200 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.3),
                           motion_b = randomMotion(random, 0.3);
-    const MovingBody moving(a, motion_a.path());
+    const BodyOnPath moving(a, motion_a.path());
     const ConvexShape shape = ConvexShape::cylinder(0.3, 0.8);
-    const MotionBody other(shape, motion_b.path());
-    MotionQueryOptions options;
+    const MovingBody other(shape, motion_b.path());
+    CurvedOptions options;
     options.all = true;
-    options.most_box_tests = MotionQueryOptions::kNoLimit - 1;
-    const MotionAnswer whole = queryMotions(moving.body, other, options);
-    options.most_box_tests = MotionQueryOptions::kNoLimit;
-    const MotionAnswer divided = queryMotions(moving.body, other, options);
+    options.most_box_tests = CurvedOptions::kNoLimit - 1;
+    const CurvedAnswer whole = queryCurved(moving.body, other, options);
+    options.most_box_tests = CurvedOptions::kNoLimit;
+    const CurvedAnswer divided = queryCurved(moving.body, other, options);
     options.num_threads = 3;
-    expectSame(queryMotions(moving.body, other, options), divided);
+    expectSame(queryCurved(moving.body, other, options), divided);
     std::map<std::int32_t, double> times;
-    for (const MotionContact& contact : whole.contacts)
+    for (const CurvedContact& contact : whole.contacts)
       times[contact.triangle[0]] = contact.toc_lo;
     EXPECT_EQ(divided.contacts.size(), times.size());
-    for (const MotionContact& contact : divided.contacts) {
+    for (const CurvedContact& contact : divided.contacts) {
       ASSERT_EQ(times.count(contact.triangle[0]), 1U);
       EXPECT_NEAR(contact.toc_lo, times[contact.triangle[0]], 1e-9);
     }
@@ -575,16 +575,16 @@ TEST(FCL_MOTION_QUERY, threadsFindTheSameContactsOfFeatures) {
     Random random(9300 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.4),
                           motion_b = randomMotion(random, 0.4);
-    const MovingBody moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
+    const BodyOnPath moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
     QueryOptions options;
     options.min_distance = i % 3 == 1 ? 0.01 : 0;
     options.ignores_initially_closer = i % 3 == 2;
-    const QueryAnswer one = queryMotionContacts(moving_a.body, moving_b.body, options);
+    const QueryAnswer one = queryCurvedContacts(moving_a.body, moving_b.body, options);
     contacts += one.contacts.size();
     for (const int threads : {2, 5}) {
       options.num_threads = threads;
       const QueryAnswer found =
-          queryMotionContacts(moving_a.body, moving_b.body, options);
+          queryCurvedContacts(moving_a.body, moving_b.body, options);
       ASSERT_EQ(found.contacts.size(), one.contacts.size());
       EXPECT_EQ(found.hasCrossing(), one.hasCrossing());
       for (std::size_t k = 0; k < one.contacts.size(); ++k) {
@@ -605,7 +605,7 @@ TEST(FCL_MOTION_QUERY, threadsFindTheSameContactsOfFeatures) {
 // together are among them. All are as near as promised.
 TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
   const Body a(makeIcosphere(1, 0.4)), b(makeBox({0.4, 0.25, 0.15}, 3));
-  MotionQueryOptions all;
+  CurvedOptions all;
   all.all = true;
   std::size_t contacts = 0, nearest = 0;
   for (int i = 0; i < 20; ++i) {
@@ -613,9 +613,9 @@ TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
     Random random(9000 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.5),
                           motion_b = randomMotion(random, 0.5);
-    const MotionAnswer triangles = ask(a, motion_a.path(), b, motion_b.path(), all);
-    const MovingBody moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
-    const QueryAnswer answer = queryMotionContacts(moving_a.body, moving_b.body, {});
+    const CurvedAnswer triangles = ask(a, motion_a.path(), b, motion_b.path(), all);
+    const BodyOnPath moving_a(a, motion_a.path()), moving_b(b, motion_b.path());
+    const QueryAnswer answer = queryCurvedContacts(moving_a.body, moving_b.body, {});
     std::map<std::vector<std::uint32_t>, double> times;
     for (const FeatureContact& contact : answer.contacts) {
       const auto name = nameOf(contact.kind == ContinuousContactKind::kVertexFace,
@@ -626,7 +626,7 @@ TEST(FCL_MOTION_QUERY, contactsOfFeatures) {
       }
     }
     contacts += times.size();
-    for (const MotionContact& contact : triangles.contacts) {
+    for (const CurvedContact& contact : triangles.contacts) {
       if (contact.toc_lo == 0) continue;
       const auto found = times.find(nearestName(a, b, contact));
       ASSERT_NE(found, times.end());
@@ -679,12 +679,12 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
                           motion_b = randomMotion(random, 0.8);
     const double* points = b.model->vertices->data();
     const RigidTree tree_b(*b.model, Pose());
-    const MotionBody moving_a(a.tree, a.frames, motion_a.path()),
+    const MovingBody moving_a(a.tree, a.frames, motion_a.path()),
         moving_b(tree_b, VertexFrames(points, points, b.mesh.vertices.size()),
                  b.model->tri_indices, motion_b.path());
-    const MotionAnswer answer = queryMotions(moving_a, moving_b, {});
+    const CurvedAnswer answer = queryCurved(moving_a, moving_b, {});
     const double toc = timeOf(answer);
-    EXPECT_NEAR(timeOf(queryMotions(moving_b, moving_a, {})), toc, 1e-6);
+    EXPECT_NEAR(timeOf(queryCurved(moving_b, moving_a, {})), toc, 1e-6);
     // Without a deformation the answers are those of the rigid mesh.
     if (i % 4 == 0) {
       EXPECT_NEAR(timeOf(ask(Body(ball), motion_a.path(), b, motion_b.path())), toc,
@@ -702,7 +702,7 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
     EXPECT_LE(toc, sampled);
     if (answer.contacts.empty()) continue;
     ++contacts;
-    EXPECT_NE(answer.contacts[0].certainty, MotionCertainty::kGivenUp);
+    EXPECT_NE(answer.contacts[0].certainty, ContactCertainty::kGivenUp);
     // Shortly after the end of the bracket FCL finds the contact too, except for thin
     // crossings.
     if (sampled <= 1) {

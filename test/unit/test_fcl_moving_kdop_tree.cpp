@@ -24,10 +24,10 @@
 #include <xmmintrin.h>
 #endif
 
-#include "api/prepared_mesh.h"
 #include "components.h"
 #include "moving_mesh.h"
 #include "offset_pad.h"
+#include "prepare/prepared_mesh.h"
 #include "query/deformable_query.h"
 #include "test_models.h"
 #include "tree/box_position.h"

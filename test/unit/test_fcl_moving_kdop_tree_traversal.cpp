@@ -138,10 +138,10 @@ int expectVisits(const Body& a, const Body& b, double latest = 1) {
 }
 
 /// A mesh with a moving tree.
-struct MovingBody : PreparedMovingMesh {
+struct BodyOnPath : PreparedMovingMesh {
   Body body;
 
-  explicit MovingBody(const MovingMesh& mesh, const Pose& beginning = Pose(),
+  explicit BodyOnPath(const MovingMesh& mesh, const Pose& beginning = Pose(),
                       const Pose& end = Pose())
       : PreparedMovingMesh(mesh, beginning, end), body(instance(), mesh.triangles) {}
 };
@@ -155,7 +155,7 @@ TEST(FCL_MOVING_KDOP_TREE, traversalVisitsEveryOverlap) {
     const MovingMesh a = i % 2 ? test::crumpledSheet(random, 5, 0.3)
                                : test::randomSoup(random, 40, 120, 3, 0.5);
     const MovingMesh b = test::crumpledSheet(random, 4, 0.5);
-    const MovingBody pa(a), pb(b);
+    const BodyOnPath pa(a), pb(b);
     for (const double latest : {1., 0.5, 0.}) {
       needed += expectVisits(pa.body, pa.body, latest);
       needed += expectVisits(pa.body, pb.body, latest);
@@ -235,11 +235,11 @@ TEST(FCL_MOVING_KDOP_TREE, traversalOfSmallTrees) {
   constexpr std::uint64_t kSeed = 52;
   Random random(kSeed);
   const MovingMesh other = test::randomSoup(random, 11, 30, 1, 0.5);
-  const MovingBody po(other);
+  const BodyOnPath po(other);
   for (std::size_t count = 1; count < 80; ++count) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(count));
     const MovingMesh mesh = test::randomSoup(random, count, 3 * count, 1, 0.5);
-    const MovingBody p(mesh);
+    const BodyOnPath p(mesh);
     expectVisits(p.body, p.body);
     expectVisits(p.body, po.body);
     expectVisits(po.body, p.body, 0.5);
@@ -279,7 +279,7 @@ void expectVisitsOfRigidTrees(std::uint64_t seed) {
     const MovingMesh mesh = test::crumpledSheet(random, 4, 0.3);
     Pose poses[2];
     for (Pose& pose : poses) pose.translation[2] = random.uniform(-0.3, 0.3);
-    const MovingBody c(mesh, poses[0], poses[1]);
+    const BodyOnPath c(mesh, poses[0], poses[1]);
     for (const double latest : {1., 0.5, 0.}) {
       needed += expectVisits(a, b, latest);
       needed += expectVisits(b, a, latest);
@@ -308,7 +308,7 @@ TEST(FCL_MOVING_KDOP_TREE, oneTriangleAndNothingToVisit) {
   MovingMesh mesh;
   mesh.t0 = mesh.t1 = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
-  const MovingBody one(mesh), other(mesh);
+  const BodyOnPath one(mesh), other(mesh);
   EXPECT_TRUE(visitsOf(one.body, one.body).empty());
   EXPECT_EQ(visitsOf(one.body, other.body).size(), 1U);
 }
@@ -334,7 +334,7 @@ TEST(FCL_MOVING_KDOP_TREE, treesFarFromEachOthersOrigin) {
         for (auto* points : {&b.t0, &b.t1})
           for (auto& p : *points) p[k] = size * p[k] + 0.5 * far * (k + 1);
       }
-      const MovingBody pa(a, pose_a[0], pose_a[1]), pb(b, pose_b[0], pose_b[1]);
+      const BodyOnPath pa(a, pose_a[0], pose_a[1]), pb(b, pose_b[0], pose_b[1]);
       EXPECT_GT(expectVisits(pa.body, pb.body), 100);
       EXPECT_GT(expectVisits(pb.body, pa.body), 100);
       // The traversal does not give up: most pairs are still culled if floats can
@@ -354,7 +354,7 @@ TEST(FCL_MOVING_KDOP_TREE, coordinatesBeyondFloat) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(size));
     const MovingMesh a = test::randomSoup(random, 25, 60, size, size);
     const MovingMesh b = test::randomSoup(random, 15, 40, size, 0.1 * size);
-    const MovingBody pa(a), pb(b);
+    const BodyOnPath pa(a), pb(b);
     const std::size_t n = a.triangles.size(), m = b.triangles.size();
     EXPECT_GT(expectVisits(pa.body, pa.body), 10);
     EXPECT_GT(expectVisits(pa.body, pb.body), 10);
@@ -378,7 +378,7 @@ TEST(FCL_MOVING_KDOP_TREE, unboundedInOneFrame) {
   mesh.t0.emplace_back(1e45, 0, 0);  // keeps the origin at 0
   mesh.t1.emplace_back(1e45, 0, 0);
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
-  const MovingBody prepared(mesh);
+  const BodyOnPath prepared(mesh);
   EXPECT_EQ(expectVisits(prepared.body, prepared.body), 1);
 }
 

@@ -12,7 +12,6 @@
 
 #include <Eigen/SVD>
 
-#include "api/nearest_rotation.h"
 #include "fcl/broadphase/continuous_collision_manager.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
@@ -24,6 +23,7 @@
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "prepare/nearest_rotation.h"
 
 namespace fcl {
 namespace test {

@@ -3,7 +3,7 @@
 // The moving boxes of objects contain them at all times, whatever the motion, and are
 // tight where the path is straight. Objects that overlap at some time are box pairs. A
 // plane or halfspace is bounded by itself.
-#include "api/object_bounds.h"
+#include "prepare/object_bounds.h"
 
 #include <gtest/gtest.h>
 

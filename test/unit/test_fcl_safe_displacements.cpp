@@ -10,12 +10,12 @@
 #include <memory>
 #include <vector>
 
-#include "api/prepared_mesh.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/safe_displacements.h"
 #include "feature_distance.h"
 #include "moving_mesh.h"
+#include "prepare/prepared_mesh.h"
 #include "query/deformable_query.h"
 #include "test_models.h"
 

@@ -10,15 +10,15 @@
 #include <string>
 #include <vector>
 
-#include "api/prepared_motion.h"
+#include "curved/overlap_at_start.h"
+#include "curved/shape_contacts.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
-#include "motion/overlap_at_start.h"
-#include "motion/shape_contacts.h"
+#include "prepare/prepared_motion.h"
 
 namespace fcl {
 namespace test {

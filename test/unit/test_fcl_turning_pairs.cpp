@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Eight pairs of features that turn (motion/turning_pairs.h) against one pair at a time,
+// Eight pairs of features that turn (advance/turning_pairs.h) against one pair at a time,
 // against sampled paths, and on each instruction set.
-#include "motion/turning_pairs.h"
+#include "advance/turning_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -10,10 +10,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "advance/feature_advance.h"
+#include "advance/triangle_advance.h"
 #include "mesh_generators.h"
-#include "motion/feature_advance.h"
-#include "motion/posed_vector.h"
-#include "motion/triangle_advance.h"
+#include "paths/posed_vector.h"
 
 namespace fcl {
 namespace test {
@@ -113,10 +113,10 @@ struct Scene {
 
 /// The tolerance of bodies that contain all of these triangles, which move by less than
 /// 0.1 in their frames.
-MotionTolerance toleranceOf(const Scene& scene) {
+BodyTolerance toleranceOf(const Scene& scene) {
   static const ConvexShape whole = ConvexShape::cuboid({1.2, 1.2, 1.2});
-  MotionTolerance tolerance(MotionBody(whole, scene.path[0]),
-                            MotionBody(whole, scene.path[1]), 0);
+  BodyTolerance tolerance(MovingBody(whole, scene.path[0]),
+                          MovingBody(whole, scene.path[1]), 0);
   tolerance.rate += 0x1p-46;
   return tolerance;
 }
@@ -127,7 +127,7 @@ TEST(FCL_TURNING_PAIRS, contactsAreThoseOfOnePairAtATime) {
   int num_contacts = 0, num_apart = 0, num_open = 0, num_proved = 0;
   for (int round = 0; round < 5000; ++round) {
     const Scene scene(random);
-    const MotionTolerance tolerance = toleranceOf(scene);
+    const BodyTolerance tolerance = toleranceOf(scene);
     const TurningAnswers found = advanceTurning(
         scene.pairs, {scene.body(0), scene.body(1)},
         {tolerance.position, tolerance.rate, tolerance.touching, kTocErr, 1});
@@ -141,12 +141,11 @@ TEST(FCL_TURNING_PAIRS, contactsAreThoseOfOnePairAtATime) {
       const BodyTriangle a = scene.feature(lane, 0), b = scene.feature(lane, 1);
       double t = first;
       int steps = 10000;
-      MotionCounts counts;
-      TrianglePairMotion single(scene.path[0], a, scene.path[1], b, first, last,
-                                tolerance);
-      const bool is_contact = single.advance(t, last, steps, counts) ==
-                                  TrianglePairMotion::Answer::kContact &&
-                              t <= last;
+      AdvanceCounts counts;
+      TriangleAdvance single(scene.path[0], a, scene.path[1], b, first, last, tolerance);
+      const bool is_contact =
+          single.advance(t, last, steps, counts) == TriangleAdvance::Answer::kContact &&
+          t <= last;
       ASSERT_EQ((found.yes >> lane & 1U) != 0, is_contact);
       const double end = is_contact ? found.toc_lo[lane] : last;
       // Further apart than the tolerance before.
@@ -158,13 +157,12 @@ TEST(FCL_TURNING_PAIRS, contactsAreThoseOfOnePairAtATime) {
       ++num_contacts;
       EXPECT_NEAR(end, t, 1e-7);
       EXPECT_LE(scene.distance(lane, end), tolerance.touching);
-      const TrianglePairMotion whole(scene.path[0], scene.triangle[lane][0],
-                                     scene.path[1], scene.triangle[lane][1], end, last,
-                                     tolerance);
-      const double hi = end == 0
-                            ? 0
-                            : whole.proveContact(
-                                  end, TrianglePairMotion::bracketWidth(end, kTocErr, 1));
+      const TriangleAdvance whole(scene.path[0], scene.triangle[lane][0], scene.path[1],
+                                  scene.triangle[lane][1], end, last, tolerance);
+      const double hi =
+          end == 0
+              ? 0
+              : whole.proveContact(end, TriangleAdvance::bracketWidth(end, kTocErr, 1));
       EXPECT_EQ(found.toc_hi[lane], hi);
       num_proved += hi > end;
     }
@@ -180,7 +178,7 @@ TEST(FCL_TURNING_PAIRS, sameBitsOnAllMachines) {
   Random random(4);
   for (int round = 0; round < 500; ++round) {
     const Scene scene(random);
-    const MotionTolerance tolerance = toleranceOf(scene);
+    const BodyTolerance tolerance = toleranceOf(scene);
     const TurningBody body[2] = {scene.body(0), scene.body(1)};
     const TurningRequest request{tolerance.position, tolerance.rate, tolerance.touching,
                                  1e-4, 1};

@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Kinds of contacts and of queries, and what the stages of a query count: plain data,
+// Kinds of queries, and what the stages of a query count: plain data,
 // which the stages themselves use too. continuous_contact.h includes this header.
 #ifndef FCL_NARROWPHASE_STAGE_COUNTS_H
 #define FCL_NARROWPHASE_STAGE_COUNTS_H
 
 #include <cstdint>
 
-namespace fcl {
+#include "fcl/narrowphase/continuous_contact_kind.h"
 
-/// @brief Which features meet in a continuous contact.
-enum class ContinuousContactKind {
-  kVertexFace,    ///< a vertex meets a triangle
-  kEdgeEdge,      ///< two edges meet
-  kCrossing,      ///< an edge already passes through a triangle at t = 0
-  kVertexEdge,    ///< a vertex comes near an edge; only with min_distance
-  kVertexVertex,  ///< two vertices come near each other; only with min_distance
-  kVertexShape,   ///< a vertex of a mesh meets a shape or a cell of an octree
-  kEdgeShape,     ///< an edge of a mesh meets a shape or a cell
-  kFaceShape,     ///< a triangle of a mesh meets a shape or a cell
-  kShapes         ///< two shapes, or a shape and a cell, or two cells meet
-};
+namespace fcl {
 
 /// @brief What a continuous query looks for.
 enum class ContinuousQuery {

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "advance/triangle_advance.h"
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
@@ -20,7 +21,6 @@
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
-#include "motion/triangle_advance.h"
 #include "motions/contact_features.h"
 #include "motions/row.h"
 #include "timing.h"

@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "advance/triangle_advance.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
@@ -26,7 +27,6 @@
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
-#include "motion/triangle_advance.h"
 #include "motions/cloth.h"
 #include "motions/deep.h"
 #include "motions/row.h"

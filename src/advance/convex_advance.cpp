@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "advance/convex_advance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "advance/advancement.h"
+#include "numerics/error_bounds.h"
+#include "paths/posed_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double accelerationOf(const MovingConvex& set, double t0, double t1) {
+  const AccelerationBound bound = set.path->acceleration(t0, t1);
+  if (bound.isZero() && bound.per_displacement == 0) return 0;
+  if (!set.shape) return accelerationOf(bound, set.triangle);
+  const double radius = set.shape->flat() ? 0 : set.shape->box().radius;
+  return bound.of(set.shape->center(), radius) * kUpward;
+}
+
+int flatOf(const MovingConvex& a, const MovingConvex& b) {
+  if (a.shape && a.shape->flat()) return 0;
+  return b.shape && b.shape->flat() ? 1 : -1;
+}
+
+/// What is farthest along a direction: a point, the corners of a triangle that are as far
+/// up to a tolerance, and the middle of these.
+struct Extreme {
+  Vec point, middle;
+  unsigned corners;
+};
+
+Extreme extremeOf(const PosedConvex& set, const Vec& direction, double tolerance) {
+  int id;
+  Extreme out{set.support(direction, id), {0, 0, 0}, 0};
+  if (set.shape) {
+    out.middle = out.point;
+    return out;
+  }
+  int count = 0;
+  const auto isRepeated = [&set](int k) {
+    // Corners of a free edge or point (MeshTriangle).
+    return std::any_of(set.corner, set.corner + k, [&](const Vec& other) {
+      return maxNorm(other - set.corner[k]) == 0;
+    });
+  };
+  for (int k = 0; k < 3; ++k) {
+    if (dot(direction, out.point - set.corner[k]) > tolerance || isRepeated(k)) continue;
+    out.middle = out.middle + set.corner[k];
+    out.corners |= 1U << k;
+    ++count;
+  }
+  out.middle = (1. / count) * out.middle;
+  return out;
+}
+
+}  // namespace
+
+MovingConvex movingConvexOf(const MovingBody& body, std::int32_t place) {
+  MovingConvex out{&body.path(), body.shape(), {}, body.speed()};
+  if (body.shape() && body.shape()->flat())
+    out.speed = body.path().speed(norm(body.shape()->flat()->foot()) * kUpward);
+  if (body.isMesh()) out.triangle = body.triangle(place);
+  if (!body.octree()) return out;
+  out.shape = &body.octree()->cell(place);
+  const Vec center = out.shape->center();
+  const double far = std::sqrt(dot(center, center)) + out.shape->box().radius;
+  out.speed = std::min(out.speed, body.path().speed(far * kUpward));
+  return out;
+}
+
+ConvexAdvance::ConvexAdvance(const MovingConvex& a, const MovingConvex& b, double t0,
+                             double t1, const BodyTolerance& tolerance)
+    : set_{&a, &b},
+      flat_(flatOf(a, b)),
+      t1_(t1),
+      tolerance_(tolerance),
+      acceleration_(accelerationOf(a, t0, t1) + accelerationOf(b, t0, t1)) {}
+
+void ConvexAdvance::ignoreInitiallyCloser() {
+  const State state = stateAt(0);
+  const ConvexGap gap = gapOf(state, 0);
+  if (gap.distance > tolerance_.distance + tolerance_.touching) return;
+  double radii = 0;
+  for (const MovingConvex* set : set_)
+    if (set->shape) radii += set->shape->radius();
+  const double own = (gap.gap / growthOfNormal(state) - radii) * (1 - kNearerShare) -
+                     2 * tolerance_.touching;
+  if (own > 0) tolerance_.distance = radii + own;
+}
+
+ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
+  const MovingConvex& set = *set_[k];
+  Side side{};
+  side.now.shape = set.shape;
+  side.now.pose = set.path->pose(t);
+  side.rate = set.path->rate(t);
+  if (set.shape) return side;
+  for (int i = 0; i < 3; ++i) {
+    const Vec from = set.triangle.corner[0][i], moving = set.triangle.corner[1][i] - from,
+              x = (1 - t) * from + t * set.triangle.corner[1][i];
+    side.now.corner[i] = posed(side.now.pose, x);
+    side.velocity[i] = rotated(side.rate.rotation, x) +
+                       rotated(side.now.pose.rotation, moving) +
+                       vecOf(side.rate.translation);
+  }
+  return side;
+}
+
+double ConvexAdvance::Side::reachAfter(double h, const Vec& n, const Vec& change) const {
+  if (!now.shape) {
+    double most = -HUGE_VAL;
+    for (int i = 0; i < 3; ++i)
+      most = std::max(most, dot(n, now.corner[i]) +
+                                h * (dot(n, velocity[i]) + dot(change, now.corner[i])));
+    return most;
+  }
+  if (now.shape->flat()) {
+    const Vec foot = now.shape->flat()->foot(),
+              velocity_of_foot = rotated(rate.rotation, foot) + vecOf(rate.translation),
+              place = posed(now.pose, foot);
+    return dot(n, place) + h * (dot(n, velocity_of_foot) + dot(change, place));
+  }
+  // As n . (R x + T) + h (n . (R' x + T') + n' . (R x + T)) for all points x of the core.
+  const Vec later = n + h * change;
+  const double(&r)[9] = now.pose.rotation;
+  const double(&v)[9] = rate.rotation;
+  double turned[3];
+  for (int k = 0; k < 3; ++k)
+    turned[k] = r[k] * later.x + r[3 + k] * later.y + r[6 + k] * later.z +
+                h * (v[k] * n.x + v[3 + k] * n.y + v[6 + k] * n.z);
+  return now.shape->reach({turned[0], turned[1], turned[2]}) +
+         dot(later, vecOf(now.pose.translation)) + h * dot(n, vecOf(rate.translation));
+}
+
+Vec ConvexAdvance::Side::center() const {
+  if (now.shape) return posed(now.pose, now.shape->center());
+  return (1. / 3) * (now.corner[0] + now.corner[1] + now.corner[2]);
+}
+
+double ConvexAdvance::Side::size() const {
+  if (now.shape) return now.shape->flat() ? 0 : 2 * now.shape->box().radius;
+  double square = 0;
+  for (int i = 0; i < 3; ++i) {
+    const Vec edge = now.corner[(i + 1) % 3] - now.corner[i];
+    square = std::max(square, dot(edge, edge));
+  }
+  return std::sqrt(square);
+}
+
+ConvexAdvance::Separator ConvexAdvance::inWorld(const Vec& direction) const {
+  return {direction, {0, 0, 0}, acceleration_, margin(1), 1};
+}
+
+/// A matrix that is no rotation changes the length of the normal of a flat. How much
+/// longer than now it may become.
+double ConvexAdvance::growthOfNormal(const State& state) const {
+  if (flat_ < 0 || set_[flat_]->path->isTranslation()) return 1;
+  const PosedConvex& flat = state.side[flat_].now;
+  return set_[flat_]->path->stretch() /
+         norm(rotated(flat.pose.rotation, flat.shape->flat()->normal));
+}
+
+// The direction is n(t) = R(t) m with m = R(t0)^T n. For two points with the difference z
+// the second derivative of n . z is n . z'' + 2 n' . z' + n'' . z, and r times the norm
+// of R'' is at most the bound on the acceleration of points within r of the origin.
+//
+// The length of R x is at most s |x|, s the stretch of R, so that |m| <= s and |n(t)| <=
+// s^2; and n' and n'' are bounded by |m|.
+//
+// A flat is the plane through its foot with the normal n(t), where m is parallel to that
+// in the body frame and n(t0) a unit vector. So its foot stands for all of its points.
+// The height n . z is at most |n| times the distance.
+ConvexAdvance::Separator ConvexAdvance::inBody(int k, double t, const State& state,
+                                               const ConvexGap& gap) const {
+  const MotionPath& path = *set_[k]->path;
+  const double(&r)[9] = state.side[k].now.pose.rotation;
+  const double(&v)[9] = state.side[k].rate.rotation;
+  const Vec& n = gap.direction;
+  Vec m = rotatedBack(r, n);
+  double length = path.stretch();
+  if (flat_ >= 0) {
+    const Vec& normal = set_[k]->shape->flat()->normal;
+    length = 1 / norm(rotated(r, normal));
+    m = (dot(m, normal) < 0 ? -length : length) * normal;
+  }
+  const double longest = std::max(path.stretch(), 1.) * length, turn = path.turnSpeed(),
+               speed = set_[0]->speed + set_[1]->speed;
+  double apart = std::max(gap.distance, gap.gap);
+  if (flat_ >= 0) apart = norm(state.side[1].center() - state.side[0].center());
+  apart += speed * (t1_ - t);
+  for (int side = 0; side < 2; ++side)
+    apart += state.side[side].size() * set_[side]->path->stretch();
+  const double turning =
+      2 * turn * speed + path.acceleration(t, t1_).of({0, 0, 0}, apart * kUpward);
+  return {rotated(r, m), rotated(v, m), (acceleration_ + turning) * longest * kUpward,
+          flat_ >= 0 ? margin(growthOfNormal(state)) : margin(1) * longest * kUpward,
+          0.5 / turn};
+}
+
+/// The gap of the cores along a direction, `h` later, at least. It is concave in h, since
+/// a support function is convex.
+double ConvexAdvance::gapAfter(double h, const State& state,
+                               const Separator& along) const {
+  return -state.side[1].reachAfter(h, -1. * along.direction, -1. * along.change) -
+         state.side[0].reachAfter(h, along.direction, along.change) - along.margin -
+         h * tolerance_.rate - 0.5 * along.acceleration * h * h;
+}
+
+/// A step, at most to the end of the span, during which the direction separates the sets;
+/// negative if it does not separate them now. A step that ends with a gap had one all the
+/// time, since the gap is concave.
+double ConvexAdvance::step(double t, const State& state, const Separator& along) const {
+  const double longest = std::min(t1_ - t, along.longest);
+  double lower = 0, gap = gapAfter(0, state, along);
+  if (!(gap > 0)) return -1;
+  double upper = longest, beyond = gapAfter(longest, state, along);
+  if (beyond >= 0) return longest;
+  // The line between the two values is below the gap, so that its root is a step that is
+  // too short. There the gap may be 0 and round to less; half of the margin is for that.
+  const double least = -0.5 * tolerance_.position;
+  constexpr int kRounds = 12;
+  constexpr double kFar = 16;
+  for (int round = 0; round < kRounds; ++round) {
+    const double chord = lower + (upper - lower) * (gap / (gap - beyond)),
+                 at = gapAfter(chord, state, along);
+    if (!(at >= least) || !(chord > lower)) break;
+    if (!(at > 0)) return chord;
+    const double slope = (beyond - at) / (upper - chord);
+    lower = chord;
+    gap = at;
+    // Beyond a time at which the gap is negative it stays negative. A long span has a
+    // chord that is far too steep: then only the order of magnitude is looked for.
+    const double middle = upper > kFar * lower
+                              ? std::sqrt(lower * upper)
+                              : std::min(0.5 * (lower + upper), lower - 2 * gap / slope),
+                 there = gapAfter(middle, state, along);
+    if (there >= 0) {
+      lower = middle;
+      gap = there;
+    } else {
+      upper = middle;
+      beyond = there;
+    }
+    if (upper - lower < 0.1 * lower) break;
+  }
+  return lower;
+}
+
+/// A direction that turns with a body stays at right angles to its flat sides, so that a
+/// large one does not shorten the step.
+double ConvexAdvance::longestStep(double t, const State& state,
+                                  const ConvexGap& gap) const {
+  if (flat_ >= 0) return step(t, state, inBody(flat_, t, state, gap));
+  double best = step(t, state, inWorld(gap.direction));
+  for (int k = 0; k < 2; ++k) {
+    if (best >= t1_ - t) return best;
+    if (!set_[k]->path->isTranslation())
+      best = std::max(best, step(t, state, inBody(k, t, state, gap)));
+  }
+  return best;
+}
+
+/// The gap along the normal of a flat. Points of the other set that are lowest, or
+/// highest, up to rounding count as one feature.
+ConvexGap ConvexAdvance::flatGap(const State& state) const {
+  const Side &flat = state.side[flat_], &other = state.side[1 - flat_];
+  const FlatShape& shape = *flat.now.shape->flat();
+  const Vec normal = rotated(flat.now.pose.rotation, shape.normal),
+            up = (1 / norm(normal)) * normal, foot = flat.center();
+  const Extreme low = extremeOf(other.now, -1. * up, tolerance_.position),
+                high = extremeOf(other.now, up, tolerance_.position);
+  const double lowest = dot(up, low.point - foot), highest = dot(up, high.point - foot);
+  const bool is_below = !shape.is_solid && -highest > lowest;
+  const Extreme& near = is_below ? high : low;
+  ConvexGap out{};
+  out.gap = is_below ? -highest : lowest;
+  out.direction = is_below == (flat_ == 0) ? -1. * up : up;
+  out.distance = std::max(out.gap, 0.);
+  out.depth = std::max(shape.is_solid ? -lowest : std::min(-lowest, highest), 0.);
+  Vec point = near.middle;
+  unsigned corners = near.corners;
+  if (!shape.is_solid && out.gap < 0) {
+    point = low.point + (-lowest / (highest - lowest)) * (high.point - low.point);
+    corners = low.corners | high.corners;
+  }
+  out.point[1 - flat_] = point;
+  out.point[flat_] = point - (is_below ? -out.distance : out.distance) * up;
+  out.corners[1 - flat_] = corners;
+  return out;
+}
+
+/// The direction between the centers, or the suggested one if it shows a larger gap.
+/// Newton's method needs a good one.
+Vec ConvexAdvance::firstGuess(const State& state) const {
+  const Vec way = state.side[1].center() - state.side[0].center();
+  const bool is_curved = state.side[0].now.isCurved() || state.side[1].now.isCurved();
+  if (!is_curved || !(maxNorm(suggested_) > 0)) return way;
+  const auto gapAlong = [&state](const Vec& n) {
+    return -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+  };
+  const double length = norm(way);
+  return length > 0 && gapAlong(way) > length * gapAlong(suggested_) ? way : suggested_;
+}
+
+ConvexGap ConvexAdvance::gapOf(const State& state, double contact) const {
+  if (flat_ >= 0) return flatGap(state);
+  const Vec guess = maxNorm(guess_) > 0 ? guess_ : firstGuess(state);
+  return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact);
+}
+
+/// Prefers the direction of a flat side: where the gap is a few roundings wide another
+/// one may happen to show as much.
+ConvexGap ConvexAdvance::gapAt(double t) const {
+  const State state = stateAt(t);
+  ConvexGap gap = gapOf(state, 0);
+  if (flat_ >= 0) return gap;
+  for (const Side& side : state.side) {
+    Vec n = side.now.flatNormal(gap.direction);
+    const double length = norm(n);
+    if (!(length > 0x1p-500) || !(gap.gap > 0)) continue;
+    n = ((dot(n, gap.direction) < 0 ? -1 : 1) / length) * n;
+    const double along = -state.side[1].now.reach(-1. * n) - state.side[0].now.reach(n);
+    if (!(along >= gap.gap - tolerance_.position)) continue;
+    gap.direction = n;
+    gap.gap = along;
+  }
+  return gap;
+}
+
+ConvexAdvance::Answer ConvexAdvance::advance(double& t, double last, int& steps,
+                                             AdvanceCounts& counts) {
+  ConvexGap gap;
+  return deformable::advance(
+      t, t1_, last, steps, counts, [this](double time) { return stateAt(time); },
+      [this, &gap](const State& state) {
+        const double contact = tolerance_.distance * growthOfNormal(state) +
+                               tolerance_.touching - tolerance_.position;
+        gap = gapOf(state, contact);
+        return gap.distance <= contact;
+      },
+      [this, &gap](double time, const State& state) {
+        guess_ = gap.direction;
+        return longestStep(time, state, gap);
+      });
+}
+
+double ConvexAdvance::proveContact(double t, double width) const {
+  return provedTimeAfter(t, width, tolerance_.position, speed(), [this](double time) {
+    const ConvexGap gap = gapOf(stateAt(time), 0);
+    return gap.depth > 4 * tolerance_.position ||
+           gap.distance + tolerance_.position <= tolerance_.distance;
+  });
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

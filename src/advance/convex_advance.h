@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The first time at which a convex shape touches a triangle or another shape. Both move
+// on curved paths. The decision is on the true paths.
+#ifndef FCL_CCD_ADVANCE_CONVEX_ADVANCE_H
+#define FCL_CCD_ADVANCE_CONVEX_ADVANCE_H
+
+#include "advance/triangle_advance.h"
+#include "bodies/moving_body.h"
+#include "shapes/convex_distance.h"
+#include "shapes/convex_shape.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A shape, a cell of an octree, or a triangle of a mesh, that moves.
+struct MovingConvex {
+  const MotionPath* path;
+  /// Null: the triangle.
+  const ConvexShape* shape;
+  BodyTriangle triangle;
+  /// Bound on the velocity of a point.
+  double speed;
+};
+
+/// @brief The shape of a body, a cell of its octree, or a triangle of its mesh.
+MovingConvex movingConvexOf(const MovingBody& body, std::int32_t place);
+
+/// @brief Two convex sets of which one is a shape, in a span of time. What
+/// TriangleAdvance is for two triangles.
+class ConvexAdvance {
+ public:
+  using Answer = TriangleAdvance::Answer;
+
+  /// @param tolerance  its distance is that of the cores
+  ConvexAdvance(const MovingConvex& a, const MovingConvex& b, double t0, double t1,
+                const BodyTolerance& tolerance);
+
+  /// @brief The share of its distance by which a pair that begins nearer than the
+  /// distance of contact must come nearer. With a smaller one, pairs that move together
+  /// on curved paths take too many steps: 1,000 a unit of time with this one.
+  static constexpr double kNearerShare = 1e-4;
+
+  /// @brief Takes the distance of the surfaces at t = 0, less kNearerShare of it and
+  /// twice the tolerance, in place of the distance of contact, if they are nearer than
+  /// that then. Not if they touch then.
+  void ignoreInitiallyCloser();
+
+  /// @brief Suggests a direction from a to b that may part the sets, for example that of
+  /// a pair beside this one; 0: none. The answer depends on it by rounding only.
+  void suggest(const Vec& direction) { suggested_ = direction; }
+
+  /// @brief The last direction that parted the sets while they were advanced; 0: none.
+  const Vec& lastDirection() const { return guess_; }
+
+  /// @brief As TriangleAdvance::advance(). Also kContact where the sets overlap.
+  Answer advance(double& t, double last, int& steps, AdvanceCounts& counts);
+
+  /// @brief As TriangleAdvance::proveContact().
+  double proveContact(double t, double width) const;
+
+  /// @brief As TriangleAdvance::directionAt().
+  Vec directionAt(double t) const { return gapAt(t).direction; }
+
+  /// @brief The gap of the cores at a time.
+  ConvexGap gapAt(double t) const;
+
+  /// @brief The gap of the cores, without a look at their flat sides.
+  ConvexGap coreGapAt(double t) const { return gapOf(stateAt(t), 0); }
+
+  /// @brief Bound on the relative speed of two points.
+  double speed() const { return set_[0]->speed + set_[1]->speed; }
+
+ private:
+  /// A set at a time, with the velocities of its points.
+  struct Side {
+    PosedConvex now;
+    PoseRate rate;
+    Vec velocity[3];
+    /// The largest coordinate n . x + h (n . x' + n' . x) of a point: along a direction
+    /// that changes, `h` later, up to terms of second order.
+    double reachAfter(double h, const Vec& n, const Vec& change) const;
+    /// A point inside.
+    Vec center() const;
+    /// How far two points may be apart; 0 for a flat, of which only the foot counts.
+    double size() const;
+  };
+  struct State {
+    Side side[2];
+  };
+  Side sideAt(int k, double t) const;
+  State stateAt(double t) const { return {{sideAt(0, t), sideAt(1, t)}}; }
+  ConvexGap gapOf(const State& state, double contact) const;
+  ConvexGap flatGap(const State& state) const;
+  /// A direction that is fixed in the world, or in a body.
+  struct Separator {
+    Vec direction, change;
+    /// Bound on the second derivative of the relative coordinate of two points.
+    double acceleration;
+    double margin;
+    /// The longest step, for which the direction stays of about the same length.
+    double longest;
+  };
+  /// The gap that a step keeps, along a direction that may become longer by a factor. Its
+  /// end may round by another half of the position error.
+  double margin(double growth) const {
+    return 2 * tolerance_.position + growth * tolerance_.distance;
+  }
+  double growthOfNormal(const State& state) const;
+  Vec firstGuess(const State& state) const;
+  Separator inWorld(const Vec& direction) const;
+  Separator inBody(int k, double t, const State& state, const ConvexGap& gap) const;
+  double gapAfter(double h, const State& state, const Separator& separator) const;
+  double step(double t, const State& state, const Separator& separator) const;
+  double longestStep(double t, const State& state, const ConvexGap& gap) const;
+
+  const MovingConvex* set_[2];
+  /// The set that is a plane or a halfspace; -1: none. Then the sets are apart along its
+  /// normal or not at all.
+  int flat_;
+  double t1_;
+  /// The tolerance of this pair, with its distance of contact.
+  BodyTolerance tolerance_;
+  /// Bound on the relative acceleration of two points.
+  double acceleration_{0};
+  Vec suggested_{0, 0, 0};
+  /// The direction of the last gap; 0: there is none.
+  Vec guess_{0, 0, 0};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

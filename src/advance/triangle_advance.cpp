@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "advance/triangle_advance.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "advance/advancement.h"
+#include "elementary/predicates.h"
+#include "numerics/error_bounds.h"
+#include "paths/posed_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
+
+Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
+
+/// The nearest points of an edge pq and an edge rs, as fractions of the edges. An edge
+/// may be a point.
+void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, double& s,
+                    double& t) {
+  const Vec w = p - r;
+  const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w),
+               vw = dot(v, w);
+  if (!(vv > 0)) {
+    t = 0;
+    s = uu > 0 ? clampedUnit(-uw / uu) : 0;
+    return;
+  }
+  const double area = uu * vv - uv * uv;
+  s = area > 0 ? clampedUnit((uv * vw - uw * vv) / area) : 0;
+  t = (uv * s + vw) / vv;
+  if (t < 0 || t > 1) {
+    t = clampedUnit(t);
+    s = uu > 0 ? clampedUnit((uv * t - uw) / uu) : 0;
+  }
+}
+
+/// A vertex against the inside of a face.
+bool nearestOnFace(const Vec& p, const Vec (&f)[3], Vec& foot) {
+  const Vec n = cross(f[1] - f[0], f[2] - f[0]);
+  for (int k = 0; k < 3; ++k)
+    if (!(dot(cross(f[(k + 1) % 3] - f[k], p - f[k]), n) > 0)) return false;
+  const double square = dot(n, n);
+  if (!(square > 0)) return false;
+  foot = p - (dot(n, p - f[0]) / square) * n;
+  return true;
+}
+
+/// Gap along a direction: b's least minus a's greatest coordinate.
+double gapAlong(const Vec& n, const Vec (&a)[3], const Vec (&b)[3]) {
+  return std::min(std::min(dot(n, b[0]), dot(n, b[1])), dot(n, b[2])) -
+         std::max(std::max(dot(n, a[0]), dot(n, a[1])), dot(n, a[2]));
+}
+
+/// Keeps the direction, or its opposite, if it shows a larger gap than the best so far.
+void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
+                  double& gap) {
+  constexpr double kLeast = 0x1p-500;
+  Vec long_enough = d;
+  double length = norm(d);
+  // The products of three edges of tiny triangles.
+  if (!(length > kLeast)) {
+    long_enough = (1 / kLeast) * d;
+    length = norm(long_enough);
+    if (!(length > kLeast)) return;
+  }
+  const Vec n = (1 / length) * long_enough, opposite = -1. * n;
+  const double along = gapAlong(n, a, b), against = gapAlong(opposite, a, b);
+  if (along > gap) {
+    gap = along;
+    best = n;
+  }
+  if (against > gap) {
+    gap = against;
+    best = opposite;
+  }
+}
+
+Vec edge(const Vec (&x)[3], int k) { return x[(k + 1) % 3] - x[k]; }
+Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
+
+/// The part of a vector that is perpendicular to another one.
+Vec across(const Vec& edge, const Vec& v) { return cross(edge, cross(v, edge)); }
+
+/// The direction along which nearest features are apart. It has less rounding than the
+/// line between their nearest points.
+Vec directionOf(const NearestFeatures& near, const Vec (&a)[3], const Vec (&b)[3]) {
+  switch (near.kind) {
+    case NearestFeatures::Kind::kVertexOfA:
+      return normal(b);
+    case NearestFeatures::Kind::kVertexOfB:
+      return normal(a);
+    default:
+      if (near.inside_a && near.inside_b) return cross(edge(a, near.a), edge(b, near.b));
+      if (near.inside_a) return across(edge(a, near.a), near.between);
+      if (near.inside_b) return across(edge(b, near.b), near.between);
+      return near.between;
+  }
+}
+
+}  // namespace
+
+NearestFeatures nearestFeatures(const Vec (&a)[3], const Vec (&b)[3],
+                                const NumCorners& count) {
+  NearestFeatures best{};
+  best.square = HUGE_VAL;
+  const auto keep = [&best](const Vec& on_a, const Vec& on_b) {
+    const Vec between = on_b - on_a;
+    const double square = dot(between, between);
+    if (!(square < best.square)) return false;
+    best.square = square;
+    best.between = between;
+    best.point = on_a;
+    best.inside_a = best.inside_b = true;
+    return true;
+  };
+  Vec foot;
+  for (int k = 0; k < 3; ++k) {
+    if (k < count.a && count.b == 3 && nearestOnFace(a[k], b, foot) && keep(a[k], foot)) {
+      best.kind = NearestFeatures::Kind::kVertexOfA;
+      best.a = k;
+    }
+    if (k < count.b && count.a == 3 && nearestOnFace(b[k], a, foot) && keep(foot, b[k])) {
+      best.kind = NearestFeatures::Kind::kVertexOfB;
+      best.b = k;
+    }
+  }
+  for (int i = 0; i < NumCorners::edgesOf(count.a); ++i)
+    for (int j = 0; j < NumCorners::edgesOf(count.b); ++j) {
+      double s, t;
+      nearestOnEdges(a[i], edge(a, i), b[j], edge(b, j), s, t);
+      if (!keep(lerp(a[i], a[(i + 1) % 3], s), lerp(b[j], b[(j + 1) % 3], t))) continue;
+      best.kind = NearestFeatures::Kind::kEdges;
+      best.a = i;
+      best.b = j;
+      best.inside_a = s > 0 && s < 1;
+      best.inside_b = t > 0 && t < 1;
+    }
+  return best;
+}
+
+TriangleAdvance::TriangleAdvance(const MotionPath& path_a, const BodyTriangle& a,
+                                 const MotionPath& path_b, const BodyTriangle& b,
+                                 double t0, double t1, const BodyTolerance& tolerance)
+    : path_{&path_a, &path_b},
+      triangle_{&a, &b},
+      count_(a, b),
+      t1_(t1),
+      tolerance_(tolerance),
+      acceleration_(0),
+      jerk_(0) {
+  for (int body = 0; body < 2; ++body) {
+    const AccelerationBound bound = path_[body]->acceleration(t0, t1);
+    const double most = accelerationOf(bound, *triangle_[body]);
+    for (int k = 0; k < 3; ++k)
+      if (norm(triangle_[body]->corner[1][k] - triangle_[body]->corner[0][k]) > 0 ||
+          !(bound.jerk < HUGE_VAL))
+        jerk_ = HUGE_VAL;
+    acceleration_ += most;
+    if (jerk_ < HUGE_VAL) jerk_ += most * bound.jerk * kUpward;
+  }
+}
+
+void TriangleAdvance::cornersAt(double t, Vec (&p)[2][3]) const {
+  for (int body = 0; body < 2; ++body) {
+    const Pose pose = path_[body]->pose(t);
+    const int count = count_.of(body);
+    for (int i = 0; i < count; ++i)
+      p[body][i] = posed(
+          pose, lerp(triangle_[body]->corner[0][i], triangle_[body]->corner[1][i], t));
+    for (int i = count; i < 3; ++i) p[body][i] = p[body][count - 1];
+  }
+}
+
+TriangleAdvance::State TriangleAdvance::at(double t) const {
+  State state;
+  for (int body = 0; body < 2; ++body) {
+    const Pose pose = path_[body]->pose(t);
+    const PoseRate rate = path_[body]->rate(t);
+    const int count = count_.of(body);
+    for (int i = 0; i < count; ++i) {
+      const Vec from = triangle_[body]->corner[0][i], to = triangle_[body]->corner[1][i];
+      const Vec x = lerp(from, to, t), moving = to - from;
+      state.p[body][i] = posed(pose, x);
+      state.v[body][i] = rotated(rate.rotation, x) + rotated(pose.rotation, moving) +
+                         vecOf(rate.translation);
+    }
+    for (int i = count; i < 3; ++i) {
+      state.p[body][i] = state.p[body][count - 1];
+      state.v[body][i] = state.v[body][count - 1];
+    }
+  }
+  return state;
+}
+
+/// Positions and velocities of the corners along a direction, relative to a's first.
+struct TriangleAdvance::Projection {
+  Projection(const State& state, const Vec& direction, const NumCorners& num)
+      : count(num) {
+    for (int body = 0; body < 2; ++body)
+      for (int i = 0; i < count.of(body); ++i) {
+        along[body][i] = dot(direction, state.p[body][i] - state.p[0][0]);
+        speed[body][i] = dot(direction, state.v[body][i]);
+      }
+  }
+
+  /// The largest step, at most the longest one, during which all pairs of vertices
+  /// are provably further apart than the margin; negative if they are not now. The gap of
+  /// a pair is at least g + v h - M h^2 / 2. This is concave in h: if it is positive at
+  /// the end of a step, it is positive before.
+  double advance(double margin, double rate_margin, double most_approach,
+                 double longest) const {
+    double h = longest;
+    for (int i = 0; i < count.a; ++i)
+      for (int j = 0; j < count.b; ++j) {
+        const double gap = along[1][j] - along[0][i] - margin,
+                     rate = speed[1][j] - speed[0][i] - rate_margin;
+        if (!(gap > 0)) return -1;
+        if (gap + h * (rate - 0.5 * most_approach * h) >= 0) continue;
+        // The positive root, in the form that does not cancel.
+        const double root = std::sqrt(rate * rate + 2 * most_approach * gap);
+        h = rate < 0 ? 2 * gap / (root - rate) : (root + rate) / most_approach;
+      }
+    return h;
+  }
+
+  const NumCorners& count;
+  double along[2][3];
+  double speed[2][3];
+};
+
+/// The largest acceleration of the corners towards each other at t along the direction;
+/// negative if they are accelerated away. For turns only.
+double TriangleAdvance::greatestApproach(double t, const Vec& direction) const {
+  double most[2] = {-HUGE_VAL, -HUGE_VAL};
+  for (int body = 0; body < 2; ++body) {
+    const double side = body == 0 ? 1 : -1;
+    const PoseRate bend = path_[body]->turnAccelerationAt(t);
+    // Turned into the frame of the body: three products a corner.
+    const Vec n = side * direction, along = rotatedBack(bend.rotation, n);
+    const double all = dot(n, vecOf(bend.translation));
+    for (int i = 0; i < count_.of(body); ++i)
+      most[body] = std::max(most[body], dot(along, triangle_[body]->corner[0][i]) + all);
+  }
+  return most[0] + most[1];
+}
+
+/// The bound on the acceleration is that of all directions. For a step of at most H it is
+/// also the present acceleration along this direction plus H times the bound on the third
+/// derivative. H is doubled as long as the step allows it.
+double TriangleAdvance::step(double t, const State& state, const Vec& direction) const {
+  const Projection along(state, direction, count_);
+  const double margin = 2 * tolerance_.position + tolerance_.distance, longest = t1_ - t;
+  double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
+  if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
+  // Its rounding is far less than this part of the bound.
+  const double approach = greatestApproach(t, direction) + 0x1p-40 * acceleration_;
+  const auto within = [&](double horizon) {
+    const double most = std::min(std::max(approach + jerk_ * horizon, 0.), acceleration_);
+    return along.advance(margin, tolerance_.rate, most, horizon);
+  };
+  best = std::max(best, within(longest));
+  // H is doubled until it is the whole span or the step no longer reaches it.
+  while (best > 0 && 2 * best < longest) {
+    const double horizon = 2 * best, h = within(horizon);
+    best = std::max(best, h);
+    if (h < horizon) break;
+  }
+  return best;
+}
+
+/// A direction along which the nearest features, which were found before, are apart. All
+/// others are tried only if it shows less than half of the distance.
+Vec TriangleAdvance::directionOfNearest(const State& state) const {
+  const auto &a = state.p[0], &b = state.p[1];
+  Vec direction = nearest_.between;
+  double gap = -HUGE_VAL;
+  tryDirection(directionOf(nearest_, a, b), a, b, direction, gap);
+  if (gap > 0.5 * std::sqrt(nearest_.square)) return direction;
+  tryDirection(nearest_.between, a, b, direction, gap);
+  // For parallel edges.
+  tryDirection(across(edge(a, nearest_.a), nearest_.between), a, b, direction, gap);
+  tryDirection(across(edge(b, nearest_.b), nearest_.between), a, b, direction, gap);
+  tryDirection(normal(a), a, b, direction, gap);
+  tryDirection(normal(b), a, b, direction, gap);
+  for (int i = 0; i < 9; ++i)
+    tryDirection(cross(edge(a, i / 3), edge(b, i % 3)), a, b, direction, gap);
+  return direction;
+}
+
+TriangleAdvance::Answer TriangleAdvance::advance(double& t, double last, int& steps,
+                                                 AdvanceCounts& counts) {
+  const Answer answer = deformable::advance(
+      t, t1_, last, steps, counts, [this](double time) { return at(time); },
+      [this](const State& state) {
+        nearest_ = nearestFeatures(state.p[0], state.p[1], count_);
+        return std::sqrt(nearest_.square) + tolerance_.position <=
+               tolerance_.distance + tolerance_.touching;
+      },
+      [this](double time, const State& state) {
+        return step(time, state, directionOfNearest(state));
+      });
+  if (answer == Answer::kGivenUp && t == 0 && isCrossingAt(at(0)))
+    return Answer::kContact;
+  return answer;
+}
+
+Vec TriangleAdvance::directionAt(double t) const {
+  const State state = at(t);
+  const auto &a = state.p[0], &b = state.p[1];
+  const NearestFeatures near = nearestFeatures(a, b, count_);
+  Vec direction = {0, 0, 0};
+  double gap = 0;
+  tryDirection(normal(a), a, b, direction, gap);
+  tryDirection(normal(b), a, b, direction, gap);
+  gap += tolerance_.position;
+  tryDirection(directionOf(near, a, b), a, b, direction, gap);
+  tryDirection(near.between, a, b, direction, gap);
+  return direction;
+}
+
+/// Whether an edge of one triangle passes through the other, for these points.
+bool TriangleAdvance::isCrossingAt(const State& state) {
+  double x[2][3][3];
+  for (int body = 0; body < 2; ++body)
+    for (int i = 0; i < 3; ++i) {
+      x[body][i][0] = state.p[body][i].x;
+      x[body][i][1] = state.p[body][i].y;
+      x[body][i][2] = state.p[body][i].z;
+    }
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 3; ++k)
+      if (isCrossing(x[body][k], x[body][(k + 1) % 3], x[1 - body][0], x[1 - body][1],
+                     x[1 - body][2]))
+        return true;
+  return false;
+}
+
+bool TriangleAdvance::provesCrossing(const Vec (&p)[2][3]) const {
+  double x[2][3][3];
+  double size = 0;
+  for (int body = 0; body < 2; ++body)
+    for (int i = 0; i < 3; ++i) {
+      const Vec from = p[body][i] - p[0][0];
+      x[body][i][0] = from.x;
+      x[body][i][1] = from.y;
+      x[body][i][2] = from.z;
+      size = std::max(size, norm(from));
+    }
+  // A volume u . (v x w) of vectors below 2 size. Each vector has an error of at most 2
+  // e, in all 3 * 2 e (2 size)^2. The rounding is below that, since e is above 16 u size.
+  const double bound = 48 * tolerance_.position * size * size;
+  const auto volume = [](const double(&p)[3], const double(&a)[3], const double(&b)[3],
+                         const double(&c)[3]) {
+    const Vec o = {a[0], a[1], a[2]};
+    return dot(Vec{p[0], p[1], p[2]} - o,
+               cross(Vec{b[0], b[1], b[2]} - o, Vec{c[0], c[1], c[2]} - o));
+  };
+  const auto sign = [bound](double v) { return v > bound ? 1 : v < -bound ? -1 : 0; };
+  for (int body = 0; body < 2; ++body)
+    for (int k = 0; k < 3; ++k) {
+      const auto& p = x[body][k];
+      const auto& q = x[body][(k + 1) % 3];
+      const auto& f = x[1 - body];
+      const int side = sign(volume(p, f[0], f[1], f[2]));
+      if (side == 0 || sign(volume(q, f[0], f[1], f[2])) != -side) continue;
+      const int turn = sign(volume(q, p, f[0], f[1]));
+      if (turn != 0 && sign(volume(q, p, f[1], f[2])) == turn &&
+          sign(volume(q, p, f[2], f[0])) == turn)
+        return true;
+    }
+  return false;
+}
+
+double TriangleAdvance::proveContact(double t, double width) const {
+  const State state = at(t);
+  double speed = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
+  return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
+    Vec later[2][3];
+    cornersAt(time, later);
+    if (!(tolerance_.distance > 0)) return provesCrossing(later);
+    const NearestFeatures near = nearestFeatures(later[0], later[1], count_);
+    return std::sqrt(near.square) + tolerance_.position <= tolerance_.distance;
+  });
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

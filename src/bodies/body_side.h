@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// A body as one traversal reads it. For one thread.
+#ifndef FCL_CCD_BODIES_BODY_SIDE_H
+#define FCL_CCD_BODIES_BODY_SIDE_H
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include "bodies/moving_body.h"
+#include "paths/posed_vector.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+
+/// @brief A slot of a table of 2^bits slots for a time and a number.
+inline std::size_t slotOf(double t, std::int32_t number, int bits) {
+  std::uint64_t key;
+  std::memcpy(&key, &t, sizeof(key));
+  key += static_cast<std::uint64_t>(number);
+  return (key * 0x9e3779b97f4a7c15u) >> (64 - bits);
+}
+
+/// @brief Stores the poses of a body, since the same times are needed again.
+class PoseTable {
+ public:
+  explicit PoseTable(const MotionPath& path) : path_(path) {
+    std::fill(time_, time_ + kSlots, -1.);
+  }
+  const Pose& at(double t) {
+    const std::size_t slot = slotOf(t, 0, kBits);
+    if (time_[slot] != t) {
+      pose_[slot] = path_.pose(t);
+      time_[slot] = t;
+    }
+    return pose_[slot];
+  }
+
+ private:
+  static constexpr int kBits = 7;
+  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
+  const MotionPath& path_;
+  double time_[kSlots];
+  Pose pose_[kSlots];
+};
+
+/// @brief The beginning, the middle and the end of a span of time.
+struct SpanTimes {
+  double at[3];
+
+  SpanTimes(double t0, double t1) : at{t0, 0.5 * (t0 + t1), t1} {}
+};
+
+/// @brief The data of a body in a traversal.
+struct BodySide {
+  explicit BodySide(const MovingBody& b)
+      : body(b),
+        flat(b.shape() ? b.shape()->flat() : nullptr),
+        reader(b),
+        poses(b.path()),
+        goes_straight(goesStraight(b.path())),
+        axis(b.path().axis()),
+        axis_acceleration(axis ? b.path().axisAcceleration(b.displacement()) : 0) {}
+
+  SpanPoses spanPoses(const SpanTimes& times) {
+    return {poses.at(times.at[0]), poses.at(times.at[1]), poses.at(times.at[2])};
+  }
+
+  /// @brief The bound on the acceleration during a span; valid until the next call.
+  const AccelerationBound& acceleration(double t0, double t1) {
+    if (has_constant_acceleration_ && span_[0] >= 0) return acceleration_;
+    if (t0 != span_[0] || t1 != span_[1]) {
+      acceleration_ = body.path().acceleration(t0, t1);
+      span_[0] = t0;
+      span_[1] = t1;
+    }
+    return acceleration_;
+  }
+
+  /// @brief Bound on the acceleration of the points of a box during a span.
+  /// @param begin, end  the box at t = 0 and t = 1; a rigid body's at t = 0
+  double accelerationOf(const BodyBox& begin, const BodyBox& end, double t0, double t1) {
+    const AccelerationBound& bound = acceleration(t0, t1);
+    if (body.isRigid()) return bound.of(vecOf(begin.center), begin.radius);
+    return bound.between(vecOf(begin.center), vecOf(end.center),
+                         std::max(begin.radius, end.radius)) +
+           bound.per_displacement * begin.displacement;
+  }
+
+  /// @brief Bounds on the acceleration of the boxes of a node during a span; valid until
+  /// the next call.
+  /// @param part  the part that was opened; null: another node
+  const double (&accelerations(const BodyPart* part, const BodyNode& node, double t0,
+                               double t1))[BodyBoxes::kWidth] {
+    const bool is_stored = part && body.path().hasConstantAcceleration();
+    const int slot = is_stored ? part->child % MovingBodyReader::kSlots : 0;
+    Accelerations& out = is_stored ? stored_[slot] : other_;
+    if (is_stored && out.of == part->child) return out.most;
+    out.of = is_stored ? part->child : -1;
+    for (int lane = 0; lane < node.count; ++lane)
+      out.most[lane] =
+          goes_straight
+              ? 0
+              : accelerationOf(node.box[0].get(lane),
+                               node.box[body.isRigid() ? 0 : 1].get(lane), t0, t1);
+    return out.most;
+  }
+
+  /// @brief A triangle that is compared with others.
+  struct SingleTriangle {
+    /// -1: none.
+    std::int32_t place{-1};
+    bool is_readable{false};
+    BodyTriangle of;
+    /// Bound on the acceleration of its points during the span.
+    double acceleration{0};
+  };
+
+  /// @brief A triangle in a span. Valid until the next call.
+  const SingleTriangle& triangle(std::int32_t place, double t0, double t1) {
+    if (single_.empty()) single_.resize(kSingles);
+    SingleTriangle& out = single_[static_cast<std::size_t>(place) % kSingles];
+    const bool is_stored = out.place == place;
+    if (is_stored && (!out.is_readable || has_constant_acceleration_)) return out;
+    if (!is_stored) {
+      out.place = place;
+      out.is_readable = body.isReadable(place);
+      out.acceleration = 0;
+      if (!out.is_readable) return out;
+      out.of = body.triangle(place);
+    }
+    if (!goes_straight)
+      out.acceleration = deformable::accelerationOf(acceleration(t0, t1), out.of);
+    return out;
+  }
+
+  /// @brief The share of a point's deviation from a straight line that it has along a
+  /// unit direction: all of its acceleration is at right angles to the axis of a turn.
+  double shareAlong(const Vec& direction) const {
+    return axis ? std::min(norm(cross(direction, *axis)) + 0x1p-48, 1.) : 1;
+  }
+
+  /// @brief The corners of a triangle in the world.
+  SpanTriangle spanTriangle(const BodyTriangle& triangle, const SpanTimes& times) {
+    SpanTriangle out;
+    for (int at = 0; at < 3; ++at) {
+      const double t = times.at[at];
+      const Pose& pose = poses.at(t);
+      for (int i = 0; i < 3; ++i) {
+        Vec x = triangle.corner[0][i];
+        if (!body.isRigid()) x = (1 - t) * x + t * triangle.corner[1][i];
+        const Vec p = posed(pose, x);
+        out.corner[at][i][0] = p.x;
+        out.corner[at][i][1] = p.y;
+        out.corner[at][i][2] = p.z;
+      }
+    }
+    return out;
+  }
+
+  const MovingBody& body;
+  /// Null: the body is no plane or halfspace.
+  const FlatShape* flat;
+  MovingBodyReader reader;
+  PoseTable poses;
+  /// Whether all points go straight, also those of a mesh that deforms.
+  const bool goes_straight;
+  /// About which the body turns; null: there is none.
+  const Vec* axis;
+  /// Bound on the acceleration of a point along it.
+  double axis_acceleration;
+
+ private:
+  struct Accelerations {
+    /// The node; -1: none.
+    std::int32_t of{-1};
+    double most[BodyBoxes::kWidth]{};
+  };
+
+  static bool goesStraight(const MotionPath& path) {
+    const AccelerationBound bound = path.acceleration(0, 1);
+    return bound.isZero() && bound.per_displacement == 0;
+  }
+
+  /// One triangle is compared with many nodes.
+  static constexpr std::size_t kSingles = 64;
+  std::vector<SingleTriangle> single_;
+  /// Those of nodes that were opened, if they are the same for all spans.
+  Accelerations stored_[MovingBodyReader::kSlots];
+  Accelerations other_;
+  const bool has_constant_acceleration_{body.path().hasConstantAcceleration()};
+  AccelerationBound acceleration_;
+  /// The span of that bound.
+  double span_[2]{-1, -1};
+};
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
+
+#endif

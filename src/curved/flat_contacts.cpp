@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "curved/flat_contacts.h"
+
+#include <algorithm>
+
+#include "advance/convex_advance.h"
+#include "numerics/error_bounds.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// How far apart two parallel flats are at both ends of the step. A gap that is not
+/// positive at an end is a contact; in between it is linear.
+struct FlatGap {
+  double at[2];
+  /// 1: b is on the side of a's normal; -1: on the other side.
+  double side{1};
+
+  FlatGap(const PosedFlat& a, const PosedFlat& b) {
+    const bool is_same_side = dot(a.normal, b.normal) > 0;
+    double between[2];
+    for (int k = 0; k < 2; ++k)
+      between[k] = (is_same_side ? b.offset[k] : -b.offset[k]) - a.offset[k];
+    // Which of them is above: a halfspace is below its plane, if it has a's direction.
+    if (!a.is_solid && b.is_solid && is_same_side) side = -1;
+    if (!a.is_solid && !b.is_solid && between[0] < 0) side = -1;
+    const bool overlap = a.is_solid && b.is_solid && is_same_side;
+    for (int k = 0; k < 2; ++k) at[k] = overlap ? 0 : side * between[k];
+  }
+};
+
+/// The distance of contact of two flats, or what they have at t = 0 in its place: as
+/// ConvexAdvance::ignoreInitiallyCloser().
+double distanceOf(double initial_gap, double tolerance, const QueryOptions& options) {
+  const double own = initial_gap * (1 - ConvexAdvance::kNearerShare) - 2 * tolerance;
+  if (!options.ignores_initially_closer || !(own > 0)) return options.min_distance;
+  return std::min(options.min_distance, own);
+}
+
+}  // namespace
+
+ShapeAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
+                       const QueryOptions& options) {
+  constexpr double kParallel = 0x1p-48;
+  ShapeAnswer answer;
+  if (options.filter && !options.filter->rules().accept(-1, -1)) return answer;
+  ShapeContact contact{};
+  contact.kind = ContinuousContactKind::kShapes;
+  std::fill(contact.vertices, contact.vertices + 3, -1);
+  std::fill(contact.triangles, contact.triangles + 2, -1);
+  contact.position = a.offset[0] * a.normal;
+  const bool are_parallel = a.goes_straight && b.goes_straight &&
+                            maxNorm(cross(a.normal, b.normal)) <= kParallel;
+  if (are_parallel) {
+    const FlatGap gap(a, b);
+    const double tolerance = 128 * kUnit * (a.size + b.size),
+                 distance = distanceOf(gap.at[0], tolerance, options),
+                 begin = gap.at[0] - distance - tolerance,
+                 end = gap.at[1] - distance - tolerance;
+    if (begin > 0) {
+      if (end > 0) return answer;
+      const double t = begin / (begin - end);
+      contact.toc_lo = t * (1 - 0x1p-48);
+      contact.toc_hi = contact.toc_lo;
+      contact.within_tolerance = true;
+      if (contact.toc_lo > options.t_max) return answer;
+    }
+    if (begin > 0) contact.normal = gap.side * a.normal;
+    contact.position =
+        ((1 - contact.toc_lo) * a.offset[0] + contact.toc_lo * a.offset[1]) * a.normal;
+  }
+  answer.contacts.push_back(contact);
+  // Two planes overlap at no other time.
+  answer.pose_time = contact.toc_hi;
+  if (contact.toc_lo > 0 && (a.is_solid || b.is_solid) && !(options.min_distance > 0))
+    answer.pose_time = std::min(options.t_max, contact.toc_lo + options.toc_err);
+  answer.counts.contacts = 1;
+  return answer;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

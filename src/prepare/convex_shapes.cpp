@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "prepare/convex_shapes.h"
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "fcl/common/exception.h"
+#include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/capsule.h"
+#include "fcl/geometry/shape/cone.h"
+#include "fcl/geometry/shape/convex.h"
+#include "fcl/geometry/shape/cylinder.h"
+#include "fcl/geometry/shape/ellipsoid.h"
+#include "fcl/geometry/shape/halfspace.h"
+#include "fcl/geometry/shape/plane.h"
+#include "fcl/geometry/shape/sphere.h"
+#include "fcl/geometry/shape/triangle_p.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+template <typename S>
+double requireSize(S size, const std::string& name, const char* what) {
+  if (size >= 0 && std::isfinite(size)) return static_cast<double>(size);
+  throw Exception(name + ": the " + what + " is negative or not finite. Give 0 or more");
+}
+
+template <typename S>
+Vec requirePoint(const Vector3<S>& p, const std::string& name, const char* what) {
+  if (!p.allFinite())
+    throw Exception(name + ": a coordinate of the " + what +
+                    " is not finite. Correct it");
+  return {static_cast<double>(p[0]), static_cast<double>(p[1]),
+          static_cast<double>(p[2])};
+}
+
+template <typename S>
+ConvexShape shapeOf(const Sphere<S>& sphere, const std::string& name) {
+  return ConvexShape::capsule(requireSize(sphere.radius, name, "radius of the sphere"),
+                              0);
+}
+
+template <typename S>
+ConvexShape shapeOf(const Capsule<S>& capsule, const std::string& name) {
+  const double half = 0.5 * requireSize(capsule.lz, name, "length of the capsule");
+  return ConvexShape::capsule(requireSize(capsule.radius, name, "radius of the capsule"),
+                              half);
+}
+
+template <typename S>
+ConvexShape shapeOf(const Box<S>& box, const std::string& name) {
+  double half[3];
+  for (int k = 0; k < 3; ++k)
+    half[k] = 0.5 * requireSize(box.side[k], name, "side of the box");
+  return ConvexShape::cuboid({half[0], half[1], half[2]});
+}
+
+template <typename S>
+ConvexShape shapeOf(const Ellipsoid<S>& ellipsoid, const std::string& name) {
+  double half[3];
+  for (int k = 0; k < 3; ++k)
+    half[k] = requireSize(ellipsoid.radii[k], name, "radius of the ellipsoid");
+  return ConvexShape::ellipsoid({half[0], half[1], half[2]});
+}
+
+template <typename S>
+ConvexShape shapeOf(const Cone<S>& cone, const std::string& name) {
+  return ConvexShape::cone(requireSize(cone.radius, name, "radius of the cone"),
+                           requireSize(cone.lz, name, "height of the cone"));
+}
+
+template <typename S>
+ConvexShape shapeOf(const Cylinder<S>& cylinder, const std::string& name) {
+  return ConvexShape::cylinder(
+      requireSize(cylinder.radius, name, "radius of the cylinder"),
+      requireSize(cylinder.lz, name, "height of the cylinder"));
+}
+
+template <typename S>
+ConvexShape shapeOf(const Convex<S>& convex, const std::string& name) {
+  std::vector<Vec> points;
+  for (const Vector3<S>& p : convex.getVertices())
+    points.push_back(requirePoint(p, name, "convex"));
+  if (points.empty()) throw Exception(name + ": the convex has no vertices. Give some");
+  return ConvexShape::hull(std::move(points));
+}
+
+template <typename S>
+ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name) {
+  return ConvexShape::hull({requirePoint(triangle.a, name, "triangle"),
+                            requirePoint(triangle.b, name, "triangle"),
+                            requirePoint(triangle.c, name, "triangle")});
+}
+
+ConvexShape flatShape(const Vec& normal, double offset, double reach, bool is_solid,
+                      const std::string& name) {
+  const double length = std::sqrt(dot(normal, normal));
+  if (!(length > 0) || !std::isfinite(length) || !std::isfinite(offset))
+    throw Exception(name + ": the normal of the " + (is_solid ? "halfspace" : "plane") +
+                    " is zero, or one of its numbers is not finite. Give a unit normal "
+                    "and a finite offset");
+  return ConvexShape::flat({(1 / length) * normal, offset / length, is_solid}, reach);
+}
+
+template <typename S>
+Vec normalOf(const Vector3<S>& n) {
+  return {static_cast<double>(n[0]), static_cast<double>(n[1]),
+          static_cast<double>(n[2])};
+}
+
+}  // namespace
+
+template <typename S>
+bool isConvexShape(const CollisionGeometry<S>& geometry) {
+  // A model that deforms has no node type while FCL's tree is out of date.
+  if (geometry.getObjectType() != OT_GEOM) return false;
+  switch (geometry.getNodeType()) {
+    case GEOM_SPHERE:
+    case GEOM_CAPSULE:
+    case GEOM_BOX:
+    case GEOM_ELLIPSOID:
+    case GEOM_CONE:
+    case GEOM_CYLINDER:
+    case GEOM_CONVEX:
+    case GEOM_TRIANGLE:
+    case GEOM_PLANE:
+    case GEOM_HALFSPACE:
+      return true;
+    default:
+      return false;
+  }
+}
+
+template <typename S>
+bool isUnbounded(const CollisionGeometry<S>& shape) {
+  if (!isConvexShape(shape)) return false;
+  return shape.getNodeType() == GEOM_PLANE || shape.getNodeType() == GEOM_HALFSPACE;
+}
+
+template <typename S>
+ConvexShape convexShapeOf(const CollisionGeometry<S>& shape, const std::string& name,
+                          double reach) {
+  switch (shape.getNodeType()) {
+    case GEOM_SPHERE:
+      return shapeOf(static_cast<const Sphere<S>&>(shape), name);
+    case GEOM_CAPSULE:
+      return shapeOf(static_cast<const Capsule<S>&>(shape), name);
+    case GEOM_BOX:
+      return shapeOf(static_cast<const Box<S>&>(shape), name);
+    case GEOM_ELLIPSOID:
+      return shapeOf(static_cast<const Ellipsoid<S>&>(shape), name);
+    case GEOM_CONE:
+      return shapeOf(static_cast<const Cone<S>&>(shape), name);
+    case GEOM_CYLINDER:
+      return shapeOf(static_cast<const Cylinder<S>&>(shape), name);
+    case GEOM_CONVEX:
+      return shapeOf(static_cast<const Convex<S>&>(shape), name);
+    case GEOM_PLANE: {
+      const auto& plane = static_cast<const Plane<S>&>(shape);
+      return flatShape(normalOf(plane.n), static_cast<double>(plane.d), reach, false,
+                       name);
+    }
+    case GEOM_HALFSPACE: {
+      const auto& halfspace = static_cast<const Halfspace<S>&>(shape);
+      return flatShape(normalOf(halfspace.n), static_cast<double>(halfspace.d), reach,
+                       true, name);
+    }
+    default:
+      return shapeOf(static_cast<const TriangleP<S>&>(shape), name);
+  }
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                        \
+  template bool isConvexShape(const CollisionGeometry<S>&);                           \
+  template bool isUnbounded(const CollisionGeometry<S>&);                             \
+  template ConvexShape convexShapeOf(const CollisionGeometry<S>&, const std::string&, \
+                                     double);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_PREPARE_OBJECT_BOUNDS_H
+#define FCL_CCD_PREPARE_OBJECT_BOUNDS_H
+
+#include "broadphase/broad_phase.h"
+#include "fcl/narrowphase/detail/query_numbers.h"
+
+namespace fcl {
+namespace detail {
+
+/// @brief Adds the moving bounds of an object. They contain it at each time of the step,
+/// and what rounding or the tolerance of a query adds to it.
+///
+/// A path is followed by boxes at the ends of spans. Between them points deviate from
+/// straight lines by at most M dt^2 / 8, where M bounds their acceleration. The number of
+/// spans, up to 16, is such that this is small compared with the object.
+///
+/// The box of an octree contains its occupied cells. It is made of the octree's upper
+/// nodes, of which at most 256 are opened. So it may be wider than the cells, by up to
+/// about a tenth of the size of the map.
+///
+/// No bounds: a motion that is not known (PathKind::kUnknown), point clouds, geometries
+/// of the program. A plane or halfspace whose normal is along an axis at all times has a
+/// box; another one is bounded by itself (MovingFlat).
+///
+/// @pre the floating-point mode is the default one
+/// @throws fcl::Exception  a mesh as in PreparedMotion; a pose or a shape is not finite
+template <typename S>
+void appendBounds(const MovingGeometry<S>& moving, deformable::BoundsList& list);
+
+}  // namespace detail
+}  // namespace fcl
+
+#endif
