@@ -11,8 +11,10 @@
 namespace fcl {
 namespace test {
 
+using detail::deformable::Kdop16;
 using detail::deformable::KdopShift;
 using detail::deformable::kLeastHalf;
+using detail::deformable::MovingKdop;
 
 namespace {
 

@@ -18,24 +18,26 @@ float randomScale(Random& random);
 
 /// @brief A box of one kind, or of several. Many boxes move by little. Half-axes may have
 /// any value.
-MovingKdop randomBox(Random& random, Halves halves, float scale);
+detail::deformable::MovingKdop randomBox(Random& random, Halves halves, float scale);
 
 /// @brief Changes half-axes to values that roundUp() can return: not NaN, minus infinity
 /// or minus zero.
-void makeBounds(MovingKdop& box);
+void makeBounds(detail::deformable::MovingKdop& box);
 
 /// @brief randomBox() with makeBounds().
-MovingKdop randomBounds(Random& random, Halves halves, float scale);
+detail::deformable::MovingKdop randomBounds(Random& random, Halves halves, float scale);
 
 /// @brief The box moved by a shift; null: not moved.
-MovingKdop shifted(const MovingKdop& original,
-                   const detail::deformable::KdopShift* shift);
+detail::deformable::MovingKdop shifted(const detail::deformable::MovingKdop& original,
+                                       const detail::deformable::KdopShift* shift);
 
 /// @brief The least overlap depth at t = 0.
-float depthAtStart(const MovingKdop& a, const MovingKdop& b);
+float depthAtStart(const detail::deformable::MovingKdop& a,
+                   const detail::deformable::MovingKdop& b);
 
 /// @brief Whether no half-axis separates the boxes at t = 0.
-bool doOverlapAtStart(const MovingKdop& a, const MovingKdop& b);
+bool doOverlapAtStart(const detail::deformable::MovingKdop& a,
+                      const detail::deformable::MovingKdop& b);
 
 /// @brief A gap that leaves out no boxes, or some or none of the boxes of that depth.
 float randomGap(Random& random, float depth);
@@ -45,7 +47,7 @@ float randomGap(Random& random, float depth);
 struct OverlapTally {
   int overlaps{0}, apart{0}, cut{0};
 
-  void add(bool overlaps_now, const TimeWindow& window) {
+  void add(bool overlaps_now, const detail::deformable::TimeWindow& window) {
     ++(overlaps_now ? overlaps : apart);
     cut += overlaps_now && (window.lo > 0 || window.hi < 1);
   }

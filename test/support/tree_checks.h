@@ -55,7 +55,7 @@ inline void coordinatesAt(const VertexPath& p, double t, const double (&origin0)
 }
 
 /// The bound of half-axis j at t; infinity at one end means no bound.
-inline long double halfAt(const MovingKdop& box, int j, double t) {
+inline long double halfAt(const detail::deformable::MovingKdop& box, int j, double t) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float half0 = box.t0.half[j], half1 = box.t1.half[j];
   if (half0 == kInf || half1 == kInf) return kInf;
@@ -93,7 +93,7 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
       place = {i, lane};
     }
     for (int lane = node.count; lane < MovingKdopNode::kWidth; ++lane) {
-      const MovingKdop box = node.box(lane);
+      const detail::deformable::MovingKdop box = node.box(lane);
       for (int j = 0; j < 16; ++j) {
         EXPECT_EQ(box.t0.half[j], kLeastHalf);
         EXPECT_EQ(box.t1.half[j], kLeastHalf);
@@ -137,7 +137,7 @@ inline std::vector<Place> expectStructure(const MovingKdopTree& tree,
 
 /// Whether the box contains the vertex at t.
 inline void expectContained(const VertexPath& path, double t, const MovingKdopTree& tree,
-                            const MovingKdop& box) {
+                            const detail::deformable::MovingKdop& box) {
   long double d[8];
   coordinatesAt(path, t, tree.origin(0), tree.origin(1), d);
   for (int j = 0; j < 8; ++j) {
@@ -303,7 +303,8 @@ inline void expectSameBoxes(const MovingKdopTree& x, const MovingKdopTree& y) {
     for (int lane = 0; lane < x.node(i).count; ++lane) {
       ASSERT_EQ(x.node(i).child[lane], y.node(i).child[lane]);
       ASSERT_EQ(x.node(i).displacement[lane], y.node(i).displacement[lane]);
-      const MovingKdop a = x.node(i).box(lane), b = y.node(i).box(lane);
+      const detail::deformable::MovingKdop a = x.node(i).box(lane),
+                                           b = y.node(i).box(lane);
       ASSERT_EQ(std::memcmp(&a, &b, sizeof(a)), 0) << "node " << i;
     }
   }

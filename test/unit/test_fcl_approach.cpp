@@ -20,6 +20,7 @@
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_features.h"
 #include "moving_mesh.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -196,15 +197,15 @@ bool expectLayersApproach(const Layers& layers, bool is_self) {
 /// are nearest.
 TEST(FCL_APPROACH, alignedLayers) {
   int hits = 0;
-  for (std::uint64_t seed = 0; seed < 120; ++seed) {
+  for (std::uint64_t seed = 0; seed < rounds(120U); ++seed) {
     SCOPED_TRACE(seed);
     hits += expectLayersApproach<double>(Layers(seed, 0.0703), seed % 2 == 1);
   }
-  EXPECT_EQ(hits, 120);
+  EXPECT_EQ(hits, rounds(120));
 }
 
 TEST(FCL_APPROACH, alignedLayersInFloat) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < rounds(20U); ++seed) {
     SCOPED_TRACE(seed);
     expectLayersApproach<float>(Layers(seed, 0.0703125), seed % 2 == 1);
   }
@@ -216,7 +217,7 @@ TEST(FCL_APPROACH, allPairsOfAlignedLayers) {
   request.distance = 0.5;
   request.toc_err = 1e-6;
   request.ignores_initially_closer = true;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < rounds(60U); ++seed) {
     SCOPED_TRACE(seed);
     const Layers layers(seed, 0.0703);
     const auto pathOf = [](const MovingMesh& mesh, std::size_t id) {
@@ -243,8 +244,8 @@ TEST(FCL_APPROACH, allPairsOfAlignedLayers) {
                        seen);
       }
   }
-  EXPECT_GT(seen.contacts, 10000);
-  EXPECT_GT(seen.ignored, 10000);
+  EXPECT_GT(seen.contacts, rounds(10000));
+  EXPECT_GT(seen.ignored, rounds(10000));
 }
 
 /// Points of features on a grid, so that many are aligned, parallel or end above end,
@@ -252,7 +253,7 @@ TEST(FCL_APPROACH, allPairsOfAlignedLayers) {
 TEST(FCL_APPROACH, alignedPairsOfAllSizes) {
   Random random(711);
   Seen seen;
-  for (int i = 0; i < 40000; ++i) {
+  for (int i = 0; i < rounds(40000); ++i) {
     SCOPED_TRACE(i);
     const double size = std::ldexp(1, static_cast<int>(random.index(120)) - 60),
                  motion = size * std::pow(10, -random.uniform(0, 12)),
@@ -286,14 +287,14 @@ TEST(FCL_APPROACH, alignedPairsOfAllSizes) {
     expectApproach(kind, points, request, seen);
     if (HasFailure()) return;
   }
-  EXPECT_GT(seen.contacts, 5000);
-  EXPECT_GT(seen.ignored, 5000);
+  EXPECT_GT(seen.contacts, rounds(5000));
+  EXPECT_GT(seen.ignored, rounds(5000));
 }
 
 /// Distances that are constant, or that of the request.
 TEST(FCL_APPROACH, pairsThatKeepTheirDistance) {
   Random random(712);
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < rounds(4000); ++i) {
     SCOPED_TRACE(i);
     const bool is_edges = random.index(2) == 0;
     const Kind kind = is_edges ? Kind::kEdgeEdge : Kind::kVertexFace;
@@ -328,7 +329,7 @@ TEST(FCL_APPROACH, pairsThatKeepTheirDistance) {
 TEST(FCL_APPROACH, mixedSizesAgainstElementaryTests) {
   Random random(713);
   int vf = 0, ee = 0;
-  for (int i = 0; i < 60; ++i) {
+  for (int i = 0; i < rounds(60); ++i) {
     SCOPED_TRACE(i);
     MovingMesh mesh[2];
     for (MovingMesh& m : mesh) {
@@ -365,8 +366,8 @@ TEST(FCL_APPROACH, mixedSizesAgainstElementaryTests) {
       ++(c.kind == Kind::kVertexFace ? vf : ee);
     }
   }
-  EXPECT_GT(vf, 100);
-  EXPECT_GT(ee, 100);
+  EXPECT_GT(vf, rounds(100));
+  EXPECT_GT(ee, rounds(100));
 }
 
 /// A gripper and what it holds turn together on a screw. All distances stay the same; a
@@ -410,7 +411,7 @@ TEST(FCL_APPROACH, bodiesThatMoveAsOne) {
 TEST(FCL_APPROACH, accurateDirections) {
   Random random(714);
   int steps = 0, long_steps = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < rounds(20000); ++i) {
     SCOPED_TRACE(i);
     const Kind kind = random.index(2) ? Kind::kEdgeEdge : Kind::kVertexFace;
     VertexPath x[4];

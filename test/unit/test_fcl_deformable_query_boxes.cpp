@@ -68,7 +68,7 @@ void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& beginning
       expectInside(node, model->getBV(below).leftChild() + 1);
       return;
     }
-    const MovingKdop box = tree.box(node);
+    const detail::deformable::MovingKdop box = tree.box(node);
     MovingKdopNode opened;
     tree.open(0, opened);
     const Triangle& triangle =
@@ -126,7 +126,7 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
   const RigidTree tree(*model, Pose());
   for (int node = 0; node < model->getNumBVs(); ++node) {
     const OBB<double>& obb = model->getBV(node).bv;
-    const MovingKdop box = tree.box(node);
+    const detail::deformable::MovingKdop box = tree.box(node);
     for (int k = 0; k < 3; ++k) {
       const double width = 2 * obb.axis.row(k).cwiseAbs().dot(obb.extent);
       EXPECT_NEAR(double{box.t0.half[k]} + double{box.t0.half[k + 8]}, width, 1e-5);
@@ -155,7 +155,7 @@ TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
       const int bv = leaf ? leaf_of[static_cast<std::size_t>(node.triangle(lane))]
                           : node.child[lane];
       ASSERT_EQ(links[static_cast<std::size_t>(bv)] < 0, leaf);
-      const MovingKdop box = node.box(lane), made = tree.box(bv);
+      const detail::deformable::MovingKdop box = node.box(lane), made = tree.box(bv);
       for (int k = 0; k < 16; ++k) {
         ASSERT_EQ(box.t0.half[k], made.t0.half[k]) << i;
         ASSERT_EQ(box.t1.half[k], made.t1.half[k]) << i;

@@ -40,7 +40,7 @@ struct FilterBlock {
   std::vector<TreeVertex> vertices;
   TrianglePair pairs[8];
   std::uint32_t codes[8];
-  TimeWindow windows[8];
+  detail::deformable::TimeWindow windows[8];
 
   explicit FilterBlock(const WindowedPair (&queries)[8]) : vertices(33) {
     // A vertex that belongs to no feature.

@@ -38,7 +38,7 @@ struct DistanceBlock {
   std::vector<TreeVertex> vertices{33};
   TrianglePair pairs[8];
   std::uint32_t codes[8];
-  TimeWindow windows[8];
+  detail::deformable::TimeWindow windows[8];
 
   explicit DistanceBlock(const MovingPair (&queries)[8]) {
     // Not of any feature.
@@ -687,9 +687,10 @@ void expectRightOnBentPaths(const BentTriangles& x, const PairBends& bends,
                             double distance, double lo, double hi, BentFound& sum) {
   const unsigned is_apart = allSets().front()->stayApart(&x.pair, 1, distance, bends);
   const DistanceRequest request = requestUntil(1, distance);
-  TimeWindow windows[8];
-  std::fill(windows, windows + 8,
-            TimeWindow{static_cast<float>(lo), static_cast<float>(hi)});
+  detail::deformable::TimeWindow windows[8];
+  std::fill(
+      windows, windows + 8,
+      detail::deformable::TimeWindow{static_cast<float>(lo), static_cast<float>(hi)});
   for (const auto kind :
        {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
     const bool vf = kind == ContinuousContactKind::kVertexFace;

@@ -36,13 +36,15 @@ using test::randomHalves;
 using test::randomScale;
 using test::shifted;
 
-void expectSameWindow(const TimeWindow& window, const TimeWindow& expected) {
+void expectSameWindow(const detail::deformable::TimeWindow& window,
+                      const detail::deformable::TimeWindow& expected) {
   EXPECT_EQ(window.lo, expected.lo);
   EXPECT_EQ(window.hi, expected.hi);
 }
 
-MovingKdop merged(const MovingKdop& a, const MovingKdop& b) {
-  MovingKdop out;
+detail::deformable::MovingKdop merged(const detail::deformable::MovingKdop& a,
+                                      const detail::deformable::MovingKdop& b) {
+  detail::deformable::MovingKdop out;
   for (int j = 0; j < 16; ++j) {
     out.t0.half[j] = std::max(a.t0.half[j], b.t0.half[j]);
     out.t1.half[j] = std::max(a.t1.half[j], b.t1.half[j]);
@@ -52,7 +54,7 @@ MovingKdop merged(const MovingKdop& a, const MovingKdop& b) {
 
 /// Boxes of a triangle's vertices, edges and face.
 struct ScalarBoxes {
-  MovingKdop vertex[3], edge[3], face;
+  detail::deformable::MovingKdop vertex[3], edge[3], face;
 
   ScalarBoxes(const TreeVertex (&x)[3], const KdopShift* shift) {
     for (int k = 0; k < 3; ++k) vertex[k] = x[k].box;
@@ -67,8 +69,8 @@ struct ScalarBoxes {
 };
 
 /// The boxes of the feature pair of a bit, a's first.
-std::pair<MovingKdop, MovingKdop> boxesOf(int bit, const ScalarBoxes& a,
-                                          const ScalarBoxes& b) {
+std::pair<detail::deformable::MovingKdop, detail::deformable::MovingKdop> boxesOf(
+    int bit, const ScalarBoxes& a, const ScalarBoxes& b) {
   const FeaturePair pair = featurePair(bit);
   if (pair.kind == ContinuousContactKind::kEdgeEdge)
     return {a.edge[pair.first], b.edge[pair.second]};
@@ -103,7 +105,7 @@ struct TrianglePairBoxes {
       makeBounds(a[k].box);
       makeBounds(b[k].box);
     }
-    MovingKdop box = randomBox(
+    detail::deformable::MovingKdop box = randomBox(
         random, random.index(3) ? Halves::kSmooth : randomHalves(random), scale);
     makeBounds(box);
     shift = {box.t0, box.t1};
@@ -185,7 +187,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     for (const ContinuousContactKind kind :
          {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
       std::vector<std::uint32_t> codes, left;
-      std::vector<TimeWindow> left_windows;
+      std::vector<detail::deformable::TimeWindow> left_windows;
       for (std::uint32_t k = 0; k < kPairs; ++k)
         for (int bit = kind == ContinuousContactKind::kEdgeEdge ? 6 : 0;
              bit < (kind == ContinuousContactKind::kEdgeEdge ? kNumFeaturePairs : 6);
@@ -197,7 +199,8 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
           const ScalarBoxes a(boxes[k].a, vertex_on_b ? nullptr : shift),
               b(boxes[k].b, vertex_on_b && shift ? &turned_shift : nullptr);
           const auto [box_a, box_b] = boxesOf(bit, a, b);
-          const TimeWindow expected = overlapWindow<false>(box_a, box_b, nullptr);
+          const detail::deformable::TimeWindow expected =
+              overlapWindow<false>(box_a, box_b, nullptr);
           const bool is_far = has_gaps && depthAtStart(box_a, box_b) < -gaps[k];
           far += is_far && !expected.isEmpty();
           if (!expected.isEmpty() && expected.lo <= latest && !is_far) {
@@ -207,11 +210,11 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
           late += !expected.isEmpty() && expected.lo > latest;
           tally[bit].add(!expected.isEmpty(), expected);
         }
-      std::vector<TimeWindow> first;
+      std::vector<detail::deformable::TimeWindow> first;
       for (const Kernels* kernels : allSets()) {
         std::vector<std::uint32_t> mine = codes;
         mine.resize(codes.size() + 15);
-        std::vector<TimeWindow> windows(codes.size());
+        std::vector<detail::deformable::TimeWindow> windows(codes.size());
         const std::size_t count = kernels->cullFeatures(
             kind, pairs.data(), shift, &turned_shift, latest,
             has_gaps ? gaps.data() : nullptr, mine.data(), codes.size(), windows.data());
@@ -222,7 +225,9 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
           expectSameWindow(windows[k], left_windows[k]);
         if (first.empty()) first = windows;
         for (std::size_t k = 0; k < count; ++k)
-          ASSERT_EQ(std::memcmp(&windows[k], &first[k], sizeof(TimeWindow)), 0)
+          ASSERT_EQ(
+              std::memcmp(&windows[k], &first[k], sizeof(detail::deformable::TimeWindow)),
+              0)
               << kernels->name;
       }
     }

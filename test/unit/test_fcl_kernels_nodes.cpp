@@ -48,7 +48,7 @@ constexpr int kWidth = MovingKdopNode::kWidth;
 struct Rows {
   float t0[16], t1[16];
 
-  explicit Rows(const MovingKdop& box) {
+  explicit Rows(const detail::deformable::MovingKdop& box) {
     for (int r = 0; r < 16; ++r) {
       t0[r] = box.t0.half[MovingKdopNode::halfAxis(r)];
       t1[r] = box.t1.half[MovingKdopNode::halfAxis(r)];
@@ -89,20 +89,22 @@ float randomDisplacement(Random& random, float scale) {
 }
 
 /// The answer about boxes that overlap from `lo` on, if times are not asked for.
-void expectUntimed(float earliest, const MovingKdop& a, const MovingKdop& b, float lo) {
+void expectUntimed(float earliest, const detail::deformable::MovingKdop& a,
+                   const detail::deformable::MovingKdop& b, float lo) {
   if (doOverlapAtStart(a, b))
     EXPECT_EQ(earliest, 0);
   else
     EXPECT_TRUE(earliest == FLT_MIN || earliest == lo) << earliest << " " << lo;
 }
 
-void expectRightChildren(const BoxView& view, const MovingKdop& box,
+void expectRightChildren(const BoxView& view, const detail::deformable::MovingKdop& box,
                          const MovingKdopNode& node, OverlapTally& tally) {
   float first[kWidth];
   const unsigned mask = allSets().front()->overlapChildren(view, node, {true}, first);
   EXPECT_EQ(mask & ~node.lanes(), 0U) << "a lane that is not in use";
   for (int lane = 0; lane < node.count; ++lane) {
-    const TimeWindow expected = overlapWindow<false>(box, node.box(lane), nullptr);
+    const detail::deformable::TimeWindow expected =
+        overlapWindow<false>(box, node.box(lane), nullptr);
     ASSERT_EQ(mask >> lane & 1U, unsigned{!expected.isEmpty()}) << lane;
     if (!expected.isEmpty()) {
       EXPECT_EQ(first[lane], expected.lo);
@@ -126,7 +128,7 @@ void expectRightChildren(const BoxView& view, const MovingKdop& box,
 
 /// A request leaves out the children that are too far away at t = 0, and does not change
 /// the others. Counts those that it leaves out.
-void expectRightRequest(const BoxView& view, const MovingKdop& box,
+void expectRightRequest(const BoxView& view, const detail::deformable::MovingKdop& box,
                         const MovingKdopNode& node, const OverlapRequest& request,
                         int& left_out) {
   unsigned near = 0;
@@ -171,7 +173,8 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
                                        : scale * random.uniform(-1, 1);
     const int frame = static_cast<int>(random.index(2));
     const std::size_t count = 1 + random.index(8);
-    const auto boxOf = [](const TreeVertex& x, int k) -> const Kdop16& {
+    const auto boxOf = [](const TreeVertex& x,
+                          int k) -> const detail::deformable::Kdop16& {
       return k == 0 ? x.box.t0 : x.box.t1;
     };
     std::vector<TreeVertex> before(8), first;
@@ -189,9 +192,9 @@ TEST(FCL_KERNELS, pointsAsFitPoint) {
       double size = std::abs(point[0]);
       for (int k = 1; k < 3; ++k)
         size = size < std::abs(point[k]) ? std::abs(point[k]) : size;
-      Kdop16 box;
+      detail::deformable::Kdop16 box;
       fitPoint(point, origin, test::offsetPad(size), box);
-      const Kdop16& same = boxOf(before[n], 1 - frame);
+      const detail::deformable::Kdop16& same = boxOf(before[n], 1 - frame);
       for (std::size_t j = 0; j < 16; ++j) {
         const float expected = n < count ? box.half[j] : boxOf(before[n], frame).half[j];
         ASSERT_EQ(boxOf(first[n], frame).half[j], expected)
@@ -262,11 +265,12 @@ TEST(FCL_KERNELS, childrenHoldWhatIsBelow) {
     MovingKdopNode expected = before;
     double sums[kWidth] = {}, sizes[kWidth] = {};
     for (int lane = 0; lane < kWidth; ++lane) {
-      MovingKdop all;
+      detail::deformable::MovingKdop all;
       std::fill(all.t0.half, all.t0.half + 16, kLeastHalf);
       std::fill(all.t1.half, all.t1.half + 16, kLeastHalf);
       float moved = 0;
-      const auto add = [&](const MovingKdop& box, float displacement) {
+      const auto add = [&](const detail::deformable::MovingKdop& box,
+                           float displacement) {
         for (int j = 0; j < 16; ++j) {
           all.t0.half[j] = std::max(all.t0.half[j], box.t0.half[j]);
           all.t1.half[j] = std::max(all.t1.half[j], box.t1.half[j]);
@@ -330,7 +334,7 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
     // Unused lanes have any content.
     if (random.index(2)) node.clearRest();
     const auto lane = static_cast<int>(random.index(kWidth));
-    const MovingKdop box = parent.box(lane);
+    const detail::deformable::MovingKdop box = parent.box(lane);
     // A single box, and one of eight.
     const Rows rows(box);
     const float moved = parent.displacement[lane];
@@ -352,9 +356,12 @@ TEST(FCL_KERNELS, childrenAsOverlapWindow) {
 
 /// Whether boxes are apart along a half-axis at t = 0, or at both ends of the step, in
 /// numbers that do not round. The kernels may see that where shifted() has rounded.
-bool areApartExactly(const MovingKdop& a, const MovingKdop& b, const KdopShift& shift,
+bool areApartExactly(const detail::deformable::MovingKdop& a,
+                     const detail::deformable::MovingKdop& b, const KdopShift& shift,
                      bool at_start) {
-  const auto depth = [](const Kdop16& x, const Kdop16& y, const Kdop16& added, int j) {
+  const auto depth = [](const detail::deformable::Kdop16& x,
+                        const detail::deformable::Kdop16& y,
+                        const detail::deformable::Kdop16& added, int j) {
     return static_cast<long double>(x.half[j]) + y.half[j ^ 8] + added.half[j];
   };
   for (int j = 0; j < 16; ++j)
@@ -380,15 +387,17 @@ TEST(FCL_KERNELS, shiftedChildrenAsOverlapWindow) {
       node.displacement[lane] = randomDisplacement(random, scale);
     }
     node.clearRest();
-    const MovingKdop box = randomBounds(random, randomHalves(random), scale),
-                     added = randomBounds(random, randomHalves(random), scale);
+    const detail::deformable::MovingKdop box = randomBounds(random, randomHalves(random),
+                                                            scale),
+                                         added = randomBounds(
+                                             random, randomHalves(random), scale);
     const KdopShift shift = {added.t0, added.t1};
     float rows[2][16];
     for (int r = 0; r < 16; ++r) {
       rows[0][r] = shift.t0.half[MovingKdopNode::halfAxis(r)];
       rows[1][r] = shift.t1.half[MovingKdopNode::halfAxis(r)];
     }
-    const MovingKdop moved = shifted(box, &shift);
+    const detail::deformable::MovingKdop moved = shifted(box, &shift);
     const Rows single(box);
     BoxView view = single.view(randomDisplacement(random, scale));
     view.shift = rows;
@@ -399,7 +408,8 @@ TEST(FCL_KERNELS, shiftedChildrenAsOverlapWindow) {
     const unsigned found = allSets().front()->overlapChildren(view, node, {true}, first);
     unsigned near = 0;
     for (int lane = 0; lane < node.count; ++lane) {
-      const TimeWindow window = overlapWindow<false>(moved, node.box(lane), nullptr);
+      const detail::deformable::TimeWindow window =
+          overlapWindow<false>(moved, node.box(lane), nullptr);
       if (found >> lane & 1U) {
         // A sum may round to an overlap, or to an earlier one.
         if (!window.isEmpty()) {
@@ -466,7 +476,7 @@ TEST(FCL_KERNELS, bridgesNormalNumbersAtTheStart) {
 // Unbounded boxes overlap all boxes that are in use, and nothing else.
 TEST(FCL_KERNELS, unboundedOverlapsWhatIsInUse) {
   for (const float half : {std::numeric_limits<float>::infinity(), FLT_MAX}) {
-    MovingKdop box;
+    detail::deformable::MovingKdop box;
     std::fill(box.t0.half, box.t0.half + 16, half);
     box.t1 = box.t0;
     for (int count = 0; count <= kWidth; ++count) {
@@ -522,7 +532,8 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
     const MovingKdopNode& b = same ? a : other;
     const bool has_shift = random.index(2), is_self = same && random.index(2),
                is_once = same && (!has_shift || is_self);
-    const MovingKdop box = randomBounds(random, randomHalves(random), scale);
+    const detail::deformable::MovingKdop box =
+        randomBounds(random, randomHalves(random), scale);
     const KdopShift shift = {box.t0, box.t1};
     float rows[2][16];
     for (int r = 0; r < 16; ++r) {
@@ -554,8 +565,10 @@ TEST(FCL_KERNELS, trianglesAsOverlapWindow) {
     for (int x = 0; x < a.count; ++x)
       for (int y = is_once ? x + 1 : 0; y < b.count; ++y) {
         if (!(lanes >> x & 1U) || !b.isTriangle(y)) continue;
-        const MovingKdop moved = shifted(a.box(x), has_shift ? &shift : nullptr);
-        const TimeWindow window = overlapWindow<false>(moved, b.box(y), nullptr);
+        const detail::deformable::MovingKdop moved =
+            shifted(a.box(x), has_shift ? &shift : nullptr);
+        const detail::deformable::TimeWindow window =
+            overlapWindow<false>(moved, b.box(y), nullptr);
         const bool is_far = isTooFar(request, depthAtStart(moved, b.box(y)),
                                      a.displacement[x] + b.displacement[y]);
         far += is_far && !window.isEmpty();

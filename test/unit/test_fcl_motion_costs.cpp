@@ -79,7 +79,9 @@ TEST(FCL_MOTION_COSTS, spansOfTurnsGrowInProportion) {
         const int spans = ChordSearch(turning.body, resting.body, options).numSpans();
         ASSERT_GT(spans, 0) << angle;
         if (spans_per_angle == 0 && spans > 16) spans_per_angle = spans / angle;
-        if (spans > 16) EXPECT_LE(spans, 1.01 * spans_per_angle * angle + 1) << angle;
+        if (spans > 16) {
+          EXPECT_LE(spans, 1.01 * spans_per_angle * angle + 1) << angle;
+        }
       }
     }
 }
@@ -222,9 +224,12 @@ TEST(FCL_MOTION_COSTS, tinyMeshBesideLargeShape) {
           ask(mesh, motionOf(0, at, at), shape, motionOf(1.5, kOrigin, kOrigin), request);
       EXPECT_LE(result.counts.node_pairs, kMost);
       EXPECT_LE(result.counts.triangle_pairs, kMost);
-      if (height < 0.5 * kLarge) EXPECT_EQ(result.time_of_contact, 0);
-      if (height < 0.5 * kLarge && query == ContinuousQuery::kAll)
-        EXPECT_EQ(result.contacts.size(), 12U);
+      if (height < 0.5 * kLarge) {
+        EXPECT_EQ(result.time_of_contact, 0);
+        if (query == ContinuousQuery::kAll) {
+          EXPECT_EQ(result.contacts.size(), 12U);
+        }
+      }
     }
   }
 }

@@ -48,23 +48,25 @@ TEST(FCL_MOVING_KDOP, shiftedHalvesAreNotBelowTheSum) {
 
 /// A box whose bounds are multiples of a power of two, so that the test computes the
 /// overlap below exactly.
-MovingKdop gridBox(Random& random, int exponent) {
-  MovingKdop box;
-  for (Kdop16* frame : {&box.t0, &box.t1})
+detail::deformable::MovingKdop gridBox(Random& random, int exponent) {
+  detail::deformable::MovingKdop box;
+  for (detail::deformable::Kdop16* frame : {&box.t0, &box.t1})
     for (float& half : frame->half)
       half = std::ldexp(static_cast<float>(random.index(2000)) - 700, exponent);
   return box;
 }
 
 /// Whether the boxes overlap at t = k / 64.
-bool doOverlapAt(const MovingKdop& a, const MovingKdop& b, int k) {
+bool doOverlapAt(const detail::deformable::MovingKdop& a,
+                 const detail::deformable::MovingKdop& b, int k) {
   for (int j = 0; j < 16; ++j)
     if (halfAt(a, j, k / 64.) + halfAt(b, (j + 8) % 16, k / 64.) < 0) return false;
   return true;
 }
 
-void expectNoMiss(const MovingKdop& a, const MovingKdop& b) {
-  const TimeWindow w = overlapWindow<false>(a, b, nullptr);
+void expectNoMiss(const detail::deformable::MovingKdop& a,
+                  const detail::deformable::MovingKdop& b) {
+  const detail::deformable::TimeWindow w = overlapWindow<false>(a, b, nullptr);
   for (int k = 0; k <= 64; ++k)
     if (doOverlapAt(a, b, k)) {
       ASSERT_FALSE(w.isEmpty()) << "overlap at " << k << "/64";
@@ -79,7 +81,8 @@ TEST(FCL_MOVING_KDOP, windowNeverMisses) {
   int windows = 0;
   for (int i = 0; i < 20000; ++i) {
     const int exponent = static_cast<int>(random.index(200)) - 100;
-    MovingKdop a = gridBox(random, exponent), b = gridBox(random, exponent);
+    detail::deformable::MovingKdop a = gridBox(random, exponent),
+                                   b = gridBox(random, exponent);
     // Most directions overlap during the whole step; otherwise nearly no boxes would.
     for (int j = 0; j < 16; ++j)
       if (random.index(4)) {
@@ -88,7 +91,7 @@ TEST(FCL_MOVING_KDOP, windowNeverMisses) {
       }
     ASSERT_NO_FATAL_FAILURE(expectNoMiss(a, b)) << "seed " << kSeed << ", " << i;
     // The window is wider than the exact one by rounding only.
-    const TimeWindow w = overlapWindow<false>(a, b, nullptr);
+    const detail::deformable::TimeWindow w = overlapWindow<false>(a, b, nullptr);
     if (w.isEmpty()) continue;
     ++windows;
     double lo = 0, hi = 1;
@@ -104,8 +107,8 @@ TEST(FCL_MOVING_KDOP, windowNeverMisses) {
   EXPECT_GT(windows, 2000);
 }
 
-MovingKdop cube(float x0, float x1, float half) {
-  MovingKdop box;
+detail::deformable::MovingKdop cube(float x0, float x1, float half) {
+  detail::deformable::MovingKdop box;
   std::fill(box.t0.half, box.t0.half + 16, half);
   box.t1 = box.t0;
   box.t0.half[0] = half - x0;
@@ -118,11 +121,11 @@ MovingKdop cube(float x0, float x1, float half) {
 // Boxes that are unbounded at one end of the step and far apart at the other: they may
 // meet in between.
 TEST(FCL_MOVING_KDOP, unboundedNeverSeparates) {
-  const MovingKdop rest = cube(0, 0, 1);
+  const detail::deformable::MovingKdop rest = cube(0, 0, 1);
   for (int j = 0; j < 16; ++j)
     for (const bool at_t0 : {true, false}) {
       SCOPED_TRACE("half-axis " + std::to_string(j) + (at_t0 ? " at 0" : " at 1"));
-      MovingKdop box = cube(0, 0, 1);
+      detail::deformable::MovingKdop box = cube(0, 0, 1);
       (at_t0 ? box.t0 : box.t1).half[j] = std::numeric_limits<float>::infinity();
       (at_t0 ? box.t1 : box.t0).half[j] = -99;
       expectNoMiss(box, rest);

@@ -170,7 +170,8 @@ TEST(FCL_MOVING_KDOP_TREE, builtTwice) {
     other.build(mesh.triangles.data(), mesh.triangles.size(), frames);
     other.refit(frames);
     expectSameBoxes(tree, other);
-    EXPECT_GT(tree.memUsage(), count * (sizeof(TreeTriangle) + 2 * sizeof(MovingKdop)));
+    EXPECT_GT(tree.memUsage(), count * (sizeof(TreeTriangle) +
+                                        2 * sizeof(detail::deformable::MovingKdop)));
   }
 }
 
@@ -284,7 +285,7 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
     for (const TreeVertex& v : tree.vertices())
       for (int frame = 0; frame < 2; ++frame) {
         const double* p = frame ? v.t1 : v.t0;
-        const Kdop16& box = frame ? v.box.t1 : v.box.t0;
+        const detail::deformable::Kdop16& box = frame ? v.box.t1 : v.box.t0;
         const double(&o)[3] = tree.origin(frame);
         const double offset[3] = {p[0] - o[0], p[1] - o[1], p[2] - o[2]};
         double d[8], farthest = 0;
@@ -296,9 +297,9 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
           ASSERT_EQ(box.half[j + 8], roundUp(d[j], pad));
         }
       }
-    const auto largest = [](const std::vector<MovingKdop>& boxes) {
-      MovingKdop out = boxes[0];
-      for (const MovingKdop& box : boxes)
+    const auto largest = [](const std::vector<detail::deformable::MovingKdop>& boxes) {
+      detail::deformable::MovingKdop out = boxes[0];
+      for (const detail::deformable::MovingKdop& box : boxes)
         for (int j = 0; j < 16; ++j) {
           out.t0.half[j] = std::max(out.t0.half[j], box.t0.half[j]);
           out.t1.half[j] = std::max(out.t1.half[j], box.t1.half[j]);
@@ -308,14 +309,15 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
     for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
       for (int lane = 0; lane < tree.node(i).count; ++lane) {
         const MovingKdopNode& node = tree.node(i);
-        std::vector<MovingKdop> inside;
+        std::vector<detail::deformable::MovingKdop> inside;
         if (node.isTriangle(lane))
           for (const auto& places : node.places)
             inside.push_back(tree.vertices()[places[lane]].box);
         else
           for (int k = 0; k < tree.node(node.child[lane]).count; ++k)
             inside.push_back(tree.node(node.child[lane]).box(k));
-        const MovingKdop expected = largest(inside), box = node.box(lane);
+        const detail::deformable::MovingKdop expected = largest(inside),
+                                             box = node.box(lane);
         ASSERT_EQ(std::memcmp(&expected, &box, sizeof(box)), 0) << "node " << i;
       }
   }
@@ -324,7 +326,7 @@ TEST(FCL_MOVING_KDOP_TREE, boxesAreTheLeast) {
 TEST(FCL_MOVING_KDOP_TREE, boxOfWhatIsNotANumber) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const double origin[3] = {0, 0, 0}, point[3] = {1, kNan, 1};
-  Kdop16 box;
+  detail::deformable::Kdop16 box;
   fitPoint(point, origin, 0.f, box);
   for (const int half : {1, 3, 5, 6, 9, 11, 13, 14})
     EXPECT_EQ(box.half[half], std::numeric_limits<float>::infinity()) << half;
@@ -435,7 +437,7 @@ struct Widths {
 
  private:
   void add(const MovingKdopTree& tree, const TreeTriangle& triangle,
-           const MovingKdop& box) {
+           const detail::deformable::MovingKdop& box) {
     for (int frame = 0; frame < 2; ++frame) {
       double d[3][8];
       for (std::size_t k = 0; k < 3; ++k) {
@@ -443,7 +445,7 @@ struct Widths {
         const double* p = frame ? v.t1 : v.t0;
         kdopCoordinates({p[0], p[1], p[2]}, d[k]);
       }
-      const Kdop16& half = frame ? box.t1 : box.t0;
+      const detail::deformable::Kdop16& half = frame ? box.t1 : box.t0;
       for (int j = 0; j < 8; ++j) {
         const double width =
             std::max({d[0][j], d[1][j], d[2][j]}) - std::min({d[0][j], d[1][j], d[2][j]});

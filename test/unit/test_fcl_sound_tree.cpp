@@ -36,6 +36,7 @@ namespace {
 using detail::deformable::isTreeSound;
 using detail::deformable::kdopCoordinates;
 using detail::deformable::kHasSlabs;
+using detail::deformable::MovingKdop;
 using detail::deformable::OrientedBox;
 using detail::deformable::orientedBoxOf;
 using detail::deformable::Pose;

@@ -35,8 +35,9 @@ std::unique_ptr<Baseline> makeBaseline(const FramePairMesh& mesh,
   if (method.kernels == KernelSet::kVector)
     return is_swept ? make<WideTree<Boxes::kSwept>>(mesh, method, touches)
                     : make<WideTree<Boxes::kMoving>>(mesh, method, touches);
-  return is_swept ? make<FeatureTree<SweptBox>>(mesh, method, touches)
-                  : make<FeatureTree<MovingKdop>>(mesh, method, touches);
+  return is_swept
+             ? make<FeatureTree<SweptBox>>(mesh, method, touches)
+             : make<FeatureTree<detail::deformable::MovingKdop>>(mesh, method, touches);
 }
 
 }  // namespace test

@@ -17,7 +17,7 @@ namespace test {
 struct Candidate {
   std::uint32_t pair;
   std::int32_t bit;
-  TimeWindow window;
+  detail::deformable::TimeWindow window;
 };
 
 /// @brief The inner nodes of a tree as regions of the surface, parents before children.

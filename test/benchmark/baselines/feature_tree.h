@@ -27,7 +27,7 @@ namespace fcl {
 namespace test {
 
 /// @brief Four half-axes of a box.
-inline detail::deformable::Float4 quad(const Kdop16& box, int q) {
+inline detail::deformable::Float4 quad(const detail::deformable::Kdop16& box, int q) {
   detail::deformable::Float4 v;
   __builtin_memcpy(&v, box.half + 4 * q, sizeof(v));
   return v;
@@ -35,10 +35,11 @@ inline detail::deformable::Float4 quad(const Kdop16& box, int q) {
 
 /// @brief One box around both frames.
 struct SweptBox {
-  Kdop16 box;
+  detail::deformable::Kdop16 box;
 };
 
-inline void merge(const Kdop16& a, const Kdop16& b, Kdop16& out) {
+inline void merge(const detail::deformable::Kdop16& a,
+                  const detail::deformable::Kdop16& b, detail::deformable::Kdop16& out) {
   for (int q = 0; q < 4; ++q) {
     const auto x = quad(a, q), y = quad(b, q);
     const auto most = x > y ? x : y;
@@ -48,13 +49,15 @@ inline void merge(const Kdop16& a, const Kdop16& b, Kdop16& out) {
 inline void merge(const SweptBox& a, const SweptBox& b, SweptBox& out) {
   merge(a.box, b.box, out.box);
 }
-inline void merge(const MovingKdop& a, const MovingKdop& b, MovingKdop& out) {
+inline void merge(const detail::deformable::MovingKdop& a,
+                  const detail::deformable::MovingKdop& b,
+                  detail::deformable::MovingKdop& out) {
   merge(a.t0, b.t0, out.t0);
   merge(a.t1, b.t1, out.t1);
 }
 
 /// @brief Sets the box of a point, rounded outward and widened by `pad`.
-inline void fit(const double (&point)[3], float pad, Kdop16& out) {
+inline void fit(const double (&point)[3], float pad, detail::deformable::Kdop16& out) {
   double d[8];
   detail::deformable::kdopCoordinates(point, d);
   for (int j = 0; j < 8; ++j) {
@@ -63,18 +66,18 @@ inline void fit(const double (&point)[3], float pad, Kdop16& out) {
   }
 }
 inline void fit(const double (&t0)[3], const double (&t1)[3], float pad,
-                MovingKdop& out) {
+                detail::deformable::MovingKdop& out) {
   fit(t0, pad, out.t0);
   fit(t1, pad, out.t1);
 }
 inline void fit(const double (&t0)[3], const double (&t1)[3], float pad, SweptBox& out) {
-  MovingKdop both;
+  detail::deformable::MovingKdop both;
   fit(t0, t1, pad, both);
   merge(both.t0, both.t1, out.box);
 }
 
 /// @brief When boxes overlap; for swept boxes, all the time or never.
-inline TimeWindow overlap(const SweptBox& a, const SweptBox& b) {
+inline detail::deformable::TimeWindow overlap(const SweptBox& a, const SweptBox& b) {
   using detail::deformable::Float4;
   const Float4 zero = {0.f, 0.f, 0.f, 0.f};
   const Float4 s0 = quad(a.box, 0) + quad(b.box, 2), s1 = quad(a.box, 1) + quad(b.box, 3);
@@ -84,7 +87,8 @@ inline TimeWindow overlap(const SweptBox& a, const SweptBox& b) {
   if (detail::deformable::isAny(m < zero)) return {1.f, 0.f};
   return {0.f, 1.f};
 }
-inline TimeWindow overlap(const MovingKdop& a, const MovingKdop& b) {
+inline detail::deformable::TimeWindow overlap(const detail::deformable::MovingKdop& a,
+                                              const detail::deformable::MovingKdop& b) {
   return detail::deformable::overlapWindow<false>(a, b, nullptr);
 }
 
@@ -231,7 +235,8 @@ class FeatureTree {
     for (std::size_t p = 0; p < pairs.size(); ++p)
       for (unsigned bits = pairs[p].pairs; bits != 0; bits &= bits - 1) {
         const int bit = __builtin_ctz(bits);
-        const TimeWindow window = overlapOf(pairs[p].a, pairs[p].b, bit);
+        const detail::deformable::TimeWindow window =
+            overlapOf(pairs[p].a, pairs[p].b, bit);
         if (!window.isEmpty())
           found.push_back({static_cast<std::uint32_t>(p), bit, window});
       }
@@ -258,7 +263,7 @@ class FeatureTree {
   int link(int node) const { return links_[static_cast<std::size_t>(node)]; }
   const Box& box(int node) const { return boxes_[static_cast<std::size_t>(node)]; }
 
-  TimeWindow overlapOf(int i, int j, int bit) const {
+  detail::deformable::TimeWindow overlapOf(int i, int j, int bit) const {
     const detail::deformable::FeaturePair pair = detail::deformable::featurePair(bit);
     if (pair.kind == fcl::ContinuousContactKind::kEdgeEdge)
       return overlap(edge_boxes_[connectivity_.edgeOf(i, pair.first)],

@@ -150,7 +150,7 @@ class SelfQuery final : public Baseline {
       PointIds points[8];
       detail::deformable::TrianglePair pairs[8];
       std::uint32_t codes[8];
-      TimeWindow windows[8];
+      detail::deformable::TimeWindow windows[8];
       std::uint32_t count = 0;
       for (; count < 8 && i < candidates_.size(); ++i, ++count) {
         const Candidate& c = candidates_[i];
@@ -160,7 +160,7 @@ class SelfQuery final : public Baseline {
         for (std::size_t n = 0; n < 4; ++n)
           pairs[count].x[places[n]] = &tree.vertices()[points[count].v[n]];
         codes[count] = detail::deformable::featureCode(count, c.bit);
-        windows[count] = is_plain ? TimeWindow{0, 1} : c.window;
+        windows[count] = is_plain ? detail::deformable::TimeWindow{0, 1} : c.window;
       }
       // Where signs agree but stand below the bound is unclear; the plain filter has no
       // bound.

@@ -85,7 +85,7 @@ class WideTree {
   std::vector<detail::deformable::TrianglePair> triangle_pairs_;
   std::vector<std::uint16_t> masks_;
   std::vector<std::uint32_t> codes_;
-  std::vector<TimeWindow> windows_;
+  std::vector<detail::deformable::TimeWindow> windows_;
 };
 
 }  // namespace test
