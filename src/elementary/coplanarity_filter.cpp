@@ -62,7 +62,7 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
 
 /// coplanarityInDoubles() in a form that this file can inline. Both frames are computed
 /// side by side: reversed time turns the coefficients of the volume u . (v x w) into each
-/// other. coplanarityOfFeatures() in kernels/ has the same operations for eight pairs.
+/// other. coplanarity() in kernels/ has the same operations for eight pairs.
 Coplanarity inDoubles(ContinuousContactKind kind, const FeaturePoints& x,
                       double window_lo, double window_hi) {
   const PairTable& table = pairTable(kind);

@@ -333,8 +333,8 @@ class AdvancingPairs {
 /// Takes the steps of some eights in turn: each number of a step depends on the one
 /// before, so that a processor would wait for them if it had only one eight to work on.
 /// When fewer eights would do for the pairs that are left, these are put together.
-void approachOfAll(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
-                   const DistanceRequest& request, Approach* answers) {
+void approach(ContinuousContactKind kind, const FourPoints* pairs, std::size_t count,
+              const DistanceRequest& request, Approach* answers) {
   AdvancingPairs eights[kMostApproaching / kEight];
   PairOnWay on_way[kMostApproaching];
   for (std::size_t i = 0; i < count; ++i) on_way[i] = {i, 0, 0, request.distance};
@@ -386,13 +386,13 @@ struct StartPolygons {
   FCL_CCD_INLINE int next(int k) const { return k + 1 < count ? k + 1 : 0; }
 };
 
-/// The first step of approachOfAll(), without the sizes of the pairs: a distance of at
+/// The first step of approach(), without the sizes of the pairs: a distance of at
 /// most d is a contact whatever the tolerance is. With the direction of the nearest point
 /// a gap above `reach` proves that there is none: reachOf() is larger than a distance
 /// with its tolerances by more than the rounding of this, 16 u of the largest length.
-unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs,
-                           const std::uint32_t* codes, std::size_t count, double distance,
-                           double reach, Approach (&answers)[8]) {
+unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
+                         const std::uint32_t* codes, std::size_t count, double distance,
+                         double reach, Approach (&answers)[8]) {
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane)
@@ -423,7 +423,7 @@ unsigned approachAtStartOf(ContinuousContactKind kind, const TrianglePair* pairs
 }
 
 /// The first attempt of leastDistance(), if it is enough.
-unsigned leastDistancesOf(const EightPoints& pairs, double (&least)[8]) {
+unsigned leastDistances(const EightPoints& pairs, double (&least)[8]) {
   const Points points(pairs);
   const Polygons x(pairs.kind, points.t1, points.t1);
   const NearestPoints near = nearestPoints(x, x.t1);

@@ -97,9 +97,9 @@ struct HalfOfBoxes {
 };
 
 template <bool kIsStill>
-FCL_CCD_INLINE void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes,
-                            MovingKdopNode& node,
-                            float (&extents)[MovingKdopNode::kWidth]) {
+FCL_CCD_INLINE void fitNodeWhere(const TreeVertex* vertices, const MovingKdopNode* nodes,
+                                 MovingKdopNode& node,
+                                 float (&extents)[MovingKdopNode::kWidth]) {
   using Lower0 = HalfOfBoxes<0, 0>;
   using Upper0 = HalfOfBoxes<0, 8>;
   using Lower1 = HalfOfBoxes<1, 0>;
@@ -144,12 +144,12 @@ FCL_CCD_INLINE void fitNode(const TreeVertex* vertices, const MovingKdopNode* no
   }
 }
 
-void fitNodeOf(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
-               MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
+void fitNode(const TreeVertex* vertices, const MovingKdopNode* nodes, bool is_still,
+             MovingKdopNode& node, float (&extents)[MovingKdopNode::kWidth]) {
   if (is_still)
-    fitNode<true>(vertices, nodes, node, extents);
+    fitNodeWhere<true>(vertices, nodes, node, extents);
   else
-    fitNode<false>(vertices, nodes, node, extents);
+    fitNodeWhere<false>(vertices, nodes, node, extents);
 }
 
 /// Makes the windows of boxes smaller, see overlapWindow(). s0 and s1 are the depths
@@ -218,10 +218,10 @@ FCL_CCD_INLINE unsigned nearChildren(const BoxView& box, const float* start,
 
 /// @param start  as of nearChildren(); only read if kLeavesOut
 template <std::size_t kStride, bool kShifted, bool kLeavesOut>
-FCL_CCD_INLINE unsigned overlapChildren(const BoxView& box, const float* start,
-                                        const MovingKdopNode& node,
-                                        const OverlapRequest& request,
-                                        float (&earliest)[MovingKdopNode::kWidth]) {
+FCL_CCD_INLINE unsigned overlapEight(const BoxView& box, const float* start,
+                                     const MovingKdopNode& node,
+                                     const OverlapRequest& request,
+                                     float (&earliest)[MovingKdopNode::kWidth]) {
   unsigned left = node.lanes();
   if (kLeavesOut) {
     unsigned open = 0;
@@ -269,13 +269,13 @@ unsigned overlapBox(const BoxView& box, const MovingKdopNode& node,
   if (kShifted && kLeavesOut)
     for (std::size_t r = 0; r < 16; ++r)
       moved[r * kStride] = shifted(box.t0[r * kStride], box.shift[0][r]);
-  return overlapChildren<kStride, kShifted, kLeavesOut>(box, kShifted ? moved : box.t0,
-                                                        node, request, earliest);
+  return overlapEight<kStride, kShifted, kLeavesOut>(box, kShifted ? moved : box.t0, node,
+                                                     request, earliest);
 }
 
-unsigned overlapChildrenOf(const BoxView& box, const MovingKdopNode& node,
-                           const OverlapRequest& request,
-                           float (&earliest)[MovingKdopNode::kWidth]) {
+unsigned overlapChildren(const BoxView& box, const MovingKdopNode& node,
+                         const OverlapRequest& request,
+                         float (&earliest)[MovingKdopNode::kWidth]) {
   constexpr std::size_t kInNode = BoxView::kInNode;
   const bool is_single = box.stride == 1;
   const auto overlap =
@@ -306,7 +306,7 @@ FCL_CCD_INLINE unsigned trianglesInFans(const MovingKdopNode& a, std::size_t lan
 }
 
 template <bool kShifted, bool kLeavesOut>
-FCL_CCD_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
+FCL_CCD_INLINE void overlapLeaves(const LeafPairing& leaves, LanePairs& out) {
   const MovingKdopNode &a = leaves.a, &b = leaves.b;
   // All boxes of a are moved side by side: one by one they would take as long as the
   // comparisons.
@@ -326,7 +326,7 @@ FCL_CCD_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) 
     if (left == 0) continue;
     const BoxView box{&a.t0[0][lane], &a.t1[0][lane], BoxView::kInNode,
                       a.displacement[lane], leaves.shift};
-    left &= overlapChildren<BoxView::kInNode, kShifted, kLeavesOut>(
+    left &= overlapEight<BoxView::kInNode, kShifted, kLeavesOut>(
         box, kShifted ? &moved[0][lane] : box.t0, b, leaves.request, out.earliest[lane]);
     if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
@@ -340,13 +340,13 @@ FCL_CCD_INLINE void overlapTriangles(const LeafPairing& leaves, LanePairs& out) 
   out.fan_culled += fan_culled;
 }
 
-void overlapTrianglesOf(const LeafPairing& leaves, LanePairs& out) {
+void overlapTriangles(const LeafPairing& leaves, LanePairs& out) {
   if (leaves.request.leavesOut())
-    leaves.shift ? overlapTriangles<true, true>(leaves, out)
-                 : overlapTriangles<false, true>(leaves, out);
+    leaves.shift ? overlapLeaves<true, true>(leaves, out)
+                 : overlapLeaves<false, true>(leaves, out);
   else
-    leaves.shift ? overlapTriangles<true, false>(leaves, out)
-                 : overlapTriangles<false, false>(leaves, out);
+    leaves.shift ? overlapLeaves<true, false>(leaves, out)
+                 : overlapLeaves<false, false>(leaves, out);
 }
 
 std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned kept,
@@ -409,10 +409,11 @@ FCL_CCD_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
 }
 
 template <ContinuousContactKind kind, bool kShifted>
-FCL_CCD_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShift* shift,
-                                        const KdopShift* turned_shift, float latest,
-                                        const float* gaps, std::uint32_t* codes,
-                                        std::size_t count, TimeWindow* windows) {
+FCL_CCD_INLINE std::size_t cullFeaturesWhere(const TrianglePair* pairs,
+                                             const KdopShift* shift,
+                                             const KdopShift* turned_shift, float latest,
+                                             const float* gaps, std::uint32_t* codes,
+                                             std::size_t count, TimeWindow* windows) {
   const auto at0 = [&](std::uint32_t code) {
     return depths<kind, kShifted, 0>(pairs[code / 16], code % 16, shift, turned_shift);
   };
@@ -450,15 +451,16 @@ FCL_CCD_INLINE std::size_t cullFeatures(const TrianglePair* pairs, const KdopShi
   return kept;
 }
 
-std::size_t cullFeaturesOf(ContinuousContactKind kind, const TrianglePair* pairs,
-                           const KdopShift* shift, const KdopShift* turned_shift,
-                           float latest, const float* gaps, std::uint32_t* codes,
-                           std::size_t count, TimeWindow* windows) {
+std::size_t cullFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
+                         const KdopShift* shift, const KdopShift* turned_shift,
+                         float latest, const float* gaps, std::uint32_t* codes,
+                         std::size_t count, TimeWindow* windows) {
   constexpr ContinuousContactKind kVf = ContinuousContactKind::kVertexFace,
                                   kEe = ContinuousContactKind::kEdgeEdge;
-  const auto cull = kind == kVf
-                        ? (shift ? &cullFeatures<kVf, true> : &cullFeatures<kVf, false>)
-                        : (shift ? &cullFeatures<kEe, true> : &cullFeatures<kEe, false>);
+  const auto cull =
+      kind == kVf
+          ? (shift ? &cullFeaturesWhere<kVf, true> : &cullFeaturesWhere<kVf, false>)
+          : (shift ? &cullFeaturesWhere<kEe, true> : &cullFeaturesWhere<kEe, false>);
   return cull(pairs, shift, turned_shift, latest, gaps, codes, count, windows);
 }
 

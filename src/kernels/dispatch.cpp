@@ -26,28 +26,14 @@ inline const char* targetName() { return hwy::TargetName(HWY_TARGET); }
 inline const char* targetName() { return "plain"; }
 #endif
 
-extern const Kernels kKernels = {targetName(),
-                                 &fitPoints,
-                                 &fitNodeOf,
-                                 &overlapChildrenOf,
-                                 &overlapTrianglesOf,
-                                 &listFeatures,
-                                 &cullFeaturesOf,
-                                 &cullCrossings,
-                                 &areApart,
-                                 &stayApart,
-                                 &mayCrossOfEight,
-                                 &areFansEmbedded,
-                                 &facedDirections,
-                                 &viewFromPoint,
-                                 &lowCorners,
-                                 &coplanarityOfFeatures,
-                                 &mayComeWithinOfFeatures,
-                                 &approachOfAll,
-                                 &approachAtStartOf,
-                                 &leastDistancesOf,
-                                 &solveEight,
-                                 &divideEight};
+extern const Kernels kKernels = {targetName(),     &fitPoints,        &fitNode,
+                                 &overlapChildren, &overlapTriangles, &listFeatures,
+                                 &cullFeatures,    &cullCrossings,    &areApart,
+                                 &stayApart,       &mayCross,         &areFansEmbedded,
+                                 &facedDirections, &viewFrom,         &lowCorners,
+                                 &coplanarity,     &mayComeWithin,    &approach,
+                                 &approachAtStart, &leastDistances,   &solve,
+                                 &divide};
 
 const Kernels* table() { return &kKernels; }
 

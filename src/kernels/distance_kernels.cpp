@@ -183,10 +183,10 @@ FCL_CCD_INLINE Doubles leastApart(const Doubles& lo, const Doubles& norm,
 /// The direction is that of the nearest points in the middle of the window; at its
 /// beginning, where pairs are compared with their distance at t = 0. This pays if the
 /// window is short.
-unsigned mayComeWithinOfFeatures(ContinuousContactKind kind, const TrianglePair* pairs,
-                                 const std::uint32_t* codes, const TimeWindow* windows,
-                                 std::size_t count, const DistanceRequest& request,
-                                 const PairBends& bends) {
+unsigned mayComeWithin(ContinuousContactKind kind, const TrianglePair* pairs,
+                       const std::uint32_t* codes, const TimeWindow* windows,
+                       std::size_t count, const DistanceRequest& request,
+                       const PairBends& bends) {
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];

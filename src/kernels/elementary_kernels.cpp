@@ -87,11 +87,9 @@ FCL_CCD_INLINE Cubics spannedVolume(const Segments& u, const MovingCrosses& n) {
           isInRange(size) & isInRange(n.norm)};
 }
 
-EightCoplanarities coplanarityOfFeatures(ContinuousContactKind kind,
-                                         const TrianglePair* pairs,
-                                         const std::uint32_t* codes,
-                                         const TimeWindow* windows, std::size_t count,
-                                         double latest) {
+EightCoplanarities coplanarity(ContinuousContactKind kind, const TrianglePair* pairs,
+                               const std::uint32_t* codes, const TimeWindow* windows,
+                               std::size_t count, double latest) {
   // If there are fewer than eight pairs, the last one is repeated.
   std::uint32_t eight_codes[kEight];
   TimeWindow eight_windows[kEight];
@@ -219,7 +217,7 @@ FCL_CCD_INLINE Doubles root(const Cubics& f, unsigned open, const Doubles& toler
   return x;
 }
 
-EightAnswers solveEight(const EightPairs& x, double toc_err) {
+EightAnswers solve(const EightPairs& x, double toc_err) {
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi), width = hi - lo;
   const Segments u = restrict(pairs.difference[kU], lo, hi),
@@ -418,8 +416,8 @@ unsigned stayApart(const TrianglePair* pairs, std::size_t count, double distance
   return bits(apart) & ((1U << count) - 1);
 }
 
-unsigned mayCrossOfEight(const TrianglePair* pairs, const std::uint32_t* codes,
-                         std::size_t count) {
+unsigned mayCross(const TrianglePair* pairs, const std::uint32_t* codes,
+                  std::size_t count) {
   const TreeVertex* points[kEight][5];
   for (std::size_t lane = 0; lane < kEight; ++lane)
     // If there are fewer than eight, the last one is repeated.
@@ -469,7 +467,7 @@ FCL_CCD_INLINE Doubles nearestToZero(const Cubics& f) {
   return select((s > zero) & (s < broadcast<kEight>(1.)), s, half);
 }
 
-EightDivisions divideEight(const EightPairs& x) {
+EightDivisions divide(const EightPairs& x) {
   const Pairs pairs(x);
   const Doubles lo = load<kEight>(x.lo), hi = load<kEight>(x.hi);
   const Segments u = restrict(pairs.difference[kU], lo, hi),

@@ -192,10 +192,10 @@ FCL_CCD_INLINE void takeLeast(const Sights& x, const Doubles& most, LeastSight& 
 }
 
 template <bool kWithLeast>
-FCL_CCD_INLINE EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
-                                   const TreeVertex* vertices,
-                                   const TreeTriangle* triangles, std::size_t count,
-                                   LeastSight* least) {
+FCL_CCD_INLINE EightViews viewFromHere(const TreeVertex& point, const double (&ray)[3],
+                                       const TreeVertex* vertices,
+                                       const TreeTriangle* triangles, std::size_t count,
+                                       LeastSight* least) {
   const TreeVertex* x[3][kEight];
   findCorners(vertices, triangles, count, x);
   const MovingVectors center = {vectorsOf(point.t0), vectorsOf(point.t1)};
@@ -228,11 +228,11 @@ FCL_CCD_INLINE EightViews viewFrom(const TreeVertex& point, const double (&ray)[
   return views;
 }
 
-EightViews viewFromPoint(const TreeVertex& point, const double (&ray)[3],
-                         const TreeVertex* vertices, const TreeTriangle* triangles,
-                         std::size_t count, LeastSight* least) {
-  return least ? viewFrom<true>(point, ray, vertices, triangles, count, least)
-               : viewFrom<false>(point, ray, vertices, triangles, count, nullptr);
+EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
+                    const TreeVertex* vertices, const TreeTriangle* triangles,
+                    std::size_t count, LeastSight* least) {
+  return least ? viewFromHere<true>(point, ray, vertices, triangles, count, least)
+               : viewFromHere<false>(point, ray, vertices, triangles, count, nullptr);
 }
 
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
