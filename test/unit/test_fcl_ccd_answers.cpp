@@ -390,7 +390,9 @@ TEST_F(CcdAnswers, TheProgressLineFitsTheTerminal) {
       const std::string text = line.substr(0, line.find('\x1b'));
       EXPECT_LT(text.size(), static_cast<std::size_t>(std::min(columns, 80))) << text;
     }
-    if (columns >= 80) EXPECT_TRUE(contains(shown, " left")) << shown;
+    if (columns >= 80) {
+      EXPECT_TRUE(contains(shown, " left")) << shown;
+    }
   }
 }
 
