@@ -246,7 +246,10 @@ def test_feature_tests(test):
 
 
 SOURCE = Path(__file__).resolve().parent.parent.parent
-FOLDERS = "src/api", "src/elementary", "src/mesh", "src/motion", "src/tree", "include/fcl"
+FOLDERS = (
+    *("src/" + name for name in "elementary mesh tree paths shapes bodies curved model prepare api".split()),
+    "include/fcl",
+)
 NAMES_OF_CPP = r"::|\b[a-z]+[A-Z]\w*|\bk[A-Z]\w+|BVH|CCDM|request\.|Continuous[A-Z]|\bmodel\b"
 # What the package never does: a mesh is built and updated in one call, in double, without
 # FCL's tree; it has FCL's motions or a BoundedMotion; a null pointer is None.
