@@ -210,6 +210,7 @@ struct Undecided {
   /// interval.
   ElementaryResult withContactIn(double lo, double hi, double toc_err) const {
     if (unsure) lo = unsure_lo;
+    assert(0 <= lo && lo <= hi && hi <= 1);
     return {hi - lo <= toc_err ? Answer::kYes : Answer::kUnsure, lo, hi,
             DecidedBy::kSolver};
   }
@@ -420,7 +421,12 @@ ElementaryResult decide(ContinuousContactKind kind, const FeaturePoints& x,
   const ElementaryResult solved =
       solveCoplanarity(kind, x, window_lo, window_hi, toc_err, t_stop);
   if (solved.answer != Answer::kUnsure) return solved;
-  return decideExactly(kind, x, toc_err, t_stop, t_max);
+  const ElementaryResult exact = decideExactly(kind, x, toc_err, t_stop, t_max);
+  // What the stages before prove is true: no filter would have removed a contact, and the
+  // solver has not passed its time.
+  assert(exact.answer != Answer::kYes || mayBecomeCoplanar(kind, x, 0, 1));
+  assert(exact.answer != Answer::kYes || exact.toc_hi >= solved.toc_lo);
+  return exact;
 }
 
 namespace {

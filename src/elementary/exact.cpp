@@ -62,6 +62,7 @@ ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
     touch = true;
   }
   if (!touch) return {Answer::kNo, 0, 0, DecidedBy::kExact};
+  assert(0 <= lo && lo <= hi && hi <= t_max);
   return {Answer::kYes, lo, hi, DecidedBy::kExact};
 }
 

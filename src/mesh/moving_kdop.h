@@ -71,6 +71,7 @@ inline float roundUp(double value, float pad) {
   const auto f =
       static_cast<float>(value < double{kLeastHalf} ? double{kLeastHalf} : value);
   const float up = f + (std::fabs(f) * kOutward + (pad + FLT_MIN));
+  assert(!(up < value + pad * (1 - double{kOutward})));
   return up == up ? up : std::numeric_limits<float>::infinity();
 }
 
@@ -85,7 +86,9 @@ constexpr double kOffsetPad = 0x1p-49;
 /// subnormal.
 inline float shifted(float half, float shift) {
   const float sum = half + shift;
-  return std::max(sum + std::fabs(sum) * kOutward, kLeastHalf);
+  const float moved = std::max(sum + std::fabs(sum) * kOutward, kLeastHalf);
+  assert(!(moved < double{half} + double{shift}));
+  return moved;
 }
 
 /// @brief The shift that is added to the sum of two boxes whose origins differ.
@@ -146,6 +149,8 @@ inline TimeWindow overlapWindow(const MovingKdop& a, const MovingKdop& b,
     (s0 < 0 ? before : after) = std::max(s0 < 0 ? before : after, loss);
   }
   const float hi = kWindowEnd - after;
+  // A time of overlap is neither before the beginning nor after the end of the step.
+  assert(0.f <= before && before <= 1.f && 0.f <= hi);
   return {before, std::min(hi, 1.f)};
 }
 

@@ -49,6 +49,8 @@ TimeBracket tightened(ContinuousContactKind kind, const FeaturePoints& x,
     assert(found.answer == Answer::kYes);
     const TimeBracket next{std::max(bracket.lo, found.toc_lo),
                            std::min(bracket.hi, found.toc_hi)};
+    // Both contain the first time.
+    assert(next.lo <= next.hi);
     if (next.lo == bracket.lo && next.hi == bracket.hi) break;
     bracket = next;
   }
