@@ -233,7 +233,7 @@ template <typename S>
 bool DeformableTraversal<S>::areApart(int b1, int b2) {
   const deformable::DefaultFloatingPoint mode;
   if (state_->view1.isEmpty(b1) || state_->view2().isEmpty(b2)) return true;
-  ++state_->test->counts().node_pairs;
+  ++state_->test->findings().counts().node_pairs;
   const deformable::TimeWindow w = state_->window(b1, b2);
   return w.isEmpty() || w.lo > deformable::lastBeginning(state_->test->latest());
 }
@@ -246,8 +246,8 @@ void DeformableTraversal<S>::testLeaves(int b1, int b2) {
                                     state_->view2().triangle(b2),
                                     state_->window(b1, b2).lo};
     const deformable::LeafPair* next = &pair;
-    state_->test->visit(next, next + 1);
-    state_->test->flush();
+    state_->test->collect(next, next + 1);
+    state_->test->decide();
   } catch (const deformable::NonFiniteVertex& error) {
     throw Exception(error.what());
   }
@@ -271,10 +271,10 @@ void DeformableTraversal<S>::report() {
     out.o2 = &state.o2;
     return deformable::toContact(out);
   };
-  const auto& contacts = state.test->sink().contacts();
+  const auto& contacts = state.test->findings().sink().contacts();
   // A crossing is in the result only while there is no contact.
   const bool drop_crossing = state.crossing_reported && !contacts.empty();
-  if (state.test->sink().isCut() || drop_crossing) {
+  if (state.test->findings().sink().isCut() || drop_crossing) {
     state.result = state.earlier;
     state.reported = 0;
     state.crossing_reported = false;
@@ -283,11 +283,12 @@ void DeformableTraversal<S>::report() {
     state.result.addContact(convert(contacts[state.reported]));
   }
   if (!contacts.empty())
-    state.time_of_contact = deformable::roundTimeDown<S>(state.test->firstBracket().lo);
-  if (!state.test->hasCrossing()) return;
+    state.time_of_contact =
+        deformable::roundTimeDown<S>(state.test->findings().firstBracket().lo);
+  if (!state.test->findings().hasCrossing()) return;
   state.time_of_contact = 0;
   if (contacts.empty() && !state.crossing_reported) {
-    state.result.addContact(convert(state.test->crossings().front()));
+    state.result.addContact(convert(state.test->findings().crossings().front()));
     state.crossing_reported = true;
   }
 }
@@ -299,12 +300,12 @@ S DeformableTraversal<S>::timeOfContact() const {
 
 template <typename S>
 bool DeformableTraversal<S>::isInitiallyCrossing() const {
-  return state_->test->hasCrossing();
+  return state_->test->findings().hasCrossing();
 }
 
 template <typename S>
 const StageCounts& DeformableTraversal<S>::counts() const {
-  return state_->test->counts();
+  return state_->test->findings().counts();
 }
 
 template class DeformableTraversal<double>;

@@ -415,15 +415,17 @@ FCL_CCD_INLINE std::size_t cullFeaturesWhere(const TrianglePair* pairs,
                                              const float* gaps, std::uint32_t* codes,
                                              std::size_t count, TimeWindow* windows) {
   const auto at0 = [&](std::uint32_t code) {
-    return depths<kind, kShifted, 0>(pairs[code / 16], code % 16, shift, turned_shift);
+    return depths<kind, kShifted, 0>(pairs[codePair(code)], codeBit(code), shift,
+                                     turned_shift);
   };
   const auto at1 = [&](std::uint32_t code) {
-    return depths<kind, kShifted, 1>(pairs[code / 16], code % 16, shift, turned_shift);
+    return depths<kind, kShifted, 1>(pairs[codePair(code)], codeBit(code), shift,
+                                     turned_shift);
   };
   // One loop for each comparison of the boxes, so that no branch depends on the boxes.
   if (gaps)
     count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
-      return isAll(at0(code) >= broadcast<16>(-gaps[code / 16]));
+      return isAll(at0(code) >= broadcast<16>(-gaps[codePair(code)]));
     });
   if (!windows) return count;
   count = keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
@@ -468,14 +470,14 @@ std::size_t cullCrossings(const TrianglePair* pairs, const KdopShift* shift,
                           const KdopShift* turned_shift, std::uint32_t* codes,
                           std::size_t count) {
   return keepCodes(codes, count, [&](std::uint32_t code) HWY_ATTR {
-    const std::size_t edge = code % 16, on_b = edge / 3, k = edge % 3;
-    const TreeVertex* const* mine = pairs[code / 16].x + 3 * on_b;
-    const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
-    HalfAxes ends = larger(boxOf<0>(*mine[k]), boxOf<0>(*mine[(k + 1) % 3]));
-    if (shift) ends = movedBy(ends, load<16>((on_b ? turned_shift : shift)->t0.half));
-    const HalfAxes all =
-        larger(larger(boxOf<0>(*face[0]), boxOf<0>(*face[1])), boxOf<0>(*face[2]));
-    return !isAnyNegative(ends + swapHalves(all));
+    const TreeVertex* x[5];
+    crossingPoints(pairs, code, x);
+    const bool on_a = codeBit(code) < 3;
+    HalfAxes edge = larger(boxOf<0>(*x[0]), boxOf<0>(*x[1]));
+    if (shift) edge = movedBy(edge, load<16>((on_a ? shift : turned_shift)->t0.half));
+    const HalfAxes face =
+        larger(larger(boxOf<0>(*x[2]), boxOf<0>(*x[3])), boxOf<0>(*x[4]));
+    return !isAnyNegative(edge + swapHalves(face));
   });
 }
 

@@ -83,7 +83,7 @@ class PointBends {
     double first_on_a[kEight];
     for (std::size_t lane = 0; lane < kEight; ++lane)
       first_on_a[lane] =
-          kind == ContinuousContactKind::kEdgeEdge || codes[lane] % 16 < kVerticesOfA;
+          kind == ContinuousContactKind::kEdgeEdge || codeBit(codes[lane]) < kVerticesOfA;
     first_on_a_ = load<kEight>(first_on_a) > broadcast<kEight>(0.);
   }
 

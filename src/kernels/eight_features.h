@@ -26,8 +26,8 @@ class EightFeatures {
  public:
   FCL_CCD_INLINE EightFeatures(const TrianglePair* pairs, const std::uint32_t* codes) {
     for (std::size_t lane = 0; lane < kEight; ++lane) {
-      vertices_[lane] = pairs[codes[lane] / 16].x;
-      corners_[lane] = kFeaturePoints[codes[lane] % 16];
+      vertices_[lane] = pairs[codePair(codes[lane])].x;
+      corners_[lane] = kFeaturePoints[codeBit(codes[lane])];
     }
   }
   FCL_CCD_INLINE const TreeVertex& point(std::size_t i, std::size_t lane) const {

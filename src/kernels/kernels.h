@@ -113,14 +113,16 @@ inline std::uint32_t featureCode(std::uint32_t pair, int bit) {
   assert(bit >= 0 && bit < 16);
   return 16 * pair + static_cast<std::uint32_t>(bit);
 }
+constexpr std::uint32_t codePair(std::uint32_t code) { return code / 16; }
+constexpr std::uint32_t codeBit(std::uint32_t code) { return code % 16; }
 
 /// @brief The ends of an edge and the corners of a face of a triangle pair.
 /// @param code  as of Kernels::cullCrossings()
 inline void crossingPoints(const TrianglePair* pairs, std::uint32_t code,
                            const TreeVertex* (&x)[5]) {
-  const std::uint32_t on_b = code % 16 / 3, k = code % 16 % 3;
-  const TreeVertex* const* edge = pairs[code / 16].x + 3 * on_b;
-  const TreeVertex* const* face = pairs[code / 16].x + 3 * (1 - on_b);
+  const std::uint32_t on_b = codeBit(code) / 3, k = codeBit(code) % 3;
+  const TreeVertex* const* edge = pairs[codePair(code)].x + 3 * on_b;
+  const TreeVertex* const* face = pairs[codePair(code)].x + 3 * (1 - on_b);
   x[0] = edge[k];
   x[1] = edge[(k + 1) % 3];
   for (int i = 0; i < 3; ++i) x[2 + i] = face[i];

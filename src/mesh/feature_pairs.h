@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_MESH_FEATURE_PAIRS_H
 #define FCL_CCD_MESH_FEATURE_PAIRS_H
 
+#include <algorithm>
+#include <array>
 #include <cassert>
 #include <cstdint>
 
@@ -44,18 +46,31 @@ struct FeatureIds {
   std::int32_t triangles[2];
 };
 
-/// @brief A hash of up to five numbers below 2^32. Two products that do not wait for each
-/// other and one of their sum, by odd numbers with bits all over (the golden ratio, and a
-/// prime of xxHash). The upper bits of a product depend on all bits of its factors, so
-/// the lower 20 are left out.
-inline std::uint64_t hashOfIds(std::uint32_t kind, std::uint32_t v0, std::uint32_t v1,
-                               std::uint32_t v2, std::uint32_t v3) {
-  const std::uint64_t first = std::uint64_t{v0} << 32 | v1,
-                      second = std::uint64_t{v2} << 32 | v3;
-  const std::uint64_t sum =
-      (first + kind) * 0x9e3779b97f4a7c15 + (second ^ second >> 29) * 0xc2b2ae3d27d4eb4f;
-  return (sum ^ sum >> 32) * 0x9e3779b97f4a7c15 >> 20;
-}
+/// @brief A pair of features as a key of tables. Faces with the same vertices are one
+/// face, in whatever order the vertices are.
+struct FeatureKey {
+  /// Kind and side, and the vertices.
+  std::array<std::uint32_t, 5> words;
+
+  explicit FeatureKey(const FeatureIds& c)
+      : words{2 * static_cast<std::uint32_t>(c.kind) + (c.first_on_a ? 1U : 0U),
+              c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]} {
+    if (c.kind == ContinuousContactKind::kVertexFace)
+      std::sort(words.begin() + 2, words.end());
+  }
+  bool operator==(const FeatureKey& other) const { return words == other.words; }
+
+  /// @brief Two products that do not wait for each other and one of their sum, by odd
+  /// numbers with bits all over (the golden ratio, and a prime of xxHash). The upper bits
+  /// of a product depend on all bits of its factors, so the lower 20 are left out.
+  std::uint64_t hash() const {
+    const std::uint64_t first = std::uint64_t{words[1]} << 32 | words[2],
+                        second = std::uint64_t{words[3]} << 32 | words[4];
+    const std::uint64_t sum = (first + words[0]) * 0x9e3779b97f4a7c15 +
+                              (second ^ second >> 29) * 0xc2b2ae3d27d4eb4f;
+    return (sum ^ sum >> 32) * 0x9e3779b97f4a7c15 >> 20;
+  }
+};
 
 /// @brief The pairs of features of two triangles a and b, a bit each. Bit k: vertex k of
 /// a and the face of b. Bit 3 + k: vertex k of b and the face of a. Bit 6 + 3 i + j: edge

@@ -68,24 +68,24 @@ struct MeshPair {
 
 /// @brief A traversal, or a part of it, done by one thread: compares boxes, collects the
 /// triangle pairs that overlap, and passes them on in blocks.
-/// @tparam Leaves  what takes the blocks: NarrowPhase or CandidateCollector
-template <bool kSelf, typename TreeA, typename TreeB, typename Leaves>
+/// @tparam Taker  what takes the blocks: NarrowPhase or CandidateCollector
+template <bool kSelf, typename TreeA, typename TreeB, typename Taker>
 class BlockTraversal {
  public:
   BlockTraversal(const MeshPair& meshes, TreeA& tree_a, TreeB& tree_b,
-                 const SeparatingAxes* axes, const Schedule& schedule, Leaves& leaves)
+                 const SeparatingAxes* axes, const Schedule& schedule, Taker& taker)
       : shifts_(meshes.shifts),
         reach_(shifts_.reach(1)),
         shift_(shifts_.shift(reach_)),
         traversal_(tree_a, tree_b, shifts_.isEmpty() ? nullptr : &shift_,
                    meshes.proofs.culling(), axes, kernels(),
-                   schedule.in_order || leaves.isTimed()),
+                   schedule.in_order || taker.isTimed()),
         pose_displacement_(meshes.poseDisplacement()),
         schedule_(schedule),
-        leaves_(leaves),
+        taker_(taker),
         block_(schedule.block + Traversal<kSelf, TreeA, TreeB>::maxPairs()) {}
 
-  /// @brief Seconds that the leaves have taken.
+  /// @brief Seconds that the taker has taken.
   double testTime() const { return test_time_; }
 
   /// @brief Begins the whole traversal, level by level, until there is a piece of work
@@ -95,16 +95,15 @@ class BlockTraversal {
     std::size_t next = 0;
     beginPart();
     traversal_.start(open_);
-    for (; next < open_.size() && open_.size() - next < schedule_.tasks &&
-           !leaves_.isDone();
+    for (;
+         next < open_.size() && open_.size() - next < schedule_.tasks && !taker_.isDone();
          ++next) {
       const NodePair work = open_[next];
-      setLatest(leaves_.latest());
+      setLatest(taker_.latest());
       if (work.earliest <= last_beginning_) step(work);
     }
     finish();
-    if (!leaves_.isDone())
-      pieces.assign(open_.data() + next, open_.data() + open_.size());
+    if (!taker_.isDone()) pieces.assign(open_.data() + next, open_.data() + open_.size());
     if (schedule_.in_order) std::stable_sort(pieces.begin(), pieces.end(), isEarlierWork);
   }
 
@@ -112,11 +111,11 @@ class BlockTraversal {
   void run(const NodePair& work, std::size_t steps = static_cast<std::size_t>(-1)) {
     beginPart();
     open_.add(work.parent, work.lane, work.node, work.swapped, work.earliest);
-    while (open_.size() > 0 && !leaves_.isDone() && steps-- > 0) {
+    while (open_.size() > 0 && !taker_.isDone() && steps-- > 0) {
       const std::size_t first = open_.size() - 1;
       const NodePair& last = open_[first];
       open_.cut(first);
-      setLatest(leaves_.latest());
+      setLatest(taker_.latest());
       if (last.earliest > last_beginning_) continue;
       step(last);
       if (schedule_.in_order)
@@ -130,7 +129,7 @@ class BlockTraversal {
   void beginPart() {
     open_.cut(0);
     traversal_.beginTask();
-    leaves_.beginPart();
+    taker_.beginPart();
   }
 
   void setLatest(double latest) {
@@ -155,7 +154,7 @@ class BlockTraversal {
       pair.b = b;
       pair.earliest = earliest;
     });
-    if (count_ >= blockFor(latest_)) visitBlocks(false);
+    if (count_ >= blockFor(latest_)) passOnBlocks(false);
   }
 
   std::size_t blockFor(double latest) const {
@@ -165,20 +164,20 @@ class BlockTraversal {
   /// Passes on the triangle pairs that were found, block by block.
   /// @param with_rest  whether to pass on the last pairs if they do not fill a block; if
   /// not, they wait for more
-  void visitBlocks(bool with_rest) {
+  void passOnBlocks(bool with_rest) {
     const Stopwatch start;
     const LeafPair* next = block_.data();
     const LeafPair* end = next + count_;
-    while (next != end && !leaves_.isDone()) {
+    while (next != end && !taker_.isDone()) {
       const auto left = static_cast<std::size_t>(end - next);
-      const std::size_t size = blockFor(leaves_.latest());
+      const std::size_t size = blockFor(taker_.latest());
       if (left < size && !with_rest) break;
       try {
-        leaves_.visit(next, next + std::min(size, left));
+        taker_.collect(next, next + std::min(size, left));
       } catch (const NonFiniteVertex& error) {
-        leaves_.refuse(error, (next++)->earliest);
+        taker_.refuse(error, (next++)->earliest);
       }
-      leaves_.flush();
+      taker_.decide();
     }
     if (next != block_.data()) std::copy(next, end, block_.data());
     count_ = static_cast<std::size_t>(end - next);
@@ -186,9 +185,9 @@ class BlockTraversal {
   }
 
   void finish() {
-    if (count_ > 0) visitBlocks(true);
+    if (count_ > 0) passOnBlocks(true);
     count_ = 0;
-    leaves_.addTraversal(traversal_.compared(), traversal_.fanCulled());
+    taker_.addTraversal(traversal_.compared(), traversal_.fanCulled());
     traversal_.clearCounts();
   }
 
@@ -198,11 +197,11 @@ class BlockTraversal {
   KdopShift shift_;
   Traversal<kSelf, TreeA, TreeB> traversal_;
   double pose_displacement_;
-  /// Leaves::latest() in the last step, and its lastBeginning().
+  /// Taker::latest() in the last step, and its lastBeginning().
   double latest_{1};
   float last_beginning_{lastBeginning(1)};
   const Schedule& schedule_;
-  Leaves& leaves_;
+  Taker& taker_;
   double test_time_{0};
   WorkList open_;
   std::vector<LeafPair> block_;
@@ -211,16 +210,16 @@ class BlockTraversal {
 
 /// @brief Calls visit(traversal) with a BlockTraversal of the trees of both meshes.
 /// @param[in,out] times  the traversal's time is added
-template <typename Leaves, typename Visit>
-void traverse(const MeshPair& meshes, const Schedule& schedule, Leaves& leaves,
+template <typename Taker, typename Visit>
+void traverse(const MeshPair& meshes, const Schedule& schedule, Taker& taker,
               StageTimes& times, const Visit& visit) {
   const Stopwatch start;
   const auto of = [&](auto is_self, auto& tree_a, auto& tree_b,
                       const SeparatingAxes* axes) {
     using A = std::remove_reference_t<decltype(tree_a)>;
     using B = std::remove_reference_t<decltype(tree_b)>;
-    BlockTraversal<is_self.value, A, B, Leaves> traversal(meshes, tree_a, tree_b, axes,
-                                                          schedule, leaves);
+    BlockTraversal<is_self.value, A, B, Taker> traversal(meshes, tree_a, tree_b, axes,
+                                                         schedule, taker);
     visit(traversal);
     times.test += traversal.testTime();
     times.traverse += start.seconds() - traversal.testTime();

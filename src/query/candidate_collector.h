@@ -46,21 +46,36 @@ class CandidateCollector {
   /// @brief Begins a part of the traversal: FeatureBatch::beginTask().
   void beginPart() { batch_.beginTask(); }
 
-  /// @brief Takes pairs of triangles. The limit between two calls of flush() is
+  /// @brief Takes pairs of triangles. The limit between two calls of decide() is
   /// FeatureBatch::kMaxPairs.
   /// @param next  the first pair. Becomes `last`, or the pair with the vertex that is not
   /// finite
   /// @throws NonFiniteVertex
-  void visit(const LeafPair*& next, const LeafPair* last) {
+  void collect(const LeafPair*& next, const LeafPair* last) {
     batch_.add(next, last, {latest(), false}, counts_);
   }
 
-  /// @brief Ends the query with the error that visit() has thrown, since the query needs
-  /// all candidates.
+  /// @brief Ends the query with the error that collect() has thrown, since the query
+  /// needs all candidates.
   [[noreturn]] void refuse(const NonFiniteVertex& error, float) { throw error; }
 
-  /// @brief Hands the candidates of the block to the sink.
-  void flush();
+  /// @brief Hands the candidates of the block to the sink, which decides them.
+  void decide() {
+    if (is_wanted_) batch_.keepTriangles(is_wanted_);
+    batch_.cullTriangles(latest(), counts_);
+    block_.clear();
+    for (const ContinuousContactKind kind :
+         {ContinuousContactKind::kVertexFace, ContinuousContactKind::kEdgeEdge}) {
+      batch_.cull(kind, latest(), counts_);
+      for (std::size_t i = 0; i < batch_.size(kind); ++i) {
+        block_.emplace_back();
+        batch_.setCandidate(batch_.codes(kind)[i], batch_.windows(kind)[i],
+                            block_.back());
+      }
+    }
+    batch_.clear();
+    if (!block_.empty() && !stopped_) stopped_ = !sink_(block_.data(), block_.size());
+  }
 
   /// @brief Whether the sink wants no more.
   bool isDone() const { return stopped_; }

@@ -3,7 +3,6 @@
 #define FCL_CCD_QUERY_CONTACT_TABLE_H
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
@@ -28,12 +27,12 @@ class ContactTable {
   /// @brief The contact with the same features; null: none.
   Contact* find(const FeatureIds& pair) const {
     if (size_ == 0) return nullptr;
-    const Key key(pair);
+    const FeatureKey key(pair);
     const std::uint64_t hash = key.hash();
     for (std::size_t i = hash & mask();; i = next(i)) {
       const Slot& slot = slots_[i];
       if (!slot.contact) return nullptr;
-      if (slot.hash == hash && Key(*slot.contact) == key) return slot.contact;
+      if (slot.hash == hash && FeatureKey(*slot.contact) == key) return slot.contact;
     }
   }
 
@@ -46,11 +45,11 @@ class ContactTable {
   /// @return the contact that is there; null if this one has been added
   Contact* findOrAdd(Contact& contact) {
     reserve(size_ + 1);
-    const Key key(contact);
+    const FeatureKey key(contact);
     const std::uint64_t hash = key.hash();
     std::size_t i = hash & mask();
     for (; slots_[i].contact; i = next(i))
-      if (slots_[i].hash == hash && Key(*slots_[i].contact) == key)
+      if (slots_[i].hash == hash && FeatureKey(*slots_[i].contact) == key)
         return slots_[i].contact;
     slots_[i] = {hash, &contact};
     ++size_;
@@ -66,7 +65,7 @@ class ContactTable {
   /// @pre the contact is in the table
   void remove(const Contact& contact) {
     assert(find(contact) == &contact);
-    std::size_t i = Key(contact).hash() & mask();
+    std::size_t i = FeatureKey(contact).hash() & mask();
     while (slots_[i].contact != &contact) i = next(i);
     // Moves contacts forward that would not be found behind the free slot.
     for (std::size_t j = next(i); slots_[j].contact; j = next(j)) {
@@ -85,21 +84,6 @@ class ContactTable {
   }
 
  private:
-  /// Faces with the same vertices are one face, in whatever order the vertices are.
-  struct Key {
-    std::array<std::uint32_t, 5> words;
-
-    explicit Key(const FeatureIds& c)
-        : words{2 * static_cast<std::uint32_t>(c.kind) + (c.first_on_a ? 1U : 0U),
-                c.vertices[0], c.vertices[1], c.vertices[2], c.vertices[3]} {
-      if (c.kind == ContinuousContactKind::kVertexFace)
-        std::sort(words.begin() + 2, words.end());
-    }
-    bool operator==(const Key& other) const { return words == other.words; }
-    std::uint64_t hash() const {
-      return hashOfIds(words[0], words[1], words[2], words[3], words[4]);
-    }
-  };
   struct Slot {
     std::uint64_t hash{0};
     Contact* contact{nullptr};

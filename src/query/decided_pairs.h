@@ -12,7 +12,7 @@
 
 #include "elementary/feature_points.h"
 #include "mesh/feature_pairs.h"
-#include "query/feature_batch.h"
+#include "query/feature_candidate.h"
 
 namespace fcl {
 namespace detail {
@@ -57,14 +57,14 @@ class DecidedPairs {
     ElementaryResult result;
   };
 
+  /// The bits of a decision may depend on the order of the vertices of a face.
   static bool isSame(const Slot& slot, const FeatureCandidate& pair) {
     return slot.kind == pair.kind && slot.first_on_a == pair.first_on_a &&
            slot.window_lo == pair.window_lo && slot.window_hi == pair.window_hi &&
            std::equal(slot.vertices, slot.vertices + 4, pair.vertices);
   }
   static std::size_t slotOf(const FeatureCandidate& pair) {
-    const std::uint32_t(&v)[4] = pair.vertices;
-    return hashOfIds(0, v[0], v[1], v[2], v[3]) % kSlots;
+    return FeatureKey(pair).hash() % kSlots;
   }
 
   std::vector<Slot> slots_;

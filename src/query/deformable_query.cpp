@@ -53,13 +53,13 @@ class ContactQuery {
 
   QueryAnswer answer() {
     const bool parallel = numThreads(options_.num_threads) > 1;
-    NarrowPhase leaves = narrowPhase(0);
+    NarrowPhase narrow_phase = narrowPhase(0);
     StageTimes times;
-    traverse(meshes_, schedule_, leaves, times, [&](auto& traversal) {
-      divide(traversal, leaves);
-      lookForEarlyContact(traversal, leaves);
+    traverse(meshes_, schedule_, narrow_phase, times, [&](auto& traversal) {
+      divide(traversal, narrow_phase);
+      lookForEarlyContact(traversal, narrow_phase);
       // One traversal does all tasks, so that it reads each node of a rigid tree once.
-      if (!parallel) runTasks(traversal, leaves);
+      if (!parallel) runTasks(traversal, narrow_phase);
     });
     tasks_[0].times = times;
     if (parallel) runTasksSideBySide();
@@ -76,22 +76,22 @@ class ContactQuery {
   }
 
   template <typename Traversal>
-  void divide(Traversal& traversal, NarrowPhase& leaves) {
+  void divide(Traversal& traversal, NarrowPhase& narrow_phase) {
     traversal.divide(pieces_);
     tasks_.resize(1 + pieces_.size());
-    tasks_[0].take(leaves);
+    tasks_[0].take(narrow_phase.findings());
   }
 
   /// Looks into each piece of work for an early contact, see sampleOf(). The result and
   /// the counts are not used, except for the time of the contact: the tasks find
   /// everything again.
   template <typename Traversal>
-  void lookForEarlyContact(Traversal& traversal, NarrowPhase& leaves) {
+  void lookForEarlyContact(Traversal& traversal, NarrowPhase& narrow_phase) {
     // After a contact that is earlier than this, little is left to prune.
     constexpr double kEarlyEnough = 0x1p-10;
     const std::size_t steps = sampleOf(meshes_.a, meshes_.b, options_.query);
     if (steps == 0) return;
-    leaves.begin(1 + pieces_.size());
+    narrow_phase.findings().begin(1 + pieces_.size());
     for (const NodePair& piece : pieces_)
       if (progress_.first_hi.load() > kEarlyEnough) traversal.run(piece, steps);
     // A contact that begins with the one found here must be found again.
@@ -99,20 +99,20 @@ class ContactQuery {
   }
 
   template <typename Traversal>
-  void runTasks(Traversal& traversal, NarrowPhase& leaves) {
+  void runTasks(Traversal& traversal, NarrowPhase& narrow_phase) {
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      leaves.begin(i + 1);
+      narrow_phase.findings().begin(i + 1);
       traversal.run(pieces_[i]);
-      tasks_[i + 1].take(leaves);
+      tasks_[i + 1].take(narrow_phase.findings());
     }
   }
 
   void runTasksSideBySide() {
     parallelFor(pieces_.size(), options_.num_threads, [&](std::size_t i) {
-      NarrowPhase leaves = narrowPhase(i + 1);
-      traverse(meshes_, schedule_, leaves, tasks_[i + 1].times,
+      NarrowPhase narrow_phase = narrowPhase(i + 1);
+      traverse(meshes_, schedule_, narrow_phase, tasks_[i + 1].times,
                [&](auto& traversal) { traversal.run(pieces_[i]); });
-      tasks_[i + 1].take(leaves);
+      tasks_[i + 1].take(narrow_phase.findings());
     });
   }
 
@@ -153,18 +153,18 @@ bool candidates(const MeshInstance& a, const MeshInstance& b, const BoxShifts& s
                 const TrianglePairTest& is_wanted = {}) {
   const double reach = shifts.reach(1);
   const KdopShift shift = shifts.shift(reach);
-  CandidateCollector leaves(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach,
-                            is_wanted);
+  CandidateCollector collector(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach,
+                               is_wanted);
   const MeshPair meshes{a, b, shifts,
                         &a == &b ? proveSelf(a, true, min_distance, 1) : SelfProofs{},
                         min_distance};
   StageTimes times;
-  traverse(meshes, kAllSchedule, leaves, times, [](auto& traversal) {
+  traverse(meshes, kAllSchedule, collector, times, [](auto& traversal) {
     std::vector<NodePair> pieces;
     traversal.divide(pieces);
     for (const NodePair& piece : pieces) traversal.run(piece);
   });
-  return !leaves.isDone();
+  return !collector.isDone();
 }
 
 BoxPosition positionOfBoxes(const MeshInstance& mesh) {

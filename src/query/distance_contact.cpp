@@ -156,9 +156,9 @@ FeatureContact contactOf(const FeatureIds& pair, const DistanceContact& found,
     contact.first_on_a = is_first == pair.first_on_a;
     if (!is_self || contact.first_on_a) return contact;
   } else {
-    const bool is_turned =
+    const bool is_exchanged =
         is_self ? contact.vertices[1] < contact.vertices[0] : is_first != pair.first_on_a;
-    if (is_turned) {
+    if (is_exchanged) {
       std::swap(contact.vertices[0], contact.vertices[1]);
       is_first = !is_first;
     }

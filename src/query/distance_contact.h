@@ -13,7 +13,6 @@
 #include "kernels/kernels.h"
 #include "mesh/moving_kdop.h"
 #include "query/contact_sink.h"
-#include "query/feature_batch.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {

@@ -5,18 +5,19 @@
 #ifndef FCL_CCD_QUERY_FEATURE_BATCH_H
 #define FCL_CCD_QUERY_FEATURE_BATCH_H
 
-#include <algorithm>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/moving_kdop.h"
+#include "query/feature_candidate.h"
 #include "query/leading_contact.h"
 #include "query/pair_filter.h"
+#include "query/triangle_reader.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
@@ -35,89 +36,6 @@ struct LeafPair {
 /// FLT_MIN.
 inline float lastBeginning(double latest) { return roundUp(latest, 0.f); }
 
-/// @brief The triangles and vertices of a moving tree, read without a copy.
-struct TrianglesInPlace {
-  const TreeTriangle* triangles;
-  const TreeVertex* vertices;
-
-  /// @param[out] x  the vertices, which are prefetched
-  const TreeTriangle* read(int i, const TreeVertex** x) const {
-    const TreeTriangle& triangle = triangles[i];
-    for (int k = 0; k < 3; ++k) {
-      x[k] = vertices + triangle.place[k];
-      for (int line = 0; line < 3; ++line)
-        __builtin_prefetch(reinterpret_cast<const char*>(x[k]) + 64 * line);
-    }
-    return &triangle;
-  }
-  void prefetch(int i) const { __builtin_prefetch(triangles + i); }
-};
-
-/// @brief Reads the triangles of a mesh. A moving tree in place is read without a copy.
-/// For other meshes the reader computes vertices and their boxes into a store of its own,
-/// where it finds most of them again: pairs of triangles that are near in a block have
-/// triangles in common.
-class TriangleReader {
- public:
-  /// @brief A result is valid until this number of later reads.
-  static constexpr std::size_t kStored = 256;
-
-  /// @param mesh  kept by reference
-  explicit TriangleReader(const MeshInstance& mesh);
-
-  /// @param i  number of the triangle in the tree of the mesh
-  /// @param[out] x  its vertices
-  /// @throws NonFiniteVertex
-  const TreeTriangle* read(int i, const TreeVertex** x) {
-    if (in_place_.triangles) return in_place_.read(i, x);
-    if (i != index_) find(i);
-    for (std::size_t k = 0; k < 3; ++k) x[k] = &vertices_[3 * slot_ + k];
-    return &triangles_[slot_];
-  }
-
-  void prefetch(int i) const {
-    if (in_place_.triangles) in_place_.prefetch(i);
-  }
-
-  /// @brief The triangles that read() reads without a copy; null pointers if it has to
-  /// copy.
-  const TrianglesInPlace& inPlace() const { return in_place_; }
-
- private:
-  /// Slots of the store, which are taken in a circle. A triangle is used again as long
-  /// as its slot will not be taken by the next kStored reads.
-  static constexpr std::size_t kSlots = 2 * kStored;
-
-  void find(int i);
-  void compute(int i, std::size_t slot);
-  bool isStored(std::uint32_t id, std::size_t slot) const;
-  void pose(std::uint32_t id, TreeVertex& out) const;
-
-  const MeshInstance& mesh_;
-  TrianglesInPlace in_place_{nullptr, nullptr};
-  /// The triangle that was read last, and its slot.
-  int index_{-1};
-  std::size_t slot_{0};
-  /// The slot that is taken next.
-  std::size_t next_{0};
-  /// The triangle in each slot; -1: none. And the slot of a triangle, and of a vertex,
-  /// by the last bits of its number, if it is in the store.
-  std::vector<int> stored_;
-  std::vector<std::uint16_t> slot_of_, slot_of_vertex_;
-  std::unique_ptr<TreeTriangle[]> triangles_;
-  std::unique_ptr<TreeVertex[]> vertices_;
-};
-
-/// @brief Two features and their window: outside of [window_lo, window_hi] they do not
-/// touch.
-struct FeatureCandidate : FeatureIds {
-  double window_lo;
-  double window_hi;
-  /// The vertices, in the order of the ids; the last one repeated where there are fewer.
-  /// Valid until FeatureBatch::clear().
-  const TreeVertex* x[4];
-};
-
 /// @brief A block of triangle pairs, and the pairs of features that they own.
 class FeatureBatch {
  public:
@@ -131,6 +49,7 @@ class FeatureBatch {
 
   /// @brief From here on the shift and the reach are these.
   void setReach(const KdopShift* shift, double reach);
+  double reach() const { return reach_; }
 
   bool isSelf() const { return self_; }
 
@@ -177,8 +96,10 @@ class FeatureBatch {
   /// @brief Lists the pairs of features of one kind, and culls those whose moving boxes
   /// do not overlap. The others get their windows.
   /// @pre cullTriangles() has been called
-  /// @param counts  feature_pairs and box_culled are counted
-  void cull(ContinuousContactKind kind, double latest, StageCounts& counts);
+  /// @param counts  feature_pairs, box_culled and mask_culled are counted
+  /// @param filter  leaves out more pairs; null: none
+  void cull(ContinuousContactKind kind, double latest, StageCounts& counts,
+            const PairFilter* filter = nullptr);
 
   /// @brief The same without windows, if only t = 0 matters: lists the pairs whose boxes
   /// overlap then.
@@ -190,10 +111,6 @@ class FeatureBatch {
   bool isAtStart(double latest) const {
     return latest <= latestLeading(0) && isBeginning(latest);
   }
-
-  /// @brief Keeps the pairs of features of one kind that the filter accepts.
-  /// @return the number of the others
-  std::size_t keep(ContinuousContactKind kind, const PairFilter& filter);
 
   /// @brief The number of pairs of features of one kind that are left.
   std::size_t size(ContinuousContactKind kind) const { return list(kind).size; }
@@ -208,15 +125,12 @@ class FeatureBatch {
   const TrianglePair* pairs() const { return pairs_.get(); }
   const PairBends& bends() const { return bends_; }
 
-  /// @brief Sets the candidate of a pair of features. It is the same whichever triangles
-  /// the pair is found in.
+  /// @brief Sets the candidate of one of these pairs: deformable::setCandidate().
   void setCandidate(std::uint32_t code, const TimeWindow& window,
-                    FeatureCandidate& out) const;
-
-  /// @brief The exchanges (exchangedNumbers()) that put the points of a candidate in the
-  /// order in which these put the points of its code.
-  std::uint8_t exchangesOf(std::uint32_t code, const FeatureCandidate& candidate,
-                           std::uint8_t exchanges) const;
+                    FeatureCandidate& out) const {
+    assert(codePair(code) < num_pairs_);
+    deformable::setCandidate(pairs_[codePair(code)], codeBit(code), window, self_, out);
+  }
 
   /// @brief An edge of one triangle and the face of the other one.
   struct EdgeAndFace {
@@ -245,6 +159,9 @@ class FeatureBatch {
   const List& list(ContinuousContactKind kind) const {
     return lists_[kind == ContinuousContactKind::kEdgeEdge];
   }
+  List& list(ContinuousContactKind kind) {
+    return lists_[kind == ContinuousContactKind::kEdgeEdge];
+  }
   template <typename ReaderA, typename ReaderB>
   void addFrom(ReaderA& reader_a, ReaderB& reader_b, const LeafPair*& next,
                const LeafPair* last, const Wanted& wanted, StageCounts& counts);
@@ -257,7 +174,7 @@ class FeatureBatch {
   void leaveOutEdges();
   std::size_t listPairs(ContinuousContactKind kind, StageCounts& counts);
   unsigned edgePairsToTest();
-  void setFreePair(const TrianglePair& pair, FeatureCandidate& out) const;
+  std::size_t keep(List& list, const PairFilter& filter);
 
   TriangleReader reader_a_, reader_b_;
   bool self_;

@@ -9,7 +9,7 @@
 
 #include "mesh/non_finite_vertex.h"
 #include "query/leading_contact.h"
-#include "query/narrow_phase.h"
+#include "query/task_findings.h"
 
 namespace fcl {
 namespace detail {
@@ -124,12 +124,12 @@ bool isFirstKept(double first_hi, const ContactLists& contacts) {
 
 }  // namespace
 
-void TaskAnswer::take(NarrowPhase& leaves) {
-  cut = leaves.sink().isCut();
-  crossings = leaves.crossings();
-  if (!leaves.sink().contacts().empty()) contacts = leaves.sink().takeContacts();
-  error = leaves.error();
-  counts = leaves.counts();
+void TaskAnswer::take(TaskFindings& findings) {
+  cut = findings.sink().isCut();
+  crossings = findings.crossings();
+  if (!findings.sink().contacts().empty()) contacts = findings.sink().takeContacts();
+  error = findings.error();
+  counts = findings.counts();
 }
 
 QueryAnswer merge(std::vector<TaskAnswer>& tasks, const QueryOptions& options,

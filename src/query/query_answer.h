@@ -21,7 +21,7 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-class NarrowPhase;
+class TaskFindings;
 
 struct QueryAnswer {
   SortedContacts contacts;
@@ -47,7 +47,7 @@ struct TaskAnswer {
   StageTimes times;
 
   /// @brief Takes everything except the times.
-  void take(NarrowPhase& leaves);
+  void take(TaskFindings& findings);
 };
 
 /// @brief Makes one answer of the answers of all tasks. It does not depend on the order

@@ -31,13 +31,14 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   instance.frames = model.frames();
   instance.tree = &model.movingTree();
   const deformable::BoxShifts shifts;
-  deformable::NarrowPhase leaves(instance, instance, shifts, deformable::QueryOptions());
+  deformable::NarrowPhase narrow_phase(instance, instance, shifts,
+                                       deformable::QueryOptions());
   SweptContacts found;
   std::vector<deformable::LeafPair> pairs;
   found.ms_traverse = millisecondsOf([&] {
     std::vector<std::uint8_t> embedded;
     if (with_fans) embedded = embeddedFans(model.movingTree());
-    leaves.counts().node_pairs =
+    narrow_phase.findings().counts().node_pairs =
         traverse<true>(tree, tree, nullptr,
                        [&](int a, int b, float) {
                          pairs.push_back({a, b, 0.f});
@@ -46,14 +47,14 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   });
   found.ms_test = millisecondsOf([&] {
     const deformable::LeafPair* next = pairs.data();
-    for (std::size_t left = pairs.size(); left > 0; leaves.flush()) {
+    for (std::size_t left = pairs.size(); left > 0; narrow_phase.decide()) {
       const std::size_t size = std::min(deformable::FeatureBatch::kMaxPairs, left);
-      leaves.visit(next, next + size);
+      narrow_phase.collect(next, next + size);
       left -= size;
     }
   });
-  found.counts = leaves.counts();
-  for (const auto& contact : leaves.sink().contacts())
+  found.counts = narrow_phase.findings().counts();
+  for (const auto& contact : narrow_phase.findings().sink().contacts())
     found.pairs.push_back(nameOf(contact));
   return found;
 }

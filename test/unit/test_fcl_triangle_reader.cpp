@@ -13,7 +13,7 @@
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/OBBRSS.h"
 #include "moving_mesh.h"
-#include "query/feature_batch.h"
+#include "query/triangle_reader.h"
 #include "test_models.h"
 
 namespace fcl {
