@@ -6,6 +6,7 @@
 #define FCL_CCD_ADVANCE_ADVANCEMENT_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 namespace fcl {
@@ -57,6 +58,7 @@ AdvanceAnswer advance(double& t, double t1, double last, int& steps,
     // rounding of the time.
     const double next = t + h * (1 - 0x1p-48);
     if (!(next > t)) return AdvanceAnswer::kGivenUp;
+    assert(next <= t1);
     t = next;
     if (t > last) return AdvanceAnswer::kOpen;
   }
@@ -77,6 +79,7 @@ double provedTimeAfter(double t, double width, double position_error, double spe
        h *= kFactor) {
     const double time = std::min(t + std::min(h, longest), 1.);
     if (!(time > t)) return t;
+    assert(time <= 1 && time <= t + width);
     if (isProved(time)) return time;
     if (h >= longest) return t;
   }

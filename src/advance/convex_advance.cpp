@@ -2,6 +2,7 @@
 #include "advance/convex_advance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "advance/advancement.h"
@@ -84,12 +85,10 @@ void ConvexAdvance::ignoreInitiallyCloser() {
   const State state = stateAt(0);
   const ConvexGap gap = gapOf(state, 0);
   if (gap.distance > tolerance_.distance + tolerance_.touching) return;
-  double radii = 0;
-  for (const MovingConvex* set : set_)
-    if (set->shape) radii += set->shape->radius();
-  const double own = (gap.gap / growthOfNormal(state) - radii) * (1 - kNearerShare) -
-                     2 * tolerance_.touching;
-  if (own > 0) tolerance_.distance = radii + own;
+  const double own =
+      (gap.gap / growthOfNormal(state) - tolerance_.radii) * (1 - kNearerShare) -
+      2 * tolerance_.touching;
+  if (own > 0) tolerance_.distance = tolerance_.radii + own;
 }
 
 ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
@@ -100,12 +99,11 @@ ConvexAdvance::Side ConvexAdvance::sideAt(int k, double t) const {
   side.rate = set.path->rate(t);
   if (set.shape) return side;
   for (int i = 0; i < 3; ++i) {
-    const Vec from = set.triangle.corner[0][i], moving = set.triangle.corner[1][i] - from,
-              x = (1 - t) * from + t * set.triangle.corner[1][i];
-    side.now.corner[i] = posed(side.now.pose, x);
-    side.velocity[i] = rotated(side.rate.rotation, x) +
-                       rotated(side.now.pose.rotation, moving) +
-                       vecOf(side.rate.translation);
+    const MovingPoint point =
+        posedVertex(side.now.pose, side.rate, set.triangle.corner[0][i],
+                    set.triangle.corner[1][i], t);
+    side.now.corner[i] = point.position;
+    side.velocity[i] = point.velocity;
   }
   return side;
 }
@@ -245,6 +243,8 @@ double ConvexAdvance::step(double t, const State& state, const Separator& along)
       upper = middle;
       beyond = there;
     }
+    // The root stays between them, by the signs of the gaps.
+    assert(lower <= upper * kUpward && gap >= 0 && !(beyond >= 0));
     if (upper - lower < 0.1 * lower) break;
   }
   return lower;

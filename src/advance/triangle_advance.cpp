@@ -16,8 +16,6 @@ namespace {
 
 double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 
-Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
-
 /// The nearest points of an edge pq and an edge rs, as fractions of the edges. An edge
 /// may be a point.
 void nearestOnEdges(const Vec& p, const Vec& u, const Vec& r, const Vec& v, double& s,
@@ -183,11 +181,10 @@ TriangleAdvance::State TriangleAdvance::at(double t) const {
     const PoseRate rate = path_[body]->rate(t);
     const int count = count_.of(body);
     for (int i = 0; i < count; ++i) {
-      const Vec from = triangle_[body]->corner[0][i], to = triangle_[body]->corner[1][i];
-      const Vec x = lerp(from, to, t), moving = to - from;
-      state.p[body][i] = posed(pose, x);
-      state.v[body][i] = rotated(rate.rotation, x) + rotated(pose.rotation, moving) +
-                         vecOf(rate.translation);
+      const MovingPoint point = posedVertex(pose, rate, triangle_[body]->corner[0][i],
+                                            triangle_[body]->corner[1][i], t);
+      state.p[body][i] = point.position;
+      state.v[body][i] = point.velocity;
     }
     for (int i = count; i < 3; ++i) {
       state.p[body][i] = state.p[body][count - 1];

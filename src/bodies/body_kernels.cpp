@@ -44,9 +44,10 @@ FCL_CCD_INLINE WorldBox inWorld(const BodyBox& box, const Pose& pose) {
   return out;
 }
 
-/// Boxes along a direction: b's center minus a's center, and the sum of both reaches.
+/// Boxes along a direction: b's center minus a's center, and the sum of half their
+/// widths.
 struct Projection {
-  Doubles between, reach;
+  Doubles between, half_widths;
 };
 
 FCL_CCD_INLINE Projection project(const WorldBox& a, const BodyBoxes& b,
@@ -55,9 +56,9 @@ FCL_CCD_INLINE Projection project(const WorldBox& a, const BodyBoxes& b,
   const Vectors from = allOf(pose_b.translation) - allOf(a.center);
   Projection out{dot(body, loadVectors(b.center)) + dot(d, from), all(0)};
   for (int i = 0; i < 3; ++i)
-    out.reach =
-        out.reach + (abs(dot(d, allOf(a.half_axis[i]))) +
-                     abs(dot(body, loadVectors(b.axis[i]))) * load<kEight>(b.extent[i]));
+    out.half_widths = out.half_widths + (abs(dot(d, allOf(a.half_axis[i]))) +
+                                         abs(dot(body, loadVectors(b.axis[i]))) *
+                                             load<kEight>(b.extent[i]));
   return out;
 }
 
@@ -74,11 +75,11 @@ struct Gaps {
 };
 
 FCL_CCD_INLINE Gaps gapsTo(const Doubles& side, const Projection (&p)[3],
-                           const Doubles (&reach)[3]) {
+                           const Doubles (&half_widths)[3]) {
   const Doubles zero = all(0);
   const DoubleMask is_opposite = side < zero;
   const auto gap = [&](int k) HWY_ATTR {
-    return select(is_opposite, zero - p[k].between, p[k].between) - reach[k];
+    return select(is_opposite, zero - p[k].between, p[k].between) - half_widths[k];
   };
   return {gap(0), gap(1), gap(2)};
 }
@@ -98,9 +99,10 @@ FCL_CCD_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
 FCL_CCD_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
                               Losses& losses) {
   const Doubles zero = all(0);
-  const Doubles reach[3] = {p[0].reach + margin, p[1].reach + margin,
-                            p[2].reach + margin};
-  const Gaps from = gapsTo(p[0].between, p, reach), to = gapsTo(p[2].between, p, reach);
+  const Doubles half_widths[3] = {p[0].half_widths + margin, p[1].half_widths + margin,
+                                  p[2].half_widths + margin};
+  const Gaps from = gapsTo(p[0].between, p, half_widths),
+             to = gapsTo(p[2].between, p, half_widths);
   const DoubleMask starts_apart = from.first > zero, ends_apart = to.last > zero,
                    apart = starts_apart & (from.middle > zero) & (from.last > zero);
   losses.apart = losses.apart | apart;

@@ -151,7 +151,7 @@ struct BodySide {
       const Pose& pose = poses.at(t);
       for (int i = 0; i < 3; ++i) {
         Vec x = triangle.corner[0][i];
-        if (!body.isRigid()) x = (1 - t) * x + t * triangle.corner[1][i];
+        if (!body.isRigid()) x = lerp(x, triangle.corner[1][i], t);
         const Vec p = posed(pose, x);
         out.corner[at][i][0] = p.x;
         out.corner[at][i][1] = p.y;

@@ -13,7 +13,7 @@ namespace deformable {
 // and a step leaves a gap of twice the error. So `touching` is four times the error.
 BodyTolerance::BodyTolerance(const MovingBody& a, const MovingBody& b,
                              double wanted_distance)
-    : distance(wanted_distance) {
+    : distance(wanted_distance), radii(coreDistance(a.shape(), b.shape(), 0)) {
   // A support function rounds by another 16 u of the size and of the speed. So does a
   // height above a flat. The rounding of its normal, times the distance of a point from
   // its foot, is part of its position error: see ConvexShape::flat().

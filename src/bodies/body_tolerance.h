@@ -12,7 +12,8 @@ namespace deformable {
 /// coordinates.
 struct BodyTolerance {
   /// @brief The bounds for two bodies.
-  /// @param distance  the distance at which bodies are in contact
+  /// @param distance  the distance at which bodies are in contact: of shapes that of
+  /// their cores, coreDistance()
   BodyTolerance(const MovingBody& a, const MovingBody& b, double distance);
 
   /// Bound on the error of a distance between computed points along a unit direction.
@@ -22,6 +23,8 @@ struct BodyTolerance {
   /// Features that come within distance + touching count as contact.
   double touching;
   double distance;
+  /// How much more than the distance of the surfaces that of the cores is.
+  double radii;
 };
 
 }  // namespace deformable

@@ -41,7 +41,7 @@ double missOf(const Vec& axis, const Vec& other) {
 }
 
 /// Bound on the distance of the points of a shape's core from the origin of its frame.
-double reachOf(const ConvexShape& shape) {
+double coreRadiusOf(const ConvexShape& shape) {
   return (norm(shape.center()) + shape.box().radius + shape.box().pad) * kUpward;
 }
 
@@ -61,7 +61,7 @@ bool CalmBodies::keep(int k, const MotionPath& path, double deviation) {
   double size = 0;
   for (const MovingBody& body : body_)
     size +=
-        body.shape() ? body.shape()->radius() + reachOf(*body.shape()) : body.radius();
+        body.shapeRadius() + (body.shape() ? coreRadiusOf(*body.shape()) : body.radius());
   if (!(deviation <= kMost * size)) return false;
   body_[k].path() = path;
   deviation_ += deviation * kUpward;
@@ -84,9 +84,10 @@ bool CalmBodies::dropSpin(int k) {
                    shape.isBall()
                        ? 0
                        : missOf(turn->axis, column(r, shape.axisOfRevolution())) + defect;
-  return keep(k, path.withFixedRotation(),
-              reachOf(shape) * (turn->angle * miss + frobenius(turn->linear_rotation) +
-                                2 * defect + kRounding));
+  return keep(
+      k, path.withFixedRotation(),
+      coreRadiusOf(shape) * (turn->angle * miss + frobenius(turn->linear_rotation) +
+                             2 * defect + kRounding));
 }
 
 // Let c(t) be the center of the shape, which goes straight and does not turn, and y = T1
@@ -113,10 +114,10 @@ bool CalmBodies::dropCommonTurn(int k) {
                                                         shape.axisOfRevolution())) +
                                            defect,
                size = body_[k].path().stretch() * body_[k].radius() + norm(y) +
-                      body_[k].path().translationReach();
+                      body_[k].path().largestTranslation();
   return keep(
       k, body_[k].path().withoutTurn(),
-      reachOf(shape) * (w * miss + 2 * defect) +
+      coreRadiusOf(shape) * (w * miss + 2 * defect) +
           frobenius(turn->linear_rotation) * body_[k].radius() +
           std::min(1., w) * norm(vecOf(turn->sine_translation) - sine) +
           std::min(2., w * w) * norm(vecOf(turn->cosine_translation) - cross(a, sine)) +

@@ -12,10 +12,10 @@ namespace {
 
 constexpr int kWidth = BodyBoxes::kWidth;
 
-/// The heights of eight boxes above the plane: those of their centers, and how far they
-/// reach from there.
+/// The heights of eight boxes above the plane: those of their centers, and half their
+/// widths.
 struct Heights {
-  double center[kWidth], reach[kWidth];
+  double center[kWidth], half_width[kWidth];
 
   Heights(const FlatShape& flat, const Pose& pose_flat, const BodyBoxes& boxes,
           const Pose& pose_boxes) {
@@ -26,13 +26,14 @@ struct Heights {
     for (int lane = 0; lane < kWidth; ++lane) {
       center[lane] = origin + (n.x * boxes.center[0][lane] + n.y * boxes.center[1][lane] +
                                n.z * boxes.center[2][lane]);
-      reach[lane] = 0;
+      half_width[lane] = 0;
     }
     for (int i = 0; i < 3; ++i)
       for (int lane = 0; lane < kWidth; ++lane)
-        reach[lane] += boxes.extent[i][lane] * std::abs(n.x * boxes.axis[i][0][lane] +
-                                                        n.y * boxes.axis[i][1][lane] +
-                                                        n.z * boxes.axis[i][2][lane]);
+        half_width[lane] +=
+            boxes.extent[i][lane] *
+            std::abs(n.x * boxes.axis[i][0][lane] + n.y * boxes.axis[i][1][lane] +
+                     n.z * boxes.axis[i][2][lane]);
   }
 };
 
@@ -46,15 +47,14 @@ void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
       h1(flat, pose_flat.end, *boxes[2], pose_boxes.end);
   out.mask = 0;
   for (int lane = 0; lane < count; ++lane) {
-    const double reach0 = h0.reach[lane] + margin[lane],
-                 reach1 = h1.reach[lane] + margin[lane];
+    const double half0 = h0.half_width[lane] + margin[lane],
+                 half1 = h1.half_width[lane] + margin[lane];
     double &lo = out.lo[lane], &hi = out.hi[lane];
     lo = 0;
     hi = 1;
-    if (!narrowWindow(h0.center[lane] - reach0, h1.center[lane] - reach1, lo, hi))
-      continue;
+    if (!narrowWindow(h0.center[lane] - half0, h1.center[lane] - half1, lo, hi)) continue;
     if (!flat.is_solid &&
-        !narrowWindow(-h0.center[lane] - reach0, -h1.center[lane] - reach1, lo, hi))
+        !narrowWindow(-h0.center[lane] - half0, -h1.center[lane] - half1, lo, hi))
       continue;
     if (lo <= hi) out.mask |= 1U << lane;
   }

@@ -86,6 +86,16 @@ void setSlabs(const Rows& rows, const double (&origin)[3], BodyBoxes& boxes) {
     boxes.radius[lane] = std::sqrt(square[lane]) * kUpward;
 }
 
+/// Whether a box contains a point, up to what both round by. For assertions.
+bool contains(const BodyBox& box, const Vec& x) {
+  const Vec from_center = x - vecOf(box.center);
+  const double rounding = 0x1p-48 * (norm(x) + norm(box.center) + box.radius) + box.pad;
+  for (int i = 0; i < 3; ++i)
+    if (std::abs(dot(vecOf(box.axis[i]), from_center)) > box.extent[i] + rounding)
+      return false;
+  return !(norm(from_center) > box.radius + rounding);
+}
+
 bool isBounded(const BodyBoxes& boxes, int lane) {
   return boxes.extent[0][lane] < kMostExtent && boxes.extent[1][lane] < kMostExtent &&
          boxes.extent[2][lane] < kMostExtent;
@@ -291,8 +301,7 @@ double MovingBody::reachOfMesh(const BodyPart& part, double t, const Vec& direct
     if (!isReadable(~at.child)) return HUGE_VAL;
     const BodyTriangle of = triangle(~at.child);
     for (int k = 0; k < 3; ++k)
-      most =
-          std::max(most, dot(direction, (1 - t) * of.corner[0][k] + t * of.corner[1][k]));
+      most = std::max(most, dot(direction, lerp(of.corner[0][k], of.corner[1][k], t)));
   }
   return most;
 }
@@ -310,7 +319,11 @@ void MovingBody::openOctree(std::int32_t node, BodyNode& out) const {
 void MovingBody::open(const BodyPart& part, BodyNode& out) const {
   if (octree_) return openOctree(part.child, out);
   constexpr int kWidth = BodyBoxes::kWidth;
-  if (tree_) return openMoving(*tree_, part.child, out);
+  if (tree_) {
+    openMoving(*tree_, part.child, out);
+    assert(containTriangles(out));
+    return;
+  }
   std::int32_t nodes[kWidth], children[kWidth];
   out.count = openBinary(part.child, nodes, children,
                          [this](std::int32_t i) { return rigid_->link(i); });
@@ -320,6 +333,25 @@ void MovingBody::open(const BodyPart& part, BodyNode& out) const {
     out.part[lane] = {children[from], nodes[from]};
     out.box[0].set(lane, rigidBox(nodes[from]));
   }
+  assert(containTriangles(out));
+}
+
+/// Whether the boxes of the triangles among the children contain them at t = 0 and t = 1,
+/// and the bound on the way between is one. For assertions.
+bool MovingBody::containTriangles(const BodyNode& node) const {
+  for (int lane = 0; lane < node.count; ++lane) {
+    if (!node.part[lane].isTriangle() || !isReadable(~node.part[lane].child)) continue;
+    const BodyTriangle of = triangle(~node.part[lane].child);
+    const BodyBox begin = node.box[0].get(lane),
+                  end = node.box[isRigid() ? 0 : 1].get(lane);
+    for (int k = 0; k < 3; ++k) {
+      const Vec &x = of.corner[0][k], &y = of.corner[1][k];
+      if (!contains(begin, x) || !contains(end, y) ||
+          norm(y - x) > begin.displacement * kUpward)
+        return false;
+    }
+  }
+  return true;
 }
 
 int MovingBody::children(const BodyPart& part, BodyPart (&out)[BodyBoxes::kWidth]) const {

@@ -147,6 +147,8 @@ class MovingBody {
   /// @brief Bound on the distance of the body from the origin of the body frame, in both
   /// frames.
   double radius() const { return radius_; }
+  /// @brief How far the body stands out from its boxes: the radius of a shape, else 0.
+  double shapeRadius() const { return shape_ ? shape_->radius() : 0; }
   /// @brief Bound on the motion of a vertex in the body frame.
   double displacement() const { return displacement_; }
 
@@ -156,10 +158,11 @@ class MovingBody {
   /// @brief Bound on the velocity of a vertex.
   double speed() const;
   /// @brief Size of the terms whose sum is a posed vertex.
-  double size() const { return path_.translationReach() + path_.stretch() * radius_; }
+  double size() const { return path_.largestTranslation() + path_.stretch() * radius_; }
 
  private:
   void openOctree(std::int32_t node, BodyNode& out) const;
+  bool containTriangles(const BodyNode& node) const;
   double reachOfMesh(const BodyPart& part, double t, const Vec& direction,
                      std::int64_t& room) const;
   BodyBox rigidBox(int node) const;

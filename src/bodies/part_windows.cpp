@@ -2,6 +2,7 @@
 #include "bodies/part_windows.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "bodies/flat_windows.h"
@@ -63,6 +64,7 @@ PartWindows::PartWindows(const MovingBody& a, const MovingBody& b,
   // rounded by a few u.
   rounding_ = tolerance.position + 0x1p-44 * (a.size() + b.size()) +
               16 * kUnit * (a.speed() + b.speed());
+  assert(distance >= tolerance.distance);
   box_margin_ = distance + rounding_;
   direction_bound_ =
       (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
@@ -107,7 +109,7 @@ double PartWindows::sizeOf(int k, const PartSpan& span) const {
   const double radius = body.isRigid()
                             ? span.frame[0].radius
                             : std::max(span.frame[0].radius, span.frame[1].radius);
-  return radius + (body.shape() ? body.shape()->radius() : 0);
+  return radius + body.shapeRadius();
 }
 
 /// @param acceleration  of the node's boxes

@@ -2,6 +2,7 @@
 #include "bodies/parting_direction.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "bodies/body_side.h"
@@ -110,6 +111,7 @@ bool PartingDirection::areApart(const BodyPart& a, const BodyPart& b,
 // by s (1 - s) the first two terms are g0 / s + g1 / (1 - s), which is least, (sqrt g0 +
 // sqrt g1)^2, where s is to 1 - s as sqrt g0 to sqrt g1.
 bool staysPositive(const double (&gap)[2], double deviation) {
+  assert(gap[0] > 0 && gap[1] > 0 && deviation >= 0);
   const double root = std::sqrt(gap[0]) + std::sqrt(gap[1]);
   return root * root > 4 * deviation;
 }

@@ -87,7 +87,7 @@ Heights heightsOf(const HalfAxisBox& box, const MovingFlat& flat,
 
 /// Bound on the distance of the points of both boxes from the pivot. Those in between are
 /// not further.
-double reachOf(const FlatSpan& span, const MovingFlat& flat) {
+double farthestOf(const FlatSpan& span, const MovingFlat& flat) {
   double square = 0;
   for (int k = 0; k < 3; ++k) {
     double most = 0;
@@ -121,13 +121,13 @@ double speedOf(const FlatSpan& span) {
 /// for the greatest. Bounds that are infinite or NaN do not cut.
 void cut(const FlatSpan& span, const MovingFlat& flat, double distance,
          MeetingWindow& window) {
-  const double reach = reachOf(span, flat);
+  const double farthest = farthestOf(span, flat);
   // A distance counts by up to 2^-30 more in a query.
   double room = flat.stretch * distance * (1 + 0x1p-28) + flat.room +
-                flat.room_per_distance * reach;
+                flat.room_per_distance * farthest;
   if (!flat.goesStraight())
     room += 0.125 * span.dt * span.dt * kUpward *
-            (flat.bend + flat.bend_per_distance * reach +
+            (flat.bend + flat.bend_per_distance * farthest +
              flat.bend_per_speed * speedOf(span));
   const Heights at_0 = heightsOf(span.box[0], flat, span.knot[0]),
                 at_1 = heightsOf(span.box[1], flat, span.knot[1]);
@@ -218,8 +218,8 @@ bool mayMeet(const LinearBox& box, const MovingFlat& flat, const LinearQuery& qu
   return false;
 }
 
-LinearQuery::LinearQuery(double reach, double last)
-    : distance(reach > 0 ? roundUp(reach * (1 + 0x1p-18), 0) : 0),
+LinearQuery::LinearQuery(double wanted, double last)
+    : distance(wanted > 0 ? roundUp(wanted * (1 + 0x1p-18), 0) : 0),
       latest(roundUp(last, 0)) {}
 
 }  // namespace deformable

@@ -140,7 +140,7 @@ ChordBend bendOf(const MotionPath& path, double radius, double t0, double t1,
   out.error =
       std::sqrt(square) * radius + angle / 6 * most +
       0x1p-42 * (most + size +
-                 3 * factor * (path.translationReach() + path.stretch() * radius));
+                 3 * factor * (path.largestTranslation() + path.stretch() * radius));
   return out;
 }
 
@@ -272,10 +272,10 @@ bool ChordSearch::mayMeet(double t0, double t1, double deviation) const {
   const Vec from = centerAt(*body_[0], middle, radius[0]),
             to = centerAt(*body_[1], middle, radius[1]);
   const double stretch = std::max(body_[0]->path().stretch(), body_[1]->path().stretch());
-  const double reach = stretch * (radius[0] + radius[1]) + options_.min_distance +
-                       deviation +
-                       0.5 * (t1 - t0) * (body_[0]->speed() + body_[1]->speed());
-  return !(norm(to - from) > reach * kUpward);
+  const double most = stretch * (radius[0] + radius[1]) + options_.min_distance +
+                      deviation +
+                      0.5 * (t1 - t0) * (body_[0]->speed() + body_[1]->speed());
+  return !(norm(to - from) > most * kUpward);
 }
 
 ChordSearch::Span ChordSearch::find(int i) {

@@ -20,6 +20,7 @@
 #include "elementary/most_steps.h"
 #include "elementary/predicates.h"
 #include "mesh/feature_pairs.h"
+#include "paths/posed_vector.h"
 #include "query/contact_sink.h"
 #include "query/contact_table.h"
 #include "query/distance_contact.h"
@@ -152,7 +153,13 @@ class FeatureContacts {
     double p[2][3][3];
     for (int body = 0; body < 2; ++body) {
       const Pose pose = body_[body]->path().pose(0);
-      for (int k = 0; k < 3; ++k) posed(pose, x[body].corner[0][k], p[body][k]);
+      for (int k = 0; k < 3; ++k) {
+        // As VertexFrames poses it.
+        const Vec at = posed(pose, x[body].corner[0][k]);
+        p[body][k][0] = at.x;
+        p[body][k][1] = at.y;
+        p[body][k][2] = at.z;
+      }
     }
     for (int body = 0; body < 2; ++body)
       for (int k = 0; k < (x[body].isFree() ? 1 : 3); ++k) {
@@ -187,14 +194,6 @@ class FeatureContacts {
         options_(whole.options_),
         tolerance_(whole.tolerance_),
         sink_(kNoLimit, false) {}
-
-  /// Poses a vertex as VertexFrames does.
-  static void posed(const Pose& pose, const Vec& x, double (&out)[3]) {
-    const double(&r)[9] = pose.rotation;
-    for (int k = 0; k < 3; ++k)
-      out[k] = ((r[3 * k] * x.x + r[3 * k + 1] * x.y) + r[3 * k + 2] * x.z) +
-               pose.translation[k];
-  }
 
   /// The pairs of features that two triangles own. With a filter the owners may be left
   /// out: then each triangle stands for all its features.

@@ -39,10 +39,10 @@ class CurvedTraversal {
       : options_(options),
         body_{&a, &b},
         calm_(a, b),
-        tolerance_(a, b, options.distance),
+        tolerance_(a, b, coreDistance(a.shape(), b.shape(), options.distance)),
         calm_tolerance_(tolerance_),
         windows_(calm_.body(0), calm_.body(1), tolerance_,
-                 options.distance + calm_.deviation()),
+                 tolerance_.distance + calm_.deviation()),
         parting_(calm_.body(0), calm_.body(1), withDeviation(calm_tolerance_)),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
         latest_(options.only_at_start ? 0 : options.last),
@@ -376,7 +376,7 @@ class CurvedTraversal {
       return;
     }
     const BodyTriangle x = a.triangle(place[0]), y = b.triangle(place[1]);
-    if (!(options_.distance > 0) && areFreeOfTouch(x, y)) return;
+    if (!(tolerance_.distance > 0) && areFreeOfTouch(x, y)) return;
     TriangleAdvance pair(a.path(), x, b.path(), y, work.start, end, tolerance_);
     CurvedContact* contact = advance(work, {x.index, y.index}, end, pair);
     if (contact) contact->nearest = pair.nearest();

@@ -29,7 +29,7 @@ struct CurvedOptions {
   double last{1};
   /// Whether only contacts at t = 0 are looked for. They are proved until `last`.
   bool only_at_start{false};
-  /// Bodies are in contact at this distance; of a shape it is that of its core.
+  /// Bodies are in contact at this distance of their surfaces.
   double distance{0};
   /// Whether pairs with a shape or a cell that are nearer than the distance at t = 0 have
   /// their own one in its place: ConvexAdvance::ignoreInitiallyCloser().

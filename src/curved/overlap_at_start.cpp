@@ -22,24 +22,24 @@ double overlapOfFlat(const ConvexShape& flat, const Pose& pose_flat,
                   rotated(pose_flat.rotation, shape.foot()),
             in_other = rotatedBack(pose_other.rotation, up);
   const double height = dot(up, way);
-  const double below = other.reach(-1. * in_other) + other.radius() - height;
+  const double below = other.outerReach(-1. * in_other) - height;
   if (shape.is_solid) return below;
-  return std::min(below, height + other.reach(in_other) + other.radius());
+  return std::min(below, height + other.outerReach(in_other));
 }
 
 /// A radius of balls that the rotation, if it is one up to rounding, does not make
 /// smaller than this.
 double innerRadius(const ConvexShape& shape, const Pose& pose) {
   constexpr double kRounding = 0x1p-30;
-  const double inner = shape.innerRadius();
-  if (inner == 0) return shape.radius();
+  const double least = shape.innerRadius(0);
+  if (shape.innerRadius(1) == least) return least;
   const double(&r)[9] = pose.rotation;
   for (int i = 0; i < 3; ++i)
     for (int k = i; k < 3; ++k) {
       const double product = r[i] * r[k] + r[3 + i] * r[3 + k] + r[6 + i] * r[6 + k];
-      if (!(std::abs(product - (i == k ? 1 : 0)) < kRounding)) return shape.radius();
+      if (!(std::abs(product - (i == k ? 1 : 0)) < kRounding)) return least;
     }
-  return shape.radius() + inner * (1 - 4 * kRounding);
+  return shape.innerRadius(1 - 4 * kRounding);
 }
 
 /// The heights of the points of a mesh above a flat, at t = 0.
@@ -83,17 +83,17 @@ class HeightsAtStart {
  private:
   /// The heights of the points of a box, or, from a plane, their distances.
   struct Heights {
-    double center, reach;
-    double least() const { return center - reach; }
-    double most() const { return center + reach; }
+    double center, half_width;
+    double least() const { return center - half_width; }
+    double most() const { return center + half_width; }
   };
 
   Heights heightsOf(const BodyBox& box) const {
     const double center = origin_ + dot(up_, vecOf(box.center));
-    double reach = box.pad;
+    double half_width = box.pad;
     for (int i = 0; i < 3; ++i)
-      reach += box.extent[i] * std::abs(dot(up_, vecOf(box.axis[i])));
-    return {is_solid_ ? center : std::abs(center), reach};
+      half_width += box.extent[i] * std::abs(dot(up_, vecOf(box.axis[i])));
+    return {is_solid_ ? center : std::abs(center), half_width};
   }
 
   double depthOf(const BodyPart& part) const {
@@ -115,17 +115,15 @@ class HeightsAtStart {
   double origin_;
 };
 
-double outerRadius(const ConvexShape& shape) {
-  return shape.box().radius + shape.radius();
-}
-
 }  // namespace
 
 bool overlapDeeplyAtStart(const ConvexShape& a, const Pose& pose_a, const ConvexShape& b,
                           const Pose& pose_b) {
-  if (a.flat()) return isDeepOverlap(overlapOfFlat(a, pose_a, b, pose_b), outerRadius(b));
-  if (b.flat()) return isDeepOverlap(overlapOfFlat(b, pose_b, a, pose_a), outerRadius(a));
-  const double smaller = std::min(outerRadius(a), outerRadius(b));
+  if (a.flat())
+    return isDeepOverlap(overlapOfFlat(a, pose_a, b, pose_b), b.outerRadius());
+  if (b.flat())
+    return isDeepOverlap(overlapOfFlat(b, pose_b, a, pose_a), a.outerRadius());
+  const double smaller = std::min(a.outerRadius(), b.outerRadius());
   // Coordinates round less in a frame with its origin in a.
   PosedConvex first{&a, nullptr, pose_a, {}}, second{&b, nullptr, pose_b, {}};
   for (int k = 0; k < 3; ++k) {
@@ -134,11 +132,11 @@ bool overlapDeeplyAtStart(const ConvexShape& a, const Pose& pose_a, const Convex
   }
   const Vec way = posed(second.pose, b.center()) - rotated(pose_a.rotation, a.center());
   const double distance = norm(way);
-  if (distance > kUpward * (outerRadius(a) + outerRadius(b))) return false;
+  if (distance > kUpward * (a.outerRadius() + b.outerRadius())) return false;
   if (a.containsCenter() && b.containsCenter() &&
       isDeepOverlap(innerRadius(a, pose_a) + innerRadius(b, pose_b) - distance, smaller))
     return true;
-  const double radii = a.radius() + b.radius();
+  const double radii = coreDistance(&a, &b, 0);
   // It is deep long before the distance of the cores is this small.
   const ConvexGap gap = convexGap(first, second, way, radii, radii - 0x1p-15 * smaller);
   return isDeepOverlap(radii + overlapOf(gap), smaller);

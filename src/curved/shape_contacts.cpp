@@ -17,15 +17,10 @@ namespace detail {
 namespace deformable {
 namespace {
 
-double radiusOf(const MovingBody& body) {
-  return body.shape() ? body.shape()->radius() : 0;
-}
-
 /// Bound on the distance of its points from a center; a flat has none.
 double sizeOf(const MovingBody& body) {
   if (!body.shape()) return body.radius();
-  return body.shape()->flat() ? HUGE_VAL
-                              : body.shape()->box().radius + body.shape()->radius();
+  return body.shape()->flat() ? HUGE_VAL : body.shape()->outerRadius();
 }
 
 /// What a contact calls the part of a body.
@@ -60,7 +55,7 @@ class ShapeContacts {
   ShapeContacts(const MovingBody& a, const MovingBody& b, double distance)
       : near_(a, b),
         body_{&near_.a, &near_.b},
-        tolerance_(near_.a, near_.b, distance + radiusOf(a) + radiusOf(b)) {}
+        tolerance_(near_.a, near_.b, coreDistance(a.shape(), b.shape(), distance)) {}
 
   static ShapeContact timesOf(const CurvedContact& found) {
     ShapeContact contact{};
@@ -106,7 +101,7 @@ class ShapeContacts {
     const MovingConvex set[2] = {movingConvexOf(*body_[0], found.place[0]),
                                  movingConvexOf(*body_[1], found.place[1])};
     const ConvexAdvance pair(set[0], set[1], found.toc_lo, end, tolerance_);
-    const double radii = radiusOf(*body_[0]) + radiusOf(*body_[1]),
+    const double radii = tolerance_.radii,
                  well = kWell * pair.speed() * (end - found.toc_lo);
     if (first == 0 && isDeepOverlap(radii + overlapOf(pair.coreGapAt(first)),
                                     std::min(sizeOf(*body_[0]), sizeOf(*body_[1]))))
@@ -131,7 +126,7 @@ class ShapeContacts {
   /// that overlap at t = 0 have none.
   Vec normalBefore(const ConvexAdvance& pair, const ConvexGap& gap, double time) const {
     constexpr double kFirstShare = 0x1p-40, kLastShare = 0x1p-10, kGrowth = 0x1p5;
-    const double radii = radiusOf(*body_[0]) + radiusOf(*body_[1]);
+    const double radii = tolerance_.radii;
     if (gap.gap + tolerance_.touching > radii) return gap.direction;
     if (time == 0) return {0, 0, 0};
     for (double share = kFirstShare; share <= kLastShare; share *= kGrowth) {
@@ -143,11 +138,11 @@ class ShapeContacts {
 
   /// The position is half-way between the surfaces, or inside of both.
   void setPosition(const ConvexGap& gap, ShapeContact& contact) const {
-    const double radius[2] = {radiusOf(*body_[0]), radiusOf(*body_[1])};
+    const double radius[2] = {body_[0]->shapeRadius(), body_[1]->shapeRadius()};
     Vec way = gap.point[1] - gap.point[0];
     if (gap.distance > 0) way = (1 / gap.distance) * way;
     double along = 0.5 * (gap.distance + radius[0] - radius[1]);
-    if (gap.distance <= radius[0] + radius[1])
+    if (gap.distance <= tolerance_.radii)
       along = std::min(std::max({along, -radius[0], gap.distance - radius[1]}),
                        std::min(radius[0], gap.distance + radius[1]));
     contact.position = gap.point[0] + along * way + vecOf(near_.origin);
@@ -158,14 +153,13 @@ class ShapeContacts {
   BodyTolerance tolerance_;
 };
 
-CurvedOptions motionOptionsOf(const MovingBody& a, const MovingBody& b,
-                              const QueryOptions& options) {
+CurvedOptions motionOptionsOf(const QueryOptions& options) {
   CurvedOptions wanted;
   wanted.toc_err = options.toc_err;
   wanted.all = options.query == ContinuousQuery::kAll;
   wanted.last = options.t_max;
   if (wanted.all) wanted.num_threads = options.num_threads;
-  wanted.distance = options.min_distance + radiusOf(a) + radiusOf(b);
+  wanted.distance = options.min_distance;
   wanted.ignores_initially_closer = options.ignores_initially_closer;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   return wanted;
@@ -195,7 +189,7 @@ ShapeAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
     answer.counts.triangle_pairs += found.counts.triangle_pairs;
     return std::move(found.contacts);
   };
-  CurvedOptions wanted = motionOptionsOf(a, b, options);
+  CurvedOptions wanted = motionOptionsOf(options);
   const BodiesNearOrigin near(a, b);
   wanted.only_at_start = moveAsOne(near.a, near.b, options.min_distance);
   std::vector<CurvedContact> touching = ask(wanted);

@@ -19,6 +19,7 @@
 #include "paths/motion_path.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <string>
 
@@ -278,6 +279,20 @@ void MotionPath::reachEnd(const Pose& end) {
       kUpward;
 }
 
+namespace {
+
+/// Whether the last pose, which is known exactly, is met within the bounds on rounding.
+[[maybe_unused]] bool endsWithinError(const MotionPath& path, const Pose& end) {
+  const Pose at = path.pose(1);
+  double off[9];
+  for (int i = 0; i < 9; ++i) off[i] = at.rotation[i] - end.rotation[i];
+  const Vec shift = vecOf(at.translation) - vecOf(end.translation);
+  return !(frobenius(off) > path.rotationError()) &&
+         !(norm(shift) > path.positionError(0));
+}
+
+}  // namespace
+
 MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
                                      const double (&reference)[3],
                                      const Vec& half_turn_axis) {
@@ -288,6 +303,7 @@ MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
   path.reachEnd(end);
   path.reference_size_ = norm(point);
   path.setTurnBounds();
+  assert(endsWithinError(path, end));
   return path;
 }
 
@@ -309,6 +325,7 @@ MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
   }
   path.reachEnd(end);
   path.setTurnBounds();
+  assert(endsWithinError(path, end));
   return path;
 }
 
@@ -347,7 +364,7 @@ void MotionPath::setTurnBounds() {
       (norm(vecOf(turn_.beginning.translation)) + linear + std::min(1., w) * sine +
        std::min(2., w * w) * cosine + reference_size_) *
       kUpward;
-  translation_reach_ = translation_size_;
+  largest_translation_ = translation_size_;
   turn_speed_ =
       ((hasTurningRotation() ? w * stretch_ : 0) + frobenius(turn_.linear_rotation)) *
       kUpward;
@@ -369,7 +386,7 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
   path.stretch_ = 1;
   path.turn_speed_ = largestDifference(rotation);
   path.translation_speed_ = largestDifference(translation);
-  path.translation_size_ = path.translation_reach_ = largestPoint(translation);
+  path.translation_size_ = path.largest_translation_ = largestPoint(translation);
   path.rotation_error_ = 24 + 24 * most;
   return path;
 }
@@ -386,12 +403,12 @@ MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
                              checkedAcceleration(motion, name, {0, 0, 0}, 0, 0, 1)) *
                             kUpward;
   path.rotation_error_ = 64;
-  path.setBoundedReach();
+  path.setBoundedSize();
   return path;
 }
 
-void MotionPath::setBoundedReach() {
-  translation_size_ = translation_reach_ =
+void MotionPath::setBoundedSize() {
+  translation_size_ = largest_translation_ =
       (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + translation_speed_) *
       kUpward;
 }
@@ -399,13 +416,13 @@ void MotionPath::setBoundedReach() {
 void MotionPath::shift(const double (&origin)[3]) {
   if (kind_ == Kind::kBounded) {
     for (int k = 0; k < 3; ++k) origin_[k] += origin[k];
-    return setBoundedReach();
+    return setBoundedSize();
   }
   for (int k = 0; k < 3; ++k) turn_.beginning.translation[k] -= origin[k];
   if (kind_ == Kind::kTurn) return setTurnBounds();
   for (auto& point : translation_points_)
     for (int k = 0; k < 3; ++k) point[k] -= origin[k];
-  translation_size_ = translation_reach_ = largestPoint(translation_points_);
+  translation_size_ = largest_translation_ = largestPoint(translation_points_);
 }
 
 Pose MotionPath::pose(double t) const {

@@ -8,16 +8,11 @@
 #include "fcl/math/motion/bounded_motion.h"
 #include "mesh/vertex_frames.h"
 #include "numerics/moving_vector.h"
+#include "paths/posed_vector.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-/// @brief The first or second derivative of a pose by t.
-struct PoseRate {
-  double rotation[9];
-  double translation[3];
-};
 
 /// @brief Bounds on the acceleration |p''(t)| during a span of time, of all points within
 /// `radius` of a center (body frame): |turn center + offset| + per_radius radius +
@@ -157,7 +152,7 @@ class MotionPath {
   }
 
   /// @brief Bound on |T(t)|.
-  double translationReach() const { return translation_reach_; }
+  double largestTranslation() const { return largest_translation_; }
 
   /// @brief The largest factor by which a rotation makes a vector longer.
   double stretch() const { return stretch_; }
@@ -190,7 +185,7 @@ class MotionPath {
   AccelerationBound turnAcceleration() const;
   AccelerationBound splineAcceleration(double t0, double t1) const;
   AccelerationBound boundedAcceleration(double t0, double t1) const;
-  void setBoundedReach();
+  void setBoundedSize();
   Pose splinePose(double t) const;
   PoseRate splineRate(double t) const;
 
@@ -208,7 +203,7 @@ class MotionPath {
   double origin_[3]{};
 
   double stretch_{1};
-  double translation_reach_{0};
+  double largest_translation_{0};
   /// Size of the terms whose sum is a translation.
   double translation_size_{0};
   double turn_speed_{0};

@@ -35,6 +35,29 @@ inline Vec posed(const Pose& pose, const Vec& x) {
   return rotated(pose.rotation, x) + vecOf(pose.translation);
 }
 
+/// @brief The first or second derivative of a pose by t.
+struct PoseRate {
+  double rotation[9];
+  double translation[3];
+};
+
+/// @brief The point between two points.
+inline Vec lerp(const Vec& x, const Vec& y, double t) { return (1 - t) * x + t * y; }
+
+/// @brief Where a vertex is at a time, in the world, and its velocity.
+struct MovingPoint {
+  Vec position, velocity;
+};
+
+/// @brief A vertex that goes straight from x0 to x1 in the frame of its body.
+/// @param pose, rate  of the body, at time t
+inline MovingPoint posedVertex(const Pose& pose, const PoseRate& rate, const Vec& x0,
+                               const Vec& x1, double t) {
+  const Vec x = lerp(x0, x1, t);
+  return {posed(pose, x), rotated(rate.rotation, x) + rotated(pose.rotation, x1 - x0) +
+                              vecOf(rate.translation)};
+}
+
 }  // namespace deformable
 }  // namespace detail
 }  // namespace fcl

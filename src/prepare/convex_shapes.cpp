@@ -2,6 +2,8 @@
 #include "prepare/convex_shapes.h"
 
 #include <cmath>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,20 +40,20 @@ Vec requirePoint(const Vector3<S>& p, const std::string& name, const char* what)
 }
 
 template <typename S>
-ConvexShape shapeOf(const Sphere<S>& sphere, const std::string& name) {
+ConvexShape shapeOf(const Sphere<S>& sphere, const std::string& name, double) {
   return ConvexShape::capsule(requireSize(sphere.radius, name, "radius of the sphere"),
                               0);
 }
 
 template <typename S>
-ConvexShape shapeOf(const Capsule<S>& capsule, const std::string& name) {
+ConvexShape shapeOf(const Capsule<S>& capsule, const std::string& name, double) {
   const double half = 0.5 * requireSize(capsule.lz, name, "length of the capsule");
   return ConvexShape::capsule(requireSize(capsule.radius, name, "radius of the capsule"),
                               half);
 }
 
 template <typename S>
-ConvexShape shapeOf(const Box<S>& box, const std::string& name) {
+ConvexShape shapeOf(const Box<S>& box, const std::string& name, double) {
   double half[3];
   for (int k = 0; k < 3; ++k)
     half[k] = 0.5 * requireSize(box.side[k], name, "side of the box");
@@ -59,7 +61,7 @@ ConvexShape shapeOf(const Box<S>& box, const std::string& name) {
 }
 
 template <typename S>
-ConvexShape shapeOf(const Ellipsoid<S>& ellipsoid, const std::string& name) {
+ConvexShape shapeOf(const Ellipsoid<S>& ellipsoid, const std::string& name, double) {
   double half[3];
   for (int k = 0; k < 3; ++k)
     half[k] = requireSize(ellipsoid.radii[k], name, "radius of the ellipsoid");
@@ -67,20 +69,20 @@ ConvexShape shapeOf(const Ellipsoid<S>& ellipsoid, const std::string& name) {
 }
 
 template <typename S>
-ConvexShape shapeOf(const Cone<S>& cone, const std::string& name) {
+ConvexShape shapeOf(const Cone<S>& cone, const std::string& name, double) {
   return ConvexShape::cone(requireSize(cone.radius, name, "radius of the cone"),
                            requireSize(cone.lz, name, "height of the cone"));
 }
 
 template <typename S>
-ConvexShape shapeOf(const Cylinder<S>& cylinder, const std::string& name) {
+ConvexShape shapeOf(const Cylinder<S>& cylinder, const std::string& name, double) {
   return ConvexShape::cylinder(
       requireSize(cylinder.radius, name, "radius of the cylinder"),
       requireSize(cylinder.lz, name, "height of the cylinder"));
 }
 
 template <typename S>
-ConvexShape shapeOf(const Convex<S>& convex, const std::string& name) {
+ConvexShape shapeOf(const Convex<S>& convex, const std::string& name, double) {
   std::vector<Vec> points;
   for (const Vector3<S>& p : convex.getVertices())
     points.push_back(requirePoint(p, name, "convex"));
@@ -89,88 +91,97 @@ ConvexShape shapeOf(const Convex<S>& convex, const std::string& name) {
 }
 
 template <typename S>
-ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name) {
+ConvexShape shapeOf(const TriangleP<S>& triangle, const std::string& name, double) {
   return ConvexShape::hull({requirePoint(triangle.a, name, "triangle"),
                             requirePoint(triangle.b, name, "triangle"),
                             requirePoint(triangle.c, name, "triangle")});
 }
 
-ConvexShape flatShape(const Vec& normal, double offset, double reach, bool is_solid,
-                      const std::string& name) {
+/// @param flat  FCL's plane or halfspace
+template <typename Flat>
+ConvexShape flatShape(const Flat& flat, bool is_solid, const std::string& name,
+                      double other_radius) {
+  const Vec normal = {static_cast<double>(flat.n[0]), static_cast<double>(flat.n[1]),
+                      static_cast<double>(flat.n[2])};
+  const auto offset = static_cast<double>(flat.d);
   const double length = std::sqrt(dot(normal, normal));
   if (!(length > 0) || !std::isfinite(length) || !std::isfinite(offset))
     throw Exception(name + ": the normal of the " + (is_solid ? "halfspace" : "plane") +
                     " is zero, or one of its numbers is not finite. Give a unit normal "
                     "and a finite offset");
-  return ConvexShape::flat({(1 / length) * normal, offset / length, is_solid}, reach);
+  return ConvexShape::flat({(1 / length) * normal, offset / length, is_solid},
+                           other_radius);
 }
 
 template <typename S>
-Vec normalOf(const Vector3<S>& n) {
-  return {static_cast<double>(n[0]), static_cast<double>(n[1]),
-          static_cast<double>(n[2])};
+ConvexShape shapeOf(const Plane<S>& plane, const std::string& name, double other_radius) {
+  return flatShape(plane, false, name, other_radius);
+}
+
+template <typename S>
+ConvexShape shapeOf(const Halfspace<S>& halfspace, const std::string& name,
+                    double other_radius) {
+  return flatShape(halfspace, true, name, other_radius);
+}
+
+/// Calls use(shape) with a geometry as its own class. A new class of shapes is a line
+/// here, and shapeOf().
+/// @return whether it is one of them
+template <typename S, typename Use>
+bool useAsItsClass(const CollisionGeometry<S>& o, Use&& use) {
+  // A model that deforms has no node type while FCL's tree is out of date.
+  if (o.getObjectType() != OT_GEOM) return false;
+  switch (o.getNodeType()) {
+    case GEOM_SPHERE:
+      return use(static_cast<const Sphere<S>&>(o)), true;
+    case GEOM_CAPSULE:
+      return use(static_cast<const Capsule<S>&>(o)), true;
+    case GEOM_BOX:
+      return use(static_cast<const Box<S>&>(o)), true;
+    case GEOM_ELLIPSOID:
+      return use(static_cast<const Ellipsoid<S>&>(o)), true;
+    case GEOM_CONE:
+      return use(static_cast<const Cone<S>&>(o)), true;
+    case GEOM_CYLINDER:
+      return use(static_cast<const Cylinder<S>&>(o)), true;
+    case GEOM_CONVEX:
+      return use(static_cast<const Convex<S>&>(o)), true;
+    case GEOM_TRIANGLE:
+      return use(static_cast<const TriangleP<S>&>(o)), true;
+    case GEOM_PLANE:
+      return use(static_cast<const Plane<S>&>(o)), true;
+    case GEOM_HALFSPACE:
+      return use(static_cast<const Halfspace<S>&>(o)), true;
+    default:
+      return false;
+  }
 }
 
 }  // namespace
 
 template <typename S>
 bool isConvexShape(const CollisionGeometry<S>& geometry) {
-  // A model that deforms has no node type while FCL's tree is out of date.
-  if (geometry.getObjectType() != OT_GEOM) return false;
-  switch (geometry.getNodeType()) {
-    case GEOM_SPHERE:
-    case GEOM_CAPSULE:
-    case GEOM_BOX:
-    case GEOM_ELLIPSOID:
-    case GEOM_CONE:
-    case GEOM_CYLINDER:
-    case GEOM_CONVEX:
-    case GEOM_TRIANGLE:
-    case GEOM_PLANE:
-    case GEOM_HALFSPACE:
-      return true;
-    default:
-      return false;
-  }
+  return useAsItsClass(geometry, [](const auto&) {});
 }
 
 template <typename S>
 bool isUnbounded(const CollisionGeometry<S>& shape) {
-  if (!isConvexShape(shape)) return false;
-  return shape.getNodeType() == GEOM_PLANE || shape.getNodeType() == GEOM_HALFSPACE;
+  return isConvexShape(shape) &&
+         (shape.getNodeType() == GEOM_PLANE || shape.getNodeType() == GEOM_HALFSPACE);
 }
 
 template <typename S>
 ConvexShape convexShapeOf(const CollisionGeometry<S>& shape, const std::string& name,
-                          double reach) {
-  switch (shape.getNodeType()) {
-    case GEOM_SPHERE:
-      return shapeOf(static_cast<const Sphere<S>&>(shape), name);
-    case GEOM_CAPSULE:
-      return shapeOf(static_cast<const Capsule<S>&>(shape), name);
-    case GEOM_BOX:
-      return shapeOf(static_cast<const Box<S>&>(shape), name);
-    case GEOM_ELLIPSOID:
-      return shapeOf(static_cast<const Ellipsoid<S>&>(shape), name);
-    case GEOM_CONE:
-      return shapeOf(static_cast<const Cone<S>&>(shape), name);
-    case GEOM_CYLINDER:
-      return shapeOf(static_cast<const Cylinder<S>&>(shape), name);
-    case GEOM_CONVEX:
-      return shapeOf(static_cast<const Convex<S>&>(shape), name);
-    case GEOM_PLANE: {
-      const auto& plane = static_cast<const Plane<S>&>(shape);
-      return flatShape(normalOf(plane.n), static_cast<double>(plane.d), reach, false,
-                       name);
-    }
-    case GEOM_HALFSPACE: {
-      const auto& halfspace = static_cast<const Halfspace<S>&>(shape);
-      return flatShape(normalOf(halfspace.n), static_cast<double>(halfspace.d), reach,
-                       true, name);
-    }
-    default:
-      return shapeOf(static_cast<const TriangleP<S>&>(shape), name);
-  }
+                          double other_radius) {
+  std::optional<ConvexShape> out;
+  const auto convert = [&](const auto& of) {
+    out.emplace(shapeOf(of, name, other_radius));
+  };
+  if (useAsItsClass(shape, convert)) return std::move(*out);
+  throw Exception(name + " is a geometry of node type " +
+                  std::to_string(shape.getNodeType()) +
+                  ", which is none of FCL's shapes. "
+                  "Give one of them, or a mesh of its surface");
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                        \

@@ -99,10 +99,10 @@ void appendBody(const BoundedBody& body, BoundsList& list) {
     if (!std::isfinite(norm(box.center) + box.radius)) refuse();
   const int n = numSpans(body);
   const double stretch = body.path.stretch();
-  double size = body.path.translationReach(), pad = 0;
+  double size = body.path.largestTranslation(), pad = 0;
   for (const BodyBox& box : body.box) {
     size = std::max(
-        size, body.path.translationReach() + stretch * (norm(box.center) + box.radius));
+        size, body.path.largestTranslation() + stretch * (norm(box.center) + box.radius));
     pad = std::max(
         pad, stretch * box.pad + body.path.positionError(norm(box.center) + box.radius));
   }
@@ -148,8 +148,8 @@ bool appendFlatAlongAxis(const FlatShape& shape, const MotionPath& path,
       if (normal[k] == 0 || normal[(k + 1) % 3] != 0 || normal[(k + 2) % 3] != 0)
         continue;
       const double at = shape.offset / normal[k] + pose.translation[k],
-                   room = kRoom *
-                          (std::abs(shape.offset / normal[k]) + path.translationReach());
+                   room = kRoom * (std::abs(shape.offset / normal[k]) +
+                                   path.largestTranslation());
       if (!shape.is_solid || normal[k] > 0) box.half[k + 3] = at + room;
       if (!shape.is_solid || normal[k] < 0) box.half[k] = room - at;
       is_bounded = true;
@@ -189,7 +189,7 @@ MovingFlat movingFlat(const FlatShape& shape, const MotionPath& path) {
         (0.5 * of_normal * speed + 2 * w * speed + flat.stretch * of_foot) * kUpward;
   }
   // A query adds four times the error of a position (numerics.md).
-  const double size = path.translationReach() + flat.stretch * distance;
+  const double size = path.largestTranslation() + flat.stretch * distance;
   flat.room =
       kRoom * size + 8 * (path.positionError(distance) + path.rotationError() * speed);
   flat.room_per_distance = kRoom + 8 * path.rotationError();
@@ -230,10 +230,7 @@ void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
   if (o.getNodeType() == GEOM_HALFSPACE)
     return appendFlat(static_cast<const Halfspace<S>&>(o), path, list);
   const ConvexShape shape = convexShapeOf(o, "object", 0);
-  BodyBox box = shape.box();
-  box.pad += shape.radius();
-  box.radius = (box.radius + shape.radius()) * kUpward;
-  appendBody({{box, box}, path}, list);
+  appendBody({{shape.outerBox(), shape.outerBox()}, path}, list);
 }
 
 }  // namespace

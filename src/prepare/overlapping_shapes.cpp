@@ -43,7 +43,7 @@ bool isPlain(const MovingGeometry<S>& o) {
 /// Squares of sizes are in the range of doubles; a flat has no size that counts.
 bool isPlainSize(const ConvexShape& shape) {
   if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostPlainSize;
-  const double size = shape.box().radius + shape.radius();
+  const double size = shape.outerRadius();
   return size >= kLeastPlainSize && size <= kMostPlainSize;
 }
 

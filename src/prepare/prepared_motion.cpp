@@ -110,15 +110,15 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
 
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
-                               double toc_err, int num_threads, double reach,
+                               double toc_err, int num_threads, double other_radius,
                                double scale)
     : name_(name) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
     // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
-    const double reach_in_body = (1 + 0x1p-8) * (reach + path.translationReach());
-    shape_.emplace(convexShapeOf(placed.geometry(), name, reach_in_body));
-    if (scale != 1) *shape_ = shape_->scaled(scale, reach_in_body);
+    const double in_body = (1 + 0x1p-8) * (other_radius + path.largestTranslation());
+    shape_.emplace(convexShapeOf(placed.geometry(), name, in_body));
+    if (scale != 1) *shape_ = shape_->scaled(scale, in_body);
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));
@@ -159,7 +159,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
   constexpr double kRounding = 64 * kUnit, kLeastRelevantTocErr = 1e-9;
   double size = body_->radius() + norm(way);
   if (shape_)
-    size += shape_->radius() + norm(placed.beginning().translation) +
+    size += body_->shapeRadius() + norm(placed.beginning().translation) +
             norm(placed.end().translation);
   if (!(kRounding * norm(moving.reference) <=
         std::max(toc_err, kLeastRelevantTocErr) * size))
@@ -172,8 +172,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
 
 double PreparedMotion::size() const {
   return body_->size() + body_->speed() +
-         body_->path().acceleration(0, 1).of({0, 0, 0}, 0) +
-         (shape_ ? shape_->radius() : 0);
+         body_->path().acceleration(0, 1).of({0, 0, 0}, 0) + body_->shapeRadius();
 }
 
 void PreparedMotion::requireInRange(const std::string& name) const {
@@ -199,20 +198,9 @@ VertexPath PreparedMotion::tangentAt(std::uint32_t vertex, double t) const {
   const VertexPath from = mesh_->instance().frames[vertex];
   const Pose pose = body_->path().pose(t);
   const PoseRate rate = body_->path().rate(t);
-  double x[3], moving[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = (1 - t) * from.t0[k] + t * from.t1[k];
-    moving[k] = from.t1[k] - from.t0[k];
-  }
-  const Vec p = rotated(pose.rotation, vecOf(x));
-  const Vec v = rotated(rate.rotation, vecOf(x)) + rotated(pose.rotation, vecOf(moving));
-  const double position[3] = {p.x, p.y, p.z}, velocity[3] = {v.x, v.y, v.z};
-  VertexPath out;
-  for (int k = 0; k < 3; ++k) {
-    out.t0[k] = position[k] + pose.translation[k];
-    out.t1[k] = out.t0[k] + (velocity[k] + rate.translation[k]);
-  }
-  return out;
+  const auto [p, v] = posedVertex(pose, rate, vecOf(from.t0), vecOf(from.t1), t);
+  const Vec next = p + v;
+  return {{p.x, p.y, p.z}, {next.x, next.y, next.z}};
 }
 
 MeshInstance PreparedMotion::beginning() const {

@@ -37,16 +37,16 @@ class PreparedMotion {
  public:
   /// @param name  how errors call the geometry, for example "o1"
   /// @param toc_err  largest error of time that rounding of the path may cause
-  /// @param reach  of a plane or halfspace: how far the other object may come from the
-  /// origin of the world
+  /// @param other_radius  of a plane or halfspace: how far the other object may come from
+  /// the origin of the world
   /// @param scale  of a shape: a power of two by which its lengths are multiplied; the
-  /// pose and the reach are multiplied already
+  /// pose and the other radius are multiplied already
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
   /// @throws fcl::Exception  as PreparedMesh, convexShapeOf() and octreeCellsOf(); also
   /// when the path is not defined or leaves the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
-                 int num_threads, double reach = 0, double scale = 1);
+                 int num_threads, double other_radius = 0, double scale = 1);
 
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;

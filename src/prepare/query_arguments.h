@@ -158,14 +158,35 @@ enum class Answerer {
   kFcl  ///< FCL: one is a point cloud, or follows a motion that is not known, for example
 };
 
+/// FCL looks a pair up in a table by the node types, which it does not check.
+template <typename S>
+void requireNodeType(const CollisionGeometry<S>& o, const char* name) {
+  // A model that deforms has no node type while FCL's tree is out of date.
+  if (o.getObjectType() == OT_BVH) return;
+  const auto type = static_cast<int>(o.getNodeType());
+  if (type < 0 || type >= NODE_COUNT)
+    throw Exception(std::string(name) + " is a geometry of node type " +
+                    std::to_string(type) +
+                    ", which FCL has not. Return a value of NODE_TYPE, or give a convex "
+                    "or a mesh");
+}
+
+template <typename S>
+Answerer answererFcl(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  requireNodeType(o1.geometry(), "o1");
+  requireNodeType(o2.geometry(), "o2");
+  return Answerer::kFcl;
+}
+
 /// Which method answers a pair.
-/// @throws fcl::Exception  when one of two meshes does not go straight and a pose is not
-/// finite. (A rotation that is not finite is not constant. PreparedMesh checks the poses
-/// of straight paths. FCL gets other geometries as they are.)
+/// @throws fcl::Exception  when a node type is not one of FCL's; when one of two meshes
+/// does not go straight and a pose is not finite. (A rotation that is not finite is not
+/// constant. PreparedMesh checks the poses of straight paths. FCL gets other geometries
+/// as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   if (o1.isShape() || o2.isShape() || o1.isOctree() || o2.isOctree()) {
-    if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
+    if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
     return Answerer::kShapes;
@@ -175,7 +196,7 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
     deformable::requireFinite(o1.beginning(), o1.end(), "o1");
     deformable::requireFinite(o2.beginning(), o2.end(), "o2");
   }
-  if (!o1.isKnown() || !o2.isKnown()) return Answerer::kFcl;
+  if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
   return Answerer::kCurvedPaths;
 }
 

@@ -3,6 +3,7 @@
 #define FCL_CCD_SHAPES_BODY_BOXES_H
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
 
 #include "mesh/vertex_frames.h"
@@ -118,6 +119,8 @@ struct TriangleHalves {
 inline bool narrowWindow(double first, double last, double& lo, double& hi) {
   if (first > 0 && last > 0) return false;
   const double root = first / (first - last);
+  // A gap that changes its sign does so within the span.
+  assert(!((first > 0) != (last > 0)) || !(root < 0 || root > 1));
   if (first > 0) lo = std::max(lo, root * (1 - 0x1p-40));
   if (last > 0) hi = std::min(hi, root * (1 + 0x1p-40));
   return true;

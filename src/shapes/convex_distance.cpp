@@ -2,6 +2,7 @@
 #include "shapes/convex_distance.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "paths/posed_vector.h"
@@ -118,6 +119,20 @@ void reduce(const Nearest& nearest, Simplex& s) {
     out.weight[i] = nearest.weight[i];
   }
   s = out;
+}
+
+/// Whether a gap is proved and the distance is met: no direction shows more than how far
+/// two points are apart, up to rounding. For assertions.
+[[maybe_unused]] bool isConsistent(const PosedConvex& a, const PosedConvex& b,
+                                   const ConvexGap& gap) {
+  double size = norm(gap.point[0]) + norm(gap.point[1]);
+  for (const PosedConvex* set : {&a, &b}) {
+    size += norm(set->pose.translation);
+    for (const Vec& corner : set->corner) size += norm(corner);
+    if (set->shape) size += norm(set->shape->center()) + set->shape->box().radius;
+    if (set->box) size += norm(set->box->center) + set->box->radius;
+  }
+  return !(gap.gap > gap.distance + 0x1p-40 * size);
 }
 
 class GapSearch {
@@ -300,7 +315,9 @@ class GapSearch {
 
 ConvexGap convexGap(const PosedConvex& a, const PosedConvex& b, const Vec& guess,
                     double enough, double contact) {
-  return GapSearch(a, b, enough, contact).run(guess);
+  const ConvexGap gap = GapSearch(a, b, enough, contact).run(guess);
+  assert(isConsistent(a, b, gap));
+  return gap;
 }
 
 }  // namespace deformable

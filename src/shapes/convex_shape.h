@@ -4,10 +4,13 @@
 #ifndef FCL_CCD_SHAPES_CONVEX_SHAPE_H
 #define FCL_CCD_SHAPES_CONVEX_SHAPE_H
 
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "numerics/moving_vector.h"
 #include "shapes/body_boxes.h"
+#include "shapes/cores.h"
 
 namespace fcl {
 namespace detail {
@@ -25,46 +28,54 @@ struct FlatShape {
 };
 
 /// @brief A convex solid in the frame of its body: all points within `radius` of a core.
-/// The core of a sphere is a point, that of a capsule an edge.
+/// Queries are about cores; what is asked about the whole shape has the radius in it
+/// already, and coreDistance() has it for pairs.
 class ConvexShape {
  public:
+  explicit ConvexShape(AnyCore core, double radius = 0);
+
   /// @brief The hull of points.
   /// @pre there is a point; all are finite
-  static ConvexShape hull(std::vector<Vec> points);
+  static ConvexShape hull(std::vector<Vec> points) {
+    return ConvexShape(HullCore(std::move(points)));
+  }
   /// @brief The points within `radius` of the edge of the z axis from -half_length to
   /// half_length.
-  static ConvexShape capsule(double radius, double half_length);
-  /// @brief From minus these sizes to these sizes.
-  static ConvexShape cuboid(const Vec& half_sides);
-  /// @brief All points with (x / a)^2 + (y / b)^2 + (z / c)^2 <= 1.
-  static ConvexShape ellipsoid(const Vec& half_axes);
-  /// @brief Around the z axis, from the base at -height / 2 to the tip at height / 2.
-  static ConvexShape cone(double radius, double height);
-  /// @brief Around the z axis, from -height / 2 to height / 2.
-  static ConvexShape cylinder(double radius, double height);
+  static ConvexShape capsule(double radius, double half_length) {
+    return ConvexShape(EdgeCore(half_length), radius);
+  }
+  static ConvexShape cuboid(const Vec& half_sides) {
+    return ConvexShape(BoxCore(half_sides));
+  }
+  static ConvexShape ellipsoid(const Vec& half_axes) {
+    return ConvexShape(EllipsoidCore(half_axes));
+  }
+  static ConvexShape cone(double radius, double height) {
+    return ConvexShape(ConeCore(radius, height));
+  }
+  static ConvexShape cylinder(double radius, double height) {
+    return ConvexShape(CylinderCore(radius, height));
+  }
   /// @brief A plane or a halfspace. It has no support function and no reach. Its box is
   /// its foot; the ball around that contains the other object.
-  /// @param reach  how far from the origin of its frame the other object may come
-  static ConvexShape flat(const FlatShape& flat, double reach);
+  /// @param other_radius  how far from the origin of its frame the other object may come
+  static ConvexShape flat(const FlatShape& flat, double other_radius);
 
   /// @brief All lengths times a power of two, with which none overflows or underflows.
-  /// @param reach  of a flat, after that: as for flat()
-  ConvexShape scaled(double factor, double reach) const;
+  /// @param other_radius  of a flat, after that: as for flat()
+  ConvexShape scaled(double factor, double other_radius) const;
 
   /// @brief The largest of the lengths that define it.
   double largestLength() const;
 
   /// @brief Null: another shape.
-  const FlatShape* flat() const { return kind_ == Kind::kFlat ? &flat_ : nullptr; }
+  const FlatShape* flat() const { return flat_ ? &*flat_ : nullptr; }
 
   /// @brief A point of the core that is farthest along a direction, up to rounding by
   /// 2^-50 of the size.
   Vec support(const Vec& direction) const;
 
-  /// @brief The support function is the largest of those of smooth pieces: the points of
-  /// a hull, the ends of a capsule, the corners of a box, all of an ellipsoid, the tip
-  /// and the base of a cone, the ends of a cylinder. This is the number of the piece
-  /// along a direction.
+  /// @brief The number of the piece of the core (struct Core) along a direction.
   int pieceAt(const Vec& direction) const;
 
   /// @brief The point of a piece that is farthest along a direction. support() is that of
@@ -75,9 +86,7 @@ class ConvexShape {
   Vec supportChange(int piece, const Vec& direction, const Vec& change) const;
 
   /// @brief Whether the derivative of a piece is not 0.
-  bool isCurved() const {
-    return kind_ == Kind::kEllipsoid || kind_ == Kind::kCone || kind_ == Kind::kCylinder;
-  }
+  bool isCurved() const;
 
   /// @brief The largest coordinate of the core along a direction that is not longer than
   /// 2, up to rounding by 2^-49 of the size.
@@ -94,7 +103,7 @@ class ConvexShape {
 
   /// @brief Whether the center is certainly a point of the core. That of a hull may be
   /// outside.
-  bool containsCenter() const { return kind_ != Kind::kHull; }
+  bool containsCenter() const;
 
   /// @brief Whether the core is a ball around the origin of its frame.
   bool isBall() const;
@@ -103,30 +112,40 @@ class ConvexShape {
   bool isRound() const { return axisOfRevolution() >= 0; }
   int axisOfRevolution() const;
 
-  /// @brief The radius of a ball around the center inside of the core; 0: none is known.
-  double innerRadius() const;
-
   /// @brief The middle of the box of the core.
   Vec center() const { return {box_.center[0], box_.center[1], box_.center[2]}; }
 
+  /// @name The whole shape: the core and the radius
+  /// @{
+
+  /// @brief A box that contains the shape.
+  BodyBox outerBox() const;
+  /// @brief The radius of a ball around the center that contains the shape.
+  double outerRadius() const { return box_.radius + radius_; }
+  /// @brief The radius of a ball around the center inside of the shape, where a pose
+  /// makes the lengths of the core shorter by this factor.
+  double innerRadius(double factor) const;
+  /// @brief The largest coordinate of the shape along a unit direction.
+  double outerReach(const Vec& direction) const { return reach(direction) + radius_; }
+
+  /// @}
+
  private:
-  enum class Kind { kHull, kCapsule, kCuboid, kEllipsoid, kCone, kCylinder, kFlat };
+  void setBox(const CoreBox& box);
 
-  ConvexShape(Kind kind, const Vec& size) : kind_(kind), size_(size) {}
-  void setBox(const Vec& center, const Vec& half_sides);
-  void setBoxOfHull();
-  bool hasCornersOfBox() const;
-
-  Kind kind_;
-  /// Half sides; half axes; or radius, radius and half height. Of a capsule that of the
-  /// edge.
-  Vec size_;
-  FlatShape flat_{};
-  std::vector<Vec> points_;
-  double radius_{0};
+  AnyCore core_;
+  /// Of a plane or halfspace, whose core has no points.
+  std::optional<FlatShape> flat_;
+  double radius_;
   BodyBox box_{};
   bool fills_box_{false};
 };
+
+/// @brief The distance of the cores at which the surfaces of two shapes are at a
+/// distance. Null: what has no radius.
+inline double coreDistance(const ConvexShape* a, const ConvexShape* b, double distance) {
+  return distance + (a ? a->radius() : 0) + (b ? b->radius() : 0);
+}
 
 }  // namespace deformable
 }  // namespace detail

@@ -2,6 +2,7 @@
 #include "shapes/octree_cells.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -24,6 +25,16 @@ OctreeCellNumber childOf(const OctreeCellNumber& parent, unsigned i) {
     child.key[k] = static_cast<std::uint16_t>((number << below) + (1U << below) / 2);
   }
   return child;
+}
+
+/// Whether a box contains a cell. Its sides are parallel to the axes. For assertions.
+[[maybe_unused]] bool isInBox(const ConvexShape& cell, const BodyBox& box) {
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {-1., 1.}) {
+      const Vec out = {k == 0 ? side : 0, k == 1 ? side : 0, k == 2 ? side : 0};
+      if (cell.reach(out) > side * box.center[k] + box.extent[k] + box.pad) return false;
+    }
+  return true;
 }
 
 /// The number of levels below the children of an opened node that its boxes come from.
@@ -169,6 +180,7 @@ const ConvexShape& OctreeCells::cell(std::int32_t leaf) {
   for (unsigned i = 0; i < 8; ++i)
     corners.push_back({corner(i, 0), corner(i, 1), corner(i, 2)});
   shapes_.push_back(ConvexShape::hull(std::move(corners)));
+  assert(isInBox(shapes_.back(), box(leaf)));
   node.shape = static_cast<std::int32_t>(shapes_.size()) - 1;
   return shapes_.back();
 }

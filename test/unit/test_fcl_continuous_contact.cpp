@@ -501,6 +501,12 @@ TEST(ContinuousContacts, UnusableInputIsRefusedByName) {
   refused(
       "o2 is a geometry that is none of FCL's, not a triangle mesh, a shape or an octree",
       o, &motion, &own, &motion, request);
+  struct GeometryOfNoType : OwnGeometry {
+    NODE_TYPE getNodeType() const override { return NODE_COUNT; }
+  };
+  const GeometryOfNoType of_no_type;
+  refused("o2 is a geometry of node type 20, which FCL has not", o, &motion, &of_no_type,
+          &motion, request);
   Plain cloud;
   cloud.beginModel();
   cloud.addSubModel(kSheet.vertices);
