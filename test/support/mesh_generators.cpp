@@ -116,6 +116,15 @@ TestMesh makeTube(int nx, int ny, const SheetPosition& position) {
   return mesh;
 }
 
+TestMesh makeRoundTube(int slices, int rings, const TubeRadius& radius) {
+  return makeTube(slices, rings, [&](double u, double v) {
+    const double angle = 2 * kPi * u, z = 2 * v - 1, r = radius(angle, z);
+    return Vector3<double>(r * std::cos(angle), r * std::sin(angle), z);
+  });
+}
+
+double holeRadius(int slices) { return 1 / std::cos(kPi / slices); }
+
 TestMesh makeUvSphere(int slices, int stacks, double radius) {
   TestMesh mesh;
   mesh.vertices.emplace_back(0, 0, radius);

@@ -54,6 +54,16 @@ TestMesh makeSheet(int nx, int ny, const SheetPosition& position = {});
 /// + 1) vertices.
 TestMesh makeTube(int nx, int ny, const SheetPosition& position);
 
+/// @brief The radius of a tube at an angle about its axis and a height.
+using TubeRadius = std::function<double(double angle, double z)>;
+
+/// @brief A tube about the z axis, from z = -1 to 1, of `slices` x `rings` quads.
+TestMesh makeRoundTube(int slices, int rings, const TubeRadius& radius);
+
+/// @brief The radius of a round tube of so many slices in whose facets a cylinder of
+/// radius 1 just fits.
+double holeRadius(int slices);
+
 /// @brief A sphere around the origin from `slices` >= 3 meridians and `stacks` >= 2
 /// rings: 2 slices (stacks - 1) triangles.
 TestMesh makeUvSphere(int slices, int stacks, double radius);

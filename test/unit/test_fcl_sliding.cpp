@@ -36,18 +36,6 @@ using Pose3 = Transform3<double>;
 using Request = ContinuousContactRequest<double>;
 using Result = ContinuousContactResult<double>;
 
-/// A tube about z from -1 to 1 whose radius may depend on the angle and the height.
-template <typename Radius>
-TestMesh tube(int slices, int rings, Radius&& radius) {
-  return makeTube(slices, rings, [&](double u, double v) {
-    const double angle = 2 * M_PI * u, z = 2 * v - 1, r = radius(angle, z);
-    return Vector(r * std::cos(angle), r * std::sin(angle), z);
-  });
-}
-
-/// The radius of a hole around whose facets a cylinder of radius 1 just fits.
-double holeAround(int slices) { return 1 / std::cos(M_PI / slices); }
-
 /// The mesh turned so that no direction of a box lies along it.
 TestMesh tilted(TestMesh mesh) {
   const Matrix3<double> turn =
@@ -172,30 +160,30 @@ TEST(FCL_SLIDING, tubesThatJustFit) {
   const int slices = 24, rings = 8;
   for (const double gap : {1e-2, 1e-6, 1e-9}) {
     SCOPED_TRACE(gap);
-    const TestMesh hole =
-        tilted(tube(slices, rings, [&](double, double) { return holeAround(slices); }));
+    const TestMesh hole = tilted(
+        makeRoundTube(slices, rings, [&](double, double) { return holeRadius(slices); }));
     const TestMesh inner =
-        tilted(tube(slices, rings, [&](double, double) { return 1 - gap; }));
+        tilted(makeRoundTube(slices, rings, [&](double, double) { return 1 - gap; }));
     expectAllPairs(inner, alongTube(0.5), hole, 0);
   }
 }
 
 TEST(FCL_SLIDING, tubesThatTouchSomewhere) {
   const int slices = 24, rings = 8;
-  const TestMesh hole =
-      tilted(tube(slices, rings, [&](double, double) { return holeAround(slices); }));
+  const TestMesh hole = tilted(
+      makeRoundTube(slices, rings, [&](double, double) { return holeRadius(slices); }));
   // A ring that stands out by more than the gap, on one side.
-  const TestMesh inner = tilted(tube(slices, rings, [&](double angle, double z) {
+  const TestMesh inner = tilted(makeRoundTube(slices, rings, [&](double angle, double z) {
     return 0.998 + (std::abs(z) < 0.1 && std::abs(angle - 2) < 0.5 ? 0.03 : 0);
   }));
   expectAllPairs(inner, alongTube(0.5), hole, 10);
   // A hole that becomes narrow further on, a tube that does not reach it, and one that
   // does.
-  const TestMesh funnel = tilted(tube(slices, rings, [&](double, double z) {
-    return holeAround(slices) - (z > 0.9 ? 0.02 : 0);
+  const TestMesh funnel = tilted(makeRoundTube(slices, rings, [&](double, double z) {
+    return holeRadius(slices) - (z > 0.9 ? 0.02 : 0);
   }));
-  const TestMesh plug =
-      tilted(moved(tube(slices, rings, [&](double, double) { return 0.999; }), 0, 0, -1));
+  const TestMesh plug = tilted(moved(
+      makeRoundTube(slices, rings, [&](double, double) { return 0.999; }), 0, 0, -1));
   expectAllPairs(plug, alongTube(0.74), funnel, 0);
   expectAllPairs(plug, alongTube(1), funnel, 10);
 }
@@ -203,10 +191,10 @@ TEST(FCL_SLIDING, tubesThatTouchSomewhere) {
 /// The triangle pairs that remain are few, whichever stage leaves the others out.
 TEST(FCL_SLIDING, fewPairsRemain) {
   const int slices = 120, rings = 40;
-  const TestMesh hole =
-      tilted(tube(slices, rings, [&](double, double) { return holeAround(slices); }));
+  const TestMesh hole = tilted(
+      makeRoundTube(slices, rings, [&](double, double) { return holeRadius(slices); }));
   const TestMesh inner =
-      tilted(tube(slices, rings, [&](double, double) { return 0.99; }));
+      tilted(makeRoundTube(slices, rings, [&](double, double) { return 0.99; }));
   const auto boxes = makeModel<BVHModel<OBBRSS<double>>>(inner);
   const auto still = makeModel<BVHModel<OBBRSS<double>>>(hole);
   for (const double distance : {0., 1e-6}) {
@@ -226,8 +214,8 @@ TEST(FCL_SLIDING, fewPairsRemain) {
 /// Candidates and the query see the same pairs, and threads change nothing.
 TEST(FCL_SLIDING, sameCountsWithThreads) {
   const TestMesh hole =
-      tilted(tube(60, 30, [&](double, double) { return holeAround(60); }));
-  const TestMesh inner = tilted(tube(60, 30, [&](double angle, double z) {
+      tilted(makeRoundTube(60, 30, [&](double, double) { return holeRadius(60); }));
+  const TestMesh inner = tilted(makeRoundTube(60, 30, [&](double angle, double z) {
     return 0.998 + (std::abs(z) < 0.1 && std::abs(angle - 2) < 0.2 ? 0.01 : 0);
   }));
   const auto boxes = makeModel<BVHModel<OBBRSS<double>>>(inner);
@@ -313,7 +301,7 @@ struct Socket {
 };
 
 std::vector<Socket> sockets(double clearance) {
-  const double hole = holeAround(24) + clearance;
+  const double hole = holeRadius(24) + clearance;
   std::vector<Socket> out;
   out.push_back({"cylinder", std::make_shared<Cylinder<double>>(1, 1.8),
                  [hole](double, double) { return hole; }});
@@ -332,7 +320,8 @@ std::vector<Socket> sockets(double clearance) {
 /// that tells only its bounds.
 void expectSameAnswers(const Socket& socket, bool shape_turns, const Vector& axis,
                        const Vector& point, double angle, double way) {
-  const auto mesh = makeModel<BVHModel<OBBRSS<double>>>(tube(24, 8, socket.radius));
+  const auto mesh =
+      makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(24, 8, socket.radius));
   const Screw bounded(Pose3::Identity(), axis, point, angle, way);
   const ScrewMotion<double> screw(bounded.at(0), bounded.at(1));
   const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());
@@ -384,7 +373,8 @@ TEST(FCL_SLIDING, turnOfARoundShape) {
 TEST(FCL_SLIDING, turnOfARoundShapeTakesNoWork) {
   for (const Socket& socket : sockets(1e-3)) {
     SCOPED_TRACE(socket.name);
-    const auto mesh = makeModel<BVHModel<OBBRSS<double>>>(tube(24, 8, socket.radius));
+    const auto mesh =
+        makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(24, 8, socket.radius));
     const Screw path(Pose3::Identity(), Vector::UnitZ(), Vector::Zero(), 1.5, 0);
     const ScrewMotion<double> turning(path.at(0), path.at(1));
     const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());
