@@ -41,7 +41,7 @@ ElementaryResult decide(ContinuousContactKind kind, const FeaturePoints& x,
 
 /// @brief The stages that decide pairs of features, in their order. Each stage decides
 /// the pairs for which it has a proof, and leaves the others to the next one.
-/// @tparam Pairs  the pairs of one kind in a block (touching_stages.cpp), or a single pair
+/// @tparam Pairs  the pairs of one kind in a block (touching_stages.h), or a single pair
 /// (elementary.cpp)
 template <typename Pairs>
 void runStages(Pairs&& pairs) {

@@ -19,13 +19,6 @@ struct Crossing {
   std::int32_t triangles[2];
 };
 
-class FeatureBatch;
-class TaskFindings;
-
-/// @brief Adds the edges of a block that pass through a face of the other triangle at t =
-/// 0, as far as the query wants them.
-void findCrossings(const FeatureBatch& batch, TaskFindings& findings);
-
 /// @brief Sorts crossings by side and vertex ids. Of several crossings of the same edge
 /// and face it keeps the one with the lowest triangles. Two faces with the same three
 /// vertices are one face.

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "elementary/elementary.h"
+#include "query/crossing_test.h"
 
 namespace fcl {
 namespace detail {
