@@ -2,7 +2,6 @@
 #include "prepare/convex_shapes.h"
 
 #include <cmath>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -124,36 +123,36 @@ ConvexShape shapeOf(const Halfspace<S>& halfspace, const std::string& name,
   return flatShape(halfspace, true, name, other_radius);
 }
 
-/// Calls use(shape) with a geometry as its own class. A new class of shapes is a line
-/// here, and shapeOf().
-/// @return whether it is one of them
-template <typename S, typename Use>
-bool useAsItsClass(const CollisionGeometry<S>& o, Use&& use) {
+/// Calls use(shape) with a geometry as its own class, or otherwise() if it is none of
+/// these. A new class of shapes is a line here, and shapeOf().
+/// @return what that returns
+template <typename S, typename Use, typename Otherwise>
+auto asItsClass(const CollisionGeometry<S>& o, Use&& use, Otherwise&& otherwise) {
   // A model that deforms has no node type while FCL's tree is out of date.
-  if (o.getObjectType() != OT_GEOM) return false;
+  if (o.getObjectType() != OT_GEOM) return otherwise();
   switch (o.getNodeType()) {
     case GEOM_SPHERE:
-      return use(static_cast<const Sphere<S>&>(o)), true;
+      return use(static_cast<const Sphere<S>&>(o));
     case GEOM_CAPSULE:
-      return use(static_cast<const Capsule<S>&>(o)), true;
+      return use(static_cast<const Capsule<S>&>(o));
     case GEOM_BOX:
-      return use(static_cast<const Box<S>&>(o)), true;
+      return use(static_cast<const Box<S>&>(o));
     case GEOM_ELLIPSOID:
-      return use(static_cast<const Ellipsoid<S>&>(o)), true;
+      return use(static_cast<const Ellipsoid<S>&>(o));
     case GEOM_CONE:
-      return use(static_cast<const Cone<S>&>(o)), true;
+      return use(static_cast<const Cone<S>&>(o));
     case GEOM_CYLINDER:
-      return use(static_cast<const Cylinder<S>&>(o)), true;
+      return use(static_cast<const Cylinder<S>&>(o));
     case GEOM_CONVEX:
-      return use(static_cast<const Convex<S>&>(o)), true;
+      return use(static_cast<const Convex<S>&>(o));
     case GEOM_TRIANGLE:
-      return use(static_cast<const TriangleP<S>&>(o)), true;
+      return use(static_cast<const TriangleP<S>&>(o));
     case GEOM_PLANE:
-      return use(static_cast<const Plane<S>&>(o)), true;
+      return use(static_cast<const Plane<S>&>(o));
     case GEOM_HALFSPACE:
-      return use(static_cast<const Halfspace<S>&>(o)), true;
+      return use(static_cast<const Halfspace<S>&>(o));
     default:
-      return false;
+      return otherwise();
   }
 }
 
@@ -161,7 +160,8 @@ bool useAsItsClass(const CollisionGeometry<S>& o, Use&& use) {
 
 template <typename S>
 bool isConvexShape(const CollisionGeometry<S>& geometry) {
-  return useAsItsClass(geometry, [](const auto&) {});
+  return asItsClass(
+      geometry, [](const auto&) { return true; }, [] { return false; });
 }
 
 template <typename S>
@@ -173,15 +173,14 @@ bool isUnbounded(const CollisionGeometry<S>& shape) {
 template <typename S>
 ConvexShape convexShapeOf(const CollisionGeometry<S>& shape, const std::string& name,
                           double other_radius) {
-  std::optional<ConvexShape> out;
-  const auto convert = [&](const auto& of) {
-    out.emplace(shapeOf(of, name, other_radius));
-  };
-  if (useAsItsClass(shape, convert)) return std::move(*out);
-  throw Exception(name + " is a geometry of node type " +
-                  std::to_string(shape.getNodeType()) +
-                  ", which is none of FCL's shapes. "
-                  "Give one of them, or a mesh of its surface");
+  return asItsClass(
+      shape, [&](const auto& of) { return shapeOf(of, name, other_radius); },
+      [&]() -> ConvexShape {
+        throw Exception(name + " is a geometry of node type " +
+                        std::to_string(shape.getNodeType()) +
+                        ", which is none of FCL's shapes. Give one of them, or a mesh of "
+                        "its surface");
+      });
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                        \

@@ -37,17 +37,6 @@ namespace {
 
 }  // namespace
 
-ConvexShape::ConvexShape(AnyCore core, double radius)
-    : core_(std::move(core)), radius_(radius) {
-  std::visit(
-      [this](const auto& of) {
-        setBox(of.box());
-        fills_box_ = of.fills(box_);
-      },
-      core_);
-  assert(isConsistent(*this));
-}
-
 ConvexShape ConvexShape::flat(const FlatShape& flat, double other_radius) {
   const Vec foot = flat.foot();
   ConvexShape shape(BoxCore({0, 0, 0}));
@@ -129,7 +118,8 @@ double ConvexShape::innerRadius(double factor) const {
          factor * std::visit([](const auto& of) { return of.innerRadius(); }, core_);
 }
 
-void ConvexShape::setBox(const CoreBox& box) {
+void ConvexShape::setBox() {
+  const CoreBox box = std::visit([](const auto& of) { return of.box(); }, core_);
   for (int i = 0; i < 3; ++i) box_.axis[i][i] = 1;
   box_.center[0] = box.center.x;
   box_.center[1] = box.center.y;
@@ -141,6 +131,8 @@ void ConvexShape::setBox(const CoreBox& box) {
   const double half = norm(box.half_sides);
   box_.pad = 0x1p-45 * (norm(box.center) + half);
   box_.radius = half * kUpward + box_.pad;
+  fills_box_ = std::visit([this](const auto& of) { return of.fills(box_); }, core_);
+  assert(isConsistent(*this));
 }
 
 }  // namespace deformable

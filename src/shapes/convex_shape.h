@@ -32,7 +32,12 @@ struct FlatShape {
 /// already, and coreDistance() has it for pairs.
 class ConvexShape {
  public:
-  explicit ConvexShape(AnyCore core, double radius = 0);
+  /// @param core  one of AnyCore
+  template <typename OneCore>
+  explicit ConvexShape(OneCore core, double radius = 0)
+      : core_(std::move(core)), radius_(radius) {
+    setBox();
+  }
 
   /// @brief The hull of points.
   /// @pre there is a point; all are finite
@@ -131,7 +136,7 @@ class ConvexShape {
   /// @}
 
  private:
-  void setBox(const CoreBox& box);
+  void setBox();
 
   AnyCore core_;
   /// Of a plane or halfspace, whose core has no points.
