@@ -35,9 +35,22 @@ def groups():
         for option in ("-o", "-c"):
             at = command.index(option)
             del command[at : at + 2]
+        command = without_precompiled(command)
         alone = "foreach_target.h" in path.read_text(encoding="utf-8")
         found[path if alone else path.parent, tuple(command)].append(path)
     return [(list(command), sorted(paths)) for (_, command), paths in found.items()]
+
+
+def without_precompiled(command):
+    """The command without CMake's precompiled header, which another compiler cannot read."""
+    left = []
+    words = iter(word for word in command if word != "-Xclang")
+    for word in words:
+        if word in ("-include", "-include-pch"):
+            next(words)
+        elif word != "-Winvalid-pch":
+            left.append(word)
+    return left
 
 
 def joined(command, paths):

@@ -41,6 +41,10 @@ struct AccelerationBound {
   double between(const Vec& begin, const Vec& end, double radius) const;
   /// @brief Whether all points at rest in the body frame go straight.
   bool isZero() const;
+
+ private:
+  /// What the motion of the program says.
+  double ofProgram(const Vec& center, double radius) const;
 };
 
 /// @brief A turn at constant speed,
@@ -182,12 +186,17 @@ class MotionPath {
   void reachEnd(const Pose& end);
   bool hasTurningRotation() const;
   void setTurnBounds();
+  Pose turnPose(double t) const;
+  PoseRate turnRate(double t) const;
   AccelerationBound turnAcceleration() const;
-  AccelerationBound splineAcceleration(double t0, double t1) const;
-  AccelerationBound boundedAcceleration(double t0, double t1) const;
-  void setBoundedSize();
+  void setSplineSize();
   Pose splinePose(double t) const;
   PoseRate splineRate(double t) const;
+  AccelerationBound splineAcceleration(double t0, double t1) const;
+  void setBoundedSize();
+  Pose boundedPose(double t) const;
+  PoseRate boundedRate(double t) const;
+  AccelerationBound boundedAcceleration(double t0, double t1) const;
 
   const char* name_{"the object"};
   Kind kind_{Kind::kTurn};

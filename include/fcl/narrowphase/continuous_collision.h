@@ -12,7 +12,7 @@
 
 #include "fcl/ccd_version.h"
 #include "fcl/narrowphase/continuous_contact.h"
-#include "fcl/narrowphase/detail/stock_continuous_collision.h"
+#include "fcl/narrowphase/detail/stock_headers.h"
 
 namespace fcl {
 

@@ -10,7 +10,7 @@
 #include "fcl/ccd_version.h"
 #include "fcl/common/exception.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
-#include "fcl/narrowphase/detail/stock_distance.h"
+#include "fcl/narrowphase/detail/stock_headers.h"
 
 namespace fcl {
 

@@ -19,7 +19,7 @@
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_contact.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
-#include "fcl/narrowphase/detail/stock_continuous_collision.h"
+#include "fcl/narrowphase/detail/stock_headers.h"
 
 namespace fcl {
 namespace detail {

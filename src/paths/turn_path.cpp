@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rounding (u = 2^-53) of a turn: the angle w t < 3.2 is rounded once. So its sine and
+// cosine are within 4 + 3.2 u, and 1 - cos(w t) within 8.2 u (for w t < 1 it is computed
+// from half of the angle: within 11 u of itself). An entry of C and D is at most 1 in
+// size (times what R1 stretches): 7.2 + 8.2 u, and 3 products and sums of sizes up to 4,
+// 13 u: below 32 u an entry, 96 u for the matrix (Frobenius norm). A product of three and
+// a sum of four add 4 u of their size an entry, 13 u in all. A coordinate of the
+// translation: below 16 u of the size of its terms, 28 u for the vector, and 7 u in that
+// sum.
+#include "paths/motion_path.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <iterator>
+
+#include "numerics/error_bounds.h"
+#include "paths/path_matrix.h"
+#include "paths/posed_vector.h"
+#include "paths/sine.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+/// A smaller rotation is only the rounding of the poses from which it was made.
+constexpr double kLeastAngle = 0x1p-50;
+
+/// From this angle on, a turn may go either way round. Poses that are rotations up to
+/// rounding need a few u below pi. But FCL's axis and this one may be computed from
+/// matrices that differ as a matrix and its nearest rotation, by 0.047 in the sine of the
+/// angle (poses that deviate by 2^-6 in each entry of R^T R). The other way round is
+/// shorter than 3.2, as the bounds on rounding above assume.
+constexpr double kLeastHalfTurn = 3.09;
+
+/// Bound on the spectral norm: the square is that of M^T M, at most its largest row. The
+/// root of a row rounds by less than 8 u.
+double spectralBound(const double (&m)[9]) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i) {
+    double row = 0;
+    for (int j = 0; j < 3; ++j)
+      row += std::abs(m[i] * m[j] + m[3 + i] * m[3 + j] + m[6 + i] * m[6 + j]);
+    most = std::max(most, row);
+  }
+  return std::sqrt(most) * (1 + 0x1p-48);
+}
+
+/// The rotation from one pose to the other: a unit axis and an angle in [0, pi]. The
+/// angle is 0 if the rotation is only rounding.
+double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
+  double m[3][3];
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      m[i][j] = to.rotation[3 * i] * from.rotation[3 * j] +
+                to.rotation[3 * i + 1] * from.rotation[3 * j + 1] +
+                to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
+  // Four times the quaternion, times its largest component (Shepperd 1978).
+  double q[4];
+  const double trace = m[0][0] + m[1][1] + m[2][2];
+  if (trace > 0) {
+    q[3] = 1 + trace;
+    for (int i = 0; i < 3; ++i) {
+      const int j = (i + 1) % 3, k = (i + 2) % 3;
+      q[i] = m[k][j] - m[j][k];
+    }
+  } else {
+    int i = m[1][1] > m[0][0] ? 1 : 0;
+    if (m[2][2] > m[i][i]) i = 2;
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    q[i] = 1 + m[i][i] - m[j][j] - m[k][k];
+    q[j] = m[j][i] + m[i][j];
+    q[k] = m[k][i] + m[i][k];
+    q[3] = m[k][j] - m[j][k];
+  }
+  Vec v = {q[0], q[1], q[2]};
+  if (q[3] < 0) {
+    v = -1. * v;
+    q[3] = -q[3];
+  }
+  const double length = norm(v), whole = std::sqrt(dot(v, v) + q[3] * q[3]);
+  if (!(length > 0.5 * kLeastAngle * whole)) return 0;
+  axis = (1 / length) * v;
+  axis = (1 / norm(axis)) * axis;
+  return 2 * angleOf(q[3] / whole, length / whole);
+}
+
+SineCosine sineAndOneMinusCosine(double x) {
+  const SineCosine at = sineCosine(x);
+  if (x >= 1) return {at.sine, 1 - at.cosine};
+  const double half = sineCosine(0.5 * x).sine;
+  return {at.sine, 2 * half * half};
+}
+
+}  // namespace
+
+MotionPath MotionPath::still(const Pose& pose) {
+  MotionPath path = turnFrom(pose, pose, {0, 0, 0});
+  path.setTurnBounds();
+  return path;
+}
+
+MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end,
+                                const Vec& half_turn_axis) {
+  MotionPath path;
+  path.turn_.beginning = beginning;
+  path.turn_.angle = turnBetween(beginning, end, path.turn_.axis);
+  if (path.turn_.angle > kLeastHalfTurn && dot(path.turn_.axis, half_turn_axis) < 0) {
+    path.turn_.axis = -1. * path.turn_.axis;
+    path.turn_.angle = 2 * M_PI - path.turn_.angle;
+  }
+  path.stretch_ =
+      std::max(spectralBound(beginning.rotation), spectralBound(end.rotation));
+  if (path.turn_.angle > 0) {
+    crossColumns(path.turn_.axis, beginning.rotation, path.turn_.sine_rotation);
+    crossColumns(path.turn_.axis, path.turn_.sine_rotation, path.turn_.cosine_rotation);
+  }
+  return path;
+}
+
+/// Sets the straight part so that the path ends at the end pose. It is computed from the
+/// difference of the poses, not from the end pose, which rounds much more far from the
+/// origin.
+void MotionPath::reachEnd(const Pose& end) {
+  const SineCosine at =
+      turn_.angle == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(turn_.angle);
+  for (int i = 0; i < 9; ++i)
+    turn_.linear_rotation[i] =
+        (end.rotation[i] - turn_.beginning.rotation[i]) -
+        (at.sine * turn_.sine_rotation[i] + at.cosine * turn_.cosine_rotation[i]);
+  for (int k = 0; k < 3; ++k)
+    turn_.linear_translation[k] =
+        (end.translation[k] - turn_.beginning.translation[k]) -
+        (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k]);
+  // A rotation of the beginning, and a part of E.
+  stretch_ =
+      (spectralBound(turn_.beginning.rotation) + frobenius(turn_.linear_rotation)) *
+      kUpward;
+}
+
+namespace {
+
+/// Whether the last pose, which is known exactly, is met within the bounds on rounding.
+[[maybe_unused]] bool endsWithinError(const MotionPath& path, const Pose& end) {
+  const Pose at = path.pose(1);
+  double off[9];
+  for (int i = 0; i < 9; ++i) off[i] = at.rotation[i] - end.rotation[i];
+  const Vec shift = vecOf(at.translation) - vecOf(end.translation);
+  return !(frobenius(off) > path.rotationError()) &&
+         !(norm(shift) > path.positionError(0));
+}
+
+}  // namespace
+
+MotionPath MotionPath::interpolation(const Pose& beginning, const Pose& end,
+                                     const double (&reference)[3],
+                                     const Vec& half_turn_axis) {
+  MotionPath path = turnFrom(beginning, end, half_turn_axis);
+  const Vec point = vecOf(reference);
+  set(path.turn_.sine_translation, -1. * rotated(path.turn_.sine_rotation, point));
+  set(path.turn_.cosine_translation, -1. * rotated(path.turn_.cosine_rotation, point));
+  path.reachEnd(end);
+  path.reference_size_ = norm(point);
+  path.setTurnBounds();
+  assert(endsWithinError(path, end));
+  return path;
+}
+
+// The translation of a screw turns about the axis: T1 - p = -(o + cot(w / 2) a x o) / 2
+// for the part o of the way T2 - T1 that is perpendicular to the axis a, so that P = a x
+// (T1 - p) and Q = a x P. For a small angle these are large, |o| / w, but P sin(w t) and
+// Q (1 - cos(w t)) are not, and lose nothing.
+MotionPath MotionPath::screw(const Pose& beginning, const Pose& end,
+                             const Vec& half_turn_axis) {
+  MotionPath path = turnFrom(beginning, end, half_turn_axis);
+  if (path.turn_.angle > 0) {
+    const Vec way = vecOf(end.translation) - vecOf(beginning.translation);
+    const Vec across = way - dot(way, path.turn_.axis) * path.turn_.axis;
+    const SineCosine half = sineCosine(0.5 * path.turn_.angle);
+    const Vec turning =
+        0.5 * ((half.cosine / half.sine) * across - cross(path.turn_.axis, across));
+    set(path.turn_.sine_translation, turning);
+    set(path.turn_.cosine_translation, cross(path.turn_.axis, turning));
+  }
+  path.reachEnd(end);
+  path.setTurnBounds();
+  assert(endsWithinError(path, end));
+  return path;
+}
+
+MotionPath MotionPath::withFixedRotation() const {
+  MotionPath path = *this;
+  Turn& turn = path.turn_;
+  for (auto* matrix : {&turn.sine_rotation, &turn.cosine_rotation, &turn.linear_rotation})
+    std::fill(std::begin(*matrix), std::end(*matrix), 0.);
+  path.stretch_ = spectralBound(turn.beginning.rotation);
+  if (norm(turn.sine_translation) == 0 && norm(turn.cosine_translation) == 0)
+    turn.angle = 0;
+  path.setTurnBounds();
+  return path;
+}
+
+MotionPath MotionPath::withoutTurn() const {
+  MotionPath path = *this;
+  for (auto* vector : {&path.turn_.sine_translation, &path.turn_.cosine_translation})
+    std::fill(std::begin(*vector), std::end(*vector), 0.);
+  path.reference_size_ = 0;
+  return path.withFixedRotation();
+}
+
+/// Whether the rotation changes with the angle.
+bool MotionPath::hasTurningRotation() const {
+  return turn_.angle > 0 &&
+         std::any_of(std::begin(turn_.sine_rotation), std::end(turn_.sine_rotation),
+                     [](double x) { return x != 0; });
+}
+
+void MotionPath::setTurnBounds() {
+  const double sine = norm(vecOf(turn_.sine_translation)),
+               cosine = norm(vecOf(turn_.cosine_translation)),
+               linear = norm(vecOf(turn_.linear_translation)), w = turn_.angle;
+  translation_size_ =
+      (norm(vecOf(turn_.beginning.translation)) + linear + std::min(1., w) * sine +
+       std::min(2., w * w) * cosine + reference_size_) *
+      kUpward;
+  largest_translation_ = translation_size_;
+  turn_speed_ =
+      ((hasTurningRotation() ? w * stretch_ : 0) + frobenius(turn_.linear_rotation)) *
+      kUpward;
+  translation_speed_ = (linear + w * (sine + cosine)) * kUpward;
+  rotation_error_ = 32;
+}
+
+Pose MotionPath::turnPose(double t) const {
+  const SineCosine at =
+      turn_.angle == 0 ? SineCosine{0, 0} : sineAndOneMinusCosine(turn_.angle * t);
+  Pose out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] =
+        turn_.beginning.rotation[i] +
+        (at.sine * turn_.sine_rotation[i] + at.cosine * turn_.cosine_rotation[i] +
+         t * turn_.linear_rotation[i]);
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] =
+        turn_.beginning.translation[k] +
+        (at.sine * turn_.sine_translation[k] + at.cosine * turn_.cosine_translation[k] +
+         t * turn_.linear_translation[k]);
+  return out;
+}
+
+PoseRate MotionPath::turnRate(double t) const {
+  const SineCosine at = turn_.angle == 0 ? SineCosine{0, 0} : sineCosine(turn_.angle * t);
+  const double sine = turn_.angle * at.sine, cosine = turn_.angle * at.cosine;
+  PoseRate out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] = cosine * turn_.sine_rotation[i] + sine * turn_.cosine_rotation[i] +
+                      turn_.linear_rotation[i];
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] = cosine * turn_.sine_translation[k] +
+                         sine * turn_.cosine_translation[k] + turn_.linear_translation[k];
+  return out;
+}
+
+// Columns of C and D, P and Q are products with the axis, which round by a few u, and w^2
+// is at most 10. What is left of (R x)'' is 2 E x'.
+double MotionPath::axisAcceleration(double displacement) const {
+  return 2 * frobenius(turn_.linear_rotation) * displacement * kUpward;
+}
+
+PoseRate MotionPath::turnAccelerationAt(double t) const {
+  const SineCosine at = turn_.angle == 0 ? SineCosine{0, 0} : sineCosine(turn_.angle * t);
+  const double square = turn_.angle * turn_.angle, sine = -square * at.sine,
+               cosine = square * at.cosine;
+  PoseRate out;
+  for (int i = 0; i < 9; ++i)
+    out.rotation[i] = sine * turn_.sine_rotation[i] + cosine * turn_.cosine_rotation[i];
+  for (int k = 0; k < 3; ++k)
+    out.translation[k] =
+        sine * turn_.sine_translation[k] + cosine * turn_.cosine_translation[k];
+  return out;
+}
+
+// p'' = w^2 (cos (D x + Q) - sin (C x + P)). The two vectors are perpendicular and have
+// the same length, up to a rounding of at most 16 u (|x| + |P| + |Q|). This adds no more
+// than twice as much to the length of the result.
+AccelerationBound MotionPath::turnAcceleration() const {
+  AccelerationBound bound{};
+  if (turn_.angle == 0) {
+    bound.per_displacement = 2 * frobenius(turn_.linear_rotation) * kUpward;
+    return bound;
+  }
+  const double square = turn_.angle * turn_.angle, rounding = 64 * kUnit * square;
+  for (int i = 0; i < 9; ++i) bound.turn[i] = square * turn_.sine_rotation[i];
+  for (int k = 0; k < 3; ++k) bound.offset[k] = square * turn_.sine_translation[k];
+  if (hasTurningRotation()) {
+    bound.per_radius = (square * stretch_ + rounding) * kUpward;
+    bound.per_distance = rounding * stretch_;
+  }
+  bound.constant = rounding * (norm(vecOf(turn_.sine_translation)) +
+                               norm(vecOf(turn_.cosine_translation)));
+  bound.per_displacement = 2 * turn_speed_ * kUpward;
+  bound.jerk = turn_.angle * kUpward;
+  return bound;
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
