@@ -22,7 +22,8 @@ namespace {
   // Squares of other sizes overflow or underflow; a query scales such shapes first.
   if (!(size > 0x1p-400 && size < 0x1p400)) return true;
   for (int i = 0; i < 27; ++i) {
-    const Vec d = {i % 3 - 1., i / 3 % 3 - 1., i / 9 - 1.};
+    const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+    const Vec d = {double(x), double(y), double(z)};
     if (maxNorm(d) == 0) continue;
     const Vec p = shape.support(d), from_center = p - shape.center();
     if (dot(p, d) > shape.reach(d) + rounding ||
