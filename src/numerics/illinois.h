@@ -17,8 +17,6 @@ template <typename F>
 double illinois(F&& f, double lo, double hi, double f_lo, double f_hi, double tol,
                 int max_steps) {
   assert(lo <= hi && tol >= 0);
-  // The root is between them.
-  assert(!(f_lo > 0 && f_hi > 0) && !(f_lo < 0 && f_hi < 0));
   double t = lo;
   for (int i = 0; i < max_steps; ++i) {
     const double previous = t;

@@ -132,6 +132,8 @@ void reduce(const Nearest& nearest, Simplex& s) {
     if (set->shape) size += norm(set->shape->center()) + set->shape->box().radius;
     if (set->box) size += norm(set->box->center) + set->box->radius;
   }
+  // Squares of smaller sizes underflow; a query promises no accuracy for them.
+  if (!(size > 0x1p-140)) return true;
   return !(gap.gap > gap.distance + 0x1p-40 * size);
 }
 

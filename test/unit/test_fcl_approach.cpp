@@ -451,8 +451,8 @@ TEST(FCL_APPROACH, accurateDirections) {
     long_steps += step > 1e-3;
     if (HasFailure()) return;
   }
-  EXPECT_GT(steps, 10000);
-  EXPECT_GT(long_steps, 3000);
+  EXPECT_GT(steps, rounds(10000));
+  EXPECT_GT(long_steps, rounds(3000));
 }
 
 }  // namespace
