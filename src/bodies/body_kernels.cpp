@@ -274,7 +274,7 @@ extern const BodyKernels kBodyKernels = {hwy::TargetName(HWY_TARGET), &meetingWi
 extern const BodyKernels kBodyKernels = {"plain", &meetingWindows, &meetingHalves};
 #endif
 
-const BodyKernels* motionTable() { return &kBodyKernels; }
+const BodyKernels* bodyTable() { return &kBodyKernels; }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace deformable
@@ -288,12 +288,12 @@ namespace detail {
 namespace deformable {
 
 #if defined(FCL_CCD_USE_HIGHWAY)
-HWY_EXPORT(motionTable);
+HWY_EXPORT(bodyTable);
 #endif
 
 const BodyKernels& bodyKernels() {
 #if defined(FCL_CCD_USE_HIGHWAY)
-  static const BodyKernels& best = *HWY_DYNAMIC_DISPATCH(motionTable)();
+  static const BodyKernels& best = *HWY_DYNAMIC_DISPATCH(bodyTable)();
   return best;
 #else
   return HWY_NAMESPACE::kBodyKernels;

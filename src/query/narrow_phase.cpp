@@ -4,7 +4,7 @@
 #include <cassert>
 
 #include "elementary/elementary.h"
-#include "query/crossing_test.h"
+#include "query/crossing_stage.h"
 
 namespace fcl {
 namespace detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "query/crossing_test.h"
+#include "query/crossing_stage.h"
 
 #include <algorithm>
 #include <cstddef>

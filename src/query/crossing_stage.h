@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef FCL_CCD_QUERY_CROSSING_TEST_H
-#define FCL_CCD_QUERY_CROSSING_TEST_H
+#ifndef FCL_CCD_QUERY_CROSSING_STAGE_H
+#define FCL_CCD_QUERY_CROSSING_STAGE_H
 
 #include "query/feature_batch.h"
 #include "query/task_findings.h"
