@@ -6,12 +6,12 @@
 #include <functional>
 
 #include "curved/shape_contacts.h"
+#include "sanitizer.h"
 #include "turning_bodies.h"
 
 namespace fcl {
 namespace test {
 namespace {
-
 using namespace detail::deformable;
 using Point = Vector3<double>;
 const Point kHalf(0.4, 0.25, 0.1);
@@ -35,7 +35,7 @@ TEST(FCL_SHAPE_ROUNDED, boxMeetsABallAndATriangle) {
   const ConvexShape rounded(BoxCore({kHalf[0], kHalf[1], kHalf[2]}), kRounded);
   const ConvexShape ball(EdgeCore(0), kBall);
   const Body floor({{{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}}, {Triangle(0, 1, 2)}});
-  for (int i = 0; i < 100; ++i) {
+  for (int i = 0; i < rounds(100); ++i) {
     SCOPED_TRACE(i);
     Random random(7600 + i);
     ReferenceMotion motion = randomMotion(random, 0.9), way = randomMotion(random, 0.9);
