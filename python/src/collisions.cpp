@@ -77,19 +77,15 @@ py::dict fieldsOf(const Outcome& outcome, Contacts&& contacts) {
 
 namespace {
 
-/// Runs ask(settings, outcome, contacts) without the GIL.
+/// Runs ask(request, outcome, contacts) without the GIL.
 template <typename Ask>
 py::dict answer(const Request& request, const Ask& ask) {
   Outcome outcome{};
   Contacts contacts;
   {
-    TriangleFilter filter(request.accepts_triangles);
-    fcl::detail::QuerySettings settings = request.settings;
-    settings.filter1 = &request.filter1;
-    settings.filter2 = &request.filter2;
-    settings.accepts_triangles = filter.function();
+    TriangleFilter filter(request);
     const py::gil_scoped_release release;
-    filter.run([&] { ask(settings, outcome, contacts); });
+    filter.run([&] { ask(filter.request(), outcome, contacts); });
   }
   return fieldsOf(outcome, std::move(contacts));
 }
@@ -97,8 +93,8 @@ py::dict answer(const Request& request, const Ask& ask) {
 py::dict collideSelf(const Mesh& o, const Request& request) {
   const Geometry::Reading reading(o);
   py::dict result =
-      answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
-        fcl::detail::answerSelf(&o.geometry(), settings, outcome, &contacts);
+      answer(request, [&](const auto& asked, auto& outcome, auto& contacts) {
+        fcl::detail::answerSelf(&o.geometry(), asked, outcome, &contacts);
       });
   return result;
 }
@@ -109,8 +105,8 @@ py::dict collidePair(const Geometry& o1, const Motion& motion1, const Geometry& 
   const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
   double pose_time = 1;
   py::dict result =
-      answer(request, [&](const auto& settings, auto& outcome, auto& contacts) {
-        if (!fcl::detail::answerPair(moving1, moving2, settings, outcome, &contacts))
+      answer(request, [&](const auto& asked, auto& outcome, auto& contacts) {
+        if (!fcl::detail::answerPair(moving1, moving2, asked, outcome, &contacts))
           fcl::detail::refuseContacts(moving1, moving2);
         pose_time = outcome.is_collide ? outcome.pose_time : 1;
       });
@@ -136,19 +132,18 @@ Request makeRequest(const std::string& query, double toc_err,
                     const fcl::ContinuousFilter& filter2, py::object accepts_triangles,
                     int num_threads, double min_distance, bool ignore_initially_closer) {
   Request request;
-  request.settings.with_contacts = true;
-  request.settings.query = toQuery(query);
-  request.settings.toc_err = toc_err;
-  request.settings.num_max_contacts =
+  request.fields.query = toQuery(query);
+  request.fields.toc_err = toc_err;
+  request.fields.num_max_contacts =
       num_max_contacts.value_or(std::numeric_limits<std::size_t>::max());
-  request.settings.enable_contact = enable_contact;
-  request.settings.t_max = t_max;
-  request.settings.enable_crossings = enable_crossings;
-  request.settings.num_threads = num_threads;
-  request.settings.min_distance = min_distance;
-  request.settings.ignore_initially_closer = ignore_initially_closer;
-  request.filter1 = filter1;
-  request.filter2 = filter2;
+  request.fields.enable_contact = enable_contact;
+  request.fields.t_max = t_max;
+  request.fields.enable_crossings = enable_crossings;
+  request.fields.num_threads = num_threads;
+  request.fields.min_distance = min_distance;
+  request.fields.ignore_initially_closer = ignore_initially_closer;
+  request.fields.filter1 = filter1;
+  request.fields.filter2 = filter2;
   request.accepts_triangles = std::move(accepts_triangles);
   return request;
 }

@@ -83,21 +83,6 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
   std::uint64_t num_updates_{0};
 };
 
-FclRequest toFclRequest(const Request& request, const TriangleFilter& filter) {
-  FclRequest out;
-  out.toc_err = request.settings.toc_err;
-  out.query = request.settings.query;
-  out.num_max_contacts = request.settings.num_max_contacts;
-  out.enable_contact = request.settings.enable_contact;
-  out.num_threads = request.settings.num_threads;
-  out.t_max = request.settings.t_max;
-  out.enable_crossings = request.settings.enable_crossings;
-  out.min_distance = request.settings.min_distance;
-  out.ignore_initially_closer = request.settings.ignore_initially_closer;
-  if (filter.function()) out.accepts_triangles = *filter.function();
-  return out;
-}
-
 py::tuple toTuple(fcl::ContinuousPairResult<double>& pair) {
   const auto name = [](const fcl::ContinuousCollisionObjectd* o) {
     return static_cast<const ManagedObject*>(o)->name();
@@ -272,10 +257,9 @@ class Manager : public Guarded {
   static py::dict answer(const Request& request, const Ask& ask) {
     FclResult result;
     {
-      TriangleFilter filter(request.accepts_triangles);
-      const FclRequest asked = toFclRequest(request, filter);
+      TriangleFilter filter(request);
       const py::gil_scoped_release release;
-      filter.run([&] { ask(asked, result); });
+      filter.run([&] { ask(filter.request(), result); });
     }
     return fieldsOf(result);
   }

@@ -6,7 +6,7 @@
 
 #include <atomic>
 #include <exception>
-#include <functional>
+#include <optional>
 
 #include "arrays.h"
 #include "fcl/narrowphase/continuous_contact.h"
@@ -20,8 +20,7 @@ using Outcome = fcl::detail::QueryOutcome<double>;
 
 /// A request without its function of Python, which belongs to one call.
 struct Request {
-  fcl::detail::QuerySettings settings{};
-  fcl::ContinuousFilter filter1, filter2;
+  fcl::ContinuousContactRequestd fields;
   py::object accepts_triangles;
 };
 
@@ -30,17 +29,18 @@ struct Request {
 /// the exception reaches the caller when the query has ended.
 class TriangleFilter {
  public:
-  /// @param function  None: accepts all
-  explicit TriangleFilter(const py::object& function) {
-    if (function.is_none()) return;
-    call_ = [this, &function](std::intptr_t b1, std::intptr_t b2) {
-      return ask(function, b1, b2);
+  /// @param request  must live as long as this; without a function all are accepted
+  explicit TriangleFilter(const Request& request) : request_(request.fields) {
+    if (request.accepts_triangles.is_none()) return;
+    own_ = request.fields;
+    own_->accepts_triangles = [this, &request](std::intptr_t b1, std::intptr_t b2) {
+      return ask(request.accepts_triangles, b1, b2);
     };
   }
 
-  /// Null: all pairs are accepted.
-  const std::function<bool(std::intptr_t, std::intptr_t)>* function() const {
-    return call_ ? &call_ : nullptr;
+  /// The request with the function.
+  const fcl::ContinuousContactRequestd& request() const {
+    return own_ ? *own_ : request_;
   }
 
   /// Runs a query. The caller does not have the GIL.
@@ -69,7 +69,9 @@ class TriangleFilter {
     }
   }
 
-  std::function<bool(std::intptr_t, std::intptr_t)> call_;
+  const fcl::ContinuousContactRequestd& request_;
+  /// With the function; empty: there is none.
+  std::optional<fcl::ContinuousContactRequestd> own_;
   std::atomic<bool> failed_{false};
   std::exception_ptr error_;
 };

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "api/contact_conversion.h"
+#include "base/large_pages.h"
+#include "base/parallel.h"
+#include "base/stopwatch.h"
 #include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
+#include "paths/posed_vector.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,94 +15,110 @@ namespace detail {
 namespace deformable {
 namespace {
 
+Vec toVec(const Vector3<double>& v) { return {v[0], v[1], v[2]}; }
+
 template <typename S>
-Vector3<S> toVector(const double (&v)[3]) {
-  return {static_cast<S>(v[0]), static_cast<S>(v[1]), static_cast<S>(v[2])};
+Vector3<S> toVector(const Vec& v) {
+  return {static_cast<S>(v.x), static_cast<S>(v.y), static_cast<S>(v.z)};
 }
 
-/// The contact without geometry.
-template <typename S>
-ContinuousContact<S> toNumbers(const FeatureContact& contact) {
-  ContinuousContact<S> out;
-  out.kind = contact.kind;
-  out.b1 = contact.triangles[0];
-  out.b2 = contact.triangles[1];
-  for (std::size_t i = 0; i < 4; ++i)
-    out.vertices[i] = static_cast<int>(contact.vertices[i]);
-  out.first_on_o1 = contact.first_on_a;
-  out.toc_lo = contact.toc_lo;
-  out.toc_hi = contact.toc_hi;
-  return out;
-}
-
-/// @param path_of  path_of(on_a, id) returns the path of a vertex of mesh a, or of b
-/// @param t  the time of contact on these paths
-template <typename S, typename PathOf>
-void addGeometry(const FeatureContact& contact, const PathOf& path_of, double t,
-                 bool at_distance, ContinuousContact<S>& out) {
-  const std::size_t num_first = contact.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
-  VertexPath x[4]{};
-  for (std::size_t i = 0; i < static_cast<std::size_t>(out.numVertices()); ++i)
-    x[i] = path_of((i < num_first) == contact.first_on_a, contact.vertices[i]);
-  double position[3], normal[3];
-  (at_distance ? distanceGeometry : contactGeometry)(
-      contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, t, position, normal);
-  out.pos = toVector<S>(position);
-  out.normal = toVector<S>(normal);
-  if (!contact.first_on_a) out.normal = -out.normal;
+/// Converts a list of contacts to the public type.
+template <typename S, typename Contacts, typename Convert>
+void convertAll(const Contacts& contacts, const Convert& convert, int num_threads,
+                std::vector<ContinuousContact<S>>& out) {
+  const std::size_t count = contacts.size();
+  const auto contactAt = [&](std::size_t i) {
+    // Contacts that are neighbours in time are scattered in memory.
+    constexpr std::size_t kAhead = 16;
+    __builtin_prefetch(&contacts[std::min(i + kAhead, count - 1)]);
+    return convert(contacts[i]);
+  };
+  if (numThreads(num_threads) == 1) {
+    out.clear();
+    for (std::size_t i = 0; i < count; ++i) out.push_back(contactAt(i));
+    return;
+  }
+  // resize() writes each contact once, contactAt() a second time.
+  constexpr std::size_t kBlock = 1024;
+  out.resize(count);
+  parallelForBlocks(count, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
+    for (; i < last; ++i) out[i] = contactAt(i);
+  });
 }
 
 }  // namespace
 
-template <typename S>
-ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
-                                         const MeshInstance& a, const MeshInstance& b,
-                                         bool with_geometry, bool at_distance) {
-  ContinuousContact<S> out = toNumbers<S>(contact);
-  const auto path_of = [&](bool on_a, std::uint32_t id) {
-    return (on_a ? a : b).frames[id];
-  };
+ContactDescriber::ContactDescriber(const QueryOptions& options)
+    : with_geometry_(options.with_geometry), at_distance_(options.min_distance > 0) {}
+
+ContactDescriber::ContactDescriber(const MeshInstance& a, const MeshInstance& b,
+                                   const QueryOptions& options)
+    : ContactDescriber(options) {
+  mesh_[0] = a;
+  mesh_[1] = b;
+}
+
+ContactDescriber::ContactDescriber(const PreparedMotion& a, const PreparedMotion& b,
+                                   const QueryOptions& options)
+    : ContactDescriber(a.beginning(), b.beginning(), options) {
+  motion_[0] = &a;
+  motion_[1] = &b;
+}
+
+DescribedContact ContactDescriber::operator()(const FeatureContact& contact) const {
+  DescribedContact out;
+  out.kind = contact.kind;
+  out.first_on_a = contact.first_on_a;
+  std::copy(contact.triangles, contact.triangles + 2, out.triangles);
+  for (std::size_t i = 0; i < 4; ++i)
+    out.vertices[i] = static_cast<std::int32_t>(contact.vertices[i]);
+  out.toc_lo = contact.toc_lo;
+  out.toc_hi = contact.toc_hi;
+  const bool has_width = contact.toc_hi != contact.toc_lo;
   out.within_tolerance =
-      at_distance && contact.toc_lo > 0 && contact.toc_hi == contact.toc_lo;
-  if (with_geometry) addGeometry(contact, path_of, contact.toc_lo, at_distance, out);
+      !has_width && (motion_[0] ? !(at_distance_ && contact.toc_lo == 0)
+                                : at_distance_ && contact.toc_lo > 0);
+  if (with_geometry_) addGeometry(contact, out);
   return out;
 }
 
-template <typename S>
-ContinuousContact<S> toContinuousContact(const FeatureContact& contact,
-                                         const PreparedMotion& a, const PreparedMotion& b,
-                                         bool with_geometry, bool at_distance) {
-  ContinuousContact<S> out = toNumbers<S>(contact);
-  const auto path_of = [&](bool on_a, std::uint32_t id) {
-    return (on_a ? a : b).tangentAt(id, contact.toc_lo);
-  };
-  out.within_tolerance =
-      contact.toc_hi == contact.toc_lo && !(at_distance && contact.toc_lo == 0);
-  if (with_geometry) addGeometry(contact, path_of, 0, at_distance, out);
-  return out;
+void ContactDescriber::addGeometry(const FeatureContact& contact,
+                                   DescribedContact& out) const {
+  const std::size_t num_first = contact.kind == ContinuousContactKind::kEdgeEdge ? 2 : 1;
+  VertexPath x[4]{};
+  for (std::size_t i = 0; i < numVertices(contact.kind); ++i) {
+    const int side = (i < num_first) == contact.first_on_a ? 0 : 1;
+    x[i] = motion_[side] ? motion_[side]->tangentAt(contact.vertices[i], contact.toc_lo)
+                         : mesh_[side].frames[contact.vertices[i]];
+  }
+  // The time on these paths.
+  const double t = motion_[0] ? 0 : contact.toc_lo;
+  double position[3], normal[3];
+  (at_distance_ ? distanceGeometry : contactGeometry)(
+      contact.kind, FeaturePoints{{&x[0], &x[1], &x[2], &x[3]}}, t, position, normal);
+  out.position = vecOf(position);
+  out.normal = (contact.first_on_a ? 1. : -1.) * vecOf(normal);
 }
 
-template <typename S>
-ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshInstance& a,
-                                         const MeshInstance& b, bool with_geometry) {
-  ContinuousContact<S> out;
+DescribedContact ContactDescriber::operator()(const Crossing& crossing) const {
+  DescribedContact out;
   out.kind = ContinuousContactKind::kCrossing;
-  out.b1 = crossing.triangles[0];
-  out.b2 = crossing.triangles[1];
-  for (std::size_t i = 0; i < 2; ++i)
-    out.vertices[i] = static_cast<int>(crossing.edge[i]);
-  for (std::size_t i = 0; i < 3; ++i)
-    out.vertices[i + 2] = static_cast<int>(crossing.face[i]);
-  out.first_on_o1 = crossing.first_on_a;
-  if (!with_geometry) return out;
+  out.first_on_a = crossing.first_on_a;
+  std::copy(crossing.triangles, crossing.triangles + 2, out.triangles);
+  for (std::size_t i = 0; i < 5; ++i)
+    out.vertices[i] =
+        static_cast<std::int32_t>(i < 2 ? crossing.edge[i] : crossing.face[i - 2]);
+  if (!with_geometry_) return out;
 
-  const MeshInstance &first = crossing.first_on_a ? a : b,
-                     &second = crossing.first_on_a ? b : a;
+  const MeshInstance &first = mesh_[crossing.first_on_a ? 0 : 1],
+                     &second = mesh_[crossing.first_on_a ? 1 : 0];
   double point[5][3];
   for (std::size_t i = 0; i < 5; ++i)
     (i < 2 ? first : second)
         .frames.at(0, i < 2 ? crossing.edge[i] : crossing.face[i - 2], point[i]);
-  const auto vec = [&point](int i) { return toVector<double>(point[i]); };
+  const auto vec = [&point](int i) {
+    return Vector3<double>(point[i][0], point[i][1], point[i][2]);
+  };
   // Scaled so that no product of tiny or huge meshes leaves the range of numbers.
   const auto scaled = [](const Vector3<double>& v) -> Vector3<double> {
     const double size = v.cwiseAbs().maxCoeff();
@@ -112,31 +132,30 @@ ContinuousContact<S> toContinuousContact(const Crossing& crossing, const MeshIns
                above = (vec(1) - vec(2)).dot(normal);
   // The ends are on different sides. For an edge in the plane it is the middle.
   const double s = above != below ? below / (below - above) : 0.5;
-  out.pos = (vec(0) + std::min(std::max(s, 0.), 1.) * edge).template cast<S>();
+  const Vector3<double> position = vec(0) + std::min(std::max(s, 0.), 1.) * edge;
+  out.position = toVec(position);
   const double length = normal.norm();
-  if (length > 0 && std::isfinite(length))
-    out.normal = (normal / length).template cast<S>();
+  if (length > 0 && std::isfinite(length)) out.normal = toVec(normal / length);
   return out;
 }
 
 template <typename S>
-ContinuousContact<S> toContinuousContact(const ShapeContact& contact,
-                                         bool with_geometry) {
+ContinuousContact<S> toContinuousContact(const DescribedContact& contact,
+                                         const CollisionGeometry<S>& o1,
+                                         const CollisionGeometry<S>& o2) {
   ContinuousContact<S> out;
   out.kind = contact.kind;
-  out.first_on_o1 = contact.mesh_is_first;
+  out.o1 = &o1;
+  out.o2 = &o2;
   out.b1 = contact.triangles[0];
   out.b2 = contact.triangles[1];
-  std::copy(contact.vertices, contact.vertices + 3, out.vertices.begin());
+  std::copy(contact.vertices, contact.vertices + 5, out.vertices.begin());
+  out.first_on_o1 = contact.first_on_a;
+  out.within_tolerance = contact.within_tolerance;
   out.toc_lo = contact.toc_lo;
   out.toc_hi = contact.toc_hi;
-  out.within_tolerance = contact.within_tolerance;
-  if (!with_geometry) return out;
-  const auto vector = [](const Vec& v) -> Vector3<S> {
-    return {static_cast<S>(v.x), static_cast<S>(v.y), static_cast<S>(v.z)};
-  };
-  out.pos = vector(contact.position);
-  out.normal = vector(contact.normal);
+  out.pos = toVector<S>(contact.position);
+  out.normal = toVector<S>(contact.normal);
   return out;
 }
 
@@ -162,16 +181,62 @@ S roundTimeUp(double t) {
   return static_cast<double>(rounded) < t ? std::nextafter(rounded, S(1)) : rounded;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                          \
-  template ContinuousContact<S> toContinuousContact(                                    \
-      const FeatureContact&, const MeshInstance&, const MeshInstance&, bool, bool);     \
-  template ContinuousContact<S> toContinuousContact(                                    \
-      const FeatureContact&, const PreparedMotion&, const PreparedMotion&, bool, bool); \
-  template ContinuousContact<S> toContinuousContact(                                    \
-      const Crossing&, const MeshInstance&, const MeshInstance&, bool);                 \
-  template ContinuousContact<S> toContinuousContact(const ShapeContact&, bool);         \
-  template Contact<S> toContact(const ContinuousContact<S>&);                           \
-  template S roundTimeDown<S>(double);                                                  \
+template <typename S>
+QueryOutcome<S> outcomeOf(const QueryAnswer& answer) {
+  if (answer.hasCrossing()) return {true, 0, 0, 0};
+  if (!answer.hasContact()) return {false, 1, 1, 1};
+  const S hi = roundTimeUp<S>(answer.first.hi);
+  return {true, roundTimeDown<S>(answer.first.lo), hi,
+          std::max(hi, static_cast<S>(answer.pose_time))};
+}
+
+template <typename S>
+void fillContacts(const QueryAnswer& answer, const ContactDescriber& describe,
+                  const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2,
+                  const QueryOptions& options, ContinuousContacts<S>& result) {
+  const Stopwatch start;
+  const auto convert = [&](const auto& contact) {
+    return toContinuousContact<S>(describe(contact), o1, o2);
+  };
+  const bool has_shape = !answer.shape_contacts.empty();
+  const std::size_t count =
+      has_shape ? answer.shape_contacts.size() : answer.contacts.size();
+  // Allocate first: an exception must leave the result unchanged.
+  result.crossings.reserve(options.all_crossings ? answer.crossings.size() : 0);
+  if (result.contacts.capacity() < count) {
+    std::vector<ContinuousContact<S>> room;
+    room.reserve(count);
+    preferLargePages(room.data(), count * sizeof(ContinuousContact<S>));
+    result.contacts.swap(room);
+  }
+  if (has_shape)
+    convertAll(answer.shape_contacts, convert, options.num_threads, result.contacts);
+  else
+    convertAll(answer.contacts, convert, options.num_threads, result.contacts);
+  result.contacts_cut = answer.cut;
+  result.is_triangle_soup = false;
+  result.initially_crossing = answer.hasCrossing();
+  result.crossing =
+      answer.hasCrossing() ? convert(answer.crossings.front()) : ContinuousContact<S>();
+  result.crossings.clear();
+  if (options.all_crossings)
+    for (const Crossing& crossing : answer.crossings)
+      result.crossings.push_back(convert(crossing));
+  result.counts = answer.counts;
+  result.times = answer.times;
+  result.times.test += start.seconds();
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                         \
+  template ContinuousContact<S> toContinuousContact(const DescribedContact&,           \
+                                                    const CollisionGeometry<S>&,       \
+                                                    const CollisionGeometry<S>&);      \
+  template Contact<S> toContact(const ContinuousContact<S>&);                          \
+  template QueryOutcome<S> outcomeOf(const QueryAnswer&);                              \
+  template void fillContacts(const QueryAnswer&, const ContactDescriber&,              \
+                             const CollisionGeometry<S>&, const CollisionGeometry<S>&, \
+                             const QueryOptions&, ContinuousContacts<S>&);             \
+  template S roundTimeDown<S>(double);                                                 \
   template S roundTimeUp<S>(double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

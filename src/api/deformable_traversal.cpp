@@ -90,14 +90,13 @@ struct DeformableTraversal<S>::State {
   State(const CollisionGeometry<S>& o1, const CollisionGeometry<S>& o2,
         std::unique_ptr<deformable::PreparedMesh> prepared1,
         std::unique_ptr<deformable::PreparedMesh> prepared2,
-        const deformable::QueryOptions& options, bool enable_contact,
-        CollisionResult<S>& result)
+        const deformable::QueryOptions& options, CollisionResult<S>& result)
       : o1(o1),
         o2(o2),
         prepared1(std::move(prepared1)),
         prepared2(std::move(prepared2)),
         view1(mesh1()),
-        enable_contact(enable_contact),
+        describe(mesh1(), mesh2(), options),
         result(result),
         earlier(result) {
     if (this->prepared2) {
@@ -132,7 +131,7 @@ struct DeformableTraversal<S>::State {
   std::unique_ptr<deformable::KdopShift> shift;         // null: with itself
   deformable::BoxShifts shifts;
   std::unique_ptr<deformable::NarrowPhase> test;
-  const bool enable_contact;
+  const deformable::ContactDescriber describe;
   CollisionResult<S>& result;
   /// The contacts that the result had before.
   const CollisionResult<S> earlier;
@@ -150,6 +149,7 @@ deformable::QueryOptions makeOptions(S toc_err, const CollisionRequest<S>& reque
   deformable::QueryOptions options;
   options.max_contacts = request.num_max_contacts;
   options.toc_err = requireTocErr(static_cast<double>(toc_err), "toc_err");
+  options.with_geometry = request.enable_contact;
   return options;
 }
 
@@ -176,9 +176,8 @@ bool DeformableTraversal<S>::start(const MovingGeometry<S>& o1,
                                                       o.end(), name);
   };
   auto mesh1 = prepared(placed1, "model1"), mesh2 = prepared(placed2, "model2");
-  state_ =
-      std::make_unique<State>(*o1.geometry, *o2.geometry, std::move(mesh1),
-                              std::move(mesh2), options, request.enable_contact, result);
+  state_ = std::make_unique<State>(*o1.geometry, *o2.geometry, std::move(mesh1),
+                                   std::move(mesh2), options, result);
   return true;
 }
 
@@ -193,7 +192,7 @@ bool DeformableTraversal<S>::startSelf(const CollisionGeometry<S>& model, S toc_
   state_ = std::make_unique<State>(
       model, model,
       std::make_unique<deformable::PreparedMesh>(model, still, still, "model"), nullptr,
-      options, request.enable_contact, result);
+      options, result);
   return true;
 }
 
@@ -265,11 +264,8 @@ template <typename S>
 void DeformableTraversal<S>::report() {
   State& state = *state_;
   const auto convert = [&state](const auto& contact) {
-    auto out = deformable::toContinuousContact<S>(contact, state.mesh1(), state.mesh2(),
-                                                  state.enable_contact);
-    out.o1 = &state.o1;
-    out.o2 = &state.o2;
-    return deformable::toContact(out);
+    return deformable::toContact(
+        deformable::toContinuousContact<S>(state.describe(contact), state.o1, state.o2));
   };
   const auto& contacts = state.test->findings().sink().contacts();
   // A crossing is in the result only while there is no contact.

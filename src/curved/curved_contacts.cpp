@@ -477,22 +477,6 @@ void complete(const QueryOptions& options, ContactSink& sink, QueryAnswer& answe
   answer.counts.contacts = answer.contacts.size();
 }
 
-CurvedOptions motionOptionsOf(const QueryOptions& options) {
-  CurvedOptions wanted;
-  wanted.toc_err = options.toc_err;
-  // The first contact of triangles may be one to ignore.
-  wanted.all = options.query == ContinuousQuery::kAll || options.ignores_initially_closer;
-  // The contacts of features are proved.
-  wanted.proves_contacts = !wanted.all;
-  wanted.last = options.t_max;
-  wanted.distance = options.min_distance;
-  if (options.query == ContinuousQuery::kAll) wanted.num_threads = options.num_threads;
-  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
-  // Features are advanced by directions that turn, which takes fewer steps.
-  if (options.min_distance > 0) wanted.max_steps = 256;
-  return wanted;
-}
-
 /// The contacts of triangles that may be the first.
 CurvedAnswer firstTriangles(const MovingBody& a, const MovingBody& b,
                             CurvedAnswer touching, CurvedOptions& wanted) {
@@ -568,7 +552,7 @@ QueryAnswer queryCurvedContacts(const MovingBody& a, const MovingBody& b,
   QueryOptions options = requested;
   const BodiesNearOrigin near(a, b);
   if (moveAsOne(near.a, near.b, options.min_distance)) options.t_max = 0;
-  CurvedOptions wanted = motionOptionsOf(options);
+  CurvedOptions wanted = curvedOptionsOf(a, b, options);
   if (ChordSearch::isFor(a, b, options)) wanted.most_box_tests = kFewBoxTests;
   CurvedAnswer touching = queryCurved(a, b, wanted);
   if (touching.is_cut) {

@@ -485,6 +485,26 @@ BodiesNearOrigin::BodiesNearOrigin(const MovingBody& from_a, const MovingBody& f
   b.path().shift(origin);
 }
 
+CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
+                              const QueryOptions& options) {
+  const bool are_meshes = a.isMesh() && b.isMesh(),
+             all = options.query == ContinuousQuery::kAll;
+  CurvedOptions wanted;
+  wanted.toc_err = options.toc_err;
+  // The first contact of triangles may be one to ignore.
+  wanted.all = all || (are_meshes && options.ignores_initially_closer);
+  // The contacts of features are proved.
+  wanted.proves_contacts = !are_meshes || !wanted.all;
+  wanted.last = options.t_max;
+  wanted.distance = options.min_distance;
+  wanted.ignores_initially_closer = options.ignores_initially_closer;
+  if (all) wanted.num_threads = options.num_threads;
+  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
+  // Features are advanced by directions that turn, which takes fewer steps.
+  if (are_meshes && options.min_distance > 0) wanted.max_steps = 256;
+  return wanted;
+}
+
 CurvedAnswer queryCurved(const MovingBody& a, const MovingBody& b,
                          const CurvedOptions& options) {
   const BodiesNearOrigin near(a, b);

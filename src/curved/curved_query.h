@@ -8,7 +8,7 @@
 #include "advance/triangle_advance.h"
 #include "bodies/moving_body.h"
 #include "elementary/most_steps.h"
-#include "query/pair_filter.h"
+#include "query/query_options.h"
 
 namespace fcl {
 namespace detail {
@@ -44,6 +44,10 @@ struct CurvedOptions {
   /// Selects the triangle pairs that count; null: all of them.
   const PairRules* rules{nullptr};
 };
+
+/// @brief What a query of two bodies asks of queryCurved().
+CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
+                              const QueryOptions& options);
 
 struct CurvedAnswer {
   /// Sorted by (toc_lo, triangles). One for each pair of triangles, shapes or cells.

@@ -41,16 +41,13 @@ double distanceOf(double initial_gap, double tolerance, const QueryOptions& opti
 
 }  // namespace
 
-ShapeAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
+QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
                        const QueryOptions& options) {
   constexpr double kParallel = 0x1p-48;
-  ShapeAnswer answer;
+  QueryAnswer answer;
   if (options.filter && !options.filter->rules().accept(-1, -1)) return answer;
-  ShapeContact contact{};
-  contact.kind = ContinuousContactKind::kShapes;
-  std::fill(contact.vertices, contact.vertices + 3, -1);
-  std::fill(contact.triangles, contact.triangles + 2, -1);
-  contact.position = a.offset[0] * a.normal;
+  DescribedContact contact;
+  Vec position = a.offset[0] * a.normal;
   const bool are_parallel = a.goes_straight && b.goes_straight &&
                             maxNorm(cross(a.normal, b.normal)) <= kParallel;
   if (are_parallel) {
@@ -67,11 +64,13 @@ ShapeAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
       contact.within_tolerance = true;
       if (contact.toc_lo > options.t_max) return answer;
     }
-    if (begin > 0) contact.normal = gap.side * a.normal;
-    contact.position =
+    if (begin > 0 && options.with_geometry) contact.normal = gap.side * a.normal;
+    position =
         ((1 - contact.toc_lo) * a.offset[0] + contact.toc_lo * a.offset[1]) * a.normal;
   }
-  answer.contacts.push_back(contact);
+  if (options.with_geometry) contact.position = position;
+  answer.shape_contacts.push_back(contact);
+  answer.first = {contact.toc_lo, contact.toc_hi};
   // Two planes overlap at no other time.
   answer.pose_time = contact.toc_hi;
   if (contact.toc_lo > 0 && (a.is_solid || b.is_solid) && !(options.min_distance > 0))

@@ -2,8 +2,8 @@
 #ifndef FCL_CCD_CURVED_FLAT_CONTACTS_H
 #define FCL_CCD_CURVED_FLAT_CONTACTS_H
 
-#include "curved/shape_contacts.h"
 #include "numerics/moving_vector.h"
+#include "query/query_answer.h"
 #include "query/query_options.h"
 
 namespace fcl {
@@ -26,7 +26,7 @@ struct PosedFlat {
 /// @brief The contact of two planes, two halfspaces, or one of each. They meet at once
 /// unless they are parallel during the whole step, which means here: up to 2^-48, and no
 /// rotation changes.
-ShapeAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
+QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
                        const QueryOptions& options);
 
 }  // namespace deformable

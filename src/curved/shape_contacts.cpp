@@ -41,7 +41,8 @@ void sortByNames(const MovingBody& a, const MovingBody& b,
 }
 
 /// The feature of a triangle whose corners hold the nearest point.
-void setFeature(const BodyTriangle& triangle, unsigned corners, ShapeContact& contact) {
+void setFeature(const BodyTriangle& triangle, unsigned corners,
+                DescribedContact& contact) {
   int count = 0;
   for (int k = 0; k < 3; ++k)
     if ((corners >> k & 1U) != 0) contact.vertices[count++] = triangle.vertex[k];
@@ -57,8 +58,8 @@ class ShapeContacts {
         body_{&near_.a, &near_.b},
         tolerance_(near_.a, near_.b, coreDistance(a.shape(), b.shape(), distance)) {}
 
-  static ShapeContact timesOf(const CurvedContact& found) {
-    ShapeContact contact{};
+  static DescribedContact timesOf(const CurvedContact& found) {
+    DescribedContact contact;
     contact.toc_lo = found.toc_lo;
     // A contact at the beginning has exactly the time 0.
     contact.toc_hi = found.toc_lo == 0 ? 0 : found.toc_hi;
@@ -66,21 +67,20 @@ class ShapeContacts {
     return contact;
   }
 
-  ShapeContact contactOf(const CurvedContact& found) const {
+  DescribedContact contactOf(const CurvedContact& found, bool with_geometry) const {
     const MovingConvex set[2] = {movingConvexOf(*body_[0], found.place[0]),
                                  movingConvexOf(*body_[1], found.place[1])};
     const ConvexAdvance pair(set[0], set[1], found.toc_lo, found.toc_lo, tolerance_);
     const ConvexGap gap = pair.gapAt(found.toc_lo);
-    ShapeContact contact = timesOf(found);
-    contact.kind = ContinuousContactKind::kShapes;
-    std::fill(contact.vertices, contact.vertices + 3, -1);
+    DescribedContact contact = timesOf(found);
     for (int side = 0; side < 2; ++side) {
       contact.triangles[side] = nameOf(*body_[side], found, side);
       if (body_[side]->isMesh()) {
-        contact.mesh_is_first = side == 0;
+        contact.first_on_a = side == 0;
         setFeature(set[side].triangle, gap.corners[side], contact);
       }
     }
+    if (!with_geometry) return contact;
     setPosition(gap, contact);
     contact.normal = normalBefore(pair, gap, found.toc_lo);
     return contact;
@@ -137,7 +137,7 @@ class ShapeContacts {
   }
 
   /// The position is half-way between the surfaces, or inside of both.
-  void setPosition(const ConvexGap& gap, ShapeContact& contact) const {
+  void setPosition(const ConvexGap& gap, DescribedContact& contact) const {
     const double radius[2] = {body_[0]->shapeRadius(), body_[1]->shapeRadius()};
     Vec way = gap.point[1] - gap.point[0];
     if (gap.distance > 0) way = (1 / gap.distance) * way;
@@ -153,18 +153,6 @@ class ShapeContacts {
   BodyTolerance tolerance_;
 };
 
-CurvedOptions motionOptionsOf(const QueryOptions& options) {
-  CurvedOptions wanted;
-  wanted.toc_err = options.toc_err;
-  wanted.all = options.query == ContinuousQuery::kAll;
-  wanted.last = options.t_max;
-  if (wanted.all) wanted.num_threads = options.num_threads;
-  wanted.distance = options.min_distance;
-  wanted.ignores_initially_closer = options.ignores_initially_closer;
-  wanted.rules = options.filter ? &options.filter->rules() : nullptr;
-  return wanted;
-}
-
 /// Keeps those that may be the first.
 void keepFirst(std::vector<CurvedContact>& contacts) {
   double first_hi = 1;
@@ -175,12 +163,12 @@ void keepFirst(std::vector<CurvedContact>& contacts) {
 
 }  // namespace
 
-ShapeAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
+QueryAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
                                const QueryOptions& options) {
-  ShapeAnswer answer;
+  QueryAnswer answer;
   if (options.only_time && overlapDeeplyAtStart(a, b)) {
-    answer.contacts.emplace_back();
-    answer.pose_time = 0;
+    answer.shape_contacts.emplace_back();
+    answer.first = {0, 0};
     return answer;
   }
   const auto ask = [&](const CurvedOptions& wanted) {
@@ -189,7 +177,7 @@ ShapeAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
     answer.counts.triangle_pairs += found.counts.triangle_pairs;
     return std::move(found.contacts);
   };
-  CurvedOptions wanted = motionOptionsOf(options);
+  CurvedOptions wanted = curvedOptionsOf(a, b, options);
   const BodiesNearOrigin near(a, b);
   wanted.only_at_start = moveAsOne(near.a, near.b, options.min_distance);
   std::vector<CurvedContact> touching = ask(wanted);
@@ -211,16 +199,18 @@ ShapeAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
     answer.cut = options.query != ContinuousQuery::kAny;
   }
   const ShapeContacts contacts(a, b, options.min_distance);
-  answer.contacts.reserve(touching.size());
+  answer.shape_contacts.reserve(touching.size());
   for (const CurvedContact& contact : touching)
-    answer.contacts.push_back(options.only_time ? ShapeContacts::timesOf(contact)
-                                                : contacts.contactOf(contact));
-  if (!touching.empty())
+    answer.shape_contacts.push_back(
+        options.only_time ? ShapeContacts::timesOf(contact)
+                          : contacts.contactOf(contact, options.with_geometry));
+  answer.counts.contacts = touching.size();
+  if (touching.empty()) return answer;
+  const DescribedContact& first = answer.shape_contacts.front();
+  answer.first = {first.toc_lo, first.toc_hi};
+  if (!(options.min_distance > 0))
     answer.pose_time =
-        options.min_distance > 0
-            ? answer.contacts.front().toc_hi
-            : contacts.poseTimeOf(touching.front(), options.toc_err, options.t_max);
-  answer.counts.contacts = answer.contacts.size();
+        contacts.poseTimeOf(touching.front(), options.toc_err, options.t_max);
   return answer;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "fcl/common/exception.h"
 #include "numerics/error_bounds.h"
@@ -111,14 +112,14 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
                                double toc_err, int num_threads, double other_radius,
-                               double scale)
-    : name_(name) {
+                               double scale, std::optional<ConvexShape> shape)
+    : name_(name), shape_(std::move(shape)) {
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
     // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
     const double in_body = (1 + 0x1p-8) * (other_radius + path.largestTranslation());
-    shape_.emplace(convexShapeOf(placed.geometry(), name, in_body));
-    if (scale != 1) *shape_ = shape_->scaled(scale, in_body);
+    if (!shape_) shape_.emplace(convexShapeOf(placed.geometry(), name, in_body));
+    if (scale != 1 || shape_->flat()) *shape_ = shape_->scaled(scale, in_body);
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));
@@ -216,7 +217,8 @@ MeshInstance PreparedMotion::beginning() const {
   template void requireRotations(const PlacedGeometry<S>&, const char*);                \
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
-                                          double, int, double, double);
+                                          double, int, double, double,                  \
+                                          std::optional<ConvexShape>);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

@@ -75,8 +75,9 @@ class PlacedGeometry {
  public:
   explicit PlacedGeometry(const MovingGeometry<S>& moving)
       : moving_(moving),
-        kind_(deformable::meshKindOf(*moving.geometry)),
         is_shape_(deformable::isConvexShape(*moving.geometry)),
+        kind_(is_shape_ ? deformable::MeshKind::kNotAMesh
+                        : deformable::meshKindOf(*moving.geometry)),
         is_octree_(deformable::isOctree(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
@@ -142,8 +143,8 @@ class PlacedGeometry {
   }
 
   const MovingGeometry<S>& moving_;
-  deformable::MeshKind kind_;
   bool is_shape_;
+  deformable::MeshKind kind_;
   bool is_octree_;
   deformable::Pose beginning_, end_;
   bool goes_straight_{false};

@@ -67,6 +67,18 @@ double scaleOf(const MovingGeometry<S>& o1, const PreparedMotion& motion1,
 }
 
 template <typename S>
+bool isWellInRange(const PlacedGeometry<S>& o, const deformable::ConvexShape& shape) {
+  constexpr double kMostWell = 0x1p40;
+  for (const deformable::Pose* pose : {&o.beginning(), &o.end()})
+    for (const double x : pose->translation)
+      if (!(std::abs(x) <= kMostWell)) return false;
+  // A flat has no size that counts.
+  if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostWell;
+  const double size = shape.outerRadius();
+  return size >= kLeastSize && size <= kMostWell;
+}
+
+template <typename S>
 MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor) {
   MovingGeometry<S> out = o;
   for (PoseNumbers<S>& pose : out.pose)
@@ -77,9 +89,10 @@ MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor) {
   return out;
 }
 
-#define FCL_CCD_INSTANTIATE(S)                                                      \
-  template double scaleOf(const MovingGeometry<S>&, const PreparedMotion&,          \
-                          const MovingGeometry<S>&, const PreparedMotion&, double); \
+#define FCL_CCD_INSTANTIATE(S)                                                           \
+  template double scaleOf(const MovingGeometry<S>&, const PreparedMotion&,               \
+                          const MovingGeometry<S>&, const PreparedMotion&, double);      \
+  template bool isWellInRange(const PlacedGeometry<S>&, const deformable::ConvexShape&); \
   template MovingGeometry<S> scaledPath(const MovingGeometry<S>&, double);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)

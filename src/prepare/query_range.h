@@ -21,6 +21,12 @@ double scaleOf(const MovingGeometry<S>& o1, const deformable::PreparedMotion& mo
                const MovingGeometry<S>& o2, const deformable::PreparedMotion& motion2,
                double distance);
 
+/// @brief Whether the path of a shape is so far inside the range that PreparedMotion
+/// refuses none, and scaleOf() is 1 without a distance.
+/// @pre its poses are rotations; it has no reference point and no control points
+template <typename S>
+bool isWellInRange(const PlacedGeometry<S>& o, const deformable::ConvexShape& shape);
+
 /// @brief The same path with all its lengths multiplied.
 template <typename S>
 MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor);

@@ -4,12 +4,14 @@
 #ifndef FCL_CCD_QUERY_QUERY_ANSWER_H
 #define FCL_CCD_QUERY_QUERY_ANSWER_H
 
+#include <cstdint>
 #include <deque>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "fcl/narrowphase/stage_counts.h"
+#include "numerics/moving_vector.h"
 #include "query/contact_sink.h"
 #include "query/crossing.h"
 #include "query/leading_contact.h"
@@ -23,16 +25,41 @@ namespace deformable {
 
 class TaskFindings;
 
+/// @brief A contact of any kind, or a crossing: what the public type says of it.
+struct DescribedContact {
+  ContinuousContactKind kind{ContinuousContactKind::kShapes};
+  /// ContinuousContact::first_on_o1.
+  bool first_on_a{false};
+  bool within_tolerance{false};
+  /// -1 where the kind has fewer.
+  std::int32_t vertices[5]{-1, -1, -1, -1, -1};
+  /// Triangles of a and b; -1 for a shape; of a cell its number (OctreeCellNumber).
+  std::int64_t triangles[2]{-1, -1};
+  double toc_lo{0}, toc_hi{0};
+  /// In the world. The normal is a unit vector from a to b, or zero if there is none.
+  Vec position{0, 0, 0}, normal{0, 0, 0};
+};
+
 struct QueryAnswer {
+  /// Of two meshes, by features. There may be very many, so that one is described when it
+  /// is needed (api/contact_conversion.h).
   SortedContacts contacts;
+  /// With a shape or an octree, sorted by (toc_lo, triangles). With only_time they have
+  /// times only.
+  std::vector<DescribedContact> shape_contacts;
   /// The tight bracket of the first contact, if there is one.
   TimeBracket first{1, 1};
+  /// With a shape or an octree: when discrete queries find the first contact, if they do
+  /// within toc_err: a time in [toc_hi, toc_lo + toc_err]. With a distance, and of two
+  /// meshes, it is not after first.hi.
+  double pose_time{0};
   bool cut{false};
   /// One, or all of them (QueryOptions::all_crossings).
   std::vector<Crossing> crossings;
   StageCounts counts;
   StageTimes times;
 
+  bool hasContact() const { return !contacts.empty() || !shape_contacts.empty(); }
   bool hasCrossing() const { return !crossings.empty(); }
 };
 

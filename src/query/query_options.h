@@ -19,6 +19,8 @@ struct QueryOptions {
   /// Whether only the time of the first contact matters, not the features that meet. A
   /// crossing at t = 0 then answers the query.
   bool only_time{false};
+  /// Whether the position and the normal of each contact are wanted.
+  bool with_geometry{true};
   /// See parallelFor().
   int num_threads{1};
   /// Whether a self-collision query leaves out embedded regions. The answer does not

@@ -203,7 +203,7 @@ struct Look {
     deformable::QueryOptions options;
     options.query = ContinuousQuery::kAny;
     const auto answer = queryShapeContacts(mesh.body(), flat.body(), options);
-    time = answer.contacts.empty() ? kNever : answer.contacts.front().toc_lo;
+    time = answer.hasContact() ? answer.first.lo : kNever;
   }
 };
 

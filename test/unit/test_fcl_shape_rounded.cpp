@@ -20,15 +20,15 @@ void expectContact(const MovingBody& box, const MovingBody& other, double min_di
                    const std::function<double(double)>& distance) {
   QueryOptions options;
   options.min_distance = min_distance;
-  const ShapeAnswer answer = queryShapeContacts(box, other, options);
+  const QueryAnswer answer = queryShapeContacts(box, other, options);
   double first = 0;
   while (first <= kTimes && distance(first / kTimes) > min_distance) ++first;
-  ASSERT_EQ(answer.contacts.empty(), first > kTimes);
+  ASSERT_EQ(answer.shape_contacts.empty(), first > kTimes);
   if (first > kTimes) return;
-  EXPECT_LE(answer.contacts[0].toc_lo, first / kTimes);
-  EXPECT_GE(answer.contacts[0].toc_hi, (first - 1) / kTimes);
+  EXPECT_LE(answer.shape_contacts[0].toc_lo, first / kTimes);
+  EXPECT_GE(answer.shape_contacts[0].toc_hi, (first - 1) / kTimes);
   if (first == 0) return;
-  EXPECT_NEAR(distance(answer.contacts[0].toc_lo), min_distance, 1e-9);
+  EXPECT_NEAR(distance(answer.shape_contacts[0].toc_lo), min_distance, 1e-9);
 }
 
 TEST(FCL_SHAPE_ROUNDED, boxMeetsABallAndATriangle) {

@@ -29,40 +29,6 @@ inline void requireNotNull(const void* argument, const char* name) {
 }
 
 template <typename S>
-QuerySettings settingsOf(const ContinuousCollisionRequest<S>& request) {
-  return {static_cast<double>(request.toc_err),
-          false,
-          ContinuousQuery::kFirst,
-          1,
-          false,
-          1,
-          1.,
-          false,
-          nullptr,
-          nullptr,
-          nullptr,
-          0.,
-          false};
-}
-
-template <typename S>
-QuerySettings settingsOf(const ContinuousContactRequest<S>& request) {
-  return {static_cast<double>(request.toc_err),
-          true,
-          request.query,
-          request.num_max_contacts,
-          request.enable_contact,
-          request.num_threads,
-          static_cast<double>(request.t_max),
-          request.enable_crossings,
-          &request.filter1,
-          &request.filter2,
-          request.accepts_triangles ? &request.accepts_triangles : nullptr,
-          static_cast<double>(request.min_distance),
-          request.ignore_initially_closer};
-}
-
-template <typename S>
 ContinuousContacts<S>* contactsOf(ContinuousCollisionResult<S>&) {
   return nullptr;
 }
@@ -307,8 +273,7 @@ template <typename S, typename Request, typename Result>
 bool collideHere(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                  const Request& request, Result& result) {
   QueryOutcome<S> outcome;
-  if (!detail::answerPair(o1, o2, detail::settingsOf(request), outcome,
-                          detail::contactsOf(result)))
+  if (!detail::answerPair(o1, o2, request, outcome, detail::contactsOf(result)))
     return false;
   detail::fillResult(outcome, o1, o2, result);
   return true;
@@ -372,7 +337,7 @@ S collideSelf(const CollisionGeometry<S>* o, const Request& request, Result& res
   const Transform3<S> still = Transform3<S>::Identity();
   const MovingGeometry<S> moving = detail::movingGeometry(o, still, still);
   QueryOutcome<S> outcome;
-  detail::answerSelf(o, detail::settingsOf(request), outcome, detail::contactsOf(result));
+  detail::answerSelf(o, request, outcome, detail::contactsOf(result));
   detail::fillResult(outcome, moving, moving, result);
   return result.time_of_contact;
 }

@@ -13,7 +13,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstring>
 #include <functional>
 #include <limits>
@@ -208,25 +207,6 @@ inline const char* kindOf(NODE_TYPE type) {
   }
 }
 
-/// @brief The request, as numbers.
-struct QuerySettings {
-  double toc_err;
-  /// Whether this is a request for contacts. If not, the fields below are not used.
-  bool with_contacts;
-  ContinuousQuery query;
-  std::size_t num_max_contacts;
-  bool enable_contact;
-  int num_threads;
-  double t_max;
-  bool enable_crossings;
-  /// Of o1 and o2; null: none. They are read during the call.
-  const ContinuousFilter* filter1;
-  const ContinuousFilter* filter2;
-  const std::function<bool(std::intptr_t, std::intptr_t)>* accepts_triangles;
-  double min_distance;
-  bool ignore_initially_closer;
-};
-
 /// @brief The answer: the fields of FCL's own result, with the time bracket of the first
 /// contact, and the time of the poses in place of these.
 template <typename S>
@@ -238,12 +218,13 @@ struct QueryOutcome {
 };
 
 /// @brief The continuous query of a pair.
-/// @param contacts  takes the contacts; null without settings.with_contacts
+/// @tparam Request  ContinuousCollisionRequest<S>, or ContinuousContactRequest<S>
+/// @param contacts  takes the contacts; null if the request is not for contacts
 /// @return false when FCL has to answer the pair; nothing has changed then.
 /// @throws fcl::Exception as continuousCollide()
-template <typename S>
+template <typename S, typename Request>
 FCL_EXPORT bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
-                           const QuerySettings& settings, QueryOutcome<S>& outcome,
+                           const Request& request, QueryOutcome<S>& outcome,
                            ContinuousContacts<S>* contacts);
 
 /// @brief Throws fcl::Exception, which tells why there are no contacts of a pair for
@@ -257,8 +238,9 @@ FCL_EXPORT void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry
                                               const MovingGeometry<float>& o2);
 
 /// @brief The continuous query of a mesh with itself.
-template <typename S>
-FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const QuerySettings& settings,
+/// @tparam Request, @param contacts  as for answerPair()
+template <typename S, typename Request>
+FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const Request& request,
                            QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts);
 
 /// @brief The same type as ContinuousCandidateSink.
