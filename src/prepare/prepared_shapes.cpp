@@ -14,9 +14,6 @@ namespace {
 using deformable::ConvexShape;
 using deformable::convexShapeOf;
 
-/// "o1" or "o2", for errors.
-const char* nameOf(int k) { return k == 0 ? "o1" : "o2"; }
-
 /// Whether the path of a shape begins in its first pose as it is given, and nothing about
 /// the path has to be checked but its size.
 template <typename S>
@@ -31,76 +28,32 @@ bool beginsAsGiven(const PlacedGeometry<S>& o) {
 
 }  // namespace
 
-/// @param first  the one that is checked first
-/// @param[out] shapes  those that were converted
 template <typename S>
-bool PreparedShapes::areFoundToOverlap(const PlacedGeometry<S>* const (&object)[2],
-                                       int first, Shapes& shapes) {
-  for (const auto* o : object)
-    if (!beginsAsGiven(*o)) return false;
-  for (const int k : {first, 1 - first}) {
-    shapes[k].emplace(convexShapeOf(object[k]->geometry(), nameOf(k), 0));
-    // PreparedMotion refuses some of the others.
-    if (!isWellInRange(*object[k], *shapes[k])) return false;
+bool areFoundToOverlap(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                       PreparedShapes& shapes) {
+  if (!beginsAsGiven(o1) || !beginsAsGiven(o2)) return false;
+  const int first = firstOf(o1), second = 1 - first;
+  const PlacedGeometry<S>& object = first == 0 ? o1 : o2;
+  const PlacedGeometry<S>& other = first == 0 ? o2 : o1;
+  ConvexShape x = convexShapeOf(object.geometry(), nameOf(first), 0);
+  // PreparedMotion refuses some of the others.
+  if (!isWellInRange(object, x)) {
+    shapes.shape[first].emplace(std::move(x));
+    return false;
   }
-  return deformable::overlapDeeplyAtStart(*shapes[0], object[0]->beginning(), *shapes[1],
-                                          object[1]->beginning());
+  ConvexShape y = convexShapeOf(other.geometry(), nameOf(second), 0);
+  if (isWellInRange(other, y) &&
+      deformable::overlapDeeplyAtStart(x, object.beginning(), y, other.beginning()))
+    return true;
+  shapes.shape[first].emplace(std::move(x));
+  shapes.shape[second].emplace(std::move(y));
+  return false;
 }
 
-/// Makes the bodies.
-template <typename S>
-void PreparedShapes::prepare(const PlacedGeometry<S>* const (&object)[2], int first,
-                             Shapes& shapes) {
-  double other_radius = 0;
-  for (const int k : {first, 1 - first}) {
-    motion_[k].emplace(*object[k], nameOf(k), options_.toc_err, options_.num_threads,
-                       other_radius, scale_, std::move(shapes[k]));
-    if (motion_[k]->isEmpty())
-      are_empty_ = true;
-    else
-      other_radius = motion_[k]->body().size();
-  }
-}
-
-template <typename S>
-PreparedShapes::PreparedShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                               const deformable::QueryOptions& options)
-    : options_(options) {
-  const PlacedGeometry<S>* const object[2] = {&o1, &o2};
-  // The part of an unbounded shape that matters depends on the other object.
-  const int first = deformable::isUnbounded(o1.geometry()) ? 1 : 0;
-  Shapes shapes;
-  overlap_at_start_ = options.only_time && areFoundToOverlap(object, first, shapes);
-  if (overlap_at_start_) return;
-  prepare(object, first, shapes);
-  if (are_empty_) return;
-  scale_ =
-      scaleOf(o1.moving(), *motion_[0], o2.moving(), *motion_[1], options.min_distance);
-  if (scale_ == 1) return;
-  options_.min_distance *= scale_;
-  for (const int k : {0, 1}) shapes[k].emplace(*motion_[k]->body().shape());
-  const MovingGeometry<S> moving1 = scaledPath(o1.moving(), scale_),
-                          moving2 = scaledPath(o2.moving(), scale_);
-  const PlacedGeometry<S> scaled1(moving1), scaled2(moving2);
-  prepare<S>({&scaled1, &scaled2}, first, shapes);
-}
-
-void PreparedShapes::unscale(deformable::QueryAnswer& answer) const {
-  if (scale_ == 1) return;
-  for (auto& contact : answer.shape_contacts)
-    contact.position = (1 / scale_) * contact.position;
-}
-
-double PreparedShapes::updateTime() const {
-  return motion_[0]->updateTime() + motion_[1]->updateTime();
-}
-
-template PreparedShapes::PreparedShapes(const PlacedGeometry<double>&,
-                                        const PlacedGeometry<double>&,
-                                        const deformable::QueryOptions&);
-template PreparedShapes::PreparedShapes(const PlacedGeometry<float>&,
-                                        const PlacedGeometry<float>&,
-                                        const deformable::QueryOptions&);
+template bool areFoundToOverlap(const PlacedGeometry<double>&,
+                                const PlacedGeometry<double>&, PreparedShapes&);
+template bool areFoundToOverlap(const PlacedGeometry<float>&,
+                                const PlacedGeometry<float>&, PreparedShapes&);
 
 }  // namespace detail
 }  // namespace fcl
