@@ -63,7 +63,7 @@ class NarrowPhase {
   }
 
  private:
-  void setReach(double reach);
+  void setCullDistance(double cull_distance);
 
   const BoxShifts& shifts_;
   /// What is added to boxes of a.

@@ -379,7 +379,7 @@ struct AtStart {
 AtStart expectSameAtStart(const MovingPair (&queries)[8], double distance, double size) {
   const DistanceBlock block(queries);
   const ContinuousContactKind kind = queries[0].kind;
-  // As reachOf(), for coordinates of this size.
+  // As cullDistanceOf(), for coordinates of this size.
   const double reach = distance * (1 + 2 * DistanceTolerance::kShare) +
                        2 * DistanceTolerance::kTouching * (distance + 2 * size);
   const auto test = [&](const Kernels& k, std::size_t count, Approach(&found)[8]) {
