@@ -71,7 +71,7 @@ class ContactQuery {
 
  private:
   NarrowPhase narrowPhase(std::size_t task) {
-    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, &progress_,
+    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, progress_,
                        task);
   }
 

@@ -20,12 +20,12 @@ bool mayRepeat(const MeshInstance& a, const MeshInstance& b) {
 
 NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
                          const BoxShifts& shifts, const QueryOptions& options,
-                         QueryProgress* progress, std::size_t task)
+                         QueryProgress& progress, std::size_t task, FirstBracket* first)
     : shifts_(shifts),
       shift_(shifts.shift(shifts.cullDistance(1))),
       batch_(a, b, shifts.isEmpty() ? nullptr : &shift_, kernels(),
              shifts.cullDistance(1)),
-      findings_(options, mayRepeat(a, b), progress, task),
+      findings_(options, mayRepeat(a, b), progress, task, first),
       touching_(batch_, findings_, mayRepeat(a, b)),
       distance_(batch_, findings_) {
   assert(&a == &b || !shifts.isEmpty());
