@@ -38,13 +38,13 @@ enum class AdvanceAnswer {
 /// @brief Advances a pair from t, step by step, until it is in contact.
 /// @param[in,out] t  in: the time at which to start; out: the time that was reached
 /// @param t1  the end of the span
-/// @param last  stops after the first step that reaches this time
+/// @param t_stop  stops after the first step that reaches this time
 /// @param[in,out] steps  the number of steps left
 /// @param look  look(t) is the pair at a time
 /// @param isContact  isContact(moment) is whether it is in contact then
 /// @param step  step(t, moment) is how long it provably stays apart; negative: unknown
 template <typename Look, typename IsContact, typename Step>
-AdvanceAnswer advance(double& t, double t1, double last, int& steps,
+AdvanceAnswer advance(double& t, double t1, double t_stop, int& steps,
                       AdvanceCounts& counts, Look&& look, IsContact&& isContact,
                       Step&& step) {
   while (true) {
@@ -60,7 +60,7 @@ AdvanceAnswer advance(double& t, double t1, double last, int& steps,
     if (!(next > t)) return AdvanceAnswer::kGivenUp;
     assert(next <= t1);
     t = next;
-    if (t > last) return AdvanceAnswer::kOpen;
+    if (t > t_stop) return AdvanceAnswer::kOpen;
   }
 }
 

@@ -331,11 +331,11 @@ ConvexGap ConvexAdvance::gapAt(double t) const {
   return gap;
 }
 
-ConvexAdvance::Answer ConvexAdvance::advance(double& t, double last, int& steps,
+ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& steps,
                                              AdvanceCounts& counts) {
   ConvexGap gap;
   return deformable::advance(
-      t, t1_, last, steps, counts, [this](double time) { return stateAt(time); },
+      t, t1_, t_stop, steps, counts, [this](double time) { return stateAt(time); },
       [this, &gap](const State& state) {
         const double contact = tolerance_.distance * growthOfNormal(state) +
                                tolerance_.touching - tolerance_.position;

@@ -55,7 +55,7 @@ class ConvexAdvance {
   const Vec& lastDirection() const { return guess_; }
 
   /// @brief As TriangleAdvance::advance(). Also kContact where the sets overlap.
-  Answer advance(double& t, double last, int& steps, AdvanceCounts& counts);
+  Answer advance(double& t, double t_stop, int& steps, AdvanceCounts& counts);
 
   /// @brief As TriangleAdvance::proveContact().
   double proveContact(double t, double width) const;

@@ -168,8 +168,8 @@ void TriangleAdvance::cornersAt(double t, Vec (&p)[2][3]) const {
     const Pose pose = path_[body]->pose(t);
     const int count = count_.of(body);
     for (int i = 0; i < count; ++i)
-      p[body][i] = posed(
-          pose, lerp(triangle_[body]->corner[0][i], triangle_[body]->corner[1][i], t));
+      p[body][i] =
+          posed(pose, triangle_[body]->corner[0][i], triangle_[body]->corner[1][i], t);
     for (int i = count; i < 3; ++i) p[body][i] = p[body][count - 1];
   }
 }
@@ -209,8 +209,8 @@ struct TriangleAdvance::Projection {
   /// are provably further apart than the margin; negative if they are not now. The gap of
   /// a pair is at least g + v h - M h^2 / 2. This is concave in h: if it is positive at
   /// the end of a step, it is positive before.
-  double advance(double margin, double rate_margin, double most_approach,
-                 double longest) const {
+  double stepLength(double margin, double rate_margin, double most_approach,
+                    double longest) const {
     double h = longest;
     for (int i = 0; i < count.a; ++i)
       for (int j = 0; j < count.b; ++j) {
@@ -252,13 +252,13 @@ double TriangleAdvance::greatestApproach(double t, const Vec& direction) const {
 double TriangleAdvance::step(double t, const State& state, const Vec& direction) const {
   const Projection along(state, direction, count_);
   const double margin = 2 * tolerance_.position + tolerance_.distance, longest = t1_ - t;
-  double best = along.advance(margin, tolerance_.rate, acceleration_, longest);
+  double best = along.stepLength(margin, tolerance_.rate, acceleration_, longest);
   if (best < 0 || best >= longest || !(jerk_ < HUGE_VAL)) return best;
   // Its rounding is far less than this part of the bound.
   const double approach = greatestApproach(t, direction) + 0x1p-40 * acceleration_;
   const auto within = [&](double horizon) {
     const double most = std::min(std::max(approach + jerk_ * horizon, 0.), acceleration_);
-    return along.advance(margin, tolerance_.rate, most, horizon);
+    return along.stepLength(margin, tolerance_.rate, most, horizon);
   };
   best = std::max(best, within(longest));
   // H is doubled until it is the whole span or the step no longer reaches it.
@@ -289,10 +289,10 @@ Vec TriangleAdvance::directionOfNearest(const State& state) const {
   return direction;
 }
 
-TriangleAdvance::Answer TriangleAdvance::advance(double& t, double last, int& steps,
+TriangleAdvance::Answer TriangleAdvance::advance(double& t, double t_stop, int& steps,
                                                  AdvanceCounts& counts) {
   const Answer answer = deformable::advance(
-      t, t1_, last, steps, counts, [this](double time) { return at(time); },
+      t, t1_, t_stop, steps, counts, [this](double time) { return at(time); },
       [this](const State& state) {
         nearest_ = nearestFeatures(state.p[0], state.p[1], count_);
         return std::sqrt(nearest_.square) + tolerance_.position <=

@@ -84,9 +84,9 @@ class TriangleAdvance {
   /// tolerance. Unless t is 0, they are apart or just touch at t. Triangles that cross at
   /// t = 0 are in contact.
   /// @param[in,out] t  in: the time at which to start; out: the time that was reached
-  /// @param last  stops after the first step that reaches this time
+  /// @param t_stop  stops after the first step that reaches this time
   /// @param[in,out] steps  the number of steps left
-  Answer advance(double& t, double last, int& steps, AdvanceCounts& counts);
+  Answer advance(double& t, double t_stop, int& steps, AdvanceCounts& counts);
 
   const NearestFeatures& nearest() const { return nearest_; }
 
@@ -110,8 +110,8 @@ class TriangleAdvance {
   double acceleration() const { return acceleration_; }
 
   /// @brief How long after the time t of a contact a proof is looked for.
-  static double bracketWidth(double t, double toc_err, double last) {
-    return std::min(toc_err, last - t);
+  static double bracketWidth(double t, double toc_err, double t_max) {
+    return std::min(toc_err, t_max - t);
   }
 
  private:

@@ -373,7 +373,7 @@ FCL_CCD_INLINE Doubles upperEnds(const TurningPairs& pairs, const TurningBody (&
       speed = max(dot(v, v), speed);
     }
   const Doubles one = all(1),
-                longest = min(min(all(request.toc_err), all(request.last) - t), one - t);
+                longest = min(min(all(request.toc_err), all(request.t_max) - t), one - t);
   Doubles hi = t,
           h = max(all(request.position_error) / max(squareRoot(speed), all(0x1p-500)),
                   all(0x1p-52));

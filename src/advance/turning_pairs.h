@@ -64,7 +64,7 @@ struct alignas(64) TurningPairs {
 
 /// @brief What is asked of them: see BodyTolerance and CurvedOptions.
 struct TurningRequest {
-  double position_error, rate_error, touching, toc_err, last;
+  double position_error, rate_error, touching, toc_err, t_max;
 };
 
 struct TurningAnswers {

@@ -105,7 +105,8 @@ struct DeformableTraversal<S>::State {
       second_view = std::make_unique<deformable::BinaryView>(mesh2());
     }
     shifts = deformable::BoxShifts(shift.get());
-    test = std::make_unique<deformable::NarrowPhase>(mesh1(), mesh2(), shifts, options);
+    test = std::make_unique<deformable::NarrowPhase>(mesh1(), mesh2(), shifts, options,
+                                                     progress, 0, &first);
   }
 
   const deformable::MeshInstance& mesh1() const { return prepared1->instance(); }
@@ -130,6 +131,8 @@ struct DeformableTraversal<S>::State {
   std::unique_ptr<deformable::BinaryView> second_view;  // null: with itself
   std::unique_ptr<deformable::KdopShift> shift;         // null: with itself
   deformable::BoxShifts shifts;
+  deformable::QueryProgress progress;
+  deformable::FirstBracket first;
   std::unique_ptr<deformable::NarrowPhase> test;
   const deformable::ContactDescriber describe;
   CollisionResult<S>& result;
@@ -279,8 +282,7 @@ void DeformableTraversal<S>::report() {
     state.result.addContact(convert(contacts[state.reported]));
   }
   if (!contacts.empty())
-    state.time_of_contact =
-        deformable::roundTimeDown<S>(state.test->findings().firstBracket().lo);
+    state.time_of_contact = deformable::roundTimeDown<S>(state.first.get().lo);
   if (!state.test->findings().hasCrossing()) return;
   state.time_of_contact = 0;
   if (contacts.empty() && !state.crossing_reported) {

@@ -6,9 +6,9 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
-#include <vector>
+#include <memory>
 
+#include "base/slot_cache.h"
 #include "bodies/moving_body.h"
 #include "paths/posed_vector.h"
 
@@ -16,35 +16,18 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A slot of a table of 2^bits slots for a time and a number.
-inline std::size_t slotOf(double t, std::int32_t number, int bits) {
-  std::uint64_t key;
-  std::memcpy(&key, &t, sizeof(key));
-  key += static_cast<std::uint64_t>(number);
-  return (key * 0x9e3779b97f4a7c15u) >> (64 - bits);
-}
-
 /// @brief Stores the poses of a body, since the same times are needed again.
 class PoseTable {
  public:
-  explicit PoseTable(const MotionPath& path) : path_(path) {
-    std::fill(time_, time_ + kSlots, -1.);
-  }
+  explicit PoseTable(const MotionPath& path) : path_(path) {}
   const Pose& at(double t) {
-    const std::size_t slot = slotOf(t, 0, kBits);
-    if (time_[slot] != t) {
-      pose_[slot] = path_.pose(t);
-      time_[slot] = t;
-    }
-    return pose_[slot];
+    return poses_.get(slotOf(t, 0, kBits), t, [&](Pose& pose) { pose = path_.pose(t); });
   }
 
  private:
   static constexpr int kBits = 7;
-  static constexpr std::size_t kSlots = std::size_t{1} << kBits;
   const MotionPath& path_;
-  double time_[kSlots];
-  Pose pose_[kSlots];
+  SlotCache<double, Pose, std::size_t{1} << kBits> poses_{-1};
 };
 
 /// @brief The beginning, the middle and the end of a span of time.
@@ -95,24 +78,22 @@ struct BodySide {
   /// @param part  the part that was opened; null: another node
   const double (&accelerations(const BodyPart* part, const BodyNode& node, double t0,
                                double t1))[BodyBoxes::kWidth] {
-    const bool is_stored = part && body.path().hasConstantAcceleration();
-    const int slot = is_stored ? part->child % MovingBodyReader::kSlots : 0;
-    Accelerations& out = is_stored ? stored_[slot] : other_;
-    if (is_stored && out.of == part->child) return out.most;
-    out.of = is_stored ? part->child : -1;
-    for (int lane = 0; lane < node.count; ++lane)
-      out.most[lane] =
-          goes_straight
-              ? 0
-              : accelerationOf(node.box[0].get(lane),
-                               node.box[body.isRigid() ? 0 : 1].get(lane), t0, t1);
-    return out.most;
+    const auto set = [&](Accelerations& out) {
+      for (int lane = 0; lane < node.count; ++lane)
+        out.most[lane] =
+            goes_straight
+                ? 0
+                : accelerationOf(node.box[0].get(lane),
+                                 node.box[body.isRigid() ? 0 : 1].get(lane), t0, t1);
+    };
+    if (part && has_constant_acceleration_)
+      return stored_.get(MovingBodyReader::slotOf(*part), part->child, set).most;
+    set(other_);
+    return other_.most;
   }
 
   /// @brief A triangle that is compared with others.
   struct SingleTriangle {
-    /// -1: none.
-    std::int32_t place{-1};
     bool is_readable{false};
     BodyTriangle of;
     /// Bound on the acceleration of its points during the span.
@@ -121,18 +102,15 @@ struct BodySide {
 
   /// @brief A triangle in a span. Valid until the next call.
   const SingleTriangle& triangle(std::int32_t place, double t0, double t1) {
-    if (single_.empty()) single_.resize(kSingles);
-    SingleTriangle& out = single_[static_cast<std::size_t>(place) % kSingles];
-    const bool is_stored = out.place == place;
-    if (is_stored && (!out.is_readable || has_constant_acceleration_)) return out;
-    if (!is_stored) {
-      out.place = place;
-      out.is_readable = body.isReadable(place);
-      out.acceleration = 0;
-      if (!out.is_readable) return out;
-      out.of = body.triangle(place);
-    }
-    if (!goes_straight)
+    if (!singles_) singles_ = std::make_unique<SingleCache>(-1);
+    const std::size_t slot = static_cast<std::size_t>(place) % SingleCache::kSlots;
+    const bool is_stored = singles_->find(slot, place);
+    SingleTriangle& out = singles_->get(slot, place, [&](SingleTriangle& single) {
+      single.is_readable = body.isReadable(place);
+      single.acceleration = 0;
+      if (single.is_readable) single.of = body.triangle(place);
+    });
+    if (out.is_readable && !goes_straight && !(is_stored && has_constant_acceleration_))
       out.acceleration = deformable::accelerationOf(acceleration(t0, t1), out.of);
     return out;
   }
@@ -150,12 +128,8 @@ struct BodySide {
       const double t = times.at[at];
       const Pose& pose = poses.at(t);
       for (int i = 0; i < 3; ++i) {
-        Vec x = triangle.corner[0][i];
-        if (!body.isRigid()) x = lerp(x, triangle.corner[1][i], t);
-        const Vec p = posed(pose, x);
-        out.corner[at][i][0] = p.x;
-        out.corner[at][i][1] = p.y;
-        out.corner[at][i][2] = p.z;
+        const Vec &x0 = triangle.corner[0][i], &x1 = triangle.corner[1][i];
+        set(out.corner[at][i], body.isRigid() ? posed(pose, x0) : posed(pose, x0, x1, t));
       }
     }
     return out;
@@ -175,9 +149,7 @@ struct BodySide {
 
  private:
   struct Accelerations {
-    /// The node; -1: none.
-    std::int32_t of{-1};
-    double most[BodyBoxes::kWidth]{};
+    double most[BodyBoxes::kWidth];
   };
 
   static bool goesStraight(const MotionPath& path) {
@@ -185,12 +157,12 @@ struct BodySide {
     return bound.isZero() && bound.per_displacement == 0;
   }
 
-  /// One triangle is compared with many nodes.
-  static constexpr std::size_t kSingles = 64;
-  std::vector<SingleTriangle> single_;
+  /// One triangle is compared with many nodes. Null until the first one.
+  using SingleCache = SlotCache<std::int32_t, SingleTriangle, 64>;
+  std::unique_ptr<SingleCache> singles_;
   /// Those of nodes that were opened, if they are the same for all spans.
-  Accelerations stored_[MovingBodyReader::kSlots];
-  Accelerations other_;
+  SlotCache<std::int32_t, Accelerations, MovingBodyReader::kSlots> stored_{-1};
+  Accelerations other_{};
   const bool has_constant_acceleration_{body.path().hasConstantAcceleration()};
   AccelerationBound acceleration_;
   /// The span of that bound.

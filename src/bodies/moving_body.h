@@ -3,8 +3,10 @@
 #define FCL_CCD_BODIES_MOVING_BODY_H
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "base/slot_cache.h"
 #include "fcl/math/triangle.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/vertex_frames.h"
@@ -186,41 +188,37 @@ class MovingBodyReader {
  public:
   static constexpr int kSlots = 64;
 
-  explicit MovingBodyReader(const MovingBody& body) : body_(body) {
-    for (int slot = 0; slot < kSlots; ++slot) key_[slot] = triangles_key_[slot] = -1;
+  explicit MovingBodyReader(const MovingBody& body) : body_(body) {}
+
+  /// @brief The slot of a node.
+  static std::size_t slotOf(const BodyPart& part) {
+    return static_cast<std::uint32_t>(part.child) % kSlots;
   }
 
   /// @brief The children of a node; valid until the next call.
   const BodyNode& open(const BodyPart& part) {
-    const int slot = part.child % kSlots;
-    if (key_[slot] != part.child) {
-      body_.open(part, node_[slot]);
-      key_[slot] = part.child;
-    }
-    return node_[slot];
+    return nodes_.get(slotOf(part), part.child,
+                      [&](BodyNode& node) { body_.open(part, node); });
   }
 
   /// @brief The triangles among the children of a node, in their lanes; valid until the
   /// next call. The other lanes have any values.
   /// @pre the body is a mesh
   const BodyTriangles& triangles(const BodyPart& part) {
-    const int slot = part.child % kSlots;
-    if (triangles_.empty()) triangles_.resize(kSlots);
-    if (triangles_key_[slot] != part.child) {
-      body_.setTriangles(open(part), triangles_[static_cast<std::size_t>(slot)]);
-      triangles_key_[slot] = part.child;
-    }
-    return triangles_[static_cast<std::size_t>(slot)];
+    if (!triangles_) triangles_ = std::make_unique<TriangleCache>(-1, BodyTriangles{});
+    return triangles_->get(slotOf(part), part.child, [&](BodyTriangles& out) {
+      body_.setTriangles(open(part), out);
+    });
   }
   const MovingBody& body() const { return body_; }
 
  private:
+  using TriangleCache = SlotCache<std::int32_t, BodyTriangles, kSlots>;
+
   const MovingBody& body_;
-  std::int32_t key_[kSlots];
-  std::int32_t triangles_key_[kSlots];
-  BodyNode node_[kSlots];
-  /// Empty until they are asked for: they take 74 KB.
-  std::vector<BodyTriangles> triangles_;
+  SlotCache<std::int32_t, BodyNode, kSlots> nodes_{-1};
+  /// Null until they are asked for: they take 74 KB.
+  std::unique_ptr<TriangleCache> triangles_;
 };
 
 }  // namespace deformable

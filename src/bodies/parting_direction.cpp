@@ -37,20 +37,22 @@ void PartingDirection::set(const Vec& direction) {
 }
 
 void PartingDirection::forgetReaches() {
-  for (auto& known : known_) known.clear();
+  for (auto& known : known_) known.reset();
 }
 
 double PartingDirection::reachOf(int k, const BodyPart& part, double t,
                                  const Vec& in_body) {
   if (part.child < 0 || !body_[k]->isMesh())
     return body_[k]->reach(part, t, in_body, room_);
-  if (known_[k].empty()) known_[k].assign(kSlots, {-1, 0, 0});
-  Reach& known = known_[k][slotOf(t, part.child, kSlotBits)];
-  if (known.node != part.child || known.t != t) {
-    const double reach = body_[k]->reach(part, t, in_body, room_);
-    known = {room_ < 0 ? -1 : part.child, t, reach};
-  }
-  return known.reach;
+  if (!known_[k]) known_[k] = std::make_unique<Reaches>(std::pair{-1, 0.});
+  const std::size_t slot = slotOf(t, part.child, kSlotBits);
+  if (const double* known = known_[k]->find(slot, {part.child, t})) return *known;
+  const double reach = body_[k]->reach(part, t, in_body, room_);
+  if (room_ < 0)
+    known_[k]->forget(slot);
+  else
+    known_[k]->put(slot, {part.child, t}) = reach;
+  return reach;
 }
 
 PartingDirection::Poses PartingDirection::posesAt(double t) const {

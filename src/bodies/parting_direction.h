@@ -5,8 +5,10 @@
 #define FCL_CCD_BODIES_PARTING_DIRECTION_H
 
 #include <cstdint>
-#include <vector>
+#include <memory>
+#include <utility>
 
+#include "base/slot_cache.h"
 #include "bodies/body_tolerance.h"
 #include "bodies/moving_body.h"
 
@@ -58,13 +60,10 @@ class PartingDirection {
   /// query without this. The first ones cost less than the pieces of work before.
   std::int64_t room_{1024};
   /// What is known of nodes of meshes: a node is met in many pairs, most of them with the
-  /// same times. Empty: nothing.
-  struct Reach {
-    std::int32_t node;
-    double t, reach;
-  };
-  static constexpr int kSlotBits = 8, kSlots = 1 << kSlotBits;
-  std::vector<Reach> known_[2];
+  /// same times. Null: nothing.
+  static constexpr int kSlotBits = 8;
+  using Reaches = SlotCache<std::pair<std::int32_t, double>, double, 1 << kSlotBits>;
+  std::unique_ptr<Reaches> known_[2];
   /// The side of a plane for which they are known: see isBelowFlat().
   bool known_below_{false};
 };

@@ -56,13 +56,9 @@ struct SpannedPair {
     for (int end = 0; end < 2; ++end) {
       const double t = end == 0 ? t0 : t1;
       const Pose pose = body.path().pose(t);
-      const double(&r)[9] = pose.rotation;
-      for (int i = 0; i < 3; ++i) {
-        const Vec x = (1 - t) * triangle.corner[0][i] + t * triangle.corner[1][i];
-        for (int k = 0; k < 3; ++k)
-          corner[end][3 * side + i][k] = r[3 * k] * x.x + r[3 * k + 1] * x.y +
-                                         r[3 * k + 2] * x.z + pose.translation[k];
-      }
+      for (int i = 0; i < 3; ++i)
+        set(corner[end][3 * side + i],
+            posed(pose, triangle.corner[0][i], triangle.corner[1][i], t));
     }
   }
 };

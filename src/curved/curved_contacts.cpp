@@ -79,11 +79,11 @@ class FeatureContacts {
 
   /// The contacts of features of pairs of triangles that touch. They do not depend on the
   /// number of threads.
-  void add(const std::vector<CurvedContact>& triangles, double last) {
+  void add(const std::vector<CurvedContact>& triangles, double t_max) {
     // Which contacts a first-contact query wants depends on those before.
     if (options_.query != ContinuousQuery::kAll ||
         numThreads(options_.num_threads) == 1) {
-      for (const CurvedContact& contact : triangles) add(contact, last);
+      for (const CurvedContact& contact : triangles) add(contact, t_max);
       return;
     }
     constexpr std::size_t kBlock = 64;
@@ -93,7 +93,7 @@ class FeatureContacts {
                       [&](std::size_t first, std::size_t end) {
                         FeatureContacts part = ofPart();
                         for (std::size_t i = first; i < end; ++i)
-                          part.add(triangles[i], last);
+                          part.add(triangles[i], t_max);
                         found[first / kBlock] = part.sink_.takeContacts();
                       });
     for (const std::deque<FeatureContact>& contacts : found)
@@ -102,19 +102,19 @@ class FeatureContacts {
 
   /// The contacts of the features that two triangles own, from the time at which the
   /// triangles touch.
-  void add(const CurvedContact& contact, double last) {
+  void add(const CurvedContact& contact, double t_max) {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
     for (unsigned pairs = pairsOf(a, b); pairs != 0; pairs &= pairs - 1)
-      addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, last);
+      addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, t_max);
   }
 
   /// The contact of a pair of features, given by its number, from t on.
   /// @return whether there is one
   bool addPair(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
-               double last) {
+               double t_max) {
     if (t > latestWanted()) return false;
-    if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, last);
+    if (tolerance_.distance > 0) return addPairAtDistance(a, b, bit, t, t_max);
     const FeaturePair pair = featurePair(bit);
     BodyTriangle x = a, y = b;
     if (pair.kind == ContinuousContactKind::kEdgeEdge) {
@@ -126,13 +126,13 @@ class FeatureContacts {
     }
     const auto& path_a = body_[0]->path();
     const auto& path_b = body_[1]->path();
-    TriangleAdvance motion(path_a, x, path_b, y, t, last, tolerance_);
+    TriangleAdvance motion(path_a, x, path_b, y, t, t_max, tolerance_);
     int steps = kMostSteps;
     AdvanceCounts counts;  // of no interest
-    if (motion.advance(t, last, steps, counts) == TriangleAdvance::Answer::kApart)
+    if (motion.advance(t, t_max, steps, counts) == TriangleAdvance::Answer::kApart)
       return false;
-    if (t > std::min(last, latestWanted())) return false;
-    put(a, b, bit, t, provedTime(a, b, t, last));
+    if (t > std::min(t_max, latestWanted())) return false;
+    put(a, b, bit, t, provedTime(a, b, t, t_max));
     return true;
   }
 
@@ -153,13 +153,7 @@ class FeatureContacts {
     double p[2][3][3];
     for (int body = 0; body < 2; ++body) {
       const Pose pose = body_[body]->path().pose(0);
-      for (int k = 0; k < 3; ++k) {
-        // As VertexFrames poses it.
-        const Vec at = posed(pose, x[body].corner[0][k]);
-        p[body][k][0] = at.x;
-        p[body][k][1] = at.y;
-        p[body][k][2] = at.z;
-      }
+      for (int k = 0; k < 3; ++k) set(p[body][k], posed(pose, x[body].corner[0][k]));
     }
     for (int body = 0; body < 2; ++body)
       for (int k = 0; k < (x[body].isFree() ? 1 : 3); ++k) {
@@ -248,23 +242,24 @@ class FeatureContacts {
   }
 
   /// A time after t at which the triangles provably cross; t if none is found.
-  double provedTime(const BodyTriangle& a, const BodyTriangle& b, double t, double last) {
+  double provedTime(const BodyTriangle& a, const BodyTriangle& b, double t,
+                    double t_max) {
     // Flat triangles touch with many features at the same time.
     Proof& proof = last_proof_;
-    if (proof.t == t && proof.last == last && proof.triangle[0] == a.index &&
+    if (proof.t == t && proof.t_max == t_max && proof.triangle[0] == a.index &&
         proof.triangle[1] == b.index)
       return proof.hi;
-    const TriangleAdvance pair(body_[0]->path(), a, body_[1]->path(), b, t, last,
+    const TriangleAdvance pair(body_[0]->path(), a, body_[1]->path(), b, t, t_max,
                                tolerance_);
     const double hi = pair.proveContact(
         t, TriangleAdvance::bracketWidth(t, options_.toc_err, options_.t_max));
-    proof = {{a.index, b.index}, t, last, hi};
+    proof = {{a.index, b.index}, t, t_max, hi};
     return hi;
   }
 
   bool addPairAtDistance(const BodyTriangle& a, const BodyTriangle& b, int bit, double t,
-                         double last) {
-    FeatureAdvance motion(body_[0]->path(), a, body_[1]->path(), b, bit, t, last,
+                         double t_max) {
+    FeatureAdvance motion(body_[0]->path(), a, body_[1]->path(), b, bit, t, t_max,
                           tolerance_);
     if (options_.ignores_initially_closer && t == 0) motion.ignoreInitiallyCloser();
     AdvanceCounts counts;  // of no interest
@@ -283,7 +278,7 @@ class FeatureContacts {
   /// The times of provedTime().
   struct Proof {
     std::int32_t triangle[2]{-1, -1};
-    double t{-1}, last{-1}, hi{-1};
+    double t{-1}, t_max{-1}, hi{-1};
   };
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
   const MovingBody* body_[2];
@@ -482,7 +477,7 @@ CurvedAnswer firstTriangles(const MovingBody& a, const MovingBody& b,
                             CurvedAnswer touching, CurvedOptions& wanted) {
   wanted.all = true;
   wanted.proves_contacts = false;
-  wanted.last = touching.contacts.front().toc_hi;
+  wanted.t_max = touching.contacts.front().toc_hi;
   CurvedAnswer first = queryCurved(a, b, wanted);
   // A graze has a bracket without width. The query up to its end divides the step in
   // another way, and may see nothing yet. Then the contact that was found is the answer.
@@ -490,13 +485,13 @@ CurvedAnswer firstTriangles(const MovingBody& a, const MovingBody& b,
 }
 
 /// Adds the contacts of features, and crossings, of triangles in contact until a time.
-void addFeatures(const CurvedAnswer& triangles, double last, const QueryOptions& options,
+void addFeatures(const CurvedAnswer& triangles, double t_max, const QueryOptions& options,
                  const FeatureContacts& unmoved, FeatureContacts& features,
                  QueryAnswer& answer) {
   for (const CurvedContact& contact : triangles.contacts)
     if (contact.toc_lo == 0 && (options.all_crossings || answer.crossings.empty()))
       unmoved.addCrossings(contact, answer.crossings);
-  features.add(triangles.contacts, last);
+  features.add(triangles.contacts, t_max);
   if (options.all_crossings) sortCrossings(answer.crossings);
 }
 
@@ -515,15 +510,16 @@ void addFeatures(const MovingBody& a, const MovingBody& b, CurvedAnswer triangle
     if (features.hasContactBy(first.contacts[0].toc_lo)) return;
   }
   if (!wanted.all) triangles = firstTriangles(a, b, std::move(triangles), wanted);
-  addFeatures(triangles, wanted.last, options, unmoved, features, answer);
+  addFeatures(triangles, wanted.t_max, options, unmoved, features, answer);
   if (!features.sink().contacts().empty() || answer.hasCrossing()) return;
   // Features that pass at the distance of the tolerance may round differently than
   // their triangles.
   if (!(options.min_distance > 0)) return features.addNearest(triangles.contacts.front());
   // Triangles that were given up may be apart.
-  if (wanted.last == options.t_max) return;
-  wanted.last = options.t_max;
-  addFeatures(queryCurved(a, b, wanted), wanted.last, options, unmoved, features, answer);
+  if (wanted.t_max == options.t_max) return;
+  wanted.t_max = options.t_max;
+  addFeatures(queryCurved(a, b, wanted), wanted.t_max, options, unmoved, features,
+              answer);
 }
 
 /// A query that needs no more takes less time than to begin with chords.

@@ -45,7 +45,7 @@ class CurvedTraversal {
                  tolerance_.distance + calm_.deviation()),
         parting_(calm_.body(0), calm_.body(1), withDeviation(calm_tolerance_)),
         apart_(a.isMesh() && b.isMesh() ? options.distance : 0),
-        latest_(options.only_at_start ? 0 : options.last),
+        latest_(options.only_at_start ? 0 : options.t_max),
         works_(options.all ? PartWorkQueue::Order::kAny
                            : PartWorkQueue::Order::kEarliestFirst) {}
 
@@ -213,14 +213,14 @@ class CurvedTraversal {
   }
 
   /// How far points may deviate from straight lines, as a share of the radius of a part.
-  /// Directions of shapes are compared at both ends of a span only. In short spans fewer
-  /// pairs may touch before the first contact does: that of a mesh and a cylinder takes
-  /// 0.44 ms, with a share of a quarter 0.65 ms. Where all contacts are wanted each span
-  /// costs: they take 7% to 45% less time than with a quarter, most beside a halfspace.
+  /// The shares were chosen by the times of queries. A small share means short spans:
+  /// boxes are tight, but there are more spans. If the first contact is wanted, tight
+  /// boxes pay with shapes, whose directions are compared at both ends of a span only:
+  /// fewer pairs may touch before that contact. If all contacts are wanted, each span has
+  /// its cost, and a large share is faster.
   ///
-  /// Two nodes of meshes need shorter spans than a triangle and a node: their pairs are
-  /// many more. A ball that turns in a shell takes 0.9 of the time with a quarter in
-  /// place of a half, and 1.03 with a quarter for triangles too.
+  /// Two nodes of meshes have many pairs below them, so a tight box pays more there than
+  /// for a triangle and a node.
   double mostDeviation(const PartWork& work) const {
     if (!body(0).shape() && !body(1).shape())
       return work.a.isTriangle() || work.b.isTriangle() ? 0.5 : 0.25;
@@ -388,11 +388,11 @@ class CurvedTraversal {
                          Pair& pair) {
     if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
-    const double last = std::min(end, works_.nextTurn(work));
+    const double t_stop = std::min(end, works_.nextTurn(work));
     PairOfManySpans* const known = work.is_one_of_many ? &seen_[keyOf(work)] : nullptr;
     int left = std::max(options_.max_steps - (known ? known->steps : work.steps), 0);
     const int most = left;
-    const auto answer = pair.advance(work.start, last, left, counts_);
+    const auto answer = pair.advance(work.start, t_stop, left, counts_);
     if (known) known->steps += most - left;
     setPartingDirection(pair, answer, work.start);
     if (answer == TriangleAdvance::Answer::kApart) return nullptr;
@@ -413,7 +413,7 @@ class CurvedTraversal {
       if (options_.proves_contacts)
         contact.toc_hi = pair.proveContact(
             work.start,
-            TriangleAdvance::bracketWidth(work.start, options_.toc_err, options_.last));
+            TriangleAdvance::bracketWidth(work.start, options_.toc_err, options_.t_max));
       contact.certainty = contact.toc_hi > contact.toc_lo
                               ? ContactCertainty::kCrossing
                               : ContactCertainty::kWithinTolerance;
@@ -495,7 +495,7 @@ CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
   wanted.all = all || (are_meshes && options.ignores_initially_closer);
   // The contacts of features are proved.
   wanted.proves_contacts = !are_meshes || !wanted.all;
-  wanted.last = options.t_max;
+  wanted.t_max = options.t_max;
   wanted.distance = options.min_distance;
   wanted.ignores_initially_closer = options.ignores_initially_closer;
   if (all) wanted.num_threads = options.num_threads;

@@ -26,8 +26,8 @@ struct CurvedOptions {
   /// have no width.
   bool proves_contacts{true};
   /// The latest time that matters.
-  double last{1};
-  /// Whether only contacts at t = 0 are looked for. They are proved until `last`.
+  double t_max{1};
+  /// Whether only contacts at t = 0 are looked for. They are proved until `t_max`.
   bool only_at_start{false};
   /// Bodies are in contact at this distance of their surfaces.
   double distance{0};

@@ -87,16 +87,16 @@ class ShapeContacts {
   }
 
   /// The time at which the pair overlaps well, in [toc_hi, toc_lo + toc_err] and up to
-  /// `last`. That is the end as a rule. Bodies may pass each other before, or one through
-  /// the other: then the deepest of some times is taken. Bodies that overlap deeply at t
-  /// = 0 stay there.
-  double poseTimeOf(const CurvedContact& found, double toc_err, double last) const {
+  /// `t_max`. That is the end as a rule. Bodies may pass each other before, or one
+  /// through the other: then the deepest of some times is taken. Bodies that overlap
+  /// deeply at t = 0 stay there.
+  double poseTimeOf(const CurvedContact& found, double toc_err, double t_max) const {
     // Points come nearer by at most the bound on their speed, times the time. Half of all
     // pairs come nearer by a tenth of that.
     constexpr double kWell = 0x1p-5;
     constexpr int kTimes = 8;
     const double first = found.toc_lo == 0 ? 0 : found.toc_hi,
-                 end = std::min(last, found.toc_lo + toc_err);
+                 end = std::min(t_max, found.toc_lo + toc_err);
     if (!(end > first)) return first;
     const MovingConvex set[2] = {movingConvexOf(*body_[0], found.place[0]),
                                  movingConvexOf(*body_[1], found.place[1])};
@@ -184,7 +184,7 @@ QueryAnswer queryShapeContacts(const MovingBody& a, const MovingBody& b,
   if (options.query == ContinuousQuery::kFirst && !touching.empty()) {
     // All that begin before the first bracket ends.
     wanted.all = true;
-    wanted.last = touching.front().toc_hi;
+    wanted.t_max = touching.front().toc_hi;
     std::vector<CurvedContact> first = ask(wanted);
     // A graze has a bracket without width, at whose end another division of the step may
     // see nothing.

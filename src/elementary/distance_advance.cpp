@@ -340,9 +340,10 @@ double proveWithin(AdvancingPair& pair, const DistanceTolerance& tolerance, doub
   }
 }
 
-/// Steps after which a pair that is still apart by more than rounding probably moves
-/// along another at nearly this distance. A graze takes a quarter of the gap in a step:
-/// 24 steps from 1 to 2^-46.
+/// After this number of steps the features are taken to slide along each other at nearly
+/// the distance d. Then each step is made as long as it can be, and a contact may be
+/// further away by a share of d. A graze needs fewer steps: each takes a quarter of the
+/// gap, so that 24 take it from 1 to 2^-46.
 constexpr int kPlainSteps = 64;
 
 /// Takes the bracket from what is known at the time t.
@@ -366,7 +367,7 @@ class Advancement {
         pair_(pair),
         number_(number),
         request_(request),
-        last_(std::min(request.t_max, request.t_stop)),
+        t_stop_(std::min(request.t_max, request.t_stop)),
         d_(request.distance),
         tolerance_(d_, pair.size()) {}
 
@@ -382,15 +383,15 @@ class Advancement {
                    most = d_ + (share * d_ + tolerance_.touching);
       if (reached() <= most) return contact();
       const AdvancingPair::Apart apart{d_, d_ + tolerance_.margin};
-      Step step = pair_.longestStep(near_, apart, t_, last_);
-      if (!(step.until > t_) || (out_.steps >= kPlainSteps && !(step.until > last_))) {
+      Step step = pair_.longestStep(near_, apart, t_, t_stop_);
+      if (!(step.until > t_) || (out_.steps >= kPlainSteps && !(step.until > t_stop_))) {
         const AccurateNearest nearest = pair_.accurate();
         near_ = nearest.near;
         if (reached() <= most) return contact();
-        const Step accurate = pair_.accurateStep(nearest, apart, t_, last_);
+        const Step accurate = pair_.accurateStep(nearest, apart, t_, t_stop_);
         if (accurate.until > step.until) step = accurate;
       }
-      if (step.until > last_) return out_;
+      if (step.until > t_stop_) return out_;
       if (!(step.until > t_) || out_.steps == kMostSteps) {
         out_.is_given_up =
             reached() > d_ + (DistanceTolerance::kShare * d_ + tolerance_.touching);
@@ -427,7 +428,7 @@ class Advancement {
   AdvancingPair& pair_;
   const int (&number_)[4];
   const DistanceRequest& request_;
-  double last_;
+  double t_stop_;
   double d_, t_{0}, rate_{0};
   DistanceTolerance tolerance_;
   NearestPoint near_;

@@ -16,10 +16,10 @@ namespace deformable {
 namespace {
 
 /// The time t_max as a fraction, on the clock of FrameDigits.
-struct LatestTime {
+struct TimeLimit {
   Integer numerator, denominator;
 
-  LatestTime(double t_max, int clock_exponent) {
+  TimeLimit(double t_max, int clock_exponent) {
     const BinaryDigits t(t_max);
     Integer after = t.digits,
             before = (Integer(1) << static_cast<unsigned>(-t.exponent)) - after;
@@ -47,13 +47,13 @@ ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
-  const LatestTime last(t_max, clock_exponent);
+  const TimeLimit limit(t_max, clock_exponent);
   bool touch = false;
   double lo = 1, hi = t_max, latest = 1;
   for (Root& t : times) {
     if (t.lowerBound() > latest) break;
     if (!touch && t_stop < 1 && t.timeBelow(clock_exponent) > t_stop) break;
-    if (t_max < 1 && t.compare(last.numerator, last.denominator) > 0) continue;
+    if (t_max < 1 && t.compare(limit.numerator, limit.denominator) > 0) continue;
     if (!pair.touchAt(t)) continue;
     const auto [t_lo, t_hi] = t.bracket(toc_err, clock_exponent);
     lo = touch ? std::min(lo, t_lo) : t_lo;

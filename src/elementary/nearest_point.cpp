@@ -39,8 +39,8 @@ NearestPoint nearestOnSide(const Vec& p, const Vec& q) {
 /// is relative to its length only.
 void improve(const Vec& p, Vec v, Vec w, NearestPoint& near) {
   double along = near.along, across = near.across;
-  const bool is_turned = dot(v, v) < dot(w, w);
-  if (is_turned) {
+  const bool is_exchanged = dot(v, v) < dot(w, w);
+  if (is_exchanged) {
     std::swap(v, w);
     std::swap(along, across);
   }
@@ -56,7 +56,7 @@ void improve(const Vec& p, Vec v, Vec w, NearestPoint& near) {
     along -= dot(point - back * w, v) / square;
     point = p + along * v + across * w;
   }
-  if (is_turned) std::swap(along, across);
+  if (is_exchanged) std::swap(along, across);
   const double reached = dot(point, point);
   if (reached < near.square) {
     near.along = along;

@@ -64,9 +64,9 @@ class OrderedPoints {
   }
   void sortEdges() {
     const int first = compare(2, 0);
-    const bool is_turned = first != 0 ? first < 0 : compare(3, 1) < 0;
-    swapIf(is_turned, 0, 2);
-    swapIf(is_turned, 1, 3);
+    const bool is_exchanged = first != 0 ? first < 0 : compare(3, 1) < 0;
+    swapIf(is_exchanged, 0, 2);
+    swapIf(is_exchanged, 1, 3);
   }
   void sort(int i, int j) { swapIf(isBefore(j, i), i, j); }
   /// Without a branch on the condition, which would be unpredictable.

@@ -126,14 +126,15 @@ struct PlainDirections {
 FCL_CCD_INLINE Steps longestSteps(const Polygons& x, const Vectors (&corner)[4],
                                   const NearestPoints& near, const PlainDirections& plain,
                                   const Doubles& d, const Doubles& least,
-                                  const Doubles& t, double last) {
+                                  const Doubles& t, double t_stop) {
   const Vectors& n = plain.n;
   const Steps fixed = fixedSteps(x, n, least, t);
-  const DoubleMask is_enough = fixed.until > all(last);
+  const DoubleMask is_enough = fixed.until > all(t_stop);
   if (isAll(is_enough)) return fixed;
   const Steps turning = turningSteps(
       x, corner, n, turnsApart(x, corner, near, plain.sides, n), d, least, t);
-  const DoubleMask is_longer = (fixed.until <= all(last)) & (turning.until > fixed.until);
+  const DoubleMask is_longer =
+      (fixed.until <= all(t_stop)) & (turning.until > fixed.until);
   return {select(is_longer, turning.until, fixed.until),
           select(is_longer, turning.rate, fixed.rate)};
 }
@@ -190,7 +191,7 @@ class AdvancingPairs {
   FCL_CCD_INLINE unsigned advance(int step, const DistanceRequest& request) {
     // Most pairs take two or three.
     constexpr int kMostStepsTogether = 12;
-    const double last = std::min(request.t_stop, request.t_max);
+    const double t_stop = std::min(request.t_stop, request.t_max);
     Tolerances tolerance(d_, x_.size);
     Vectors corner[4];
     x_.cornersAt(t_, corner);
@@ -210,9 +211,9 @@ class AdvancingPairs {
     if (left_ == 0) return 0;
     if (!ignores) plain.set(x_, corner, near_);
     const Steps next =
-        longestSteps(x_, corner, near_, plain, d_, d_ + tolerance.margin, t_, last);
+        longestSteps(x_, corner, near_, plain, d_, d_ + tolerance.margin, t_, t_stop);
     open_ |= left_ & ~bits(next.until > t_);
-    const DoubleMask is_soon = next.until <= all(last);
+    const DoubleMask is_soon = next.until <= all(t_stop);
     left_ &= ~open_ & bits(is_soon);
     if (step == kMostStepsTogether) {
       open_ |= left_;
@@ -388,11 +389,12 @@ struct StartPolygons {
 
 /// The first step of approach(), without the sizes of the pairs: a distance of at
 /// most d is a contact whatever the tolerance is. With the direction of the nearest point
-/// a gap above `reach` proves that there is none: reachOf() is larger than a distance
-/// with its tolerances by more than the rounding of this, 16 u of the largest length.
+/// a gap above `cull_distance` proves that there is none: cullDistanceOf() is larger than
+/// a distance with its tolerances by more than the rounding of this, 16 u of the largest
+/// length.
 unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
                          const std::uint32_t* codes, std::size_t count, double distance,
-                         double reach, Approach (&answers)[8]) {
+                         double cull_distance, Approach (&answers)[8]) {
   // The last one fills up the eight.
   std::uint32_t eight_codes[kEight];
   for (std::size_t lane = 0; lane < kEight; ++lane)
@@ -401,7 +403,7 @@ unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
   const PointOrders orders(kind, points);
   const StartPolygons x(kind, points);
   const NearestPoints near = nearestPoints(x, x.corner);
-  const Doubles least = near.distance * all(reach);
+  const Doubles least = near.distance * all(cull_distance);
   // A distance whose square is in range.
   DoubleMask is_far = near.square > all(0x1p-900);
   for (int k = 0; k < x.count; ++k)

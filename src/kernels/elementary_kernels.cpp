@@ -363,7 +363,7 @@ unsigned areApart(const TrianglePair* pairs, std::size_t count, double share,
   return bits(apart) & ((1U << count) - 1);
 }
 
-/// How far along a direction the bends of a body's three vertices reach, at least and at
+/// How far along a direction the bends of a body's three vertices go, at least and at
 /// most.
 struct BendRange {
   Doubles least{broadcast<kEight>(0.)}, most{least};
@@ -374,11 +374,11 @@ struct BendRange {
                            const Vectors (&twice)[3], const Vectors& d) {
     if (!bend) return;
     const Vectors half = broadcast<kEight>(0.5) * product(bend->matrix, d);
-    const Doubles reach[3] = {dot(half, twice[0]), dot(half, twice[1]),
+    const Doubles along[3] = {dot(half, twice[0]), dot(half, twice[1]),
                               dot(half, twice[2])},
                   offset = dot(half, origin) + dot(d, allOf(bend->offset));
-    least = min(min(reach[0], reach[1]), reach[2]) + offset;
-    most = max(max(reach[0], reach[1]), reach[2]) + offset;
+    least = min(min(along[0], along[1]), along[2]) + offset;
+    most = max(max(along[0], along[1]), along[2]) + offset;
   }
 };
 

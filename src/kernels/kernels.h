@@ -400,15 +400,16 @@ struct Kernels {
 
   /// approach() of up to eight pairs of features of which only a contact at t = 0
   /// matters. Returns those that may have one, a bit each; all others are further apart
-  /// than `reach`.
+  /// than `cull_distance`.
   /// @param codes  of pairs of the kind; the points are in the order of featureCode()
   /// @param count  1 to 8
   /// @param distance  above 2^-150
-  /// @param reach  of reachOf(), below 2^150
+  /// @param cull_distance  of cullDistanceOf(), below 2^150
   /// @param[out] answers  of those whose bit is set: kYes or kOpen
   unsigned (*approachAtStart)(ContinuousContactKind kind, const TrianglePair* pairs,
                               const std::uint32_t* codes, std::size_t count,
-                              double distance, double reach, Approach (&answers)[8]);
+                              double distance, double cull_distance,
+                              Approach (&answers)[8]);
 
   /// leastDistance() of eight VF or EE pairs at t = 1. Returns the pairs whose answer is
   /// known, a bit each. The others need more than a plain direction.

@@ -39,10 +39,10 @@ class PointOrders {
       sort(x, 1, 2, 3);
       const Comparison first = compare(x, 2, 0), second = compare(x, 3, 1);
       if (!AnyPoints::kHaveEnd) unknown_ |= bits(first.is_equal);
-      const DoubleMask is_turned = first.is_less | (first.is_equal & second.is_less);
-      exchanges_[2] = bits(is_turned);
-      exchange(is_turned, x, 0, 2);
-      exchange(is_turned, x, 1, 3);
+      const DoubleMask is_exchanged = first.is_less | (first.is_equal & second.is_less);
+      exchanges_[2] = bits(is_exchanged);
+      exchange(is_exchanged, x, 0, 2);
+      exchange(is_exchanged, x, 1, 3);
     }
   }
 

@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstddef>
 
+#include "numerics/moving_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -33,6 +35,31 @@ struct Pose {
   }
 };
 
+inline Vec vecOf(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
+inline void set(double (&out)[3], const Vec& v) {
+  out[0] = v.x;
+  out[1] = v.y;
+  out[2] = v.z;
+}
+
+/// @brief The matrix times the vector; the matrix is a rotation or its derivative.
+inline Vec rotated(const double (&m)[9], const Vec& v) {
+  return {m[0] * v.x + m[1] * v.y + m[2] * v.z, m[3] * v.x + m[4] * v.y + m[5] * v.z,
+          m[6] * v.x + m[7] * v.y + m[8] * v.z};
+}
+
+/// @brief The transposed matrix times the vector.
+inline Vec rotatedBack(const double (&m)[9], const Vec& v) {
+  return {m[0] * v.x + m[3] * v.y + m[6] * v.z, m[1] * v.x + m[4] * v.y + m[7] * v.z,
+          m[2] * v.x + m[5] * v.y + m[8] * v.z};
+}
+
+/// @brief A point under a pose: ((r0 x + r1 y) + r2 z) + translation. All points are
+/// posed by this function, or by its form for eight (advance/turning_kernels.cpp).
+inline Vec posed(const Pose& pose, const Vec& x) {
+  return rotated(pose.rotation, x) + vecOf(pose.translation);
+}
+
 /// @brief The paths of a mesh's vertices: two coordinate arrays (float or double, x y z
 /// per vertex, not owned) and the pose of each frame.
 class VertexFrames {
@@ -58,8 +85,8 @@ class VertexFrames {
   bool isPosed() const { return posed_; }
   const Pose& pose(int frame) const { return pose_[frame]; }
 
-  /// @brief Path of vertex i in the world. A posed coordinate is ((r0 x + r1 y) + r2 z) +
-  /// translation, evaluated in double; this value is what every contact refers to.
+  /// @brief Path of vertex i in the world: what posed() gives is what every contact
+  /// refers to.
   VertexPath operator[](std::size_t i) const {
     VertexPath path;
     assert(i < count_);
@@ -84,13 +111,7 @@ class VertexFrames {
     for (std::size_t k = 0; k < 3; ++k)
       out[k] =
           double_[frame] ? double_[frame][3 * i + k] : double{float_[frame][3 * i + k]};
-    if (!posed_) return;
-    const double x = out[0], y = out[1], z = out[2];
-    const Pose& p = pose_[frame];
-    for (int k = 0; k < 3; ++k)
-      out[k] = ((p.rotation[3 * k] * x + p.rotation[3 * k + 1] * y) +
-                p.rotation[3 * k + 2] * z) +
-               p.translation[k];
+    if (posed_) set(out, posed(pose_[frame], vecOf(out)));
   }
 
  private:

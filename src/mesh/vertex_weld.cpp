@@ -66,10 +66,10 @@ struct CellHash {
 };
 
 template <typename Visit>
-void forEachNeighbour(const Cell& cell, int reach, Visit visit) {
-  for (int i = -reach; i <= reach; ++i)
-    for (int j = -reach; j <= reach; ++j)
-      for (int k = -reach; k <= reach; ++k)
+void forEachNeighbour(const Cell& cell, int width, Visit visit) {
+  for (int i = -width; i <= width; ++i)
+    for (int j = -width; j <= width; ++j)
+      for (int k = -width; k <= width; ++k)
         visit(Cell{cell.left, {{cell.at[0] + i, cell.at[1] + j, cell.at[2] + k}}});
 }
 

@@ -205,7 +205,7 @@ int DeformableBVHModel<BV>::updateSubModel(const std::vector<Vector3<S>>& ps) {
 template <typename BV>
 int DeformableBVHModel<BV>::endUpdateModel(bool refit, bool bottomup) {
   if (const int code = close(OpenUpdate::kUpdate, "endUpdateModel")) return code;
-  advance(nullptr, FclTree::kUpdate, refit, bottomup);
+  shiftFrames(nullptr, FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
 }
@@ -235,7 +235,7 @@ int DeformableBVHModel<BV>::replaceSubModel(const std::vector<Vector3<S>>& ps) {
 template <typename BV>
 int DeformableBVHModel<BV>::endReplaceModel(bool refit, bool bottomup) {
   if (const int code = close(OpenUpdate::kReplace, "endReplaceModel")) return code;
-  advance(staged_.data()->data(), FclTree::kUpdate, refit, bottomup);
+  shiftFrames(staged_.data()->data(), FclTree::kUpdate, refit, bottomup);
   finish();
   return accept();
 }
@@ -255,7 +255,7 @@ int DeformableBVHModel<BV>::updateFrames(const S* previous, const S* current,
   // own.
   staged_.resize(num_vertices);
   std::memcpy(staged_.data()->data(), current, 3 * num_vertices * sizeof(S));
-  advance(previous, fcl_tree, true, true);
+  shiftFrames(previous, fcl_tree, true, true);
   finish();
   if (fcl_tree == FclTree::kUpdate && state_.fclTree() == FclTreeIs::kMissing &&
       !hasFree())
@@ -358,8 +358,8 @@ int DeformableBVHModel<BV>::updateTopology(const std::vector<Triangle>& triangle
 /// has not ended. If an exception comes before seal(), the model stays in that state, and
 /// no query accepts it.
 template <typename BV>
-void DeformableBVHModel<BV>::advance(const S* previous, FclTree fcl_tree, bool refit,
-                                     bool bottomup) {
+void DeformableBVHModel<BV>::shiftFrames(const S* previous, FclTree fcl_tree, bool refit,
+                                         bool bottomup) {
   const auto count = static_cast<std::size_t>(this->num_vertices);
   const Phase before = phase();
   const bool repair = before == Phase::kHalfUpdated;
@@ -423,7 +423,7 @@ int DeformableBVHModel<BV>::updateFclTree() {
     if (code) return refuse(code, "FCL refused to build its tree");
   } else if (state_.fclTree() == FclTreeIs::kBehind) {
     staged_.assign(this->vertices, this->vertices + this->num_vertices);
-    advance(this->prev_vertices->data(), FclTree::kUpdate, true, true);
+    shiftFrames(this->prev_vertices->data(), FclTree::kUpdate, true, true);
     seal();
   }
   return accept();

@@ -12,12 +12,6 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-inline void set(double (&to)[3], const Vec& v) {
-  to[0] = v.x;
-  to[1] = v.y;
-  to[2] = v.z;
-}
-
 inline double frobenius(const double (&m)[9]) {
   double sum = 0;
   for (const double x : m) sum += x * x;

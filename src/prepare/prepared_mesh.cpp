@@ -86,14 +86,14 @@ bool areBoxesBounded(const MovingKdopTree& tree) {
 }
 
 /// Whether no translation moves a vertex of the tree out of range. The factor of one half
-/// is far more than the rounding here and in reach().
+/// is far more than the rounding here and in largestCoordinate().
 bool stayInRange(const MovingKdopTree& tree, const double (&translation)[2][3]) {
   double most = 0;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k)
       most = std::max(most,
                       std::abs(tree.origin(frame)[k]) + std::abs(translation[frame][k]));
-  return most + tree.reach() <= 0.5 * DBL_MAX;
+  return most + tree.largestCoordinate() <= 0.5 * DBL_MAX;
 }
 
 /// @param frames  posed

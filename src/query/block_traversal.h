@@ -75,8 +75,8 @@ class BlockTraversal {
   BlockTraversal(const MeshPair& meshes, TreeA& tree_a, TreeB& tree_b,
                  const SeparatingAxes* axes, const Schedule& schedule, Taker& taker)
       : shifts_(meshes.shifts),
-        reach_(shifts_.reach(1)),
-        shift_(shifts_.shift(reach_)),
+        cull_distance_(shifts_.cullDistance(1)),
+        shift_(shifts_.shift(cull_distance_)),
         traversal_(tree_a, tree_b, shifts_.isEmpty() ? nullptr : &shift_,
                    meshes.proofs.culling(), axes, kernels(),
                    schedule.in_order || taker.isTimed()),
@@ -139,9 +139,10 @@ class BlockTraversal {
   // Not inlined: it is rare, and would keep what is not rare from being inlined.
   __attribute__((noinline)) void changeLatest(double latest) {
     traversal_.leaveOutAfter(latest, pose_displacement_);
-    const double reach = shifts_.reach(latest);
-    if (reach != reach_) traversal_.setShift(shifts_.shift(reach));
-    reach_ = reach;
+    const double cull_distance = shifts_.cullDistance(latest);
+    if (cull_distance != cull_distance_)
+      traversal_.setShift(shifts_.shift(cull_distance));
+    cull_distance_ = cull_distance;
     last_beginning_ = lastBeginning(latest);
     latest_ = latest;
   }
@@ -193,7 +194,7 @@ class BlockTraversal {
 
   const BoxShifts& shifts_;
   /// Features further apart at t = 0 do not matter.
-  double reach_;
+  double cull_distance_;
   KdopShift shift_;
   Traversal<kSelf, TreeA, TreeB> traversal_;
   double pose_displacement_;
@@ -238,7 +239,7 @@ void traverse(const MeshPair& meshes, const Schedule& schedule, Taker& taker,
   if (moving_b) return of(kTwo, rigid_a, *moving_b, nullptr);
   if (meshes.a.rigid.turns() || meshes.b.rigid.turns() || meshes.a.bend || meshes.b.bend)
     return of(kTwo, rigid_a, rigid_b, nullptr);
-  const SeparatingAxes axes(meshes.a, meshes.b, meshes.shifts.reach(1));
+  const SeparatingAxes axes(meshes.a, meshes.b, meshes.shifts.cullDistance(1));
   of(kTwo, rigid_a, rigid_b, &axes);
 }
 

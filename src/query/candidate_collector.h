@@ -31,13 +31,13 @@ class CandidateCollector {
  public:
   /// @param a, b, sink  kept by reference; a and b are the same object for a
   /// self-collision
-  /// @param reach  as of FeatureBatch
+  /// @param cull_distance  as of FeatureBatch
   /// @param is_wanted  asked for each block, so that its answer may change
   /// @pre both meshes have owners; otherwise the sink would get pairs repeatedly
   CandidateCollector(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-                     const FeatureCandidateSink& sink, double reach,
+                     const FeatureCandidateSink& sink, double cull_distance,
                      TrianglePairTest is_wanted)
-      : batch_(a, b, shift, kernels(), reach),
+      : batch_(a, b, shift, kernels(), cull_distance),
         sink_(sink),
         is_wanted_(std::move(is_wanted)) {
     assert(a.hasOwners() && b.hasOwners());

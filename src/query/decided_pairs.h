@@ -6,10 +6,12 @@
 #define FCL_CCD_QUERY_DECIDED_PAIRS_H
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <memory>
 
+#include "base/slot_cache.h"
 #include "elementary/feature_points.h"
 #include "mesh/feature_pairs.h"
 #include "query/feature_candidate.h"
@@ -25,49 +27,44 @@ class DecidedPairs {
  public:
   /// @brief The decision of the same pair with the same t_stop, or null.
   const ElementaryResult* find(const FeatureCandidate& pair, double t_stop) const {
-    if (slots_.empty()) return nullptr;
-    const Slot& slot = slots_[slotOf(pair)];
-    return slot.is_taken && slot.t_stop == t_stop && isSame(slot, pair) ? &slot.result
-                                                                        : nullptr;
+    return decided_ ? decided_->find(slotOf(pair), Key(pair, t_stop)) : nullptr;
   }
 
   void add(const FeatureCandidate& pair, double t_stop, const ElementaryResult& result) {
-    if (slots_.empty()) slots_.resize(kSlots);
-    Slot& slot = slots_[slotOf(pair)];
-    slot.is_taken = true;
-    slot.kind = pair.kind;
-    slot.first_on_a = pair.first_on_a;
-    std::copy(pair.vertices, pair.vertices + 4, slot.vertices);
-    slot.window_lo = pair.window_lo;
-    slot.window_hi = pair.window_hi;
-    slot.t_stop = t_stop;
-    slot.result = result;
+    if (!decided_) decided_ = std::make_unique<Decided>(Key(FeatureCandidate{}, -1));
+    decided_->put(slotOf(pair), Key(pair, t_stop)) = result;
   }
 
  private:
-  /// 320 KB. The triangles of a block are neighbours, and meet a pair again soon.
-  static constexpr std::size_t kSlots = 4096;
+  /// What a decision depends on. Its bits may depend on the order of the vertices of a
+  /// face.
+  struct Key {
+    Key() = default;
+    Key(const FeatureCandidate& pair, double t_stop)
+        : kind(pair.kind),
+          first_on_a(pair.first_on_a),
+          times{pair.window_lo, pair.window_hi, t_stop} {
+      std::copy(pair.vertices, pair.vertices + 4, vertices.begin());
+    }
+    bool operator==(const Key& x) const {
+      return kind == x.kind && first_on_a == x.first_on_a && times == x.times &&
+             vertices == x.vertices;
+    }
 
-  struct Slot {
-    bool is_taken{false};
-    bool first_on_a;
-    ContinuousContactKind kind;
-    std::uint32_t vertices[4];
-    double window_lo, window_hi, t_stop;
-    ElementaryResult result;
+    ContinuousContactKind kind{};
+    bool first_on_a{false};
+    std::array<std::uint32_t, 4> vertices{};
+    std::array<double, 3> times{};
   };
 
-  /// The bits of a decision may depend on the order of the vertices of a face.
-  static bool isSame(const Slot& slot, const FeatureCandidate& pair) {
-    return slot.kind == pair.kind && slot.first_on_a == pair.first_on_a &&
-           slot.window_lo == pair.window_lo && slot.window_hi == pair.window_hi &&
-           std::equal(slot.vertices, slot.vertices + 4, pair.vertices);
-  }
+  /// 320 KB. The triangles of a block are neighbours, and meet a pair again soon.
+  using Decided = SlotCache<Key, ElementaryResult, 4096>;
+
   static std::size_t slotOf(const FeatureCandidate& pair) {
-    return FeatureKey(pair).hash() % kSlots;
+    return FeatureKey(pair).hash() % Decided::kSlots;
   }
 
-  std::vector<Slot> slots_;
+  std::unique_ptr<Decided> decided_;
 };
 
 }  // namespace deformable

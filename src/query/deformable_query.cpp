@@ -71,7 +71,7 @@ class ContactQuery {
 
  private:
   NarrowPhase narrowPhase(std::size_t task) {
-    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, &progress_,
+    return NarrowPhase(meshes_.a, meshes_.b, meshes_.shifts, task_options_, progress_,
                        task);
   }
 
@@ -151,10 +151,10 @@ class ContactQuery {
 bool candidates(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
                 const FeatureCandidateSink& sink, double min_distance,
                 const TrianglePairTest& is_wanted = {}) {
-  const double reach = shifts.reach(1);
-  const KdopShift shift = shifts.shift(reach);
-  CandidateCollector collector(a, b, shifts.isEmpty() ? nullptr : &shift, sink, reach,
-                               is_wanted);
+  const double cull_distance = shifts.cullDistance(1);
+  const KdopShift shift = shifts.shift(cull_distance);
+  CandidateCollector collector(a, b, shifts.isEmpty() ? nullptr : &shift, sink,
+                               cull_distance, is_wanted);
   const MeshPair meshes{a, b, shifts,
                         &a == &b ? proveSelf(a, true, min_distance, 1) : SelfProofs{},
                         min_distance};
@@ -175,7 +175,7 @@ BoxPosition positionOfBoxes(const MeshInstance& mesh) {
           mesh.tree ? mesh.tree->origin(frame)[k] : mesh.rigid.origin(frame)[k];
       position.translation[frame][k] = mesh.translation[frame][k];
     }
-  position.reach = mesh.tree ? 0 : mesh.rigid.reach();
+  position.largest_coordinate = mesh.tree ? 0 : mesh.rigid.largestCoordinate();
   return position;
 }
 

@@ -27,7 +27,8 @@ double sizeOf(const MeshInstance& a, const MeshInstance& b) {
     for (int k = 0; k < 3; ++k)
       size = std::max(size, std::abs(originOf(a, frame, k) - originOf(b, frame, k)));
   for (const MeshInstance* mesh : {&a, &b})
-    size += mesh->tree ? mesh->tree->reach() : mesh->rigid.reach();
+    size +=
+        mesh->tree ? mesh->tree->largestCoordinate() : mesh->rigid.largestCoordinate();
   return size;
 }
 
@@ -80,7 +81,7 @@ class PartTable {
 
 }  // namespace
 
-double reachOf(const MeshInstance& a, const MeshInstance& b, double d) {
+double cullDistanceOf(const MeshInstance& a, const MeshInstance& b, double d) {
   // The tolerance of a pair is kTouching (d + L), with L at most the length of a vector
   // of three such coordinates, below twice their size. The rest is more than the rounding
   // of this.
@@ -88,13 +89,14 @@ double reachOf(const MeshInstance& a, const MeshInstance& b, double d) {
          2 * DistanceTolerance::kTouching * (d + 2 * sizeOf(a, b));
 }
 
-void enlarge(double reach, KdopShift& shift) {
+void enlarge(double cull_distance, KdopShift& shift) {
   // The first three directions are axes, the others have the length sqrt(2).
   constexpr double kDiagonal = 1.4142135623730952;
   for (int j = 0; j < 16; ++j)
     for (Kdop16* box : {&shift.t0, &shift.t1})
-      box->half[j] =
-          roundUp(double{box->half[j]} + (j % 8 < 3 ? reach : kDiagonal * reach), 0.f);
+      box->half[j] = roundUp(
+          double{box->half[j]} + (j % 8 < 3 ? cull_distance : kDiagonal * cull_distance),
+          0.f);
 }
 
 BoxShifts::BoxShifts(const KdopShift* between) : is_empty_(!between) {
@@ -107,7 +109,7 @@ BoxShifts::BoxShifts(const MeshInstance& a, const MeshInstance& b,
     : BoxShifts(between) {
   if (!(distance > 0)) return;
   is_empty_ = false;
-  reach_ = reachOf(a, b, distance);
+  cull_distance_ = cullDistanceOf(a, b, distance);
   const double size = sizeOf(a, b);
   // For pairs beyond d: the rounding of two distances, 256 u L, is below the eighth of
   // kShare d. Here L is the length of a vector of three coordinates of this size.
@@ -129,14 +131,15 @@ void BoxShifts::leaveOutStart() {
   for (float& half : between_.t0.half) half = 0.5f * kLeastHalf;
 }
 
-double BoxShifts::reach(double latest) const {
+double BoxShifts::cullDistance(double latest) const {
   const double share = speed_ * latest;
-  return share < reach_ ? std::min(reach_, std::max(almost_, share)) : reach_;
+  return share < cull_distance_ ? std::min(cull_distance_, std::max(almost_, share))
+                                : cull_distance_;
 }
 
-KdopShift BoxShifts::shift(double reach) const {
+KdopShift BoxShifts::shift(double cull_distance) const {
   KdopShift shift = between_;
-  if (reach > 0) enlarge(reach, shift);
+  if (cull_distance > 0) enlarge(cull_distance, shift);
   return shift;
 }
 

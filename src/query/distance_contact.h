@@ -21,10 +21,10 @@ namespace deformable {
 
 /// @brief Pairs of features that stay further apart are no contacts at a distance of d.
 /// Infinity where the size of the meshes is beyond the range of double.
-double reachOf(const MeshInstance& a, const MeshInstance& b, double d);
+double cullDistanceOf(const MeshInstance& a, const MeshInstance& b, double d);
 
 /// @brief Adds a distance to what is added to boxes: boxes that come within it overlap.
-void enlarge(double reach, KdopShift& shift);
+void enlarge(double cull_distance, KdopShift& shift);
 
 /// @brief How near features have to be at t = 0 to matter to a query, and what is added
 /// to boxes of mesh a, so that boxes of features that are as near overlap.
@@ -51,15 +51,15 @@ class BoxShifts {
   bool isEmpty() const { return is_empty_; }
   /// @brief Features further apart at t = 0 have no contact until `latest`, which comes
   /// from here on.
-  double reach(double latest) const;
-  /// @param reach  of reach()
-  KdopShift shift(double reach) const;
+  double cullDistance(double latest) const;
+  /// @param cull_distance  of cullDistance()
+  KdopShift shift(double cull_distance) const;
 
  private:
   bool is_empty_;
   KdopShift between_{};
-  double reach_{0}, almost_{0};
-  /// Infinity: the reach is always the same.
+  double cull_distance_{0}, almost_{0};
+  /// Infinity: the distance is always the same.
   double speed_{std::numeric_limits<double>::infinity()};
 };
 

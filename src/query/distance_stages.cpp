@@ -11,7 +11,7 @@ namespace deformable {
 /// Kernels::approachAtStart() takes numbers that are not extreme.
 bool DistanceStages::onlyStartMatters(double latest) const {
   return options_.query == ContinuousQuery::kFirst && options_.min_distance > 0x1p-150 &&
-         batch_.reach() < 0x1p150 && findings_.firstHi() == 0 &&
+         batch_.cullDistance() < 0x1p150 && findings_.firstHi() == 0 &&
          batch_.isAtStart(latest) && !options_.filter &&
          !options_.ignores_initially_closer && !options_.lists_near_pairs;
 }
@@ -55,12 +55,12 @@ bool DistanceStages::filterDistances() {
 void DistanceStages::filterEight() {
   const std::uint32_t* codes = batch_.codes(kind_) + next_;
   const std::size_t count = std::min<std::size_t>(8, batch_.size(kind_) - next_);
-  left_ = is_at_start_
-              ? kernels_.approachAtStart(kind_, batch_.pairs(), codes, count,
-                                         options_.min_distance, batch_.reach(), found_)
-              : kernels_.mayComeWithin(kind_, batch_.pairs(), codes,
-                                       batch_.windows(kind_) + next_, count, request_,
-                                       batch_.bends());
+  left_ = is_at_start_ ? kernels_.approachAtStart(kind_, batch_.pairs(), codes, count,
+                                                  options_.min_distance,
+                                                  batch_.cullDistance(), found_)
+                       : kernels_.mayComeWithin(kind_, batch_.pairs(), codes,
+                                                batch_.windows(kind_) + next_, count,
+                                                request_, batch_.bends());
   counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left_));
   next_ += 8;
 }

@@ -19,12 +19,13 @@ bool hasFreePoints(const MeshInstance& mesh) {
 }  // namespace
 
 FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
-                           const KdopShift* shift, const Kernels& kernels, double reach)
+                           const KdopShift* shift, const Kernels& kernels,
+                           double cull_distance)
     : reader_a_(a),
       reader_b_(b),
       self_(&a == &b),
       bends_{{a.bend, b.bend}},
-      tests_points_(reach > 0 && (hasFreePoints(a) || hasFreePoints(b))),
+      tests_points_(cull_distance > 0 && (hasFreePoints(a) || hasFreePoints(b))),
       kernels_(kernels),
       pairs_(new TrianglePair[kMaxPairs]),
       owned_(new std::uint16_t[kMaxPairs]),
@@ -32,11 +33,11 @@ FeatureBatch::FeatureBatch(const MeshInstance& a, const MeshInstance& b,
       gaps_(new float[kMaxPairs]),
       lists_{List(kNumVertexFacePairs), List(kNumFeaturePairs - kNumVertexFacePairs)},
       crossings_(new std::uint32_t[kMaxPairs * kEdges + 16]) {
-  setReach(shift, reach);
+  setCullDistance(shift, cull_distance);
 }
 
-void FeatureBatch::setReach(const KdopShift* shift, double reach) {
-  reach_ = reach;
+void FeatureBatch::setCullDistance(const KdopShift* shift, double cull_distance) {
+  cull_distance_ = cull_distance;
   shift_ = shift;
   if (!shift) return;
   for (int j = 0; j < 16; ++j) {
@@ -119,7 +120,7 @@ void FeatureBatch::cullTriangles(double latest, StageCounts& counts) {
     leaveOutApart(latest, counts);
   else
     leaveOutFar(counts);
-  if (reach_ == 0 && !isBeginning(latest) && has_edges_) leaveOutEdges();
+  if (cull_distance_ == 0 && !isBeginning(latest) && has_edges_) leaveOutEdges();
   if (!has_edges_) return;
   const std::size_t size = kernels_.listFeatures(edges_.get(), num_pairs_,
                                                  (1U << kEdges) - 1, crossings_.get());
@@ -144,7 +145,8 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
     float gaps[8];
-    const unsigned apart = kernels_.areApart(&pairs_[first], count, share, reach_, gaps);
+    const unsigned apart =
+        kernels_.areApart(&pairs_[first], count, share, cull_distance_, gaps);
     counts.plane_culled += static_cast<unsigned>(__builtin_popcount(apart));
     for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
       const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
@@ -158,18 +160,16 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
 void FeatureBatch::beginTask() { pause_ = wait_ = 0; }
 
 /// Leaves out the triangle pairs that stay further apart than the distance during the
-/// whole step: six of seven of those of a cloth beside a body, but only one of ten of
-/// those of a crumpled cloth. A test costs a quarter of what a pair costs that is left,
-/// so the first pairs of a block tell whether it pays. They are pairs that own features:
-/// of the others, threads may add more or fewer. Without a distance most scenes have few
-/// such pairs (those of close surfaces that slide along each other are such pairs), and
-/// the boxes of features do the same work nearly as fast: with a quarter of such pairs
-/// the self-collision of two layers takes 7% more time. So more of the first pairs must
-/// be apart, and a block without them lets the next ones go untested, up to
-/// kLongestPause.
+/// whole step. These may be most pairs, or few: that depends on the scene. A test costs a
+/// quarter of what a pair costs that is left, so the first pairs of a block tell whether
+/// it pays. Only pairs that own features count: of the others, threads may add more or
+/// fewer. Without a distance most scenes have few such pairs, except where close surfaces
+/// slide along each other, and the boxes of features leave them out nearly as fast. So
+/// three of four of the first pairs must be apart then, and a block where they are not
+/// lets the next ones go untested, up to kLongestPause.
 void FeatureBatch::leaveOutFar(StageCounts& counts) {
   constexpr std::size_t kSample = 16;
-  const std::size_t least = reach_ > 0 ? kSample / 4 : 3 * kSample / 4;
+  const std::size_t least = cull_distance_ > 0 ? kSample / 4 : 3 * kSample / 4;
   constexpr int kLongestPause = 15;
   if (wait_ > 0) {
     --wait_;
@@ -179,7 +179,8 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
   std::size_t tried = 0, left_out = 0, culled = 0;
   for (std::size_t first = 0; first < num_pairs_; first += 8) {
     const std::size_t count = std::min<std::size_t>(8, num_pairs_ - first);
-    const unsigned mask = kernels_.stayApart(&pairs_[first], count, reach_, bends_);
+    const unsigned mask =
+        kernels_.stayApart(&pairs_[first], count, cull_distance_, bends_);
     apart[first / 8] = static_cast<std::uint8_t>(mask);
     for (std::size_t i = 0; i < count; ++i)
       culled += owned_[first + i] != 0 ? mask >> i & 1U : 0;
@@ -187,7 +188,7 @@ void FeatureBatch::leaveOutFar(StageCounts& counts) {
       if (owned_[first + i] == 0) continue;
       left_out += mask >> i & 1U;
       if (++tried < kSample || left_out >= least) continue;
-      if (reach_ == 0) wait_ = pause_ = std::min(2 * pause_ + 1, kLongestPause);
+      if (cull_distance_ == 0) wait_ = pause_ = std::min(2 * pause_ + 1, kLongestPause);
       return;
     }
   }

@@ -43,13 +43,13 @@ class FeatureBatch {
 
   /// @param a, b  kept by reference; the same object for a self-collision
   /// @param shift  added to boxes of a: between their trees, and the distance; null: none
-  /// @param reach  features that come within it are wanted; 0: those that touch
+  /// @param cull_distance  features that come within it are wanted; 0: those that touch
   FeatureBatch(const MeshInstance& a, const MeshInstance& b, const KdopShift* shift,
-               const Kernels& kernels, double reach = 0);
+               const Kernels& kernels, double cull_distance = 0);
 
-  /// @brief From here on the shift and the reach are these.
-  void setReach(const KdopShift* shift, double reach);
-  double reach() const { return reach_; }
+  /// @brief From here on the shift and the distance are these.
+  void setCullDistance(const KdopShift* shift, double cull_distance);
+  double cullDistance() const { return cull_distance_; }
 
   bool isSelf() const { return self_; }
 
@@ -178,7 +178,7 @@ class FeatureBatch {
 
   TriangleReader reader_a_, reader_b_;
   bool self_;
-  double reach_;
+  double cull_distance_;
   PairBends bends_;
   /// Whether free points come near free edges or each other.
   bool tests_points_;

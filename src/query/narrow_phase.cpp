@@ -20,25 +20,26 @@ bool mayRepeat(const MeshInstance& a, const MeshInstance& b) {
 
 NarrowPhase::NarrowPhase(const MeshInstance& a, const MeshInstance& b,
                          const BoxShifts& shifts, const QueryOptions& options,
-                         QueryProgress* progress, std::size_t task)
+                         QueryProgress& progress, std::size_t task, FirstBracket* first)
     : shifts_(shifts),
-      shift_(shifts.shift(shifts.reach(1))),
-      batch_(a, b, shifts.isEmpty() ? nullptr : &shift_, kernels(), shifts.reach(1)),
-      findings_(options, mayRepeat(a, b), progress, task),
+      shift_(shifts.shift(shifts.cullDistance(1))),
+      batch_(a, b, shifts.isEmpty() ? nullptr : &shift_, kernels(),
+             shifts.cullDistance(1)),
+      findings_(options, mayRepeat(a, b), progress, task, first),
       touching_(batch_, findings_, mayRepeat(a, b)),
       distance_(batch_, findings_) {
   assert(&a == &b || !shifts.isEmpty());
 }
 
-void NarrowPhase::setReach(double reach) {
-  if (reach == batch_.reach()) return;
-  shift_ = shifts_.shift(reach);
-  batch_.setReach(&shift_, reach);
+void NarrowPhase::setCullDistance(double cull_distance) {
+  if (cull_distance == batch_.cullDistance()) return;
+  shift_ = shifts_.shift(cull_distance);
+  batch_.setCullDistance(&shift_, cull_distance);
 }
 
 void NarrowPhase::decide() {
   const double latest = findings_.latest();
-  setReach(shifts_.reach(latest));
+  setCullDistance(shifts_.cullDistance(latest));
   batch_.cullTriangles(latest, findings_.counts());
   findCrossings(batch_, findings_);
   const bool is_at_start = distance_.onlyStartMatters(latest);

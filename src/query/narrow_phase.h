@@ -21,10 +21,10 @@ class NarrowPhase {
  public:
   /// @param a, b  kept by reference; the same object for a self-collision
   /// @param shifts  added to boxes of a, with options.min_distance; kept by reference
-  /// @param progress, task  as of TaskFindings
+  /// @param progress, task, first  as of TaskFindings
   NarrowPhase(const MeshInstance& a, const MeshInstance& b, const BoxShifts& shifts,
-              const QueryOptions& options, QueryProgress* progress = nullptr,
-              std::size_t task = 0);
+              const QueryOptions& options, QueryProgress& progress, std::size_t task = 0,
+              FirstBracket* first = nullptr);
 
   /// @brief Begins a part of the traversal: FeatureBatch::beginTask().
   void beginPart() { batch_.beginTask(); }
@@ -63,7 +63,7 @@ class NarrowPhase {
   }
 
  private:
-  void setReach(double reach);
+  void setCullDistance(double cull_distance);
 
   const BoxShifts& shifts_;
   /// What is added to boxes of a.

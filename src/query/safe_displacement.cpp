@@ -149,11 +149,11 @@ void lowerToSafe(const MeshInstance& a, const MeshInstance& b, double min_distan
     return true;
   };
   // Pairs that are further apart do not lower a bound.
-  const double reach = (min_distance + 2 * most) * (1 + 0x1p-50);
+  const double cull_distance = (min_distance + 2 * most) * (1 + 0x1p-50);
   const TrianglePairTest isWanted = [&bounds](const auto& in_a, const auto& in_b) {
     return bounds.isWanted(in_a, in_b);
   };
-  candidatesAtEnd(a, b, sink, reach, isWanted);
+  candidatesAtEnd(a, b, sink, cull_distance, isWanted);
 }
 
 }  // namespace deformable

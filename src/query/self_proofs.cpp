@@ -34,17 +34,18 @@ SelfProofs proveEmbedded(const MovingKdopTree& tree, bool with_regions, int num_
 
 /// What does not come near. An embedded region does not touch itself, but it may come
 /// near: only its features that stay apart are left out.
-SelfProofs proveApart(const MovingKdopTree& tree, bool with_regions, double reach,
+SelfProofs proveApart(const MovingKdopTree& tree, bool with_regions, double cull_distance,
                       int num_threads) {
   SelfProofs proofs;
   RegionsApart apart{{}, std::vector<std::uint8_t>(tree.vertices().size(), 0)};
   if (with_regions) {
-    EmbeddedRegions regions = findEmbeddedBodies(tree, kernels(), num_threads, reach);
+    EmbeddedRegions regions =
+        findEmbeddedBodies(tree, kernels(), num_threads, cull_distance);
     addEmbeddedRegions(tree, kernels(), num_threads, regions);
-    apart = findRegionsApart(tree, regions, kernels(), reach);
+    apart = findRegionsApart(tree, regions, kernels(), cull_distance);
     proofs.nodes_in_fans = std::move(apart.nodes);
   }
-  proofs.fans = findEmbeddedFans(tree, apart.fans, kernels(), num_threads, reach);
+  proofs.fans = findEmbeddedFans(tree, apart.fans, kernels(), num_threads, cull_distance);
   for (std::size_t i = 0; i < proofs.fans.size(); ++i) proofs.fans[i] |= apart.fans[i];
   return proofs;
 }
@@ -55,7 +56,7 @@ SelfProofs proveSelf(const MeshInstance& mesh, bool with_regions, double min_dis
                      int num_threads) {
   if (!mesh.tree || !mesh.isInPlace()) return {};
   if (min_distance > 0)
-    return proveApart(*mesh.tree, with_regions, reachOf(mesh, mesh, min_distance),
+    return proveApart(*mesh.tree, with_regions, cullDistanceOf(mesh, mesh, min_distance),
                       num_threads);
   return proveEmbedded(*mesh.tree, with_regions, num_threads);
 }

@@ -8,12 +8,13 @@ namespace detail {
 namespace deformable {
 
 TaskFindings::TaskFindings(const QueryOptions& options, bool may_repeat,
-                           QueryProgress* progress, std::size_t task)
+                           QueryProgress& progress, std::size_t task, FirstBracket* first)
     : options_(options),
       sink_(options.query == ContinuousQuery::kAny ? 1 : options.max_contacts,
             may_repeat),
       progress_(progress),
-      task_(task) {
+      task_(task),
+      first_(first) {
   assert(options.toc_err > 0 && options.max_contacts > 0);
 }
 
@@ -28,10 +29,8 @@ void TaskFindings::begin(std::size_t task) {
 FeatureBatch::Wanted TaskFindings::wanted() const {
   FeatureBatch::Wanted wanted{latest(), wantsCrossings()};
   if (!(options_.min_distance > 0)) return wanted;
-  wanted.last_vertex = sink_.lastVertexAtStart();
-  if (progress_)
-    wanted.last_vertex = std::min(wanted.last_vertex,
-                                  progress_->last_vertex.load(std::memory_order_relaxed));
+  wanted.last_vertex = std::min(sink_.lastVertexAtStart(),
+                                progress_.last_vertex.load(std::memory_order_relaxed));
   return wanted;
 }
 
@@ -39,7 +38,7 @@ bool TaskFindings::mayMatter(const FeatureIds& pair, const TimeBracket& bracket)
   // Errors that begin after the earliest end of a bracket do not count.
   if (bracket.hi < firstHi()) return true;
   if (options_.only_time)
-    return bracket.lo < progress_->first_lo.load(std::memory_order_relaxed);
+    return bracket.lo < progress_.first_lo.load(std::memory_order_relaxed);
   return sink_.mayKeep(pair, bracket.lo);
 }
 
@@ -56,9 +55,8 @@ void TaskFindings::addTouching(const FeatureCandidate& candidate, TimeBracket br
   ++counts_.contacts;
   if (isLeading(bracket))
     bracket = tightened(candidate.kind, CandidatePoints(candidate).get(), bracket);
-  // If the query has more tasks, merge() looks for the first contact.
-  if (!progress_ && first_.wants(bracket))
-    first_.add(tightened(candidate.kind, CandidatePoints(candidate).get(), bracket));
+  if (first_ && first_->wants(bracket))
+    first_->add(tightened(candidate.kind, CandidatePoints(candidate).get(), bracket));
   FeatureContact contact{candidate, bracket.lo, bracket.hi};
   if (options_.filter) options_.filter->find(candidate, contact.triangles);
   add(contact);
@@ -66,31 +64,28 @@ void TaskFindings::addTouching(const FeatureCandidate& candidate, TimeBracket br
 
 void TaskFindings::add(const FeatureContact& contact) {
   sink_.add(contact);
-  if (!progress_) return;
-  QueryProgress::lower(progress_->first_hi, contact.toc_hi);
-  QueryProgress::lower(progress_->first_lo, contact.toc_lo);
+  QueryProgress::lower(progress_.first_hi, contact.toc_hi);
+  QueryProgress::lower(progress_.first_lo, contact.toc_lo);
   if (options_.query == ContinuousQuery::kAll)
-    QueryProgress::lower(progress_->latest_kept, sink_.latestKept());
+    QueryProgress::lower(progress_.latest_kept, sink_.latestKept());
   if (options_.min_distance > 0 && sink_.isCut())
-    QueryProgress::lower(progress_->last_vertex, sink_.lastVertexAtStart());
-  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+    QueryProgress::lower(progress_.last_vertex, sink_.lastVertexAtStart());
+  if (hasAnswer()) QueryProgress::lower(progress_.answered_by, task_);
 }
 
 void TaskFindings::add(const Crossing& crossing) {
   crossings_.push_back(crossing);
-  if (!progress_) return;
-  QueryProgress::lower(progress_->crossed_by, task_);
+  QueryProgress::lower(progress_.crossed_by, task_);
   if (!hasAnswer()) return;
-  QueryProgress::lower(progress_->answered_by, task_);
-  if (options_.only_time) QueryProgress::lower(progress_->first_hi, 0.);
+  QueryProgress::lower(progress_.answered_by, task_);
+  if (options_.only_time) QueryProgress::lower(progress_.first_hi, 0.);
 }
 
 void TaskFindings::refuse(const NonFiniteVertex& error, float earliest) {
   if (error_ && error_->earliest <= earliest) return;
   error_ = QueryError{earliest, error.mesh(), error.vertex()};
-  if (!progress_) return;
-  QueryProgress::lower(progress_->first_hi, double{earliest});
-  if (hasAnswer()) QueryProgress::lower(progress_->answered_by, task_);
+  QueryProgress::lower(progress_.first_hi, double{earliest});
+  if (hasAnswer()) QueryProgress::lower(progress_.answered_by, task_);
 }
 
 }  // namespace deformable

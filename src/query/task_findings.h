@@ -27,21 +27,21 @@ namespace deformable {
 class TaskFindings {
  public:
   /// @param may_repeat  as of ContactSink
-  /// @param progress  of the query; null if the query has no other tasks
+  /// @param progress  of the query; kept by reference
   /// @param task  the number of this task
-  TaskFindings(const QueryOptions& options, bool may_repeat, QueryProgress* progress,
-               std::size_t task);
+  /// @param first  gets the tight bracket of the first contact, even if the list drops
+  /// it; null: nobody asks for it here
+  TaskFindings(const QueryOptions& options, bool may_repeat, QueryProgress& progress,
+               std::size_t task, FirstBracket* first);
 
   /// @brief Forgets what was found and begins another task of the same query.
   void begin(std::size_t task);
 
   const QueryOptions& options() const { return options_; }
-  bool hasOtherTasks() const { return progress_; }
 
   /// @brief Whether nothing more can change the answer.
   bool isDone() const {
-    return hasAnswer() ||
-           (progress_ && progress_->answered_by.load(std::memory_order_relaxed) < task_);
+    return hasAnswer() || progress_.answered_by.load(std::memory_order_relaxed) < task_;
   }
 
   /// @brief A pair whose window starts after this time cannot change the answer.
@@ -66,19 +66,16 @@ class TaskFindings {
   bool wantsCrossings() const {
     if (options_.all_crossings) return true;
     return !hasCrossing() &&
-           !(progress_ && progress_->crossed_by.load(std::memory_order_relaxed) < task_);
+           !(progress_.crossed_by.load(std::memory_order_relaxed) < task_);
   }
 
   /// @brief The earliest upper end of a bracket, of all tasks; 1 without contacts.
   double firstHi() const {
-    const double mine = sink_.firstHi();
-    return progress_ ? std::min(mine, progress_->first_hi.load(std::memory_order_relaxed))
-                     : mine;
+    return std::min(sink_.firstHi(), progress_.first_hi.load(std::memory_order_relaxed));
   }
 
   /// @brief Whether a contact of the pair may change the answer, if its bracket is this
   /// one or a later one.
-  /// @pre hasOtherTasks()
   bool mayMatter(const FeatureIds& pair, const TimeBracket& bracket) const;
 
   /// @brief Adds a contact of features that touch. Its bracket is made tight if it may be
@@ -101,9 +98,6 @@ class TaskFindings {
   /// (QueryOptions::all_crossings). A crossing of a mesh without owners may be there
   /// several times.
   const std::vector<Crossing>& crossings() const { return crossings_; }
-  /// @brief The tight bracket of the first contact that was found.
-  /// @pre there is a contact, and the query has no other tasks
-  TimeBracket firstBracket() const { return first_.get(); }
   ContactSink& sink() { return sink_; }
   StageCounts& counts() { return counts_; }
 
@@ -127,18 +121,16 @@ class TaskFindings {
   }
   /// What begins later is dropped.
   double latestKept() const {
-    const double mine = sink_.latestKept();
-    return progress_
-               ? std::min(mine, progress_->latest_kept.load(std::memory_order_relaxed))
-               : mine;
+    return std::min(sink_.latestKept(),
+                    progress_.latest_kept.load(std::memory_order_relaxed));
   }
   bool isLeading(const TimeBracket& bracket) const;
 
   const QueryOptions options_;
   ContactSink sink_;
-  FirstBracket first_;
-  QueryProgress* progress_;
+  QueryProgress& progress_;
   std::size_t task_;
+  FirstBracket* first_;
   std::vector<Crossing> crossings_;
   std::optional<QueryError> error_;
   StageCounts counts_;

@@ -148,9 +148,9 @@ ElementaryResult TouchingStages::decide(const FeatureCandidate& candidate,
     return deformable::decide(candidate.kind, x, candidate.window_lo, candidate.window_hi,
                               toc_err, t_stop, options.t_max);
   };
-  const bool may_be_coarse =
-      options.query == ContinuousQuery::kFirst && findings_.hasOtherTasks() &&
-      options.toc_err >= CoarseTime::kLeastTocErr && isWorthMagnifying(candidate.kind, x);
+  const bool may_be_coarse = options.query == ContinuousQuery::kFirst &&
+                             options.toc_err >= CoarseTime::kLeastTocErr &&
+                             isWorthMagnifying(candidate.kind, x);
   const double apart = may_be_coarse ? apartUntil(candidate.kind, x, candidate.window_lo,
                                                   candidate.window_hi)
                                      : 0;

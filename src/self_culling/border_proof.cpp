@@ -51,7 +51,7 @@ void directionOf(int bit, int (&d)[3]) {
 bool BorderProof::isEmbedded(const RegionBorder& border, std::uint32_t directions) {
   assert(border.size() > 0 && border.points.size() > border.begins.back() + 1);
   border_ = &border;
-  const double size = tree_.reach() * tree_.reach();
+  const double size = tree_.largestCoordinate() * tree_.largestCoordinate();
   if (directions == 0 || !isInRange(size)) return false;
   direction_ = widest(directions);
   project(direction_);
@@ -116,10 +116,11 @@ void BorderProof::project(int direction) {
   }
 }
 
-/// Sets the boxes of the points. The third coordinate is the same for all points, twice
-/// the reach. The pad of Kernels::fitPoints is relative to the largest coordinate, which
-/// makes it reach * 2^-48. The error of coordinates is 2^-51 of the reach. That of a
-/// box's numbers is four times as large, and less than 2^-50 more where two are added.
+/// Sets the boxes of the points. The third coordinate is the same for all points: twice
+/// the largest coordinate C of the tree. So the pad of Kernels::fitPoints, which is
+/// relative to the largest coordinate of a point, is 2^-48 C. The error of coordinates is
+/// 2^-51 C. That of a box's numbers is four times as large, and less than 2^-50 C more
+/// where two are added.
 void BorderProof::fitPoints() {
   boxes_.points.resize(points_.size());
   for (std::size_t first = 0; first < points_.size(); first += 8) {
@@ -130,7 +131,7 @@ void BorderProof::fitPoints() {
         const Point& p = points_[first + i].at[frame];
         offsets[frame][0][i] = p.x;
         offsets[frame][1][i] = p.y;
-        offsets[frame][2][i] = 2 * tree_.reach();
+        offsets[frame][2][i] = 2 * tree_.largestCoordinate();
       }
       // The displacement of an edge is not used.
       boxes_.points[first + i].t0[3] = std::numeric_limits<double>::infinity();
@@ -272,7 +273,7 @@ bool BorderProof::meetOnlyAtVertices(std::size_t i, std::size_t j) const {
     for (const Point& a : {p[k], q[k]})
       length = std::max(length, std::max(std::abs(a.x), std::abs(a.y)));
   }
-  const double size = tree_.reach() * length, bound = kBorderTurnBound * size;
+  const double size = tree_.largestCoordinate() * length, bound = kBorderTurnBound * size;
   if (!(size >= kTiny)) return false;
   const double turn[3] = {cross(p[0], q[0]), cross(p[0], q[1]) + cross(p[1], q[0]),
                           cross(p[1], q[1])};
@@ -305,7 +306,7 @@ bool BorderProof::areApart(const PlanarEdge& e, const PlanarEdge& f, const Point
                            double distance) const {
   double size = 0;
   for (const Point& p : w) size = std::max(size, std::max(std::abs(p.x), std::abs(p.y)));
-  size *= tree_.reach();
+  size *= tree_.largestCoordinate();
   if (!(size >= kTiny)) return false;
   const double bound = kBorderSideBound * size;
   // A strip is as wide as its sides are apart along the direction. The length of this is
@@ -343,11 +344,11 @@ bool BorderProof::windsOnceLeftOf(std::size_t i) const {
   // A ray to the left, in a direction that edges of a regular mesh do not have.
   constexpr double kTilt = 0.2360679774997897;
   const Point ray = {kTilt * e.x - e.y, kTilt * e.y + e.x};
-  const double reach = tree_.reach();
-  const double size = std::max(std::abs(ray.x), std::abs(ray.y)) * reach;
+  const double largest = tree_.largestCoordinate();
+  const double size = std::max(std::abs(ray.x), std::abs(ray.y)) * largest;
   if (!(size >= kTiny)) return false;
   const double ray_bound = kBorderRayBound * size,
-               half_bound = kBorderHalfBound * (reach * reach);
+               half_bound = kBorderHalfBound * (largest * largest);
   // The side of the ray's line on which a point lies; 0: unknown.
   const auto side = [&](const Point& p) {
     const double s = cross(ray, (p - a) + (p - b));

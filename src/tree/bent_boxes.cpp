@@ -14,8 +14,8 @@ namespace {
 
 /// What is added to a half-axis: 0 in place of a negative number, infinity in place of
 /// a NaN.
-Float4 outward(const Float4& reach) {
-  const Float4 least = reach < 0.f ? Float4{} : reach;
+Float4 outward(const Float4& change) {
+  const Float4 least = change < 0.f ? Float4{} : change;
   return least == least ? least : Float4{} + std::numeric_limits<float>::infinity();
 }
 
@@ -89,7 +89,7 @@ BentBoxes::BentBoxes(const Bend& bend, const double (&origin)[2][3],
 void BentBoxes::enlarge(MovingKdopNode& node) const {
   constexpr float kRounding = 0x1p-18f;
   for (int q = 0; q < MovingKdopNode::kWidth; q += 4) {
-    Float4 center[3], width{}, reach{};
+    Float4 center[3], width{}, size{};
     for (int k = 0; k < 3; ++k) {
       const auto mean = [&](int r) {
         return 0.5f * load(node.t0[r] + q) + 0.5f * load(node.t1[r] + q);
@@ -97,9 +97,9 @@ void BentBoxes::enlarge(MovingKdopNode& node) const {
       const Float4 below = mean(2 * k), above = mean(2 * k + 1);
       center[k] = 0.5f * (above - below);
       width += 0.5f * (above + below);
-      reach += abs(center[k]);
+      size += abs(center[k]);
     }
-    const Float4 rounding = (reach + width) * (diagonal_change_ * kRounding) + rounding_;
+    const Float4 rounding = (size + width) * (diagonal_change_ * kRounding) + rounding_;
     const Float4 spread[2] = {width * change_ + rounding,
                               width * diagonal_change_ + rounding};
     Float4 s[3], along[8];

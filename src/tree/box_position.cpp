@@ -55,7 +55,7 @@ KdopShift relativeShift(const BoxPosition& a, const BoxPosition& b) {
     kdopCoordinates(offset, d);
     // Three roundings of the offset, one of the diagonal, and one for each posed
     // coordinate. Each is 2^-53 of a number below size: less than 2^-49 in all.
-    size = 2 * (size + a.reach + b.reach);
+    size = 2 * (size + a.largest_coordinate + b.largest_coordinate);
     const float pad = roundUp(size * 0x1p-49, 0.f);
     Kdop16& out = frame == 0 ? shift.t0 : shift.t1;
     for (int j = 0; j < 8; ++j) {

@@ -19,9 +19,9 @@ struct BoxPosition {
   double origin[2][3];
   /// The translation of the mesh, in addition.
   double translation[2][3];
-  /// RigidTree::reach() of a RigidTree. 0 for a MovingKdopTree: its boxes contain the
-  /// rounding of coordinates relative to the origin.
-  double reach;
+  /// RigidTree::largestCoordinate() of a RigidTree. 0 for a MovingKdopTree: its boxes
+  /// contain the rounding of coordinates relative to the origin.
+  double largest_coordinate;
 };
 
 /// @brief The shift that is added to the sum of a box of tree a and a box of tree b. It

@@ -56,7 +56,7 @@ struct MeshInstance {
   /// 2^-49 of the numbers that are added; the bound contains this.
   double poseDisplacement() const {
     if (isInPlace()) return 0;
-    double moved = 0, size = tree ? tree->reach() : rigid.reach();
+    double moved = 0, size = tree ? tree->largestCoordinate() : rigid.largestCoordinate();
     for (int k = 0; k < 3; ++k) {
       moved = std::max(moved, std::abs(translation[1][k] - translation[0][k]));
       for (int frame = 0; frame < 2; ++frame)

@@ -315,12 +315,13 @@ double MovingKdopTree::medianOf(const VertexFrames& frames, int frame, int axis)
   return *middle;
 }
 
-void MovingKdopTree::setReach(const CoordinateBounds& bounds) {
-  reach_ = 0;
+void MovingKdopTree::setLargestCoordinate(const CoordinateBounds& bounds) {
+  largest_coordinate_ = 0;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k)
-      reach_ = std::max(reach_, std::max(bounds.hi[frame][k] - origin_[frame][k],
-                                         origin_[frame][k] - bounds.lo[frame][k]));
+      largest_coordinate_ = std::max(largest_coordinate_,
+                                     std::max(bounds.hi[frame][k] - origin_[frame][k],
+                                              origin_[frame][k] - bounds.lo[frame][k]));
 }
 
 /// Sets the boxes of a node. Those of its children are set.
@@ -390,18 +391,18 @@ void MovingKdopTree::refit(const VertexFrames& frames, int num_threads) {
   for (int k = 0; k < 3; ++k)
     origin_[0][k] = origin_[1][k] = 0.5 * std::min(bounds.lo[0][k], bounds.lo[1][k]) +
                                     0.5 * std::max(bounds.hi[0][k], bounds.hi[1][k]);
-  setReach(bounds);
+  setLargestCoordinate(bounds);
   // Rounding can make extents along eight directions in two frames larger by up to 2^-17
-  // of the reach: 32 half-axes of at most 2 reach each, rounded outward by 2^-22 of
-  // themselves.
-  blur_ = roundUp(reach_ * 0x1p-13, 0.f);
+  // of the largest coordinate C: 32 half-axes of at most 2 C each, rounded outward by
+  // 2^-22 of themselves.
+  blur_ = roundUp(largest_coordinate_ * 0x1p-13, 0.f);
   fit(frames, num_threads);
   // A free point has no extent: it tells nothing about the rounding.
   const std::size_t num_points = free_.points;
   if (sizes_[0].blurred - num_points <= (triangles_.size() - num_points) / 2) return;
   for (int frame = 0; frame < 2; ++frame)
     for (int k = 0; k < 3; ++k) origin_[frame][k] = medianOf(frames, frame, k);
-  setReach(bounds);
+  setLargestCoordinate(bounds);
   fit(frames, num_threads);
 }
 

@@ -109,7 +109,7 @@ class MovingKdopTree {
   const double (&origin(int frame) const)[3] { return origin_[frame]; }
 
   /// @brief Largest distance of a vertex from the origin along an axis, in both frames.
-  double reach() const { return reach_; }
+  double largestCoordinate() const { return largest_coordinate_; }
 
   std::size_t memUsage() const;
 
@@ -154,7 +154,7 @@ class MovingKdopTree {
   void setNode(const TreeChildren& from, MovingKdopNode& node) const;
   CoordinateBounds boundsOf(const VertexFrames& frames, int num_threads) const;
   double medianOf(const VertexFrames& frames, int frame, int axis) const;
-  void setReach(const CoordinateBounds& bounds);
+  void setLargestCoordinate(const CoordinateBounds& bounds);
   void fit(const VertexFrames& frames, int num_threads);
   void fitVertices(const Subtree& subtree, const VertexFrames& frames);
   void refit(MovingKdopNode& node, bool is_still);
@@ -180,7 +180,7 @@ class MovingKdopTree {
   std::vector<NodeSize> sizes_;
   std::vector<NodeSize> first_sizes_;
   double origin_[2][3]{};
-  double reach_{0};
+  double largest_coordinate_{0};
   /// Triangles whose boxes have smaller extents are blurred: their boxes are mostly
   /// rounding.
   float blur_{0};

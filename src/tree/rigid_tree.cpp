@@ -149,7 +149,7 @@ RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes,
     setOrigin(1);
   else
     std::copy(origin_[0], origin_[0] + 3, origin_[1]);
-  reach_ *= 1 + slack();
+  largest_coordinate_ *= 1 + slack();
   if (!turns_) return;
   // The difference of both rotations, applied to any point, whose length is below `size`.
   double size = 0, square = 0;
@@ -184,7 +184,8 @@ void RigidTree::setOrigin(int frame) {
   const double size = std::abs(origin[0]) + std::abs(origin[1]) + std::abs(origin[2]);
   origin_size_ = std::max(origin_size_, roundUp(2 * size, 0.f));
   for (int k = 0; k < 3; ++k)
-    reach_ = std::max(reach_, spreadOf(whole) + std::abs(whole.center[k] - origin[k]));
+    largest_coordinate_ = std::max(
+        largest_coordinate_, spreadOf(whole) + std::abs(whole.center[k] - origin[k]));
 }
 
 void RigidTree::rotate(int frame, OrientedBox& box) const {

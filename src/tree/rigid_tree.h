@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/slot_cache.h"
 #include "mesh/moving_kdop.h"
 #include "mesh/tree_nodes.h"
 #include "mesh/vertex_frames.h"
@@ -85,7 +86,7 @@ class RigidTree {
   const double (&origin(int frame) const)[3] { return origin_[frame]; }
 
   /// @brief Bound on the distance of the mesh from the origin along an axis.
-  double reach() const { return reach_; }
+  double largestCoordinate() const { return largest_coordinate_; }
 
  private:
   static constexpr int kWidth = MovingKdopNode::kWidth;
@@ -132,7 +133,7 @@ class RigidTree {
   double rotation_[2][9]{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1, 0, 0, 0, 1, 0, 0, 0, 1}};
   double origin_[2][3]{};
   float origin_size_{0};
-  double reach_{0};
+  double largest_coordinate_{0};
   /// Bound on the motion of a point along an axis that is due to the rotations.
   float displacement_{0};
   std::optional<BentBoxes> bent_boxes_;
@@ -146,25 +147,18 @@ class RigidTreeReader {
   /// @brief Two nodes have the same slot if their numbers differ by a multiple of this.
   static constexpr int kSlots = 64;  // 76 KiB of nodes
 
-  explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {
-    std::fill(made_, made_ + kSlots, -1);
-  }
+  explicit RigidTreeReader(const RigidTree& tree) : tree_(tree) {}
 
   /// @brief Node i. It is valid until the next call.
   const MovingKdopNode& node(int i) {
     assert(i >= 0);
-    const int slot = i % kSlots;
-    if (made_[slot] != i) {
-      tree_.open(i, node_[slot]);
-      made_[slot] = i;
-    }
-    return node_[slot];
+    return nodes_.get(static_cast<unsigned>(i) % kSlots, i,
+                      [&](MovingKdopNode& node) { tree_.open(i, node); });
   }
 
  private:
   const RigidTree& tree_;
-  int made_[kSlots];
-  MovingKdopNode node_[kSlots];
+  SlotCache<int, MovingKdopNode, kSlots> nodes_{-1};
 };
 
 }  // namespace deformable

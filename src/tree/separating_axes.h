@@ -21,8 +21,8 @@ class SeparatingAxes {
   SeparatingAxes(const MeshInstance& a, const MeshInstance& b, double distance = 0);
 
   /// @brief Whether areApart() is worth its time for two boxes with this sum of extents.
-  /// It is not for AABBs. Of boxes that move far relative to their size few
-  /// are proved apart as a rule: AxisTrials tells where it is worth its time.
+  /// It is not for AABBs. Of boxes that move far relative to their size few are proved
+  /// apart as a rule: AxisTrials tells where it is worth its time.
   bool mayHelp(float extents) const { return least_extents_ <= extents; }
 
   /// @brief Whether a tree has oriented boxes. If not, areApart() is of no use.
@@ -95,10 +95,10 @@ class AxisTrials {
   }
 
  private:
-  /// A test takes about a sixth of the time of what it may save. So it pays where one of
-  /// three succeeds: a success is worth two failures. After more failures the next test
-  /// waits, ever longer: at last 1 of 257 pairs is tested, which is a thousandth of the
-  /// time. A task with few pairs has none.
+  /// A test pays where one of three succeeds: it takes a sixth of the time that it may
+  /// save. So a success is worth two failures. After more failures the next test waits,
+  /// ever longer: at last 1 of 257 pairs is tested, which is a thousandth of the time. A
+  /// task with few pairs tests none.
   static constexpr int kMostCredit = 14;
   static constexpr std::uint16_t kFirstPause = 8, kLongestPause = 256;
   static constexpr std::uint32_t kFirst = 32;

@@ -31,8 +31,9 @@ SweptContacts sweptSelfContacts(const detail::DeformableMesh& model, bool with_f
   instance.frames = model.frames();
   instance.tree = &model.movingTree();
   const deformable::BoxShifts shifts;
+  deformable::QueryProgress progress;
   deformable::NarrowPhase narrow_phase(instance, instance, shifts,
-                                       deformable::QueryOptions());
+                                       deformable::QueryOptions(), progress);
   SweptContacts found;
   std::vector<deformable::LeafPair> pairs;
   found.ms_traverse = millisecondsOf([&] {

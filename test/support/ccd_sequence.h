@@ -45,6 +45,8 @@ inline std::vector<std::string> commandsOf(const fs::path& page,
 #ifdef FCL_CCD_TOOL
 /// @brief Starts the program with the arguments; the test's folder is its working folder.
 inline pid_t start(const fs::path& folder, std::vector<std::string> arguments) {
+  // Nothing that waits for a line finds one of the last run.
+  for (const char* name : {"out.txt", "err.txt"}) fs::remove(folder / name);
   const pid_t child = fork();
   if (child != 0) return child;
   if (chdir(folder.c_str()) != 0 || std::freopen("out.txt", "w", stdout) == nullptr ||

@@ -59,11 +59,6 @@ class CcdOutputs : public CcdSequence {
     return linesOf(readText(path(name))).size();
   }
 
-  /// @brief Removes what the last run printed, so that nothing waits for old lines.
-  void removeTexts() const {
-    for (const char* name : {"out.txt", "err.txt"}) fs::remove(path(name));
-  }
-
   void cutFrame(std::size_t frame, std::size_t size) const {
     writeText(path(frameName(frame)), readText(path(frameName(frame))).substr(0, size));
   }
@@ -434,7 +429,6 @@ TEST_F(CcdOutputs, FollowTellsWhatItWaitsFor) {
   awaitThat([&] { return readText(path("err.txt")) == line; });
   kill(child, SIGINT);
   EXPECT_EQ(exitCodeOf(child), 128 + SIGINT);
-  removeTexts();
   // A first frame that is bad, and one that is still being written.
   cutFrame(0, 300);
   expectFailure("run f --follow", "f/tip0.ply: ");
@@ -482,7 +476,6 @@ TEST_F(CcdOutputs, FollowNamesTheFileThatOthersChanged) {
   EXPECT_TRUE(contains(readText(path("err.txt")), "b/tip3.ply: was taken away"))
       << readText(path("err.txt"));
 
-  removeTexts();
   const pid_t other = startWaitingRun({"--end", "4", "--paint", "f/tip4.ply"}, 3);
   writeFrame(4);
   const std::string frame = readText(path(frameName(4)));

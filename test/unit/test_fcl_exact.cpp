@@ -296,7 +296,7 @@ TEST(FCL_CROSSING_TEST, orientationIsExact) {
   constexpr std::uint64_t kSeed = 24;
   Random random(kSeed);
   int flat = 0;
-  for (int i = 0; i < 30000; ++i) {
+  for (int i = 0; i < test::rounds(30000); ++i) {
     Tetrahedron t;
     for (auto& point : t.p)
       for (double& c : point) switch (i % 5) {
@@ -326,7 +326,7 @@ TEST(FCL_CROSSING_TEST, orientationIsExact) {
     std::swap(t.p[2], t.p[3]);
     ASSERT_EQ(t.sign(), -truth) << "seed " << kSeed << ", " << i;
   }
-  EXPECT_GT(flat, 1000);
+  EXPECT_GT(flat, test::rounds(1000));
 }
 
 // The length of the integers depends on the digits of the coordinates. Around each length

@@ -254,8 +254,8 @@ TEST(FlatContacts, GapsOfMeshes) {
   const BodyTolerance tolerance(a.body, b.body, 0.25);
   PartingDirection parting(a.body, b.body, tolerance);
   Point direction;
-  for (int i = 0; i < 2000; ++i) {
-    if (i % 500 == 0) {
+  for (int i = 0; i < rounds(2000); ++i) {
+    if (i % rounds(500) == 0) {
       direction = (random.point(0.3) + Point(0, 0, 1)).normalized();
       setDirection(direction, parting);
     }

@@ -21,6 +21,7 @@
 #include "kernels/kernels.h"
 #include "mesh/feature_pairs.h"
 #include "query/distance_contact.h"
+#include "sanitizer.h"
 #include "windowed_pairs.h"
 
 namespace fcl {
@@ -379,7 +380,7 @@ struct AtStart {
 AtStart expectSameAtStart(const MovingPair (&queries)[8], double distance, double size) {
   const DistanceBlock block(queries);
   const ContinuousContactKind kind = queries[0].kind;
-  // As reachOf(), for coordinates of this size.
+  // As cullDistanceOf(), for coordinates of this size.
   const double reach = distance * (1 + 2 * DistanceTolerance::kShare) +
                        2 * DistanceTolerance::kTouching * (distance + 2 * size);
   const auto test = [&](const Kernels& k, std::size_t count, Approach(&found)[8]) {
@@ -723,7 +724,7 @@ void expectRightOnBentPaths(const BentTriangles& x, const PairBends& bends,
 TEST(FCL_KERNELS, bentPathsThatComeNearAreNotCulled) {
   Random random(81);
   BentFound sum;
-  for (int i = 0; i < 1500 && !testing::Test::HasFailure(); ++i) {
+  for (int i = 0; i < test::rounds(1500) && !HasFailure(); ++i) {
     const BentTriangles x(random, std::pow(10, random.uniform(-2, 0)));
     PairBends bends;
     for (int k = 0; k < 2; ++k)
@@ -732,9 +733,9 @@ TEST(FCL_KERNELS, bentPathsThatComeNearAreNotCulled) {
                  hi = random.index(2) ? 1 : random.uniform(lo, 1);
     expectRightOnBentPaths(x, bends, std::pow(10, random.uniform(-3, -0.5)), lo, hi, sum);
   }
-  EXPECT_GT(sum.apart, 100);
-  EXPECT_GT(sum.culled, 5000);
-  EXPECT_GT(sum.near, 500);
+  EXPECT_GT(sum.apart, test::rounds(100));
+  EXPECT_GT(sum.culled, test::rounds(5000));
+  EXPECT_GT(sum.near, test::rounds(500));
 }
 
 /// Two triangles face each other, and one moves. The plane between them is parallel to

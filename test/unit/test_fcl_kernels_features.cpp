@@ -17,6 +17,7 @@
 #include "mesh/feature_pairs.h"
 #include "mesh_generators.h"
 #include "random_boxes.h"
+#include "sanitizer.h"
 
 namespace fcl {
 namespace detail {
@@ -170,7 +171,7 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
   Random random(kSeed);
   OverlapTally tally[kNumFeaturePairs];
   int late = 0, far = 0;
-  for (int i = 0; i < 12000; ++i) {
+  for (int i = 0; i < test::rounds(12000); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const std::vector<TrianglePairBoxes> boxes = boxesWithOneShift(random, kPairs);
     std::vector<TrianglePair> pairs;
@@ -234,12 +235,12 @@ TEST(FCL_KERNELS, featuresAsOverlapWindow) {
     ASSERT_FALSE(HasFailure());
   }
   for (int bit = 0; bit < kNumFeaturePairs; ++bit) {
-    EXPECT_GT(tally[bit].overlaps, 1000) << bit;
-    EXPECT_GT(tally[bit].apart, 1000) << bit;
-    EXPECT_GT(tally[bit].cut, 300) << bit;
+    EXPECT_GT(tally[bit].overlaps, test::rounds(1000)) << bit;
+    EXPECT_GT(tally[bit].apart, test::rounds(1000)) << bit;
+    EXPECT_GT(tally[bit].cut, test::rounds(300)) << bit;
   }
-  EXPECT_GT(late, 1000);
-  EXPECT_GT(far, 1000);
+  EXPECT_GT(late, test::rounds(1000));
+  EXPECT_GT(far, test::rounds(1000));
 }
 
 TEST(FCL_KERNELS, edgesAndFacesAtStart) {

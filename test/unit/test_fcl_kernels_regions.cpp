@@ -16,6 +16,7 @@
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
 #include "mesh_generators.h"
+#include "sanitizer.h"
 
 namespace fcl {
 namespace detail {
@@ -335,7 +336,7 @@ TEST(FCL_KERNELS, lowCorners) {
   constexpr std::uint64_t kSeed = 90;
   Random random(kSeed);
   int low = 0, high = 0;
-  for (int i = 0; i < 8000; ++i) {
+  for (int i = 0; i < test::rounds(8000); ++i) {
     SCOPED_TRACE("seed " + std::to_string(kSeed) + ", " + std::to_string(i));
     const double step = i % 3 ? random.uniform(0, 0.3) : 0;
     const int exponent = static_cast<int>(random.index(200)) - 100;
@@ -383,8 +384,8 @@ TEST(FCL_KERNELS, lowCorners) {
       }
     ASSERT_FALSE(HasFailure());
   }
-  EXPECT_GT(low, 3000);
-  EXPECT_GT(high, 3000);
+  EXPECT_GT(low, test::rounds(3000));
+  EXPECT_GT(high, test::rounds(3000));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/vertex_frames.h"
 #include "mesh_generators.h"
 #include "numerics/moving_vector.h"
 #include "shapes/body_boxes.h"
@@ -18,18 +19,6 @@ namespace {
 
 using namespace detail::deformable;
 
-Vec vecOf(const double (&v)[3]) { return {v[0], v[1], v[2]}; }
-
-Vec rotated(const double (&r)[9], const Vec& v) {
-  return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
-          r[6] * v.x + r[7] * v.y + r[8] * v.z};
-}
-
-Vec turnedBack(const double (&r)[9], const Vec& v) {
-  return {r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
-          r[2] * v.x + r[5] * v.y + r[8] * v.z};
-}
-
 /// Two boxes along a direction: b's center minus a's, and the sum of the reaches.
 struct Projection {
   double between, reach;
@@ -38,7 +27,7 @@ struct Projection {
              const Vec& d) {
     const Vec center =
         rotated(pose_a.rotation, vecOf(a.center)) + vecOf(pose_a.translation);
-    const Vec body = turnedBack(pose_b.rotation, d);
+    const Vec body = rotatedBack(pose_b.rotation, d);
     between = dot(body, vecOf(b.center)) + dot(d, vecOf(pose_b.translation) - center);
     reach = 0;
     for (int i = 0; i < 3; ++i)

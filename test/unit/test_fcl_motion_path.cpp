@@ -11,6 +11,7 @@
 #include "fcl/common/exception.h"
 #include "paths/sine.h"
 #include "reference_motion.h"
+#include "sanitizer.h"
 
 namespace fcl {
 namespace test {
@@ -59,7 +60,7 @@ TEST(FCL_MOTION_PATH, sineAndCosine) {
 TEST(FCL_MOTION_PATH, staysNearItsFormula) {
   Random random(2);
   double worst = 0, worst_rate = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < rounds(20000); ++i) {
     const ReferenceMotion motion = randomMotion(random, 1);
     const MotionPath path = motion.path();
     const Vector3<double> x = random.point(1);
@@ -166,7 +167,7 @@ TEST(FCL_MOTION_PATH, refusesWildSplines) {
 TEST(FCL_MOTION_PATH, bentChords) {
   Random random(14);
   double worst = 0;
-  for (int i = 0; i < 4000; ++i) {
+  for (int i = 0; i < rounds(4000); ++i) {
     const ReferenceMotion motion = randomMotion(random, 1);
     const MotionPath path = motion.path();
     if (!path.axis()) continue;

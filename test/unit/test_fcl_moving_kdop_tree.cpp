@@ -488,8 +488,8 @@ TEST(FCL_MOVING_KDOP_TREE, whatFliesOffBlursNothingElse) {
       EXPECT_LT(widths.rounded, widths.all / 8);
       for (const TreeVertex& v : tree.vertices())
         for (int k = 0; k < 3; ++k) {
-          EXPECT_LE(std::abs(v.t0[k] - tree.origin(0)[k]), tree.reach());
-          EXPECT_LE(std::abs(v.t1[k] - tree.origin(1)[k]), tree.reach());
+          EXPECT_LE(std::abs(v.t0[k] - tree.origin(0)[k]), tree.largestCoordinate());
+          EXPECT_LE(std::abs(v.t1[k] - tree.origin(1)[k]), tree.largestCoordinate());
         }
 
       MovingMesh reversed = mesh;

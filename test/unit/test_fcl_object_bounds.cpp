@@ -26,6 +26,7 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/geometry/shape/triangle_p.h"
 #include "moving_objects.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -152,7 +153,7 @@ TEST(ObjectBounds, ContainTheObjectAtAllTimes) {
   for (Body& body : makeShapes()) bodies.push_back(std::move(body));
   int num_curved = 0;
   double widest = 0;
-  for (int i = 0; i < 600; ++i) {
+  for (int i = 0; i < rounds(600); ++i) {
     SCOPED_TRACE(i);
     const Body& body = bodies[random.index(bodies.size())];
     const Path path = randomPath(random, 1);
@@ -170,7 +171,7 @@ TEST(ObjectBounds, ContainTheObjectAtAllTimes) {
       }
     }
   }
-  EXPECT_GT(num_curved, 100);
+  EXPECT_GT(num_curved, rounds(100));
   // Objects have a radius of about 0.3, paths a length of up to 3.5.
   EXPECT_LT(widest, .7);
 }
@@ -202,7 +203,7 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
   std::vector<Body> bodies = makeMeshes();
   for (Body& body : makeShapes()) bodies.push_back(std::move(body));
   int num_overlapping = 0, num_box_pairs = 0;
-  for (int scene = 0; scene < 20; ++scene) {
+  for (int scene = 0; scene < rounds(20); ++scene) {
     constexpr std::size_t kCount = 30;
     constexpr int kSamples = 64;
     std::vector<std::unique_ptr<ContinuousCollisionObject<double>>> objects;
@@ -250,7 +251,7 @@ TEST(ObjectBounds, NoObjectsThatOverlapAreMissed) {
         EXPECT_TRUE(met[i][k]) << scene << ": " << i << ", " << k;
       }
   }
-  EXPECT_GT(num_overlapping, 300);
+  EXPECT_GT(num_overlapping, rounds(300));
   // Few box pairs beyond.
   EXPECT_LT(num_box_pairs, 1.5 * num_overlapping);
 }
@@ -298,7 +299,7 @@ TEST(ObjectBounds, FlatsMeetWhatComesNearThem) {
   for (Body& body : makeShapes()) bodies.push_back(std::move(body));
   int num_near = 0, num_apart = 0, num_culled = 0;
   double longest = 0;
-  for (int i = 0; i < 1000; ++i) {
+  for (int i = 0; i < rounds(1000); ++i) {
     SCOPED_TRACE(i);
     const Body& body = bodies[random.index(bodies.size())];
     const Flat flat = randomFlat(random);
@@ -335,8 +336,8 @@ TEST(ObjectBounds, FlatsMeetWhatComesNearThem) {
     EXPECT_GE(window.hi, last);
     if (way < 5) longest = std::max(longest, first - window.lo);
   }
-  EXPECT_GT(num_near, 200);
-  EXPECT_GT(num_apart, 200);
+  EXPECT_GT(num_near, rounds(200));
+  EXPECT_GT(num_apart, rounds(200));
   EXPECT_GT(num_culled, .9 * num_apart);
   EXPECT_LT(longest, 1);
 }

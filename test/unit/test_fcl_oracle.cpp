@@ -15,6 +15,7 @@
 #include "oracle/scene_check.h"
 #include "query_csv.h"
 #include "rational_geometry.h"
+#include "sanitizer.h"
 #include "shared_data.h"
 
 namespace fcl {
@@ -177,7 +178,7 @@ TEST(FCL_ORACLE, irrationalTime) {
 TEST(FCL_ORACLE, noContactIsBeforeTheFirst) {
   constexpr std::uint64_t kSteps = 840;  // divided by 2 ... 8
   std::size_t contacts = 0;
-  for (std::uint64_t number = 0; number < 2000; number += 2) {
+  for (std::uint64_t number = 0; number < rounds(2000U); number += 2) {
     const MovingPair pair = generatedQuery(number);
     const OracleAnswer answer = askOracle(pair.kind, pair.points());
     for (std::uint64_t k = 0; k <= kSteps; k += 35) {
@@ -189,11 +190,11 @@ TEST(FCL_ORACLE, noContactIsBeforeTheFirst) {
       break;
     }
   }
-  EXPECT_GT(contacts, 300U);
+  EXPECT_GT(contacts, rounds(300U));
 }
 
 TEST(FCL_ORACLE, generatedQueries) {
-  constexpr std::uint64_t kCount = 24000;
+  constexpr std::uint64_t kCount = rounds(24000U);
   CheckTally tally;
   for (std::uint64_t number = 0; number < kCount; ++number)
     ASSERT_EQ(disagreement(generatedQuery(number), number, tally), "")

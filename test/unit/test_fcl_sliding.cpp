@@ -25,6 +25,7 @@
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "fcl/narrowphase/continuous_features.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -95,6 +96,11 @@ std::map<ContactName, ContinuousFeatureTestResult<double>> allPairs(const TestMe
   return found;
 }
 
+/// The tubes of the tests that compare with all pairs, or with a motion that tells
+/// little.
+constexpr int kSlices = kHasAddressSanitizer ? 16 : 24,
+              kRings = kHasAddressSanitizer ? 4 : 8;
+
 Request requestOf(ContinuousQuery query, double distance = 0) {
   Request request;
   request.query = query;
@@ -157,33 +163,32 @@ void expectAllPairs(const TestMesh& a, const Vector& way, const TestMesh& b,
 }
 
 TEST(FCL_SLIDING, tubesThatJustFit) {
-  const int slices = 24, rings = 8;
   for (const double gap : {1e-2, 1e-6, 1e-9}) {
     SCOPED_TRACE(gap);
-    const TestMesh hole = tilted(
-        makeRoundTube(slices, rings, [&](double, double) { return holeRadius(slices); }));
+    const TestMesh hole = tilted(makeRoundTube(
+        kSlices, kRings, [&](double, double) { return holeRadius(kSlices); }));
     const TestMesh inner =
-        tilted(makeRoundTube(slices, rings, [&](double, double) { return 1 - gap; }));
+        tilted(makeRoundTube(kSlices, kRings, [&](double, double) { return 1 - gap; }));
     expectAllPairs(inner, alongTube(0.5), hole, 0);
   }
 }
 
 TEST(FCL_SLIDING, tubesThatTouchSomewhere) {
-  const int slices = 24, rings = 8;
-  const TestMesh hole = tilted(
-      makeRoundTube(slices, rings, [&](double, double) { return holeRadius(slices); }));
+  const TestMesh hole = tilted(makeRoundTube(
+      kSlices, kRings, [&](double, double) { return holeRadius(kSlices); }));
   // A ring that stands out by more than the gap, on one side.
-  const TestMesh inner = tilted(makeRoundTube(slices, rings, [&](double angle, double z) {
-    return 0.998 + (std::abs(z) < 0.1 && std::abs(angle - 2) < 0.5 ? 0.03 : 0);
-  }));
+  const TestMesh inner =
+      tilted(makeRoundTube(kSlices, kRings, [&](double angle, double z) {
+        return 0.998 + (std::abs(z) < 0.1 && std::abs(angle - 2) < 0.5 ? 0.03 : 0);
+      }));
   expectAllPairs(inner, alongTube(0.5), hole, 10);
   // A hole that becomes narrow further on, a tube that does not reach it, and one that
   // does.
-  const TestMesh funnel = tilted(makeRoundTube(slices, rings, [&](double, double z) {
-    return holeRadius(slices) - (z > 0.9 ? 0.02 : 0);
+  const TestMesh funnel = tilted(makeRoundTube(kSlices, kRings, [&](double, double z) {
+    return holeRadius(kSlices) - (z > 0.9 ? 0.02 : 0);
   }));
   const TestMesh plug = tilted(moved(
-      makeRoundTube(slices, rings, [&](double, double) { return 0.999; }), 0, 0, -1));
+      makeRoundTube(kSlices, kRings, [&](double, double) { return 0.999; }), 0, 0, -1));
   expectAllPairs(plug, alongTube(0.74), funnel, 0);
   expectAllPairs(plug, alongTube(1), funnel, 10);
 }
@@ -301,7 +306,7 @@ struct Socket {
 };
 
 std::vector<Socket> sockets(double clearance) {
-  const double hole = holeRadius(24) + clearance;
+  const double hole = holeRadius(kSlices) + clearance;
   std::vector<Socket> out;
   out.push_back({"cylinder", std::make_shared<Cylinder<double>>(1, 1.8),
                  [hole](double, double) { return hole; }});
@@ -321,7 +326,7 @@ std::vector<Socket> sockets(double clearance) {
 void expectSameAnswers(const Socket& socket, bool shape_turns, const Vector& axis,
                        const Vector& point, double angle, double way) {
   const auto mesh =
-      makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(24, 8, socket.radius));
+      makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(kSlices, kRings, socket.radius));
   const Screw bounded(Pose3::Identity(), axis, point, angle, way);
   const ScrewMotion<double> screw(bounded.at(0), bounded.at(1));
   const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());
@@ -373,8 +378,8 @@ TEST(FCL_SLIDING, turnOfARoundShape) {
 TEST(FCL_SLIDING, turnOfARoundShapeTakesNoWork) {
   for (const Socket& socket : sockets(1e-3)) {
     SCOPED_TRACE(socket.name);
-    const auto mesh =
-        makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(24, 8, socket.radius));
+    const auto mesh = makeModel<BVHModel<OBBRSS<double>>>(
+        makeRoundTube(kSlices, kRings, socket.radius));
     const Screw path(Pose3::Identity(), Vector::UnitZ(), Vector::Zero(), 1.5, 0);
     const ScrewMotion<double> turning(path.at(0), path.at(1));
     const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());

@@ -546,7 +546,7 @@ void expectSameModel(const Model& x, const Model& y) {
   const auto &a = x.movingTree(), &b = y.movingTree();
   EXPECT_TRUE(areSame(a.origin(0), b.origin(0)));
   EXPECT_TRUE(areSame(a.origin(1), b.origin(1)));
-  EXPECT_EQ(a.reach(), b.reach());
+  EXPECT_EQ(a.largestCoordinate(), b.largestCoordinate());
   ASSERT_EQ(a.numNodes(), b.numNodes());
   for (int i = 0; i < static_cast<int>(a.numNodes()); ++i) {
     const auto &p = a.node(i), &q = b.node(i);

@@ -76,12 +76,7 @@ class ObjReader {
   /// What follows the coordinates is a weight, which means something for curves only, or
   /// a colour.
   void readVertex() {
-    std::array<double, 3> vertex{};
-    for (double& x : vertex) {
-      if (!cursor_.skipBlanks())
-        throw std::runtime_error("a vertex needs three coordinates");
-      x = cursor_.takeNumber<double>();
-    }
+    const std::array<double, 3> vertex = cursor_.takeVertex();
     while (cursor_.skipBlanks()) cursor_.takeWord();
     if (mesh_.vertices.size() == std::numeric_limits<int>::max())
       throw std::runtime_error("more than 2,147,483,647 vertices");

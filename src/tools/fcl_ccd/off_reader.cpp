@@ -109,15 +109,7 @@ class OffReader {
     }
   }
 
-  void readVertex() {
-    std::array<double, 3> vertex{};
-    for (double& x : vertex) {
-      if (!cursor_.skipBlanks())
-        throw std::runtime_error("a vertex needs three coordinates");
-      x = cursor_.takeNumber<double>();
-    }
-    mesh_.vertices.push_back(vertex);
-  }
+  void readVertex() { mesh_.vertices.push_back(cursor_.takeVertex()); }
 
   void readFace() {
     long long corners = 0;

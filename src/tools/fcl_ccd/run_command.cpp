@@ -174,6 +174,7 @@ class Run {
       progress_.clear();
       outputs_.add(record);
       num_done_ = step + 1;
+      outputs_.printRow(record);
       progress_.step(num_done_, outputs_.summary().contacts());
     });
   }

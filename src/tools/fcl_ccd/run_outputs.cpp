@@ -40,7 +40,6 @@ void RunOutputs::add(const StepRecord& record) {
   if (json_) json_->write((has_json_step_ ? ",\n" : "\n") + record.json);
   has_json_step_ = true;
   painted_ = record.painted;
-  print(record.row);
   commit();
   summary_.add(record.summary);
 }

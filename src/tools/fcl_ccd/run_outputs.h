@@ -28,7 +28,10 @@ class RunOutputs {
   /// @brief Opens the growing files.
   void open(const GrowingOutputs& growing, const ResumePoint& resume_point);
 
+  /// @brief Writes a step to all files and commits it.
   void add(const StepRecord& record);
+  /// @brief Prints the row of a step. It comes after add(): what is printed is kept.
+  void printRow(const StepRecord& record) const { print(record.row); }
 
   /// @brief Ends all files. The list of steps and the report say whether they are
   /// complete.

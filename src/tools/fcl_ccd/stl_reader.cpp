@@ -192,12 +192,7 @@ class AsciiStl {
   }
 
   void readVertex() {
-    std::array<double, 3> vertex{};
-    for (double& x : vertex) {
-      if (!cursor_.skipBlanks())
-        throw std::runtime_error("a vertex needs three coordinates");
-      x = cursor_.takeNumber<double>();
-    }
+    const std::array<double, 3> vertex = cursor_.takeVertex();
     if (num_corners_ == 3) throw std::runtime_error("a facet has three vertices");
     vertices_.push_back(vertex);
     ++num_corners_;

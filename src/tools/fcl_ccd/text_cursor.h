@@ -115,6 +115,16 @@ class TextCursor {
     return value;
   }
 
+  /// @brief Takes the coordinates of a vertex, which are in one line.
+  std::array<double, 3> takeVertex() {
+    std::array<double, 3> vertex{};
+    for (double& x : vertex) {
+      if (!skipBlanks()) throw std::runtime_error("a vertex needs three coordinates");
+      x = takeNumber<double>();
+    }
+    return vertex;
+  }
+
   /// @brief Takes an integer with an optional sign. Returns false if the word is none, or
   /// does not fit a long long; the cursor then stays.
   bool takeInteger(long long& value) {

@@ -485,7 +485,7 @@ class FCL_EXPORT DeformableBVHModel FCL_CCD_FINAL_WITHOUT_RTTI
   int close(OpenUpdate expected, const char* caller);
   template <typename Add>
   int grow(Add&& add);
-  void advance(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
+  void shiftFrames(const S* previous, FclTree fcl_tree, bool refit, bool bottomup);
   void finish();
   void seal();
   void fitPerThread();
