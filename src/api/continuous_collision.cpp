@@ -111,30 +111,30 @@ bool isNoObstacleFor(const PlacedGeometry<S>& octree, const PlacedGeometry<S>& o
 
 template <typename S>
 QueryAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                           QueryOptions options, double factor, PreparedShapes shapes);
+                           QueryOptions options, double factor,
+                           const PreparedShapes& shapes);
 
 /// @param shapes  what the objects were converted to
 template <typename S>
 QueryAnswer boundedAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                            const QueryOptions& options, PreparedShapes shapes,
+                            const QueryOptions& options, const PreparedShapes& shapes,
                             double scale = 1) {
   const int first = firstOf(o1), second = 1 - first;
   const PlacedGeometry<S>* const object[2] = {&o1, &o2};
   const PreparedMotion bounded(*object[first], nameOf(first), options.toc_err,
-                               options.num_threads, 0, scale,
-                               std::move(shapes.shape[first])),
+                               options.num_threads, 0, scale, shapes.shape[first]),
       other(*object[second], nameOf(second), options.toc_err, options.num_threads,
-            bounded.isEmpty() ? 0 : bounded.body().size(), scale,
-            std::move(shapes.shape[second]));
+            bounded.isEmpty() ? 0 : bounded.body().size(), scale, shapes.shape[second]);
   if (bounded.isEmpty() || other.isEmpty()) return {};
   const PreparedMotion &motion1 = first == 0 ? bounded : other,
                        &motion2 = first == 0 ? other : bounded;
   if (scale == 1) {
     const double factor =
         scaleOf(o1.moving(), motion1, o2.moving(), motion2, options.min_distance);
-    if (factor != 1)
-      return scaledAnswerOf(o1, o2, options, factor,
-                            {{*motion1.body().shape(), *motion2.body().shape()}});
+    if (factor != 1) {
+      deformable::ConvexShape x = *motion1.body().shape(), y = *motion2.body().shape();
+      return scaledAnswerOf(o1, o2, options, factor, {{&x, &y}});
+    }
   }
   QueryAnswer answer = answerOf(
       [&] { return queryShapeContacts(motion1.body(), motion2.body(), options); });
@@ -145,29 +145,24 @@ QueryAnswer boundedAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>
 /// Two shapes whose lengths are multiplied by a power of two: this changes no digit.
 template <typename S>
 QueryAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                           QueryOptions options, double factor, PreparedShapes shapes) {
+                           QueryOptions options, double factor,
+                           const PreparedShapes& shapes) {
   const MovingGeometry<S> moving1 = scaledPath(o1.moving(), factor),
                           moving2 = scaledPath(o2.moving(), factor);
   options.min_distance *= factor;
-  QueryAnswer answer =
-      boundedAnswerOf(PlacedGeometry<S>(moving1), PlacedGeometry<S>(moving2), options,
-                      std::move(shapes), factor);
+  QueryAnswer answer = boundedAnswerOf(
+      PlacedGeometry<S>(moving1), PlacedGeometry<S>(moving2), options, shapes, factor);
   for (auto& contact : answer.shape_contacts)
     contact.position = (1 / factor) * contact.position;
   return answer;
 }
 
-/// Answers a shape or an octree, and another one of these or a mesh.
+/// Follows a shape or an octree, and another one of these or a mesh.
+/// @param shapes  what the objects were converted to
 template <typename S>
-void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
-                  const CheckedRequest& request, const Reply<S>& reply) {
-  const bool are_flats =
-      deformable::isUnbounded(o1.geometry()) && deformable::isUnbounded(o2.geometry());
-  PreparedShapes shapes;
-  if (request.options.only_time && !are_flats && areFoundToOverlap(o1, o2, shapes)) {
-    reply.outcome = {true, 0, 0, 0};
-    return;
-  }
+void followShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                  const CheckedRequest& request, bool are_flats,
+                  const PreparedShapes& shapes, const Reply<S>& reply) {
   const deformable::Stopwatch start;
   QueryOptions options = request.options;
   // The first contact that is found is the first of all.
@@ -178,9 +173,24 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   if (!filter.rejectsAll() && !isNoObstacleFor(o1, o2) && !isNoObstacleFor(o2, o1))
     answer = are_flats ? queryFlats(deformable::posedFlatOf(o1, "o1"),
                                     deformable::posedFlatOf(o2, "o2"), options)
-                       : boundedAnswerOf(o1, o2, options, std::move(shapes));
+                       : boundedAnswerOf(o1, o2, options, shapes);
   answer.times.test = start.seconds() - answer.times.update;
   reply.give(answer, o1.geometry(), o2.geometry(), options);
+}
+
+/// Answers a shape or an octree, and another one of these or a mesh.
+template <typename S>
+void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                  const CheckedRequest& request, const Reply<S>& reply) {
+  const bool are_flats =
+      deformable::isUnbounded(o1.geometry()) && deformable::isUnbounded(o2.geometry());
+  const auto follow = [&](const PreparedShapes& shapes) {
+    followShapes(o1, o2, request, are_flats, shapes, reply);
+  };
+  if (are_flats || !request.options.only_time)
+    follow({});
+  else if (areFoundToOverlap(o1, o2, follow))
+    reply.outcome = {true, 0, 0, 0};
 }
 
 }  // namespace

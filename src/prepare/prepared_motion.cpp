@@ -112,8 +112,9 @@ MotionPath motionPathOf(const PlacedGeometry<S>& placed, const char* name) {
 template <typename S>
 PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name,
                                double toc_err, int num_threads, double other_radius,
-                               double scale, std::optional<ConvexShape> shape)
-    : name_(name), shape_(std::move(shape)) {
+                               double scale, ConvexShape* shape)
+    : name_(name) {
+  if (shape) shape_.emplace(std::move(*shape));
   const MotionPath path = motionPathOf(placed, name_.c_str());
   if (placed.isShape()) {
     // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
@@ -218,7 +219,7 @@ MeshInstance PreparedMotion::beginning() const {
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
                                           double, int, double, double,                  \
-                                          std::optional<ConvexShape>);
+                                          ConvexShape*);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

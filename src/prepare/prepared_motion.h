@@ -42,14 +42,14 @@ class PreparedMotion {
   /// @param scale  of a shape: a power of two by which its lengths are multiplied; the
   /// pose and the other radius are multiplied already
   /// @param shape  of a shape: what convexShapeOf() has made of it, with any other
-  /// radius, if it was called before
+  /// radius, if it was called before; it is taken. Null: it was not
   /// @pre placed.isKnown(); the poses are finite; the floating-point mode is the default
   /// @throws fcl::Exception  as PreparedMesh, convexShapeOf() and octreeCellsOf(); also
   /// when the path is not defined or leaves the range of numbers
   template <typename S>
   PreparedMotion(const PlacedGeometry<S>& placed, const std::string& name, double toc_err,
                  int num_threads, double other_radius = 0, double scale = 1,
-                 std::optional<ConvexShape> shape = std::nullopt);
+                 ConvexShape* shape = nullptr);
 
   PreparedMotion(const PreparedMotion&) = delete;
   PreparedMotion& operator=(const PreparedMotion&) = delete;

@@ -63,8 +63,8 @@ inline void requireDistance(double distance, const char* name) {
 template <typename S>
 deformable::Pose toPose(const PoseNumbers<S>& numbers) {
   deformable::Pose pose;
-  std::copy(numbers.rotation, numbers.rotation + 9, pose.rotation);
-  std::copy(numbers.translation, numbers.translation + 3, pose.translation);
+  for (int k = 0; k < 9; ++k) pose.rotation[k] = numbers.rotation[k];
+  for (int k = 0; k < 3; ++k) pose.translation[k] = numbers.translation[k];
   return pose;
 }
 
@@ -78,7 +78,7 @@ class PlacedGeometry {
         is_shape_(deformable::isConvexShape(*moving.geometry)),
         kind_(is_shape_ ? deformable::MeshKind::kNotAMesh
                         : deformable::meshKindOf(*moving.geometry)),
-        is_octree_(deformable::isOctree(*moving.geometry)) {
+        is_octree_(!is_shape_ && deformable::isOctree(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
@@ -121,6 +121,18 @@ class PlacedGeometry {
 
   /// Whether a pose was replaced by the nearest rotation.
   bool hasReplacedRotation() const { return has_replaced_rotation_; }
+
+  /// @throws fcl::Exception  a number of a pose is not finite
+  void requireFinitePoses(const char* name) const {
+    // The numbers of rotations are finite.
+    if (!isMesh() && are_rotations_) {
+      double sum = 0;  // NaN if a number is not finite
+      for (int k = 0; k < 3; ++k)
+        sum += 0 * beginning_.translation[k] + 0 * end_.translation[k];
+      if (sum == 0) return;
+    }
+    deformable::requireFinite(beginning_, end_, name);
+  }
 
   /// Whether this library can follow the path.
   bool isKnown() const {
@@ -188,14 +200,14 @@ template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   if (o1.isShape() || o2.isShape() || o1.isOctree() || o2.isOctree()) {
     if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
-    deformable::requireFinite(o1.beginning(), o1.end(), "o1");
-    deformable::requireFinite(o2.beginning(), o2.end(), "o2");
+    o1.requireFinitePoses("o1");
+    o2.requireFinitePoses("o2");
     return Answerer::kShapes;
   }
   if (o1.goesStraight() && o2.goesStraight()) return Answerer::kStraightPaths;
   if (o1.isMesh() && o2.isMesh()) {
-    deformable::requireFinite(o1.beginning(), o1.end(), "o1");
-    deformable::requireFinite(o2.beginning(), o2.end(), "o2");
+    o1.requireFinitePoses("o1");
+    o2.requireFinitePoses("o2");
   }
   if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
   return Answerer::kCurvedPaths;
