@@ -210,7 +210,7 @@ void fillContacts(const QueryAnswer& answer, const ContactDescriber& describe,
     result.contacts.swap(room);
   }
   if (has_shape)
-    convertAll(answer.shape_contacts, convert, options.num_threads, result.contacts);
+    convertAll(answer.shape_contacts, convert, 1, result.contacts);
   else
     convertAll(answer.contacts, convert, options.num_threads, result.contacts);
   result.contacts_cut = answer.cut;

@@ -19,11 +19,10 @@ class SlotCache {
  public:
   static constexpr std::size_t kSlots = kNumSlots;
 
-  /// @brief An empty cache. The values have what their type initializes.
+  /// @brief An empty cache. Values of plain types are not initialized before they are
+  /// set.
   /// @param none  a key that is never asked for
-  explicit SlotCache(const Key& none) : none_(none) {
-    std::fill(keys_, keys_ + kSlots, none);
-  }
+  explicit SlotCache(const Key& none) : none_(none) { forgetAll(); }
   /// @param initial  of all values
   SlotCache(const Key& none, const Value& initial) : SlotCache(none) {
     std::fill(values_, values_ + kSlots, initial);
@@ -54,6 +53,7 @@ class SlotCache {
   }
 
   void forget(std::size_t slot) { keys_[slot] = none_; }
+  void forgetAll() { std::fill(keys_, keys_ + kSlots, none_); }
 
  private:
   Key none_;

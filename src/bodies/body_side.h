@@ -149,7 +149,7 @@ struct BodySide {
 
  private:
   struct Accelerations {
-    double most[BodyBoxes::kWidth];
+    double most[BodyBoxes::kWidth]{};  // lanes without a child, too
   };
 
   static bool goesStraight(const MotionPath& path) {

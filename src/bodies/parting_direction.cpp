@@ -37,7 +37,8 @@ void PartingDirection::set(const Vec& direction) {
 }
 
 void PartingDirection::forgetReaches() {
-  for (auto& known : known_) known.reset();
+  for (auto& known : known_)
+    if (known) known->forgetAll();
 }
 
 double PartingDirection::reachOf(int k, const BodyPart& part, double t,

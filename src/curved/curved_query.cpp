@@ -497,7 +497,7 @@ CurvedOptions curvedOptionsOf(const MovingBody& a, const MovingBody& b,
   wanted.proves_contacts = !are_meshes || !wanted.all;
   wanted.t_max = options.t_max;
   wanted.distance = options.min_distance;
-  wanted.ignores_initially_closer = options.ignores_initially_closer;
+  wanted.ignores_initially_closer = !are_meshes && options.ignores_initially_closer;
   if (all) wanted.num_threads = options.num_threads;
   wanted.rules = options.filter ? &options.filter->rules() : nullptr;
   // Features are advanced by directions that turn, which takes fewer steps.

@@ -119,8 +119,9 @@ PreparedMotion::PreparedMotion(const PlacedGeometry<S>& placed, const std::strin
   if (placed.isShape()) {
     // In the body frame. A matrix that is taken as a rotation shrinks by less than 2^-9.
     const double in_body = (1 + 0x1p-8) * (other_radius + path.largestTranslation());
+    const bool has_other_radius = shape_ && shape_->flat();
     if (!shape_) shape_.emplace(convexShapeOf(placed.geometry(), name, in_body));
-    if (scale != 1 || shape_->flat()) *shape_ = shape_->scaled(scale, in_body);
+    if (scale != 1 || has_other_radius) *shape_ = shape_->scaled(scale, in_body);
     body_.emplace(*shape_, path);
   } else if (placed.isOctree()) {
     octree_.emplace(octreeCellsOf(placed.geometry(), name));
@@ -218,8 +219,7 @@ MeshInstance PreparedMotion::beginning() const {
   template void requireRotations(const PlacedGeometry<S>&, const char*);                \
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
-                                          double, int, double, double,                  \
-                                          ConvexShape*);
+                                          double, int, double, double, ConvexShape*);
 FCL_CCD_INSTANTIATE(double)
 FCL_CCD_INSTANTIATE(float)
 #undef FCL_CCD_INSTANTIATE

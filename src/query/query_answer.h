@@ -31,12 +31,12 @@ struct DescribedContact {
   /// ContinuousContact::first_on_o1.
   bool first_on_a{false};
   bool within_tolerance{false};
-  /// -1 where the kind has fewer.
+  /// -1 beyond those of the kind, with a shape or an octree.
   std::int32_t vertices[5]{-1, -1, -1, -1, -1};
   /// Triangles of a and b; -1 for a shape; of a cell its number (OctreeCellNumber).
   std::int64_t triangles[2]{-1, -1};
   double toc_lo{0}, toc_hi{0};
-  /// In the world. The normal is a unit vector from a to b, or zero if there is none.
+  /// In the world. The normal is that of ContinuousContact::normal; zero: there is none.
   Vec position{0, 0, 0}, normal{0, 0, 0};
 };
 
@@ -47,7 +47,7 @@ struct QueryAnswer {
   /// With a shape or an octree, sorted by (toc_lo, triangles). With only_time they have
   /// times only.
   std::vector<DescribedContact> shape_contacts;
-  /// The tight bracket of the first contact, if there is one.
+  /// The bracket of the first contact, if there is one; of two meshes the tight one.
   TimeBracket first{1, 1};
   /// With a shape or an octree: when discrete queries find the first contact, if they do
   /// within toc_err: a time in [toc_hi, toc_lo + toc_err]. With a distance, and of two

@@ -78,8 +78,8 @@ FCL_EXPORT ContinuousFeatureTestResult<S> edgeEdge(
 /// one feature and a vertex of the other at t = 0 or 1:
 /// (1) A pair that comes within d is never missed, and toc_lo is never later than the
 /// first time at which it does. (2) A pair that stays further apart than d (1 + 1e-9) +
-/// 512 u (d + L) is never reported. (Pairs whose distance is lost to rounding may be: 8
-/// of 1,000,000 generated queries, half of which are degenerate; doc/thickness.md.)
+/// 512 u (d + L) is never reported. (A pair that is given up after 10,000 steps may be:
+/// none of 1,000,000 generated queries, half of which are degenerate; doc/thickness.md.)
 /// Between these two distances either answer is right. (3) If toc_hi > toc_lo, the
 /// features are within d at toc_hi. The bracket is no wider than toc_err, and no wider
 /// than an eighth of toc_hi. toc_hi = toc_lo means that no such time was found: they
