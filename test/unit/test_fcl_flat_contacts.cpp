@@ -21,6 +21,7 @@
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
 #include "fcl/math/bv/OBBRSS.h"
+#include "sanitizer.h"
 #include "test_models.h"
 #include "turning_bodies.h"
 
