@@ -5,7 +5,6 @@
 #include "base/stopwatch.h"
 #include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
-#include "paths/posed_vector.h"
 
 #include <algorithm>
 #include <cmath>

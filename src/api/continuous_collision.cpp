@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <cassert>
 #include <string>
-#include <utility>
 
 #include "api/contact_conversion.h"
 #include "base/default_floating_point.h"
@@ -187,10 +187,12 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const auto follow = [&](const PreparedShapes& shapes) {
     followShapes(o1, o2, request, are_flats, shapes, reply);
   };
-  if (are_flats || !request.options.only_time)
+  if (are_flats || !request.options.only_time) {
     follow({});
-  else if (areFoundToOverlap(o1, o2, follow))
+  } else if (areFoundToOverlap(o1, o2, follow)) {
+    assert(!reply.contacts);
     reply.outcome = {true, 0, 0, 0};
+  }
 }
 
 }  // namespace

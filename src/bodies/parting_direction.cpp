@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 
-#include "bodies/body_side.h"
 #include "paths/posed_vector.h"
 
 namespace fcl {

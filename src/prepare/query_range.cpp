@@ -72,7 +72,8 @@ bool isWellInRange(const PlacedGeometry<S>& o, const deformable::ConvexShape& sh
   for (const deformable::Pose* pose : {&o.beginning(), &o.end()})
     for (const double x : pose->translation)
       if (!(std::abs(x) <= kMostWell)) return false;
-  // A flat has no size that counts.
+  // A flat has no size that counts. The center of a hull is bounded by its radius, whose
+  // margin for rounding is 2^-45 of the center: it is below 2^85.
   if (const auto* flat = shape.flat()) return std::abs(flat->offset) <= kMostWell;
   const double size = shape.outerRadius();
   return size >= kLeastSize && size <= kMostWell;
