@@ -7,4 +7,4 @@
 set -euo pipefail
 # shellcheck source=cmake/report.sh
 source "$(dirname "$0")/report.sh"
-fcl_ccd_record_table sliding 'about ten minutes' "$@"
+fcl_ccd_record_table sliding 'about six minutes' "$@"
