@@ -218,7 +218,7 @@ struct QueryOutcome {
 };
 
 /// @brief The continuous query of a pair.
-/// @tparam Request  ContinuousCollisionRequest<S>, or ContinuousContactRequest<S>
+/// @tparam Request  ContinuousCollisionRequest or ContinuousContactRequest, of S
 /// @param contacts  takes the contacts; null if the request is not for contacts
 /// @return false when FCL has to answer the pair; nothing has changed then.
 /// @throws fcl::Exception as continuousCollide()
@@ -238,7 +238,8 @@ FCL_EXPORT void refuseContacts(const MovingGeometry<S>& o1, const MovingGeometry
                                               const MovingGeometry<float>& o2);
 
 /// @brief The continuous query of a mesh with itself.
-/// @tparam Request, @param contacts  as for answerPair()
+/// @tparam Request  as of answerPair()
+/// @param contacts  as of answerPair()
 template <typename S, typename Request>
 FCL_EXPORT void answerSelf(const CollisionGeometry<S>* o, const Request& request,
                            QueryOutcome<S>& outcome, ContinuousContacts<S>* contacts);
