@@ -735,7 +735,7 @@ TEST(FCL_KERNELS, bentPathsThatComeNearAreNotCulled) {
   }
   EXPECT_GT(sum.apart, test::rounds(100));
   EXPECT_GT(sum.culled, test::rounds(5000));
-  EXPECT_GT(sum.near, test::rounds(500));
+  EXPECT_GT(sum.near, test::rounds(400));
 }
 
 /// Two triangles face each other, and one moves. The plane between them is parallel to

@@ -96,10 +96,10 @@ std::map<ContactName, ContinuousFeatureTestResult<double>> allPairs(const TestMe
   return found;
 }
 
-/// The tubes of the tests that compare with all pairs, or with a motion that tells
-/// little.
-constexpr int kSlices = kHasAddressSanitizer ? 16 : 24,
-              kRings = kHasAddressSanitizer ? 4 : 8;
+/// The tubes of the tests that compare with all pairs, and of those that compare with a
+/// motion class that tells little.
+constexpr int kSlices = kHasAddressSanitizer ? 16 : 24, kRings = 8,
+              kSocketRings = kHasAddressSanitizer ? 4 : 8;
 
 Request requestOf(ContinuousQuery query, double distance = 0) {
   Request request;
@@ -325,8 +325,8 @@ std::vector<Socket> sockets(double clearance) {
 /// that tells only its bounds.
 void expectSameAnswers(const Socket& socket, bool shape_turns, const Vector& axis,
                        const Vector& point, double angle, double way) {
-  const auto mesh =
-      makeModel<BVHModel<OBBRSS<double>>>(makeRoundTube(kSlices, kRings, socket.radius));
+  const auto mesh = makeModel<BVHModel<OBBRSS<double>>>(
+      makeRoundTube(kSlices, kSocketRings, socket.radius));
   const Screw bounded(Pose3::Identity(), axis, point, angle, way);
   const ScrewMotion<double> screw(bounded.at(0), bounded.at(1));
   const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());
@@ -379,7 +379,7 @@ TEST(FCL_SLIDING, turnOfARoundShapeTakesNoWork) {
   for (const Socket& socket : sockets(1e-3)) {
     SCOPED_TRACE(socket.name);
     const auto mesh = makeModel<BVHModel<OBBRSS<double>>>(
-        makeRoundTube(kSlices, kRings, socket.radius));
+        makeRoundTube(kSlices, kSocketRings, socket.radius));
     const Screw path(Pose3::Identity(), Vector::UnitZ(), Vector::Zero(), 1.5, 0);
     const ScrewMotion<double> turning(path.at(0), path.at(1));
     const TranslationMotion<double> rest(Pose3::Identity(), Pose3::Identity());
