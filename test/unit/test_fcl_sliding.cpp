@@ -98,8 +98,7 @@ std::map<ContactName, ContinuousFeatureTestResult<double>> allPairs(const TestMe
 
 /// The tubes of the tests that compare with all pairs, and of those that compare with a
 /// motion class that tells little.
-constexpr int kSlices = kHasAddressSanitizer ? 16 : 24, kRings = 8,
-              kSocketRings = kHasAddressSanitizer ? 4 : 8;
+constexpr int kSlices = 24, kRings = 8, kSocketRings = kHasAddressSanitizer ? 4 : 8;
 
 Request requestOf(ContinuousQuery query, double distance = 0) {
   Request request;
