@@ -6,8 +6,7 @@
 # The folders of src/ are the stages of the pipeline. This script fails and names the file when
 #  - a file lies in none of them,
 #  - a file includes one of a folder that comes later in the order below,
-#  - a file of a folder before model/ includes a header of FCL or a public one that is not
-#    plain,
+#  - a file of a folder before model/ includes a header of FCL, or a public one that is not plain,
 #  - a public header includes an internal one,
 #  - there are more headers for users than `max_headers`, which grows only with the API: all
 #    public ones but those of detail/ (the traversal node counts, programs include it) and
@@ -26,11 +25,10 @@ includes() {
     sed -E 's/:[[:space:]]*#[[:space:]]*include[[:space:]]*["<]/ /; s/[">].*//' | LC_ALL=C sort
 }
 
-# What files before model/ may include of FCL and of the public headers: numbers, no geometries.
-# tree/ also knows FCL's trees.
+# What files before model/ may include of the public headers: numbers, and an interface. They
+# include nothing of FCL.
 is_plain() {
-  [[ $2 =~ ^fcl/(common/exception|math/triangle|narrowphase/stage_counts|narrowphase/continuous_contact_kind|math/motion/bounded_motion)\.h$ ]] ||
-    [[ $1 == src/tree/* && $2 =~ ^fcl/(geometry/bvh/BVH_model|math/bv/[A-Za-z]+)\.h$ ]]
+  [[ $1 =~ ^fcl/(narrowphase/stage_counts|narrowphase/continuous_contact_kind|math/motion/bounded_motion)\.h$ ]]
 }
 
 failed=0
@@ -57,7 +55,7 @@ while read -r file included; do
   target=${included%%/*}
   [[ /$included/ != */../* ]] || complain "$file: includes $included; name the folder without .."
   if [[ $target == fcl ]]; then
-    ((${rank[$folder]} >= ${rank[model]})) || is_plain "$file" "$included" ||
+    ((${rank[$folder]} >= ${rank[model]})) || is_plain "$included" ||
       complain "$file: includes $included, which only model/, prepare/ and api/ may include"
   elif [[ -n ${rank[$target]+is} ]]; then
     [[ -e src/$included ]] || complain "$file: includes $included, which does not exist"

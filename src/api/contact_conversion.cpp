@@ -2,12 +2,14 @@
 #include "api/contact_conversion.h"
 #include "base/large_pages.h"
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "base/stopwatch.h"
 #include "elementary/distance_advance.h"
 #include "elementary/elementary.h"
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace fcl {
 namespace detail {
@@ -29,7 +31,7 @@ void convertAll(const Contacts& contacts, const Convert& convert, int num_thread
   const auto contactAt = [&](std::size_t i) {
     // Contacts that are neighbours in time are scattered in memory.
     constexpr std::size_t kAhead = 16;
-    __builtin_prefetch(&contacts[std::min(i + kAhead, count - 1)]);
+    prefetchMemory(&contacts[std::min(i + kAhead, count - 1)]);
     return convert(contacts[i]);
   };
   if (numThreads(num_threads) == 1) {
@@ -104,9 +106,11 @@ DescribedContact ContactDescriber::operator()(const Crossing& crossing) const {
   out.kind = ContinuousContactKind::kCrossing;
   out.first_on_a = crossing.first_on_a;
   std::copy(crossing.triangles, crossing.triangles + 2, out.triangles);
-  for (std::size_t i = 0; i < 5; ++i)
-    out.vertices[i] =
-        static_cast<std::int32_t>(i < 2 ? crossing.edge[i] : crossing.face[i - 2]);
+  const auto toId = [](std::uint32_t vertex) {
+    return static_cast<std::int32_t>(vertex);
+  };
+  std::transform(crossing.edge, crossing.edge + 2, std::begin(out.vertices), toId);
+  std::transform(crossing.face, crossing.face + 3, std::begin(out.vertices) + 2, toId);
   if (!with_geometry_) return out;
 
   const MeshInstance &first = mesh_[crossing.first_on_a ? 0 : 1],

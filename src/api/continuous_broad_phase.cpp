@@ -5,6 +5,7 @@
 #include <unordered_set>
 
 #include "base/default_floating_point.h"
+#include "base/prefetch.h"
 #include "broadphase/broad_phase.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "prepare/object_bounds.h"
@@ -42,8 +43,8 @@ void readBounds(void* const* objects, std::size_t count, Read read,
   for (std::size_t i = 0; i < count; ++i) {
     if (i + kAheadOfObjects < count) {
       const auto* object = static_cast<const char*>(objects[i + kAheadOfObjects]);
-      __builtin_prefetch(object);
-      __builtin_prefetch(object + kLine);
+      deformable::prefetchMemory(object);
+      deformable::prefetchMemory(object + kLine);
     }
     if (i + kAheadOfMotions < count) prefetch(objects[i + kAheadOfMotions]);
     try {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "fcl/common/exception.h"
+#include "base/error.h"
 #include "mesh/non_finite_vertex.h"
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
@@ -177,7 +177,7 @@ FeatureIds idsOf(int pair, const BodyTriangle& a, const BodyTriangle& b) {
 }
 
 MovingBody::MovingBody(const RigidTree& tree, const VertexFrames& frames,
-                       const Triangle* triangles, const MotionPath& path)
+                       TriangleArray triangles, const MotionPath& path)
     : rigid_(&tree), frames_(frames), triangles_(triangles), path_(path) {
   radius_ = radiusOf(rigidBox(0));
 }
@@ -409,11 +409,11 @@ BodyTriangle MovingBody::triangle(std::int32_t place) const {
   out.index = place;
   out.owned = kOwnsAll;
   for (int k = 0; k < 3; ++k) {
-    const std::size_t id = triangles_[place][k];
+    const std::size_t id = triangles_.id(static_cast<std::size_t>(place), k);
     if (id >= frames_.size())
-      throw Exception(std::string(path_.name()) + ": triangle " + std::to_string(place) +
-                      " refers to a vertex that is not there. The model has " +
-                      std::to_string(frames_.size()) + ", numbered from 0");
+      throwBadInput(std::string(path_.name()) + ": triangle " + std::to_string(place) +
+                    " refers to a vertex that is not there. The model has " +
+                    std::to_string(frames_.size()) + ", numbered from 0");
     double p[3];
     frames_.at(0, id, p);
     for (const double x : p)
@@ -431,7 +431,7 @@ BodyTriangle MovingBody::triangle(std::int32_t place) const {
 bool MovingBody::isReadable(std::int32_t place) const {
   if (tree_) return true;
   for (int k = 0; k < 3; ++k) {
-    const std::size_t id = triangles_[place][k];
+    const std::size_t id = triangles_.id(static_cast<std::size_t>(place), k);
     if (id >= frames_.size()) return false;
     double p[3];
     frames_.at(0, id, p);

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/slot_cache.h"
-#include "fcl/math/triangle.h"
 #include "mesh/feature_pairs.h"
 #include "mesh/vertex_frames.h"
 #include "numerics/moving_vector.h"
@@ -77,7 +76,7 @@ class MovingBody {
   /// @brief A rigid mesh.
   /// @param tree  in the body frame: made with the identity for a pose
   /// @param frames  in the body frame
-  MovingBody(const RigidTree& tree, const VertexFrames& frames, const Triangle* triangles,
+  MovingBody(const RigidTree& tree, const VertexFrames& frames, TriangleArray triangles,
              const MotionPath& path);
 
   /// @brief A mesh that deforms in the frame that moves.
@@ -176,7 +175,7 @@ class MovingBody {
   const ConvexShape* shape_{nullptr};
   OctreeCells* octree_{nullptr};
   VertexFrames frames_;
-  const Triangle* triangles_{nullptr};
+  TriangleArray triangles_;
   MotionPath path_;
   double radius_{0};
   double displacement_{0};

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/bits.h"
 #include "bodies/flat_windows.h"
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
@@ -258,7 +259,7 @@ MeetingWindows PartWindows::windowsOfBoxes(const PartWork& work, int opened,
   halves.narrow(windows);
   if (!one.body.shape() || one.flat || one.body.shape()->fillsBox()) return windows;
   for (unsigned left = windows.mask; left != 0; left &= left - 1) {
-    const int lane = __builtin_ctz(left);
+    const int lane = lowestBit(left);
     if (!narrowByShape(opened, work, boxes, lane, margins, windows))
       windows.mask &= ~(1U << lane);
   }

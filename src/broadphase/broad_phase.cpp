@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "broadphase/broad_phase.h"
+#include "base/prefetch.h"
 
 #include <algorithm>
 #include <cassert>
@@ -235,10 +236,10 @@ void BroadPhase::addMeeting(const BroadPhase& one, const BroadPhase& two,
   for (std::size_t i = 0; i < near.size(); ++i) {
     const SlotPair &slots = near[std::min(i + kAheadOfSlots, last)],
                    &boxes = near[std::min(i + kAheadOfBoxes, last)];
-    __builtin_prefetch(&one.at(slots.first));
-    __builtin_prefetch(&two.at(slots.second));
-    __builtin_prefetch(one.at(boxes.first).boxes.data());
-    __builtin_prefetch(two.at(boxes.second).boxes.data());
+    prefetchMemory(&one.at(slots.first));
+    prefetchMemory(&two.at(slots.second));
+    prefetchMemory(one.at(boxes.first).boxes.data());
+    prefetchMemory(two.at(boxes.second).boxes.data());
     const Slot &a = one.at(near[i].first), &b = two.at(near[i].second);
     if (a.object == b.object || !a.filter.accepts(b.filter)) continue;
     const MeetingWindow window = meetingWindow(a.bounds(), b.bounds(), query.distance);
@@ -356,8 +357,8 @@ std::vector<MeetingObjects> BroadPhase::sorted(std::vector<Found>& found,
   constexpr std::size_t kAhead = 16;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Found &pair = found[i], &ahead = found[std::min(i + kAhead, found.size() - 1)];
-    __builtin_prefetch(&at(ahead.a));
-    __builtin_prefetch(&other.at(ahead.b));
+    prefetchMemory(&at(ahead.a));
+    prefetchMemory(&other.at(ahead.b));
     out.push_back({pair.window, at(pair.a).object, other.at(pair.b).object});
   }
   return out;

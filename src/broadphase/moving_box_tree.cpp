@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "broadphase/moving_box_tree.h"
+#include "base/prefetch.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,8 +15,8 @@ namespace {
 constexpr int kBoxesAhead = 16;
 
 void prefetch(const LinearBox& box) {
-  __builtin_prefetch(&box);
-  __builtin_prefetch(reinterpret_cast<const char*>(&box) + sizeof(LinearBox) - 1);
+  prefetchMemory(&box);
+  prefetchMemory(reinterpret_cast<const char*>(&box) + sizeof(LinearBox) - 1);
 }
 
 LinearBox unionOf(const LinearBox& a, const LinearBox& b) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/bits.h"
 #include "curved/curved_query.h"
 
 namespace fcl {
@@ -91,7 +92,7 @@ class CandidateList {
     const SpannedPair spanned(a_, a, b_, b, near.t0, near.t1);
     for (unsigned pairs = wantedPairs(a.owned, b.owned, at_distance_); pairs != 0;
          pairs &= pairs - 1) {
-      const int bit = __builtin_ctz(pairs);
+      const int bit = lowestBit(pairs);
       if (!spanned.areApart(bit, margin_)) add(bit, a, b, near);
     }
   }

@@ -14,6 +14,7 @@
 
 #include "advance/feature_advance.h"
 #include "advance/turning_pairs.h"
+#include "base/bits.h"
 #include "base/parallel.h"
 #include "bodies/common_motion.h"
 #include "curved/chord_pairs.h"
@@ -106,7 +107,7 @@ class FeatureContacts {
     const BodyTriangle a = body_[0]->triangle(contact.place[0]),
                        b = body_[1]->triangle(contact.place[1]);
     for (unsigned pairs = pairsOf(a, b); pairs != 0; pairs &= pairs - 1)
-      addPair(a, b, __builtin_ctz(pairs), contact.toc_lo, t_max);
+      addPair(a, b, lowestBit(pairs), contact.toc_lo, t_max);
   }
 
   /// The contact of a pair of features, given by its number, from t on.

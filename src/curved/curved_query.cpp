@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "advance/convex_advance.h"
+#include "base/bits.h"
 #include "base/parallel.h"
 #include "bodies/calm_bodies.h"
 #include "bodies/part_windows.h"
@@ -187,7 +188,7 @@ class CurvedTraversal {
     const double dt = work.t1 - work.t0;
     const MeetingWindows windows = windows_.windows(work, opened, node, part, other);
     for (unsigned left = windows.mask; left != 0; left &= left - 1) {
-      const int lane = __builtin_ctz(left);
+      const int lane = lowestBit(left);
       PartWork child = work;
       (opened == 1 ? child.b : child.a) = node.part[lane];
       child.is_soon_apart = (windows.soon_apart >> lane & 1U) != 0;

@@ -5,8 +5,10 @@
 #include "elementary/coplanarity_filter.h"
 
 #include <cstdint>
+#include <cstring>
 
-#include "base/shuffle.h"
+#include "base/attributes.h"
+#include "base/short_vector.h"
 #include "elementary/accurate_pair.h"
 #include "elementary/pair_table.h"
 #include "numerics/error_bounds.h"
@@ -18,10 +20,7 @@ namespace {
 
 FramePair swapped(const FramePair& a) { return shuffle<1, 0>(a, a); }
 FramePair max(const FramePair& a, const FramePair& b) { return a > b ? a : b; }
-FramePair abs(const FramePair& a) {
-  typedef std::int64_t Bits __attribute__((vector_size(16)));
-  return FramePair(Bits(a) & INT64_MAX);
-}
+FramePair abs(const FramePair& a) { return FramePair(Long2(a) & INT64_MAX); }
 double smaller(const FramePair& a) { return a[0] < a[1] ? a[0] : a[1]; }
 double larger(const FramePair& a) { return a[0] > a[1] ? a[0] : a[1]; }
 
@@ -51,7 +50,7 @@ DifferencePair differenceOf(const VertexPath& p, const VertexPath& q, FramePair&
   static_assert(sizeof(VertexPath) == 3 * sizeof(FramePair), "t0 and t1 in a row");
   const auto part = [](const VertexPath& path, int i) {
     FramePair v;
-    __builtin_memcpy(&v, reinterpret_cast<const char*>(&path) + 16 * i, sizeof(v));
+    std::memcpy(&v, reinterpret_cast<const char*>(&path) + 16 * i, sizeof(v));
     return v;
   };
   const FramePair a = part(p, 0) - part(q, 0), b = part(p, 1) - part(q, 1),
@@ -99,10 +98,9 @@ Coplanarity coplanarityInDoubles(ContinuousContactKind kind, const FeaturePoints
 }
 
 // Not inlined, so that it does not slow down the filter in doubles.
-__attribute__((noinline)) bool mayBecomeCoplanarAccurately(ContinuousContactKind kind,
-                                                           const FeaturePoints& x,
-                                                           double window_lo,
-                                                           double window_hi) {
+FCL_CCD_NOINLINE bool mayBecomeCoplanarAccurately(ContinuousContactKind kind,
+                                                  const FeaturePoints& x,
+                                                  double window_lo, double window_hi) {
   return !AccuratePair(kind, x).hasNoRoot(window_lo, window_hi);
 }
 

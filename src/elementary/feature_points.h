@@ -6,6 +6,7 @@
 
 #include <cstdint>
 
+#include "base/short_vector.h"
 #include "fcl/narrowphase/stage_counts.h"
 #include "mesh/vertex_frames.h"
 
@@ -25,8 +26,8 @@ struct PointIds {
   std::uint32_t id[4]{0, 1, 2, 3};
 };
 
-/// The same quantity at t = 0 and at t = 1; compilers use vector instructions for it.
-typedef double FramePair __attribute__((vector_size(16)));
+/// The same quantity at t = 0 and at t = 1.
+using FramePair = Double2;
 
 enum class Answer { kNo, kYes, kUnsure };
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "base/bits.h"
 #include "elementary/distance_advance.h"
 #include "elementary/least_distance.h"
 #include "kernels/eight_features.h"
@@ -240,11 +241,11 @@ class AdvancingPairs {
     const unsigned open = open_ | orders_.unknown(), yes = bits(is_contact_) & ~open;
     // Each mask is read by itself: a branch for each lane would be unpredictable.
     for (unsigned lanes = left_; lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+      const auto lane = static_cast<std::size_t>(lowestBit(lanes));
       *on_way++ = {number_[lane], toc_lo[lane], rate[lane], distance[lane]};
     }
     for (unsigned lanes = ~left_ & ((1U << count_) - 1); lanes != 0; lanes &= lanes - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+      const auto lane = static_cast<std::size_t>(lowestBit(lanes));
       Approach& out = answers[number_[lane]];
       out.answer = open >> lane & 1U  ? Approach::Answer::kOpen
                    : yes >> lane & 1U ? Approach::Answer::kYes
@@ -357,7 +358,7 @@ void approach(ContinuousContactKind kind, const FourPoints* pairs, std::size_t c
       for (std::size_t i = 0; i < num_open; ++i) {
         const std::size_t eight = open[i];
         const unsigned left = eights[eight].advance(step, request);
-        num_pairs += static_cast<unsigned>(__builtin_popcount(left));
+        num_pairs += static_cast<unsigned>(countBits(left));
         // There is no branch, since it would be unpredictable.
         open[still_open] = eight;
         still_open += left != 0;
@@ -414,7 +415,7 @@ unsigned approachAtStart(ContinuousContactKind kind, const TrianglePair* pairs,
   double part[kEight];
   store(near.part, part);
   for (unsigned lanes = left; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    const auto lane = static_cast<std::size_t>(lowestBit(lanes));
     Approach& out = answers[lane];
     out.answer = is_near >> lane & 1U ? Approach::Answer::kYes : Approach::Answer::kOpen;
     out.exchanges = static_cast<std::uint8_t>(orders.exchanges(lane));

@@ -10,6 +10,7 @@
 #include "hwy/foreach_target.h"
 #endif
 
+#include "base/bits.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
@@ -318,7 +319,7 @@ FCL_CCD_INLINE void overlapLeaves(const LeafPairing& leaves, LanePairs& out) {
   std::uint64_t pairs = 0;
   unsigned fan_culled = 0;
   for (unsigned lanes = leaves.lanes; lanes != 0; lanes &= lanes - 1) {
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(lanes));
+    const auto lane = static_cast<std::size_t>(lowestBit(lanes));
     unsigned left = b.triangles;
     // If a tree is compared with itself, each pair is compared once. Otherwise the two
     // may be one node of a tree in two poses, and all pairs are compared.
@@ -330,13 +331,13 @@ FCL_CCD_INLINE void overlapLeaves(const LeafPairing& leaves, LanePairs& out) {
         box, kShifted ? &moved[0][lane] : box.t0, b, leaves.request, out.earliest[lane]);
     if (leaves.embedded) {
       const unsigned fan = left & trianglesInFans(a, lane, b, leaves.embedded);
-      fan_culled += static_cast<unsigned>(__builtin_popcount(fan));
+      fan_culled += static_cast<unsigned>(countBits(fan));
       left &= ~fan;
     }
     pairs |= std::uint64_t{left} << (LanePairs::kWidth * lane);
   }
   out.pairs = pairs;
-  out.compared += static_cast<unsigned>(b.count * __builtin_popcount(leaves.lanes));
+  out.compared += static_cast<unsigned>(b.count * countBits(leaves.lanes));
   out.fan_culled += fan_culled;
 }
 
@@ -355,7 +356,7 @@ std::size_t listFeatures(const std::uint16_t* masks, std::size_t count, unsigned
   for (std::size_t i = 0; i < count; ++i) {
     const unsigned mask = masks[i] & kept;
     storeCounted(mask, featureCode(static_cast<std::uint32_t>(i), 0), codes + size);
-    size += static_cast<std::size_t>(__builtin_popcount(mask));
+    size += static_cast<std::size_t>(countBits(mask));
   }
   return size;
 }
@@ -403,7 +404,7 @@ FCL_CCD_INLINE std::size_t keepCodes(std::uint32_t* codes, std::size_t count,
     unsigned mask = 0;
     for (std::size_t i = 0; i < size; ++i) mask |= unsigned{keeps(codes[first + i])} << i;
     storeSelected(mask, codes + first, codes + kept);
-    kept += static_cast<std::size_t>(__builtin_popcount(mask));
+    kept += static_cast<std::size_t>(countBits(mask));
   }
   return kept;
 }

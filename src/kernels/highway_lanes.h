@@ -263,7 +263,7 @@ HWY_INLINE void storeWhereSet(unsigned mask, const Numbers& numbers, std::uint32
   constexpr std::size_t kWidth = hn::MaxLanes(decltype(tag)());
   for (std::size_t i = 0; i < kSixteen; i += kWidth) {
     hn::StoreU(compressed(tag, numbers(tag, i), mask >> i), tag, to);
-    to += __builtin_popcount(mask >> i & ((1U << kWidth) - 1));
+    to += countBits(mask >> i & ((1U << kWidth) - 1));
   }
 }
 

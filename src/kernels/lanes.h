@@ -9,6 +9,8 @@
 //
 // Included once for each of Highway's targets. So it has no ordinary include guard.
 #include <cmath>
+
+#include "base/bits.h"
 #if defined(FCL_CCD_USE_HIGHWAY)
 #include "hwy/highway.h"
 #else

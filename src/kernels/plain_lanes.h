@@ -154,11 +154,11 @@ inline Lanes<float, N> narrowed(const Lanes<double, N>& a) {
 
 inline void storeCounted(unsigned mask, std::uint32_t first, std::uint32_t* to) {
   for (; mask != 0; mask &= mask - 1)
-    *to++ = first + static_cast<std::uint32_t>(__builtin_ctz(mask));
+    *to++ = first + static_cast<std::uint32_t>(lowestBit(mask));
 }
 
 inline void storeSelected(unsigned mask, const std::uint32_t* from, std::uint32_t* to) {
-  for (; mask != 0; mask &= mask - 1) *to++ = from[__builtin_ctz(mask)];
+  for (; mask != 0; mask &= mask - 1) *to++ = from[lowestBit(mask)];
 }
 
 template <typename T, std::size_t N>

@@ -12,6 +12,7 @@
 #include "hwy/foreach_target.h"
 #endif
 
+#include "base/bits.h"
 #include "kernels/kernel_functions.h"
 #include "kernels/lanes.h"
 #include "kernels/vectors.h"
@@ -238,7 +239,7 @@ EightViews viewFrom(const TreeVertex& point, const double (&ray)[3],
 std::uint32_t lowCorners(const TreeVertex* vertices, const MovingKdopNode& node,
                          const int (&direction)[3], double distance) {
   const TreeVertex* x[3][kEight];
-  const auto first = static_cast<std::size_t>(__builtin_ctz(node.triangles));
+  const auto first = static_cast<std::size_t>(lowestBit(node.triangles));
   for (std::size_t i = 0; i < kEight; ++i)
     for (std::size_t k = 0; k < 3; ++k)
       x[k][i] = &vertices[node.places[k][node.triangles >> i & 1U ? i : first]];

@@ -7,7 +7,8 @@
 #include <cassert>
 #include <cstdint>
 
-#include "base/shuffle.h"
+#include "base/bits.h"
+#include "base/short_vector.h"
 #include "fcl/narrowphase/stage_counts.h"
 #include "mesh/mesh_triangle.h"
 #include "mesh/moving_kdop.h"
@@ -179,7 +180,7 @@ inline unsigned wantedPairs(unsigned owned_a, unsigned owned_b, bool at_distance
 inline unsigned pairsAt(unsigned shared) {
   unsigned pairs = 0;
   for (; shared != 0; shared &= shared - 1) {
-    const unsigned bit = static_cast<unsigned>(__builtin_ctz(shared));
+    const unsigned bit = static_cast<unsigned>(lowestBit(shared));
     const unsigned i = 1U << bit / 3, j = 1U << bit % 3;
     pairs |= i | j << 3 | product(edgesAt(i), edgesAt(j)) << 6;
   }

@@ -2,7 +2,6 @@
 #include "mesh/mesh_topology.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "mesh/vertex_corners.h"
 
@@ -18,24 +17,24 @@ std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices) {
          std::to_string(kMaxMeshSize) + ", the most that a model can have";
 }
 
-std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,
+std::size_t findOutOfRange(TriangleArray triangles, std::size_t num_triangles,
                            std::size_t num_vertices) {
   for (std::size_t i = 0; i < num_triangles; ++i) {
     std::size_t id[3];
-    std::memcpy(id, &triangles[i], sizeof(id));
+    triangles.copyIds(i, id);
     for (std::size_t k = 0; k < 3; ++k)
       if (id[k] >= num_vertices) return 3 * i + k;
   }
   return 3 * num_triangles;
 }
 
-std::vector<MeshTriangle> assignFeatures(const Triangle* triangles,
+std::vector<MeshTriangle> assignFeatures(TriangleArray triangles,
                                          std::size_t num_triangles,
                                          std::size_t num_vertices) {
   std::vector<TreeTriangle> all(num_triangles);
   for (std::size_t i = 0; i < num_triangles; ++i) {
     all[i].index = static_cast<std::uint32_t>(i);
-    vertexIds(triangles[i], all[i].place);
+    triangles.copyIds(i, all[i].place);
   }
   assignOwners(VertexCorners(all, num_vertices, 1), 1, all);
   std::vector<MeshTriangle> result(num_triangles);

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "fcl/math/triangle.h"
 #include "mesh/mesh_triangle.h"
 
 namespace fcl {
@@ -22,14 +21,14 @@ std::string findTooMany(std::size_t num_triangles, std::size_t num_vertices);
 
 /// @brief The first corner, 3 * triangle + k, whose vertex id is not below num_vertices;
 /// 3 * num_triangles if there is none.
-std::size_t findOutOfRange(const Triangle* triangles, std::size_t num_triangles,
+std::size_t findOutOfRange(TriangleArray triangles, std::size_t num_triangles,
                            std::size_t num_vertices);
 
 /// @brief The lowest-numbered triangle that has a feature owns it. A vertex without a
 /// triangle is not a feature; of several faces with the same vertex set only the first
 /// owns its face; an edge whose two ids are equal is owned by nobody.
 /// @param triangles indices below num_vertices (not checked here).
-std::vector<MeshTriangle> assignFeatures(const Triangle* triangles,
+std::vector<MeshTriangle> assignFeatures(TriangleArray triangles,
                                          std::size_t num_triangles,
                                          std::size_t num_vertices);
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <type_traits>
 
-#include "fcl/math/triangle.h"
+#include "base/short_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -25,7 +25,7 @@ struct MeshTriangle {
 };
 
 /// @brief Three vertices; the fourth number does not count.
-typedef std::uint32_t ThreeIds __attribute__((vector_size(16)));
+using ThreeIds = Word4;
 
 /// All six border features and the face.
 constexpr std::uint32_t kOwnsAll = 0x7f;
@@ -44,16 +44,42 @@ struct FreeLeaves {
   std::size_t count() const { return edges + points; }
 };
 
-/// @brief The vertex ids of a triangle, which are below 2^32; FCL's operator[] is a call
-/// into its library for each.
-inline void vertexIds(const Triangle& triangle, std::uint32_t (&out)[3]) {
-  std::size_t ids[3];
-  static_assert(
-      std::is_trivially_copyable<Triangle>::value && sizeof(Triangle) == sizeof(ids),
-      "a triangle is its three ids");
-  std::memcpy(ids, &triangle, sizeof(ids));
-  for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
-}
+/// @brief Triangles as the caller has them: three vertex ids of type std::size_t each,
+/// one triangle after the other. FCL's Triangle is such a type; its operator[] is a call
+/// into FCL's library for each id. Does not own the array.
+class TriangleArray {
+ public:
+  TriangleArray() = default;
+  template <typename T>
+  TriangleArray(const T* triangles)  // not explicit: an array of triangles is one
+      : bytes_(reinterpret_cast<const unsigned char*>(triangles)) {
+    static_assert(std::is_trivially_copyable<T>::value && sizeof(T) == kSize,
+                  "a triangle is its three ids");
+  }
+
+  explicit operator bool() const { return bytes_ != nullptr; }
+  const void* address(std::size_t i) const { return bytes_ + i * kSize; }
+
+  void copyIds(std::size_t i, std::size_t (&out)[3]) const {
+    std::memcpy(out, address(i), kSize);
+  }
+  /// @pre the ids are below 2^32
+  void copyIds(std::size_t i, std::uint32_t (&out)[3]) const {
+    std::size_t ids[3];
+    copyIds(i, ids);
+    for (int k = 0; k < 3; ++k) out[k] = static_cast<std::uint32_t>(ids[k]);
+  }
+  std::size_t id(std::size_t i, int k) const {
+    std::size_t ids[3];
+    copyIds(i, ids);
+    return ids[k];
+  }
+
+ private:
+  static constexpr std::size_t kSize = 3 * sizeof(std::size_t);
+
+  const unsigned char* bytes_{nullptr};
+};
 
 /// @brief The largest number of triangles, and of vertices, of a mesh. With it 32 bits
 /// are enough for four numbers a triangle, and for the number of the spokes of all fans

@@ -17,6 +17,8 @@
 #include <cmath>
 #include <limits>
 
+#include "base/short_vector.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -96,24 +98,6 @@ struct KdopShift {
   Kdop16 t0;
   Kdop16 t1;
 };
-
-/// Four floats: compilers turn elementwise operations on it into vector instructions of
-/// whatever the target has, without a change in any result.
-typedef float Float4 __attribute__((vector_size(16)));
-
-/// A comparison of two Float4: all bits of a lane, or none.
-typedef int Mask4 __attribute__((vector_size(16)));
-
-/// @brief A bit for each lane.
-inline int bitsOf(const Mask4& mask) {
-#if defined(__SSE__)
-  return __builtin_ia32_movmskps(reinterpret_cast<const Float4&>(mask));
-#else
-  return (mask[0] & 1) | (mask[1] & 2) | (mask[2] & 4) | (mask[3] & 8);
-#endif
-}
-
-inline bool isAny(const Mask4& mask) { return bitsOf(mask) != 0; }
 
 /// The part of the step that a window loses is multiplied by this. So it is rounded down
 /// by more than its rounding: 2^-24 for each of the two sums, their difference, the

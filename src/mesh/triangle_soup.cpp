@@ -34,11 +34,11 @@ bool standAlone(std::size_t num_triangles, std::size_t num_free, std::size_t num
 
 }  // namespace
 
-bool isTriangleSoup(const Triangle* triangles, std::size_t num_triangles,
+bool isTriangleSoup(TriangleArray triangles, std::size_t num_triangles,
                     std::size_t num_vertices) {
   return standAlone(num_triangles, 0, num_vertices,
                     [&](std::uint32_t i, std::uint32_t(&ids)[3]) {
-                      vertexIds(triangles[i], ids);
+                      triangles.copyIds(i, ids);
                       return true;
                     });
 }

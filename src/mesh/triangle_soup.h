@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "fcl/math/triangle.h"
 #include "mesh/tree_nodes.h"
 
 namespace fcl {
@@ -14,7 +13,7 @@ namespace deformable {
 
 /// @brief Whether no two triangles have a common vertex. False for fewer than two
 /// triangles, and if an id is not below num_vertices.
-bool isTriangleSoup(const Triangle* triangles, std::size_t num_triangles,
+bool isTriangleSoup(TriangleArray triangles, std::size_t num_triangles,
                     std::size_t num_vertices);
 
 /// @brief The same for triangles in a tree, in terms of their places.

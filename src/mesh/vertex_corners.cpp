@@ -5,7 +5,9 @@
 #include <array>
 #include <cstring>
 
+#include "base/bits.h"
 #include "base/parallel.h"
+#include "base/short_vector.h"
 
 namespace fcl {
 namespace detail {
@@ -18,9 +20,6 @@ constexpr std::size_t kBlock = 2048;
 /// Not a vertex.
 constexpr std::uint32_t kNone = ~std::uint32_t{0};
 
-/// Four numbers that are computed together, see Float4.
-typedef std::uint32_t Quad __attribute__((vector_size(16)));
-
 /// Sorts corners into the order of a fan if they form one: each begins where the one
 /// before ends.
 /// @param count  1 ... 4 * kQuads
@@ -32,11 +31,11 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   for (std::uint32_t i = 0; i < count; ++i) last[i] = corners[i].last;
   // For each corner, the corners that begin where it ends, a bit each. There is no branch
   // on the result, which would be unpredictable.
-  Quad quads[kQuads], found[kQuads] = {};
+  Word4 quads[kQuads], found[kQuads] = {};
   std::memcpy(quads, last, sizeof(last));
   for (std::uint32_t k = 0; k < count; ++k)
     for (std::uint32_t q = 0; q < kQuads; ++q)
-      found[q] |= Quad(quads[q] == corners[k].next) & (1U << k);
+      found[q] |= Word4(quads[q] == corners[k].next) & (1U << k);
   std::uint32_t after[kWidth + 1];
   std::memcpy(after, found, sizeof(found));
   after[kWidth] = 0;
@@ -54,11 +53,11 @@ CornersAtVertex::Kind sortIntoFan(Corner* corners, std::uint32_t count) {
   const bool is_closed = begins == 0;
   Corner sorted[kWidth];
   std::uint32_t met = 0;
-  auto at = static_cast<std::uint32_t>(__builtin_ctz(is_closed ? 1 : begins));
+  auto at = static_cast<std::uint32_t>(lowestBit(is_closed ? 1 : begins));
   for (std::uint32_t i = 0; i < count; ++i) {
     met |= 1U << at;
     sorted[i] = corners[at % kWidth];
-    at = static_cast<std::uint32_t>(__builtin_ctz(after[at] | 1U << kWidth));
+    at = static_cast<std::uint32_t>(lowestBit(after[at] | 1U << kWidth));
   }
   const bool is_fan = surplus == 0 && met == all && (!is_closed || count >= 3);
   if (!is_fan) return CornersAtVertex::kNoFan;

@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cstddef>
 
+#include "base/prefetch.h"
 #include "numerics/moving_vector.h"
 
 namespace fcl {
@@ -99,9 +100,9 @@ class VertexFrames {
   void prefetch(std::size_t i) const {
     for (int frame = 0; frame < 2; ++frame) {
       if (double_[frame])
-        __builtin_prefetch(double_[frame] + 3 * i);
+        prefetchMemory(double_[frame] + 3 * i);
       else
-        __builtin_prefetch(float_[frame] + 3 * i);
+        prefetchMemory(float_[frame] + 3 * i);
     }
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/geometry/bvh/refit_top_down.h"
 
-#include "tree/sound_tree.h"
+#include "model/sound_tree.h"
 
 namespace fcl {
 namespace detail {

@@ -9,11 +9,12 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/bits.h"
+#include "base/double_word.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
-
-__extension__ typedef unsigned __int128 DoubleWord;
 
 /// @brief An integer of kWords times 64 bits, in two's complement. Results are right if
 /// they fit.
@@ -80,7 +81,7 @@ class FixedInteger {
     // The leading 64 bits, of which the last one tells whether there is more: converting
     // them rounds as converting all does.
     std::uint64_t head = size.w_[top - 1], rest = 0;
-    const auto zeros = static_cast<unsigned>(__builtin_clzll(head));
+    const auto zeros = static_cast<unsigned>(leadingZeros(head));
     if (top > 1) {
       rest = size.w_[top - 2] << zeros;
       if (zeros > 0) head = head << zeros | size.w_[top - 2] >> (64 - zeros);

@@ -11,6 +11,8 @@
 #include <cstring>
 #include <limits>
 
+#include "base/bits.h"
+
 namespace fcl {
 namespace detail {
 namespace deformable {
@@ -29,7 +31,7 @@ struct BinaryDigits {
     const auto field = static_cast<int>(bits >> 52 & 0x7ff);
     const std::uint64_t all = (bits & (kHidden - 1)) | (field == 0 ? 0 : kHidden);
     if (all == 0) return;
-    const int zeros = __builtin_ctzll(all);
+    const int zeros = lowestBit(all);
     digits = static_cast<std::int64_t>(all >> zeros);
     if (bits >> 63 != 0) digits = -digits;
     exponent = std::max(field, 1) - 1075 + zeros;
@@ -37,8 +39,7 @@ struct BinaryDigits {
 
   int numDigits() const {
     assert(digits != 0);
-    return 64 -
-           __builtin_clzll(static_cast<std::uint64_t>(digits < 0 ? -digits : digits));
+    return 64 - leadingZeros(static_cast<std::uint64_t>(digits < 0 ? -digits : digits));
   }
 };
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "fcl/common/exception.h"
+#include "base/error.h"
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
 
@@ -26,15 +26,15 @@ BoundedMotion::Placement checked(const BoundedMotion::Placement& placement,
   if (std::all_of(placement.rotation, placement.rotation + 9, is_finite) &&
       std::all_of(placement.translation, placement.translation + 3, is_finite))
     return placement;
-  throw Exception(std::string(name) + ": BoundedMotion::" + function +
-                  " gives a number that is not finite. Correct the function");
+  throwBadInput(std::string(name) + ": BoundedMotion::" + function +
+                " gives a number that is not finite. Correct the function");
 }
 
 /// A bound of the program, if it is one.
 double checked(double bound, const char* function, const char* name) {
   if (bound >= 0 && std::isfinite(bound)) return bound * kUpward;
-  throw Exception(std::string(name) + ": BoundedMotion::" + function +
-                  " gives a number that is negative or not finite. Correct the function");
+  throwBadInput(std::string(name) + ": BoundedMotion::" + function +
+                " gives a number that is negative or not finite. Correct the function");
 }
 
 double checkedAcceleration(const BoundedMotion& motion, const char* name,

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <string>
 
-#include "fcl/common/exception.h"
+#include "base/error.h"
 #include "numerics/error_bounds.h"
 #include "paths/path_matrix.h"
 #include "paths/posed_vector.h"
@@ -90,9 +90,9 @@ MotionPath MotionPath::spline(const double (&translation)[4][3],
   std::copy(&rotation[0][0], &rotation[0][0] + 12, &path.rotation_points_[0][0]);
   const double most = largestPoint(rotation);
   if (!(most <= kMostAngle))
-    throw Exception(std::string(name) +
-                    ": a rotation vector of the SplineMotion is longer than 2^20 radians "
-                    "or not finite. Divide the motion into steps with smaller rotations");
+    throwBadInput(std::string(name) +
+                  ": a rotation vector of the SplineMotion is longer than 2^20 radians "
+                  "or not finite. Divide the motion into steps with smaller rotations");
   path.stretch_ = 1;
   path.turn_speed_ = largestDifference(rotation);
   path.translation_speed_ = largestDifference(translation);

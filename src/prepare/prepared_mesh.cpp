@@ -14,8 +14,9 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
+#include "model/fcl_tree.h"
+#include "model/sound_tree.h"
 #include "prepare/class_cast.h"
-#include "tree/sound_tree.h"
 
 namespace fcl {
 namespace detail {
@@ -201,7 +202,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
   if (!deforming && isTreeSound(model)) {
-    instance_.rigid = RigidTree(model, beginning);
+    instance_.rigid = RigidTree(fclTree(model), beginning);
     if (owners == FeatureOwners::kAlways) {
       requireIndices(model, name);
       measure([&] {

@@ -9,6 +9,10 @@
 #include "tree/mesh_instance.h"
 
 namespace fcl {
+
+template <typename BV>
+class BVHModel;
+
 namespace detail {
 namespace deformable {
 

@@ -11,6 +11,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/attributes.h"
 #include "base/stopwatch.h"
 #include "mesh/non_finite_vertex.h"
 #include "query/narrow_phase.h"
@@ -137,7 +138,7 @@ class BlockTraversal {
   }
 
   // Not inlined: it is rare, and would keep what is not rare from being inlined.
-  __attribute__((noinline)) void changeLatest(double latest) {
+  FCL_CCD_NOINLINE void changeLatest(double latest) {
     traversal_.leaveOutAfter(latest, pose_displacement_);
     const double cull_distance = shifts_.cullDistance(latest);
     if (cull_distance != cull_distance_)

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/bits.h"
 #include "elementary/predicates.h"
 #include "kernels/kernels.h"
 
@@ -58,7 +59,7 @@ void findCrossings(const FeatureBatch& batch, TaskFindings& findings) {
     for (unsigned left =
              kernels().mayCross(batch.pairs(), batch.crossings() + first, count);
          left != 0 && findings.wantsCrossings(); left &= left - 1) {
-      const std::size_t i = first + static_cast<std::size_t>(__builtin_ctz(left));
+      const std::size_t i = first + static_cast<std::size_t>(lowestBit(left));
       if (!isCrossingAt(batch, i)) continue;
       Crossing crossing = crossingAt(batch, i);
       if (!filter || accept(*filter, crossing)) findings.add(crossing);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/distance_stages.h"
+#include "base/bits.h"
 
 #include <algorithm>
 #include <cassert>
@@ -43,7 +44,7 @@ bool DistanceStages::filterDistances() {
       filterEight();
       continue;
     }
-    const auto lane = static_cast<std::size_t>(__builtin_ctz(left_));
+    const auto lane = static_cast<std::size_t>(lowestBit(left_));
     left_ &= left_ - 1;
     FeatureCandidate& candidate = candidates_.emplace_back();
     if (isSettled(lane, candidate)) candidates_.pop_back();
@@ -61,7 +62,7 @@ void DistanceStages::filterEight() {
                        : kernels_.mayComeWithin(kind_, batch_.pairs(), codes,
                                                 batch_.windows(kind_) + next_, count,
                                                 request_, batch_.bends());
-  counts_.filter_culled += count - static_cast<unsigned>(__builtin_popcount(left_));
+  counts_.filter_culled += count - static_cast<unsigned>(countBits(left_));
   next_ += 8;
 }
 

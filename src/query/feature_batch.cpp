@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/feature_batch.h"
+#include "base/bits.h"
 
 #include <algorithm>
 #include <cassert>
@@ -147,9 +148,9 @@ void FeatureBatch::leaveOutApart(double latest, StageCounts& counts) {
     float gaps[8];
     const unsigned apart =
         kernels_.areApart(&pairs_[first], count, share, cull_distance_, gaps);
-    counts.plane_culled += static_cast<unsigned>(__builtin_popcount(apart));
+    counts.plane_culled += static_cast<unsigned>(countBits(apart));
     for (unsigned left = ~apart & ((1U << count) - 1); left != 0; left &= left - 1) {
-      const auto lane = static_cast<std::size_t>(__builtin_ctz(left));
+      const auto lane = static_cast<std::size_t>(lowestBit(left));
       gaps_[kept] = gaps[lane];
       keepPair(first + lane, kept);
     }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "base/bits.h"
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
 #include "elementary/magnified_solve.h"
@@ -29,7 +30,7 @@ void TouchingStages::filterCoplanarity() {
                              std::min<std::size_t>(8, size - first), latest);
     unsigned left = found.possible | found.unclear;
     for (; left != 0; left &= left - 1) {
-      const auto lane = static_cast<unsigned>(__builtin_ctz(left));
+      const auto lane = static_cast<unsigned>(lowestBit(left));
       const std::size_t i = first + lane;
       // It is written in place: a copy right after it was stored in parts would wait for
       // these stores.

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "fcl/common/exception.h"
+#include "base/error.h"
 #include "mesh/non_finite_vertex.h"
 #include "tree/bent_boxes.h"
 #include "tree/box_position.h"
@@ -66,11 +66,11 @@ void TriangleReader::compute(int i, std::size_t slot) {
       triangle.owned = mesh_.owners[index].owned;
     } else {
       for (int k = 0; k < 3; ++k) {
-        const std::size_t id = mesh_.triangles[index][k];
+        const std::size_t id = mesh_.triangles.id(index, k);
         if (id >= mesh_.frames.size())
-          throw Exception(std::string(mesh_.name) + ": triangle " + std::to_string(i) +
-                          " refers to a vertex that is not there. The model has " +
-                          std::to_string(mesh_.frames.size()) + ", numbered from 0");
+          throwBadInput(std::string(mesh_.name) + ": triangle " + std::to_string(i) +
+                        " refers to a vertex that is not there. The model has " +
+                        std::to_string(mesh_.frames.size()) + ", numbered from 0");
         triangle.id[k] = static_cast<std::uint32_t>(id);
       }
       // As in assignFeatures(), an edge with two equal ids is not a feature.

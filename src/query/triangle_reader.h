@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/prefetch.h"
 #include "tree/mesh_instance.h"
 
 namespace fcl {
@@ -24,11 +25,11 @@ struct TrianglesInPlace {
     for (int k = 0; k < 3; ++k) {
       x[k] = vertices + triangle.place[k];
       for (int line = 0; line < 3; ++line)
-        __builtin_prefetch(reinterpret_cast<const char*>(x[k]) + 64 * line);
+        prefetchMemory(reinterpret_cast<const char*>(x[k]) + 64 * line);
     }
     return &triangle;
   }
-  void prefetch(int i) const { __builtin_prefetch(triangles + i); }
+  void prefetch(int i) const { prefetchMemory(triangles + i); }
 };
 
 /// @brief Reads the triangles of a mesh. A moving tree in place is read without a copy.

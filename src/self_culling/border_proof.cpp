@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 
+#include "base/bits.h"
 #include "numerics/error_bounds.h"
 #include "tree/traversal.h"
 
@@ -76,16 +77,16 @@ int BorderProof::widest(std::uint32_t directions) const {
         area[k] += p[(k + 1) % 3] * q[(k + 2) % 3] - p[(k + 2) % 3] * q[(k + 1) % 3];
     }
   assert(directions != 0);
-  int best = __builtin_ctz(directions);
+  int best = lowestBit(directions);
   double most = 0;
   for (; directions != 0; directions &= directions - 1) {
     int d[3];
-    directionOf(__builtin_ctz(directions), d);
+    directionOf(lowestBit(directions), d);
     const double seen = (area[0] * d[0] + area[1] * d[1] + area[2] * d[2]) /
                         std::sqrt(double(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]));
     if (seen > most) {
       most = seen;
-      best = __builtin_ctz(directions);
+      best = lowestBit(directions);
     }
   }
   return best;

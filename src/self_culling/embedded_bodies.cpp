@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "tree/border_finder.h"
 
 namespace fcl {
@@ -73,7 +74,7 @@ bool isStarShaped(const MovingKdopTree& tree, const Region& region,
     const unsigned all = (1U << count) - 1;
     const std::size_t ahead = region.first_place + (i - region.first) / 2 + kAhead;
     for (std::size_t k = ahead; k < ahead + kEach && k < region.last_place; ++k)
-      __builtin_prefetch(&vertices[k]);
+      prefetchMemory(&vertices[k]);
     const EightViews views =
         kernels.viewFrom(center, ray, vertices, triangles + i, count, least);
     left = left && views.left == all;

@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 
 namespace fcl {
 namespace detail {
@@ -85,7 +86,7 @@ std::vector<std::uint8_t> findEmbeddedFans(const MovingKdopTree& tree,
     FanQueue queue(tree, kernels, distance, embedded);
     for (; i < last; ++i) {
       const std::size_t ahead = std::min(i + kAhead, count - 1);
-      if (!left_out[ahead]) __builtin_prefetch(&tree.vertices()[ahead]);
+      if (!left_out[ahead]) prefetchMemory(&tree.vertices()[ahead]);
       if (left_out[i]) continue;
       const VertexFan fan = tree.fans()[i];
       if (fan.count > 0) queue.add(static_cast<std::uint32_t>(i), fan);

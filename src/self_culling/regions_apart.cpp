@@ -5,6 +5,8 @@
 #include <cassert>
 #include <cstddef>
 
+#include "base/bits.h"
+#include "base/prefetch.h"
 #include "self_culling/border_proof.h"
 
 namespace fcl {
@@ -118,9 +120,9 @@ class RegionMarks {
   /// Prefetches what markLow() reads of a node.
   void prefetch(std::size_t i) const {
     const MovingKdopNode& node = tree_.node(static_cast<int>(i));
-    __builtin_prefetch(&node.places[0]);
-    __builtin_prefetch(&node.places[2]);
-    __builtin_prefetch(&node.count);
+    prefetchMemory(&node.places[0]);
+    prefetchMemory(&node.places[2]);
+    prefetchMemory(&node.count);
   }
 
   void markLow(const MovingKdopNode& node, const int (&direction)[3]) {
@@ -129,11 +131,11 @@ class RegionMarks {
     const std::size_t size = is_apart_.size();
     const std::uint32_t place = node.places[0][0] + kAhead;
     for (std::uint32_t k = place; k < place + kEach && k < size; ++k)
-      __builtin_prefetch(&tree_.vertices()[k]);
+      prefetchMemory(&tree_.vertices()[k]);
     for (std::uint32_t left =
              kernels_.lowCorners(tree_.vertices().data(), node, direction, distance_);
          left != 0; left &= left - 1) {
-      const int corner = __builtin_ctz(left), lane = corner % 8;
+      const int corner = lowestBit(left), lane = corner % 8;
       is_apart_[node.places[corner / 8][lane]] = 0;
       for (const auto& places : node.places) apart_.fans[places[lane]] = 0;
     }

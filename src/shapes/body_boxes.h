@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cstdint>
 
+#include "base/bits.h"
 #include "mesh/vertex_frames.h"
 #include "numerics/moving_vector.h"
 
@@ -104,7 +105,7 @@ struct TriangleHalves {
   void narrow(MeetingWindows& windows) const {
     windows.mask &= left();
     for (unsigned bits = windows.mask & tested; bits != 0; bits &= bits - 1) {
-      const int lane = __builtin_ctz(bits);
+      const int lane = lowestBit(bits);
       double &lo = windows.lo[lane], &hi = windows.hi[lane];
       if ((meeting[0] >> lane & 1U) == 0) lo = std::max(lo, 0.5);
       if ((meeting[1] >> lane & 1U) == 0) hi = std::min(hi, 0.5);

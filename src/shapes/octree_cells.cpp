@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "fcl/common/exception.h"
+#include "base/error.h"
 #include "numerics/error_bounds.h"
 
 namespace fcl {
@@ -75,9 +75,9 @@ OctreeCells::OctreeCells(std::unique_ptr<const OctreeNodes> nodes, double root_s
 
 void OctreeCells::add(const void* node, const OctreeCellNumber& name) {
   if (table_.size() >= std::numeric_limits<std::int32_t>::max())
-    throw Exception(name_ +
-                    ": the octree has more than 2^31 nodes near the other object. Divide "
-                    "the map");
+    throwBadInput(name_ +
+                  ": the octree has more than 2^31 nodes near the other object. Divide "
+                  "the map");
   table_.push_back({node, name, Bounds::of(name), 0, -1, -1, 0, nodes_->isLeaf(node)});
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/shuffle.h"
+#include "base/short_vector.h"
 #include "tree/float4.h"
 
 namespace fcl {
@@ -14,14 +14,11 @@ namespace detail {
 namespace deformable {
 namespace {
 
-typedef float Float2 __attribute__((vector_size(8)));
-typedef double DoublePair __attribute__((vector_size(16)));
-
 /// roundUp() of four numbers.
-Float4 roundUp(DoublePair a, DoublePair b, float pad) {
-  const DoublePair least = {double{kLeastHalf}, double{kLeastHalf}};
-  const auto narrowed = [&least](DoublePair x) {
-    return __builtin_convertvector(least > x ? least : x, Float2);
+Float4 roundUp(Double2 a, Double2 b, float pad) {
+  const Double2 least = {double{kLeastHalf}, double{kLeastHalf}};
+  const auto narrowed = [&least](Double2 x) {
+    return roundedToFloats(least > x ? least : x);
   };
   const Float4 f = shuffle<0, 1, 2, 3>(narrowed(a), narrowed(b));
   const Float4 up = f + (larger(f, -f) * kOutward + (pad + FLT_MIN));
@@ -34,7 +31,7 @@ void fitPoint(const double* point, const double (&origin)[3], float pad, Kdop16&
   double d[8];
   kdopCoordinates({point[0] - origin[0], point[1] - origin[1], point[2] - origin[2]}, d);
   for (int j = 0; j < 8; j += 4) {
-    const DoublePair a = {d[j], d[j + 1]}, b = {d[j + 2], d[j + 3]};
+    const Double2 a = {d[j], d[j + 1]}, b = {d[j + 2], d[j + 3]};
     store(roundUp(-a, -b, pad), out.half + j);
     store(roundUp(a, b, pad), out.half + j + 8);
   }

@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_TREE_FLOAT4_H
 #define FCL_CCD_TREE_FLOAT4_H
 
+#include <cstring>
+
 #include "mesh/moving_kdop.h"
 
 namespace fcl {
@@ -10,11 +12,11 @@ namespace deformable {
 
 inline Float4 load(const float* from) {
   Float4 v;
-  __builtin_memcpy(&v, from, sizeof(v));
+  std::memcpy(&v, from, sizeof(v));
   return v;
 }
 
-inline void store(const Float4& v, float* to) { __builtin_memcpy(to, &v, sizeof(v)); }
+inline void store(const Float4& v, float* to) { std::memcpy(to, &v, sizeof(v)); }
 
 inline Float4 abs(const Float4& v) {
   constexpr int kAllButSign = 0x7fffffff;

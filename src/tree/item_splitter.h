@@ -8,6 +8,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -20,13 +21,13 @@ namespace deformable {
 
 inline Float4 vectorOf(const TreeItem& item) {
   Float4 v;
-  __builtin_memcpy(&v, &item, sizeof(v));
+  std::memcpy(&v, &item, sizeof(v));
   return v;
 }
 
 /// In one store: three stores take longer.
 inline void setItem(const Float4& v, TreeItem& item) {
-  __builtin_memcpy(&item, &v, sizeof(v));
+  std::memcpy(&item, &v, sizeof(v));
 }
 
 /// Bounds of points. Their fourth number has no meaning.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "fcl/math/triangle.h"
 #include "mesh/bend.h"
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_frames.h"
@@ -34,7 +33,7 @@ struct MeshInstance {
   /// Without a moving tree: the triangles with the features that they own. Null: each
   /// triangle owns all its features, so that a feature pair can be met repeatedly.
   const MeshTriangle* owners{nullptr};
-  const Triangle* triangles{nullptr};
+  TriangleArray triangles;
 
   /// How the paths of the vertices are bent. Null: they are straight. Not with a moving
   /// tree; set RigidTree::setBend() too.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "kernels/kernels.h"
 #include "mesh/mesh_topology.h"
 #include "mesh/vertex_corners.h"
@@ -45,12 +46,12 @@ constexpr std::size_t kAhead = 8;
 /// Prefetches a node's boxes, which will be written soon.
 void prefetchRows(const MovingKdopNode& node) {
   const char* at = reinterpret_cast<const char*>(&node);
-  for (std::size_t i = 0; i < sizeof(node); i += 64) __builtin_prefetch(at + i, 1);
+  for (std::size_t i = 0; i < sizeof(node); i += 64) prefetchToWrite(at + i);
 }
 
 }  // namespace
 
-void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
+void MovingKdopTree::build(TriangleArray triangles, std::size_t num_triangles,
                            const VertexFrames& frames, int num_threads, FreeLeaves free) {
   assert(num_triangles > 0 && free.count() <= num_triangles &&
          findOutOfRange(triangles, num_triangles, frames.size()) == 3 * num_triangles);
@@ -75,7 +76,7 @@ void MovingKdopTree::markFreeLeaves() {
   }
 }
 
-void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
+void MovingKdopTree::build(TriangleArray triangles, std::size_t num_triangles,
                            std::size_t num_vertices,
                            const std::vector<std::int32_t>& links, int num_threads) {
   const auto children = [&links](std::int32_t link, std::size_t) {
@@ -91,7 +92,7 @@ void MovingKdopTree::build(const Triangle* triangles, std::size_t num_triangles,
 }
 
 /// Takes over a structure, and finds fans and owners.
-void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* triangles,
+void MovingKdopTree::arrange(const TreeStructure& structure, TriangleArray triangles,
                              std::size_t num_vertices, int num_threads) {
   assignPlaces(structure, triangles, num_vertices, num_threads);
   setNodes(structure, num_threads);
@@ -102,18 +103,17 @@ void MovingKdopTree::arrange(const TreeStructure& structure, const Triangle* tri
 }
 
 /// Takes over the triangles of a structure, and gives the vertices their places.
-void MovingKdopTree::assignPlaces(const TreeStructure& structure,
-                                  const Triangle* triangles, std::size_t num_vertices,
-                                  int num_threads) {
+void MovingKdopTree::assignPlaces(const TreeStructure& structure, TriangleArray triangles,
+                                  std::size_t num_vertices, int num_threads) {
   const std::vector<std::uint32_t>& leaves = structure.leaves;
   triangles_.resize(leaves.size());
   parallelForBlocks(leaves.size(), kTriangleBlock, num_threads,
                     [&](std::size_t i, std::size_t last) {
                       for (; i < last; ++i) {
                         if (i + kAhead < last)
-                          __builtin_prefetch(&triangles[leaves[i + kAhead]]);
+                          prefetchMemory(triangles.address(leaves[i + kAhead]));
                         triangles_[i].index = leaves[i];
-                        vertexIds(triangles[leaves[i]], triangles_[i].id);
+                        triangles.copyIds(leaves[i], triangles_[i].id);
                       }
                     });
   findSubtrees(structure);

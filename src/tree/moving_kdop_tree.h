@@ -40,15 +40,14 @@ class MovingKdopTree {
   /// @param triangles  at least one, indices below frames.size() (not checked here)
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   /// @param free  how many of the triangles, at their end, are free edges and free points
-  void build(const Triangle* triangles, std::size_t num_triangles,
+  void build(TriangleArray triangles, std::size_t num_triangles,
              const VertexFrames& frames, int num_threads = 1, FreeLeaves free = {});
 
   /// @brief Takes the structure from a binary tree: links[i] >= 0 is the left child of
   /// node i (the right child follows it), links[i] < 0 is leaf ~links[i].
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
-  void build(const Triangle* triangles, std::size_t num_triangles,
-             std::size_t num_vertices, const std::vector<std::int32_t>& links,
-             int num_threads = 1);
+  void build(TriangleArray triangles, std::size_t num_triangles, std::size_t num_vertices,
+             const std::vector<std::int32_t>& links, int num_threads = 1);
 
   /// @brief Sets all boxes. The box interpolated at t contains the subtree's triangles at
   /// t, for every t in [0, 1]. There is no tolerance: all rounding is outward.
@@ -73,7 +72,7 @@ class MovingKdopTree {
   /// hint: no answer depends on it
   /// @param num_threads  as in parallelFor(); the tree does not depend on it
   /// @pre refit() has set the boxes; there are no free leaves
-  void changeTopology(const Triangle* triangles, std::size_t num_triangles,
+  void changeTopology(TriangleArray triangles, std::size_t num_triangles,
                       const std::vector<int>& origins, const VertexFrames& frames,
                       int num_threads = 1);
 
@@ -140,9 +139,9 @@ class MovingKdopTree {
                             std::vector<NodeSize>& first_sizes);
   void adopt(const Restructuring& restructuring);
   void markFreeLeaves();
-  void arrange(const TreeStructure& structure, const Triangle* triangles,
+  void arrange(const TreeStructure& structure, TriangleArray triangles,
                std::size_t num_vertices, int num_threads);
-  void assignPlaces(const TreeStructure& structure, const Triangle* triangles,
+  void assignPlaces(const TreeStructure& structure, TriangleArray triangles,
                     std::size_t num_vertices, int num_threads);
   void takeMemory(const MovingKdopTree& other, const TreeStructure& structure);
   void become(MovingKdopTree&& next, const TreeStructure& structure) noexcept;

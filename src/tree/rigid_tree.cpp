@@ -8,8 +8,7 @@
 #include <cstring>
 #include <limits>
 
-#include "fcl/geometry/bvh/BVH_model.h"
-#include "tree/fcl_volumes.h"
+#include "base/prefetch.h"
 #include "tree/float4.h"
 #include "tree/open_binary.h"
 
@@ -17,45 +16,6 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-/// Bounds along our directions.
-struct Slabs {
-  double lo[8];
-  double hi[8];
-};
-
-template <typename S>
-Slabs slabsOf(const AABB<S>& bv) {
-  const double lo[3] = {double{bv.min_[0]}, double{bv.min_[1]}, double{bv.min_[2]}};
-  const double hi[3] = {double{bv.max_[0]}, double{bv.max_[1]}, double{bv.max_[2]}};
-  Slabs slabs;
-  kdopCoordinates(lo, slabs.lo);
-  kdopCoordinates(hi, slabs.hi);
-  for (int k = 1; k < 3; ++k) {  // x - y and x - z
-    slabs.lo[5 + k] = lo[0] - hi[k];
-    slabs.hi[5 + k] = hi[0] - lo[k];
-  }
-  return slabs;
-}
-
-/// The first 8 directions of all of FCL's KDOPs are ours. The bounds are private, and FCL
-/// needs a function call for each. So they are read from memory: a KDOP consists of its
-/// bounds only.
-template <typename S, std::size_t N>
-Slabs slabsOf(const KDOP<S, N>& bv) {
-  static_assert(std::is_standard_layout_v<KDOP<S, N>> && sizeof(bv) == N * sizeof(S));
-  const S* bounds = reinterpret_cast<const S*>(&bv);
-  Slabs slabs;
-  for (std::size_t j = 0; j < 8; ++j) {
-    slabs.lo[j] = double{bounds[j]};
-    slabs.hi[j] = double{bounds[j + N / 2]};
-  }
-  return slabs;
-}
-
-/// A box that contains all finite points.
-constexpr OrientedBox kUnbounded = {
-    {0, 0, 0}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {DBL_MAX, DBL_MAX, DBL_MAX}};
 
 constexpr float kFloatUnit = 0x1p-24f;
 
@@ -122,22 +82,8 @@ void fitBoxes(const EightBoxes& boxes, float (&rows)[16][MovingKdopNode::kWidth]
 
 }  // namespace
 
-int RigidTree::link(int node) const { return at(node)->first_child; }
-
-template <typename BV>
-RigidTree::Volumes RigidTree::volumesOf() {
-  return {sizeof(BVNode<BV>), kFitSlack<typename BV::S>, kHasSlabs<BV>,
-          &RigidTree::setBox<BV>, &RigidTree::setRows<BV>};
-}
-
-template <typename BV>
-RigidTree::RigidTree(const BVHModel<BV>& model, const Pose& pose)
-    : RigidTree(&model.getBV(0), volumesOf<BV>(), pose, pose) {}
-
-RigidTree::RigidTree(const BVNodeBase* nodes, const Volumes& volumes,
-                     const Pose& beginning, const Pose& end)
-    : nodes_(nodes),
-      volumes_(volumes),
+RigidTree::RigidTree(const VolumeTree& volumes, const Pose& beginning, const Pose& end)
+    : volumes_(volumes),
       turns_(!std::equal(beginning.rotation, beginning.rotation + 9, end.rotation)) {
   OrientedBox whole;
   orientedBox(0, whole);
@@ -193,55 +139,39 @@ void RigidTree::rotate(int frame, OrientedBox& box) const {
   for (auto& axis : box.axis) rotateVector(rotation_[frame], axis);
 }
 
-/// The box of a node in the body's frame: of an AABB or a KDOP that of the first three
-/// slabs.
-template <typename BV>
-OrientedBox RigidTree::storedBox(int node) const {
-  const BV& bv = static_cast<const BVNode<BV>*>(at(node))->bv;
-  OrientedBox box;
-  if constexpr (kHasSlabs<BV>) {
-    const Slabs slabs = slabsOf(bv);
-    for (int k = 0; k < 3; ++k) {
-      box.center[k] = 0.5 * (slabs.lo[k] + slabs.hi[k]);
-      for (int i = 0; i < 3; ++i) box.axis[i][k] = i == k;
-      box.extent[k] = 0.5 * (slabs.hi[k] - slabs.lo[k]);
-    }
-  } else {
-    box = orientedBoxOf(bv);
-    if (!isBox(box, volumes_.slack)) box = kUnbounded;
-  }
-  return box;
-}
-
-template <typename BV>
-void RigidTree::setBox(int node, int frame, OrientedBox& box) const {
-  box = storedBox<BV>(node);
+void RigidTree::orientedBox(int node, OrientedBox& box, int frame) const {
+  const void* address = volumes_.at(node);
+  volumes_.reader.boxes(&address, 1, &box);
   if (is_rotated_) rotate(frame, box);
 }
 
-template <typename BV>
+/// Fills the rows of both frames with the 16-DOPs of eight nodes.
 void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const {
-  if constexpr (kHasSlabs<BV>)
-    if (!is_rotated_) {
-      double origin[8];
-      kdopCoordinates(origin_[0], origin);
-      for (int lane = 0; lane < kWidth; ++lane) {
-        const Slabs slabs = slabsOf(static_cast<const BVNode<BV>*>(at(nodes[lane]))->bv);
-        for (int j = 0; j < 8; ++j) {
-          out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs.lo[j]);
-          out.t0[2 * j + 1][lane] = static_cast<float>(slabs.hi[j] - origin[j]);
-        }
+  const void* addresses[kWidth];
+  for (int lane = 0; lane < kWidth; ++lane) addresses[lane] = volumes_.at(nodes[lane]);
+  if (volumes_.reader.slabs && !is_rotated_) {
+    double origin[8];
+    kdopCoordinates(origin_[0], origin);
+    Slabs slabs[kWidth];
+    volumes_.reader.slabs(addresses, kWidth, slabs);
+    for (int lane = 0; lane < kWidth; ++lane) {
+      for (int j = 0; j < 8; ++j) {
+        out.t0[2 * j][lane] = static_cast<float>(origin[j] - slabs[lane].lo[j]);
+        out.t0[2 * j + 1][lane] = static_cast<float>(slabs[lane].hi[j] - origin[j]);
       }
-      // The bounds along x, y, z are coordinates, without error. Bounds along other
-      // directions are sums of two coordinates; the slack contains their rounding.
-      roundOutward(0.f, out.t0);
-      std::memcpy(out.t1, out.t0, sizeof(out.t0));
-      return;
     }
+    // The bounds along x, y, z are coordinates, without error. Bounds along other
+    // directions are sums of two coordinates; the slack contains their rounding.
+    roundOutward(0.f, out.t0);
+    std::memcpy(out.t1, out.t0, sizeof(out.t0));
+    return;
+  }
+  OrientedBox stored[kWidth];
+  volumes_.reader.boxes(addresses, kWidth, stored);
   const int num_frames = turns_ ? 2 : 1;
   EightBoxes boxes[2];
   for (int lane = 0; lane < kWidth; ++lane) {
-    const OrientedBox box = storedBox<BV>(nodes[lane]);
+    const OrientedBox& box = stored[lane];
     for (int i = 0; i < 3; ++i)
       for (int k = 0; k < 3; ++k)
         boxes[0].half_axis[i][k][lane] =
@@ -273,14 +203,14 @@ void RigidTree::setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out
 /// Pads rows whose half-axes are set: by `rounding`, relative to the sum of the
 /// components, and by the slack of the volumes' fit.
 void RigidTree::roundOutward(float rounding, float (&rows)[16][kWidth]) const {
-  const auto slack = static_cast<float>(volumes_.slack);
+  const auto relative = static_cast<float>(slack());
   for (int q = 0; q < kWidth; q += 4) {
     // The sum over x, y and z of the center's distance from the origin and half the
     // width.
     Float4 size{};
     for (int r = 0; r < 6; r += 2)
       size += larger(abs(load(rows[r] + q)), abs(load(rows[r + 1] + q)));
-    const Float4 pad = size * rounding + (size + origin_size_) * slack + FLT_MIN;
+    const Float4 pad = size * rounding + (size + origin_size_) * relative + FLT_MIN;
     for (int r = 0; r < 16; ++r) {
       const Float4 half = load(rows[r] + q);
       store(bounded(half + (abs(half) * kOutward + pad)), rows[r] + q);
@@ -289,7 +219,7 @@ void RigidTree::roundOutward(float rounding, float (&rows)[16][kWidth]) const {
 }
 
 void RigidTree::open(int i, MovingKdopNode& out) const {
-  assert(nodes_ && i >= 0);
+  assert(volumes_.nodes && i >= 0);
   // `nodes` has FCL's nodes, for their boxes. `out.child` has the links to what is below
   // them.
   std::int32_t nodes[kWidth];
@@ -298,12 +228,12 @@ void RigidTree::open(int i, MovingKdopNode& out) const {
   out.count = openBinary(i, nodes, out.child, [this](std::int32_t k) {
     const int left = link(k);
     if (left >= 0)
-      for (const int child : {left, left + 1}) __builtin_prefetch(at(child));
+      for (const int child : {left, left + 1}) prefetchMemory(volumes_.at(child));
     return left;
   });
   for (int lane = 0; lane < out.count; ++lane) prefetch(nodes[lane]);
   out.markTriangles();
-  (this->*volumes_.set_rows)(nodes, out);
+  setRows(nodes, out);
   if (bent_boxes_) bent_boxes_->enlarge(out);
   std::fill(out.displacement, out.displacement + kWidth, displacement_);
   out.clearRest();
@@ -313,31 +243,9 @@ MovingKdop RigidTree::box(int node) const {
   std::int32_t nodes[kWidth];
   std::fill(nodes, nodes + kWidth, node);
   MovingKdopNode out;
-  (this->*volumes_.set_rows)(nodes, out);
+  setRows(nodes, out);
   return out.box(0);
 }
-
-#define FCL_CCD_INSTANTIATE(BV) \
-  template RigidTree::RigidTree(const BVHModel<BV>&, const Pose&);
-#define FCL_CCD_COMMA ,
-FCL_CCD_INSTANTIATE(AABB<double>)
-FCL_CCD_INSTANTIATE(AABB<float>)
-FCL_CCD_INSTANTIATE(OBB<double>)
-FCL_CCD_INSTANTIATE(OBB<float>)
-FCL_CCD_INSTANTIATE(RSS<double>)
-FCL_CCD_INSTANTIATE(RSS<float>)
-FCL_CCD_INSTANTIATE(OBBRSS<double>)
-FCL_CCD_INSTANTIATE(OBBRSS<float>)
-FCL_CCD_INSTANTIATE(kIOS<double>)
-FCL_CCD_INSTANTIATE(kIOS<float>)
-FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 16>)
-FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 16>)
-FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 18>)
-FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 18>)
-FCL_CCD_INSTANTIATE(KDOP<double FCL_CCD_COMMA 24>)
-FCL_CCD_INSTANTIATE(KDOP<float FCL_CCD_COMMA 24>)
-#undef FCL_CCD_COMMA
-#undef FCL_CCD_INSTANTIATE
 
 }  // namespace deformable
 }  // namespace detail

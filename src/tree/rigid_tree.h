@@ -8,40 +8,37 @@
 #include <cstdint>
 #include <optional>
 
+#include "base/prefetch.h"
 #include "base/slot_cache.h"
 #include "mesh/moving_kdop.h"
 #include "mesh/tree_nodes.h"
 #include "mesh/vertex_frames.h"
 #include "tree/bent_boxes.h"
 #include "tree/oriented_box.h"
+#include "tree/volume_tree.h"
 
 namespace fcl {
-
-template <typename BV>
-class BVHModel;
-struct BVNodeBase;
-
 namespace detail {
 namespace deformable {
 
-/// @brief FCL's own tree of a rigid mesh, read as a tree of 16-DOPs. The box of a node is
-/// made from FCL's bounding volume when a traversal asks for it. So a query needs no time
-/// per vertex. The mesh only translates, or each vertex goes straight from its place in
-/// the first pose to that in the last one. Does not own the model.
+/// @brief The caller's own tree of a rigid mesh (FCL's), read as a tree of 16-DOPs. The
+/// box of a node is made from the caller's bounding volume when a traversal asks for it.
+/// So a query needs no time per vertex. The mesh only translates, or each vertex goes
+/// straight from its place in the first pose to that in the last one. Does not own the
+/// tree.
 class RigidTree {
  public:
   RigidTree() = default;
 
-  /// @tparam BV  any of FCL's bounding volumes
-  /// @pre isTreeSound(model)
+  /// @pre a volume contains all triangles below it, up to its slack
   /// @param pose  its rotation is applied to the boxes. Its translation is applied by
   /// relativeShift().
-  template <typename BV>
-  RigidTree(const BVHModel<BV>& model, const Pose& pose);
+  RigidTree(const VolumeTree& volumes, const Pose& pose)
+      : RigidTree(volumes, pose, pose) {}
 
   /// @brief The same tree with other rotations at t = 0 and t = 1.
   RigidTree turned(const Pose& beginning, const Pose& end) const {
-    return RigidTree(nodes_, volumes_, beginning, end);
+    return RigidTree(volumes_, beginning, end);
   }
 
   /// @brief Makes a node with up to eight children from FCL's nodes below node i.
@@ -59,28 +56,26 @@ class RigidTree {
   /// @brief The oriented box of a node at t = 0 or t = 1, rotated. The node's 16-DOP is
   /// made from it, or from a volume inside of it. Points of the mesh stand out by at most
   /// slack() times the size of their coordinates.
-  void orientedBox(int node, OrientedBox& box, int frame = 0) const {
-    (this->*volumes_.set_box)(node, frame, box);
-  }
-  double slack() const { return volumes_.slack; }
+  void orientedBox(int node, OrientedBox& box, int frame = 0) const;
+  double slack() const { return volumes_.reader.slack; }
 
   /// @brief Starts to load the volume of a node into the cache.
   void prefetch(int node) const {
     constexpr std::size_t kCacheLine = 64;
-    const char* const from = reinterpret_cast<const char*>(at(node));
-    for (std::size_t i = kCacheLine; i < volumes_.stride; i += kCacheLine)
-      __builtin_prefetch(from + i);
+    const char* const from = static_cast<const char*>(volumes_.at(node));
+    for (std::size_t i = kCacheLine; i < volumes_.reader.stride; i += kCacheLine)
+      prefetchMemory(from + i);
   }
 
   /// @brief The left child of one of FCL's nodes (the right child follows it), or
   /// ~triangle of a leaf.
-  int link(int node) const;
+  int link(int node) const { return volumes_.link(node); }
 
   /// @brief Whether the rotations at t = 0 and t = 1 differ.
   bool turns() const { return turns_; }
 
   /// @brief Whether the 16-DOPs may be much wider than the oriented boxes.
-  bool isOriented() const { return !volumes_.has_slabs || is_rotated_; }
+  bool isOriented() const { return !volumes_.reader.slabs || is_rotated_; }
 
   /// @brief The point (rotated) that the boxes at t = 0 or t = 1 are relative to.
   const double (&origin(int frame) const)[3] { return origin_[frame]; }
@@ -91,42 +86,14 @@ class RigidTree {
  private:
   static constexpr int kWidth = MovingKdopNode::kWidth;
 
-  /// How to read bounding volumes of one kind.
-  struct Volumes {
-    std::size_t stride;
-    /// How far points can stand out of a volume, relative to their coordinates.
-    double slack;
-    /// Whether the volumes store bounds along our directions.
-    bool has_slabs;
-    void (RigidTree::*set_box)(int node, int frame, OrientedBox& box) const;
-    /// Fills the rows of both frames with the 16-DOPs of FCL's nodes.
-    void (RigidTree::*set_rows)(const std::int32_t (&nodes)[kWidth],
-                                MovingKdopNode& out) const;
-  };
-  template <typename BV>
-  static Volumes volumesOf();
-
-  RigidTree(const BVNodeBase* nodes, const Volumes& volumes, const Pose& beginning,
-            const Pose& end);
+  RigidTree(const VolumeTree& volumes, const Pose& beginning, const Pose& end);
   void setOrigin(int frame);
 
-  template <typename BV>
-  OrientedBox storedBox(int node) const;
-  template <typename BV>
-  void setBox(int node, int frame, OrientedBox& box) const;
-  template <typename BV>
   void setRows(const std::int32_t (&nodes)[kWidth], MovingKdopNode& out) const;
   void roundOutward(float rounding, float (&rows)[16][kWidth]) const;
   void rotate(int frame, OrientedBox& box) const;
 
-  const BVNodeBase* at(int node) const {
-    return reinterpret_cast<const BVNodeBase*>(reinterpret_cast<const char*>(nodes_) +
-                                               static_cast<std::size_t>(node) *
-                                                   volumes_.stride);
-  }
-
-  const BVNodeBase* nodes_{nullptr};
-  Volumes volumes_{};
+  VolumeTree volumes_;
   bool is_rotated_{false};
   /// Whether the rotations differ.
   bool turns_{false};

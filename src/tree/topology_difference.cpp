@@ -20,8 +20,7 @@ void match(std::uint32_t& x, std::uint32_t y) {
 
 TopologyDifference::TopologyDifference(const std::vector<TreeTriangle>& before,
                                        std::size_t num_places_before,
-                                       const Triangle* triangles,
-                                       std::size_t num_triangles,
+                                       TriangleArray triangles, std::size_t num_triangles,
                                        std::size_t num_vertices,
                                        const std::vector<int>& origins)
     : vertices_(num_vertices, kNone), new_ids_(num_places_before, kNone) {
@@ -54,11 +53,11 @@ void TopologyDifference::findOrigins(const std::vector<TreeTriangle>& before,
 
 /// Matches the vertices of the triangles that may be the same.
 void TopologyDifference::findVertices(const std::vector<TreeTriangle>& before,
-                                      const Triangle* triangles) {
+                                      TriangleArray triangles) {
   for (std::size_t i = 0; i < is_same_.size(); ++i) {
     if (!is_same_[i]) continue;
     std::uint32_t ids[3];
-    vertexIds(triangles[i], ids);
+    triangles.copyIds(i, ids);
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t place = before[origins_[i]].place[k];
       match(new_ids_[place], ids[k]);
@@ -70,10 +69,10 @@ void TopologyDifference::findVertices(const std::vector<TreeTriangle>& before,
 /// Triangles at vertices that were split or joined are not the same. A vertex is not the
 /// same if one of the triangles around it is not.
 void TopologyDifference::dropTriangles(const std::vector<TreeTriangle>& before,
-                                       const Triangle* triangles) {
+                                       TriangleArray triangles) {
   for (std::size_t i = 0; i < is_same_.size(); ++i) {
     std::uint32_t ids[3];
-    vertexIds(triangles[i], ids);
+    triangles.copyIds(i, ids);
     for (int k = 0; k < 3 && is_same_[i]; ++k)
       if (vertices_[ids[k]] == kSeveral ||
           new_ids_[before[origins_[i]].place[k]] == kSeveral)
@@ -84,7 +83,7 @@ void TopologyDifference::dropTriangles(const std::vector<TreeTriangle>& before,
   for (std::size_t i = 0; i < is_same_.size(); ++i) {
     if (is_same_[i]) continue;
     std::uint32_t ids[3];
-    vertexIds(triangles[i], ids);
+    triangles.copyIds(i, ids);
     for (const std::uint32_t id : ids) vertices_[id] = kNone;
   }
   for (std::size_t i = 0; i < before.size(); ++i) {

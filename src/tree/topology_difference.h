@@ -27,7 +27,7 @@ class TopologyDifference {
   /// @param origins  for each new triangle the number of the triangle that it was or was
   /// cut from, or -1; empty: the triangle of the same number
   TopologyDifference(const std::vector<TreeTriangle>& before,
-                     std::size_t num_places_before, const Triangle* triangles,
+                     std::size_t num_places_before, TriangleArray triangles,
                      std::size_t num_triangles, std::size_t num_vertices,
                      const std::vector<int>& origins);
 
@@ -45,8 +45,8 @@ class TopologyDifference {
  private:
   void findOrigins(const std::vector<TreeTriangle>& before, std::size_t num_triangles,
                    const std::vector<int>& origins);
-  void findVertices(const std::vector<TreeTriangle>& before, const Triangle* triangles);
-  void dropTriangles(const std::vector<TreeTriangle>& before, const Triangle* triangles);
+  void findVertices(const std::vector<TreeTriangle>& before, TriangleArray triangles);
+  void dropTriangles(const std::vector<TreeTriangle>& before, TriangleArray triangles);
 
   std::vector<std::uint32_t> origins_;
   /// Whether a new triangle may be the same as one of the tree, and whether one of the

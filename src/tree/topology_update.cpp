@@ -81,7 +81,7 @@ Entry* splitEntries(Entry* first, Entry* last) {
 class MovingKdopTree::TopologyUpdate {
  public:
   TopologyUpdate(const MovingKdopTree& tree, const TopologyDifference& difference,
-                 const Triangle* triangles, const VertexFrames& frames)
+                 TriangleArray triangles, const VertexFrames& frames)
       : tree_(tree),
         triangles_(triangles),
         frames_(frames),
@@ -125,7 +125,7 @@ class MovingKdopTree::TopologyUpdate {
   /// tree's two origins.
   void pointOf(std::uint32_t triangle, float (&point)[3]) const {
     std::uint32_t ids[3];
-    vertexIds(triangles_[triangle], ids);
+    triangles_.copyIds(triangle, ids);
     double sum[3] = {0, 0, 0};
     for (const std::uint32_t id : ids) {
       double p[3];
@@ -307,7 +307,7 @@ class MovingKdopTree::TopologyUpdate {
   }
 
   const MovingKdopTree& tree_;
-  const Triangle* triangles_;
+  TriangleArray triangles_;
   const VertexFrames& frames_;
   /// The triangles that hang on node i: hung_[first_[i]] ... hung_[first_[i + 1] - 1].
   std::vector<std::uint32_t> first_;
@@ -327,7 +327,7 @@ class MovingKdopTree::TopologyUpdate {
   std::vector<Entry> entries_;
 };
 
-void MovingKdopTree::changeTopology(const Triangle* triangles, std::size_t num_triangles,
+void MovingKdopTree::changeTopology(TriangleArray triangles, std::size_t num_triangles,
                                     const std::vector<int>& origins,
                                     const VertexFrames& frames, int num_threads) {
   const TopologyDifference difference(triangles_, vertex_ids_.size(), triangles,

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/attributes.h"
+#include "base/bits.h"
 #include "kernels/kernels.h"
 #include "mesh/moving_kdop.h"
 #include "tree/separating_axes.h"
@@ -61,7 +63,7 @@ class WorkList {
 
  private:
   // Not inlined: it is rare, and would keep add() from being inlined.
-  __attribute__((noinline)) void grow() { items_.resize(2 * size_ + 64); }
+  FCL_CCD_NOINLINE void grow() { items_.resize(2 * size_ + 64); }
 
   std::vector<NodePair> items_;
   std::size_t size_{0};
@@ -247,7 +249,7 @@ class Traversal {
       }
     }
     for (; left != 0; left &= left - 1) {
-      const int k = __builtin_ctz(left);
+      const int k = lowestBit(left);
       const bool both_nodes = !is_triangle && !node.isTriangle(k);
       if (both_nodes && areInFan(mine, node.child[k])) continue;
       const float other = both_nodes ? extentOf(node, k) : 0.f;
@@ -265,8 +267,7 @@ class Traversal {
   /// Whether an axis of one of the boxes of two nodes provably keeps them apart. Not
   /// inlined: most traversals have no axes.
   /// @param extents  the sum of those of both
-  __attribute__((noinline)) bool areKeptApart(std::int32_t a, std::int32_t b,
-                                              float extents) {
+  FCL_CCD_NOINLINE bool areKeptApart(std::int32_t a, std::int32_t b, float extents) {
     if (axes_->mayHelp(extents)) return axes_->areApart(a, b);
     if (!axes_->areOriented() || !trials_.isDue(extents)) return false;
     const bool is_apart = axes_->areApart(a, b);
@@ -285,7 +286,7 @@ class Traversal {
          request_, kSelf},
         pairs_);
     for (std::uint64_t left = pairs_.pairs; left != 0; left &= left - 1) {
-      const int pair = __builtin_ctzll(left);
+      const int pair = lowestBit(left);
       const int i = pair / MovingKdopNode::kWidth, j = pair % MovingKdopNode::kWidth;
       const int x = mine.triangle(i), y = theirs.triangle(j);
       const float earliest = pairs_.earliest[i][j];

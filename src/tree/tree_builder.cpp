@@ -15,13 +15,13 @@ namespace deformable {
 namespace {
 
 /// A point near most of the mesh: the median of the coordinates of a few vertices.
-void findMiddle(const Triangle* triangles, std::size_t num_triangles,
+void findMiddle(TriangleArray triangles, std::size_t num_triangles,
                 const VertexFrames& frames, double (&middle)[3]) {
   constexpr std::size_t kSample = 31;
   double x[3][kSample];
   for (std::size_t i = 0; i < kSample; ++i) {
     std::uint32_t v[3];
-    vertexIds(triangles[i * num_triangles / kSample], v);
+    triangles.copyIds(i * num_triangles / kSample, v);
     double p[3];
     frames.at(0, v[0], p);
     for (int k = 0; k < 3; ++k) x[k][i] = std::isfinite(p[k]) ? p[k] : 0;
@@ -34,8 +34,7 @@ void findMiddle(const Triangle* triangles, std::size_t num_triangles,
 
 /// Three times the centroids, relative to the middle, so that no digits are lost far from
 /// the origin.
-UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
-                                      std::size_t num_triangles,
+UninitializedVector<TreeItem> itemsOf(TriangleArray triangles, std::size_t num_triangles,
                                       const VertexFrames& frames, int num_threads) {
   constexpr std::size_t kBlock = 8192;
   double middle[3];
@@ -57,7 +56,7 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
       num_triangles, kBlock, num_threads, [&](std::size_t i, std::size_t last) {
         for (; i < last; ++i) {
           std::uint32_t v[3];
-          vertexIds(triangles[i], v);
+          triangles.copyIds(i, v);
           const Float4 sum = points[v[0]] + points[v[1]] + points[v[2]];
           items[i] = {{sum[0], sum[1], sum[2]}, static_cast<std::uint32_t>(i)};
         }
@@ -67,19 +66,19 @@ UninitializedVector<TreeItem> itemsOf(const Triangle* triangles,
 
 /// The component of each triangle, named by a vertex. Free leaves have the name
 /// num_vertices: no part of a surface has them.
-std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
+std::vector<std::uint32_t> componentsOf(TriangleArray triangles,
                                         std::size_t num_triangles,
                                         std::size_t num_vertices,
                                         const FreeLeaves& free) {
   const std::size_t num_faces = num_triangles - free.count();
   const std::vector<std::uint32_t> component_of = findComponents(
       num_vertices, num_faces,
-      [triangles](std::size_t i, std::uint32_t(&v)[3]) { vertexIds(triangles[i], v); });
+      [triangles](std::size_t i, std::uint32_t(&v)[3]) { triangles.copyIds(i, v); });
   std::vector<std::uint32_t> components(num_triangles,
                                         static_cast<std::uint32_t>(num_vertices));
   for (std::size_t i = 0; i < num_faces; ++i) {
     std::uint32_t v[3];
-    vertexIds(triangles[i], v);
+    triangles.copyIds(i, v);
     components[i] = component_of[v[0]];
   }
   return components;
@@ -87,7 +86,7 @@ std::vector<std::uint32_t> componentsOf(const Triangle* triangles,
 
 }  // namespace
 
-TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
+TreeStructure splitTriangles(TriangleArray triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads,
                              FreeLeaves free) {
   // The largest number of triangles in a task.

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 
-#include "fcl/math/triangle.h"
 #include "mesh/mesh_triangle.h"
 #include "mesh/vertex_frames.h"
 #include "tree/tree_structure.h"
@@ -17,7 +16,7 @@ namespace deformable {
 /// does. The components are its groups. All free leaves are one group.
 /// @param num_threads  as in parallelFor(); the tree does not depend on it
 /// @param free  how many of the triangles, at their end, are free leaves
-TreeStructure splitTriangles(const Triangle* triangles, std::size_t num_triangles,
+TreeStructure splitTriangles(TriangleArray triangles, std::size_t num_triangles,
                              const VertexFrames& frames, int num_threads,
                              FreeLeaves free = {});
 

@@ -12,6 +12,7 @@
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "mesh_generators.h"
+#include "model/fcl_tree.h"
 #include "reference_motion.h"
 #include "timing.h"
 
@@ -45,7 +46,7 @@ CurvedAnswer firstContact(const Body& a, const Body& b, const TurningPair& pair)
     return VertexFrames(points, points,
                         static_cast<std::size_t>(body.model.num_vertices));
   };
-  const RigidTree tree_a(a.model, Pose()), tree_b(b.model, Pose());
+  const RigidTree tree_a(fclTree(a.model), Pose()), tree_b(fclTree(b.model), Pose());
   return queryCurved(
       MovingBody(tree_a, framesOf(a), a.model.tri_indices, pair.turn.path()),
       MovingBody(tree_b, framesOf(b), b.model.tri_indices,

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "sanitizer.h"
 #include "tree/border_finder.h"
 #include "tree/moving_kdop_tree.h"
 
@@ -165,9 +166,13 @@ inline void expectContainment(const MovingKdopTree& tree,
                               const VertexFrames& frames) {
   const std::vector<Place> parent = expectStructure(tree, triangles);
   ASSERT_FALSE(testing::Test::HasFailure());
+  // Under sanitizers the boxes around every 16th triangle: they look for errors in
+  // memory.
+  constexpr std::uint32_t kEvery = kHasAddressSanitizer ? 16 : 1;
   for (int i = 0; i < static_cast<int>(tree.numNodes()); ++i)
     for (int lane = 0; lane < tree.node(i).count; ++lane) {
       if (!tree.node(i).isTriangle(lane)) continue;
+      if (static_cast<std::uint32_t>(tree.node(i).triangle(lane)) % kEvery != 0) continue;
       const TreeTriangle& triangle =
           tree.triangles()[static_cast<std::size_t>(tree.node(i).triangle(lane))];
       for (int k = 0; k < 3; ++k) {

@@ -16,6 +16,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/collision.h"
+#include "model/fcl_tree.h"
 #include "model/model_instances.h"
 #include "reference_motion.h"
 
@@ -39,7 +40,7 @@ struct Body {
 /// @brief A body on its path.
 struct BodyOnPath {
   BodyOnPath(const Body& from, const detail::deformable::MotionPath& path)
-      : tree(*from.model, detail::deformable::Pose()),
+      : tree(detail::deformable::fclTree(*from.model), detail::deformable::Pose()),
         body(tree,
              detail::deformable::VertexFrames(from.model->vertices->data(),
                                               from.model->vertices->data(),

@@ -68,7 +68,8 @@ class CcdRanks : public CcdSequence {
     // What mpirun needs as root, and with more ranks than cores.
     set("OMPI_ALLOW_RUN_AS_ROOT", "1");
     set("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1");
-    set("OMPI_MCA_rmaps_base_oversubscribe", "1");
+    set("OMPI_MCA_rmaps_base_oversubscribe", "1");                   // OpenMPI 4
+    set("PRTE_MCA_rmaps_default_mapping_policy", ":oversubscribe");  // OpenMPI 5
     // One machine, whose ranks in a container may not read each other's memory.
     set("OMPI_MCA_pml", "ob1");
     set("OMPI_MCA_btl", "self,vader");
@@ -84,6 +85,7 @@ class CcdRanks : public CcdSequence {
   /// that is not 0. It waits for all of it. Its default is 1.
   static void setSecondsToEnd(const char* seconds) {
     setenv("OMPI_MCA_odls_base_sigkill_timeout", seconds, 1);
+    setenv("PRTE_MCA_odls_base_sigkill_timeout", seconds, 1);
   }
 
   static std::string onRanks(int count, const std::string& arguments) {

@@ -17,6 +17,7 @@
 #include "fcl/math/bv/kDOP.h"
 #include "fcl/math/bv/kIOS.h"
 #include "fcl/math/bv/utility.h"
+#include "model/fcl_tree.h"
 #include "placed_mesh.h"
 #include "test_models.h"
 #include "tree/rigid_tree.h"
@@ -52,7 +53,7 @@ template <typename BV>
 void expectBoxesAroundTheirTriangles(const TestMesh& mesh, const Pose& beginning,
                                      const Pose& end) {
   const auto model = test::makeModel<BVHModel<BV>>(mesh);
-  const RigidTree tree = RigidTree(*model, beginning).turned(beginning, end);
+  const RigidTree tree = RigidTree(fclTree(*model), beginning).turned(beginning, end);
   const Pose* const poses[2] = {&beginning, &end};
   const auto rotated = [&poses](int frame, const Vector3<double>& p, int k) {
     const double(&r)[9] = poses[frame]->rotation;
@@ -123,7 +124,7 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeContainTheirTriangles) {
 // made from.
 TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
   const auto model = test::makeModel<BVHModel<OBB<double>>>(test::bentSheet(12));
-  const RigidTree tree(*model, Pose());
+  const RigidTree tree(fclTree(*model), Pose());
   for (int node = 0; node < model->getNumBVs(); ++node) {
     const OBB<double>& obb = model->getBV(node).bv;
     const detail::deformable::MovingKdop box = tree.box(node);
@@ -140,7 +141,7 @@ TEST(FCL_DEFORMABLE_QUERY, boxesOfARigidTreeAreTight) {
 TEST(FCL_DEFORMABLE_QUERY, nodesOfARigidTree) {
   using Model = BVHModel<OBBRSS<double>>;
   const auto model = test::makeModel<Model>(test::bentSheet(20));
-  const RigidTree tree(*model, Pose());
+  const RigidTree tree(fclTree(*model), Pose());
   const int count = model->getNumBVs();
   ASSERT_GT(count, 1000);  // far more than the table of the reader has
   std::vector<int> links, leaf_of(static_cast<std::size_t>(model->num_tris), -1);

@@ -12,6 +12,7 @@
 #include "elementary/exact.h"
 #include "kernel_checks.h"
 #include "kernels/kernels.h"
+#include "sanitizer.h"
 #include "windowed_pairs.h"
 
 namespace fcl {
@@ -205,7 +206,7 @@ TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
   constexpr std::uint64_t kSeed = 84;
   Random random(kSeed);
   int decided = 0, open = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < test::rounds(20000); ++i) {
     WindowedPair queries[8];
     randomLongWindows(random, queries);
     const double kErrors[] = {1e-2, 1e-4, 1e-8};
@@ -229,7 +230,7 @@ TEST(FCL_KERNELS, pairsWithOneRootAreDecided) {
     }
     ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
   }
-  EXPECT_GT(decided, 10000);
+  EXPECT_GT(decided, test::rounds(10000));
   EXPECT_LT(open, decided / 50);
 }
 
@@ -240,7 +241,7 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
   constexpr std::uint64_t kSeed = 83;
   Random random(kSeed);
   int returning = 0, touching = 0;
-  for (int i = 0; i < 20000; ++i) {
+  for (int i = 0; i < test::rounds(20000); ++i) {
     WindowedPair queries[8];
     randomLongWindows(random, queries);
     const EightPoints points(queries);
@@ -271,8 +272,8 @@ TEST(FCL_KERNELS, dividedBetweenTwoRoots) {
     }
     ASSERT_FALSE(HasFailure()) << "seed " << kSeed << ", " << i;
   }
-  EXPECT_GT(returning, 1000);
-  EXPECT_GT(touching, 100);
+  EXPECT_GT(returning, test::rounds(1000));
+  EXPECT_GT(touching, test::rounds(100));
 }
 
 // Touches at the end of a window, at rest, during all of the step, of flat pairs and of

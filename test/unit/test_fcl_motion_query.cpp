@@ -22,6 +22,7 @@
 #include "bodies/part_work.h"
 #include "curved/curved_contacts.h"
 #include "fcl/narrowphase/collision.h"
+#include "model/fcl_tree.h"
 #include "reference_motion.h"
 #include "sanitizer.h"
 #include "turning_bodies.h"
@@ -679,7 +680,7 @@ TEST(FCL_MOTION_QUERY, deformsInATurningFrame) {
     const ReferenceMotion motion_a = randomMotion(random, 0.8),
                           motion_b = randomMotion(random, 0.8);
     const double* points = b.model->vertices->data();
-    const RigidTree tree_b(*b.model, Pose());
+    const RigidTree tree_b(fclTree(*b.model), Pose());
     const MovingBody moving_a(a.tree, a.frames, motion_a.path()),
         moving_b(tree_b, VertexFrames(points, points, b.mesh.vertices.size()),
                  b.model->tri_indices, motion_b.path());

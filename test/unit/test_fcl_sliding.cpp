@@ -364,6 +364,7 @@ TEST(FCL_SLIDING, turnOfARoundShape) {
   for (const double clearance : {1e-2, -1e-4})
     for (const Socket& socket : sockets(clearance))
       for (const bool shape_turns : {true, false}) {
+        if (kHasAddressSanitizer && shape_turns != (clearance > 0)) continue;
         SCOPED_TRACE(socket.name + (shape_turns ? " turns, " : " rests, ") +
                      std::to_string(clearance));
         expectSameAnswers(socket, shape_turns, z, at, 1, 0);

@@ -2,7 +2,7 @@
 //
 // The library tells which of FCL's trees bound their triangles. The trees that it reads
 // do so.
-#include "tree/sound_tree.h"
+#include "model/sound_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -25,9 +25,10 @@
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/distance.h"
 #include "mesh/moving_kdop.h"
+#include "model/fcl_tree.h"
+#include "model/fcl_volumes.h"
 #include "sanitizer.h"
 #include "test_models.h"
-#include "tree/fcl_volumes.h"
 #include "tree/rigid_tree.h"
 
 namespace fcl {
@@ -241,7 +242,7 @@ class ModelOf : public AnyModel {
 
   bool isSound() const override { return isTreeSound(*model_); }
   RigidTree rigidTree(const Pose& pose) const override {
-    return RigidTree(*model_, pose);
+    return RigidTree(detail::deformable::fclTree(*model_), pose);
   }
   Corners corners() const override { return cornersOf(*model_); }
   OrientedBox root() const override {

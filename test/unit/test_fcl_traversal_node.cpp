@@ -17,6 +17,7 @@
 #include "fcl/math/bv/OBBRSS.h"
 #include "fcl/math/bv/utility.h"
 #include "fcl/narrowphase/detail/traversal/collision_node.h"
+#include "model/fcl_tree.h"
 #include "test_models.h"
 #include "tree/rigid_tree.h"
 
@@ -224,7 +225,8 @@ TEST(TraversalNode, AgreesOnRigidMeshesWithThemselves) {
   for (std::uint64_t seed = 1; seed <= 100 && count < 10; ++seed) {
     const TestMesh mesh = unevenSoup(150, seed);
     const auto rigid = makeModel<Plain>(mesh);
-    const detail::deformable::RigidTree tree(*rigid, detail::deformable::Pose());
+    const detail::deformable::RigidTree tree(detail::deformable::fclTree(*rigid),
+                                             detail::deformable::Pose());
     if (countDisplaced(tree, 0) == 0) continue;
     ++count;
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -12,6 +12,7 @@
 
 #include "fcl/geometry/bvh/BVH_model.h"
 #include "fcl/math/bv/OBBRSS.h"
+#include "model/fcl_tree.h"
 #include "moving_mesh.h"
 #include "query/triangle_reader.h"
 #include "test_models.h"
@@ -91,7 +92,7 @@ TEST(FCL_TRIANGLE_READER, trianglesShareTheirVertices) {
     mesh.frames = VertexFrames(sphere.vertices[0].data(), sphere.vertices[0].data(),
                                sphere.vertices.size());
     mesh.frames.setPoses(begin, end);
-    mesh.rigid = RigidTree(*model, begin).turned(begin, end);
+    mesh.rigid = RigidTree(fclTree(*model), begin).turned(begin, end);
     mesh.triangles = model->tri_indices;
     mesh.bend = of;
     for (int k = 0; k < 3; ++k) {

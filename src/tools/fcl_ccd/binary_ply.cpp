@@ -20,10 +20,15 @@ bool hostIsBigEndian() {
   return first_byte == 0;
 }
 
-std::uint8_t swapped(std::uint8_t bits) { return bits; }
-std::uint16_t swapped(std::uint16_t bits) { return __builtin_bswap16(bits); }
-std::uint32_t swapped(std::uint32_t bits) { return __builtin_bswap32(bits); }
-std::uint64_t swapped(std::uint64_t bits) { return __builtin_bswap64(bits); }
+/// @brief With its bytes in the opposite order; compilers have an instruction for it.
+template <typename Bits>
+Bits swapped(Bits bits) {
+  unsigned char bytes[sizeof(bits)];
+  std::memcpy(bytes, &bits, sizeof(bits));
+  std::reverse(bytes, bytes + sizeof(bits));
+  std::memcpy(&bits, bytes, sizeof(bits));
+  return bits;
+}
 
 /// @brief Reads a value whose bytes are in the host's order, or (kSwap) in the opposite
 /// order.

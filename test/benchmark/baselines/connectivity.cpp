@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "baselines/connectivity.h"
+#include "fcl/math/triangle.h"
 #include "mesh/mesh_topology.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // FCL's bounding volumes as boxes in double.
-#ifndef FCL_CCD_TREE_FCL_VOLUMES_H
-#define FCL_CCD_TREE_FCL_VOLUMES_H
+#ifndef FCL_CCD_MODEL_FCL_VOLUMES_H
+#define FCL_CCD_MODEL_FCL_VOLUMES_H
 
 #include <cfloat>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tree/sound_tree.h"
+#include "model/sound_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "fcl/geometry/bvh/BVH_model.h"
-#include "tree/fcl_volumes.h"
+#include "model/fcl_volumes.h"
 
 namespace fcl {
 namespace detail {

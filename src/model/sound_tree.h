@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef FCL_CCD_TREE_SOUND_TREE_H
-#define FCL_CCD_TREE_SOUND_TREE_H
+#ifndef FCL_CCD_MODEL_SOUND_TREE_H
+#define FCL_CCD_MODEL_SOUND_TREE_H
 
 namespace fcl {
 
