@@ -3,7 +3,7 @@
 # compares the answers with those of this machine. The system stays as it is, but for the
 # compiler, qemu and mmdebstrap, which it installs (Debian).
 #   bash cmake/arm64.sh           library, program, Python module, unit tests, digests of answers
-#   bash cmake/arm64.sh --short   library, and the tests and digests that tell most (CI)
+#   bash cmake/arm64.sh --short   library, and the tests and digests that tell most
 # Debian's packages for arm64 and the build are in build/arm64.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -28,6 +28,7 @@ if [ ! -d "$sysroot" ]; then
   # shellcheck source=/dev/null
   suite=$(. /etc/os-release && echo "${VERSION_CODENAME:-bookworm}")
   mkdir -p build/arm64
+  rm -rf "$sysroot.new"
   packages=libfcl-dev,libeigen3-dev,libboost-dev,libhwy-dev,libtbb-dev,libcli11-dev
   packages+=,nlohmann-json3-dev,libcgal-dev,libgtest-dev,libpng-dev,zlib1g-dev,libgmp-dev
   packages+=,libmpfr-dev,python3-dev,pybind11-dev

@@ -20,13 +20,13 @@ fcl_ccd_install_dependencies() {
     )
   elif [ "$1" != build ]; then
     # A test makes Debian packages.
-    packages+=("${python_packages[@]}" python3-pytest dpkg-dev file)
+    packages+=("${python_packages[@]}" python3-pytest dpkg-dev debhelper dh-python file)
     # fcl-ccd splits its steps over the ranks of mpirun, which a test does.
     packages+=(libopenmpi-dev openmpi-bin)
   fi
   # These are for the tests of the Python package that a user can do without.
   if [ "$1" = all ]; then
-    packages+=(mypy python3-matplotlib python3-pandas python3-pip python3-setuptools
+    packages+=(mypy patchelf python3-matplotlib python3-pandas python3-pip python3-setuptools
       python3-wheel)
   fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.

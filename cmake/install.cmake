@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 
-# Installs the library as a package named "fcl" that uses stock FCL. If this prefix comes first
-# on the search path, a program that asks for FCL gets both.
+# Installs two things. The package "fcl_ccd" shares no file with stock FCL: it can stand beside it
+# in one prefix. The doors have FCL's names, so that a program that asks for FCL gets both; their
+# place is chosen in cmake/doors.cmake.
 include(CMakePackageConfigHelpers)
 
-set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl)
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/fcl_ccd)
 
 install(
   TARGETS fcl_ccd
@@ -24,10 +25,10 @@ endif()
 # From here on everything is for those who compile with the library.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)
 install(EXPORT fcl_ccd-targets DESTINATION ${package_dir})
-# refuse_stock_prefix.cmake sets the variable when it installs.
+# A header of this package includes the stock header of the same name, so it must not replace it.
 install(
   DIRECTORY ${PROJECT_SOURCE_DIR}/include/fcl
-  DESTINATION "\${fcl_ccd_header_dir}"
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/fcl_ccd
   FILES_MATCHING
   PATTERN "*.h")
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/README.md
@@ -38,12 +39,8 @@ install(DIRECTORY ${PROJECT_SOURCE_DIR}/doc ${PROJECT_SOURCE_DIR}/examples
 # What a program links in addition to the library and FCL: nothing if the library is shared.
 set(FCL_CCD_PRIVATE_LIBS "")
 set(FCL_CCD_STATIC_PACKAGES "")
-set(FCL_CCD_LINKED_FILE $<TARGET_FILE_NAME:fcl_ccd>)
 get_target_property(library_type fcl_ccd TYPE)
-if(library_type STREQUAL "SHARED_LIBRARY")
-  # The linker leaves the library out if the program calls nothing of it.
-  set(FCL_CCD_LINKED_FILE "AS_NEEDED ( $<TARGET_LINKER_FILE_NAME:fcl_ccd> )")
-else()
+if(NOT library_type STREQUAL "SHARED_LIBRARY")
   if(FCL_CCD_USE_HIGHWAY)
     string(APPEND FCL_CCD_PRIVATE_LIBS " -lhwy")
     list(APPEND FCL_CCD_STATIC_PACKAGES HWY)
@@ -54,49 +51,27 @@ else()
   endif()
 endif()
 
-# The version of the package is that of the FCL that it extends, with FCL's own rule.
-write_basic_package_version_file(
-  ${CMAKE_CURRENT_BINARY_DIR}/basic-version.cmake
-  VERSION ${fcl_VERSION}
-  COMPATIBILITY AnyNewerVersion)
-file(READ ${CMAKE_CURRENT_BINARY_DIR}/basic-version.cmake FCL_CCD_BASIC_VERSION)
-configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl-config-version.cmake.in
-               ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake @ONLY)
 configure_package_config_file(
-  ${CMAKE_CURRENT_LIST_DIR}/fcl-config.cmake.in
-  ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
+  ${CMAKE_CURRENT_LIST_DIR}/fcl_ccd-config.cmake.in
+  ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd-config.cmake
   INSTALL_DESTINATION ${package_dir}
   PATH_VARS CMAKE_INSTALL_INCLUDEDIR CMAKE_INSTALL_LIBDIR
   NO_SET_AND_CHECK_MACRO NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl-config.cmake
-              ${CMAKE_CURRENT_BINARY_DIR}/fcl-config-version.cmake
+# Before 1.0 a minor version may change what programs use.
+write_basic_package_version_file(
+  ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd-config-version.cmake
+  VERSION ${PROJECT_VERSION}
+  COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd-config.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd-config-version.cmake
         DESTINATION ${package_dir})
 
-# The flag -lfcl and CMake's find_library(fcl) must mean both libraries. With a static library a
-# linker script in the place of an archive, libfcl.a, names them. With a shared one the script is
-# for who names this file. All others find libfcl.so: a linker script would do for -lfcl, but a
-# program that loads "libfcl.so" at run time would fail, and CMake gives a program the folder of
-# the library at run time only if it ends in ".so". The linker searches the folder of the script
-# for the library first.
-file(
-  GENERATE
-  OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
-  CONTENT "/* GNU ld script: FCL as extended by fcl_ccd */
-GROUP ( ${FCL_CCD_LINKED_FILE} $<TARGET_FILE_DIR:fcl>/$<TARGET_SONAME_FILE_NAME:fcl>${FCL_CCD_PRIVATE_LIBS} )
-")
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/$<CONFIG>/libfcl.a
-        DESTINATION ${CMAKE_INSTALL_LIBDIR})
-
-if(library_type STREQUAL "SHARED_LIBRARY" AND UNIX AND NOT APPLE)
-  include(${CMAKE_CURRENT_LIST_DIR}/link_library.cmake)
-endif()
-
-# pkg-config cannot refer to another package of the same name. So fcl.pc repeats the flags of
+# pkg-config cannot refer to another package of the same name. So the file repeats the flags of
 # stock FCL.
-file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
-     ${CMAKE_INSTALL_PREFIX})
-file(RELATIVE_PATH FCL_CCD_PC_TO_INCLUDE ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
-     ${CMAKE_INSTALL_FULL_INCLUDEDIR})
+set(FCL_CCD_STOCK_PC_REQUIRES "ccd eigen3")
+if(FCL_CCD_HAS_OCTOMAP)
+  string(APPEND FCL_CCD_STOCK_PC_REQUIRES " octomap")
+endif()
 set(FCL_CCD_STOCK_PC_CFLAGS "")
 set(FCL_CCD_STOCK_PC_LIBS "")
 cmake_path(GET FCL_INCLUDE_DIRS PARENT_PATH stock_prefix)
@@ -104,19 +79,22 @@ if(NOT stock_prefix STREQUAL "/usr")
   string(APPEND FCL_CCD_STOCK_PC_CFLAGS " -I${FCL_INCLUDE_DIRS}")
   string(APPEND FCL_CCD_STOCK_PC_LIBS " -L${FCL_LIBRARY_DIRS}")
 endif()
-# One with the headers in their usual place, and one with the folder of their own.
-foreach(FCL_CCD_PC_HEADERS IN ITEMS "" "/fcl-ccd")
-  configure_file(${CMAKE_CURRENT_LIST_DIR}/fcl.pc.in
-                 ${CMAKE_CURRENT_BINARY_DIR}/headers${FCL_CCD_PC_HEADERS}/pkgconfig/fcl.pc @ONLY)
-endforeach()
-install(DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/headers\${fcl_ccd_header_subdir}/pkgconfig"
-        DESTINATION ${CMAKE_INSTALL_LIBDIR})
+# fcl_ccd_pkg_config(NAME LIBDIR OUTPUT): NAME.pc for the folder LIBDIR/pkgconfig. `/` is the prefix.
+function(fcl_ccd_pkg_config FCL_CCD_PC_NAME libdir output)
+  set(folder ${libdir}/pkgconfig)
+  file(RELATIVE_PATH FCL_CCD_PC_TO_PREFIX ${folder} /)
+  file(RELATIVE_PATH FCL_CCD_PC_TO_LIBDIR ${folder} /${CMAKE_INSTALL_LIBDIR})
+  file(RELATIVE_PATH FCL_CCD_PC_TO_INCLUDE ${folder} /${CMAKE_INSTALL_INCLUDEDIR}/fcl_ccd)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/fcl.pc.in ${output} @ONLY)
+endfunction()
+fcl_ccd_pkg_config(fcl_ccd /${CMAKE_INSTALL_LIBDIR} ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd.pc)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/fcl_ccd.pc
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+include(${CMAKE_CURRENT_LIST_DIR}/doors.cmake)
 
 add_custom_target(
   uninstall
   COMMAND ${CMAKE_COMMAND} -DMANIFEST=${PROJECT_BINARY_DIR}/install_manifest.txt -P
           ${PROJECT_SOURCE_DIR}/cmake/uninstall.cmake
   VERBATIM)
-if(UNIX AND NOT APPLE)
-  include(cmake/packages.cmake)
-endif()

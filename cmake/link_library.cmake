@@ -40,8 +40,3 @@ set_target_properties(
              INSTALL_RPATH_USE_LINK_PATH ON)
 install(TARGETS fcl_with_ccd LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library
                                      NAMELINK_SKIP)
-file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/links)
-file(CREATE_LINK libfcl_with_ccd.so.${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-     ${CMAKE_CURRENT_BINARY_DIR}/links/libfcl.so SYMBOLIC)
-install(FILES ${CMAKE_CURRENT_BINARY_DIR}/links/libfcl.so
-        DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT dev)

@@ -8,8 +8,9 @@
 #                                gcc and clang and each set of flags: half an hour or more
 #   bash cmake/test.sh --compilers [COMPILER ...]
 #                                only library, program, examples, some tests and two ways to
-#                                link, with g++ 11 and 12 and clang++ 14, 16 and 19, or those
-#                                given, in C++17 and C++20: about 10 minutes each time
+#                                link, with those of g++ 11 to 14 and clang++ 14, 16 and 19
+#                                that the system has packages for, or those given, in C++17
+#                                and C++20: about 10 minutes each time
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=cmake/dependencies.sh
@@ -22,8 +23,17 @@ case "${1-}" in
   --all) all=true ;;
   --doors) doors=true ;;
   --compilers)
-    compilers=(g++-11 g++-12 clang++-14 clang++-16 clang++-19)
+    for compiler in g++-11 g++-12 g++-13 g++-14 clang++-14 clang++-16 clang++-19; do
+      if command -v "$compiler" >/dev/null ||
+        apt-cache show "${compiler/clang++/clang}" >/dev/null 2>&1; then
+        compilers+=("$compiler")
+      fi
+    done
     if [ $# -gt 1 ]; then compilers=("${@:2}"); fi
+    if [ ${#compilers[@]} -eq 0 ]; then
+      echo "There is no compiler. Run apt-get update, or name the compilers" >&2
+      exit 1
+    fi
     ;;
   "") ;;
   *) echo "usage: bash cmake/test.sh [--all | --doors | --compilers [COMPILER ...]]" >&2; exit 2 ;;

@@ -5,6 +5,7 @@ import importlib.util
 import inspect
 import os
 import pydoc
+import re
 import shutil
 import subprocess
 import sys
@@ -130,6 +131,21 @@ def test_examples(example, tmp_path):
         assert (tmp_path / "contacts.png").stat().st_size > 10000
 
 
+def bundled(wheel, folder):
+    """The wheel with the libraries that it needs, which finds no other copy of them."""
+    folder.mkdir()
+    bundle = SOURCE.parent / "cmake" / "packaging" / "wheel" / "bundle.py"
+    run(sys.executable, bundle, wheel, folder)
+    (bundle,) = folder.glob("*.whl")
+    assert "manylinux" in bundle.name
+    run(sys.executable, "-m", "zipfile", "-e", bundle, folder / "files")
+    (module,) = (folder / "files").glob("fcl_ccd/_core*.so")
+    for name in ("libfcl", "libccd", "libtbb", "libhwy"):
+        (path,) = re.findall(rf"{name}-\w+\.so\S* => (\S+)", run("ldd", module))
+        assert path.startswith(str(folder))
+    return bundle
+
+
 def test_wheel(tmp_path):
     """Built without network, from the module that is there, and used without the project."""
     require("pip", "setuptools", "wheel")
@@ -143,6 +159,8 @@ def test_wheel(tmp_path):
     run(*pip, "wheel", *offline, "--no-build-isolation", "-w", tmp_path, copy)
     (wheel,) = tmp_path.glob("*.whl")
     assert fcl_ccd.__version__ in wheel.name and "none-any" not in wheel.name
+    if shutil.which("patchelf"):
+        wheel = bundled(wheel, tmp_path / "bundled")
     run(*pip, "install", *offline, "--target", tmp_path / "installed", wheel)
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "installed")}
     code = "import fcl_ccd, sys; sys.stdout.write(fcl_ccd.__file__)"

@@ -25,8 +25,9 @@ fail() {
 }
 
 all_doors=(
-  install package stock_gone taken_prefix stock
+  install package stock_gone shared_prefix stock
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen find_library system_prefix
+  both_folders
   python_package python_extension uninstall deb
   spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti
   flags_cxx11 flags_cxx11_avx flags_baseline flags_v3 flags_native flags_native_O0
@@ -46,7 +47,7 @@ if [ -z "$prefix" ]; then
   prefix=$work/prefix
 fi
 lib=$(cd "$prefix" && dirname lib*/pkgconfig)
-config=$lib/cmake/fcl/fcl-config.cmake
+config=$lib/cmake/fcl_ccd/fcl_ccd-config.cmake
 recorded='^set(_fcl_ccd_stock_dir "\(.*\)")$'
 stock_dir=$(sed -n "s|$recorded|\1|p" "$prefix/$config")
 
@@ -84,21 +85,46 @@ door_stock_gone() { # the same when stock FCL has moved
   package package2 "$work/prefix2"
 }
 
-door_taken_prefix() { # an installation into a prefix with stock FCL is refused, staged or not
-  local taken=$work/taken
-  mkdir -p "$work/dest$taken/include/fcl" "$taken/include/fcl"
-  touch "$work/dest$taken/include/fcl/config.h"
-  if DESTDIR=$work/dest cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
-    fail "The package was installed over stock FCL"
-  fi
-  [ "$(find "$work/dest" -type f)" = "$work/dest$taken/include/fcl/config.h" ]
-  # A staged installation would also end over stock FCL.
-  touch "$taken/include/fcl/config.h"
-  if DESTDIR=$work/dest2 cmake --install "$build_dir" --prefix "$taken" >/dev/null 2>&1; then
-    fail "The package was staged for a prefix that has stock FCL"
-  fi
-  if [ -n "$(find "$work/dest2" -type f 2>/dev/null)" ]; then fail "A refused installation has staged files"; fi
+# A prefix that has stock FCL, as /usr and those of package managers: no file of stock FCL changes,
+# and both packages are found.
+door_shared_prefix() {
+  local shared=$work/shared file files before libs
+  mapfile -t files < <(dpkg -L libfcl-dev libfcl0.7 | while read -r file; do
+    if [ -n "$file" ] && [ ! -d "$file" ]; then echo "$file"; fi
+  done)
+  mkdir -p "$shared"
+  tar -C / -cf - "${files[@]#/}" | tar -C "$shared" -xf - --strip-components=1
+  before=$(stock_files "$shared")
+  cmake --install "$build_dir" --prefix "$shared" >"$work/shared.log"
+  grep -q "$shared/lib/fcl-ccd" "$work/shared.log" || fail "The installation does not name the doors"
+  [ "$before" = "$(stock_files "$shared" | LC_ALL=C comm -12 - <(echo "$before"))" ] ||
+    fail "A file of stock FCL was changed"
+  # The package that has a name of its own.
+  configure_and_run shared_own "$shared" -DCONSUMER_FINDS=fcl_ccd
+  grep -q "extended by fcl_ccd .* $shared/" "$work/shared_own.log" || fail "Not the shared prefix"
+  PKG_CONFIG_PATH=$shared/$lib/pkgconfig pkg-config --cflags --libs fcl_ccd >"$work/shared_flags"
+  read -ra libs <"$work/shared_flags"
+  "$CXX" -std=c++17 "$source_dir/stock_or_not.cpp" -o "$work/shared_pc" "${libs[@]}"
+  run_with "$shared" "$work/shared_pc" extended
+  # The doors with FCL's names.
+  local doors=$shared/lib/fcl-ccd
+  configure_and_run shared_doors "$doors"
+  PKG_CONFIG_PATH=$doors/lib/pkgconfig pkg-config --cflags --libs fcl >"$work/shared_flags"
+  read -ra libs <"$work/shared_flags"
+  "$CXX" -std=c++17 "$source_dir/stock_or_not.cpp" -o "$work/shared_door_pc" "${libs[@]}"
+  run_with "$shared" "$work/shared_door_pc" extended
+  "$CXX" -std=c++17 -I"$doors/include" "${around[@]}" "$source_dir/stock_or_not.cpp" \
+    -o "$work/shared_lfcl" -L"$doors/lib" -lfcl -lccd
+  LD_LIBRARY_PATH=$doors/lib "$work/shared_lfcl" extended
+  cmake -S "$source_dir/find_library" -B "$work/shared_find" -DCMAKE_PREFIX_PATH="$doors" >/dev/null
+  cmake --build "$work/shared_find" >/dev/null
+  "$work/shared_find/app"
+  # What has no flag is stock FCL.
+  "$CXX" -std=c++17 -isystem "$shared/include" "${around[@]}" "$source_dir/stock_or_not.cpp" \
+    -o "$work/shared_plain" -lfcl -lccd
+  "$work/shared_plain" stock
 }
+stock_files() { (cd "$1" && find . -type f -exec sha256sum {} + | LC_ALL=C sort); }
 
 door_stock() { # control: with stock FCL alone the program fails
   cmake -S "$source_dir" -B "$work/stock" -Dfcl_DIR="$stock_dir" >/dev/null
@@ -203,12 +229,22 @@ door_find_library() { # CMake's find_path and find_library; the program has no o
   "$work/find_library/app_to_file"
 }
 
+door_both_folders() { # the folder of the headers and the link to it, both named, in both orders
+  local folders
+  for folders in "$prefix/include/fcl_ccd $prefix/include" "$prefix/include $prefix/include/fcl_ccd"; do
+    "$CXX" -std=c++17 -fsyntax-only $(printf -- '-isystem %s ' $folders) "${around[@]}" \
+      "$source_dir/main.cpp"
+    "$CXX" -std=c++17 -fsyntax-only $(printf -- '-I%s ' $folders) "${around[@]}" \
+      "$source_dir/deforming.cpp"
+  done
+}
+
 # Where the compiler looks for headers by itself, but the linker looks for stock FCL first.
 # There g++ -lfcl is stock FCL, headers and library; what names the prefix is this package.
 door_system_prefix() {
   local root=$work/system_root libs
   if [ -e /usr/local/include/fcl/config.h ]; then
-    # There the installation refuses this prefix: door_taken_prefix.
+    # There the doors have a prefix of their own: door_shared_prefix.
     echo "Stock FCL is in /usr/local, so this door cannot be tried on this machine"
     return
   fi
@@ -266,46 +302,35 @@ door_uninstall() { # nothing is left; the file of another program is
   [ "$(find "$gone" -type f -o -type l)" = "$gone/$lib/libother.so" ]
 }
 
-door_deb() { # Debian packages: no file of stock FCL, installed beside it, used, removed
-  local root=$work/deb_root deb=$work/deb own theirs
-  cpack --config "$build_dir/CPackConfig.cmake" -G DEB -B "$deb" >"$work/cpack.log" 2>&1 ||
-    { cat "$work/cpack.log"; fail "cpack failed"; }
+door_deb() { # Debian packages: no file of stock FCL, used beside it; cmake/bare.sh installs them
+  local root=$work/deb_root deb=$work/deb own theirs package name
+  bash "$project_dir/cmake/packages.sh" "$build_dir" "$deb" >"$work/deb.log" 2>&1 ||
+    { cat "$work/deb.log"; fail "packages.sh failed"; }
   own=$(for package in "$deb"/*.deb; do dpkg-deb --fsys-tarfile "$package" | tar -t; done |
     grep -v '/$' | sed 's|^\./|/|' | LC_ALL=C sort)
   [ -z "$(uniq -d <<<"$own")" ] || fail "Two packages have the same file"
   theirs=$(dpkg -L libfcl-dev libfcl0.7 | LC_ALL=C sort -u)
   [ -z "$(LC_ALL=C comm -12 <(echo "$own") <(echo "$theirs"))" ] || fail "A file is stock FCL's"
 
-  mkdir -p "$root/var/lib/dpkg"/{info,updates,triggers}
-  touch "$root/var/lib/dpkg/status"
-  local dpkg=(dpkg --root="$root" --log=/dev/null --force-depends --force-not-root
-    --force-bad-path --force-script-chrootless)
-  "${dpkg[@]}" -i "$deb"/*.deb >"$work/dpkg.log" 2>&1 || { cat "$work/dpkg.log"; fail "dpkg -i"; }
-  # What is installed is used from there. The links lead to the place without the root.
-  local name
-  for name in "bin/fcl-ccd" "share/man/man1/fcl-ccd.1" \
-    "share/bash-completion/completions/fcl-ccd"; do
-    [ -e "$root$(readlink "$root/usr/$name")" ] || fail "The link /usr/$name leads nowhere"
+  mkdir -p "$root"
+  for package in "$deb"/*.deb; do
+    dpkg-deb -x "$package" "$root"
+    name=$(dpkg-deb -f "$package" Package)
+    for file in copyright changelog.gz; do
+      [ -f "$root/usr/share/doc/$name/$file" ] || fail "$name has no $file"
+    done
   done
-  "$root/usr/lib/fcl-ccd/bin/fcl-ccd" --version
+  [ -f "$root/usr/share/man/man1/fcl-ccd.1.gz" ] || fail "The manual page is not compressed"
+  "$root/usr/bin/fcl-ccd" --version
   configure_and_run deb_program "$root/usr/lib/fcl-ccd"
-  # Installed modules are compiled. To import them, in other ways too, leaves no more files than
-  # the package removes.
-  local modules compiled
-  modules=$root$(cat "$root/usr/lib/python3/dist-packages/fcl-ccd.pth")
-  compiled=$(find "$modules" -name '*.pyc' | LC_ALL=C sort)
-  [ -n "$compiled" ] || fail "The modules of the Python package are not compiled"
-  PYTHONPATH=$modules "$python" -c "import fcl_ccd; print(fcl_ccd.__file__)"
-  [ "$compiled" = "$(find "$modules" -name '*.pyc' | LC_ALL=C sort)" ] ||
-    fail "An import writes files beside the modules"
-  PYTHONPATH=$modules "$python" -OO -c "import fcl_ccd"
-  [ "$root$(cat "$root/etc/ld.so.conf.d/fcl-ccd.conf")" = "$root/usr/lib/fcl-ccd/$lib" ]
-
-  local packages
-  mapfile -t packages < <(for package in "$deb"/*.deb; do dpkg-deb -f "$package" Package; done)
-  "${dpkg[@]}" -P "${packages[@]}" >>"$work/dpkg.log" 2>&1
-  [ -z "$(find "$root" -path "$root/var" -prune -o \( -type f -o -type l \) -print)" ] ||
-    fail "Removed packages leave files"
+  PYTHONPATH=$root/usr/lib/python3/dist-packages "$python" -B -c \
+    "import fcl_ccd; print(fcl_ccd.__file__)"
+  # The package compiles its modules and removes what Python has compiled.
+  dpkg-deb -e "$deb"/python3-fcl-ccd_*.deb "$work/deb_python"
+  grep -q py3compile "$work/deb_python/postinst"
+  grep -q py3clean "$work/deb_python/prerm"
+  dpkg-deb -e "$deb"/libfcl-ccd[0-9]*.deb "$work/deb_library"
+  grep -q ldconfig "$work/deb_library/triggers"
 }
 
 door_spaces() { # a prefix with spaces in its path
@@ -354,7 +379,7 @@ door_examples() { # the examples on their own
 # not name a namespace. DART has one, make_aligned_shared().
 door_eigen_names() {
   local names
-  names=$(grep -rhoE '^[A-Za-z][^=;]*\b[a-z][A-Za-z]+\(' "$prefix/include/fcl" |
+  names=$(grep -rhoE '^[A-Za-z][^=;]*\b[a-z][A-Za-z]+\(' "$prefix/include/fcl_ccd" |
     grep -oE '[a-z][A-Za-z]+\($' | tr -d '(' | grep -vE '^(sizeof|test|size|clear|update)$' | sort -u)
   {
     echo '#include <memory>'

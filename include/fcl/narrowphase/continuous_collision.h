@@ -314,4 +314,7 @@ S continuousSelfCollide(const CollisionGeometry<S>* o, const Request& request,
 
 #include "fcl/narrowphase/detail/continuous_query_bodies.h"
 
+#elif !defined(FCL_CONTINUOUS_COLLISION_H)
+// Two folders on the include path have this header: pass on to the next one.
+#include_next <fcl/narrowphase/continuous_collision.h>
 #endif

@@ -114,4 +114,7 @@ static_assert(sizeof(DistanceBodies<float>) == 1, "");
 
 }  // namespace fcl
 
+#elif !defined(FCL_DISTANCE_H)
+// Two folders on the include path have this header: pass on to the next one.
+#include_next <fcl/narrowphase/distance.h>
 #endif
