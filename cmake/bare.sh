@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Follows the README as a new user does, in a bare Debian system in a folder: the two commands
 # of "Try it", the lines of "Install and link", and the Debian packages. It needs root and the
-# package mmdebstrap, and takes about an hour; the system stays as it is.
+# package mmdebstrap; the system stays as it is.
 #   bash cmake/bare.sh [bookworm | trixie] [demo | test | library | packages ...]
 # Without names of parts all are run. The system and the log of each part are in build/bare.
 set -euo pipefail

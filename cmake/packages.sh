@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Installs missing packages (Debian) and makes Debian packages in build/packages: about six
-# minutes on two cores.
+# Installs missing packages (Debian) and makes Debian packages in build/packages.
 #   bash cmake/packages.sh             builds the project first
 #   bash cmake/packages.sh BUILD OUT   packs the finished build in the folder BUILD into OUT
 # Then: sudo apt-get install ./build/packages/*.deb
