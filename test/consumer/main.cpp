@@ -57,15 +57,17 @@ struct BroadphaseAnswer {
   int pairs;
   bool collide;
   double time;
+  const fcl::CollisionObjectd* falling;
 };
 
-/// A program's own broadphase callback: every object falls by 1.
+/// A program's own broadphase callback: one object falls by 1. The object has no user data that
+/// would say so, since FCL's constructors leave the user data unset.
 bool fallAndCollide(fcl::CollisionObjectd* o1, fcl::CollisionObjectd* o2, void* data) {
   BroadphaseAnswer& answer = *static_cast<BroadphaseAnswer*>(data);
   ++answer.pairs;
   Transform3d o1_end = o1->getTransform(), o2_end = o2->getTransform();
-  if (o1->getUserData()) o1_end.translation().z() -= 1;
-  if (o2->getUserData()) o2_end.translation().z() -= 1;
+  if (o1 == answer.falling) o1_end.translation().z() -= 1;
+  if (o2 == answer.falling) o2_end.translation().z() -= 1;
   fcl::ContinuousCollisionResultd result;
   fcl::continuousCollide(o1, o1_end, o2, o2_end, fcl::ContinuousCollisionRequestd(),
                          result);
@@ -145,13 +147,11 @@ int main() {
     const auto point_like = makePlate(Vector3d(0.1, 0, -0.1), Vector3d(0, 0.1, 0));
     fcl::CollisionObjectd o1(tilted, still), o2(point_like, at(0.1, 0, 0.25));
     fcl::CollisionObjectd far_away(point_like, at(9, 9, 9));
-    bool falls = true;
-    o2.setUserData(&falls);
 
     fcl::DynamicAABBTreeCollisionManagerd manager;
     for (fcl::CollisionObjectd* o : {&o1, &o2, &far_away}) manager.registerObject(o);
     manager.setup();
-    BroadphaseAnswer answer = {0, false, 1};
+    BroadphaseAnswer answer = {0, false, 1, &o2};
     manager.collide(&answer, fallAndCollide);
     expect(answer.pairs == 1 && answer.collide && isTimeOfContact(answer.time),
            "continuousCollide() from a broadphase callback");
