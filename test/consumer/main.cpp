@@ -60,8 +60,8 @@ struct BroadphaseAnswer {
   const fcl::CollisionObjectd* falling;
 };
 
-/// A program's own broadphase callback: one object falls by 1. The object has no user data that
-/// would say so, since FCL's constructors leave the user data unset.
+/// A program's own broadphase callback: one object falls by 1. The object has no user
+/// data that would say so, since FCL's constructors leave the user data unset.
 bool fallAndCollide(fcl::CollisionObjectd* o1, fcl::CollisionObjectd* o2, void* data) {
   BroadphaseAnswer& answer = *static_cast<BroadphaseAnswer*>(data);
   ++answer.pairs;
