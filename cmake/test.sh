@@ -151,10 +151,8 @@ if $all; then
   step "plain: build and tests"
   cmake --preset plain
   watched cmake --build --preset plain --target "${plain_tests[@]}"
-  for test in "${plain_tests[@]}"; do
-    echo "   $test"
-    watched "build/plain/test/unit/$test" --gtest_brief=1
-  done
+  printf '%s\n' "${plain_tests[@]}" |
+    watched xargs -P "$jobs" -I '{}' "build/plain/test/unit/{}" --gtest_brief=1
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON

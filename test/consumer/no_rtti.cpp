@@ -215,7 +215,9 @@ void run() {
 int main() {
   run<double>();
   inDouble();
+#ifndef ONLY_DOUBLE
   run<float>();
+#endif
 #if __cplusplus >= 201703L && !defined(__GXX_RTTI)
   // Queries would not know a class that derives from it.
   static_assert(std::is_final<fcl::DeformableBVHModel<fcl::OBBRSSd>>::value, "");

@@ -247,7 +247,9 @@ TEST(FCL_DEFORMABLE_QUERY_FIRST, timeAloneOfWhatMeetsAtOnePlace) {
 // The list of first contacts has the pairs of all contacts, whose brackets may be
 // shorter. Of a list that is cut, few pairs are decided.
 TEST(FCL_DEFORMABLE_QUERY_FIRST, firstContactsOfWhatMeetsAtOnePlace) {
-  for (const double factor : {-0.3, -0.7, -1., -2., 0.}) {
+  std::vector<double> factors = {0, -0.7, -0.3, -1, -2};
+  if (test::kHasAddressSanitizer) factors.resize(2);
+  for (const double factor : factors) {
     SCOPED_TRACE("factor " + std::to_string(factor));
     MovingMesh mesh;
     addCollapse({0, 0, 0}, factor, mesh);

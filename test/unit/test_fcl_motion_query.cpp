@@ -483,7 +483,8 @@ TEST(FCL_MOTION_QUERY, tasksFindWhatOneTraversalFinds) {
   whole.all = true;
   whole.most_box_tests = CurvedOptions::kNoLimit - 1;
   std::size_t contacts = 0;
-  for (int i = 0; i < 4; ++i) {
+  const int num_motions = kHasAddressSanitizer ? 2 : 4;
+  for (int i = 0; i < num_motions; ++i) {
     Random random(9100 + i);
     const ReferenceMotion motion_a = randomMotion(random, 0.4),
                           motion_b = randomMotion(random, 0.4);
@@ -498,7 +499,7 @@ TEST(FCL_MOTION_QUERY, tasksFindWhatOneTraversalFinds) {
       expectSame(ask(a, motion_a.path(), b, motion_b.path(), divided), expected);
     }
   }
-  EXPECT_GE(contacts, 2000U);
+  EXPECT_GE(contacts, kHasAddressSanitizer ? 500U : 2000U);
 }
 
 /// A rule that is asked about pairs, and waits until two threads have asked.

@@ -162,7 +162,9 @@ void expectAllPairs(const TestMesh& a, const Vector& way, const TestMesh& b,
 }
 
 TEST(FCL_SLIDING, tubesThatJustFit) {
-  for (const double gap : {1e-2, 1e-6, 1e-9}) {
+  std::vector<double> gaps = {1e-6, 1e-2, 1e-9};
+  if (kHasAddressSanitizer) gaps.resize(1);
+  for (const double gap : gaps) {
     SCOPED_TRACE(gap);
     const TestMesh hole = tilted(makeRoundTube(
         kSlices, kRings, [&](double, double) { return holeRadius(kSlices); }));
