@@ -152,7 +152,7 @@ if $all; then
   cmake --preset plain
   watched cmake --build --preset plain --target "${plain_tests[@]}"
   printf '%s\n' "${plain_tests[@]}" |
-    watched xargs -P "$jobs" -I '{}' "build/plain/test/unit/{}" --gtest_brief=1
+    watched xargs -P "$jobs" -I '{}' env "build/plain/test/unit/{}" --gtest_brief=1
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON
