@@ -17,6 +17,13 @@ function(fcl_ccd_compile_options target)
   else()
     # gcc 12 gives false alarms in code that it inlines from FCL, Eigen and Boost.
     target_compile_options(${target} PRIVATE -Wno-maybe-uninitialized)
+    # gcc 13 and 14 give more of them: of Boost's integers, and of an array of eight elements
+    # whose count the compiler does not know.
+    if(CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 13)
+      target_compile_options(
+        ${target} PRIVATE -Wno-array-bounds -Wno-stringop-overflow
+                          -Wno-aggressive-loop-optimizations)
+    endif()
   endif()
   if(FCL_CCD_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
