@@ -155,6 +155,16 @@ def is_mesh(values: Any) -> bool:
     return _faces_of(values) is not None
 
 
+def mesh(values: TriangleMesh, name: str) -> TriangleMesh:
+    """A mesh of another package."""
+    if is_mesh(values):
+        return values
+    wanted = "a mesh with vertices and faces, for example a trimesh.Trimesh"
+    if hasattr(values, "geometry"):
+        wanted += ". Of a scene: trimesh.load(file, force='mesh')"
+    raise wrong_type(name, values, wanted)
+
+
 def points(values: Union[ArrayLike, TriangleMesh], name: str) -> NDArray[np.float64]:
     """Positions, also those of a mesh of another package."""
     if type(values) is not np.ndarray and is_mesh(values):

@@ -79,6 +79,19 @@ class DeformableMesh(Copied, _core.DeformableMesh):
         )
         self._is_built = True
 
+    @classmethod
+    def from_trimesh(cls, mesh: TriangleMesh, *, num_threads: int = 1) -> DeformableMesh:
+        """DeformableMesh(mesh, num_threads=num_threads), for those who look for this name.
+
+        mesh : a trimesh.Trimesh, or another mesh with vertices and faces
+
+        A next frame is given by update(next_mesh). Load frames by trimesh.load(file,
+        process=False): else it joins and renumbers the vertices of each file.
+
+        Raises TypeError for anything else, also for vertices alone.
+        """
+        return cls(_arguments.mesh(mesh, "mesh"), num_threads=num_threads)
+
     @overload
     def update(self, current: Union[ArrayLike, TriangleMesh], /) -> None: ...
 
@@ -187,6 +200,16 @@ class RigidMesh(Copied, _core.RigidMesh):
             raise _arguments.wrong_type("triangles", None, "an array of integers")
         super().__init__(positions, _arguments.triangles(found))
         self._is_built = True
+
+    @classmethod
+    def from_trimesh(cls, mesh: TriangleMesh) -> RigidMesh:
+        """RigidMesh(mesh), for those who look for this name.
+
+        mesh : a trimesh.Trimesh, or another mesh with vertices and faces
+
+        Raises TypeError for anything else.
+        """
+        return cls(_arguments.mesh(mesh, "mesh"))
 
     def _built_from(self) -> Tuple[Any, ...]:
         return self.vertices, self.triangles

@@ -84,6 +84,26 @@ def test_meshes_that_deform(kind):
 
 
 @KINDS
+def test_from_trimesh(kind):
+    """The same meshes by another name."""
+    expected = fcl_ccd.collide(fcl_ccd.RigidMesh(PREVIOUS, TRIANGLES), fcl_ccd.RigidMesh(*BALL))
+    cloth = fcl_ccd.DeformableMesh.from_trimesh(kind(PREVIOUS, TRIANGLES), num_threads=2)
+    ball = fcl_ccd.RigidMesh.from_trimesh(kind(*BALL))
+    assert cloth.num_threads == 2 and type(ball) is fcl_ccd.RigidMesh
+    require_same(fcl_ccd.collide(cloth, ball), expected)
+
+
+@pytest.mark.parametrize("of", [fcl_ccd.DeformableMesh, fcl_ccd.RigidMesh])
+def test_from_trimesh_refuses(of):
+    wanted = r"\(\): mesh is of type {}. Give a mesh with vertices and faces, for example a trimesh"
+    with pytest.raises(TypeError, match="from_trimesh" + wanted.format("ndarray")):
+        of.from_trimesh(PREVIOUS)
+    scene = SimpleNamespace(geometry={}, graph=None)  # as trimesh.Scene
+    with pytest.raises(TypeError, match=wanted.format("SimpleNamespace") + r".*force='mesh'"):
+        of.from_trimesh(scene)
+
+
+@KINDS
 def test_convex(kind):
     expected = fcl_ccd.collide(fcl_ccd.Convex(*BALL), fcl_ccd.Sphere(0.2), pose((0.5, 0, 0)))
     made = fcl_ccd.Convex(kind(*BALL))
