@@ -26,8 +26,8 @@ Result. Many objects: CollisionManager. With min_distance features are in contac
 distance. For your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(),
 vertex_edge() and vertex_vertex() on arrays.
 
-Tables: to_dataframe() makes a pandas.DataFrame of contacts. Meshes, shapes, motions, filters
-and results can be copied and pickled.
+Tables and pictures: to_dataframe() makes a pandas.DataFrame of contacts, Result.show() draws
+them. Meshes, shapes, motions, filters and results can be copied and pickled.
 
 Errors: ValueError with the words of the library, TypeError for arguments of another type,
 RuntimeError for an update of a mesh while a query of it runs.
@@ -42,12 +42,9 @@ from ._motions import BoundedMotion, LinearMotion, Motion, ScrewMotion, SplineMo
 from ._octrees import OcTree, octree_cell_dtype
 from ._queries import (
     Filter,
-    Kind,
-    Result,
     candidate_dtype,
     candidates,
     collide,
-    contact_dtype,
     edge_edge,
     feature_test_dtype,
     self_candidates,
@@ -56,6 +53,7 @@ from ._queries import (
     vertex_face,
     vertex_vertex,
 )
+from ._results import Kind, Result, contact_dtype
 from ._shapes import (
     Box,
     Capsule,

@@ -12,6 +12,7 @@ from typing import (
     Literal,
     Mapping,
     Optional,
+    Tuple,
     Union,
 )
 
@@ -19,14 +20,16 @@ import numpy as np
 
 from . import _arguments, _core
 from ._dataframes import columns_of, frame_of
-from ._motions import MotionLike, path_of
-from ._queries import Filter, Result, filter_of, geometry_of, request_of
+from ._motions import AT_ORIGIN, MotionLike, path_of
+from ._queries import Filter, filter_of, geometry_of, request_of
+from ._results import Result
 
 if TYPE_CHECKING:
     from typing import Iterable, Iterator
 
     from ._arguments import TriangleMesh
     from ._core import Geometry
+    from ._surfaces import Queried
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,7 +244,10 @@ class CollisionManager(_arguments.Built):
             ignore_initially_closer,
         )
         fields = self._ask(other, motion, name, request)
-        pairs = [Pair(o1, o2, Result(**answer)) for o1, o2, answer in fields.pop("pairs")]
+        pairs = [
+            Pair(o1, o2, Result(**answer, _queried=_queried(read1, read2)))
+            for o1, o2, answer, read1, read2 in fields.pop("pairs")
+        ]
         return ManagerResult(pairs=pairs, **fields)
 
     def _ask(
@@ -297,3 +303,11 @@ class CollisionManager(_arguments.Built):
 
     def __repr__(self) -> str:
         return f"CollisionManager({len(self)} objects)"
+
+
+def _queried(read1: Queried, read2: Queried) -> Tuple[Queried, Queried]:
+    """What the manager had read of a pair. A mesh meets itself in its own frame."""
+    if read1 is not read2:
+        return read1, read2
+    o, _, num_updates = read1
+    return (o, AT_ORIGIN, num_updates), (o, AT_ORIGIN, num_updates)

@@ -166,13 +166,13 @@ _MAKERS: Dict[str, Callable[..., _core.Motion]] = {
 
 MotionLike = Optional[Union[Motion, "ArrayLike", "Sequence[ArrayLike]"]]
 
-_AT_ORIGIN = _core.Motion.straight(np.eye(4), np.eye(4), "identity")
+AT_ORIGIN = _core.Motion.straight(np.eye(4), np.eye(4), "identity")
 
 
 def path_of(motion: MotionLike, name: str) -> _core.Motion:
     """The path of None, a pose, two poses or a Motion."""
     if motion is None:
-        return _AT_ORIGIN
+        return AT_ORIGIN
     if isinstance(motion, Motion):
         return motion._path
     wanted = (

@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
-import enum
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Callable, Dict, List, Literal, Optional, Tuple, Union, overload
+from typing import TYPE_CHECKING, Callable, List, Literal, Optional, Tuple, Union, overload
 
 import numpy as np
 
 from . import _arguments, _core
 from ._copies import Copied
-from ._dataframes import to_dataframe
 from ._meshes import RigidMesh
-from ._motions import MotionLike, path_of
+from ._motions import AT_ORIGIN, MotionLike, path_of
+from ._results import Result
 
 if TYPE_CHECKING:
     from typing import Any
@@ -25,23 +23,8 @@ if TYPE_CHECKING:
     Mesh = Union[_core.DeformableMesh, _core.RigidMesh, TriangleMesh]
     Sink = Callable[[NDArray[np.void]], Optional[bool]]
 
-contact_dtype: np.dtype[np.void] = _core.contact_dtype
 candidate_dtype: np.dtype[np.void] = _core.candidate_dtype
 feature_test_dtype: np.dtype[np.void] = _core.feature_test_dtype
-
-
-class Kind(enum.IntEnum):
-    """The field "kind" of contacts and candidates."""
-
-    VERTEX_FACE = 0
-    EDGE_EDGE = 1
-    CROSSING = 2
-    VERTEX_EDGE = 3
-    VERTEX_VERTEX = 4
-    VERTEX_SHAPE = 5
-    EDGE_SHAPE = 6
-    FACE_SHAPE = 7
-    SHAPES = 8
 
 
 _ALL_BITS = 0xFFFFFFFF
@@ -79,88 +62,6 @@ class Filter(Copied, _core.Filter):
 
     def _built_from(self) -> Tuple[Any, ...]:
         return self.group, self.mask, self._triangle_groups, self._triangle_masks
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Result(_arguments.Built):
-    """The answer of collide() and self_collide(). It is true if there is a collision.
-
-    Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
-
-    is_collide : bool
-        Whether the two touch during the step, or cross or overlap at t = 0.
-    time_of_contact : float
-        Never later than the first contact, and earlier by at most toc_err. 0 if the
-        two touch, cross or overlap at t = 0. 1 without collision.
-    contacts : structured array (n,) of contact_dtype, sorted by time
-        kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE; with min_distance also
-                                 Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX. Of a mesh and a
-                                 shape, one for each triangle that touches, and named for
-                                 the feature that is nearest: Kind.VERTEX_SHAPE,
-                                 Kind.EDGE_SHAPE or Kind.FACE_SHAPE. Two shapes: Kind.SHAPES
-        b1, b2       int64       triangles of o1 and o2 that have the features; free edges
-                                 and points are numbered after them; -1 for a shape; of an
-                                 OcTree a number for its cells()
-        vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
-                                 CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
-                                 VERTEX_VERTEX: v of o1, v of o2. With a shape: the
-                                 vertices of the feature. Unused entries are -1.
-        first_on_o1  bool        whether the first feature is of o1 and the second of o2;
-                                 false: the reverse. Edge ea is of o1. With a shape:
-                                 whether the mesh is o1.
-        within_tolerance  bool   whether only nearness is proved, not a crossing; of meshes
-                                 on straight paths without min_distance it is false
-        toc_lo, toc_hi  float64  bracket of the first time at which the features touch
-        pos          (3,) float64  where they touch at toc_lo, in the world frame; with
-                                 min_distance the middle between their nearest points
-        normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
-                                 self-collision from the vertex to the face, or from edge
-                                 ea to edge eb. Zero if it is not defined, and if a
-                                 shape is overlapped at t = 0.
-    contacts_cut : bool
-        Whether num_max_contacts dropped contacts.
-    initially_crossing : bool
-        Whether an edge passes through a triangle at t = 0.
-    crossing : structured array of 0 or 1 elements of contact_dtype
-        Such an edge and triangle, of kind Kind.CROSSING.
-    crossings : structured array of contact_dtype
-        All of them, if enable_crossings asks for them.
-    is_triangle_soup : bool
-        In a self-collision: whether no two triangles have a common vertex, so that
-        neighbours are contacts. weld_vertices() joins them.
-    counts : dict, how many candidates each stage of the query saw and removed
-    times : dict, wall time of the parts of the query in seconds
-    contact_tf1, contact_tf2 : (4, 4) float64
-        Poses of o1 and o2 at which they overlap, up to toc_err after the first contact;
-        without a collision, at t = 1. With min_distance they are still apart there, and
-        meshes that only touch may not overlap.
-    """
-
-    is_collide: bool
-    time_of_contact: float
-    contacts: NDArray[np.void]
-    contacts_cut: bool
-    initially_crossing: bool
-    crossing: NDArray[np.void]
-    crossings: NDArray[np.void]
-    is_triangle_soup: bool
-    counts: Dict[str, int]
-    times: Dict[str, float]
-    contact_tf1: NDArray[np.float64]
-    contact_tf2: NDArray[np.float64]
-
-    def __bool__(self) -> bool:
-        return self.is_collide
-
-    def to_dataframe(self) -> Any:
-        """The contacts as a pandas.DataFrame, see fcl_ccd.to_dataframe()."""
-        return to_dataframe(self.contacts)
-
-    def __repr__(self) -> str:
-        return (
-            f"Result(is_collide={self.is_collide}, time_of_contact={self.time_of_contact}, "
-            f"{len(self.contacts)} contacts, initially_crossing={self.initially_crossing})"
-        )
 
 
 _ACCEPTS_ALL = Filter()
@@ -262,8 +163,12 @@ def self_collide(
         min_distance,
         ignore_initially_closer,
     )
-    fields = _core.self_collide(mesh_of(o, "o"), request)
-    return Result(**fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4))
+    mesh = mesh_of(o, "o")
+    queried = mesh, AT_ORIGIN, mesh._num_updates
+    fields = _core.self_collide(mesh, request)
+    return Result(
+        **fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4), _queried=(queried, queried)
+    )
 
 
 def collide(
@@ -355,15 +260,15 @@ def collide(
         min_distance,
         ignore_initially_closer,
     )
-    return Result(
-        **_core.collide(
-            geometry_of(o1, "o1"),
-            path_of(motion1, "motion1"),
-            geometry_of(o2, "o2"),
-            path_of(motion2, "motion2"),
-            request,
-        )
+    geometry1, path1 = geometry_of(o1, "o1"), path_of(motion1, "motion1")
+    geometry2, path2 = geometry_of(o2, "o2"), path_of(motion2, "motion2")
+    # Of an update that another thread makes before the query, show() says that it was later.
+    queried = (
+        (geometry1, path1, geometry1._num_updates),
+        (geometry2, path2, geometry2._num_updates),
     )
+    fields = _core.collide(geometry1, path1, geometry2, path2, request)
+    return Result(**fields, _queried=queried)
 
 
 _BLOCK = 65536

@@ -25,10 +25,10 @@ using FclManager = fcl::ContinuousCollisionManagerd;
 using FclRequest = fcl::ContinuousContactRequestd;
 using FclResult = fcl::ContinuousManagerResultd;
 
-/// FCL's motion on a path, and what keeps its functions of Python alive.
+/// A path, which keeps its functions of Python alive, and FCL's motion on it.
 struct FclMotion {
   std::shared_ptr<fcl::MotionBase<double>> motion;
-  py::object functions;
+  Motion path;
 };
 
 /// FCL's objects do not own what they refer to, and queries do not write to it.
@@ -55,38 +55,41 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
 
   FclMotion makeMotion(const Motion& path) const {
     const bool deforms = dynamic_cast<const DeformableMesh*>(&geometry_) != nullptr;
-    return {toFclMotion(path, deforms), path.functions};
+    return {toFclMotion(path, deforms), path};
   }
   void swapMotion(FclMotion& other) {
     motion.swap(other.motion);
-    std::swap(functions_, other.functions);
+    std::swap(path_, other.path);
   }
 
   template <typename Visit>
   void visit(const Visit& visit) const {
     visit(name_);
     visit(owner_);
-    visit(functions_);
+    path_.visit(visit);
   }
 
   /// The manager has read the mesh.
   void takeNote() { num_updates_ = geometry_.numUpdates(); }
   bool isOutOfDate() const { return num_updates_ != geometry_.numUpdates(); }
 
+  /// What the manager has read: the mesh or shape, its path and the step of the mesh.
+  py::tuple read() const { return py::make_tuple(owner_, path_, num_updates_); }
+
  private:
   static const Geometry& geometryOf(const py::object& owner) {
     return py::cast<const Geometry&>(owner);
   }
 
-  py::object name_, owner_, functions_;
+  py::object name_, owner_;
+  Motion path_{};
   const Geometry& geometry_;
   std::uint64_t num_updates_{0};
 };
 
 py::tuple toTuple(fcl::ContinuousPairResult<double>& pair) {
-  const auto name = [](const fcl::ContinuousCollisionObjectd* o) {
-    return static_cast<const ManagedObject*>(o)->name();
-  };
+  const auto& o1 = *static_cast<const ManagedObject*>(pair.o1);
+  const auto& o2 = *static_cast<const ManagedObject*>(pair.o2);
   const auto pose = [](const fcl::Transform3d& tf) {
     return toArray(fcl::detail::toNumbers<double>(tf));
   };
@@ -95,7 +98,8 @@ py::tuple toTuple(fcl::ContinuousPairResult<double>& pair) {
                              std::move(static_cast<Contacts&>(result)));
   fields["contact_tf1"] = pose(result.contact_tf1);
   fields["contact_tf2"] = pose(result.contact_tf2);
-  return py::make_tuple(name(pair.o1), name(pair.o2), fields);
+  const py::tuple read1 = o1.read(), read2 = &o1 == &o2 ? read1 : o2.read();
+  return py::make_tuple(o1.name(), o2.name(), fields, read1, read2);
 }
 
 py::dict fieldsOf(FclResult& result) {

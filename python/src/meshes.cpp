@@ -233,7 +233,8 @@ RigidMesh::RigidMesh(const Doubles& vertices, const Integers& triangles) {
 
 void bindMeshes(py::module_& module) {
   module.def("weld_vertices", &weldVertices, py::arg("frames"), py::arg("eps"));
-  Class<Geometry>(module, "Geometry");
+  Class<Geometry>(module, "Geometry")
+      .def_property_readonly("_num_updates", &Geometry::numUpdates);
   Class<Mesh, Geometry>(module, "Mesh");
   using Deformable = DeformableMesh::Model;
   Class<DeformableMesh, Mesh>(module, "DeformableMesh")

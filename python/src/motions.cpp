@@ -11,6 +11,7 @@
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
+#include "geometry.h"
 
 namespace fcl_ccd {
 namespace python {
@@ -152,6 +153,12 @@ Motion bounded(const py::function& pose, const py::function& rate,
   return motion;
 }
 
+/// The pose of an object at t, as a 4x4 array.
+py::array poseAt(const Motion& motion, const Geometry& o, double t) {
+  const Geometry::Reading reading(o);
+  return toArray(fcl::detail::poseAt(motion.of(o.geometry()), t));
+}
+
 fcl::BoundedMotion::Placement toPlacement(const PoseNumbers<double>& parts) {
   fcl::BoundedMotion::Placement placement;
   std::copy_n(parts.rotation, 9, placement.rotation);
@@ -244,6 +251,10 @@ py::array toArray(const fcl::detail::PoseNumbers<double>& pose) {
 
 void bindMotions(py::module_& module) {
   Class<Motion>(module, "Motion", seenByCollector<Motion>())
+      .def_property_readonly(
+          "is_straight",
+          [](const Motion& m) { return m.path.path == PathKind::kStraight; })
+      .def("pose_at", &poseAt, py::arg("o"), py::arg("t"))
       .def_static("straight", &straight)
       .def_static("turn", &turn)
       .def_static("screw", &screw)

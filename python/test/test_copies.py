@@ -218,6 +218,28 @@ class Named(fcl_ccd.RigidMesh):
         self.name = name
 
 
+def test_results():
+    """A shallow copy refers to the same objects. The others have none, and are as small."""
+    mesh = deforming()
+    of = fcl_ccd.collide(mesh, fcl_ccd.Sphere(0.3), None, FALLS)
+    shallow, *others = copies(of)
+    require_same(shallow, of)
+    assert shallow._queried is of._queried and shallow.contacts is of.contacts
+    for same in others:
+        require_same(same, of)
+        with pytest.raises(ValueError, match="is a deep copy or was pickled.*that the query gave"):
+            same.show()
+    assert len(pickle.dumps(of)) < len(pickle.dumps(of.contacts)) + 3000
+    manager = fcl_ccd.CollisionManager()
+    manager.register("mesh", mesh, self_collision=True)
+    found = manager.collide()
+    shallow, *others = copies(found)
+    assert shallow.pairs[0].result._queried[0][0] is mesh
+    for same in others:
+        require_same(same.pairs[0].result, found.pairs[0].result)
+        assert same.pairs[0].result._queried is None
+
+
 def test_classes_of_the_user():
     of = Named(["ball"])
     shallow, *deep = copies(of)

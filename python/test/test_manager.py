@@ -262,7 +262,7 @@ def test_threads_query_one_manager():
 
 
 def test_lifetimes():
-    """A manager keeps its meshes alive, and no longer than it needs them."""
+    """A manager keeps its meshes alive, and no longer than it needs them. So do results."""
     mesh = fcl_ccd.RigidMesh(*sphere(4, 5))
     alive = weakref.ref(mesh)
     manager = fcl_ccd.CollisionManager()
@@ -276,4 +276,7 @@ def test_lifetimes():
     result = manager.collide(alive())
     del manager
     gc.collect()
-    assert alive() is None and result.pairs[0].o2 == "other"
+    assert alive() is not None and result.pairs[0].o2 == "other"
+    del result
+    gc.collect()
+    assert alive() is None

@@ -3,6 +3,7 @@
 
 import gc
 import sys
+import weakref
 
 import numpy as np
 from scenes import crumpled, pose, sphere
@@ -17,9 +18,9 @@ def resident_bytes():
         return 4096 * int(file.read().split()[1])
 
 
-def bounded(i):
+def bounded(i, kept=None):
     return fcl_ccd.BoundedMotion(
-        lambda t: pose((0.5, 0.5, 0.1 + 1e-6 * i)),
+        lambda t: (kept, pose((0.5, 0.5, 0.1 + 1e-6 * i)))[1],
         lambda t: np.zeros((4, 4)),
         lambda center, radius, t0, t1: 0,
         lambda t0, t1: 0,
@@ -100,6 +101,28 @@ def test_arrays_outlive_mesh_and_result():
         np.testing.assert_array_equal(contacts[name], copy[name])
     np.testing.assert_array_equal(blocks[0], kept)
     assert contacts.size > 0 and kept.size > 0
+
+
+class Stepped(fcl_ccd.DeformableMesh):
+    """A mesh that keeps its last result, which refers to it."""
+
+
+def test_results_keep_their_objects():
+    """No longer than they live, also if they are part of a cycle."""
+    mesh = Stepped(PREVIOUS, TRIANGLES)
+    alive, result = weakref.ref(mesh), fcl_ccd.self_collide(mesh)
+    del mesh
+    gc.collect()
+    assert alive() is not None
+    mesh = result._queried[0][0]
+    mesh.results = [result]
+    mesh.results.append(fcl_ccd.collide(mesh, fcl_ccd.Sphere(0.2), None, bounded(0, kept=mesh)))
+    manager = fcl_ccd.CollisionManager()
+    manager.register("mesh", mesh, bounded(0, kept=mesh))
+    mesh.results.append(manager.collide(mesh))
+    del mesh, manager, result
+    gc.collect()
+    assert alive() is None
 
 
 def test_mesh_does_not_keep_the_arrays():

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: BSD-3-Clause
+from __future__ import annotations
+
+import enum
+import os
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple, Union
+
+import numpy as np
+
+from . import _arguments, _core, _figures
+from ._dataframes import to_dataframe
+from ._pictures import Picture, picture_of
+from ._surfaces import Surface, surface_at
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from ._surfaces import Queried
+
+contact_dtype: np.dtype[np.void] = _core.contact_dtype
+
+
+class Kind(enum.IntEnum):
+    """The field "kind" of contacts and candidates."""
+
+    VERTEX_FACE = 0
+    EDGE_EDGE = 1
+    CROSSING = 2
+    VERTEX_EDGE = 3
+    VERTEX_VERTEX = 4
+    VERTEX_SHAPE = 5
+    EDGE_SHAPE = 6
+    FACE_SHAPE = 7
+    SHAPES = 8
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Result(_arguments.Built):
+    """The answer of collide() and self_collide(). It is true if there is a collision.
+
+    Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
+
+    is_collide : bool
+        Whether the two touch during the step, or cross or overlap at t = 0.
+    time_of_contact : float
+        Never later than the first contact, and earlier by at most toc_err. 0 if the
+        two touch, cross or overlap at t = 0. 1 without collision.
+    contacts : structured array (n,) of contact_dtype, sorted by time
+        kind         int32       Kind.VERTEX_FACE or Kind.EDGE_EDGE; with min_distance also
+                                 Kind.VERTEX_EDGE and Kind.VERTEX_VERTEX. Of a mesh and a
+                                 shape, one for each triangle that touches, and named for
+                                 the feature that is nearest: Kind.VERTEX_SHAPE,
+                                 Kind.EDGE_SHAPE or Kind.FACE_SHAPE. Two shapes: Kind.SHAPES
+        b1, b2       int64       triangles of o1 and o2 that have the features; free edges
+                                 and points are numbered after them; -1 for a shape; of an
+                                 OcTree a number for its cells()
+        vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
+                                 CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
+                                 VERTEX_VERTEX: v of o1, v of o2. With a shape: the
+                                 vertices of the feature. Unused entries are -1.
+        first_on_o1  bool        whether the first feature is of o1 and the second of o2;
+                                 false: the reverse. Edge ea is of o1. With a shape:
+                                 whether the mesh is o1.
+        within_tolerance  bool   whether only nearness is proved, not a crossing; of meshes
+                                 on straight paths without min_distance it is false
+        toc_lo, toc_hi  float64  bracket of the first time at which the features touch
+        pos          (3,) float64  where they touch at toc_lo, in the world frame; with
+                                 min_distance the middle between their nearest points
+        normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
+                                 self-collision from the vertex to the face, or from edge
+                                 ea to edge eb. Zero if it is not defined, and if a
+                                 shape is overlapped at t = 0.
+    contacts_cut : bool
+        Whether num_max_contacts dropped contacts.
+    initially_crossing : bool
+        Whether an edge passes through a triangle at t = 0.
+    crossing : structured array of 0 or 1 elements of contact_dtype
+        Such an edge and triangle, of kind Kind.CROSSING.
+    crossings : structured array of contact_dtype
+        All of them, if enable_crossings asks for them.
+    is_triangle_soup : bool
+        In a self-collision: whether no two triangles have a common vertex, so that
+        neighbours are contacts. weld_vertices() joins them.
+    counts : dict, how many candidates each stage of the query saw and removed
+    times : dict, wall time of the parts of the query in seconds
+    contact_tf1, contact_tf2 : (4, 4) float64
+        Poses of o1 and o2 at which they overlap, up to toc_err after the first contact;
+        without a collision, at t = 1. With min_distance they are still apart there, and
+        meshes that only touch may not overlap.
+    """
+
+    is_collide: bool
+    time_of_contact: float
+    contacts: NDArray[np.void]
+    contacts_cut: bool
+    initially_crossing: bool
+    crossing: NDArray[np.void]
+    crossings: NDArray[np.void]
+    is_triangle_soup: bool
+    counts: Dict[str, int]
+    times: Dict[str, float]
+    contact_tf1: NDArray[np.float64]
+    contact_tf2: NDArray[np.float64]
+    _queried: Optional[Tuple[Queried, Queried]]
+
+    def __bool__(self) -> bool:
+        return self.is_collide
+
+    def to_dataframe(self) -> Any:
+        """The contacts as a pandas.DataFrame, see fcl_ccd.to_dataframe()."""
+        return to_dataframe(self.contacts)
+
+    def show(
+        self,
+        t: Optional[float] = None,
+        *,
+        contact: Optional[int] = 0,
+        file: Optional[Union[str, os.PathLike[str]]] = None,
+    ) -> None:
+        """Draw both objects at a time of the step, with the contacts until then.
+
+        Opens a window, or draws in the notebook. It needs matplotlib. Triangles, free edges
+        and points, and cells of an OcTree that are in contact have a stronger colour. Each
+        contact has a point, and a line along its normal.
+
+        t : float, optional
+            In fractions of the step. None: when the contact begins; 1 without contacts.
+        contact : int or None
+            The number of the contact, in contacts, on which the picture zooms. None: it shows
+            the whole objects, by default at the time of contact.
+        file : str or path, optional
+            Write the picture there instead, in the format of its suffix: .png, .svg, .pdf.
+
+        A result refers to the objects of its query, and keeps them alive. Pickles and deep
+        copies of it do not have them, and cannot be shown (ValueError). Raises RuntimeError if
+        a mesh was updated since the query, or without a window; ImportError without
+        matplotlib.
+        """
+        if t is not None:
+            t = _arguments.number(t, "t")
+            if not 0 <= t <= 1:
+                raise ValueError(f"t is {t}. Give a fraction of the step, from 0 to 1")
+        if contact is not None:
+            contact = _arguments.integer(contact, "contact")
+        if file is not None and not isinstance(file, (str, os.PathLike)):
+            raise _arguments.wrong_type("file", file, "a path, or None")
+        _figures.show(_picture(self, t, contact), file)
+
+    def __copy__(self) -> Result:
+        return replace(self)
+
+    def __getstate__(self) -> Dict[str, Any]:
+        """For pickles and deep copies: without the objects, which would be copied too."""
+        return {**self.__dict__, "_queried": None}
+
+    def __repr__(self) -> str:
+        return (
+            f"Result(is_collide={self.is_collide}, time_of_contact={self.time_of_contact}, "
+            f"{len(self.contacts)} contacts, initially_crossing={self.initially_crossing})"
+        )
+
+
+def _picture(result: Result, t: Optional[float], number: Optional[int]) -> Picture:
+    if result._queried is None:
+        raise ValueError(
+            "this Result is a deep copy or was pickled, and does not have the objects of its "
+            "query. Call show() of the Result that the query gave, or query again"
+        )
+    # A crossing at t = 0 need not be a contact.
+    events = result.contacts if len(result.contacts) > 0 else result.crossing
+    chosen = None
+    if number is not None and number < max(len(events), 1):
+        chosen = events[number] if len(events) > 0 else None
+    elif number is not None:
+        raise ValueError(
+            f"contact is {number}. This Result has {len(events)} contacts, numbered from 0"
+        )
+    if t is None:
+        t = result.time_of_contact if chosen is None else float(chosen["toc_lo"])
+    (o1, path1, _), (o2, path2, _) = result._queried
+    is_one = o1 is o2 and path1 is path2
+    names = ("o",) if is_one else ("o1", "o2")
+    surfaces = tuple(surface_at(*pair, t) for pair in zip(result._queried, names))
+    both = surfaces[0], surfaces[-1]
+    touching = np.concatenate([result.crossing, result.contacts[result.contacts["toc_lo"] <= t]])
+    labels = tuple(
+        f"{name}: {type(o).__name__}" for name, (o, _, _) in zip(names, result._queried)
+    )
+    if chosen is None:
+        title = _title_of_all(result, t)
+    else:
+        title = _title_of_one(result, chosen, number, both, names)
+        title += "" if t == chosen["toc_lo"] else f"\ndrawn at t = {t:.4g}"
+    title += "\nthey cross at t = 0" if result.initially_crossing else ""
+    return picture_of(title, both, labels, chosen, touching)
+
+
+def _title_of_all(result: Result, t: float) -> str:
+    if not result.is_collide:
+        return f"no contact in the step, drawn at t = {t:.4g}"
+    until = np.count_nonzero(result.contacts["toc_lo"] <= t)
+    return f"t = {t:.4g}: {until} of {len(result.contacts)} contacts until then"
+
+
+def _title_of_one(
+    result: Result,
+    contact: np.void,
+    number: Optional[int],
+    surfaces: Tuple[Surface, Surface],
+    names: Tuple[str, ...],
+) -> str:
+    toc, kind = contact["toc_lo"], Kind(contact["kind"]).name.lower().replace("_", "-")
+    name = "first contact" if toc == result.time_of_contact else f"contact {number}"
+    parts = [s.name_of(int(contact[b])) for s, b in zip(surfaces, ("b1", "b2"))]
+    if len(names) == 2:
+        parts = [f"{part} of {of}" if part else of for part, of in zip(parts, names)]
+    return f"{name} at t = {toc:.4g}\n{kind}, {parts[0]} and {parts[1]}"
