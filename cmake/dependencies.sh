@@ -28,6 +28,8 @@ fcl_ccd_install_dependencies() {
   if [ "$1" = all ]; then
     packages+=(mypy patchelf python3-matplotlib python3-pandas python3-pip python3-setuptools
       python3-wheel)
+    # A test runs the notebook of the examples.
+    packages+=(python3-nbclient python3-ipykernel)
   fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.
   if [ "$1" = all ]; then

@@ -92,15 +92,17 @@ def _draw(figure: Any, picture: Picture) -> None:
 def _draw_contacts(art3d: Any, axes: Any, picture: Picture) -> None:
     center, half = picture.view
     inside = (np.abs(picture.places - center) <= half).all(axis=1)
-    styles = (_OTHER_CONTACT, 8, "other contacts"), (_CONTACT, 24, "contact, normal")
+    styles = (_OTHER_CONTACT, 8.0, "other contacts"), (_CONTACT, 24.0, "contact, normal")
     for (colour, size, label), of in zip(styles, (~picture.is_main, picture.is_main)):
         places, normals = picture.places[inside & of], picture.normals[inside & of]
         if len(places) == 0:
             continue
+        length, size = (0.35 * half, size) if len(places) < 10 else (0.1 * half, size / 3)
         axes.scatter(*places.T, color=[colour], s=size, depthshade=False, zorder=10, label=label)
-        length = (0.35 if len(places) < 10 else 0.1) * half
         lines = np.stack([places, places + length * normals], axis=1)
-        axes.add_collection3d(art3d.Line3DCollection(lines, colors=[colour], linewidths=1, zorder=10))
+        axes.add_collection3d(
+            art3d.Line3DCollection(lines, colors=[colour], linewidths=1, zorder=10)
+        )
 
 
 def _shaded(polygons: List[NDArray[np.float64]], colour: Any) -> List[NDArray[np.float64]]:

@@ -124,7 +124,8 @@ class _MeshSurface(Surface):
         self._vertices, self._of = vertices, (triangles, edges, points)
 
     def bounds(self) -> NDArray[np.float64]:
-        bounds: NDArray[np.float64] = self._vertices[np.concatenate([of.ravel() for of in self._of])]
+        used = np.concatenate([of.ravel() for of in self._of])
+        bounds: NDArray[np.float64] = self._vertices[used]
         return bounds
 
     def _place(self, number: int) -> Tuple[int, int]:

@@ -88,6 +88,8 @@ first = fcl_ccd.collide(mesh, mesh, query="first")
 fcl_ccd.DeformableMesh(Trimesh()).update(Open3d())
 fcl_ccd.collide(fcl_ccd.RigidMesh(Open3d()), Open3d())
 fcl_ccd.collide(fcl_ccd.RigidMesh(Trimesh()), Trimesh())
+fcl_ccd.DeformableMesh.from_trimesh(Trimesh()).update(Trimesh())
+first.show(0.5, contact=None, file="first.png")
 fcl_ccd.self_collide(3)
 fcl_ccd.self_collide(mesh, query="last")
 fcl_ccd.CollisionManager().collide(query="last")
@@ -104,8 +106,8 @@ fcl_ccd.CollisionManager().collide(query="last")
         cwd=package.parent,
     )
     of_mesh, *of_queries = [line for line in found.stdout.splitlines() if ": error: " in line]
-    assert "program.py:20:" in of_mesh and 'incompatible type "int"' in of_mesh, found.stdout
-    for line, error in zip((21, 22), of_queries):
+    assert "program.py:22:" in of_mesh and 'incompatible type "int"' in of_mesh, found.stdout
+    for line, error in zip((23, 24), of_queries):
         assert f"program.py:{line}:" in error and "Literal['last']" in error, found.stdout
     assert len(of_queries) == 2, found.stdout
 
