@@ -72,14 +72,17 @@ def _draw(figure: Any, picture: Picture) -> None:
             hides_faces = len(shown) > _MOST_EDGED
             edges += faces if pieces.are_round or hides_faces else [_EDGE] * len(shown)
             segments = clipped(pieces.segments, picture.view)
-            axes.add_collection3d(art3d.Line3DCollection(segments, colors=[colour], linewidths=2))
+            if segments:
+                lines = art3d.Line3DCollection(segments, colors=[colour], linewidths=2)
+                axes.add_collection3d(lines)
             near = (np.abs(pieces.points - center) <= half).all(axis=1)
-            axes.scatter(*pieces.points[near].T, color=[colour], s=12, depthshade=False)
+            if near.any():
+                axes.scatter(*pieces.points[near].T, color=[colour], s=12, depthshade=False)
         handles.append(_part_of_matplotlib("patches").Patch(color=pair[0], label=name))
-    # All in one collection: matplotlib sorts the polygons of each one by depth.
-    axes.add_collection3d(
-        art3d.Poly3DCollection(polygons, facecolors=colours, edgecolors=edges, linewidths=0.3)
-    )
+    if polygons:  # All in one collection: matplotlib sorts the polygons of each one by depth.
+        axes.add_collection3d(
+            art3d.Poly3DCollection(polygons, facecolors=colours, edgecolors=edges, linewidths=0.3)
+        )
     _draw_contacts(art3d, axes, picture)
     axes.legend(handles=[*handles, *axes.get_legend_handles_labels()[0]], loc="upper right")
     for set_limits, middle in zip((axes.set_xlim, axes.set_ylim, axes.set_zlim), center):

@@ -5,6 +5,7 @@
 #define FCL_CCD_PYTHON_GEOMETRY_H
 
 #include <cstdint>
+#include <exception>
 #include <vector>
 
 #include "fcl/geometry/collision_geometry.h"
@@ -43,18 +44,20 @@ class Guarded {
    private:
     std::vector<const Guarded*> read_;
   };
+  /// An exception that ends it tells that nothing was written.
   class Writing {
    public:
     explicit Writing(const Guarded& written);
     ~Writing() {
       written_.is_written_ = false;
-      ++written_.num_updates_;
+      if (std::uncaught_exceptions() == num_exceptions_) ++written_.num_updates_;
     }
     Writing(const Writing&) = delete;
     Writing& operator=(const Writing&) = delete;
 
    private:
     const Guarded& written_;
+    const int num_exceptions_{std::uncaught_exceptions()};
   };
 
  private:

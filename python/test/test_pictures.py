@@ -10,7 +10,7 @@ import pytest
 from scenes import crumpled, grid, pose, require, rotation, sphere
 
 import fcl_ccd
-from fcl_ccd import _pictures, _results, _surfaces
+from fcl_ccd import _figures, _pictures, _results, _surfaces
 from fcl_ccd._motions import AT_ORIGIN, path_of
 
 PREVIOUS, CURRENT, TRIANGLES = crumpled(9)
@@ -413,6 +413,24 @@ def test_every_kind_is_drawn(o, tmp_path):
     fcl_ccd.self_collide(crumpling()).show(contact=3, file=tmp_path / "picture.png")
 
 
+def test_cables_are_drawn(tmp_path):
+    """Of two cables there are no faces at all, of two points no edges."""
+    require("matplotlib")
+    image = pytest.importorskip("matplotlib.image")
+    ends = np.array([(-1, 0, 0), (1, 0, 0), (0, -1, 1), (0, 1, 1)], float)
+    cables = [fcl_ccd.DeformableMesh(ends, None, edges=[pair]) for pair in ((0, 1), (2, 3))]
+    clouds = [fcl_ccd.DeformableMesh(ends * (0, 1, 1), None, points=[i]) for i in (1, 3)]
+    for o1, o2 in (cables, clouds):
+        falls = pose(), pose((0, -1 if o1 is clouds[0] else 0, -1))
+        result = fcl_ccd.collide(o1, o2, None, falls, min_distance=0.1)
+        assert len(result.contacts) == 1
+        for contact in (0, None):
+            result.show(contact=contact, file=tmp_path / "cables.png")
+            pixels = image.imread(tmp_path / "cables.png")
+            assert near(pixels, _figures._COLOURS[0][1]) > 3
+            assert near(pixels, _figures._COLOURS[1][1]) > 3
+
+
 def test_windows(monkeypatch):
     require("matplotlib")
     from matplotlib import pyplot
@@ -437,6 +455,10 @@ def test_the_mesh_has_changed():
     mesh = sheet()
     result = fcl_ccd.collide(fcl_ccd.Sphere(0.3), mesh, FALLS)
     picture(result)
+    for wrong in (mesh.current[1:], np.full_like(mesh.current, np.nan)):
+        with pytest.raises(ValueError):
+            mesh.update(wrong)
+    picture(result)  # after an error the mesh is unchanged
     mesh.update(mesh.current)
     with pytest.raises(RuntimeError, match=r"o2 was updated after the query.*copy\.copy\(\) of the mesh"):
         result.show()
