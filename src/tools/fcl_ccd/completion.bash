@@ -12,7 +12,12 @@ _fcl_ccd() {
   case $previous in
     --query) words='all first any' ;;
     --kind) words='vf ee' ;;
-    --columns) words='triangles position normal triangles,position,normal' ;;
+    --columns)
+      case $command in
+        run) words='triangles position normal triangles,position,normal step,kind,i0,i1,i2,i3,i4,toc_lo,toc_hi' ;;
+        queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc rounded file' ;;
+      esac
+      ;;
     --start | --end | --stride | --follow | --thickness | --jobs | --threads | --toc-err | --repeat) return ;;
     *)
       case $command:$word in
@@ -20,7 +25,7 @@ _fcl_ccd() {
           words="$common --against --start --end --stride --follow --no-self --query --thickness
             --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --paint"
           ;;
-        queries:-*) words="$common --kind --print" ;;
+        queries:-*) words="$common --kind --print --columns" ;;
         *)
           compopt -o filenames
           mapfile -t COMPREPLY < <(compgen -f -- "$word")

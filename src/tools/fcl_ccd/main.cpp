@@ -13,11 +13,14 @@
 #include <exception>
 #include <limits>
 #include <map>
+#include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "fcl/ccd_version.h"
+#include "help_text.h"
 #include "mesh_io.h"
 #include "output_file.h"
 #include "queries_command.h"
@@ -31,110 +34,6 @@ namespace {
 
 using fcl::ContinuousContactKind;
 using fcl::ContinuousQuery;
-
-constexpr const char* kMainExamples = R"(Examples:
-  fcl-ccd run cloth_0.ply cloth_1.ply
-  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
-  fcl-ccd queries edge-edge.csv --kind ee --json errors.json
-
-'fcl-ccd COMMAND --help' explains a command. Exit code: 0 when done, with or without
-contacts; 2 when the command is refused and no output file is written or changed; 3 and
-above when a run stops before its end ('fcl-ccd run --help').)";
-
-constexpr const char* kRunDetails = R"(Frames:
-  FRAMES is a file, a folder (its meshes; f9 comes before f10), a pattern in quotes
-  ('frames/*.ply') or a name with a number (frame_%04d.ply). --start, --end and --stride
-  select frames of the last three: numbers for %04d, otherwise files counted from 0.
-  All frames of a mesh have the same vertices and faces in the same order.
-  Formats: OBJ, PLY (ascii and binary, float and double), OFF (text), STL (ascii and
-  binary). Polygons are divided into triangles, in all frames as in the first. A convex
-  polygon that turns at every corner becomes the fan of triangles around its first vertex.
-  Lines and points of OBJ, and edges of PLY, are cables and points. With --columns
-  triangles their numbers begin with e and p.
-  All files are checked before the first step. Positions in binary PLY files are checked
-  in their step.
-  Step i goes from frame i to the next one. Vertices move on straight lines. Frames are
-  counted from 0, or have the number in their name (%04d).
-  If files at the end are not whole yet, the steps before them are done, and the exit code
-  is 6. --follow waits for frames until --end, Ctrl-C, or SECONDS without a new one.
-
-Tests:
-  Without --against: A against itself. With --against: A against itself and A against B,
-  never B against itself. With --no-self: A against B only. If B has one frame, it does
-  not move.
-  If no triangle of a mesh shares a vertex, neighbours are reported as contacts. --weld
-  joins the vertices that coincide in all frames. Ids are those of the file.
-
-Output:
-  A contact is vf (vertex-face) or ee (edge-edge). Each contact is proved. 'crossing' tells
-  whether an edge passes through a face at the beginning of the step. 'vertices' and
-  'triangles' count those of all meshes.
-  With --thickness, features are in contact when their distance reaches D. Then ve (a vertex
-  and an edge) and vv (two vertices) are contacts too.
-  '--query first' reports the contacts that may be the first. '--query any' reports at most
-  one contact. If A touches itself it does not look at B, and says what is not decided.
-  --contacts: CSV with the columns step,kind,i0,i1,i2,i3,toc_lo,toc_hi,i4. kind is vf (i0 is
-  the vertex, i1 to i3 the face), ee (i0 and i1 are edge a, i2 and i3 edge b) or crossing
-  (i0 and i1 are the edge, i2 to i4 the face); ve has no i3, vv no i2 and i3. Ids count from
-  0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in fractions
-  of the step. --columns adds, before i4, t0,t1 (the triangles of both features), x,y,z (the
-  point where they touch) and nx,ny,nz (unit normal, A to B).
-  --steps: JSON lines: the options, one object for each step, and a summary at the end.
-  --json: JSON with all steps and their times in milliseconds. build: making the tree, in
-  the first step of each job. total = update + traverse + test.
-  --paint: PLY of the last frame. Vertices of vf, ve and vv contacts are red, those of ee
-  contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come
-  after A's.
-  --contacts and --steps grow with each step. --json and --paint are written at the end.
-  One output may be '-', standard output. Then the table goes to standard error.
-
-Stopping:
-  After Ctrl-C, SIGTERM or SIGHUP the steps that have begun are finished. Another signal,
-  half a second after the first or later, ends the program at once.
-  --resume continues after the last whole step in the files of --contacts and --steps. At
-  the end the files are as if the run had never stopped. There may be more frames than
-  before, but not with --weld.
-  Outputs are locked: a second run that names one of them is refused.
-  Exit code: 0 done; 2 refused, no file written or changed; 3 a later frame cannot be read
-  or used; 4 an output cannot be written (disk full), or another program took it away; 5 a
-  rank of mpirun died; 6 the last frames are not whole yet; 128 + N stopped by signal N.
-  After 3 and above the files have all steps that were done, unless they were taken away.
-
-Cores:
-  By default the program does as many steps at the same time as there are cores. With
-  --repeat or --threads it does one step after the other, so that the times are those of a
-  step that has the machine to itself. With --jobs and --threads it does so many steps at
-  the same time, with so many threads each. The output is the same.
-  'mpirun -n K fcl-ccd run ...' splits the steps over K processes (ranks), also on several
-  machines. Rank 0 writes the same files. Each rank does one step at a time, or --jobs.
-
-Examples:
-  fcl-ccd run cloth_0.ply cloth_1.ply cloth_2.ply --json times.json --repeat 5
-  fcl-ccd run cloth_0.ply cloth_1.ply --query first
-  fcl-ccd run cloth_0.ply cloth_1.ply --thickness 0.001 --ignore-initially-closer
-  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
-  fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl --resume
-  fcl-ccd run frame_%04d.ply --start 100 --end 199 --contacts contacts.csv
-  mpirun -n 4 fcl-ccd run frames/ --contacts contacts.csv --steps steps.jsonl
-  fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
-  fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
-
-constexpr const char* kQueriesDetails = R"(Input:
-  Eight rows for each query: four points at t = 0, then the same points at t = 1. The points
-  are a vertex and a face (--kind vf), or edge a and edge b (--kind ee). A row is
-  num,den,num,den,num,den: x, y and z as fractions of integers of any size. A seventh field
-  may be 0 or 1: whether the features truly touch. Coordinates become the nearest double.
-
-Output:
-  Without --print: a table of counts and errors.
-  --print: index,answer,toc_lo,toc_hi for each query; answer is yes or no. Each answer is
-  proved, so that 'uncertain' is 0.
-  --json: the counts. Those that need the seventh field are null without it.
-
-Examples:
-  fcl-ccd queries vertex-face.csv --kind vf
-  fcl-ccd queries a/edge-edge.csv b/edge-edge.csv --kind ee --repeat 10 --json errors.json
-  fcl-ccd queries edge-edge.csv --kind ee --print > answers.csv)";
 
 /// @brief A validator that accepts finite numbers of a type above 0. (CLI11's own accepts
 /// inf, and its message for a word is the range of double.)
@@ -213,20 +112,24 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
       ->check(named());
 }
 
-/// @brief Reads the names of columns, which are separated by commas.
-fcl_ccd::ContactColumns parseColumns(const std::string& list) {
-  fcl_ccd::ContactColumns columns;
-  const std::map<std::string, bool*> names{{"triangles", &columns.triangles},
-                                           {"position", &columns.position},
-                                           {"normal", &columns.normal}};
-  for (const std::string& name : CLI::detail::split(list, ',')) {
-    const auto found = names.find(name);
-    if (found == names.end())
-      throw CLI::ValidationError("--columns",
-                                 "'" + name + "' is not triangles, position or normal");
-    *found->second = true;
-  }
-  return columns;
+/// @brief Adds the option for the columns of a CSV output.
+/// @param parse  takes the list; its std::runtime_error becomes one of the option.
+template <typename Parse>
+void addColumnsOption(CLI::App& command, const char* help, const char* output,
+                      Parse parse) {
+  command
+      .add_option_function<std::string>(
+          "--columns",
+          [parse](const std::string& list) {
+            try {
+              parse(list);
+            } catch (const std::runtime_error& error) {
+              throw CLI::ValidationError("--columns", error.what());
+            }
+          },
+          help)
+      ->type_name("LIST")
+      ->needs(output);
 }
 
 void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
@@ -317,12 +220,10 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
                  "Write the contacts as CSV; -: to standard output")
       ->type_name("FILE")
       ->check(named());
-  run.add_option_function<std::string>(
-         "--columns",
-         [&options](const std::string& list) { options.columns = parseColumns(list); },
-         "More columns: triangles,position,normal")
-      ->type_name("LIST")
-      ->needs("--contacts");
+  addColumnsOption(run, "Columns of the contacts, in this order; see below", "--contacts",
+                   [&options](const std::string& list) {
+                     options.columns = fcl_ccd::ContactColumns(list);
+                   });
   run.add_option("--steps", options.steps_path,
                  "Write a JSON object for each step when it is done")
       ->type_name("FILE")
@@ -339,7 +240,7 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
 // The order is that of the help.
 CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   CLI::App* run = app.add_subcommand("run", "Continuous collision of meshes in motion");
-  run->footer(kRunDetails);
+  run->footer(fcl_ccd::kRunDetails);
   addFrameOptions(*run, options);
   addFollowOption(*run, options);
   addTestOptions(*run, options);
@@ -350,22 +251,32 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   return run;
 }
 
-CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
-  CLI::App* queries =
-      app.add_subcommand("queries", "Elementary vertex-face or edge-edge queries");
-  queries->footer(kQueriesDetails);
-  queries->add_option("FILES", options.files, "CSV files of queries")
-      ->type_name("FILE")
-      ->required();
+void addKindOption(CLI::App& command, std::optional<ContinuousContactKind>& kind) {
   static const std::map<std::string, ContinuousContactKind> kKinds{
       {"vf", ContinuousContactKind::kVertexFace},
       {"ee", ContinuousContactKind::kEdgeEdge}};
-  queries->add_option("--kind", options.kind, "vf (vertex-face) or ee (edge-edge)")
+  command
+      .add_option("--kind", kind,
+                  "vf (vertex-face) or ee (edge-edge); default: what the names tell")
       ->type_name("KIND")
-      ->required()
       ->transform(oneOf(kKinds, "vf or ee"));
+}
+
+CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
+  CLI::App* queries =
+      app.add_subcommand("queries", "Elementary vertex-face or edge-edge queries");
+  queries->footer(fcl_ccd::kQueriesDetails);
+  queries->add_option("FILES", options.files, "CSV files of queries, or folders of them")
+      ->type_name("FILE")
+      ->required();
+  addKindOption(*queries, options.kind);
   queries->add_flag("--print", options.print_answers,
                     "Print one line for each query, not the table");
+  addColumnsOption(*queries, "Columns of the lines, in this order; see below", "--print",
+                   [&options](const std::string& list) {
+                     options.columns =
+                         fcl_ccd::parseColumns(list, fcl_ccd::answerColumns());
+                   });
   addCommonOptions(*queries, options.toc_err, options.repeat, options.json_path);
   return queries;
 }
@@ -461,7 +372,7 @@ std::string joined(int argc, char** argv) {
 int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   CLI::App app("Continuous collision detection for triangle meshes that deform");
   app.name("fcl-ccd");
-  app.footer(kMainExamples);
+  app.footer(fcl_ccd::kMainExamples);
   app.set_version_flag("--version", "fcl-ccd " FCL_CCD_VERSION " (FCL " FCL_VERSION ")");
   app.require_subcommand(1);
   fcl_ccd::RunOptions run_options;

@@ -8,121 +8,151 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "element_names.h"
 #include "number_text.h"
 #include "output_set.h"
-#include "query_csv.h"
+#include "query_run.h"
 
 namespace fcl_ccd {
 namespace {
 
 using fcl::detail::deformable::Answer;
 using fcl::detail::deformable::ElementaryResult;
-using fcl::detail::deformable::elementaryTest;
-using fcl::detail::deformable::VertexPath;
 using Json = nlohmann::ordered_json;
 
-struct Summary {
-  std::size_t num_true{0};
-  std::size_t false_negatives{0};
-  std::size_t false_positives{0};
-  std::size_t uncertain{0};
-  double ns_per_query{0};
-};
-
-std::vector<ElementaryResult> runQueries(const QueryList& list,
+std::vector<ElementaryResult> runQueries(const QuerySet& set,
                                          const QueriesOptions& options, double& seconds) {
   using Clock = std::chrono::steady_clock;
-  std::vector<ElementaryResult> results(list.queries.size());
+  std::vector<ElementaryResult> results(set.queries.size());
   seconds = std::numeric_limits<double>::infinity();
   for (int i = 0; i < options.repeat; ++i) {
     const auto start = Clock::now();
-    for (std::size_t k = 0; k < list.queries.size(); ++k) {
-      const auto& x = list.queries[k].x;
-      const VertexPath paths[4] = {x[0], x[1], x[2], x[3]};
-      results[k] = elementaryTest(options.kind, paths, 0, 1, options.toc_err);
-    }
+    for (std::size_t k = 0; k < results.size(); ++k)
+      results[k] = runQuery(set, k, options.toc_err);
     const std::chrono::duration<double> taken = Clock::now() - start;
     seconds = std::min(seconds, taken.count());
   }
   return results;
 }
 
-Summary summarize(const QueryList& list, const std::vector<ElementaryResult>& results) {
-  Summary summary;
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const bool truth = list.queries[k].truth;
-    const Answer answer = results[k].answer;
-    if (truth) ++summary.num_true;
-    if (answer == Answer::kUnsure) ++summary.uncertain;
-    if (answer == Answer::kNo && truth) ++summary.false_negatives;
-    if (answer == Answer::kYes && !truth) ++summary.false_positives;
-  }
-  return summary;
+/// A query and its answer.
+struct AnswerRow {
+  const QuerySet& set;
+  std::size_t index;
+  const ElementaryResult& result;
+
+  const ElementaryQuery& query() const { return set.queries[index]; }
+  bool hasTimes() const { return result.answer != Answer::kNo; }
+};
+
+void appendTime(const std::optional<double>& time, std::string& line) {
+  if (time) line.append(numberText(*time));
 }
 
-std::string answerLines(const std::vector<ElementaryResult>& results) {
-  std::string lines;
-  for (std::size_t k = 0; k < results.size(); ++k) {
-    const ElementaryResult& result = results[k];
-    lines.append(std::to_string(k));
-    if (result.answer == Answer::kNo) {
-      lines.append(",no,,\n");
-      continue;
-    }
-    lines.append(result.answer == Answer::kYes ? ",yes," : ",unsure,");
-    lines.append(numberText(result.toc_lo)).append(1, ',');
-    lines.append(numberText(result.toc_hi)).append(1, '\n');
-  }
+/// A text in the form of CSV.
+std::string csvField(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string field = "\"";
+  for (const char c : text) field.append(c == '"' ? 2 : 1, c);
+  return field + '"';
+}
+
+constexpr CsvColumn<AnswerRow> kAnswerColumns[] = {
+    {"index", [](const AnswerRow& row,
+                 std::string& line) { line.append(std::to_string(row.index)); }},
+    {"answer",
+     [](const AnswerRow& row, std::string& line) {
+       const Answer answer = row.result.answer;
+       line.append(answer == Answer::kNo    ? "no"
+                   : answer == Answer::kYes ? "yes"
+                                            : "unsure");
+     }},
+    {"toc_lo",
+     [](const AnswerRow& row, std::string& line) {
+       if (row.hasTimes()) appendTime(row.result.toc_lo, line);
+     }},
+    {"toc_hi",
+     [](const AnswerRow& row, std::string& line) {
+       if (row.hasTimes()) appendTime(row.result.toc_hi, line);
+     }},
+    {"kind",
+     [](const AnswerRow& row, std::string& line) {
+       line.append(nameOf(row.set.fileOf(row.index).kind));
+     }},
+    {"truth",
+     [](const AnswerRow& row, std::string& line) {
+       if (row.set.has_truth) line.append(row.query().truth ? "yes" : "no");
+     }},
+    {"toc",
+     [](const AnswerRow& row, std::string& line) { appendTime(row.query().toc, line); }},
+    {"rounded",
+     [](const AnswerRow& row, std::string& line) {
+       line.append(std::to_string(row.query().num_rounded));
+     }},
+    {"file", [](const AnswerRow& row, std::string& line) {
+       line.append(csvField(row.set.fileOf(row.index).path));
+     }}};
+
+std::string answerLines(const QuerySet& set, const std::vector<ElementaryResult>& results,
+                        const std::optional<ColumnNumbers>& columns) {
+  const ColumnNumbers plain{0, 1, 2, 3};
+  std::string lines = columns ? csvHead(kAnswerColumns, *columns) : "";
+  for (std::size_t k = 0; k < results.size(); ++k)
+    appendCsvLine(kAnswerColumns, columns ? *columns : plain,
+                  AnswerRow{set, k, results[k]}, lines);
   return lines;
 }
 
-Json toJson(const QueryList& list, const Summary& summary) {
+Json toJson(const QuerySet& set, const QueryErrors& errors, double ns_per_query) {
   const auto ifTruth = [&](std::size_t count) {
-    return list.has_truth ? Json(count) : Json(nullptr);
+    return set.has_truth ? Json(count) : Json(nullptr);
   };
-  return {{"queries", list.queries.size()},
-          {"true", ifTruth(summary.num_true)},
-          {"false_negatives", ifTruth(summary.false_negatives)},
-          {"false_positives", ifTruth(summary.false_positives)},
-          {"uncertain", summary.uncertain},
-          {"ns_per_query", summary.ns_per_query}};
+  return {{"queries", set.queries.size()},
+          {"true", ifTruth(errors.num_true)},
+          {"false_negatives", ifTruth(errors.false_negatives)},
+          {"false_positives", ifTruth(errors.false_positives)},
+          {"uncertain", errors.uncertain},
+          {"rounded_queries", numRoundedQueries(set)},
+          {"ns_per_query", ns_per_query}};
 }
 
-std::string table(const QueryList& list, const Summary& summary) {
+std::string table(const QuerySet& set, const QueryErrors& errors, double ns_per_query) {
   const auto ifTruth = [&](std::size_t count) {
-    return list.has_truth ? std::to_string(count) : "-";
+    return set.has_truth ? std::to_string(count) : "-";
   };
   char row[256];  // six fields of at most 20 characters
-  std::snprintf(
-      row, sizeof row, "%7zu  %6s  %15s  %15s  %9zu  %12.1f\n", list.queries.size(),
-      ifTruth(summary.num_true).c_str(), ifTruth(summary.false_negatives).c_str(),
-      ifTruth(summary.false_positives).c_str(), summary.uncertain, summary.ns_per_query);
+  std::snprintf(row, sizeof row, "%7zu  %6s  %15s  %15s  %9zu  %12.1f\n",
+                set.queries.size(), ifTruth(errors.num_true).c_str(),
+                ifTruth(errors.false_negatives).c_str(),
+                ifTruth(errors.false_positives).c_str(), errors.uncertain, ns_per_query);
   return std::string("queries    true  false negatives  false positives  uncertain  ") +
          "ns per query\n" + row;
 }
 
 }  // namespace
 
+std::vector<std::string> answerColumns() { return namesOf(kAnswerColumns); }
+
 void queriesCommand(const QueriesOptions& options) {
-  OutputSet outputs(options.files);
+  const std::vector<QueryFile> files = listQueryFiles(options.files, options.kind);
+  std::vector<std::string> inputs;
+  for (const QueryFile& file : files) inputs.push_back(file.path);
+  OutputSet outputs(inputs);
   OutputFile* const json_file = outputs.open(options.json_path);
-  const QueryList list = readQueries(options.files);
-  if (list.num_rounded > 0)
-    std::fprintf(stderr,
-                 "fcl-ccd: warning: %s not exactly of type double, and rounded to the "
-                 "nearest one\n",
-                 list.num_rounded == 1
-                     ? "1 coordinate is"
-                     : (std::to_string(list.num_rounded) + " coordinates are").c_str());
+  const QuerySet set = readQuerySet(files);
+  const std::string note = noteOnRounding(set);
+  if (!note.empty()) std::fprintf(stderr, "fcl-ccd: %s\n", note.c_str());
 
   double seconds = 0;
-  const std::vector<ElementaryResult> results = runQueries(list, options, seconds);
-  Summary summary = summarize(list, results);
-  summary.ns_per_query = 1e9 * seconds / static_cast<double>(results.size());
+  const std::vector<ElementaryResult> results = runQueries(set, options, seconds);
+  const QueryErrors errors = compareWithTruth(set, results);
+  const double ns_per_query = 1e9 * seconds / static_cast<double>(results.size());
 
-  print(options.print_answers ? answerLines(results) : table(list, summary),
+  print(options.print_answers ? answerLines(set, results, options.columns)
+                              : table(set, errors, ns_per_query),
         outputs.hasStandardOutput());
-  if (json_file != nullptr) json_file->write(toJson(list, summary).dump(2) + '\n');
+  if (json_file != nullptr)
+    json_file->write(toJson(set, errors, ns_per_query).dump(2) + '\n');
   outputs.publish();
 }
 

@@ -2,6 +2,7 @@
 #include "query_csv.h"
 
 #include <algorithm>
+#include <cctype>
 #include <stdexcept>
 #include <string_view>
 
@@ -15,10 +16,40 @@ namespace {
 
 constexpr std::size_t kRowsAQuery = 8;
 
+using Fields = std::vector<std::string_view>;
+
+/// The names of the fields of a row of decimals, and of one of fractions.
+using Names = std::vector<std::string_view>;
+const Names kDecimals{"x", "y", "z", "truth", "toc"};
+const Names kFractions{"x_num", "x_den", "y_num", "y_den",
+                       "z_num", "z_den", "truth", "toc"};
+
+/// @brief What the fields of a row are, which their number tells.
+struct RowForm {
+  std::size_t num_fields{0};
+
+  bool isDecimal() const { return num_fields <= kDecimals.size(); }
+  const Names& names() const { return isDecimal() ? kDecimals : kFractions; }
+  std::size_t numCoordinates() const { return isDecimal() ? 3 : 6; }
+  bool hasTruth() const { return num_fields > numCoordinates(); }
+  bool hasToc() const { return num_fields > numCoordinates() + 1; }
+};
+
+RowForm formOf(const Fields& fields) {
+  constexpr std::size_t kFewest = 3;
+  if (fields.size() < kFewest || fields.size() > kFractions.size())
+    throw std::runtime_error(
+        "has " + counted(fields.size(), "field") +
+        ". A row has 3 decimal numbers or 6 integers (three numerators and denominators),"
+        " then perhaps the truth, 0 or 1, and the true time");
+  return {fields.size()};
+}
+
 struct Row {
   double position[3];
-  bool has_truth{false};
+  std::size_t num_rounded{0};
   bool truth{false};
+  std::optional<double> toc;
 };
 
 std::string_view trimmed(std::string_view field) {
@@ -30,7 +61,7 @@ std::string_view trimmed(std::string_view field) {
   return token;
 }
 
-void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
+void splitFields(std::string_view line, Fields& fields) {
   fields.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
@@ -39,47 +70,85 @@ void splitFields(std::string_view line, std::vector<std::string_view>& fields) {
   }
 }
 
-Row parseRow(const std::vector<std::string_view>& fields, std::size_t& num_rounded) {
-  if (fields.size() != 6 && fields.size() != 7)
-    throw std::runtime_error("expected 6 or 7 fields, found " +
-                             std::to_string(fields.size()));
+/// @brief Whether a line has the names of columns: no field is a number, nan or inf.
+bool isHeader(const Fields& fields) {
+  return std::all_of(fields.begin(), fields.end(), [](std::string_view field) {
+    return !field.empty() &&
+           (std::isalpha(static_cast<unsigned char>(field[0])) != 0 || field[0] == '_') &&
+           classifyNumber(field) == NumberToken::kNotANumber;
+  });
+}
+
+/// @brief Refuses a header that has one of our names at another place: the columns have
+/// another order.
+void requireOrder(const Fields& header) {
+  const Names& names = formOf(header).names();
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const auto found = std::find(names.begin(), names.end(), header[i]);
+    if (found == names.end() || found == names.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
+    throw std::runtime_error("column " + std::to_string(i + 1) + " is named " +
+                             quoted(header[i]) + ", which is the name of column " +
+                             std::to_string(found - names.begin() + 1) +
+                             ". Bring the columns into the order of the format");
+  }
+}
+
+/// @brief The true first time of contact; nothing if the field is empty.
+std::optional<double> parseToc(std::string_view field, bool truth) {
+  if (field.empty()) return std::nullopt;
+  const double toc = nearestDouble(field).value;
+  if (!truth)
+    throw std::runtime_error("there is a time, " + quoted(field) +
+                             ", but the truth is 0: no contact");
+  if (!(toc >= 0 && toc <= 1))
+    throw std::runtime_error("the time is " + quoted(field) +
+                             ", expected a fraction of the step, from 0 to 1");
+  return toc;
+}
+
+Row parseRow(const RowForm& form, const Fields& fields) {
   Row row;
   for (std::size_t k = 0; k < 3; ++k) {
-    const NearestDouble nearest = nearestDouble(fields[2 * k], fields[2 * k + 1]);
+    const NearestDouble nearest = form.isDecimal()
+                                      ? nearestDouble(fields[k])
+                                      : nearestDouble(fields[2 * k], fields[2 * k + 1]);
     row.position[k] = nearest.value;
-    if (!nearest.exact) ++num_rounded;
+    if (!nearest.exact) ++row.num_rounded;
   }
-  row.has_truth = fields.size() == 7;
-  if (row.has_truth && fields[6] != "0" && fields[6] != "1")
-    throw std::runtime_error("the seventh field is " + quoted(fields[6]) +
-                             ", expected 0 or 1");
-  row.truth = row.has_truth && fields[6] == "1";
+  if (!form.hasTruth()) return row;
+  const std::string_view truth = fields[form.numCoordinates()];
+  if (truth != "0" && truth != "1")
+    throw std::runtime_error("the truth is " + quoted(truth) + ", expected 0 or 1");
+  row.truth = truth == "1";
+  if (form.hasToc()) row.toc = parseToc(fields.back(), row.truth);
   return row;
 }
 
 /// @brief Makes queries from the rows of one file.
 class QueryBuilder {
  public:
-  explicit QueryBuilder(QueryList& list) : list_(list) {}
+  explicit QueryBuilder(QueryList& list)
+      : list_(list), is_first_file_(list.queries.empty()) {}
 
-  void add(const Row& row) {
-    const std::size_t point = num_rows_ % kRowsAQuery;
-    if (point == 0) {
-      query_ = ElementaryQuery{};
-      query_.truth = row.truth;
-    }
-    if (list_.queries.empty() && point == 0) list_.has_truth = row.has_truth;
-    if (row.has_truth != list_.has_truth)
+  /// @brief Takes the names of the columns.
+  void addHeader(const Fields& fields) {
+    requireOrder(fields);
+    form_ = formOf(fields);
+  }
+
+  void add(const Fields& fields) {
+    if (form_.num_fields == 0) form_ = formOf(fields);
+    if (fields.size() != form_.num_fields)
+      throw std::runtime_error("has " + counted(fields.size(), "field") +
+                               "; the lines before have " +
+                               std::to_string(form_.num_fields));
+    if (is_first_file_) list_.has_truth = form_.hasTruth();
+    if (form_.hasTruth() != list_.has_truth)
       throw std::runtime_error(
-          "some rows have a seventh field and some do not; give it in all rows or in "
-          "none");
-    if (row.truth != query_.truth)
-      throw std::runtime_error("the rows of one query differ in the seventh field");
-    auto& path = query_.x[point % 4];
-    auto& target = point < 4 ? path.t0 : path.t1;
-    for (std::size_t k = 0; k < 3; ++k) target[k] = row.position[k];
-    ++num_rows_;
-    if (point + 1 == kRowsAQuery) list_.queries.push_back(query_);
+          std::string(form_.hasTruth() ? "tells" : "does not tell") +
+          " the truth, unlike the file before. Give it in all files or in none");
+    add(parseRow(form_, fields));
   }
 
   void finish() const {
@@ -90,7 +159,28 @@ class QueryBuilder {
   }
 
  private:
+  void add(const Row& row) {
+    const std::size_t point = num_rows_ % kRowsAQuery;
+    if (point == 0) {
+      query_ = ElementaryQuery{};
+      query_.truth = row.truth;
+      query_.toc = row.toc;
+    }
+    if (row.truth != query_.truth || row.toc != query_.toc)
+      throw std::runtime_error(
+          "differs from the row before in the truth. The eight rows of a query have the "
+          "same");
+    auto& path = query_.x[point % 4];
+    auto& target = point < 4 ? path.t0 : path.t1;
+    for (std::size_t k = 0; k < 3; ++k) target[k] = row.position[k];
+    query_.num_rounded += row.num_rounded;
+    ++num_rows_;
+    if (point + 1 == kRowsAQuery) list_.queries.push_back(query_);
+  }
+
   QueryList& list_;
+  bool is_first_file_;
+  RowForm form_;
   ElementaryQuery query_;
   std::size_t num_rows_{0};
 };
@@ -98,14 +188,19 @@ class QueryBuilder {
 void readFile(const std::string& path, QueryList& list) {
   const std::string bytes = readBytes(path);
   std::string_view text = bytes, line;
-  std::vector<std::string_view> fields;
+  Fields fields;
   QueryBuilder builder(list);
+  bool is_first = true;
   for (std::size_t line_no = 1; takeLine(text, line); ++line_no) {
     const auto place = [&] { return "line " + std::to_string(line_no); };
     namingPlace(place, [&] {
       splitFields(line, fields);
       if (fields.size() == 1 && fields[0].empty()) return;
-      builder.add(parseRow(fields, list.num_rounded));
+      if (is_first && isHeader(fields))
+        builder.addHeader(fields);
+      else
+        builder.add(fields);
+      is_first = false;
     });
   }
   builder.finish();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,19 +16,21 @@ namespace fcl_ccd {
 struct ElementaryQuery {
   std::array<fcl::detail::deformable::VertexPath, 4> x;
   bool truth{false};
+  std::optional<double> toc;   ///< the true first time of contact, if it is known
+  std::size_t num_rounded{0};  ///< coordinates that are not exactly a double
 };
 
 struct QueryList {
   std::vector<ElementaryQuery> queries;
-  bool has_truth{false};       ///< whether every query tells if its features touch
-  std::size_t num_rounded{0};  ///< coordinates that are not exactly a double
+  bool has_truth{false};  ///< whether every query tells if its features touch
 };
 
 /// @brief Reads files of elementary queries, eight rows each: the four points at t = 0,
-/// then at t = 1. A row is num,den,num,den,num,den with integers of any size, the exact
-/// rational coordinates x, y, z, and optionally a seventh column, 0 or 1: whether the
-/// features touch (the same in all eight rows).
-/// A coordinate becomes the nearest double.
+/// then at t = 1. A row has the exact coordinates x, y, z, as decimal numbers or each as
+/// two integers of any size, numerator and denominator. Then may come whether the
+/// features touch, 0 or 1, and after it the true first time of contact, which may be
+/// empty (both are the same in all eight rows). All rows of a file have as many fields. A
+/// first line of names is skipped. A coordinate becomes the nearest double.
 /// @throws std::runtime_error that names the file, the line and the cause.
 QueryList readQueries(const std::vector<std::string>& paths);
 

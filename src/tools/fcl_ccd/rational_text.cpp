@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -75,17 +76,81 @@ NearestDouble round(const ScaledQuotient& quotient) {
   return {value, exact};
 }
 
-}  // namespace
-
-NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator) {
-  const cpp_int num = parseBigInteger(numerator), den = parseBigInteger(denominator);
-  if (den == 0) throw std::runtime_error("the denominator is 0");
+NearestDouble nearestDouble(const cpp_int& num, const cpp_int& den) {
   if (num == 0) return {0, true};
   NearestDouble nearest = round(divide(abs(num), abs(den)));
   if (!std::isfinite(nearest.value))
     throw std::runtime_error("the coordinate is beyond double's range");
   if ((num < 0) != (den < 0)) nearest.value = -nearest.value;
   return nearest;
+}
+
+/// @brief digits * 10^exponent.
+struct Decimal {
+  std::string digits;  ///< with a sign, without leading zeros; empty: 0
+  long long exponent{0};
+};
+
+/// @param text  a decimal number
+Decimal split(std::string_view text) {
+  Decimal decimal;
+  std::string sign;
+  bool is_fraction = false;
+  std::size_t i = 0;
+  for (; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '+' || c == '-') {
+      sign = c == '-' ? "-" : "";
+    } else if (c == '.') {
+      is_fraction = true;
+    } else if (c >= '0' && c <= '9') {
+      if (c != '0' || !decimal.digits.empty()) decimal.digits += c;
+      if (is_fraction) --decimal.exponent;
+    } else {
+      break;
+    }
+  }
+  if (decimal.digits.empty()) return {};
+  decimal.digits = sign + decimal.digits;
+  if (i == text.size()) return decimal;
+  // An exponent that does not fit into a long long is as good as this one: no text is so
+  // long that its digits make up for it.
+  long long exponent = std::numeric_limits<long long>::max() / 2;
+  const std::string_view written = text.substr(i + 1);
+  if (!parseInteger(written, exponent) && written[0] == '-') exponent = -exponent;
+  decimal.exponent += exponent;
+  return decimal;
+}
+
+}  // namespace
+
+NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator) {
+  const cpp_int num = parseBigInteger(numerator), den = parseBigInteger(denominator);
+  if (den == 0) throw std::runtime_error("the denominator is 0");
+  return nearestDouble(num, den);
+}
+
+NearestDouble nearestDouble(std::string_view text) {
+  switch (classifyNumber(text)) {
+    case NumberToken::kFinite:
+      break;
+    case NumberToken::kNotFinite:
+      throw std::runtime_error(quoted(text) + " is not finite, or beyond double's range");
+    case NumberToken::kNotANumber:
+      throw std::runtime_error(quoted(text) + " is not a number");
+  }
+  const Decimal decimal = split(text);
+  if (decimal.digits.empty()) return {0, true};
+  // Below half of the smallest subnormal, 2.5e-324, all is rounded to 0. The powers of
+  // ten of other numbers have at most this many digits and those of the text.
+  constexpr long long kLowestExponent = -400;
+  if (decimal.exponent + static_cast<long long>(decimal.digits.size()) < kLowestExponent)
+    return {0, false};
+  const cpp_int digits = parseBigInteger(decimal.digits),
+                scale = boost::multiprecision::pow(
+                    cpp_int(10), static_cast<unsigned>(std::abs(decimal.exponent)));
+  return decimal.exponent < 0 ? nearestDouble(digits, scale)
+                              : nearestDouble(cpp_int(digits * scale), cpp_int(1));
 }
 
 }  // namespace fcl_ccd

@@ -16,6 +16,12 @@ struct NearestDouble {
 /// fraction is beyond double's range.
 NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator);
 
+/// @brief The double nearest to a decimal number such as -2.5E+4 (ties to even). The
+/// number is the exact value of the text: 0.1 is a tenth, and no double.
+/// @throws std::runtime_error if the text is not a number, or not finite, or beyond
+/// double's range.
+NearestDouble nearestDouble(std::string_view decimal);
+
 }  // namespace fcl_ccd
 
 #endif

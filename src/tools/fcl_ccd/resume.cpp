@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 
 #include "counted.h"
 #include "text_scan.h"
@@ -75,6 +76,16 @@ struct ContactList {
   }
 };
 
+/// A field of a line; empty if it has fewer.
+std::string_view fieldOf(std::string_view line, std::size_t field) {
+  for (; field > 0; --field) {
+    const std::size_t comma = line.find(',');
+    if (comma == std::string_view::npos) return {};
+    line.remove_prefix(comma + 1);
+  }
+  return line.substr(0, line.find(','));
+}
+
 ContactList scanContacts(const GrowingOutputs& outputs) {
   const std::string& path = outputs.contacts_path;
   ContactList list;
@@ -84,7 +95,8 @@ ContactList scanContacts(const GrowingOutputs& outputs) {
   for (std::uint64_t begin = file.end(); file.next(); begin = file.end()) {
     long long step = -1;
     const std::string& line = file.line();
-    const bool valid = parseInteger(line.substr(0, line.find(',')), step) && step >= 0;
+    const bool valid =
+        parseInteger(fieldOf(line, outputs.step_column), step) && step >= 0;
     const std::optional<std::size_t> found =
         outputs.numbers.frameOf(static_cast<std::size_t>(step));
     const std::size_t index = found.value_or(0);

@@ -17,7 +17,8 @@ namespace fcl_ccd {
 struct GrowingOutputs {
   std::string contacts_path;  ///< empty: not written
   std::string contacts_head;
-  std::string steps_path;  ///< empty: not written
+  std::size_t step_column{0};  ///< of the contacts
+  std::string steps_path;      ///< empty: not written
   std::string steps_head;
   std::size_t num_steps{0};
   FrameNumbers numbers;                                          ///< of the steps

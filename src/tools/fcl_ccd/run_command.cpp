@@ -269,6 +269,7 @@ void prepareResume(const RunOptions& options, Preparation& run) {
   const FramePaths& paths = run.paths;
   run.growing = {options.contacts_path,
                  contactsHead(options.columns),
+                 options.columns.placeOfStep().value_or(0),
                  options.steps_path,
                  stepsHead(options, paths.a.size()),
                  run.numSteps(),
@@ -278,6 +279,9 @@ void prepareResume(const RunOptions& options, Preparation& run) {
   for (const std::string* path : {&options.contacts_path, &options.steps_path})
     if (isStandardOutput(*path))
       throw std::runtime_error("--resume cannot continue standard output. Name a file");
+  if (!options.contacts_path.empty() && !options.columns.placeOfStep())
+    throw std::runtime_error(
+        "--resume needs the column step of the contacts. Add step to --columns");
   const std::size_t latest =
       run.numSteps() - (options.paint_path.empty() || run.numSteps() == 0 ? 0 : 1);
   run.resume_point = findResumePoint(run.growing, latest);

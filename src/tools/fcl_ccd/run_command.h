@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "contact_list.h"
 #include "frame_list.h"
 #include "ranks.h"
-#include "run_report.h"
 #include "scene.h"
 
 namespace fcl_ccd {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "counted.h"
+#include "element_names.h"
 #include "number_text.h"
 #include "stage_list.h"
 
@@ -23,38 +24,6 @@ constexpr Colour kViolet{150, 0, 200};
 /// In JSON, in place of what a query for any contact did not decide. Unlike null it
 /// cannot be taken for "no".
 constexpr const char* kUndecided = "undecided";
-
-/// The program has no shapes.
-const char* nameOf(Kind kind) {
-  switch (kind) {
-    case Kind::kVertexFace:
-      return "vf";
-    case Kind::kEdgeEdge:
-      return "ee";
-    case Kind::kVertexEdge:
-      return "ve";
-    case Kind::kVertexVertex:
-      return "vv";
-    default:
-      return "crossing";
-  }
-}
-
-/// What is before the number of a triangle, a free edge or a free point.
-const char* nameOf(fcl::PrimitiveKind kind) {
-  switch (kind) {
-    case fcl::PrimitiveKind::kFreeEdge:
-      return "e";
-    case fcl::PrimitiveKind::kFreePoint:
-      return "p";
-    default:
-      return "";
-  }
-}
-
-std::string nameOf(const SceneVertex& vertex) {
-  return (vertex.of_b ? "b" : "") + std::to_string(vertex.id);
-}
 
 std::size_t countOf(Kind kind, const StepResult& result) {
   return static_cast<std::size_t>(std::count_if(
@@ -184,44 +153,6 @@ std::string summaryLines(const RunSummary& summary, fcl::ContinuousQuery query) 
   if (summary.slowest_ms >= 0)
     lines += "slowest: step " + std::to_string(summary.slowest_step) + " with " +
              numberText(summary.slowest_ms, 4) + " ms\n";
-  return lines;
-}
-
-std::string contactsHead(const ContactColumns& columns) {
-  std::string head = "step,kind,i0,i1,i2,i3,toc_lo,toc_hi";
-  if (columns.triangles) head += ",t0,t1";
-  if (columns.position) head += ",x,y,z";
-  if (columns.normal) head += ",nx,ny,nz";
-  // The last one, so that the others are where they were before there was a fifth id.
-  return head + ",i4\n";
-}
-
-std::string contactLines(const StepReport& report, const ContactColumns& columns) {
-  std::string lines;
-  constexpr std::size_t kFifth = 4;
-  const std::string step = std::to_string(report.number);
-  const auto addNumbers = [&](const std::array<double, 3>& numbers) {
-    for (const double x : numbers) lines.append(1, ',').append(numberText(x));
-  };
-  for (const SceneContact& contact : report.result.contacts) {
-    lines.append(step).append(1, ',').append(nameOf(contact.kind));
-    const auto num_vertices = static_cast<std::size_t>(contact.num_vertices);
-    for (std::size_t i = 0; i < 4; ++i)
-      lines.append(1, ',').append(i < num_vertices ? nameOf(contact.vertices[i]) : "");
-    lines.append(1, ',').append(numberText(contact.toc_lo));
-    lines.append(1, ',').append(numberText(contact.toc_hi));
-    if (columns.triangles)
-      // The first and the last vertex tell the mesh of each feature.
-      for (const std::size_t i : {0u, 1u})
-        lines.append(contact.vertices[i * (num_vertices - 1)].of_b ? ",b" : ",")
-            .append(nameOf(contact.triangle_kinds[i]))
-            .append(std::to_string(contact.triangles[i]));
-    if (columns.position) addNumbers(contact.position);
-    if (columns.normal) addNumbers(contact.normal);
-    lines.append(1, ',');
-    if (num_vertices > kFifth) lines.append(nameOf(contact.vertices[kFifth]));
-    lines += '\n';
-  }
   return lines;
 }
 

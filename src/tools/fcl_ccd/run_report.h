@@ -22,13 +22,6 @@ struct StepReport {
   StepResult result;
 };
 
-/// @brief Optional columns of the contact list.
-struct ContactColumns {
-  bool triangles{false};
-  bool position{false};
-  bool normal{false};
-};
-
 /// @brief The summary of a run, added up from its steps.
 struct RunSummary {
   std::size_t steps{0};
@@ -67,10 +60,6 @@ std::string tableRow(const StepReport& report);
 
 /// @brief The summary as lines for the terminal.
 std::string summaryLines(const RunSummary& summary, fcl::ContinuousQuery query);
-
-/// @brief Head and lines of the contact list, each with its line end.
-std::string contactsHead(const ContactColumns& columns);
-std::string contactLines(const StepReport& report, const ContactColumns& columns);
 
 /// @brief A line of the list of steps. It has only values that do not depend on the
 /// machine, the number of threads, or the previous steps.

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#ifndef FCL_CCD_QUERY_RUN_H
+#define FCL_CCD_QUERY_RUN_H
+
+#include <cstddef>
+#include <vector>
+
+#include "elementary/elementary.h"
+#include "query_files.h"
+
+namespace fcl_ccd {
+
+/// @brief Runs the elementary test on a query of the set.
+/// @param toc_err  as of the option --toc-err: 0 or more
+fcl::detail::deformable::ElementaryResult runQuery(const QuerySet& set, std::size_t query,
+                                                   double toc_err);
+
+/// @brief How answers differ from the truth. All are 0 but `uncertain` if the set has no
+/// truth.
+struct QueryErrors {
+  std::size_t num_true{0};
+  std::size_t false_negatives{0};
+  std::size_t false_positives{0};
+  std::size_t uncertain{0};
+};
+
+/// @param results  of all queries of the set
+QueryErrors compareWithTruth(
+    const QuerySet& set,
+    const std::vector<fcl::detail::deformable::ElementaryResult>& results);
+
+}  // namespace fcl_ccd
+
+#endif
