@@ -10,7 +10,8 @@ completion=src/tools/fcl_ccd/completion.bash
 
 options() { grep -oE '(^|[^a-z-])--[a-z][a-z-]+' | grep -oE -- '--[a-z][a-z-]+' | LC_ALL=C sort -u; }
 
-help=$({ "$program" --help; "$program" run --help; "$program" queries --help; } | options)
+commands='run candidates queries'
+help=$({ "$program" --help; for command in $commands; do "$program" "$command" --help; done; } | options)
 [ "$(wc -l <<<"$help")" -gt 15 ] || { echo "Few options were found: --help has changed" >&2; exit 1; }
 
 failed=0
@@ -30,7 +31,7 @@ offered() { # COMMAND
   bash -c "source $completion; COMP_WORDS=(fcl-ccd $1 --) COMP_CWORD=2
     _fcl_ccd fcl-ccd -- $1; printf '%s\n' \"\${COMPREPLY[@]}\"" | LC_ALL=C sort -u
 }
-for command in run queries; do
+for command in $commands; do
   for option in $("$program" "$command" --help | grep -oE '^  [^ ].*' | options); do
     grep -qxF -- "$option" <(offered "$command") ||
       { echo "$completion: $command does not offer $option" >&2; failed=1; }

@@ -5,7 +5,7 @@ _fcl_ccd() {
   local common='--help --toc-err --repeat --json'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W 'run queries --help --version' -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W 'run candidates queries --help --version' -- "$word")
     return
   fi
   local words=
@@ -15,6 +15,7 @@ _fcl_ccd() {
     --columns)
       case $command in
         run) words='triangles position normal triangles,position,normal step,kind,i0,i1,i2,i3,i4,toc_lo,toc_hi' ;;
+        candidates) words='kind,i0,i1,i2,i3,t_lo,t_hi kind i0 i1 i2 i3 t_lo t_hi t0 t1' ;;
         queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc rounded file' ;;
       esac
       ;;
@@ -25,6 +26,7 @@ _fcl_ccd() {
           words="$common --against --start --end --stride --follow --no-self --query --thickness
             --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --paint"
           ;;
+        candidates:-*) words='--help --against --no-self --thickness --weld --output --columns' ;;
         queries:-*) words="$common --kind --print --columns" ;;
         *)
           compopt -o filenames

@@ -9,7 +9,8 @@ namespace fcl_ccd {
 inline constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run cloth_0.ply cloth_1.ply
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
-  fcl-ccd queries edge-edge.csv --kind ee --json errors.json
+  fcl-ccd candidates cloth_0.ply cloth_1.ply > candidates.csv
+  fcl-ccd queries edge-edge.csv --json errors.json
 
 'fcl-ccd COMMAND --help' explains a command. Exit code: 0 when done, with or without
 contacts; 2 when the command is refused and no output file is written or changed; 3 and
@@ -94,6 +95,27 @@ Examples:
   mpirun -n 4 fcl-ccd run frames/ --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
   fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
+
+inline constexpr const char* kCandidatesDetails = R"(Frames:
+  Two files, or what names two frames as in 'fcl-ccd run --help'. Vertices move on straight
+  lines from the first to the second.
+
+Output:
+  A line for each pair of features that a query would test: all pairs that may touch, and
+  some that do not. Pairs that share a vertex are not tested. Columns:
+  kind,i0,i1,i2,i3,t_lo,t_hi. kind is vf (i0 is the vertex, i1 to i3 the face) or ee (i0 and
+  i1 are edge a, i2 and i3 edge b); with --thickness also ve (a free point and a free edge)
+  and vv (two free points). Ids count from 0; those of B begin with b. The features do not
+  touch before t_lo or after t_hi, in fractions of the step.
+  The lines are sorted by kind (vf, ee, ve, vv) and ids, so that the output is always the
+  same. --columns: these columns, in this order. There are also t0,t1, the triangles of both
+  features.
+  --output FILE: to a file; then the numbers of candidates are printed.
+
+Examples:
+  fcl-ccd candidates cloth_0.ply cloth_1.ply > candidates.csv
+  fcl-ccd candidates cloth_0.ply cloth_1.ply --against body.obj --no-self --output c.csv
+  fcl-ccd candidates cloth_0.ply cloth_1.ply --columns kind,t0,t1)";
 
 inline constexpr const char* kQueriesDetails = R"(Input:
   Eight rows for each query: four points at t = 0, then the same points at t = 1. The points

@@ -19,6 +19,7 @@
 #include <string>
 #include <vector>
 
+#include "candidates_command.h"
 #include "fcl/ccd_version.h"
 #include "help_text.h"
 #include "mesh_io.h"
@@ -115,9 +116,8 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
 /// @brief Adds the option for the columns of a CSV output.
 /// @param parse  takes the list; its std::runtime_error becomes one of the option.
 template <typename Parse>
-void addColumnsOption(CLI::App& command, const char* help, const char* output,
-                      Parse parse) {
-  command
+CLI::Option* addColumnsOption(CLI::App& command, const char* help, Parse parse) {
+  return command
       .add_option_function<std::string>(
           "--columns",
           [parse](const std::string& list) {
@@ -128,8 +128,16 @@ void addColumnsOption(CLI::App& command, const char* help, const char* output,
             }
           },
           help)
-      ->type_name("LIST")
-      ->needs(output);
+      ->type_name("LIST");
+}
+
+void addAgainstOption(CLI::App& command, fcl_ccd::RunOptions& options) {
+  constexpr int kUnlimited = -1;
+  command
+      .add_option("--against", options.against,
+                  "Frames of mesh B: as many as of A, or one if it does not move")
+      ->type_name("FRAMES")
+      ->expected(1, kUnlimited);
 }
 
 void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
@@ -138,10 +146,7 @@ void addFrameOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
       ->type_name("FRAMES")
       ->required()
       ->expected(1, kUnlimited);
-  run.add_option("--against", options.against,
-                 "Frames of mesh B: as many as of A, or one if it does not move")
-      ->type_name("FRAMES")
-      ->expected(1, kUnlimited);
+  addAgainstOption(run, options);
   run.add_option("--start", options.range.start,
                  "First frame; steps have the numbers of the frames where they begin")
       ->type_name("N");
@@ -173,11 +178,35 @@ void addFollowOption(CLI::App& run, fcl_ccd::RunOptions& options) {
       ->check(timeLimit());
 }
 
-void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
-  run.add_flag_callback(
-         "--no-self", [&options] { options.settings.self = false; },
-         "Do not test A against itself")
+void addNoSelfOption(CLI::App& command, fcl_ccd::RunOptions& options) {
+  command
+      .add_flag_callback(
+          "--no-self", [&options] { options.settings.self = false; },
+          "Do not test A against itself")
       ->needs("--against");
+}
+
+void addThicknessOption(CLI::App& command, fcl_ccd::RunOptions& options) {
+  command
+      .add_option(
+          "--thickness", options.settings.min_distance,
+          "Contact at this distance, in the unit of the files (default: touching)")
+      ->type_name("D")
+      ->check(positive<double>("a positive number"));
+}
+
+void addWeldOption(CLI::App& command, fcl_ccd::RunOptions& options) {
+  command
+      .add_option("--weld", options.weld,
+                  "Join vertices that coincide in all frames, within EPS (default: 0)")
+      ->type_name("[EPS]")
+      ->expected(0, 1)
+      ->default_str("0")
+      ->check(notNegative<double>("a distance"));
+}
+
+void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
+  addNoSelfOption(run, options);
   static const std::map<std::string, ContinuousQuery> kQueries{
       {"all", ContinuousQuery::kAll},
       {"first", ContinuousQuery::kFirst},
@@ -185,10 +214,7 @@ void addTestOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   run.add_option("--query", options.settings.query, "all, first or any (default: all)")
       ->type_name("WHAT")
       ->transform(oneOf(kQueries, "all, first or any"));
-  run.add_option("--thickness", options.settings.min_distance,
-                 "Contact at this distance, in the unit of the files (default: touching)")
-      ->type_name("D")
-      ->check(positive<double>("a positive number"));
+  addThicknessOption(run, options);
   run.add_flag("--ignore-initially-closer", options.settings.ignore_initially_closer,
                "Pairs that begin nearer than D are contacts only when they come nearer")
       ->needs("--thickness");
@@ -207,12 +233,7 @@ void addWorkOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
          "as there are cores")
       ->type_name("N")
       ->check(notNegative<int>("a number of threads"));
-  run.add_option("--weld", options.weld,
-                 "Join vertices that coincide in all frames, within EPS (default: 0)")
-      ->type_name("[EPS]")
-      ->expected(0, 1)
-      ->default_str("0")
-      ->check(notNegative<double>("a distance"));
+  addWeldOption(run, options);
 }
 
 void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
@@ -220,10 +241,11 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
                  "Write the contacts as CSV; -: to standard output")
       ->type_name("FILE")
       ->check(named());
-  addColumnsOption(run, "Columns of the contacts, in this order; see below", "--contacts",
+  addColumnsOption(run, "Columns of the contacts, in this order; see below",
                    [&options](const std::string& list) {
                      options.columns = fcl_ccd::ContactColumns(list);
-                   });
+                   })
+      ->needs("--contacts");
   run.add_option("--steps", options.steps_path,
                  "Write a JSON object for each step when it is done")
       ->type_name("FILE")
@@ -251,6 +273,30 @@ CLI::App* addRun(CLI::App& app, fcl_ccd::RunOptions& options) {
   return run;
 }
 
+void addCandidates(CLI::App& app, fcl_ccd::CandidatesOptions& options) {
+  CLI::App* candidates =
+      app.add_subcommand("candidates", "Pairs of features of a step that may touch");
+  candidates->footer(fcl_ccd::kCandidatesDetails);
+  constexpr int kUnlimited = -1;
+  candidates->add_option("A", options.step.frames, "The two frames of mesh A")
+      ->type_name("FRAMES")
+      ->required()
+      ->expected(1, kUnlimited);
+  addAgainstOption(*candidates, options.step);
+  addNoSelfOption(*candidates, options.step);
+  addThicknessOption(*candidates, options.step);
+  addWeldOption(*candidates, options.step);
+  candidates->add_option("--output", options.output_path, "Write the candidates as CSV")
+      ->type_name("FILE")
+      ->check(named())
+      ->capture_default_str();
+  addColumnsOption(*candidates, "Columns, in this order; see below",
+                   [&options](const std::string& list) {
+                     options.columns =
+                         fcl_ccd::parseColumns(list, fcl_ccd::candidateColumns());
+                   });
+}
+
 void addKindOption(CLI::App& command, std::optional<ContinuousContactKind>& kind) {
   static const std::map<std::string, ContinuousContactKind> kKinds{
       {"vf", ContinuousContactKind::kVertexFace},
@@ -272,11 +318,12 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
   addKindOption(*queries, options.kind);
   queries->add_flag("--print", options.print_answers,
                     "Print one line for each query, not the table");
-  addColumnsOption(*queries, "Columns of the lines, in this order; see below", "--print",
+  addColumnsOption(*queries, "Columns of the lines, in this order; see below",
                    [&options](const std::string& list) {
                      options.columns =
                          fcl_ccd::parseColumns(list, fcl_ccd::answerColumns());
-                   });
+                   })
+      ->needs("--print");
   addCommonOptions(*queries, options.toc_err, options.repeat, options.json_path);
   return queries;
 }
@@ -376,8 +423,10 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   app.set_version_flag("--version", "fcl-ccd " FCL_CCD_VERSION " (FCL " FCL_VERSION ")");
   app.require_subcommand(1);
   fcl_ccd::RunOptions run_options;
+  fcl_ccd::CandidatesOptions candidates_options;
   fcl_ccd::QueriesOptions queries_options;
   const CLI::App* run = addRun(app, run_options);
+  addCandidates(app, candidates_options);
   const CLI::App* queries = addQueries(app, queries_options);
   const std::string unknown = unknownCommand(app, argc, argv);
   if (!unknown.empty()) {
@@ -389,8 +438,8 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
     if (run_options.resume && run_options.contacts_path.empty() &&
         run_options.steps_path.empty())
       throw CLI::ValidationError("--resume", "needs --contacts or --steps to continue");
-    if (queries->parsed() && ranks.size() > 1)
-      throw CLI::ValidationError("queries",
+    if (!run->parsed() && ranks.size() > 1)
+      throw CLI::ValidationError(app.get_subcommands().at(0)->get_name(),
                                  "runs in one process: start it without mpirun");
   } catch (const CLI::ParseError& error) {
     const int code = endParsing(app, error, ranks);
@@ -407,7 +456,10 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
     return fcl_ccd::runCommand(run_options, ranks, joined(argc, argv));
   }
   fcl_ccd::removeTemporariesOnSignal();
-  fcl_ccd::queriesCommand(queries_options);
+  if (queries->parsed())
+    fcl_ccd::queriesCommand(queries_options);
+  else
+    fcl_ccd::candidatesCommand(candidates_options);
   return 0;
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "stage_list.h"
 
@@ -105,15 +106,26 @@ std::size_t firstFeatureSize(Kind kind) {
   return kind == Kind::kEdgeEdge || kind == Kind::kCrossing ? 2 : 1;
 }
 
-/// Sets the triangle of a feature from the number b of a contact.
+/// Sets the triangle of a feature from the number b of a contact or candidate.
+template <typename Pair>
 void setTriangle(std::intptr_t b, std::intptr_t num_triangles,
                  const std::vector<fcl::Primitive>& free, std::size_t feature,
-                 SceneContact& out) {
+                 Pair& out) {
   out.triangles[feature] = b;
   if (b < num_triangles) return;
   const fcl::Primitive& primitive = free[static_cast<std::size_t>(b - num_triangles)];
   out.triangles[feature] = static_cast<std::intptr_t>(primitive.index);
   out.triangle_kinds[feature] = primitive.kind;
+}
+
+/// Sets the vertices of a contact or candidate of the library.
+template <typename From, typename To>
+void setVertices(const From& pair, bool o1_is_b, bool o2_is_b, To& out) {
+  for (std::size_t i = 0; i < static_cast<std::size_t>(out.num_vertices); ++i) {
+    const bool of_first_feature = i < firstFeatureSize(pair.kind);
+    const bool of_o1 = of_first_feature == pair.first_on_o1;
+    out.vertices[i] = {pair.vertices[i], of_o1 ? o1_is_b : o2_is_b};
+  }
 }
 
 SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) {
@@ -126,12 +138,33 @@ SceneContact toSceneContact(const Contact& contact, bool o1_is_b, bool o2_is_b) 
     out.position[static_cast<std::size_t>(k)] = contact.pos[k];
     out.normal[static_cast<std::size_t>(k)] = contact.normal[k];
   }
-  for (std::size_t i = 0; i < static_cast<std::size_t>(out.num_vertices); ++i) {
-    const bool of_first_feature = i < firstFeatureSize(contact.kind);
-    const bool of_o1 = of_first_feature == contact.first_on_o1;
-    out.vertices[i] = {contact.vertices[i], of_o1 ? o1_is_b : o2_is_b};
-  }
+  setVertices(contact, o1_is_b, o2_is_b, out);
   return out;
+}
+
+int numVertices(Kind kind) {
+  return kind == Kind::kVertexVertex ? 2 : kind == Kind::kVertexEdge ? 3 : 4;
+}
+
+SceneCandidate toSceneCandidate(const fcl::ContinuousCandidate& candidate, bool o1_is_b,
+                                bool o2_is_b) {
+  SceneCandidate out;
+  out.kind = candidate.kind;
+  out.num_vertices = numVertices(candidate.kind);
+  out.window_lo = candidate.window_lo;
+  out.window_hi = candidate.window_hi;
+  setVertices(candidate, o1_is_b, o2_is_b, out);
+  return out;
+}
+
+bool isBefore(const SceneCandidate& a, const SceneCandidate& b) {
+  if (a.kind != b.kind) return a.kind < b.kind;
+  for (std::size_t i = 0; i < a.vertices.size(); ++i) {
+    const SceneVertex &v = a.vertices[i], &w = b.vertices[i];
+    if (v.of_b != w.of_b) return w.of_b;
+    if (v.id != w.id) return v.id < w.id;
+  }
+  return false;
 }
 
 /// Sorts the contacts of two queries by time, and crossings before all others.
@@ -236,12 +269,48 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   step.times.test += result.times.test;
 }
 
+void Scene::addCandidates(const Body& o1, const Body& o2,
+                          std::vector<SceneCandidate>& candidates) const {
+  const Model &model1 = *o1.model, &model2 = *o2.model;
+  const auto take = [&](const fcl::ContinuousCandidate* block, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const fcl::ContinuousCandidate& from = block[i];
+      SceneCandidate out = toSceneCandidate(from, &o1 == &b_, &o2 == &b_);
+      const bool in_order = from.kind == Kind::kEdgeEdge || from.first_on_o1;
+      setTriangle(from.b1, model1.num_tris, o1.free, in_order ? 0 : 1, out);
+      setTriangle(from.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
+      candidates.push_back(out);
+    }
+    return true;
+  };
+  const fcl::Transform3d identity = fcl::Transform3d::Identity();
+  if (&o1 == &o2)
+    fcl::continuousSelfCandidates(&model1, take, settings_.min_distance);
+  else
+    fcl::continuousCandidates(&model1, identity, identity, &model2, identity, identity,
+                              take, settings_.min_distance);
+}
+
+std::vector<SceneCandidate> Scene::candidates(const SceneFrame& from,
+                                              const SceneFrame& to) {
+  move(from, to);
+  std::vector<SceneCandidate> candidates;
+  if (settings_.self) addCandidates(a_, a_, candidates);
+  if (b_.model) addCandidates(a_, b_, candidates);
+  std::sort(candidates.begin(), candidates.end(), isBefore);
+  return candidates;
+}
+
+void Scene::move(const SceneFrame& from, const SceneFrame& to) {
+  updateModel(*a_.model, *from.a, *to.a, "A");
+  if (b_.model) updateModel(*b_.model, *from.b, *to.b, "B");
+}
+
 StepResult Scene::runOnce(const SceneFrame& from, const SceneFrame& to) {
   StepResult step;
   step.at_distance = settings_.min_distance > 0;
   const Stopwatch watch;
-  updateModel(*a_.model, *from.a, *to.a, "A");
-  if (b_.model) updateModel(*b_.model, *from.b, *to.b, "B");
+  move(from, to);
   step.times.update = watch.seconds();
 
   step.is_any = settings_.query == fcl::ContinuousQuery::kAny;

@@ -50,6 +50,18 @@ struct SceneContact {
   std::array<double, 3> normal{};  ///< from A to B; within A to feature 2
 };
 
+/// @brief A pair of features of the scene that may touch.
+struct SceneCandidate {
+  fcl::ContinuousContactKind kind{fcl::ContinuousContactKind::kVertexFace};
+  std::array<SceneVertex, 4> vertices;
+  int num_vertices{4};
+  /// As those of a SceneContact.
+  std::array<std::intptr_t, 2> triangles{{-1, -1}};
+  std::array<fcl::PrimitiveKind, 2> triangle_kinds{};
+  double window_lo{0};  ///< they do not touch before, or after window_hi
+  double window_hi{1};
+};
+
 /// @brief Seconds of each part of a step.
 struct StepTimes {
   double build{0};
@@ -115,6 +127,10 @@ class Scene {
   /// mesh whose two frames are the same object stands still.
   StepResult step(const SceneFrame& from, const SceneFrame& to);
 
+  /// @brief Moves the models from one frame to the next and finds the pairs that a query
+  /// would test. They are sorted by kind and vertices, those of A first.
+  std::vector<SceneCandidate> candidates(const SceneFrame& from, const SceneFrame& to);
+
  private:
   using Model = fcl::DeformableBVHModel<fcl::AABBd>;
 
@@ -129,7 +145,10 @@ class Scene {
              const Vertices& vertices, const char* name, double& seconds) const;
   StepResult runOnce(const SceneFrame& from, const SceneFrame& to);
   void build(const SceneTriangles& triangles, const SceneFrame& frame);
+  void move(const SceneFrame& from, const SceneFrame& to);
   void query(const Body& o1, const Body& o2, StepResult& step) const;
+  void addCandidates(const Body& o1, const Body& o2,
+                     std::vector<SceneCandidate>& candidates) const;
 
   StepSettings settings_;
   double build_time_{0};
