@@ -10,7 +10,7 @@ completion=src/tools/fcl_ccd/completion.bash
 
 options() { grep -oE '(^|[^a-z-])--[a-z][a-z-]+' | grep -oE -- '--[a-z][a-z-]+' | LC_ALL=C sort -u; }
 
-commands='run candidates queries'
+commands='run candidates queries compare'
 help=$({ "$program" --help; for command in $commands; do "$program" "$command" --help; done; } | options)
 [ "$(wc -l <<<"$help")" -gt 15 ] || { echo "Few options were found: --help has changed" >&2; exit 1; }
 

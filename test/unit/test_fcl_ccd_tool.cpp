@@ -611,8 +611,8 @@ TEST_F(CcdTool, UsageErrorsExitWithTwo) {
 }
 
 TEST_F(CcdTool, HelpAndVersionExitWithZero) {
-  for (const char* arguments :
-       {"--help", "run --help", "candidates --help", "queries --help"}) {
+  for (const char* arguments : {"--help", "run --help", "candidates --help",
+                                "queries --help", "compare --help"}) {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 0);
     EXPECT_NE(outcome.out.find("Examples:"), std::string::npos) << arguments;

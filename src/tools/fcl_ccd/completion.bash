@@ -5,7 +5,7 @@ _fcl_ccd() {
   local common='--help --toc-err --repeat --json'
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    mapfile -t COMPREPLY < <(compgen -W 'run candidates queries --help --version' -- "$word")
+    mapfile -t COMPREPLY < <(compgen -W 'run candidates queries compare --help --version' -- "$word")
     return
   fi
   local words=
@@ -27,6 +27,7 @@ _fcl_ccd() {
             --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --paint"
           ;;
         candidates:-*) words='--help --against --no-self --thickness --weld --output --columns' ;;
+        compare:-*) words="$common --kind --truth" ;;
         queries:-*) words="$common --kind --print --columns" ;;
         *)
           compopt -o filenames

@@ -11,6 +11,7 @@ inline constexpr const char* kMainExamples = R"(Examples:
   fcl-ccd run frames/ --against body.obj --contacts contacts.csv --steps steps.jsonl
   fcl-ccd candidates cloth_0.ply cloth_1.ply > candidates.csv
   fcl-ccd queries edge-edge.csv --json errors.json
+  fcl-ccd compare cloth-ball/queries
 
 'fcl-ccd COMMAND --help' explains a command. Exit code: 0 when done, with or without
 contacts; 2 when the command is refused and no output file is written or changed; 3 and
@@ -139,6 +140,35 @@ Examples:
   fcl-ccd queries vertex-face.csv
   fcl-ccd queries a/edge-edge.csv b/edge-edge.csv --repeat 10 --json errors.json
   fcl-ccd queries points.csv --kind ee --print --columns index,answer,toc_lo > answers.csv)";
+
+inline constexpr const char* kCompareDetails = R"(Queries:
+  CSV files or folders of them, in the form of 'fcl-ccd queries --help'. The truth is in
+  their rows, or in a JSON file of true and false for each: for 92vf.csv it is
+  92vf_mma_bool.json beside it, or in the folder mma_bool beside its folder. --truth names
+  such files, one for each file of queries. One row is printed: queries, those that truly
+  touch, contacts that were found, false negatives (FN), false positives (FP), uncertain
+  answers, the largest time error (of toc_lo; '-' if the files have no times), and the mean
+  and the longest time of a query in microseconds, each with that of reading the clock.
+
+Frames:
+  Two mesh files. The truth is in JSON files of pairs of boxes: of a vertex and a face (name
+  in vf.json) or two edges (ee.json). Boxes are numbered: vertices, then edges by their higher
+  and their lower vertex, then faces. Whether each pair touches is in 92vf_mma_bool.json, as
+  above. Without --truth, the lists for frames/NAME92.ply are boxes/92vf.json and
+  boxes/92ee.json. One row is printed: pairs that are listed, those that truly touch,
+  candidates of the library, how many listed pairs are candidates (found) and are not
+  (missing; they may be apart), contacts of the library, FN and FP of these, and the time of
+  the step in milliseconds. A contact that is not listed counts as false positive.
+
+  --kind takes one of the two kinds. --json: the same figures; null if not known. The exit
+  code is 0 also if answers are wrong, and 2 if the command is refused or an output cannot be
+  written.
+
+Examples:
+  fcl-ccd compare Sample-Queries
+  fcl-ccd compare vertex-face.csv --repeat 10 --json row.json
+  fcl-ccd compare cloth-ball/queries
+  fcl-ccd compare cloth-ball/frames/cloth_ball92.ply cloth-ball/frames/cloth_ball93.ply)";
 
 }  // namespace fcl_ccd
 

@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "candidates_command.h"
+#include "compare_command.h"
 #include "fcl/ccd_version.h"
 #include "help_text.h"
 #include "mesh_io.h"
@@ -328,6 +329,28 @@ CLI::App* addQueries(CLI::App& app, fcl_ccd::QueriesOptions& options) {
   return queries;
 }
 
+CLI::App* addCompare(CLI::App& app, fcl_ccd::CompareOptions& options) {
+  CLI::App* compare =
+      app.add_subcommand("compare", "Compare answers with the truth of public data");
+  compare->footer(fcl_ccd::kCompareDetails);
+  constexpr int kUnlimited = -1;
+  compare
+      ->add_option(
+          "FILES", options.inputs,
+          "CSV files of queries, or folders of them; or the two frames of a step")
+      ->type_name("FILE")
+      ->required()
+      ->expected(1, kUnlimited);
+  addKindOption(*compare, options.kind);
+  compare
+      ->add_option("--truth", options.truth,
+                   "JSON files of the truth (default: those beside the FILES)")
+      ->type_name("FILE")
+      ->expected(1, kUnlimited);
+  addCommonOptions(*compare, options.toc_err, options.repeat, options.json_path);
+  return compare;
+}
+
 /// Opens a file that cannot be written to for each standard stream that is closed.
 /// Otherwise the next file that is opened would become that stream, and the table would
 /// be written into it.
@@ -425,9 +448,11 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   fcl_ccd::RunOptions run_options;
   fcl_ccd::CandidatesOptions candidates_options;
   fcl_ccd::QueriesOptions queries_options;
+  fcl_ccd::CompareOptions compare_options;
   const CLI::App* run = addRun(app, run_options);
   addCandidates(app, candidates_options);
   const CLI::App* queries = addQueries(app, queries_options);
+  const CLI::App* compare = addCompare(app, compare_options);
   const std::string unknown = unknownCommand(app, argc, argv);
   if (!unknown.empty()) {
     if (ranks.rank() == 0) reportFailure(refusalOf(unknown, app).c_str());
@@ -458,6 +483,8 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   fcl_ccd::removeTemporariesOnSignal();
   if (queries->parsed())
     fcl_ccd::queriesCommand(queries_options);
+  else if (compare->parsed())
+    fcl_ccd::compareCommand(compare_options);
   else
     fcl_ccd::candidatesCommand(candidates_options);
   return 0;

@@ -12,6 +12,7 @@
 #include "element_names.h"
 #include "frame_list.h"
 #include "mesh_io.h"
+#include "truth_json.h"
 
 namespace fcl_ccd {
 namespace {
@@ -52,12 +53,27 @@ std::vector<std::string> csvFilesOf(const std::string& folder) {
   return paths;
 }
 
+/// Adds the truth of a file of answers.
+void addAnswers(const QueryFile& file, QueryList& list) {
+  const std::vector<bool> answers = readAnswers(file.answers);
+  if (answers.size() != list.queries.size())
+    throw std::runtime_error(file.answers + ": has " + counted(answers.size(), "answer") +
+                             "; " + file.path + " has " +
+                             std::to_string(list.queries.size()) + " queries");
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    if (list.has_truth && list.queries[i].truth != answers[i])
+      throw std::runtime_error(file.answers + ": entry " + std::to_string(i) +
+                               " differs from the truth in the rows of " + file.path);
+    list.queries[i].truth = answers[i];
+  }
+  list.has_truth = true;
+}
+
 }  // namespace
 
 std::optional<Kind> kindByName(const std::string& path) {
   std::string stem = fs::path(path).stem().string();
-  const std::string answers = "_mma_bool";
-  if (endsWithWord(stem, answers)) stem.resize(stem.size() - answers.size());
+  if (isNamedAnswers(path)) stem.resize(stem.size() - kAnswersEnd.size());
   for (const KindName& entry : kKindNames)
     if (endsWithWord(stem, entry.name)) return entry.kind;
   const std::string folder = fs::path(path).parent_path().filename().string();
@@ -71,6 +87,8 @@ std::vector<QueryFile> listQueryFiles(const std::vector<std::string>& words,
   std::vector<QueryFile> files;
   for (const std::string& word : words) {
     std::error_code error;
+    if (!fs::exists(word, error))
+      throw std::runtime_error(word + ": cannot open: there is no such file or folder");
     if (!fs::is_directory(word, error)) {
       const std::optional<Kind> named = kind ? kind : kindByName(word);
       if (!named) refuseUnknownKind(word);
@@ -96,6 +114,7 @@ QuerySet readQuerySet(std::vector<QueryFile> files) {
   QuerySet set;
   for (std::size_t i = 0; i < files.size(); ++i) {
     QueryList list = readQueries({files[i].path});
+    if (!files[i].answers.empty()) addAnswers(files[i], list);
     if (i == 0) set.has_truth = list.has_truth;
     if (list.has_truth != set.has_truth)
       throw std::runtime_error(

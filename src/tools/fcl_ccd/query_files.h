@@ -21,6 +21,7 @@ std::optional<fcl::ContinuousContactKind> kindByName(const std::string& path);
 struct QueryFile {
   std::string path;
   fcl::ContinuousContactKind kind;
+  std::string answers{};  ///< a file of answers (truth_json.h); empty: the rows have them
 };
 
 /// @brief The files that the words name. A word is a file, or a folder: all CSV files in
@@ -42,6 +43,8 @@ struct QuerySet {
   const QueryFile& fileOf(std::size_t query) const { return files[file_of[query]]; }
 };
 
+/// @brief Reads the queries and the answers to them. If the rows have the truth, a file
+/// of answers must say the same.
 /// @throws std::runtime_error that names the file, the line and the cause.
 QuerySet readQuerySet(std::vector<QueryFile> files);
 
