@@ -53,7 +53,7 @@ tests=(test_fcl_elementary test_fcl_kernels test_fcl_motion_kernels test_fcl_exa
 if $short; then
   cmake --build "$build" --target fcl_ccd fcl_ccd_digests "${tests[@]}"
 else
-  cmake --build "$build"
+  cmake --build "$build" --target all fcl_ccd_digests
 fi
 
 step "unit tests in qemu"

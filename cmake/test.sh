@@ -154,6 +154,7 @@ if $all; then
   printf '%s\n' "${plain_tests[@]}" |
     watched xargs -P "$jobs" -I '{}' env "build/plain/test/unit/{}" --gtest_brief=1
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
+  watched cmake --build --preset release --target programs
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON
 fi
