@@ -56,6 +56,9 @@ block() {
     inside && n == wanted' README.md
 }
 
+# The block of another language, of which README has one.
+code_in() { awk -v begin="^\`\`\`$1\$" '/^```/ {inside = 0} inside; $0 ~ begin {inside = 1}' README.md; }
+
 # What a program of a user is, with the packages installed.
 program='printf "%s\n" "cmake_minimum_required(VERSION 3.22)" "project(user CXX)" \
     "set(CMAKE_CXX_STANDARD 17)" "find_package(fcl_ccd REQUIRED)" \
@@ -71,7 +74,12 @@ for part in "${parts[@]}"; do
       command="apt-get update
         $(block 2 | sed -e '/^git clone/d' -e 's/sudo apt-get install/apt-get install -y/')
         cmake --build build/examples
-        ctest --test-dir build/examples --output-on-failure"
+        ctest --test-dir build/examples --output-on-failure
+        cd /root/first
+        $(block 3)"
+      mkdir -p "$root/root/first"
+      code_in cpp >"$root/root/first/first_contact.cpp"
+      code_in cmake >"$root/root/first/CMakeLists.txt"
       ;;
     packages)
       command="bash cmake/packages.sh

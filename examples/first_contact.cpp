@@ -37,8 +37,7 @@ int main() {
   fcl::ContinuousCollisionResultd result;
   fcl::continuousCollide(&cloth, rest, rest, &tool, from, to, request, result);
 
-  // The tip is at 1 - 2 t and the middle of the cloth at .2 t, so they meet at t = 1
-  // / 2.2.
+  // The tip is at 1 - 2 t, the middle of the cloth at .2 t: they meet at 1 / 2.2.
   const double early = 1 / 2.2 - result.time_of_contact;
   std::printf("%d, at %.4f of the step\n", result.is_collide, result.time_of_contact);
   return result.is_collide && early > -1e-12 && early <= request.toc_err ? 0 : 1;
