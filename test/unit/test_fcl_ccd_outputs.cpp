@@ -160,7 +160,7 @@ TEST_F(CcdOutputs, StandardOutputTakesOneOutput) {
   const Outcome of_contacts = run("run f --contacts -" + columns);
   EXPECT_EQ(of_contacts.exit_code, 0);
   EXPECT_EQ(of_contacts.out, contacts);
-  EXPECT_EQ(linesOf(of_contacts.err).size(), 1u + 11u + 3u) << of_contacts.err;
+  EXPECT_EQ(linesOf(of_contacts.err).size(), 1u + 11u + 5u) << of_contacts.err;
   EXPECT_EQ(run("run f --steps -").out, steps);
   EXPECT_EQ(Json::parse(run("run f --json -").out).at("steps").size(), 11u);
   EXPECT_EQ(run("run f --paint -").out.substr(0, 4), "ply\n");

@@ -216,7 +216,7 @@ TEST_F(CcdTool, FindsAVertexFaceContact) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");  // no progress line unless stderr is a terminal
   const std::vector<std::string> table = linesOf(outcome.out);
-  ASSERT_EQ(table.size(), 5u) << outcome.out;
+  ASSERT_EQ(table.size(), 7u) << outcome.out;
   EXPECT_EQ(table[2], "1 step, 1 vf and 0 ee contacts; 0 steps began crossing");
   EXPECT_EQ(files(), (std::set<std::string>{"c.csv", "r.json", "tip0.obj", "tip1.obj"}));
 
@@ -289,7 +289,8 @@ TEST_F(CcdTool, JsonHasExactlyThePromisedFields) {
   EXPECT_EQ(moving.at("contacts"), Json({{"vf", 1}, {"ee", 0}, {"crossing", 0}}));
   EXPECT_EQ(moving.at("initially_crossing"), false);
   EXPECT_EQ(keysOf(moving.at("first")),
-            (std::set<std::string>{"kind", "vertices", "toc_lo", "toc_hi"}));
+            (std::set<std::string>{"kind", "vertices", "triangles", "toc_lo", "toc_hi",
+                                   "position", "normal", "as_early"}));
   EXPECT_GT(moving.at("ms").at("build").get<double>(), 0);
   EXPECT_EQ(report.at("steps").at(1).at("ms").at("build").get<double>(), 0);
 }
@@ -567,8 +568,8 @@ TEST_F(CcdTool, WritesToStdoutInPlace) {
   const Outcome outcome = run("run tip0.obj tip1.obj --contacts /dev/stdout");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   const std::vector<std::string> lines = linesOf(outcome.out);
-  // Two of the table, two of the contacts, three of the summary.
-  ASSERT_EQ(lines.size(), 7u) << outcome.out;
+  // Two of the table, two of the contacts, five of the summary.
+  ASSERT_EQ(lines.size(), 9u) << outcome.out;
   EXPECT_NE(
       std::find(lines.begin(), lines.end(), "step,kind,i0,i1,i2,i3,toc_lo,toc_hi,i4"),
       lines.end());

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "contact_text.h"
 #include "counted.h"
-#include "element_names.h"
 #include "number_text.h"
 #include "one_step.h"
 #include "output_set.h"
@@ -15,18 +15,12 @@ namespace {
 
 template <std::size_t i>
 void appendVertex(const SceneCandidate& candidate, std::string& line) {
-  if (i < static_cast<std::size_t>(candidate.num_vertices))
-    line.append(nameOf(candidate.vertices[i]));
+  line.append(vertexName(candidate, i));
 }
 
-/// Appends the triangle of a feature. The first and the last vertex tell the mesh of
-/// each.
 template <std::size_t i>
 void appendTriangle(const SceneCandidate& candidate, std::string& line) {
-  const auto last = static_cast<std::size_t>(candidate.num_vertices) - 1;
-  line.append(candidate.vertices[i * last].of_b ? "b" : "")
-      .append(nameOf(candidate.triangle_kinds[i]))
-      .append(std::to_string(candidate.triangles[i]));
+  line.append(triangleName(candidate, i));
 }
 
 constexpr CsvColumn<SceneCandidate> kColumns[] = {

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "element_names.h"
+#include "contact_text.h"
 #include "number_text.h"
 
 namespace fcl_ccd {
@@ -17,19 +17,12 @@ struct ContactRow {
 
 template <std::size_t i>
 void appendVertex(const ContactRow& row, std::string& line) {
-  if (i < static_cast<std::size_t>(row.contact.num_vertices))
-    line.append(nameOf(row.contact.vertices[i]));
+  line.append(vertexName(row.contact, i));
 }
 
-/// Appends the triangle of a feature. The first and the last vertex tell the mesh of
-/// each.
 template <std::size_t i>
 void appendTriangle(const ContactRow& row, std::string& line) {
-  const SceneContact& contact = row.contact;
-  const auto last = static_cast<std::size_t>(contact.num_vertices) - 1;
-  line.append(contact.vertices[i * last].of_b ? "b" : "")
-      .append(nameOf(contact.triangle_kinds[i]))
-      .append(std::to_string(contact.triangles[i]));
+  line.append(triangleName(row.contact, i));
 }
 
 template <std::size_t k>
@@ -66,7 +59,6 @@ constexpr CsvColumn<ContactRow> kColumns[] = {
     {"i4", appendVertex<4>}};
 constexpr std::size_t kNumAlways = 8;
 constexpr std::size_t kNumColumns = sizeof kColumns / sizeof *kColumns;
-constexpr std::size_t kFirstPoint = 10;
 
 /// Columns that have a name together, and those that they are.
 struct ColumnGroup {
@@ -107,12 +99,6 @@ ContactColumns::ContactColumns(const std::string& list) {
         numbers_.push_back(column);
   if (adds) numbers_.push_back(kNumColumns - 1);
   requireNoneTwice(numbers_, knownNames());
-}
-
-bool ContactColumns::needPoints() const {
-  return std::any_of(numbers_.begin(), numbers_.end(), [](std::size_t column) {
-    return column >= kFirstPoint && column < kNumColumns - 1;
-  });
 }
 
 std::optional<std::size_t> ContactColumns::placeOfStep() const {

@@ -26,9 +26,6 @@ class ContactColumns {
 
   const ColumnNumbers& numbers() const { return numbers_; }
 
-  /// @brief Whether a column needs the position or the normal of a contact.
-  bool needPoints() const;
-
   /// @brief The place of `step` among the columns, if it is there.
   std::optional<std::size_t> placeOfStep() const;
 

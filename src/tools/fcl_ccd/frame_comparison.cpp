@@ -9,8 +9,8 @@
 
 #include "box_numbers.h"
 #include "comparison.h"
+#include "contact_text.h"
 #include "counted.h"
-#include "element_names.h"
 #include "number_text.h"
 #include "one_step.h"
 #include "query_files.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "element_names.h"
+#include "contact_text.h"
 #include "number_text.h"
 #include "output_set.h"
 #include "query_run.h"

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "contact_text.h"
 #include "counted.h"
-#include "element_names.h"
 #include "frame_list.h"
 #include "mesh_io.h"
 #include "truth_json.h"

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "contact_text.h"
 #include "counted.h"
-#include "element_names.h"
 #include "number_text.h"
 #include "stage_list.h"
 
@@ -42,28 +42,25 @@ Json countsOf(const RunSummary& summary) {
   return counts;
 }
 
-double milliseconds(double seconds) { return 1e3 * seconds; }
-
-Json toJson(const SceneContact& contact) {
-  Json vertices = Json::array();
-  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i) {
-    const SceneVertex& vertex = contact.vertices[i];
-    if (vertex.of_b)
-      vertices.push_back(nameOf(vertex));
-    else
-      vertices.push_back(vertex.id);
-  }
-  return {{"kind", nameOf(contact.kind)},
-          {"vertices", std::move(vertices)},
-          {"toc_lo", contact.toc_lo},
-          {"toc_hi", contact.toc_hi}};
+/// The number of other contacts that may be as early as the earliest.
+std::size_t asEarlyAs(const SceneContact& earliest, const StepResult& result) {
+  const auto overlaps = std::count_if(
+      result.contacts.begin(), result.contacts.end(),
+      [&](const SceneContact& other) { return other.toc_lo <= earliest.toc_hi; });
+  return static_cast<std::size_t>(overlaps) - 1;
 }
+
+double milliseconds(double seconds) { return 1e3 * seconds; }
 
 /// What the query of a step found. "any" is there only if it was for any contact.
 Json findings(const StepResult& result) {
   const SceneContact* earliest = result.earliest();
   const std::optional<bool> crossing = result.initiallyCrossing();
-  const Json found = earliest == nullptr ? Json(nullptr) : toJson(*earliest);
+  Json found = nullptr;
+  if (earliest != nullptr) {
+    found = toJson(*earliest);
+    found["as_early"] = asEarlyAs(*earliest, result);
+  }
   Json findings = {{"initially_crossing", crossing ? Json(*crossing) : Json(kUndecided)},
                    {"first", result.isFirstDecided() ? found : Json(kUndecided)}};
   if (result.is_any) findings["any"] = found;
@@ -145,11 +142,12 @@ std::string summaryLines(const RunSummary& summary, fcl::ContinuousQuery query) 
     lines += "not decided: whether " + counted(summary.undecided_steps, "other step") +
              " began crossing\n";
   if (summary.first)
-    lines += std::string(is_any ? "a contact" : "first contact") + ": step " +
-             std::to_string(summary.first->step) + " at " +
-             numberText(summary.first->toc_lo, 9) +
-             (summary.first->is_decided ? "" : "; not decided: whether it is the first") +
-             '\n';
+    lines += sentenceOf(is_any ? "a contact:" : "first contact:", *summary.first,
+                        summary.at_distance);
+  else if (summary.steps > 0)
+    lines += "no contact in " + counted(summary.steps, "step") + '\n';
+  if (summary.first && !summary.first->is_decided)
+    lines += "not decided: whether it is the first\n";
   if (summary.slowest_ms >= 0)
     lines += "slowest: step " + std::to_string(summary.slowest_step) + " with " +
              numberText(summary.slowest_ms, 4) + " ms\n";
@@ -185,8 +183,8 @@ RunSummary summaryOf(const StepReport& report) {
   summary.is_any = result.is_any;
   summary.undecided_steps = crossing ? 0 : 1;
   if (const SceneContact* earliest = result.earliest())
-    summary.first =
-        RunSummary::First{report.number, earliest->toc_lo, result.isFirstDecided()};
+    summary.first = FirstContact{report.number, report.files, *earliest,
+                                 asEarlyAs(*earliest, result), result.isFirstDecided()};
   summary.slowest_step = report.number;
   summary.slowest_ms = milliseconds(result.times.total());
   return summary;
@@ -210,8 +208,8 @@ RunSummary summaryOf(const Json& step_line) {
   const bool is_decided = first != kUndecided;
   const Json& found = is_decided ? first : step_line.at("any");
   if (!found.is_null())
-    summary.first =
-        RunSummary::First{step_line.at("step"), found.at("toc_lo"), is_decided};
+    summary.first = FirstContact{step_line.at("step"), step_line.at("files"),
+                                 contactOf(found), found.at("as_early"), is_decided};
   return summary;
 }
 
@@ -235,8 +233,11 @@ void RunSummary::add(const RunSummary& step) {
 
 Json toJson(const RunSummary& summary) {
   Json found = nullptr;
-  if (summary.first)
-    found = {{"step", summary.first->step}, {"toc_lo", summary.first->toc_lo}};
+  if (summary.first) {
+    found = {{"step", summary.first->step}, {"files", namesInJson(summary.first->files)}};
+    found.update(toJson(summary.first->contact));
+    found["as_early"] = summary.first->as_early;
+  }
   const bool is_decided = !summary.first || summary.first->is_decided;
   Json json = {{"steps", summary.steps},
                {"contacts", countsOf(summary)},

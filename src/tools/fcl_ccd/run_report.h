@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "contact_text.h"
 #include "mesh_io.h"
 #include "scene.h"
 
@@ -30,16 +31,11 @@ struct RunSummary {
   bool at_distance{false};  ///< whether the next two mean something
   std::size_t ve{0};
   std::size_t vv{0};
-  std::size_t crossings{0};        ///< of an edge and a face
-  std::size_t crossing_steps{0};   ///< steps that began crossing
-  bool is_any{false};              ///< whether the query was for any contact
-  std::size_t undecided_steps{0};  ///< may have begun crossing; only with is_any
-  struct First {
-    std::size_t step;
-    double toc_lo;
-    bool is_decided{true};  ///< false: another contact of the step may be earlier
-  };
-  std::optional<First> first;  ///< the first step with a contact or crossing
+  std::size_t crossings{0};           ///< of an edge and a face
+  std::size_t crossing_steps{0};      ///< steps that began crossing
+  bool is_any{false};                 ///< whether the query was for any contact
+  std::size_t undecided_steps{0};     ///< may have begun crossing; only with is_any
+  std::optional<FirstContact> first;  ///< of the first step with a contact or crossing
   std::size_t slowest_step{0};
   double slowest_ms{-1};  ///< of steps that have a time; negative: none has
 

@@ -232,9 +232,10 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   const bool is_any = settings_.query == fcl::ContinuousQuery::kAny;
   request.query = is_any ? fcl::ContinuousQuery::kFirst : settings_.query;
   if (is_any) request.num_max_contacts = 1;
-  request.enable_crossings = settings_.all_crossings;
+  // Also for any contact, of which there is one at most: which crossing is found first
+  // depends on the tree, and the tree on the steps before.
+  request.enable_crossings = true;
   request.toc_err = settings_.toc_err;
-  request.enable_contact = settings_.points;
   request.num_threads = settings_.num_threads;
   request.min_distance = settings_.min_distance;
   request.ignore_initially_closer = settings_.ignore_initially_closer;
@@ -254,8 +255,6 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
     setTriangle(contact.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
     return out;
   };
-  if (!settings_.all_crossings && result.initially_crossing)
-    result.crossings = {result.crossing};
   // One is kept of them: the first by its ids.
   if (is_any && result.crossings.size() > 1) result.crossings.resize(1);
   step.contacts.reserve(step.contacts.size() + result.crossings.size() +

@@ -19,10 +19,6 @@ StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
       frames_a_(inputs.a, share),
       scenes_(parallelism.jobs) {
   settings_.num_threads = parallelism.threads;
-  settings_.points = options.columns.needPoints();
-  // Also for any contact, of which files have one at most: which crossing is found first
-  // depends on the tree, and the tree on the steps before.
-  settings_.all_crossings = options.writesFiles();
   if (inputs.b) frames_b_.emplace(*inputs.b, share);
 }
 

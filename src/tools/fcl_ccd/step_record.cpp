@@ -14,8 +14,9 @@ using Json = nlohmann::json;
 Json encode(const RunSummary& summary) {
   Json first = nullptr;
   if (summary.first)
-    first = Json::array(
-        {summary.first->step, summary.first->toc_lo, summary.first->is_decided});
+    first = Json::array({summary.first->step, summary.first->files,
+                         Json(toJson(summary.first->contact)), summary.first->as_early,
+                         summary.first->is_decided});
   return Json::array({summary.steps, summary.vf, summary.ee, summary.at_distance,
                       summary.ve, summary.vv, summary.crossings, summary.crossing_steps,
                       summary.is_any, summary.undecided_steps, first,
@@ -37,7 +38,8 @@ RunSummary decodeSummary(const Json& fields) {
   fields.at(i++).get_to(summary.undecided_steps);
   const Json& first = fields.at(i++);
   if (!first.is_null())
-    summary.first = RunSummary::First{first.at(0), first.at(1), first.at(2)};
+    summary.first = FirstContact{first.at(0), first.at(1), contactOf(first.at(2)),
+                                 first.at(3), first.at(4)};
   fields.at(i++).get_to(summary.slowest_step);
   fields.at(i++).get_to(summary.slowest_ms);
   return summary;

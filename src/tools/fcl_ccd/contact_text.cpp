@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "contact_text.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <utility>
+
+#include "counted.h"
+#include "number_text.h"
+
+namespace fcl_ccd {
+namespace {
+
+using Kind = fcl::ContinuousContactKind;
+using Json = nlohmann::ordered_json;
+using fcl::PrimitiveKind;
+
+struct KindNames {
+  Kind kind;
+  const char* name;       ///< in files
+  const char* words;      ///< in sentences
+  int num_vertices;       ///< of both features
+  int num_first_feature;  ///< vertices of the first feature
+};
+
+/// The program has no shapes.
+constexpr KindNames kKinds[] = {{Kind::kVertexFace, "vf", "vertex-face", 4, 1},
+                                {Kind::kEdgeEdge, "ee", "edge-edge", 4, 2},
+                                {Kind::kVertexEdge, "ve", "vertex-edge", 3, 1},
+                                {Kind::kVertexVertex, "vv", "vertex-vertex", 2, 1},
+                                {Kind::kCrossing, "crossing", "crossing", 5, 2}};
+
+const KindNames& namesOf(Kind kind) {
+  for (const KindNames& names : kKinds)
+    if (names.kind == kind) return names;
+  return kKinds[4];
+}
+
+/// A number where the name is one.
+Json numberOrName(const std::string& name) {
+  if (name.find_first_not_of("0123456789") != std::string::npos) return name;
+  return std::stoll(name);
+}
+
+/// A vertex, or a triangle with what it stands for.
+struct ParsedName {
+  bool of_b{false};
+  PrimitiveKind kind{PrimitiveKind::kTriangle};
+  long long number{0};
+};
+
+ParsedName parseName(const Json& json) {
+  ParsedName parsed;
+  if (json.is_number()) {
+    json.get_to(parsed.number);
+    return parsed;
+  }
+  std::string name = json;
+  const auto skip = [&](char letter) {
+    const bool found = !name.empty() && name[0] == letter;
+    if (found) name.erase(0, 1);
+    return found;
+  };
+  parsed.of_b = skip('b');
+  if (skip('e')) parsed.kind = PrimitiveKind::kFreeEdge;
+  if (skip('p')) parsed.kind = PrimitiveKind::kFreePoint;
+  parsed.number = std::stoll(name);
+  return parsed;
+}
+
+/// "vertex 3 of triangle 1", "edge b0 b1 of free edge b7".
+std::string featureText(const SceneContact& contact, std::size_t feature) {
+  constexpr std::array<const char*, 4> kFeatures{"", "vertex", "edge", "face"};
+  const auto num_first =
+                 static_cast<std::size_t>(namesOf(contact.kind).num_first_feature),
+             num_all = static_cast<std::size_t>(contact.num_vertices);
+  const std::size_t begin = feature == 0 ? 0 : num_first,
+                    end = feature == 0 ? num_first : num_all;
+  std::string text = kFeatures[end - begin];
+  for (std::size_t i = begin; i < end; ++i) text += ' ' + nameOf(contact.vertices[i]);
+  const PrimitiveKind kind = contact.triangle_kinds[feature];
+  text += kind == PrimitiveKind::kFreeEdge    ? " of free edge "
+          : kind == PrimitiveKind::kFreePoint ? " of free point "
+                                              : " of triangle ";
+  return text + (isOfB(contact, feature) ? "b" : "") +
+         std::to_string(contact.triangles[feature]);
+}
+
+/// A text that wrapped() does not break: a blank of it is a character that no name has.
+constexpr char kBlank = '\1';
+std::string unbroken(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', kBlank);
+  return text;
+}
+
+std::string pointText(const std::array<double, 3>& point) {
+  constexpr int kDigits = 6;
+  std::string text;
+  for (const double x : point)
+    // -0 becomes 0.
+    text += (text.empty() ? "(" : ", ") + numberText(x + 0.0, kDigits);
+  return unbroken(text + ')');
+}
+
+std::string normalText(const std::array<double, 3>& normal) {
+  return normal == std::array<double, 3>{} ? "no normal" : "normal " + pointText(normal);
+}
+
+/// Breaks a text at blanks into lines of at most 80 characters, all but the first of
+/// which are indented. Blanks of unbroken() stay.
+std::string wrapped(const std::string& text) {
+  constexpr std::size_t kWidth = 80;
+  std::istringstream words(text);
+  std::string lines, line;
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > kWidth) {
+      lines += line + '\n';
+      line = " ";
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  lines += line + '\n';
+  std::replace(lines.begin(), lines.end(), kBlank, ' ');
+  return lines;
+}
+
+}  // namespace
+
+const char* nameOf(Kind kind) { return namesOf(kind).name; }
+
+const char* wordsOf(Kind kind) { return namesOf(kind).words; }
+
+std::string nameOf(const SceneVertex& vertex) {
+  return (vertex.of_b ? "b" : "") + std::to_string(vertex.id);
+}
+
+const char* nameOf(PrimitiveKind kind) {
+  switch (kind) {
+    case PrimitiveKind::kFreeEdge:
+      return "e";
+    case PrimitiveKind::kFreePoint:
+      return "p";
+    default:
+      return "";
+  }
+}
+
+Json toJson(const SceneContact& contact) {
+  Json vertices = Json::array();
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i)
+    vertices.push_back(numberOrName(nameOf(contact.vertices[i])));
+  return {
+      {"kind", nameOf(contact.kind)},
+      {"vertices", std::move(vertices)},
+      {"triangles",
+       {numberOrName(triangleName(contact, 0)), numberOrName(triangleName(contact, 1))}},
+      {"toc_lo", contact.toc_lo},
+      {"toc_hi", contact.toc_hi},
+      {"position", contact.position},
+      {"normal", contact.normal}};
+}
+
+SceneContact contactOf(const Json& json) {
+  SceneContact contact;
+  const std::string kind = json.at("kind");
+  for (const KindNames& names : kKinds)
+    if (kind == names.name) contact.kind = names.kind;
+  const Json& vertices = json.at("vertices");
+  contact.num_vertices = namesOf(contact.kind).num_vertices;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i) {
+    const ParsedName name = parseName(vertices.at(i));
+    contact.vertices[i] = {static_cast<int>(name.number), name.of_b};
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ParsedName name = parseName(json.at("triangles").at(i));
+    contact.triangles[i] = static_cast<std::intptr_t>(name.number);
+    contact.triangle_kinds[i] = name.kind;
+  }
+  json.at("toc_lo").get_to(contact.toc_lo);
+  json.at("toc_hi").get_to(contact.toc_hi);
+  json.at("position").get_to(contact.position);
+  json.at("normal").get_to(contact.normal);
+  return contact;
+}
+
+std::string sentenceOf(const std::string& begin, const FirstContact& first,
+                       bool at_distance) {
+  const SceneContact& contact = first.contact;
+  std::string text = begin + " step " + std::to_string(first.step) + " at " +
+                     numberText(contact.toc_lo, 9) + ", between " +
+                     unbroken(first.files[0]) + " and " + unbroken(first.files[1]) +
+                     ": " + namesOf(contact.kind).words + ", " + featureText(contact, 0) +
+                     (contact.kind == Kind::kCrossing ? " passes through "
+                      : at_distance                   ? " comes near "
+                                                      : " meets ") +
+                     featureText(contact, 1) + " at " + pointText(contact.position) +
+                     ", " + normalText(contact.normal);
+  if (first.as_early > 0)
+    text += "; " + counted(first.as_early, "other") + " may be as early";
+  return wrapped(text);
+}
+
+}  // namespace fcl_ccd
