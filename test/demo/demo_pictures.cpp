@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "mesh_io.h"
-#include "render.h"
+#include "pictures.h"
 #include "scenes.h"
 
 namespace fcl {

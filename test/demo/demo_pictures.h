@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cloth_simulator.h"
-#include "image.h"
+#include "pictures.h"
 
 namespace fcl {
 namespace test {

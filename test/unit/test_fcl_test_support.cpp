@@ -11,10 +11,9 @@
 
 #include "cloth_simulator.h"
 #include "fcl/common/exception.h"
-#include "image.h"
 #include "mesh_generators.h"
+#include "pictures.h"
 #include "proximity.h"
-#include "render.h"
 #include "scenes.h"
 
 namespace fcl {
@@ -235,7 +234,7 @@ TEST(FCL_TEST_SUPPORT, bodies_cannot_be_added_to_a_running_scene) {
 
 PaintedMesh paintedSphere() {
   PaintedMesh scene;
-  scene.mesh = makeIcosphere(3, 0.5);
+  scene.mesh = toSurface(makeIcosphere(3, 0.5));
   scene.paints.assign(scene.mesh.triangles.size(),
                       {colourFromHex(0x2a9d8f), colourFromHex(0xe9c46a), false});
   return scene;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "render.h"
+#include "pictures.h"
 #include "scene_pictures.h"
 
 namespace fcl {

@@ -2,9 +2,9 @@
 #ifndef FCL_BENCHMARK_PAPER_EDGE_PICTURE_H
 #define FCL_BENCHMARK_PAPER_EDGE_PICTURE_H
 
-#include "image.h"
 #include "pair_census.h"
 #include "paper_scenes.h"
+#include "pictures.h"
 #include "scene_data.h"
 
 namespace fcl {

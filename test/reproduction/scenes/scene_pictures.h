@@ -4,9 +4,8 @@
 
 #include <string>
 
-#include "image.h"
 #include "paper_scenes.h"
-#include "render.h"
+#include "pictures.h"
 
 namespace fcl {
 namespace test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#ifndef FCL_TEST_SUPPORT_IMAGE_H
-#define FCL_TEST_SUPPORT_IMAGE_H
+#ifndef FCL_CCD_PICTURES_IMAGE_H
+#define FCL_CCD_PICTURES_IMAGE_H
 
 #include <cstdint>
 #include <string>
@@ -8,11 +8,11 @@
 
 #include "fcl/common/types.h"
 
-namespace fcl {
-namespace test {
+namespace fcl_ccd {
+namespace picture {
 
 /// @brief Red, green, blue in [0, 1], proportional to light (not sRGB).
-using Colour = Vector3<float>;
+using Colour = fcl::Vector3<float>;
 
 /// @brief A picture, stored row by row from the top left.
 struct Image {
@@ -56,7 +56,7 @@ std::string encodePng(const Image& image);
 /// @throws std::runtime_error that names the file and gives libpng's message.
 Image readPng(const std::string& path);
 
-}  // namespace test
-}  // namespace fcl
+}  // namespace picture
+}  // namespace fcl_ccd
 
 #endif

@@ -6,11 +6,12 @@
 #include <cmath>
 #include <limits>
 
-namespace fcl {
-namespace test {
+namespace fcl_ccd {
+namespace picture {
 namespace {
 
-using Vec = Vector3<double>;
+using fcl::Triangle;
+using Vec = fcl::Vector3<double>;
 
 /// A point on the screen: x to the right, y down (in pixels). z grows away from the
 /// viewer.
@@ -48,7 +49,7 @@ void rasterise(const std::array<ScreenPoint, 3>& p, int width, int height, Visit
 /// A depth map seen from far away in direction `to_light`.
 class ShadowMap {
  public:
-  ShadowMap(const TestMesh& mesh, const Vec& to_light, int size)
+  ShadowMap(const Surface& mesh, const Vec& to_light, int size)
       : size_(size),
         depths_(static_cast<std::size_t>(size) * static_cast<std::size_t>(size),
                 std::numeric_limits<float>::max()) {
@@ -100,7 +101,7 @@ class ShadowMap {
     return static_cast<std::size_t>(y) * static_cast<std::size_t>(size_) +
            static_cast<std::size_t>(x);
   }
-  void draw(const TestMesh& mesh, const Triangle& t) {
+  void draw(const Surface& mesh, const Triangle& t) {
     std::array<ScreenPoint, 3> p;
     for (int k = 0; k < 3; ++k)
       p[static_cast<std::size_t>(k)] = toMap(mesh.vertices[t[k]]);
@@ -121,8 +122,8 @@ class ShadowMap {
 /// A sun and a sky, as a set of shadowed lights.
 class Lighting {
  public:
-  Lighting(const TestMesh& mesh, const RenderOptions& options)
-      : sun_(mesh, options.sun, 2048) {
+  Lighting(const Surface& mesh, const RenderOptions& options)
+      : sun_(mesh, options.sun, options.shadow_size) {
     // A spiral with equal steps in height covers the half sphere evenly.
     const double golden_angle = std::acos(-1.0) * (3 - std::sqrt(5.0));
     for (int i = 0; i < options.sky_lights; ++i) {
@@ -167,6 +168,8 @@ class Projection {
     scale_ = 0.5 * height / std::tan(0.5 * camera.vertical_view_angle);
   }
 
+  double depthOf(const Vec& v) const { return forward_.dot(v - eye_); }
+
   ScreenPoint operator()(const Vec& v) const {
     const Vec d = v - eye_;
     const double depth = forward_.dot(d);
@@ -176,12 +179,12 @@ class Projection {
 
  private:
   Vec eye_, forward_, right_, down_;
-  Vector2<double> centre_;
+  fcl::Vector2<double> centre_;
   double scale_;
 };
 
 /// Area-weighted vertex normals, unit.
-std::vector<Vec> smoothNormals(const TestMesh& mesh) {
+std::vector<Vec> smoothNormals(const Surface& mesh) {
   std::vector<Vec> normals(mesh.vertices.size(), Vec::Zero());
   for (const Triangle& t : mesh.triangles) {
     const Vec n = (mesh.vertices[t[1]] - mesh.vertices[t[0]])
@@ -217,7 +220,7 @@ class Renderer {
   struct Hit {
     int triangle{-1};
     float depth{std::numeric_limits<float>::max()};
-    Vector3<float> weights{Vector3<float>::Zero()};
+    fcl::Vector3<float> weights{fcl::Vector3<float>::Zero()};
   };
 
   std::size_t index(int x, int y) const {
@@ -226,13 +229,38 @@ class Renderer {
   }
 
   void findVisible(std::size_t f) {
+    const std::vector<Vec> polygon = partBeforeCamera(f);
+    for (std::size_t k = 2; k < polygon.size(); ++k)
+      findVisible(f, {polygon[0], polygon[k - 1], polygon[k]});
+  }
+
+  Vec pointOf(std::size_t f, const Vec& weights) const {
     const Triangle& t = scene_.mesh.triangles[f];
-    std::array<ScreenPoint, 3> p;
+    const auto& v = scene_.mesh.vertices;
+    return weights[0] * v[t[0]] + weights[1] * v[t[1]] + weights[2] * v[t[2]];
+  }
+
+  /// The corners, as barycentric coordinates, of the part of a triangle that is before
+  /// the camera.
+  std::vector<Vec> partBeforeCamera(std::size_t f) const {
+    constexpr double kNear = 1e-2;  // metres
+    std::vector<Vec> polygon;
     for (int k = 0; k < 3; ++k) {
-      const auto corner = static_cast<std::size_t>(k);
-      p[corner] = projection_(scene_.mesh.vertices[t[k]]);
-      if (!(p[corner][2] > 1e-3)) return;
+      const Vec a = Vec::Unit(k), b = Vec::Unit((k + 1) % 3);
+      const double before_a = projection_.depthOf(pointOf(f, a)) - kNear,
+                   before_b = projection_.depthOf(pointOf(f, b)) - kNear;
+      if (before_a >= 0) polygon.push_back(a);
+      if ((before_a >= 0) == (before_b >= 0)) continue;
+      const double share = before_a / (before_a - before_b);
+      polygon.emplace_back((1 - share) * a + share * b);
     }
+    return polygon;
+  }
+
+  /// Finds the pixels that show a part of a triangle, given by barycentric coordinates.
+  void findVisible(std::size_t f, const std::array<Vec, 3>& part) {
+    std::array<ScreenPoint, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) p[k] = projection_(pointOf(f, part[k]));
     rasterise(p, width_, height_, [&](int x, int y, const Vec& w) {
       // 1 / depth is linear on the screen.
       const Vec inverse(w[0] / p[0][2], w[1] / p[1][2], w[2] / p[2][2]);
@@ -241,7 +269,9 @@ class Renderer {
       if (depth >= hit.depth) return;
       hit.triangle = static_cast<int>(f);
       hit.depth = depth;
-      hit.weights = (inverse / inverse.sum()).cast<float>();
+      const Vec weights =
+          inverse[0] * part[0] + inverse[1] * part[1] + inverse[2] * part[2];
+      hit.weights = (weights / inverse.sum()).cast<float>();
     });
   }
 
@@ -284,7 +314,7 @@ class Renderer {
   void drawMarker(const Marker& marker) {
     const ScreenPoint p = projection_(marker.position);
     if (!(p[2] > 0)) return;
-    const double radius = options_.marker_radius * options_.supersampling;
+    const double radius = marker.size * options_.marker_radius * options_.supersampling;
     // Markers lie on surfaces, and have to be drawn in front of them.
     const double depth = p[2] * (1 - 0.004);
     const int reach = static_cast<int>(std::ceil(radius));
@@ -293,7 +323,8 @@ class Renderer {
     for (int y = std::max(0, cy - reach); y <= std::min(height_ - 1, cy + reach); ++y)
       for (int x = std::max(0, cx - reach); x <= std::min(width_ - 1, cx + reach); ++x) {
         const double distance = std::hypot(x + 0.5 - p[0], y + 0.5 - p[1]);
-        if (distance > radius || depth > hits_[index(x, y)].depth) continue;
+        if (distance > radius) continue;
+        if (!marker.is_on_top && depth > hits_[index(x, y)].depth) continue;
         image_.at(x, y) = marker.colour;
       }
   }
@@ -315,5 +346,5 @@ Image render(const PaintedMesh& scene, const std::vector<Marker>& markers,
   return Renderer(scene, camera, options).run(markers);
 }
 
-}  // namespace test
-}  // namespace fcl
+}  // namespace picture
+}  // namespace fcl_ccd

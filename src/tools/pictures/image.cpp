@@ -7,8 +7,8 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace fcl {
-namespace test {
+namespace fcl_ccd {
+namespace picture {
 namespace {
 
 float toLight(float srgb) { return std::pow(srgb, 2.2f); }
@@ -138,5 +138,5 @@ Image readPng(const std::string& path) {
   return image;
 }
 
-}  // namespace test
-}  // namespace fcl
+}  // namespace picture
+}  // namespace fcl_ccd
