@@ -21,6 +21,9 @@ if(TARGET fcl-ccd)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
     RENAME fcl-ccd
     COMPONENT tool)
+  # The program contains three.js, unless it was built without the viewer of its pages.
+  install(FILES ${fcl_ccd_viewer_license} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.three.js
+          COMPONENT tool)
 endif()
 # From here on everything is for those who compile with the library.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME dev)

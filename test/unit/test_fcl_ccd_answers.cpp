@@ -64,7 +64,9 @@ TEST_F(CcdAnswers, AnyContactOfCrossingMeshesIsTheCrossing) {
   writeTip();
   const std::string out =
       outputOf("run tip1.obj tip0.obj --query any --json r.json --steps s.jsonl");
-  EXPECT_TRUE(contains(out, "a contact: step 0 at 0, between tip1.obj and tip0.obj: crossing,")) << out;
+  EXPECT_TRUE(
+      contains(out, "a contact: step 0 at 0, between tip1.obj and tip0.obj: crossing,"))
+      << out;
   EXPECT_TRUE(contains(out, "1 step began crossing")) << out;
   EXPECT_FALSE(contains(out, "first")) << out;
   const Json step = json("r.json").at("steps").at(0);
@@ -309,7 +311,9 @@ TEST_F(CcdAnswers, StartKeepsTheNumbersOfFrames) {
       EXPECT_EQ(Json::parse(steps[1 + i]).at("step"), number);
     }
     for (const auto& row : rows()) EXPECT_GE(std::stoi(row[0]), 2);
-    EXPECT_TRUE(contains(out, "first contact: step 2 at 0, between f/tip2.ply and f/tip4.ply: crossing,")) << out;
+    EXPECT_TRUE(contains(
+        out, "first contact: step 2 at 0, between f/tip2.ply and f/tip4.ply: crossing,"))
+        << out;
     const auto whole = takeOutputs();
     // Continued in the middle.
     writeText(path("c.csv"), whole.first.substr(0, whole.first.size() / 2));

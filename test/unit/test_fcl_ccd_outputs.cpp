@@ -306,7 +306,8 @@ TEST_F(CcdOutputs, ResumeDoesTheGoodStepsBeforeAHalfWrittenFrame) {
   cutFrame(11, 300);
   for (const char* jobs : {" --jobs 1", " --jobs 3"}) {
     const Outcome outcome =
-        run("run f --resume --json r.json --paint p.ply" + kOutputs + jobs);
+        run("run f --resume --json r.json --paint p.ply --at-step 9 --at-time 1" +
+            kOutputs + jobs);
     EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "f/tip11.ply: ")) << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "stopped after 10 of 11 steps")) << outcome.err;
@@ -358,7 +359,8 @@ TEST_F(CcdOutputs, FollowWaitsForFrames) {
       "fcl-ccd",    "run",   "f",         "--follow",
       "--contacts", "c.csv", "--steps",   "s.jsonl",
       "--end",      "8",     "--columns", "triangles,position,normal",
-      "--paint",    "p.ply"};
+      "--paint",    "p.ply", "--at-step", "7",
+      "--at-time",  "1"};
   const pid_t child = start(path(""), arguments);
   for (std::size_t frame = 0; frame < 9; ++frame) {
     writeFrame(frame);

@@ -440,7 +440,7 @@ TEST_F(CcdTool, FirstAndAnyAgreeWithAll) {
 
 TEST_F(CcdTool, PaintsTheVerticesOfContacts) {
   writeTip();
-  ASSERT_EQ(run("run tip0.obj tip1.obj --paint p.ply").exit_code, 0);
+  ASSERT_EQ(run("run tip0.obj tip1.obj --paint p.ply --at-time 1").exit_code, 0);
   expectSame(readMesh(path("p.ply").string()), floorAndTip(2));
   const std::string file = readText(path("p.ply"));
   const std::string end = "end_header\n";

@@ -13,6 +13,7 @@ class FclCcd < Formula
   depends_on "eigen"
   depends_on "fcl"
   depends_on "highway"
+  depends_on "libpng"
   depends_on "tbb"
 
   def install

@@ -19,12 +19,13 @@ _fcl_ccd() {
         queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc rounded file' ;;
       esac
       ;;
-    --start | --end | --stride | --follow | --thickness | --jobs | --threads | --toc-err | --repeat) return ;;
+    --start | --end | --stride | --follow | --thickness | --jobs | --threads | --toc-err | --repeat | --at-step | --at-time) return ;;
     *)
       case $command:$word in
         run:-*)
           words="$common --against --start --end --stride --follow --no-self --query --thickness
-            --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --paint"
+            --ignore-initially-closer --jobs --threads --weld --contacts --columns --steps --resume --report
+            --picture --paint --at-step --at-time"
           ;;
         candidates:-*) words='--help --against --no-self --thickness --weld --output --columns' ;;
         compare:-*) words="$common --kind --truth" ;;

@@ -238,6 +238,13 @@ bool isBeforeNaturally(const std::string& a, const std::string& b) {
   return a < b;  // equal numbers, as in f1 and f01
 }
 
+bool hasNumber(const std::string& name) { return parseNumbered(name).has_value(); }
+
+std::string withNumber(const std::string& name, std::size_t number) {
+  const std::optional<NumberedName> numbered = parseNumbered(name);
+  return numbered ? (*numbered)(static_cast<long long>(number)) : name;
+}
+
 std::string noteOnGaps(const std::vector<std::string>& frames) {
   if (frames.size() < 3) return "";
   const NumberedName name = commonName(frames);

@@ -55,6 +55,13 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
 /// one word, (2), (3) or (4).
 bool mayGrow(const std::vector<std::string>& words);
 
+/// @brief Whether a name is one with a number, as in (4).
+/// @throws std::runtime_error if the number is not written as there.
+bool hasNumber(const std::string& name);
+
+/// @brief The name of a file with this number. A name without number stays as it is.
+std::string withNumber(const std::string& name, std::size_t number);
+
 /// @brief One line about frames that seem to be missing: the names differ only in a
 /// number that rises, more than half of the times by the same, least amount, and now and
 /// then by more. Empty if this is not so.

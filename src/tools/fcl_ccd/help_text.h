@@ -60,10 +60,14 @@ Output:
   --steps: JSON lines: the options, one object for each step, and a summary at the end.
   --json: JSON with all steps and their times in milliseconds. build: making the tree, in
   the first step of each job. total = update + traverse + test.
-  --paint: PLY of the last frame. Vertices of vf, ve and vv contacts are red, those of ee
-  contacts orange, those of an edge and a face that cross at t = 0 violet. B's vertices come
-  after A's.
-  --contacts and --steps grow with each step. --json and --paint are written at the end.
+  --report: a page with table, plots, the first contacts and a 3D view, in one file that
+  needs no network. With DIR also contacts.csv, run.json, first_contact.png, first_contact.ply.
+  --picture (PNG) and --paint (PLY) show the moment of the first contact, or the end of the
+  last step if there is none. --at-step and --at-time choose another moment. A name with a
+  number, contact_%04d.png, is a file a step. The contacts up to that moment are in colour.
+  In a PLY vertices of vf, ve and vv contacts are red, those of ee contacts orange, those of
+  an edge and a face that cross at t = 0 violet. B's vertices come after A's.
+  --contacts and --steps grow with each step. Others are written at the end.
   One output may be '-', standard output. Then the table goes to standard error.
 
 Stopping:
@@ -95,7 +99,8 @@ Examples:
   fcl-ccd run frame_%04d.ply --start 100 --end 199 --contacts contacts.csv
   mpirun -n 4 fcl-ccd run frames/ --contacts contacts.csv --steps steps.jsonl
   fcl-ccd run --against ball_0.obj ball_1.obj --no-self -- cloth_0.obj cloth_1.obj
-  fcl-ccd run cloth_0.ply cloth_1.ply --contacts contacts.csv --paint contacts.ply)";
+  fcl-ccd run frames/ --report report
+  fcl-ccd run frames/ --picture first.png --paint first.ply)";
 
 inline constexpr const char* kCandidatesDetails = R"(Frames:
   Two files, or what names two frames as in 'fcl-ccd run --help'. Vertices move on straight

@@ -29,6 +29,7 @@
 #include "ranks.h"
 #include "run_command.h"
 #include "run_inputs.h"
+#include "show_options.h"
 #include "stop_signal.h"
 #include "suggestion.h"
 
@@ -74,27 +75,6 @@ CLI::Validator oneOf(const std::map<std::string, Value>& names, const char* what
           ""};
 }
 
-/// @brief A validator of names of output files.
-CLI::Validator named() {
-  return {[](const std::string& text) {
-            return text.empty() ? "no file is named: the name is empty" : std::string();
-          },
-          ""};
-}
-
-/// @brief A validator of names of PLY files. A name without extension may be a device.
-CLI::Validator namedPly() {
-  return {[](const std::string& text) {
-            const std::string extension = fcl_ccd::extensionOf(text);
-            return extension.empty() || extension == "ply"
-                       ? std::string()
-                       : text +
-                             ": cannot write: this option writes PLY. Give a name that "
-                             "ends in .ply";
-          },
-          ""};
-}
-
 void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
                       std::string& json_path) {
   command
@@ -111,7 +91,7 @@ void addCommonOptions(CLI::App& command, double& toc_err, int& repeat,
       ->capture_default_str();
   command.add_option("--json", json_path, "Write the results as JSON")
       ->type_name("FILE")
-      ->check(named());
+      ->check(fcl_ccd::namedFile());
 }
 
 /// @brief Adds the option for the columns of a CSV output.
@@ -241,7 +221,7 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   run.add_option("--contacts", options.contacts_path,
                  "Write the contacts as CSV; -: to standard output")
       ->type_name("FILE")
-      ->check(named());
+      ->check(fcl_ccd::namedFile());
   addColumnsOption(run, "Columns of the contacts, in this order; see below",
                    [&options](const std::string& list) {
                      options.columns = fcl_ccd::ContactColumns(list);
@@ -250,14 +230,10 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
   run.add_option("--steps", options.steps_path,
                  "Write a JSON object for each step when it is done")
       ->type_name("FILE")
-      ->check(named());
+      ->check(fcl_ccd::namedFile());
   run.add_flag("--resume", options.resume,
                "Continue the files of --contacts and --steps");
-  run.add_option("--paint", options.paint_path,
-                 "Write the last frame as PLY, with contacts in colour")
-      ->type_name("FILE")
-      ->check(named())
-      ->check(namedPly());
+  fcl_ccd::addShowOptions(run, options);
 }
 
 // The order is that of the help.
@@ -289,7 +265,7 @@ void addCandidates(CLI::App& app, fcl_ccd::CandidatesOptions& options) {
   addWeldOption(*candidates, options.step);
   candidates->add_option("--output", options.output_path, "Write the candidates as CSV")
       ->type_name("FILE")
-      ->check(named())
+      ->check(fcl_ccd::namedFile())
       ->capture_default_str();
   addColumnsOption(*candidates, "Columns, in this order; see below",
                    [&options](const std::string& list) {
@@ -460,6 +436,7 @@ int runProgram(int argc, char** argv, fcl_ccd::Ranks& ranks) {
   }
   try {
     app.parse(argc, argv);
+    fcl_ccd::expandReport(run_options);
     if (run_options.resume && run_options.contacts_path.empty() &&
         run_options.steps_path.empty())
       throw CLI::ValidationError("--resume", "needs --contacts or --steps to continue");

@@ -175,9 +175,14 @@ ResumePoint findResumePoint(const GrowingOutputs& outputs, std::size_t latest) {
   point.step = std::min(point.step, latest);
   if (point.step == 0) return point;
   point.contacts_size = contacts.beginOf(point.step);
+  if (!contacts.steps.empty() && contacts.steps.begin()->first < point.step)
+    point.first_contact = contacts.steps.begin()->first;
   if (steps.empty()) return point;
   point.steps_size = steps[point.step - 1].end;
-  for (std::size_t i = 0; i < point.step; ++i) point.summary.add(steps[i].summary);
+  for (std::size_t i = 0; i < point.step; ++i) {
+    point.summary.add(steps[i].summary);
+    if (!point.first_contact && point.summary.first) point.first_contact = i;
+  }
   return point;
 }
 

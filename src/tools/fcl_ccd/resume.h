@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,8 @@ struct ResumePoint {
   std::uint64_t contacts_size{0};  ///< bytes of the files that are kept
   std::uint64_t steps_size{0};
   RunSummary summary;  ///< of the previous steps; only with a list of steps
+  /// The first of the previous steps with a contact.
+  std::optional<std::size_t> first_contact;
 };
 
 /// @brief Finds the steps whose output is complete. The run that wrote it may have been

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <limits>
 #include <new>
@@ -204,7 +205,8 @@ class Run {
     }
     const FramePaths* const lists[] = {&prepared_.paths, &listed};
     for (const FramePaths* list : lists)
-      for (const std::string* path : {&options_.json_path, &options_.paint_path}) {
+      for (const std::string* path : {&options_.json_path, &options_.paint_path,
+                                      &options_.picture_path, &options_.report_path}) {
         requireNotAmong(list->a, *path);
         requireNotAmong(list->b, *path);
       }
@@ -235,15 +237,46 @@ class Run {
   ProgressLine progress_;
 };
 
+/// The number of the first step that --picture and --paint may show.
+std::size_t firstShown(const RunOptions& options, const FramePaths& paths) {
+  const std::vector<std::size_t>& steps = options.shown.steps;
+  return steps.empty() ? paths.numbers[0] : *std::min_element(steps.begin(), steps.end());
+}
+
+/// Refuses steps that the run does not have.
+void requireShown(const RunOptions& options, const FramePaths& paths) {
+  if (options.follow || paths.numSteps() == 0) return;
+  for (const std::size_t number : options.shown.steps) {
+    const std::optional<std::size_t> step = paths.numbers.frameOf(number);
+    if (!step || *step >= paths.numSteps())
+      throw std::runtime_error("--at-step " + std::to_string(number) +
+                               ": the run has no such step. The first is " +
+                               std::to_string(paths.numbers[0]) + ", the last " +
+                               std::to_string(paths.numbers[paths.numSteps() - 1]));
+  }
+}
+
 /// Refuses outputs that cannot be written, that are inputs, or that another run writes,
 /// before any file is read.
 void reserveOutputs(const RunOptions& options, Preparation& run) {
+  requireShown(options, run.paths);
   std::vector<std::string> inputs = run.paths.a;
   inputs.insert(inputs.end(), run.paths.b.begin(), run.paths.b.end());
   run.outputs.emplace(std::move(inputs));
-  for (const std::string* path : {&options.contacts_path, &options.steps_path,
-                                  &options.json_path, &options.paint_path})
-    run.outputs->reserve(*path);
+  std::error_code error;
+  const std::string& folder = options.report_folder;
+  const bool is_new =
+      !folder.empty() && std::filesystem::create_directories(folder, error);
+  try {
+    for (const std::string* path : {&options.contacts_path, &options.steps_path,
+                                    &options.json_path, &options.report_path})
+      run.outputs->reserve(*path);
+    for (const std::string* path : {&options.picture_path, &options.paint_path})
+      run.outputs->reserve(withNumber(*path, firstShown(options, run.paths)));
+  } catch (...) {
+    if (is_new) std::filesystem::remove(folder, error);
+    throw;
+  }
 }
 
 void prepareInputs(const RunOptions& options, bool is_alone, Preparation& run) {
@@ -264,6 +297,23 @@ void prepareInputs(const RunOptions& options, bool is_alone, Preparation& run) {
         " each");
 }
 
+/// The first step whose picture is wanted, which the last run may have done.
+std::optional<std::size_t> firstToShow(const RunOptions& options,
+                                       const Preparation& run) {
+  std::optional<std::size_t> first;
+  const FramePaths& paths = run.paths;
+  for (const std::string* path : {&options.picture_path, &options.paint_path}) {
+    if (path->empty() || run.numSteps() == 0) continue;
+    std::size_t step = run.numSteps() - 1;
+    if (!options.shown.isOfFirstContact(*path))
+      step = paths.numbers.frameOf(firstShown(options, paths)).value_or(0);
+    else if (run.resume_point.first_contact)
+      step = *run.resume_point.first_contact;
+    first = std::min(first.value_or(step), step);
+  }
+  return first;
+}
+
 /// Finds the first step. The frames are those that all ranks can use.
 void prepareResume(const RunOptions& options, Preparation& run) {
   const FramePaths& paths = run.paths;
@@ -282,9 +332,10 @@ void prepareResume(const RunOptions& options, Preparation& run) {
   if (!options.contacts_path.empty() && !options.columns.placeOfStep())
     throw std::runtime_error(
         "--resume needs the column step of the contacts. Add step to --columns");
-  const std::size_t latest =
-      run.numSteps() - (options.paint_path.empty() || run.numSteps() == 0 ? 0 : 1);
-  run.resume_point = findResumePoint(run.growing, latest);
+  run.resume_point = findResumePoint(run.growing, run.numSteps());
+  const std::optional<std::size_t> again = firstToShow(options, run);
+  if (again && *again < run.resume_point.step)
+    run.resume_point = findResumePoint(run.growing, *again);
 }
 
 void report(const std::vector<std::string>& notes) {

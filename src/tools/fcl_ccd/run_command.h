@@ -10,6 +10,7 @@
 #include "frame_list.h"
 #include "ranks.h"
 #include "scene.h"
+#include "shown_steps.h"
 
 namespace fcl_ccd {
 
@@ -25,7 +26,11 @@ struct RunOptions {
   ContactColumns columns;
   std::string steps_path;
   std::string json_path;
+  std::string picture_path;
   std::string paint_path;
+  ShownMoments shown;         ///< in the files of picture_path and paint_path
+  std::string report_path;    ///< of the page
+  std::string report_folder;  ///< is made if it is not there; may be empty
   bool resume{false};
   /// Whether the run waits for frames that come later (range.is_growing), and the
   /// seconds without a new one after which it ends; may be infinite.

@@ -16,7 +16,12 @@ RunOutputs::RunOutputs(const RunOptions& options, const OutputSet& reserved,
   const StepSettings& settings = options.settings;
   print(tableHead(settings.min_distance > 0, settings.query));
   if (!options.json_path.empty()) json_.emplace(options.json_path);
-  if (!options.paint_path.empty()) paint_.emplace(options.paint_path);
+  const ShownMoments& shown = options.shown;
+  if (const auto& path = options.picture_path; !path.empty())
+    picture_.emplace(path, shown.isOfFirstContact(path));
+  if (const auto& path = options.paint_path; !path.empty())
+    paint_.emplace(path, shown.isOfFirstContact(path));
+  if (!options.report_path.empty()) page_.emplace(options.report_path);
 }
 
 void RunOutputs::open(const GrowingOutputs& growing, const ResumePoint& resume_point) {
@@ -39,7 +44,12 @@ void RunOutputs::add(const StepRecord& record) {
   if (steps_) steps_->append(record.step_line);
   if (json_) json_->write((has_json_step_ ? ",\n" : "\n") + record.json);
   has_json_step_ = true;
-  painted_ = record.painted;
+  const bool has_contact = record.summary.first.has_value();
+  if (picture_) picture_->add(record.number, record.picture, has_contact);
+  if (paint_) paint_->add(record.number, record.painted, has_contact);
+  if (page_) page_->add(record.page);
+  if (!summary_.first && !record.page_picture.empty())
+    page_picture_ = record.page_picture;
   commit();
   summary_.add(record.summary);
 }
@@ -52,9 +62,7 @@ void RunOutputs::finish(bool is_complete) {
     if (*file) (*file)->finish();
   summary["complete"] = is_complete;
   if (json_) json_->write("\n],\n\"summary\": " + summary.dump() + "}\n");
-  if (paint_ && !painted_.empty()) paint_->write(painted_);
-  for (OutputFile* file : wholeFiles()) file->finish();
-  for (OutputFile* file : wholeFiles()) file->publish();
+  for (OutputFile* file : finishWholeFiles(is_complete)) file->publish();
 }
 
 void RunOutputs::printSummary() const {
@@ -82,10 +90,18 @@ void RunOutputs::commit() {
     if (*file) (*file)->commit();
 }
 
-std::vector<OutputFile*> RunOutputs::wholeFiles() {
+std::vector<OutputFile*> RunOutputs::finishWholeFiles(bool is_complete) {
   std::vector<OutputFile*> files;
+  if (page_) {
+    page_->finish(summaryLines(summary_, options_.settings.query), page_picture_,
+                  is_complete);
+    files.push_back(&page_->file());
+  }
   if (json_) files.push_back(&*json_);
-  if (paint_ && !painted_.empty()) files.push_back(&*paint_);
+  for (OutputFile* file : files) file->finish();
+  for (auto* shown : {&picture_, &paint_})
+    if (*shown)
+      if (OutputFile* file = (*shown)->finish()) files.push_back(file);
   return files;
 }
 

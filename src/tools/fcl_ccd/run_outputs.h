@@ -8,15 +8,17 @@
 #include <vector>
 
 #include "growing_file.h"
+#include "moment_file.h"
 #include "output_set.h"
+#include "report_page.h"
 #include "resume.h"
 #include "run_command.h"
 #include "step_record.h"
 
 namespace fcl_ccd {
 
-/// @brief The outputs of a run: table, growing files, report and picture. If one of them
-/// is standard output, the table goes to stderr. All functions but rollBack() throw
+/// @brief The outputs of a run: table, growing files, JSON, pictures and page. If one of
+/// them is standard output, the table goes to stderr. All functions but rollBack() throw
 /// WriteError.
 class RunOutputs {
  public:
@@ -53,15 +55,17 @@ class RunOutputs {
   void open(const std::string& path, std::uint64_t kept_size, const std::string& head,
             std::optional<GrowingFile>& file);
   void commit();
-  std::vector<OutputFile*> wholeFiles();
+  std::vector<OutputFile*> finishWholeFiles(bool is_complete);
   void print(std::string_view text) const;
 
   const RunOptions& options_;
   const OutputSet& reserved_;
   std::optional<GrowingFile> contacts_, steps_;
-  std::optional<OutputFile> json_, paint_;
+  std::optional<OutputFile> json_;
   bool has_json_step_{false};
-  std::string painted_;  ///< of the last step, if this is the last one of the frames
+  std::optional<MomentFile> picture_, paint_;
+  std::optional<ReportPage> page_;
+  std::string page_picture_;
   RunSummary summary_;
 };
 

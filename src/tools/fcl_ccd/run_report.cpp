@@ -7,6 +7,7 @@
 
 #include "contact_text.h"
 #include "counted.h"
+#include "moment.h"
 #include "number_text.h"
 #include "stage_list.h"
 
@@ -73,17 +74,6 @@ Json toJson(const StepTimes& times) {
           {"traverse", milliseconds(times.traverse)},
           {"test", milliseconds(times.test)},
           {"total", milliseconds(times.total())}};
-}
-
-void append(const Vertices& vertices, const Triangles& triangles,
-            const FreeElements* free, Mesh& whole) {
-  const int offset = static_cast<int>(whole.vertices.size());
-  whole.vertices.insert(whole.vertices.end(), vertices.begin(), vertices.end());
-  for (const auto& t : triangles)
-    whole.triangles.push_back({t[0] + offset, t[1] + offset, t[2] + offset});
-  if (free == nullptr) return;
-  for (const auto& edge : free->edges)
-    whole.edges.push_back({edge[0] + offset, edge[1] + offset});
 }
 
 }  // namespace
@@ -265,19 +255,16 @@ Json toJson(const StepReport& report) {
   return json;
 }
 
-PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
-                  const StepResult& result) {
+PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& from,
+                  const SceneFrame& to, double time, const StepResult& result) {
   PaintedMesh painted;
-  append(*frame.a, *triangles.a, triangles.free_a, painted.mesh);
-  if (frame.b != nullptr) append(*frame.b, *triangles.b, triangles.free_b, painted.mesh);
+  painted.mesh = meshAt(triangles, from, to, time);
   painted.colours.assign(painted.mesh.vertices.size(), kGrey);
 
   const auto colour = [&](const SceneContact& contact, const Colour& value) {
-    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i) {
-      const SceneVertex& vertex = contact.vertices[i];
-      const std::size_t offset = vertex.of_b ? frame.a->size() : 0;
-      painted.colours[offset + static_cast<std::size_t>(vertex.id)] = value;
-    }
+    if (contact.toc_lo > time) return;
+    for (std::size_t i = 0; i < static_cast<std::size_t>(contact.num_vertices); ++i)
+      painted.colours[idInScene(contact.vertices[i], from)] = value;
   };
   // Rare kinds are painted last, so that they stay visible.
   for (const SceneContact& contact : result.contacts)

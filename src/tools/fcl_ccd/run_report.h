@@ -74,14 +74,15 @@ nlohmann::ordered_json toJson(const RunSummary& summary);
 /// @brief One entry of "steps" in the JSON report.
 nlohmann::ordered_json toJson(const StepReport& report);
 
-/// @brief A frame of the scene as one mesh, with B's vertices after A's. Vertices of
-/// contacts have a colour: vertex-face red, edge-edge orange, all crossings violet.
+/// @brief The scene as one mesh at a time of the step, with B's vertices after A's.
+/// Vertices of contacts up to this time have a colour: vertex-face red, edge-edge orange,
+/// all crossings violet.
 struct PaintedMesh {
   Mesh mesh;
   std::vector<Colour> colours;
 };
-PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& frame,
-                  const StepResult& result);
+PaintedMesh paint(const SceneTriangles& triangles, const SceneFrame& from,
+                  const SceneFrame& to, double time, const StepResult& result);
 
 }  // namespace fcl_ccd
 

@@ -6,6 +6,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "contact_picture.h"
+#include "page_step.h"
+
 namespace fcl_ccd {
 
 StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
@@ -16,10 +19,15 @@ StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
       inputs_(inputs),
       settings_(options.settings),
       share_(share),
+      first_step_(share.first),
       frames_a_(inputs.a, share),
       scenes_(parallelism.jobs) {
   settings_.num_threads = parallelism.threads;
   if (inputs.b) frames_b_.emplace(*inputs.b, share);
+  if (options.report_path.empty()) return;
+  const SceneFrame first{&inputs.a.firstVertices(),
+                         inputs.b ? &inputs.b->firstVertices() : nullptr};
+  grid_ = viewGrid(first, paths.numSteps());
 }
 
 void StepMaker::setShare(const StepShare& share) {
@@ -42,7 +50,9 @@ StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
   report.triangles =
       inputs_.a.triangles().size() + (inputs_.b ? inputs_.b->triangles().size() : 0);
   report.result = query(from, to, scenes_[worker], step);
-  return record(report, step + 1 == share_.end, to);
+  StepRecord made = record(report);
+  show(report, step, from, to, made);
+  return made;
 }
 
 void StepMaker::announce(std::size_t i) const {
@@ -78,20 +88,44 @@ StepResult StepMaker::query(const SceneFrame& from, const SceneFrame& to,
   }
 }
 
-StepRecord StepMaker::record(const StepReport& report, bool is_last,
-                             const SceneFrame& to) const {
+StepRecord StepMaker::record(const StepReport& report) const {
   StepRecord record;
+  record.number = report.number;
   record.summary = summaryOf(report);
   record.row = tableRow(report);
   if (!options_.contacts_path.empty())
     record.contact_lines = contactLines(report, options_.columns);
   if (!options_.steps_path.empty()) record.step_line = stepLine(report);
   if (!options_.json_path.empty()) record.json = toJson(report).dump();
-  if (!options_.paint_path.empty() && is_last) {
-    const PaintedMesh painted = paint(inputs_.triangles(), to, report.result);
+  return record;
+}
+
+void StepMaker::show(const StepReport& report, std::size_t step, const SceneFrame& from,
+                     const SceneFrame& to, StepRecord& record) {
+  const SceneContact* earliest = report.result.earliest();
+  const SceneTriangles triangles = inputs_.triangles();
+  const ShownMoments& shown = options_.shown;
+  const StepMoment first{report.number, earliest != nullptr ? earliest->toc_lo : 1},
+      moment{report.number, shown.time.value_or(first.time)};
+  const bool may_be_first =
+      first_contact_.mayBeFirst(step, earliest != nullptr, step + 1 == share_.end);
+  const auto has = [&](const std::string& path) {
+    return !path.empty() &&
+           (shown.isOfFirstContact(path) ? may_be_first : shown.has(report.number, path));
+  };
+  if (has(options_.paint_path)) {
+    const PaintedMesh painted = paint(triangles, from, to, moment.time, report.result);
     record.painted = encodePaintedPly(painted.mesh, painted.colours);
   }
-  return record;
+  if (has(options_.picture_path))
+    record.picture = drawContact(triangles, from, to, moment, report.result);
+  if (options_.report_path.empty()) return;
+  if (step == first_step_) record.page = pageMesh(triangles, from, grid_);
+  record.page += pageStep(report, triangles, from, to, grid_);
+  if (!may_be_first) return;
+  const bool is_drawn = !record.picture.empty() && moment.time == first.time;
+  record.page_picture =
+      is_drawn ? record.picture : drawContact(triangles, from, to, first, report.result);
 }
 
 }  // namespace fcl_ccd

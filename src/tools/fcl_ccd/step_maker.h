@@ -8,9 +8,11 @@
 #include <vector>
 
 #include "frame_store.h"
+#include "page_block.h"
 #include "run_command.h"
 #include "run_inputs.h"
 #include "scene.h"
+#include "shown_steps.h"
 #include "step_record.h"
 #include "step_share.h"
 
@@ -44,13 +46,18 @@ class StepMaker {
   void announce(std::size_t i) const;
   StepResult query(const SceneFrame& from, const SceneFrame& to,
                    std::unique_ptr<Scene>& scene, std::size_t step) const;
-  StepRecord record(const StepReport& report, bool is_last, const SceneFrame& to) const;
+  StepRecord record(const StepReport& report) const;
+  void show(const StepReport& report, std::size_t step, const SceneFrame& from,
+            const SceneFrame& to, StepRecord& record);
 
   const RunOptions& options_;
   const FramePaths& paths_;
   const RunInputs& inputs_;
   StepSettings settings_;
   StepShare share_;
+  std::size_t first_step_;  ///< of the run
+  ViewGrid grid_;           ///< of the page
+  FirstContactGuess first_contact_;
   FrameStore frames_a_;
   std::optional<FrameStore> frames_b_;
   std::vector<std::unique_ptr<Scene>> scenes_;  ///< one for each worker

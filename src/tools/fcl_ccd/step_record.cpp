@@ -47,8 +47,9 @@ RunSummary decodeSummary(const Json& fields) {
 
 /// The texts of a record, in the order in which they are sent.
 constexpr std::string StepRecord::*kTexts[] = {
-    &StepRecord::row, &StepRecord::contact_lines, &StepRecord::step_line,
-    &StepRecord::json, &StepRecord::painted};
+    &StepRecord::row,  &StepRecord::contact_lines, &StepRecord::step_line,
+    &StepRecord::json, &StepRecord::painted,       &StepRecord::picture,
+    &StepRecord::page, &StepRecord::page_picture};
 
 }  // namespace
 
@@ -63,6 +64,7 @@ std::string toBytes(const StepOutcome& outcome) {
   Json head = Json::array({outcome.end_code, outcome.cause});
   std::size_t size = 0;
   if (outcome.record) {
+    head.push_back(outcome.record->number);
     head.push_back(encode(outcome.record->summary));
     for (const auto text : kTexts) {
       head.push_back((*outcome.record.*text).size());
@@ -91,8 +93,9 @@ StepOutcome outcomeOf(const std::string& bytes) {
   head.at(1).get_to(outcome.cause);
   if (head.size() == 2) return outcome;
   StepRecord& record = outcome.record.emplace();
-  record.summary = decodeSummary(head.at(2));
-  std::size_t i = 3;
+  head.at(2).get_to(record.number);
+  record.summary = decodeSummary(head.at(3));
+  std::size_t i = 4;
   for (const auto text : kTexts) {
     const std::size_t size = head.at(i++);
     record.*text = bytes.substr(at, size);

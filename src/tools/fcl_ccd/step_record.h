@@ -12,12 +12,16 @@ namespace fcl_ccd {
 /// @brief The results of a step, ready for the outputs. A text is empty if its output is
 /// not written.
 struct StepRecord {
+  std::size_t number{0};
   RunSummary summary;
   std::string row;
   std::string contact_lines;
   std::string step_line;
   std::string json;
-  std::string painted;  ///< a whole PLY; only of the last step
+  std::string painted;       ///< a PLY
+  std::string picture;       ///< a PNG
+  std::string page;          ///< elements of the page
+  std::string page_picture;  ///< a PNG, if the step may be that of the first contact
 };
 
 /// @brief What comes next of the steps of one process: a step, or their end.

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The data of the page, which page_step.cpp and page_block.cpp write: JSON, and blocks of
+// whole numbers as bytes, compressed with zlib, in base64. A block is read when it is
+// needed.
+'use strict';
+
+// The numbers of appendNumbers(): seven bits a byte, the lowest first.
+class Numbers {
+  constructor(bytes, begin) {
+    this.bytes = bytes;
+    this.at = begin;
+  }
+  next() {
+    let rest = 0;
+    let weight = 1;
+    let byte;
+    do {
+      byte = this.bytes[this.at++];
+      rest += (byte & 127) * weight;
+      weight *= 128;
+    } while (byte > 127);
+    return rest % 2 ? -(rest + 1) / 2 : rest / 2;
+  }
+  // Ids, each as the difference to the one before.
+  ids(count) {
+    const ids = new Int32Array(count);
+    let last = 0;
+    for (let i = 0; i < count; ++i) ids[i] = last += this.next();
+    return ids;
+  }
+  // The nodes of a frame: all x, then y, then z.
+  frame(before, numVertices) {
+    const nodes = new Int32Array(3 * numVertices);
+    for (let axis = 0; axis < 3; ++axis) {
+      let moved = 0;
+      for (let v = 0; v < numVertices; ++v) {
+        moved += this.next();
+        nodes[3 * v + axis] = moved + (before ? before[3 * v + axis] : 0);
+      }
+    }
+    return nodes;
+  }
+}
+
+async function inflated(element) {
+  const text = atob(element.textContent);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; ++i) bytes[i] = text.charCodeAt(i);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+function jsonOf(className) {
+  return Array.from(document.getElementsByClassName(className), (e) => JSON.parse(e.textContent));
+}
+
+class RunData {
+  constructor() {
+    this.summary = jsonOf('summary')[0];
+    this.mesh = jsonOf('mesh')[0];
+    this.steps = jsonOf('step');
+    this.meshBlock = document.getElementsByClassName('mesh-block')[0];
+    this.stepBlocks = document.getElementsByClassName('step-block');
+    this.blocks = new Map();
+    this.frames = [];
+  }
+
+  // Triangles, free edges, and the nodes of the first frame.
+  async loadMesh() {
+    const numbers = new Numbers(await inflated(this.meshBlock), 0);
+    this.triangles = numbers.ids(3 * this.mesh.triangles);
+    this.edges = numbers.ids(2 * this.mesh.edges);
+    this.frames[0] = numbers.frame(null, this.mesh.vertices);
+  }
+
+  // Of the i-th step: its first contacts, and for each triangle 0 or from 1 to 255 the
+  // first time of its contacts.
+  async block(i) {
+    if (!this.blocks.has(i)) {
+      const bytes = await inflated(this.stepBlocks[i]);
+      const [text, times] = this.steps[i].sizes;
+      this.blocks.set(i, {
+        contacts: JSON.parse(new TextDecoder().decode(bytes.subarray(0, text))),
+        times: bytes.subarray(text, text + times),
+        motion: bytes.subarray(text + times),
+      });
+    }
+    return this.blocks.get(i);
+  }
+
+  // The nodes of all vertices in a frame. Each frame is stored as its difference to the
+  // one before.
+  async frame(i) {
+    for (let f = this.frames.length; f <= i; ++f) {
+      const { motion } = await this.block(f - 1);
+      const nodes = new Numbers(motion, 0).frame(this.frames[f - 1], this.mesh.vertices);
+      // Another call may have come first.
+      this.frames[f] = this.frames[f] || nodes;
+    }
+    return this.frames[i];
+  }
+
+  // The positions at a time of the i-th step, from the origin of the grid.
+  async positions(i, time) {
+    const from = await this.frame(i);
+    const to = await this.frame(i + 1);
+    const { spacing } = this.mesh;
+    const positions = new Float32Array(from.length);
+    for (let i = 0; i < from.length; ++i) positions[i] = spacing * ((1 - time) * from[i] + time * to[i]);
+    return positions;
+  }
+
+  // The first contacts of the run, each with its step.
+  async earliest(count) {
+    const found = [];
+    for (let i = 0; i < this.steps.length && found.length < count; ++i) {
+      if (Object.values(this.steps[i].contacts).every((n) => n === 0)) continue;
+      for (const contact of (await this.block(i)).contacts) found.push({ ...contact, index: i });
+    }
+    return found.slice(0, count);
+  }
+
+  // The number of a vertex or a triangle among those of both meshes; -1 for a free edge
+  // or a free point.
+  idOf(name, numOfA) {
+    if (typeof name === 'number') return name;
+    return /^b\d+$/.test(name) ? Number(name.slice(1)) + numOfA : -1;
+  }
+  trianglesOf(contact) {
+    return contact.triangles.map((t) => this.idOf(t, this.mesh.triangles_of_a)).filter((t) => t >= 0);
+  }
+  placeOf(contact) {
+    return contact.position.map((x, k) => x - this.mesh.origin[k]);
+  }
+}
