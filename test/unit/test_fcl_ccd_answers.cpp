@@ -428,7 +428,7 @@ TEST_F(CcdAnswers, MistypedWordsGetASuggestion) {
   const Outcome far = run("walk tip0.obj tip1.obj");
   EXPECT_EQ(far.exit_code, 2);
   EXPECT_FALSE(contains(far.err, "mean")) << far.err;
-  EXPECT_TRUE(contains(far.err, "run, queries")) << far.err;
+  EXPECT_TRUE(contains(far.err, "run, candidates, queries, compare")) << far.err;
 }
 
 TEST_F(CcdAnswers, APictureIsAPly) {
