@@ -31,6 +31,8 @@ fcl_ccd_install_dependencies() {
     # A test runs the notebook of the examples.
     packages+=(python3-nbclient python3-ipykernel)
   fi
+  # A test opens the page of a run in a browser.
+  if [ "$1" = all ]; then packages+=(chromium chromium-driver); fi
   # These are for the second compiler and its sanitizers, the style checks and the reference.
   if [ "$1" = all ]; then
     packages+=(clang libclang-rt-dev lld clang-format-14 clang-tidy-14 doxygen universal-ctags)

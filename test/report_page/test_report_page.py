@@ -15,7 +15,7 @@ from browser import ARROW_RIGHT, Browser, missing_programs
 
 SKIPPED = 77
 SHEET = 20  # squares along each side
-STEPS = 8
+STEPS = 20  # more than there are from one whole frame to the next
 TIP = (0.03, 0.02, 0.5)
 
 # Whether the contact that is chosen is in the view, and how many pixels around it are red.
@@ -45,7 +45,7 @@ def write_frames(folder):
             a = i * (SHEET + 1) + j + 1
             faces += [(a, a + 1, a + SHEET + 2), (a, a + SHEET + 2, a + SHEET + 1)]
     for frame in range(STEPS + 1):
-        z = 0.95 - 0.25 * frame
+        z = 0.95 - 0.25 * min(frame, 8)
         lines = [f"v {2 * i / SHEET - 1} {2 * j / SHEET - 1} {z}" for i in corners for j in corners]
         lines += [f"f {a} {b} {c}" for a, b, c in faces]
         (folder / f"sheet_{frame:02}.obj").write_text("\n".join(lines) + "\n")

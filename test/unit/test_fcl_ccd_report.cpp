@@ -108,13 +108,21 @@ struct Page {
   }
 
   void addBlock(const std::string& bytes, std::size_t i) {
-    const std::size_t text = steps[i].at("sizes").at(0), num = steps[i].at("sizes").at(1);
+    const std::size_t text = steps[i].at("sizes").at(0), num = steps[i].at("sizes").at(1),
+                      key = steps[i].at("sizes").at(2);
     contacts.push_back(Json::parse(bytes.substr(0, text)));
     times.push_back(bytes.substr(text, num));
-    addFrame(numbersOf(bytes, text + num));
+    if (key > 0) {
+      // The frame as it is equals the one that was added up.
+      addFrame(numbersOf(bytes.substr(0, text + num + key), text + num), true);
+      EXPECT_EQ(nodes[nodes.size() - 2], nodes.back());
+      nodes.pop_back();
+      ++num_keys;
+    }
+    addFrame(numbersOf(bytes, text + num + key));
   }
 
-  void addFrame(const std::vector<long long>& differences) {
+  void addFrame(const std::vector<long long>& differences, bool is_key = false) {
     const std::size_t count = mesh.at("vertices");
     ASSERT_EQ(differences.size(), 3 * count);
     std::vector<std::array<long long, 3>> frame(count);
@@ -122,7 +130,7 @@ struct Page {
       long long moved = 0;
       for (std::size_t v = 0; v < count; ++v)
         frame[v][k] = (moved += differences[k * count + v]) +
-                      (nodes.empty() ? 0 : nodes.back()[v][k]);
+                      (nodes.empty() || is_key ? 0 : nodes.back()[v][k]);
     }
     nodes.push_back(frame);
   }
@@ -138,6 +146,7 @@ struct Page {
   std::vector<std::vector<std::array<long long, 3>>> nodes;  ///< of each frame
   std::vector<Json> steps, contacts;
   std::vector<std::string> times;
+  int num_keys{0};
 };
 
 /// The part of the program's files that only --report adds.
@@ -162,7 +171,7 @@ class CcdReport : public CcdSequence {
 };
 
 TEST_F(CcdReport, PageHasEveryFrameToHalfACell) {
-  writeFrames(12);
+  writeFrames(36);
   writeText(path("b.obj"), toObj(edgeAlongX()));
   outputOf("run f --against b.obj --report r.html");
   const Page page(readText(path("r.html")));
@@ -174,8 +183,9 @@ TEST_F(CcdReport, PageHasEveryFrameToHalfACell) {
   const double spacing = page.mesh.at("spacing");
   EXPECT_LT(spacing, 1e-3);
   EXPECT_EQ(spacing, std::exp2(std::round(std::log2(spacing))));
-  ASSERT_EQ(page.nodes.size(), 12u);
-  for (std::size_t frame = 0; frame < 12; ++frame) {
+  EXPECT_EQ(page.num_keys, 2);
+  ASSERT_EQ(page.nodes.size(), 36u);
+  for (std::size_t frame = 0; frame < 36; ++frame) {
     Vertices expected = floorAndTip(dropOf(frame)).vertices;
     expected.insert(expected.end(), b.vertices.begin(), b.vertices.end());
     for (std::size_t v = 0; v < expected.size(); ++v)

@@ -180,7 +180,8 @@ Image draw(View view, const Region& region, const Vec& direction, int width, int
   picture::RenderOptions options;
   options.width = width;
   options.height = height;
-  options.sky_lights = 8;
+  // In a small picture nobody sees more.
+  options.sky_lights = width == kWidth ? 8 : 3;
   options.shadow_size = 1024;
   options.marker_radius = width / 420.0;
   return picture::render(view.scene, view.dots, camera, options);

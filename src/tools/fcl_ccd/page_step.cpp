@@ -71,16 +71,19 @@ std::string pageMesh(const SceneTriangles& triangles, const SceneFrame& first,
 }
 
 std::string pageStep(const StepReport& report, const SceneTriangles& triangles,
-                     const SceneFrame& from, const SceneFrame& to, const ViewGrid& grid) {
+                     const SceneFrame& from, const SceneFrame& to, const ViewGrid& grid,
+                     bool is_key) {
   const std::string contacts = contactsText(report.result);
   const std::string times = timesOfTriangles(report.result, triangles);
-  std::string bytes = contacts + times;
   const Vertices before = verticesAt(from, from, 0);
+  std::string key;
+  if (is_key) appendMotion(grid, nullptr, before, key);
+  std::string bytes = contacts + times + key;
   appendMotion(grid, &before, verticesAt(to, to, 0), bytes);
   Json json = toJson(report);
   json.erase("stages");
   json["memory_mb"] = processMemory();
-  json["sizes"] = {contacts.size(), times.size()};
+  json["sizes"] = {contacts.size(), times.size(), key.size()};
   return element("step", json, bytes);
 }
 

@@ -27,8 +27,11 @@ std::string pageMesh(const SceneTriangles& triangles, const SceneFrame& first,
 
 /// @brief A step: its counts and times, its first contacts, the first time of each
 /// triangle in contact, and how the vertices move.
+/// @param is_key  whether it also has the frame where it begins, so that a reader need
+/// not add up the motion of all steps before
 std::string pageStep(const StepReport& report, const SceneTriangles& triangles,
-                     const SceneFrame& from, const SceneFrame& to, const ViewGrid& grid);
+                     const SceneFrame& from, const SceneFrame& to, const ViewGrid& grid,
+                     bool is_key);
 
 /// @brief JSON that may stand in a script element.
 std::string scriptText(const nlohmann::ordered_json& json);

@@ -35,6 +35,11 @@ struct RunOptions {
   /// Whether the run waits for frames that come later (range.is_growing), and the
   /// seconds without a new one after which it ends; may be infinite.
   std::optional<double> follow;
+
+  bool writesFiles() const {
+    return !contacts_path.empty() || !steps_path.empty() || !json_path.empty() ||
+           !picture_path.empty() || !paint_path.empty() || !report_path.empty();
+  }
 };
 
 // Exit codes of the program.

@@ -232,10 +232,9 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
   const bool is_any = settings_.query == fcl::ContinuousQuery::kAny;
   request.query = is_any ? fcl::ContinuousQuery::kFirst : settings_.query;
   if (is_any) request.num_max_contacts = 1;
-  // Also for any contact, of which there is one at most: which crossing is found first
-  // depends on the tree, and the tree on the steps before.
-  request.enable_crossings = true;
+  request.enable_crossings = settings_.all_crossings;
   request.toc_err = settings_.toc_err;
+  request.enable_contact = settings_.points;
   request.num_threads = settings_.num_threads;
   request.min_distance = settings_.min_distance;
   request.ignore_initially_closer = settings_.ignore_initially_closer;
@@ -255,6 +254,8 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
     setTriangle(contact.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
     return out;
   };
+  if (!settings_.all_crossings && result.initially_crossing)
+    result.crossings = {result.crossing};
   // One is kept of them: the first by its ids.
   if (is_any && result.crossings.size() > 1) result.crossings.resize(1);
   step.contacts.reserve(step.contacts.size() + result.crossings.size() +
@@ -332,6 +333,14 @@ StepResult Scene::step(const SceneFrame& from, const SceneFrame& to) {
     if (times.total() < best.times.total()) best.times = times;
   }
   return best;
+}
+
+StepResult Scene::stepInDetail(const SceneFrame& from, const SceneFrame& to) {
+  const StepSettings settings = settings_;
+  settings_.points = settings_.all_crossings = true;
+  StepResult result = runOnce(from, to);
+  settings_ = settings;
+  return result;
 }
 
 }  // namespace fcl_ccd

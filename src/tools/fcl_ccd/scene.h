@@ -18,7 +18,10 @@ namespace fcl_ccd {
 struct StepSettings {
   fcl::ContinuousQuery query{fcl::ContinuousQuery::kAll};
   double toc_err{1e-4};
-  bool self{true};  ///< whether A is tested against itself
+  bool self{true};     ///< whether A is tested against itself
+  bool points{false};  ///< whether contacts have a position and a normal
+  /// Whether all crossings are wanted. Otherwise one tells that there are some.
+  bool all_crossings{false};
   double min_distance{0};
   bool ignore_initially_closer{false};
   int repeat{1};
@@ -42,7 +45,7 @@ struct SceneContact {
   /// free edges or points, by their numbers in the order of the file.
   std::array<std::intptr_t, 2> triangles{{-1, -1}};
   std::array<fcl::PrimitiveKind, 2> triangle_kinds{};
-  /// Position at toc_lo.
+  /// Position at toc_lo; only with StepSettings::points.
   std::array<double, 3> position{};
   std::array<double, 3> normal{};  ///< from A to B; within A to feature 2
 };
@@ -127,6 +130,9 @@ class Scene {
   /// @brief Moves the models from one frame to the next and finds the pairs that a query
   /// would test. They are sorted by kind and vertices, those of A first.
   std::vector<SceneCandidate> candidates(const SceneFrame& from, const SceneFrame& to);
+
+  /// @brief The same step once more, with all crossings, positions and normals.
+  StepResult stepInDetail(const SceneFrame& from, const SceneFrame& to);
 
  private:
   using Model = fcl::DeformableBVHModel<fcl::AABBd>;

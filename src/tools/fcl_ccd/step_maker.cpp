@@ -11,6 +11,20 @@
 
 namespace fcl_ccd {
 
+namespace {
+
+/// Whether an output has places of contacts, beside that of the run's first one. They
+/// take a tenth of a step that has very many contacts.
+bool needsPoints(const RunOptions& options) {
+  bool needs = options.columns.position || options.columns.normal;
+  for (const std::string* path : {&options.steps_path, &options.json_path,
+                                  &options.report_path, &options.picture_path})
+    needs |= !path->empty();
+  return needs;
+}
+
+}  // namespace
+
 StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
                      const RunInputs& inputs, const Parallelism& parallelism,
                      const StepShare& share)
@@ -23,6 +37,10 @@ StepMaker::StepMaker(const RunOptions& options, const FramePaths& paths,
       frames_a_(inputs.a, share),
       scenes_(parallelism.jobs) {
   settings_.num_threads = parallelism.threads;
+  settings_.points = needsPoints(options);
+  // Also for any contact, of which files have one at most: which crossing is found first
+  // depends on the tree, and the tree on the steps before.
+  settings_.all_crossings = options.writesFiles();
   if (inputs.b) frames_b_.emplace(*inputs.b, share);
   if (options.report_path.empty()) return;
   const SceneFrame first{&inputs.a.firstVertices(),
@@ -50,8 +68,16 @@ StepRecord StepMaker::make(std::size_t i, std::size_t worker) {
   report.triangles =
       inputs_.a.triangles().size() + (inputs_.b ? inputs_.b->triangles().size() : 0);
   report.result = query(from, to, scenes_[worker], step);
+  const bool may_be_first = first_contact_.mayBeFirst(
+      step, report.result.earliest() != nullptr, step + 1 == share_.end);
+  if (may_be_first && !(settings_.points && settings_.all_crossings)) {
+    // The summary tells the place of the first contact.
+    const StepTimes times = report.result.times;
+    report.result = scenes_[worker]->stepInDetail(from, to);
+    report.result.times = times;
+  }
   StepRecord made = record(report);
-  show(report, step, from, to, made);
+  show(report, step, may_be_first, from, to, made);
   return made;
 }
 
@@ -100,15 +126,14 @@ StepRecord StepMaker::record(const StepReport& report) const {
   return record;
 }
 
-void StepMaker::show(const StepReport& report, std::size_t step, const SceneFrame& from,
-                     const SceneFrame& to, StepRecord& record) {
+void StepMaker::show(const StepReport& report, std::size_t step, bool may_be_first,
+                     const SceneFrame& from, const SceneFrame& to,
+                     StepRecord& record) const {
   const SceneContact* earliest = report.result.earliest();
   const SceneTriangles triangles = inputs_.triangles();
   const ShownMoments& shown = options_.shown;
   const StepMoment first{report.number, earliest != nullptr ? earliest->toc_lo : 1},
       moment{report.number, shown.time.value_or(first.time)};
-  const bool may_be_first =
-      first_contact_.mayBeFirst(step, earliest != nullptr, step + 1 == share_.end);
   const auto has = [&](const std::string& path) {
     return !path.empty() &&
            (shown.isOfFirstContact(path) ? may_be_first : shown.has(report.number, path));
@@ -121,7 +146,11 @@ void StepMaker::show(const StepReport& report, std::size_t step, const SceneFram
     record.picture = drawContact(triangles, from, to, moment, report.result);
   if (options_.report_path.empty()) return;
   if (step == first_step_) record.page = pageMesh(triangles, from, grid_);
-  record.page += pageStep(report, triangles, from, to, grid_);
+  // Such a frame takes the bytes of five others; to add up 16 takes a tenth of a second.
+  constexpr std::size_t kKeySteps = 16;
+  const std::size_t done = step - first_step_;
+  record.page +=
+      pageStep(report, triangles, from, to, grid_, done > 0 && done % kKeySteps == 0);
   if (!may_be_first) return;
   const bool is_drawn = !record.picture.empty() && moment.time == first.time;
   record.page_picture =

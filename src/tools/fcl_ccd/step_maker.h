@@ -47,8 +47,8 @@ class StepMaker {
   StepResult query(const SceneFrame& from, const SceneFrame& to,
                    std::unique_ptr<Scene>& scene, std::size_t step) const;
   StepRecord record(const StepReport& report) const;
-  void show(const StepReport& report, std::size_t step, const SceneFrame& from,
-            const SceneFrame& to, StepRecord& record);
+  void show(const StepReport& report, std::size_t step, bool may_be_first,
+            const SceneFrame& from, const SceneFrame& to, StepRecord& record) const;
 
   const RunOptions& options_;
   const FramePaths& paths_;

@@ -12,14 +12,12 @@ class Numbers {
     this.at = begin;
   }
   next() {
+    let byte = this.bytes[this.at++];
+    if (byte < 128) return (byte >>> 1) ^ -(byte & 1); // most are small
     let rest = 0;
     let weight = 1;
-    let byte;
-    do {
-      byte = this.bytes[this.at++];
-      rest += (byte & 127) * weight;
-      weight *= 128;
-    } while (byte > 127);
+    for (; byte > 127; byte = this.bytes[this.at++], weight *= 128) rest += (byte & 127) * weight;
+    rest += byte * weight;
     return rest % 2 ? -(rest + 1) / 2 : rest / 2;
   }
   // Ids, each as the difference to the one before.
@@ -63,7 +61,7 @@ class RunData {
     this.meshBlock = document.getElementsByClassName('mesh-block')[0];
     this.stepBlocks = document.getElementsByClassName('step-block');
     this.blocks = new Map();
-    this.frames = [];
+    this.frames = new Map();
   }
 
   // Triangles, free edges, and the nodes of the first frame.
@@ -71,7 +69,7 @@ class RunData {
     const numbers = new Numbers(await inflated(this.meshBlock), 0);
     this.triangles = numbers.ids(3 * this.mesh.triangles);
     this.edges = numbers.ids(2 * this.mesh.edges);
-    this.frames[0] = numbers.frame(null, this.mesh.vertices);
+    this.frames.set(0, numbers.frame(null, this.mesh.vertices));
   }
 
   // Of the i-th step: its first contacts, and for each triangle 0 or from 1 to 255 the
@@ -79,26 +77,29 @@ class RunData {
   async block(i) {
     if (!this.blocks.has(i)) {
       const bytes = await inflated(this.stepBlocks[i]);
-      const [text, times] = this.steps[i].sizes;
+      const [text, times, key] = this.steps[i].sizes;
       this.blocks.set(i, {
         contacts: JSON.parse(new TextDecoder().decode(bytes.subarray(0, text))),
         times: bytes.subarray(text, text + times),
-        motion: bytes.subarray(text + times),
+        key: bytes.subarray(text + times, text + times + key),
+        motion: bytes.subarray(text + times + key),
       });
     }
     return this.blocks.get(i);
   }
 
   // The nodes of all vertices in a frame. Each frame is stored as its difference to the
-  // one before.
+  // one before, and some as they are.
   async frame(i) {
-    for (let f = this.frames.length; f <= i; ++f) {
-      const { motion } = await this.block(f - 1);
-      const nodes = new Numbers(motion, 0).frame(this.frames[f - 1], this.mesh.vertices);
-      // Another call may have come first.
-      this.frames[f] = this.frames[f] || nodes;
+    const { frames, steps } = this;
+    let f = i;
+    while (!frames.has(f) && !(f < steps.length && steps[f].sizes[2] > 0)) --f;
+    if (!frames.has(f)) frames.set(f, new Numbers((await this.block(f)).key, 0).frame(null, this.mesh.vertices));
+    for (; f < i; ++f) {
+      const { motion } = await this.block(f);
+      frames.set(f + 1, new Numbers(motion, 0).frame(frames.get(f), this.mesh.vertices));
     }
-    return this.frames[i];
+    return frames.get(i);
   }
 
   // The positions at a time of the i-th step, from the origin of the grid.

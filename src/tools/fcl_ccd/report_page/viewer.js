@@ -59,8 +59,7 @@ class Viewer {
     // A little behind the edges.
     const behind = { polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     this.add(new Mesh(this.surface, new MeshBasicMaterial({ ...kMaterial, ...behind })));
-    this.add(new Mesh(this.surface,
-      new MeshBasicMaterial({ ...kMaterial, wireframe: true, color: '#000000', opacity: 0.14, transparent: true })));
+    this.edges = this.addLines(true);
     this.cables = new BufferGeometry();
     this.cables.setAttribute('position', new BufferAttribute(new Float32Array(3 * data.edges.length), 3));
     this.cables.setAttribute('color', new BufferAttribute(new Float32Array(3 * data.edges.length).fill(0.1), 3));
@@ -123,6 +122,7 @@ class Viewer {
     this.measure();
     this.drawNormals(colours);
     this.drawSelected();
+    this.drawEdges();
     this.render();
   }
 
@@ -161,7 +161,9 @@ class Viewer {
   fill(object, places, colours, each = 1) {
     object.geometry.dispose();
     object.geometry = new BufferGeometry();
-    const rgb = colours.flatMap((c) => Array(each).fill(new Color(c).toArray())).flat();
+    const known = new Map();
+    const rgbOf = (c) => known.get(c) || known.set(c, new Color(c).toArray()).get(c);
+    const rgb = colours.flatMap((c) => Array(each).fill(rgbOf(c)).flat());
     object.geometry.setAttribute('position', new BufferAttribute(new Float32Array(places), 3));
     object.geometry.setAttribute('color', new BufferAttribute(new Float32Array(rgb), 3));
   }
@@ -202,18 +204,36 @@ class Viewer {
 
   select(contact, name) {
     this.selected = contact;
+    // The edges around the last one stay.
+    if (contact) this.around = contact;
+    this.drawEdges();
     this.label.textContent = contact ? name : '';
     this.drawSelected();
     this.render();
   }
 
+  // The ends of the edges of triangles.
+  outlinesOf(triangles) {
+    return triangles.flatMap((t) => {
+      const [a, b, c] = this.corners(t);
+      return [a, b, b, c, c, a].flatMap((p) => [...p]);
+    });
+  }
+
+  // The edges around a contact. Those of everything would take most of the time of a frame
+  // where there is no graphics card.
+  drawEdges() {
+    const { around } = this;
+    const reaches = 4, most = 4000;
+    const near = around ? this.trianglesNear(this.data.placeOf(around), reaches * this.reachOf(around)) : [];
+    const ends = this.outlinesOf(near.slice(0, most));
+    this.fill(this.edges, ends, Array(ends.length / 3).fill('#5c6770'));
+  }
+
   // The contact that was chosen, with its triangles, before everything else.
   drawSelected() {
     const { selected } = this;
-    const ends = selected ? this.data.trianglesOf(selected).flatMap((t) => {
-      const [a, b, c] = this.corners(t);
-      return [a, b, b, c, c, a].flatMap((p) => [...p]);
-    }) : [];
+    const ends = selected ? this.outlinesOf(this.data.trianglesOf(selected)) : [];
     const colour = selected ? kColours[selected.kind] : '#000000';
     this.fill(this.outlines, ends, Array(ends.length / 3).fill(colour));
     this.fill(this.chosenPoint, selected ? this.data.placeOf(selected) : [], selected ? [colour] : []);
