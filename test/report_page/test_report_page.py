@@ -144,6 +144,7 @@ def main():
             browser.screenshot(folder / "turned.png")
             check_sliders(browser)
             browser.click("#whole")
+            browser.script("window.scrollTo(0, 0)")
             browser.screenshot(folder / "whole.png")
         assert browser.errors() == [], browser.errors()
         loaded = browser.script("return performance.getEntriesByType('resource').map((e) => e.name)"
