@@ -58,6 +58,7 @@ constexpr CsvColumn<ContactRow> kColumns[] = {
     // The last one, so that the others are where they were before there was a fifth id.
     {"i4", appendVertex<4>}};
 constexpr std::size_t kNumAlways = 8;
+constexpr std::size_t kFirstOfPoints = 10, kLastOfPoints = 15;
 constexpr std::size_t kNumColumns = sizeof kColumns / sizeof *kColumns;
 
 /// Columns that have a name together, and those that they are.
@@ -105,6 +106,12 @@ std::optional<std::size_t> ContactColumns::placeOfStep() const {
   const auto found = std::find(numbers_.begin(), numbers_.end(), 0u);
   if (found == numbers_.end()) return std::nullopt;
   return static_cast<std::size_t>(found - numbers_.begin());
+}
+
+bool ContactColumns::needPoints() const {
+  return std::any_of(numbers_.begin(), numbers_.end(), [](std::size_t column) {
+    return column >= kFirstOfPoints && column <= kLastOfPoints;
+  });
 }
 
 std::string contactsHead(const ContactColumns& columns) {

@@ -29,6 +29,9 @@ class ContactColumns {
   /// @brief The place of `step` among the columns, if it is there.
   std::optional<std::size_t> placeOfStep() const;
 
+  /// @brief Whether some column is a position or a normal.
+  bool needPoints() const;
+
  private:
   ColumnNumbers numbers_;
 };

@@ -16,7 +16,7 @@ namespace {
 /// Whether an output has places of contacts, beside that of the run's first one. They
 /// take a tenth of a step that has very many contacts.
 bool needsPoints(const RunOptions& options) {
-  bool needs = options.columns.position || options.columns.normal;
+  bool needs = !options.contacts_path.empty() && options.columns.needPoints();
   for (const std::string* path : {&options.steps_path, &options.json_path,
                                   &options.report_path, &options.picture_path})
     needs |= !path->empty();
