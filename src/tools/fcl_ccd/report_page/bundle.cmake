@@ -16,7 +16,9 @@ foreach(name package.json package-lock.json viewer.js)
 endforeach()
 execute_process(
   COMMAND ${NPM} ci --ignore-scripts --no-audit --no-fund --fetch-retries=1
+          --fetch-timeout=60000
   WORKING_DIRECTORY ${WORK}
+  TIMEOUT 240
   RESULT_VARIABLE failed
   OUTPUT_VARIABLE output
   ERROR_VARIABLE output)
