@@ -89,7 +89,7 @@ def _draw(figure: Any, picture: Picture) -> None:
         set_limits(middle - half, middle + half)
     axes.set(xlabel="x", ylabel="y", zlabel="z", title=picture.title, box_aspect=(1, 1, 1))
     axes.locator_params(nbins=5)
-    axes.view_init(elev=20, azim=_azimuth(picture.normals))
+    axes.view_init(elev=20, azim=_azimuth(picture))
 
 
 def _draw_contacts(art3d: Any, axes: Any, picture: Picture) -> None:
@@ -120,8 +120,9 @@ def _shaded(polygons: List[NDArray[np.float64]], colour: Any) -> List[NDArray[np
     return list(shade * colour)
 
 
-def _azimuth(normals: NDArray[np.float64]) -> float:
+def _azimuth(picture: Picture) -> float:
     """A direction from which the surfaces in contact are seen from the side, in degrees."""
+    normals = picture.normals[picture.is_main]
     if len(normals) == 0 or math.hypot(*normals[0][:2]) < 0.3:
         return -60.0
     return math.degrees(math.atan2(normals[0][1], normals[0][0])) - 70

@@ -97,13 +97,12 @@ def _near(
 
 def clipped(polygons: NDArray[np.float64], view: View) -> List[NDArray[np.float64]]:
     """The parts of segments or convex polygons (n, k, 3) that are in the view."""
-    inside: List[NDArray[np.float64]] = list(polygons)
     if len(polygons) == 0:
-        return inside
+        return []
     off = (polygons - view.center) / view.half
     is_outside = (off > 1).all(axis=1).any(axis=1) | (off < -1).all(axis=1).any(axis=1)
     is_inside = (np.abs(off) <= 1).all(axis=(1, 2))
-    inside = list(polygons[is_inside])
+    inside: List[NDArray[np.float64]] = list(polygons[is_inside])
     for polygon in polygons[~is_inside & ~is_outside]:
         for axis in range(3):
             for sign in (-1, 1):

@@ -217,22 +217,36 @@ class _OcTreeSurface(Surface):
 
     def pieces(self, view: View, numbers: NDArray[np.int64]) -> Tuple[Pieces, Pieces]:
         centers, side = self._centers(), self._octree.resolution
-        off = np.abs(_placed(self._pose, centers) - view.center)
-        shown = (off <= view.half + side).all(axis=1)
         chosen = self._octree._cells(numbers)
-        for cell in chosen:
-            shown &= (np.abs(centers - cell["center"]) > cell["size"] / 2).any(axis=1)
+        shown = self._is_near(centers, side, view) & ~self._is_part_of(chosen)
         cubes = self._cubes(centers[shown], side)
-        others = cubes[self._is_bare()[shown]]
+        others = cubes[self._is_bare(self._cells[shown])]
+        chosen = chosen[self._is_near(chosen["center"], chosen["size"][:, None], view)]
         parts = self._cubes(chosen["center"], chosen["size"])
         return Pieces(others), Pieces(parts.reshape(-1, 4, 3))
 
-    def _is_bare(self) -> NDArray[np.bool_]:
-        """Whether there is no cell beside each of the six sides of each cell: (n, 6)."""
-        factors = np.array([1 << 40, 1 << 20, 1])  # the cells are at -2^15 to 2^15
-        keys = self._cells @ factors
-        beside = [keys + sign * factor for factor in factors for sign in (-1, 1)]
-        return ~np.stack([np.isin(of, keys) for of in beside], axis=1)
+    def _is_near(
+        self, centers: NDArray[np.float64], sides: Any, view: View
+    ) -> NDArray[np.bool_]:
+        """Whether the view may have a part of each cube, however it is turned."""
+        off = np.abs(_placed(self._pose, centers) - view.center)
+        is_near: NDArray[np.bool_] = (off <= view.half + sides).all(axis=1)
+        return is_near
+
+    def _is_part_of(self, joined: NDArray[np.void]) -> NDArray[np.bool_]:
+        """Whether each cell is in one of these, each of which may be many cells."""
+        widths = np.rint(joined["size"] / self._octree.resolution).astype(np.int64)
+        within = np.floor(joined["center"] / self._octree.resolution).astype(np.int64)
+        found = np.zeros(len(self._cells), bool)
+        for width in np.unique(widths):  # powers of two; such a cube begins at a multiple
+            keys = _keys_of(within[widths == width] // width)
+            found |= np.isin(_keys_of(self._cells // width), keys)
+        return found
+
+    def _is_bare(self, cells: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """Whether there is no cell beside each of the six sides of each of these: (n, 6)."""
+        steps = np.repeat(_KEY_FACTORS, 2) * np.tile((-1, 1), 3)
+        return np.isin(_keys_of(cells)[:, None] + steps, _keys_of(self._cells), invert=True)
 
     def part(self, number: int) -> Pieces:
         cell = self._octree._cells(np.array([number]))
@@ -240,6 +254,15 @@ class _OcTreeSurface(Surface):
 
     def name_of(self, number: int) -> str:
         return f"cell {number}"
+
+
+_KEY_FACTORS = np.array([1 << 40, 1 << 20, 1])  # the cells are at -2^15 to 2^15
+
+
+def _keys_of(cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """A number for each cell, which no other one has."""
+    keys: NDArray[np.int64] = cells @ _KEY_FACTORS
+    return keys
 
 
 def _quads(grid: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -294,7 +317,8 @@ def _fans(faces: Sequence[int]) -> NDArray[np.int64]:
 def _num_sides(radius: float, half: float) -> int:
     """Sides of a polygon that is nearer to its circle than the picture tells, within limits."""
     off = half / 200 / radius if radius > 0 else 1
-    return int(min(512, max(32, 4 * round(math.pi / math.acos(1 - min(off, 0.5)) / 4))))
+    off = min(0.5, max(1e-5, off))  # 512 sides are off by 1.9e-5; of too little 1 - off is 1
+    return int(min(512, max(32, 4 * round(math.pi / math.acos(1 - off) / 4))))
 
 
 def _arc(radius: float, half: float, beginning: float = 0.0) -> NDArray[np.float64]:

@@ -244,6 +244,38 @@ def test_the_view():
     assert 1 / 40 < picture(bare).view.half < 3 / 40 and len(picture(bare).places) == 0
 
 
+def test_the_direction_of_view():
+    """The surfaces of the contact that was asked for are seen from their side."""
+    corners, triangles = grid(2)
+    upright = (corners - 0.5 * corners.max(axis=0)) @ rotation((0, 1, 0), np.pi / 2).T
+    # The ball meets a wall with its normal along x, and later one with its normal along y.
+    walls = [upright + (0.2, 0, 0), upright @ rotation((0, 0, 1), np.pi / 2).T + (0, 0.4, 0)]
+    wall = fcl_ccd.RigidMesh(np.concatenate(walls), np.concatenate([triangles, triangles + 4]))
+    flies = pose((0, 0, 0.1)), pose((0.45, 0.45, 0.1))
+    result = fcl_ccd.collide(fcl_ccd.RigidMesh(*sphere(6, 7, 0.02)), wall, flies)
+    last = len(result.contacts) - 1
+    np.testing.assert_allclose(result.contacts["normal"][[0, last]], np.eye(3)[:2], atol=1e-12)
+    for contact, t, azimuth in ((0, None, -70), (0, 1, -70), (last, None, 20), (None, 1, -70)):
+        assert _figures._azimuth(picture(result, t, contact)) == pytest.approx(azimuth)
+    floor = fcl_ccd.collide(sheet(), fcl_ccd.RigidMesh(*BALL), None, FALLS, enable_contact=False)
+    assert _figures._azimuth(picture(floor)) == -60  # of a contact without a normal
+    require("matplotlib")
+    drawn = _figures._part_of_matplotlib("figure").Figure()
+    _figures._draw(drawn, picture(result, None, last))
+    assert drawn.axes[0].azim == pytest.approx(20)
+
+
+def test_a_large_sphere():
+    """Of which the picture shows what looks like a plane."""
+    small = fcl_ccd.RigidMesh([(-1e-3, -1e-3, 0), (1e-3, -1e-3, 0), (0, 1e-3, 0)], [(0, 1, 2)])
+    for radius in (1e13, 1e15):
+        falls = pose((0, 0, radius + 1)), pose((0, 0, radius - 1))
+        result = fcl_ccd.collide(small, fcl_ccd.Sphere(radius), falls)
+        assert result and len(picture(result).objects[1][1].polygons) > 0
+        for off in (1e-10, 1e-20):
+            assert len(_surfaces._polygons_of(fcl_ccd.Sphere(radius), off * radius)) == 512 * 256
+
+
 def on_surface(shape, x):
     """How far points are from the surface of a shape, at most up to its size."""
     axis = np.hypot(x[:, 0], x[:, 1])
@@ -327,6 +359,38 @@ def test_cells():
     np.testing.assert_array_equal(np.ptp(parts.corners(), axis=0), [2, 2, 2])
     assert f"cell {number} of o2" in picture(result).title
     assert len(picture(result).objects[1][2].polygons) == 6
+
+
+def test_many_cells():
+    """Tens of thousands are in contact, of three sizes, on both sides of the origin."""
+    n = 110
+    i, j = (x.ravel() for x in np.mgrid[-n:n, -n:n])
+    rough = np.stack([i, j, (7 * i + 3 * j) % 5], axis=1)
+    corners = (2, (-6, 4, 16)), (4, (8, -16, 16))
+    blocks = [np.mgrid[:w, :w, :w].reshape(3, -1).T + corner for w, corner in corners]
+    octree = fcl_ccd.OcTree(np.concatenate([rough, *blocks]) + 0.5, 1.0)
+    result = fcl_ccd.collide(fcl_ccd.Halfspace((0, 0, 1), 30), octree)
+    numbers, cells = result.contacts["b2"], octree.cells(result.contacts["b2"])
+    assert len(numbers) == octree.num_cells == len(rough) + 2
+    assert np.unique(cells["size"]).tolist() == [1, 2, 4]
+    everywhere = _surfaces.View(np.zeros(3), 1e3)
+    others, parts = surface(octree, None, 0).pieces(everywhere, numbers)
+    assert len(others.polygons) == 0 and len(parts.polygons) == 6 * len(numbers)
+    # Of a half of them, and of the two blocks, the others are what is left.
+    is_left = (cells["center"][:, 0] > 0) & (cells["size"] == 1)
+    others, parts = surface(octree, None, 0).pieces(everywhere, numbers[~is_left])
+    found = {tuple(middle) for middle in others.polygons.mean(axis=1).tolist()}
+    there = {tuple(cell) for cell in octree._finest_cells().tolist()}
+    steps = [tuple(step) for step in np.concatenate([np.eye(3), -np.eye(3)]).tolist()]
+    expected = set()
+    for x, y, z in cells["center"][is_left].tolist():
+        for dx, dy, dz in steps:
+            if (x + dx - 0.5, y + dy - 0.5, z + dz - 0.5) not in there:
+                expected.add((x + dx / 2, y + dy / 2, z + dz / 2))
+    assert found == expected and len(others.polygons) == len(found)
+    # Near a contact there is only what is near it.
+    objects = picture(result).objects
+    assert 0 < len(objects[1][2].polygons) < 500
 
 
 def test_free_edges_and_points():
