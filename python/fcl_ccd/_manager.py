@@ -22,7 +22,7 @@ from . import _arguments, _core
 from ._dataframes import columns_of, frame_of
 from ._motions import AT_ORIGIN, MotionLike, path_of
 from ._queries import Filter, filter_of, geometry_of, request_of
-from ._results import Result
+from ._results import Result, result_of
 
 if TYPE_CHECKING:
     from typing import Iterable, Iterator
@@ -245,7 +245,7 @@ class CollisionManager(_arguments.Built):
         )
         fields = self._ask(other, motion, name, request)
         pairs = [
-            Pair(o1, o2, Result(**answer, _queried=_queried(read1, read2)))
+            Pair(o1, o2, result_of(answer, query, enable_contact, _queried(read1, read2)))
             for o1, o2, answer, read1, read2 in fields.pop("pairs")
         ]
         return ManagerResult(pairs=pairs, **fields)

@@ -17,7 +17,8 @@ class Picture(NamedTuple):
     """All that is drawn, in the world frame.
 
     objects : for each object its name, what is drawn of it, and its parts in contact
-    places, normals : (k, 3) each, of the contacts until the time of the picture
+    places, normals : (k, 3) each, of the contacts until the time of the picture, and of the
+        chosen one also before it begins
     is_main : (k,) bool, whether the picture is of this contact. One of all is of each.
     """
 
@@ -35,17 +36,19 @@ def picture_of(
     names: Tuple[str, ...],
     chosen: Optional[np.void],
     touching: NDArray[np.void],
+    has_places: bool,
 ) -> Picture:
     """
     surfaces : the objects at the time of the picture; of a self-collision one surface twice
     names : of the objects, one for a self-collision
     chosen : the contact on which the picture zooms; None: it shows the whole objects
     touching : the contacts until the time of the picture
+    has_places : whether contacts have a place and a normal, which are zero else
     """
     if chosen is None:
         view, is_main = _whole(surfaces, touching), np.ones(len(touching), bool)
     else:
-        view = _near(surfaces, chosen, touching)
+        view = _near(surfaces, chosen, touching, has_places)
         touching = np.append(touching[touching != chosen], chosen)
         is_main = np.arange(len(touching)) == len(touching) - 1
     sides = [touching["b1"], touching["b2"]]
@@ -55,10 +58,9 @@ def picture_of(
     for name, surface, numbers in zip(names, surfaces, sides):
         others, parts = surface.pieces(view, np.unique(numbers[numbers != -1]))
         objects.append((name, others, parts))
-    # Without enable_contact a contact has no place, and its numbers are zero.
-    known = (touching["pos"] != 0).any(axis=1) | (touching["normal"] != 0).any(axis=1)
-    places, normals = touching["pos"][known], touching["normal"][known]
-    return Picture(title, view, objects, places, normals, is_main[known])
+    if not has_places:
+        touching, is_main = touching[:0], is_main[:0]
+    return Picture(title, view, objects, touching["pos"], touching["normal"], is_main)
 
 
 def _cube_of(points: NDArray[np.float64]) -> View:
@@ -77,7 +79,10 @@ def _whole(surfaces: Tuple[Surface, Surface], touching: NDArray[np.void]) -> Vie
 
 
 def _near(
-    surfaces: Tuple[Surface, Surface], contact: np.void, touching: NDArray[np.void]
+    surfaces: Tuple[Surface, Surface],
+    contact: np.void,
+    touching: NDArray[np.void],
+    has_places: bool,
 ) -> View:
     """About a contact, large enough for the smaller part and the distance to the other one."""
     numbers = contact["b1"], contact["b2"]
@@ -85,9 +90,8 @@ def _near(
     sizes = [float(np.ptp(part, axis=0).max()) for part in parts]
     if not any(size > 0 for size in sizes):
         return _whole(surfaces, touching)
-    has_place = contact["pos"].any() or contact["normal"].any()
     smallest = parts[int(np.argmin(np.where(np.array(sizes) > 0, sizes, np.inf)))]
-    center = contact["pos"] if has_place else smallest.mean(axis=0)
+    center = contact["pos"] if has_places else smallest.mean(axis=0)
     outside = [
         np.maximum(part.min(axis=0) - center, center - part.max(axis=0)).max() for part in parts
     ]

@@ -9,7 +9,7 @@ from . import _arguments, _core
 from ._copies import Copied
 from ._meshes import RigidMesh
 from ._motions import AT_ORIGIN, MotionLike, path_of
-from ._results import Result
+from ._results import Result, result_of
 
 if TYPE_CHECKING:
     from typing import Any
@@ -166,9 +166,8 @@ def self_collide(
     mesh = mesh_of(o, "o")
     queried = mesh, AT_ORIGIN, mesh._num_updates
     fields = _core.self_collide(mesh, request)
-    return Result(
-        **fields, contact_tf1=np.eye(4), contact_tf2=np.eye(4), _queried=(queried, queried)
-    )
+    fields.update(contact_tf1=np.eye(4), contact_tf2=np.eye(4))
+    return result_of(fields, query, enable_contact, (queried, queried))
 
 
 def collide(
@@ -268,7 +267,7 @@ def collide(
         (geometry2, path2, geometry2._num_updates),
     )
     fields = _core.collide(geometry1, path1, geometry2, path2, request)
-    return Result(**fields, _queried=queried)
+    return result_of(fields, query, enable_contact, queried)
 
 
 _BLOCK = 65536

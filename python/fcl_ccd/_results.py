@@ -3,8 +3,8 @@ from __future__ import annotations
 
 import enum
 import os
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Dict, Optional, Tuple, Union
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
@@ -35,8 +35,16 @@ class Kind(enum.IntEnum):
     SHAPES = 8
 
 
+class _Asked:
+    """Of its query, what show() needs. These are no fields: asdict() would copy the objects."""
+
+    _queried: Optional[Tuple[Queried, Queried]] = None
+    _query: str = "all"
+    _has_places: bool = True
+
+
 @dataclass(frozen=True, eq=False, repr=False)
-class Result(_arguments.Built):
+class Result(_Asked, _arguments.Built):
     """The answer of collide() and self_collide(). It is true if there is a collision.
 
     Times are fractions of the step, from 0 to 1. Positions have the unit of the vertices.
@@ -102,7 +110,6 @@ class Result(_arguments.Built):
     times: Dict[str, float]
     contact_tf1: NDArray[np.float64]
     contact_tf2: NDArray[np.float64]
-    _queried: Optional[Tuple[Queried, Queried]]
 
     def __bool__(self) -> bool:
         return self.is_collide
@@ -118,24 +125,28 @@ class Result(_arguments.Built):
         contact: Optional[int] = 0,
         file: Optional[Union[str, os.PathLike[str]]] = None,
     ) -> None:
-        """Draw both objects at a time of the step, with the contacts until then.
+        """Draw both objects at a time of the step, with its contacts.
 
-        Opens a window, or draws in the notebook. It needs matplotlib. Triangles, free edges
-        and points, and cells of an OcTree that are in contact have a stronger colour. Each
-        contact has a point, and a line along its normal.
+        Opens a window, or draws in the notebook. It needs matplotlib. The contacts that
+        have begun until then are drawn, and the chosen one at every time: as a point and a line
+        along its normal. Their triangles, free edges and points, and cells of an OcTree have a
+        stronger colour.
 
         t : float, optional
             In fractions of the step. None: when the contact begins; 1 without contacts.
         contact : int or None
-            The number of the contact, in contacts, on which the picture zooms. None: it shows
-            the whole objects, by default at the time of contact.
+            The number of the chosen contact, in contacts, on which the picture zooms. None: it
+            shows the whole objects, by default at the time of contact.
         file : str or path, optional
             Write the picture there instead, in the format of its suffix: .png, .svg, .pdf.
 
-        A result refers to the objects of its query, and keeps them alive. Pickles and deep
-        copies of it do not have them, and cannot be shown (ValueError). Raises RuntimeError if
-        a mesh was updated since the query, or without a window; ImportError without
-        matplotlib.
+        A result refers to the objects of its query, and keeps them alive, also a RigidMesh that
+        the call made of a mesh of another package. Pickles and deep copies of it do not have
+        them, and cannot be shown (ValueError). To keep many results without their objects,
+        keep copy.deepcopy(result).
+
+        Raises RuntimeError if a mesh was updated since the query, or without a window;
+        ImportError without matplotlib.
         """
         if t is not None:
             t = _arguments.number(t, "t")
@@ -145,14 +156,20 @@ class Result(_arguments.Built):
             contact = _arguments.integer(contact, "contact")
         if file is not None and not isinstance(file, (str, os.PathLike)):
             raise _arguments.wrong_type("file", file, "a path, or None")
+        if file is not None and not os.path.basename(os.fsdecode(file)).strip("."):
+            raise ValueError(
+                f"file is {os.fsdecode(file)!r}. Give the name of a file, for example 'contact.png'"
+            )
         _figures.show(_picture(self, t, contact), file)
 
     def __copy__(self) -> Result:
-        return replace(self)
+        made = object.__new__(type(self))
+        made.__dict__.update(self.__dict__)
+        return made
 
     def __getstate__(self) -> Dict[str, Any]:
         """For pickles and deep copies: without the objects, which would be copied too."""
-        return {**self.__dict__, "_queried": None}
+        return {name: x for name, x in self.__dict__.items() if name != "_queried"}
 
     def __repr__(self) -> str:
         return (
@@ -161,11 +178,24 @@ class Result(_arguments.Built):
         )
 
 
+def result_of(
+    fields: Mapping[str, Any],
+    query: str,
+    enable_contact: bool,
+    queried: Tuple[Queried, Queried],
+) -> Result:
+    """The answer of a query, which can be shown."""
+    result = Result(**fields)
+    result.__dict__.update(_query=query, _has_places=bool(enable_contact), _queried=queried)
+    return result
+
+
 def _picture(result: Result, t: Optional[float], number: Optional[int]) -> Picture:
     if result._queried is None:
         raise ValueError(
-            "this Result is a deep copy or was pickled, and does not have the objects of its "
-            "query. Call show() of the Result that the query gave, or query again"
+            "this Result does not have the objects of its query: it is a deep copy, or was "
+            "pickled, or changed by replace(). Call show() of the Result that the query gave, "
+            "or query again"
         )
     # A crossing at t = 0 need not be a contact.
     events = result.contacts if len(result.contacts) > 0 else result.crossing
@@ -193,7 +223,7 @@ def _picture(result: Result, t: Optional[float], number: Optional[int]) -> Pictu
         title = _title_of_one(result, chosen, number, both, names)
         title += "" if t == chosen["toc_lo"] else f"\ndrawn at t = {t:.4g}"
     title += "\nthey cross at t = 0" if result.initially_crossing else ""
-    return picture_of(title, both, labels, chosen, touching)
+    return picture_of(title, both, labels, chosen, touching, result._has_places)
 
 
 def _title_of_all(result: Result, t: float) -> str:
@@ -211,7 +241,10 @@ def _title_of_one(
     names: Tuple[str, ...],
 ) -> str:
     toc, kind = contact["toc_lo"], Kind(contact["kind"]).name.lower().replace("_", "-")
-    name = "first contact" if toc == result.time_of_contact else f"contact {number}"
+    is_first = number == 0 and (toc == 0 or not result.initially_crossing)
+    name = "first contact" if is_first else f"contact {number}"
+    if result._query == "any":  # the first one that was found
+        name = "a contact"
     parts = [s.name_of(int(contact[b])) for s, b in zip(surfaces, ("b1", "b2"))]
     if len(names) == 2:
         parts = [f"{part} of {of}" if part else of for part, of in zip(parts, names)]

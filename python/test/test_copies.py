@@ -2,6 +2,7 @@
 """Copies and pickles: they give the same answers, to the bit."""
 
 import copy
+import dataclasses
 import pickle
 import subprocess
 import sys
@@ -227,8 +228,12 @@ def test_results():
     assert shallow._queried is of._queried and shallow.contacts is of.contacts
     for same in others:
         require_same(same, of)
-        with pytest.raises(ValueError, match="is a deep copy or was pickled.*that the query gave"):
+        with pytest.raises(ValueError, match="is a deep copy, or was pickled.*that the query gave"):
             same.show()
+    changed = dataclasses.replace(of, contacts_cut=True)
+    require_same(changed, of)
+    with pytest.raises(ValueError, match="does not have the objects of its query"):
+        changed.show()
     assert len(pickle.dumps(of)) < len(pickle.dumps(of.contacts)) + 3000
     manager = fcl_ccd.CollisionManager()
     manager.register("mesh", mesh, self_collision=True)
@@ -238,6 +243,20 @@ def test_results():
     for same in others:
         require_same(same.pairs[0].result, found.pairs[0].result)
         assert same.pairs[0].result._queried is None
+
+
+def test_results_as_dicts():
+    """Numbers and arrays, without the objects of the query."""
+    result = fcl_ccd.collide(deforming(), fcl_ccd.Sphere(0.3), None, MOTIONS["BoundedMotion"])
+    fields = dataclasses.asdict(result)
+    assert list(fields)[:3] == ["is_collide", "time_of_contact", "contacts"]
+    assert not [name for name in fields if name.startswith("_")]
+    np.testing.assert_array_equal(fields["contacts"], result.contacts)
+    assert pickle.loads(pickle.dumps(fields)).keys() == fields.keys()
+    manager = fcl_ccd.CollisionManager()
+    manager.register("ball", fcl_ccd.Sphere(0.3))
+    found = dataclasses.asdict(manager.collide(deforming()))
+    assert found["pairs"][0]["o2"] == "ball" and found["pairs"][0]["result"]["is_collide"]
 
 
 def test_classes_of_the_user():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Memory: arrays live on their own, and nothing is lost in many steps."""
 
+import copy
 import gc
 import sys
 import weakref
@@ -90,7 +91,7 @@ def test_arrays_outlive_mesh_and_result():
     mesh = fcl_ccd.DeformableMesh(PREVIOUS, TRIANGLES)
     mesh.update(CURRENT)
     result = fcl_ccd.self_collide(mesh)
-    contacts, copy = result.contacts, result.contacts.copy()
+    contacts, copied = result.contacts, result.contacts.copy()
     blocks = []
     fcl_ccd.self_candidates(mesh, blocks.append, block=1)
     kept = blocks[0].copy()
@@ -98,7 +99,7 @@ def test_arrays_outlive_mesh_and_result():
     gc.collect()
     _ = [np.random.default_rng(i).normal(size=1000) for i in range(1000)]
     for name in fcl_ccd.contact_dtype.names:
-        np.testing.assert_array_equal(contacts[name], copy[name])
+        np.testing.assert_array_equal(contacts[name], copied[name])
     np.testing.assert_array_equal(blocks[0], kept)
     assert contacts.size > 0 and kept.size > 0
 
@@ -123,6 +124,22 @@ def test_results_keep_their_objects():
     del mesh, manager, result
     gc.collect()
     assert alive() is None
+
+
+class OtherMesh:
+    """As a trimesh.Trimesh."""
+
+    vertices, faces = CURRENT, TRIANGLES
+
+
+def test_deep_copies_of_results_keep_no_objects():
+    """A way out of a loop that keeps its results, also of meshes that each call makes."""
+    results = [fcl_ccd.collide(OtherMesh(), fcl_ccd.Sphere(0.5)) for _ in range(3)]
+    alive = [weakref.ref(result._queried[0][0]) for result in results]
+    assert all(isinstance(mesh(), fcl_ccd.RigidMesh) for mesh in alive)
+    results = copy.deepcopy(results)
+    gc.collect()
+    assert not any(mesh() for mesh in alive) and all(results)
 
 
 def test_mesh_does_not_keep_the_arrays():

@@ -4,6 +4,7 @@
 import itertools
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -177,6 +178,7 @@ def test_titles():
     assert picture(result).title == f"first contact at t = {toc}\n{kind}, {parts}"
     assert picture(result, 0.1).title.endswith(f"{parts}\ndrawn at t = 0.1")
     last = len(result.contacts) - 1
+    assert picture(result, contact=1).title.startswith("contact 1 at t = ")
     assert picture(result, contact=last).title.startswith(f"contact {last} at t = ")
     assert picture(result, 1, None).title == f"t = 1: {last + 1} of {last + 1} contacts until then"
     assert picture(result, 0, None).title == f"t = 0: 0 of {last + 1} contacts until then"
@@ -190,6 +192,28 @@ def test_titles():
     shapes = fcl_ccd.collide(fcl_ccd.Sphere(0.2), fcl_ccd.Box(1, 1, 1), FALLS)
     assert picture(shapes).title.endswith("\nshapes, o1 and o2")
     assert [name for name, _, _ in picture(shapes).objects] == ["o1: Sphere", "o2: Box"]
+
+
+@pytest.mark.parametrize("query", ["all", "first", "any"])
+def test_which_contact_the_title_names(query):
+    """By its number, with wide brackets too. Of query="any" it need not be the first."""
+    ball, name = fcl_ccd.RigidMesh(*BALL), "a contact" if query == "any" else "first contact"
+    manager = fcl_ccd.CollisionManager()
+    manager.register("sheet", sheet(), self_collision=True)
+    straight = FALLS[0], pose((0.4, 0.5, -1))
+    manager.register("ball", ball, straight)
+    for toc_err in (1e-4, 0.1):
+        options = {"query": query, "toc_err": toc_err}
+        result = fcl_ccd.collide(sheet(), ball, None, straight, **options)
+        pair = manager.collide(**options).pairs[0].result
+        for found in (result, pair):
+            assert picture(found).title.startswith(f"{name} at t = ")
+    if query == "all":
+        assert result.contacts["toc_lo"][0] != result.time_of_contact
+        # A crossing at t = 0 is earlier than the contacts.
+        crossing = fcl_ccd.self_collide(crumpling())
+        assert crossing.initially_crossing and crossing.contacts["toc_lo"][0] > 0
+        assert picture(crossing).title.startswith("contact 0 at t = ")
 
 
 def test_crossing_without_contacts():
@@ -217,9 +241,10 @@ def test_parts_in_contact():
     one = picture(result, 1.0, 5)
     assert (one.places[one.is_main] == contacts["pos"][5]).all() and one.is_main.sum() == 1
     assert len(one.places) == len(contacts)
+    # Before it begins too, when nothing is in contact.
     early = picture(result, 0.0, len(contacts) - 1)
     assert [len(parts.polygons) for _, _, parts in early.objects] == [1, 1]
-    assert (early.places == contacts["pos"][-1:]).all()
+    assert (early.places == contacts["pos"][-1:]).all() and early.is_main.tolist() == [True]
     assert len(others.polygons) + len(parts.polygons) == len(BALL[1])
 
 
@@ -263,6 +288,17 @@ def test_the_direction_of_view():
     drawn = _figures._part_of_matplotlib("figure").Figure()
     _figures._draw(drawn, picture(result, None, last))
     assert drawn.axes[0].azim == pytest.approx(20)
+
+
+@pytest.mark.parametrize("enable_contact", [True, False])
+def test_places_at_the_origin(enable_contact):
+    """A place of zeros is one too, unless the query was asked for none."""
+    shapes = fcl_ccd.Sphere(0.2), fcl_ccd.Box(1, 1, 1)
+    result = fcl_ccd.collide(*shapes, enable_contact=enable_contact)
+    (contact,) = result.contacts
+    assert (contact["pos"] == 0).all() and (contact["normal"] == 0).all()
+    for number in (0, None):
+        assert len(picture(result, contact=number).places) == enable_contact
 
 
 def test_a_large_sphere():
@@ -546,6 +582,9 @@ def test_the_mesh_has_changed():
         ({"contact": 10**6}, ValueError, r"contact is 1000000. This Result has \d+ contacts, numbered"),
         ({"contact": 0.5}, TypeError, r"Result.show\(\): contact is of type float. Give an integer"),
         ({"file": 3}, TypeError, r"Result.show\(\): file is of type int. Give a path"),
+        ({"file": ""}, ValueError, "file is ''. Give the name of a file, for example 'contact.png"),
+        ({"file": Path("")}, ValueError, "file is '.'. Give the name of a file"),
+        ({"file": "pictures/"}, ValueError, "file is 'pictures/'. Give the name of a file"),
     ],
 )
 def test_wrong_arguments(wrong, error, text):
