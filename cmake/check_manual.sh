@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Fails and names the option when the manual page or the bash completion of fcl-ccd has not the
-# same options as --help, or package.xml another version.
+# same options as --help, the column when the completion does not offer it, or package.xml another
+# version.
 #   bash cmake/check_manual.sh PROGRAM
 set -euo pipefail
 program=$1
@@ -26,15 +27,26 @@ compare() { # NAME OPTIONS
 compare "$manual" "$(sed 's/\\-/-/g; s/\\f.//g' "$manual" | options)"
 compare "$completion" "$(options <"$completion")"
 
-# What the completion offers for a command.
-offered() { # COMMAND
-  bash -c "source $completion; COMP_WORDS=(fcl-ccd $1 --) COMP_CWORD=2
-    _fcl_ccd fcl-ccd -- $1; printf '%s\n' \"\${COMPREPLY[@]}\"" | LC_ALL=C sort -u
+# What the completion offers for the begin of a word behind another word of a command.
+offered() { # COMMAND BEGIN BEFORE
+  bash -c "source $completion; COMP_WORDS=(fcl-ccd $1) COMP_CWORD=2
+    _fcl_ccd fcl-ccd '$2' '$3'; printf '%s\n' \"\${COMPREPLY[@]}\"" | LC_ALL=C sort -u
 }
 for command in $commands; do
   for option in $("$program" "$command" --help | grep -oE '^  [^ ].*' | options); do
-    grep -qxF -- "$option" <(offered "$command") ||
+    grep -qxF -- "$option" <(offered "$command" -- "$command") ||
       { echo "$completion: $command does not offer $option" >&2; failed=1; }
+  done
+done
+
+# The names of columns, which the program lists when it refuses one.
+for command in run candidates queries; do
+  columns=$("$program" "$command" x y --columns '?' 2>&1 | sed -n 's/.*The columns are: //p' | tr -d ',') || true
+  [ "$(wc -w <<<"$columns")" -ge 9 ] || { echo "$command does not list its columns" >&2; exit 1; }
+  words=$(offered "$command" '' --columns)
+  for column in $columns; do
+    grep -qw -- "$column" <<<"$words" ||
+      { echo "$completion: --columns of $command does not offer $column" >&2; failed=1; }
   done
 done
 

@@ -119,7 +119,7 @@ std::size_t checkFiles(const std::string& data) {
       const std::string path =
           folder.path().string() + (vf ? "/vertex-face.csv" : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;
-      for (const auto& query : fcl_ccd::readQueries({path}).queries) {
+      for (const auto& query : fcl_ccd::readQueries(path).queries) {
         const std::string text = disagreement({kind, query.x}, tally.queries, tally);
         if (!text.empty()) complaints.add(path, text);
       }

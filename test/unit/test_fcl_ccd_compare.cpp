@@ -77,14 +77,15 @@ TEST_F(CcdCompare, CountsQueriesThatDifferFromTheirRows) {
   EXPECT_EQ(figures.at("false_positives"), 2);
   EXPECT_EQ(figures.at("uncertain"), 0);
   EXPECT_EQ(figures.at("rounded_queries"), 0);
+  EXPECT_TRUE(figures.at("wrong_times").is_null());
   EXPECT_TRUE(figures.at("time_error").is_null());
   const double mean = figures.at("us_per_query").at("mean"),
                max = figures.at("us_per_query").at("max");
   EXPECT_TRUE(0 < mean && mean <= max) << mean << ' ' << max;
   const std::vector<std::string> words = row();
-  ASSERT_EQ(words.size(), 9u);
-  EXPECT_EQ(std::vector<std::string>(words.begin(), words.begin() + 7),
-            (std::vector<std::string>{"5", "2", "3", "1", "2", "0", "-"}));
+  ASSERT_EQ(words.size(), 10u);
+  EXPECT_EQ(std::vector<std::string>(words.begin(), words.begin() + 8),
+            (std::vector<std::string>{"5", "2", "3", "1", "2", "0", "-", "-"}));
 }
 
 TEST_F(CcdCompare, TellsTheLargestTimeError) {
@@ -96,9 +97,12 @@ TEST_F(CcdCompare, TellsTheLargestTimeError) {
   const double wide = compare("a_vf.csv --toc-err 0.1").at("time_error");
   EXPECT_GT(wide, narrow);
   EXPECT_LE(wide, 0.1);
+  EXPECT_EQ(compare("a_vf.csv --toc-err 0").at("wrong_times"), 0);
   writeText(path("a_vf.csv"), queryRows(true, ",1,0.5") + queryRows(true, ",1,0.75"));
-  EXPECT_NEAR(compare("a_vf.csv --toc-err 0").at("time_error").get<double>(), 0.25,
-              1e-15);
+  const Json wrong = compare("a_vf.csv --toc-err 0");
+  EXPECT_NEAR(wrong.at("time_error").get<double>(), 0.25, 1e-15);
+  EXPECT_EQ(wrong.at("wrong_times"), 1);
+  EXPECT_EQ(row().at(6), "1");
 }
 
 TEST_F(CcdCompare, ReadsAnswersBesideTheQueries) {
@@ -250,6 +254,7 @@ TEST_F(CcdCompare, RefusesListsThatDoNotFit) {
   expectRefused("[[3, 11]]",
                 "entry 0: 11 is not the number of a face: they have 12 to 13");
   expectRefused("[[-1, 12]]", "entry 0: -1 is not the number of a vertex");
+  expectRefused("[[3, -9223372036854775808]]", "is not the number of a face");
   writeText(path("t_ee.json"), "[[6, 12]]");
   expectFailure("compare " + kFrames + " --truth t_ee.json",
                 "t_ee.json: entry 0: 12 is not the number of an edge: they have 6 to 11");

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -68,13 +69,15 @@ TEST_F(CcdQueries, CountsWrongAnswersOfQueries) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const Json report = json("r.json");
-  EXPECT_EQ(keysOf(report), (std::set<std::string>{"queries", "true", "false_negatives",
-                                                   "false_positives", "uncertain",
-                                                   "rounded_queries", "ns_per_query"}));
+  EXPECT_EQ(keysOf(report),
+            (std::set<std::string>{"queries", "true", "false_negatives",
+                                   "false_positives", "wrong_times", "uncertain",
+                                   "rounded_queries", "ns_per_query"}));
   EXPECT_EQ(report.at("queries"), 3);
   EXPECT_EQ(report.at("true"), 2);
   EXPECT_EQ(report.at("false_negatives"), 1);
   EXPECT_EQ(report.at("false_positives"), 1);
+  EXPECT_TRUE(report.at("wrong_times").is_null());
   EXPECT_EQ(report.at("uncertain"), 0);
   EXPECT_GT(report.at("ns_per_query").get<double>(), 0);
 }
@@ -190,6 +193,27 @@ TEST_F(CcdQueries, DecimalsAndFractionsAreTheSameNumbers) {
   EXPECT_EQ(rounded.err, "");
 }
 
+// The vertex meets the face at t = 1/2. The last time is not compared: there is no
+// contact.
+TEST_F(CcdQueries, CountsTimesOutsideOfTheirBrackets) {
+  const std::string rows = decimalRows("0", "2", ",1,0.5") +
+                           decimalRows("0", "2", ",1,.9") + decimalRows("0", "2", ",1,") +
+                           decimalRows("0", "2", ",1,0.4999") +
+                           decimalRows("50", "2", ",1,0.25");
+  writeText(path("q_vf.csv"), rows);
+  const Outcome outcome = run("queries q_vf.csv --toc-err 1e-9 --json r.json");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(json("r.json").at("wrong_times"), 2);
+  EXPECT_EQ(json("r.json").at("false_negatives"), 1);
+  const std::vector<std::string> lines = linesOf(outcome.out);
+  ASSERT_EQ(lines.size(), 2u);
+  const std::string::size_type end = lines[0].find("wrong times") + 11;
+  EXPECT_EQ(lines[1].substr(end - 4, 4), "   2") << outcome.out;
+  // A bracket that is wide has the times nearby.
+  EXPECT_EQ(run("queries q_vf.csv --toc-err 0.1 --json r.json").exit_code, 0);
+  EXPECT_EQ(json("r.json").at("wrong_times"), 1);
+}
+
 TEST_F(CcdQueries, SkipsALineOfNames) {
   writeText(path("q_vf.csv"), "\n x , y, z ,hit\n" + decimalRows("0", "2", ",1"));
   EXPECT_EQ(run("queries q_vf.csv --json r.json").exit_code, 0);
@@ -209,11 +233,13 @@ TEST_F(CcdQueries, RefusesALineOfNamesThatDoesNotFit) {
   expectRefused("truth,x,y,z\n" + rows,
                 "line 1: column 1 is named 'truth', which is the "
                 "name of column 4");
+  expectRefused("Z,Y,X,hit\n" + rows,
+                "line 1: column 1 is named 'Z', which is the name of column 3");
   expectRefused("x,y,z\n" + rows, "line 2: has 4 fields; the lines before have 3");
   expectRefused("x,y\n" + rows, "line 1: has 2 fields. A row has 3 decimal numbers");
   expectRefused("x,y,z,truth\n", "the file has no queries");
   expectRefused("x,y,z,truth\n" + ("x,y,z,truth\n" + rows),
-                "line 2: 'x' is not a number");
+                "line 2: x: 'x' is not a number");
 }
 
 // As narrow as numbers allow: the bracket is around 1/3, which no double is.
@@ -356,6 +382,42 @@ TEST_F(CcdQueries, PublicQueriesAreDoublesAndHaveNoError) {
   EXPECT_EQ(report.at("false_positives"), 0);
 }
 
+/// @brief The rows of a file of fractions, with 1/3 added to each coordinate.
+std::string movedByAThird(const std::string& text) {
+  using boost::multiprecision::cpp_int;
+  std::string moved;
+  for (const std::string& line : linesOf(text)) {
+    std::vector<std::string> fields = csvFields(line);
+    for (std::size_t k = 0; k < 6; k += 2) {
+      const cpp_int num(fields[k]), den(fields[k + 1]);
+      fields[k] = cpp_int(3 * num + den).str();
+      fields[k + 1] = cpp_int(3 * den).str();
+    }
+    for (const std::string& field : fields) moved.append(field).append(1, ',');
+    moved.back() = '\n';
+  }
+  return moved;
+}
+
+// Rounding decides hard queries. These are the figures of doc/data.md.
+TEST_F(CcdQueries, PublicQueriesThatAreRoundedHaveErrors) {
+  const auto folder = fcl::test::sharedData("queries");
+  if (!folder) GTEST_SKIP() << fcl::test::kNoSharedData;
+  for (const auto& entry : fs::recursive_directory_iterator(*folder)) {
+    if (entry.path().extension() != ".csv") continue;
+    const fs::path moved = path("moved") / fs::relative(entry.path(), *folder);
+    fs::create_directories(moved.parent_path());
+    writeText(moved, movedByAThird(readText(entry.path())));
+  }
+  const Outcome outcome = run("queries moved --json r.json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Json report = json("r.json");
+  EXPECT_EQ(report.at("queries"), 4120);
+  EXPECT_EQ(report.at("rounded_queries"), 4120);
+  EXPECT_EQ(report.at("false_negatives"), 5);
+  EXPECT_EQ(report.at("false_positives"), 42);
+}
+
 TEST_F(CcdQueries, WarnsOfQueriesThatAreNotDoubles) {
   writeText(path("q.csv"), vertexFaceRows(true, "3", "1"));
   const Outcome outcome = run("queries q.csv --kind vf --json r.json");
@@ -378,16 +440,18 @@ TEST_F(CcdQueries, BadQueriesExitWithTwo) {
   expectRefused("1,2,3,4,5,6,7,8,9\n" + good, "line 1: has 9 fields");
   expectRefused("1,2,3\n" + good, "line 2: has 7 fields; the lines before have 3");
   expectRefused(good + "1,1,1,1,1,1\n", "line 9: has 6 fields; the lines before have 7");
-  expectRefused(good + "1,0,1,1,1,1,1\n", "line 9: the denominator is 0");
-  expectRefused(good + "1.5,1,1,1,1,1,1\n", "line 9: '1.5' is not an integer");
-  expectRefused(good + "nan,1,1,1,1,1,1\n", "line 9: 'nan' is not an integer");
-  expectRefused(good + ",1,1,1,1,1,1\n", "line 9: '' is not an integer");
-  expectRefused(good + "1 2,1,1,1,1,1,1\n", "line 9: a field has two words");
+  expectRefused(good + "1,0,1,1,1,1,1\n", "line 9: x: the denominator is 0");
+  expectRefused(good + "1,1,1.5,1,1,1,1\n", "line 9: y: '1.5' is not an integer");
+  expectRefused(good + "nan,1,1,1,1,1,1\n", "line 9: x: 'nan' is not an integer");
+  expectRefused(good + ",1,1,1,1,1,1\n", "line 9: x: '' is not an integer");
+  expectRefused(good + "1,1 2,1,1,1,1,1\n", "line 9: field 2 has two words");
   expectRefused(good + "1" + std::string(400, '0') + ",1,1,1,1,1,1\n",
-                "line 9: the coordinate is beyond double's range");
+                "line 9: x: the coordinate is beyond double's range");
   expectRefused(good + "1,1,1,1,1,1,2\n", "line 9: the truth is '2', expected 0 or 1");
   expectRefused(good + "1,1,1,1,1,1,1\n1,1,1,1,1,1,0\n",
                 "line 10: differs from the row before in the truth");
+  expectRefused("1,1,1,1,1,1,1,.5\n1,1,1,1,1,1,1,.25\n",
+                "line 2: differs from the row before in the time");
   expectFailure("queries missing.csv --kind vf", "missing.csv: cannot open");
 }
 
@@ -399,12 +463,13 @@ TEST_F(CcdQueries, BadDecimalsExitWithTwo) {
     expectFailure("queries q.csv --kind vf --json r.json", "q.csv: line 9: " + cause);
   };
   for (const char* text : {"1x", "1e", "1.2.3", "--1", "0x10", "1/2", ""})
-    expectRefused(std::string(text) + ",1,1,1,\n",
-                  "'" + std::string(text) + "' is not a number");
+    expectRefused("1," + std::string(text) + ",1,1,\n",
+                  "y: '" + std::string(text) + "' is not a number");
   for (const char* text : {"nan", "-inf", "1e400", "1.#INF"})
-    expectRefused(std::string(text) + ",1,1,1,\n",
-                  "'" + std::string(text) + "' is not finite, or beyond double's range");
-  expectRefused("1,1,1,1,x\n", "'x' is not a number");
+    expectRefused(
+        std::string(text) + ",1,1,1,\n",
+        "x: '" + std::string(text) + "' is not finite, or beyond double's range");
+  expectRefused("1,1,1,1,x\n", "toc: 'x' is not a number");
   expectRefused("1,1,1,1,1.5\n", "the time is '1.5', expected a fraction of the step");
   expectRefused("1,1,1,1,-0.5\n", "the time is '-0.5', expected a fraction of the step");
   expectRefused("1,1,1,0,0.5\n", "there is a time, '0.5', but the truth is 0");

@@ -31,7 +31,7 @@ TEST(FCL_HARD_QUERIES, allAreAnsweredRight) {
                                         ? "/vertex-face.csv"
                                         : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;
-      const fcl_ccd::QueryList list = fcl_ccd::readQueries({path});
+      const fcl_ccd::QueryList list = fcl_ccd::readQueries(path);
       ASSERT_TRUE(list.has_truth) << path;
       for (const auto& query : list.queries) EXPECT_EQ(query.num_rounded, 0U) << path;
       for (std::size_t i = 0; i < list.queries.size(); ++i) {

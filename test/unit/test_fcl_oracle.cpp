@@ -287,7 +287,7 @@ TEST(FCL_ORACLE, hardQueries) {
       const std::string path =
           folder.path().string() + (kind == kVf ? "/vertex-face.csv" : "/edge-edge.csv");
       if (!std::filesystem::exists(path)) continue;
-      for (const auto& query : fcl_ccd::readQueries({path}).queries) {
+      for (const auto& query : fcl_ccd::readQueries(path).queries) {
         const MovingPair pair{kind, query.x};
         EXPECT_EQ(askOracle(kind, pair.points()).touch(), query.truth) << path << pair;
         EXPECT_EQ(disagreement(pair, tally.queries, tally), "") << path;

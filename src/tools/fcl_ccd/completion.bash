@@ -14,7 +14,10 @@ _fcl_ccd() {
     --kind) words='vf ee' ;;
     --columns)
       case $command in
-        run) words='triangles position normal triangles,position,normal step,kind,i0,i1,i2,i3,i4,toc_lo,toc_hi' ;;
+        run)
+          words='triangles position normal triangles,position,normal step,kind,i0,i1,i2,i3,i4,toc_lo,toc_hi
+            step kind i0 i1 i2 i3 i4 toc_lo toc_hi t0 t1 x y z nx ny nz'
+          ;;
         candidates) words='kind,i0,i1,i2,i3,t_lo,t_hi kind i0 i1 i2 i3 t_lo t_hi t0 t1' ;;
         queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc rounded file' ;;
       esac

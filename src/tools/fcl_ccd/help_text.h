@@ -55,8 +55,9 @@ Output:
   0; ids of B begin with b. The first time of contact lies in [toc_lo, toc_hi], in fractions
   of the step. There are also t0,t1 (the triangles of both features; in short: triangles),
   x,y,z (position, the point where they touch) and nx,ny,nz (normal, a unit vector from A to
-  B). --columns triangles,position,normal, or some of them, adds these before i4. Any other
-  list, as in --columns step,i0,toc_lo,normal, has the columns of the file in their order.
+  B). --columns triangles,position,normal, or some of them, adds these before i4, always in
+  this order. Any other list, as in --columns step,i0,toc_lo,normal, has the columns of the
+  file in their order.
   --steps: JSON lines: the options, one object for each step, and a summary at the end.
   --json: JSON with all steps and their times in milliseconds. build: making the tree, in
   the first step of each job. total = update + traverse + test.
@@ -113,6 +114,8 @@ Output:
   i1 are edge a, i2 and i3 edge b); with --thickness also ve (a free point and a free edge)
   and vv (two free points). Ids count from 0; those of B begin with b. The features do not
   touch before t_lo or after t_hi, in fractions of the step.
+  With --thickness D, to touch is to come within D of each other: the list has all pairs that
+  may, and t_lo and t_hi are for D.
   The lines are sorted by kind (vf, ee, ve, vv) and ids, so that the output is always the
   same. --columns: these columns, in this order. There are also t0,t1, the triangles of both
   features.
@@ -134,11 +137,13 @@ inline constexpr const char* kQueriesDetails = R"(Input:
   are in a folder vertex-face or edge-edge. Of a folder all CSV files below it are taken.
 
 Output:
-  Without --print: a table of counts and errors.
+  Without --print: a table of counts and errors. A wrong time is a true time outside of
+  [toc_lo, toc_hi]. The exit code is 0 also if answers or times are wrong.
   --print: index,answer,toc_lo,toc_hi for each query; answer is yes or no. Each answer is
   proved, so that 'uncertain' is 0.
   --columns: these columns and a first line with their names. There are index, answer, toc_lo,
-  toc_hi, kind, truth, toc (both as in the file), rounded (how many coordinates) and file.
+  toc_hi, kind, truth (yes or no), toc (the true time, as the nearest double), rounded (how many
+  coordinates) and file.
   --json: the counts. Those that need the truth are null without it.
 
 Examples:
@@ -152,8 +157,9 @@ inline constexpr const char* kCompareDetails = R"(Queries:
   92vf_mma_bool.json beside it, or in the folder mma_bool beside its folder. --truth names
   such files, one for each file of queries. One row is printed: queries, those that truly
   touch, contacts that were found, false negatives (FN), false positives (FP), uncertain
-  answers, the largest time error (of toc_lo; '-' if the files have no times), and the mean
-  and the longest time of a query in microseconds, each with that of reading the clock.
+  answers, wrong times (outside of [toc_lo, toc_hi]), the largest time error (of toc_lo; both
+  '-' if the files have no times), and the mean and the longest time of a query in
+  microseconds, each with that of reading the clock.
 
 Frames:
   Two mesh files. The truth is in JSON files of pairs of boxes: of a vertex and a face (name

@@ -222,7 +222,7 @@ void addOutputOptions(CLI::App& run, fcl_ccd::RunOptions& options) {
                  "Write the contacts as CSV; -: to standard output")
       ->type_name("FILE")
       ->check(fcl_ccd::namedFile());
-  addColumnsOption(run, "Columns of the contacts, in this order; see below",
+  addColumnsOption(run, "Columns of the contacts; see below",
                    [&options](const std::string& list) {
                      options.columns = fcl_ccd::ContactColumns(list);
                    })

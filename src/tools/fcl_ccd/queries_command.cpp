@@ -107,26 +107,31 @@ Json toJson(const QuerySet& set, const QueryErrors& errors, double ns_per_query)
   const auto ifTruth = [&](std::size_t count) {
     return set.has_truth ? Json(count) : Json(nullptr);
   };
-  return {{"queries", set.queries.size()},
-          {"true", ifTruth(errors.num_true)},
-          {"false_negatives", ifTruth(errors.false_negatives)},
-          {"false_positives", ifTruth(errors.false_positives)},
-          {"uncertain", errors.uncertain},
-          {"rounded_queries", numRoundedQueries(set)},
-          {"ns_per_query", ns_per_query}};
+  return {
+      {"queries", set.queries.size()},
+      {"true", ifTruth(errors.num_true)},
+      {"false_negatives", ifTruth(errors.false_negatives)},
+      {"false_positives", ifTruth(errors.false_positives)},
+      {"wrong_times", errors.num_times > 0 ? Json(errors.wrong_times) : Json(nullptr)},
+      {"uncertain", errors.uncertain},
+      {"rounded_queries", numRoundedQueries(set)},
+      {"ns_per_query", ns_per_query}};
 }
 
 std::string table(const QuerySet& set, const QueryErrors& errors, double ns_per_query) {
   const auto ifTruth = [&](std::size_t count) {
     return set.has_truth ? std::to_string(count) : "-";
   };
-  char row[256];  // six fields of at most 20 characters
-  std::snprintf(row, sizeof row, "%7zu  %6s  %15s  %15s  %9zu  %12.1f\n",
+  const std::string wrong_times =
+      errors.num_times > 0 ? std::to_string(errors.wrong_times) : "-";
+  char row[256];  // seven fields of at most 20 characters
+  std::snprintf(row, sizeof row, "%7zu  %6s  %15s  %15s  %11s  %9zu  %12.1f\n",
                 set.queries.size(), ifTruth(errors.num_true).c_str(),
                 ifTruth(errors.false_negatives).c_str(),
-                ifTruth(errors.false_positives).c_str(), errors.uncertain, ns_per_query);
-  return std::string("queries    true  false negatives  false positives  uncertain  ") +
-         "ns per query\n" + row;
+                ifTruth(errors.false_positives).c_str(), wrong_times.c_str(),
+                errors.uncertain, ns_per_query);
+  return std::string("queries    true  false negatives  false positives  wrong times  ") +
+         "uncertain  ns per query\n" + row;
 }
 
 }  // namespace

@@ -112,6 +112,7 @@ class QueryComparison : public Comparison {
              {"FN", std::to_string(errors.false_negatives)},
              {"FP", std::to_string(errors.false_positives)},
              {"uncertain", std::to_string(errors.uncertain)},
+             {"wrong times", time_error ? std::to_string(errors.wrong_times) : "-"},
              {"time error", time_error ? numberText(*time_error, kDigits) : "-"},
              {"mean us", numberText(mean, kDigits)},
              {"max us", numberText(max, kDigits)}},
@@ -123,6 +124,7 @@ class QueryComparison : public Comparison {
              {"false_positives", errors.false_positives},
              {"uncertain", errors.uncertain},
              {"rounded_queries", numRoundedQueries(set)},
+             {"wrong_times", time_error ? Json(errors.wrong_times) : Json(nullptr)},
              {"time_error", time_error ? Json(*time_error) : Json(nullptr)},
              {"us_per_query", {{"mean", mean}, {"max", max}}}}};
   }

@@ -52,12 +52,14 @@ struct Row {
   std::optional<double> toc;
 };
 
-std::string_view trimmed(std::string_view field) {
+/// @param number  of the field, from 1
+std::string_view trimmed(std::string_view field, std::size_t number) {
   std::string_view token;
   takeToken(field, token);
   std::string_view rest;
   if (takeToken(field, rest))
-    throw std::runtime_error("a field has two words; fields are separated by commas");
+    throw std::runtime_error("field " + std::to_string(number) +
+                             " has two words; fields are separated by commas");
   return token;
 }
 
@@ -65,7 +67,7 @@ void splitFields(std::string_view line, Fields& fields) {
   fields.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t end = std::min(line.find(',', begin), line.size());
-    fields.push_back(trimmed(line.substr(begin, end - begin)));
+    fields.push_back(trimmed(line.substr(begin, end - begin), fields.size() + 1));
     begin = end + 1;
   }
 }
@@ -79,12 +81,21 @@ bool isHeader(const Fields& fields) {
   });
 }
 
+/// @brief Whether two names are the same but for the case of their letters.
+bool isSameName(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return std::tolower(static_cast<unsigned char>(c)); };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [&](char c, char d) { return lower(c) == lower(d); });
+}
+
 /// @brief Refuses a header that has one of our names at another place: the columns have
 /// another order.
 void requireOrder(const Fields& header) {
   const Names& names = formOf(header).names();
   for (std::size_t i = 0; i < header.size(); ++i) {
-    const auto found = std::find(names.begin(), names.end(), header[i]);
+    const auto found =
+        std::find_if(names.begin(), names.end(),
+                     [&](std::string_view name) { return isSameName(name, header[i]); });
     if (found == names.end() || found == names.begin() + static_cast<std::ptrdiff_t>(i))
       continue;
     throw std::runtime_error("column " + std::to_string(i + 1) + " is named " +
@@ -97,7 +108,8 @@ void requireOrder(const Fields& header) {
 /// @brief The true first time of contact; nothing if the field is empty.
 std::optional<double> parseToc(std::string_view field, bool truth) {
   if (field.empty()) return std::nullopt;
-  const double toc = nearestDouble(field).value;
+  const double toc =
+      namingPlace([] { return "toc"; }, [&] { return nearestDouble(field).value; });
   if (!truth)
     throw std::runtime_error("there is a time, " + quoted(field) +
                              ", but the truth is 0: no contact");
@@ -107,12 +119,20 @@ std::optional<double> parseToc(std::string_view field, bool truth) {
   return toc;
 }
 
+/// @brief The k-th coordinate of a row.
+NearestDouble parseCoordinate(const RowForm& form, const Fields& fields, std::size_t k) {
+  return namingPlace([&] { return std::string(kDecimals[k]); },
+                     [&] {
+                       return form.isDecimal()
+                                  ? nearestDouble(fields[k])
+                                  : nearestDouble(fields[2 * k], fields[2 * k + 1]);
+                     });
+}
+
 Row parseRow(const RowForm& form, const Fields& fields) {
   Row row;
   for (std::size_t k = 0; k < 3; ++k) {
-    const NearestDouble nearest = form.isDecimal()
-                                      ? nearestDouble(fields[k])
-                                      : nearestDouble(fields[2 * k], fields[2 * k + 1]);
+    const NearestDouble nearest = parseCoordinate(form, fields, k);
     row.position[k] = nearest.value;
     if (!nearest.exact) ++row.num_rounded;
   }
@@ -125,11 +145,10 @@ Row parseRow(const RowForm& form, const Fields& fields) {
   return row;
 }
 
-/// @brief Makes queries from the rows of one file.
+/// @brief Makes queries from the rows of a file.
 class QueryBuilder {
  public:
-  explicit QueryBuilder(QueryList& list)
-      : list_(list), is_first_file_(list.queries.empty()) {}
+  explicit QueryBuilder(QueryList& list) : list_(list) {}
 
   /// @brief Takes the names of the columns.
   void addHeader(const Fields& fields) {
@@ -143,11 +162,7 @@ class QueryBuilder {
       throw std::runtime_error("has " + counted(fields.size(), "field") +
                                "; the lines before have " +
                                std::to_string(form_.num_fields));
-    if (is_first_file_) list_.has_truth = form_.hasTruth();
-    if (form_.hasTruth() != list_.has_truth)
-      throw std::runtime_error(
-          std::string(form_.hasTruth() ? "tells" : "does not tell") +
-          " the truth, unlike the file before. Give it in all files or in none");
+    list_.has_truth = form_.hasTruth();
     add(parseRow(form_, fields));
   }
 
@@ -166,10 +181,11 @@ class QueryBuilder {
       query_.truth = row.truth;
       query_.toc = row.toc;
     }
-    if (row.truth != query_.truth || row.toc != query_.toc)
-      throw std::runtime_error(
-          "differs from the row before in the truth. The eight rows of a query have the "
-          "same");
+    const bool same_truth = row.truth == query_.truth;
+    if (!same_truth || row.toc != query_.toc)
+      throw std::runtime_error(std::string("differs from the row before in the ") +
+                               (same_truth ? "time" : "truth") +
+                               ". The eight rows of a query have the same");
     auto& path = query_.x[point % 4];
     auto& target = point < 4 ? path.t0 : path.t1;
     for (std::size_t k = 0; k < 3; ++k) target[k] = row.position[k];
@@ -179,7 +195,6 @@ class QueryBuilder {
   }
 
   QueryList& list_;
-  bool is_first_file_;
   RowForm form_;
   ElementaryQuery query_;
   std::size_t num_rows_{0};
@@ -208,10 +223,9 @@ void readFile(const std::string& path, QueryList& list) {
 
 }  // namespace
 
-QueryList readQueries(const std::vector<std::string>& paths) {
+QueryList readQueries(const std::string& path) {
   QueryList list;
-  for (const std::string& path : paths)
-    namingPlace([&] { return path; }, [&] { readFile(path, list); });
+  namingPlace([&] { return path; }, [&] { readFile(path, list); });
   return list;
 }
 

@@ -25,14 +25,14 @@ struct QueryList {
   bool has_truth{false};  ///< whether every query tells if its features touch
 };
 
-/// @brief Reads files of elementary queries, eight rows each: the four points at t = 0,
+/// @brief Reads a file of elementary queries, eight rows each: the four points at t = 0,
 /// then at t = 1. A row has the exact coordinates x, y, z, as decimal numbers or each as
 /// two integers of any size, numerator and denominator. Then may come whether the
 /// features touch, 0 or 1, and after it the true first time of contact, which may be
-/// empty (both are the same in all eight rows). All rows of a file have as many fields. A
-/// first line of names is skipped. A coordinate becomes the nearest double.
-/// @throws std::runtime_error that names the file, the line and the cause.
-QueryList readQueries(const std::vector<std::string>& paths);
+/// empty (both are the same in all eight rows). All rows have as many fields. A first
+/// line of names is skipped. A coordinate becomes the nearest double.
+/// @throws std::runtime_error that names the file, the line, the field and the cause.
+QueryList readQueries(const std::string& path);
 
 }  // namespace fcl_ccd
 

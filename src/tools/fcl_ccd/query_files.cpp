@@ -113,7 +113,7 @@ std::vector<QueryFile> listQueryFiles(const std::vector<std::string>& words,
 QuerySet readQuerySet(std::vector<QueryFile> files) {
   QuerySet set;
   for (std::size_t i = 0; i < files.size(); ++i) {
-    QueryList list = readQueries({files[i].path});
+    QueryList list = readQueries(files[i].path);
     if (!files[i].answers.empty()) addAnswers(files[i], list);
     if (i == 0) set.has_truth = list.has_truth;
     if (list.has_truth != set.has_truth)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace fcl_ccd {
 
@@ -27,9 +28,14 @@ QueryErrors compareWithTruth(const QuerySet& set,
     if (answer == Answer::kUnsure) ++errors.uncertain;
     if (!set.has_truth) continue;
     const bool truth = set.queries[k].truth;
+    const std::optional<double>& toc = set.queries[k].toc;
     if (truth) ++errors.num_true;
     if (answer == Answer::kNo && truth) ++errors.false_negatives;
     if (answer == Answer::kYes && !truth) ++errors.false_positives;
+    if (answer != Answer::kYes || !toc) continue;
+    ++errors.num_times;
+    // The bounds are doubles. So the nearest double of a time between them is, too.
+    if (*toc < results[k].toc_lo || *toc > results[k].toc_hi) ++errors.wrong_times;
   }
   return errors;
 }

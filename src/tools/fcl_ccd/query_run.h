@@ -16,12 +16,14 @@ fcl::detail::deformable::ElementaryResult runQuery(const QuerySet& set, std::siz
                                                    double toc_err);
 
 /// @brief How answers differ from the truth. All are 0 but `uncertain` if the set has no
-/// truth.
+/// truth. A time is compared where the features touch and the answer says so.
 struct QueryErrors {
   std::size_t num_true{0};
   std::size_t false_negatives{0};
   std::size_t false_positives{0};
   std::size_t uncertain{0};
+  std::size_t num_times{0};    ///< true times that are compared
+  std::size_t wrong_times{0};  ///< of these, those that are outside of [toc_lo, toc_hi]
 };
 
 /// @param results  of all queries of the set

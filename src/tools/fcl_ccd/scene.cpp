@@ -118,6 +118,14 @@ void setTriangle(std::intptr_t b, std::intptr_t num_triangles,
   out.triangle_kinds[feature] = primitive.kind;
 }
 
+/// Sets the triangles of both features of a contact or candidate of the library.
+template <typename From, typename Body, typename To>
+void setTriangles(const From& pair, const Body& o1, const Body& o2, To& out) {
+  const bool in_order = pair.kind == Kind::kEdgeEdge || pair.first_on_o1;
+  setTriangle(pair.b1, o1.model->num_tris, o1.free, in_order ? 0 : 1, out);
+  setTriangle(pair.b2, o2.model->num_tris, o2.free, in_order ? 1 : 0, out);
+}
+
 /// Sets the vertices of a contact or candidate of the library.
 template <typename From, typename To>
 void setVertices(const From& pair, bool o1_is_b, bool o2_is_b, To& out) {
@@ -249,9 +257,7 @@ void Scene::query(const Body& o1, const Body& o2, StepResult& step) const {
 
   const auto convert = [&](const Contact& contact) {
     SceneContact out = toSceneContact(contact, &o1 == &b_, &o2 == &b_);
-    const bool in_order = contact.kind == Kind::kEdgeEdge || contact.first_on_o1;
-    setTriangle(contact.b1, model1.num_tris, o1.free, in_order ? 0 : 1, out);
-    setTriangle(contact.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
+    setTriangles(contact, o1, o2, out);
     return out;
   };
   if (!settings_.all_crossings && result.initially_crossing)
@@ -276,9 +282,7 @@ void Scene::addCandidates(const Body& o1, const Body& o2,
     for (std::size_t i = 0; i < count; ++i) {
       const fcl::ContinuousCandidate& from = block[i];
       SceneCandidate out = toSceneCandidate(from, &o1 == &b_, &o2 == &b_);
-      const bool in_order = from.kind == Kind::kEdgeEdge || from.first_on_o1;
-      setTriangle(from.b1, model1.num_tris, o1.free, in_order ? 0 : 1, out);
-      setTriangle(from.b2, model2.num_tris, o2.free, in_order ? 1 : 0, out);
+      setTriangles(from, o1, o2, out);
       candidates.push_back(out);
     }
     return true;

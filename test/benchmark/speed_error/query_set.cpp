@@ -96,7 +96,7 @@ QuerySet readHardQueries(const std::string& folder) {
           path / (kind == ContinuousContactKind::kVertexFace ? "vertex-face.csv"
                                                              : "edge-edge.csv");
       if (!fs::exists(file)) continue;
-      const fcl_ccd::QueryList list = fcl_ccd::readQueries({file.string()});
+      const fcl_ccd::QueryList list = fcl_ccd::readQueries(file.string());
       if (!list.has_truth) throw std::runtime_error(file.string() + ": has no truth");
       for (const auto& query : list.queries) {
         set.queries.push_back({kind, query.x});
