@@ -108,8 +108,8 @@ void requireOrder(const Fields& header) {
 /// @brief The true first time of contact; nothing if the field is empty.
 std::optional<double> parseToc(std::string_view field, bool truth) {
   if (field.empty()) return std::nullopt;
-  const double toc =
-      namingPlace([] { return "toc"; }, [&] { return nearestDouble(field).value; });
+  const double toc = namingPlace([] { return std::string("toc"); },
+                                 [&] { return nearestDouble(field).value; });
   if (!truth)
     throw std::runtime_error("there is a time, " + quoted(field) +
                              ", but the truth is 0: no contact");
