@@ -254,7 +254,8 @@ TEST_F(CcdCompare, RefusesListsThatDoNotFit) {
   expectRefused("[[3, 11]]",
                 "entry 0: 11 is not the number of a face: they have 12 to 13");
   expectRefused("[[-1, 12]]", "entry 0: -1 is not the number of a vertex");
-  expectRefused("[[3, -9223372036854775808]]", "is not the number of a face");
+  expectRefused("[[3, -9223372036854775808]]",
+                "entry 0: -9223372036854775808 is not the number of a face");
   writeText(path("t_ee.json"), "[[6, 12]]");
   expectFailure("compare " + kFrames + " --truth t_ee.json",
                 "t_ee.json: entry 0: 12 is not the number of an edge: they have 6 to 11");

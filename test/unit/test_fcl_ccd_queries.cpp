@@ -198,7 +198,7 @@ TEST_F(CcdQueries, DecimalsAndFractionsAreTheSameNumbers) {
 TEST_F(CcdQueries, CountsTimesOutsideOfTheirBrackets) {
   const std::string rows = decimalRows("0", "2", ",1,0.5") +
                            decimalRows("0", "2", ",1,.9") + decimalRows("0", "2", ",1,") +
-                           decimalRows("0", "2", ",1,0.4999") +
+                           decimalRows("0", "2", ",1,0.499999") +
                            decimalRows("50", "2", ",1,0.25");
   writeText(path("q_vf.csv"), rows);
   const Outcome outcome = run("queries q_vf.csv --toc-err 1e-9 --json r.json");
