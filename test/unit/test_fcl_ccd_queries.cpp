@@ -329,6 +329,8 @@ TEST_F(CcdQueries, ResumeFindsTheColumnStep) {
   const Outcome outcome = run("run tip0.obj tip1.obj tip0.obj --resume" + contacts);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(readText(path("c.csv")), whole);
+  EXPECT_NE(outcome.err.find("the summary has the steps from 1 on"), std::string::npos)
+      << outcome.err;
 }
 
 // In natural order: a2 comes before a10.

@@ -247,6 +247,8 @@ TEST_F(CcdReport, PageLoadsNothing) {
         << part;
   EXPECT_EQ(page.rfind("<!DOCTYPE html>", 0), 0u);
   EXPECT_EQ(page.substr(page.size() - 8), "</html>\n");
+  EXPECT_EQ(outputOf("run tip0.obj tip1.obj --report -").rfind("<!DOCTYPE html>", 0), 0u);
+  EXPECT_FALSE(fs::exists(path("-")));
 }
 
 TEST_F(CcdReport, FilesWithMarkupInTheirNamesStayText) {
@@ -335,6 +337,17 @@ TEST_F(CcdReport, ANumberInTheNameIsAFileAStep) {
 }
 
 // Resuming goes back to the step that the picture shows.
+// The file of step 1 would be the first frame. The folder that was made does not stay.
+TEST_F(CcdReport, NoFrameIsOverwrittenByAFileAStep) {
+  fs::create_directories(path("g"));
+  for (const char* name : {"g/f1.ply", "g/f2.ply", "g/f3.ply"})
+    writeText(path(name), toAsciiPly(floorAndTip(0)));
+  expectFailure("run g --paint g/f%d.ply --report new/r",
+                "g/f1.ply: cannot write: it is also given as g/f1.ply");
+  EXPECT_FALSE(fs::exists(path("g/f0.ply")));
+  EXPECT_FALSE(fs::exists(path("new")));
+}
+
 TEST_F(CcdReport, PaintAfterResumeIsThatOfTheWholeRun) {
   writeFrames(12);
   outputOf("run f --paint whole.ply" + kOutputs);

@@ -14,13 +14,15 @@ using Kind = fcl::ContinuousContactKind;
 /// The index of a box among `size` boxes whose numbers begin at `first`.
 std::size_t indexOf(long long box, std::size_t first, std::size_t size,
                     const char* what) {
-  const auto index = box - static_cast<long long>(first);
-  if (index < 0 || index >= static_cast<long long>(size))
+  const auto begin = static_cast<long long>(first),
+             end = begin + static_cast<long long>(size);
+  if (box < begin || box >= end)
     throw std::runtime_error(std::to_string(box) + " is not the number of " + what +
-                             ": they have " + std::to_string(first) + " to " +
-                             std::to_string(first + size - 1) +
+                             (size == 0 ? ": there is none"
+                                        : ": they have " + std::to_string(begin) +
+                                              " to " + std::to_string(end - 1)) +
                              ". Numbers count vertices, then edges, then faces");
-  return static_cast<std::size_t>(index);
+  return static_cast<std::size_t>(box - begin);
 }
 
 }  // namespace

@@ -240,8 +240,12 @@ Image drawSurroundings(const View& whole, const SceneContact& contact,
   const picture::Colour colour = picture::colourFromHex(colourOf(contact.kind)),
                         grey = picture::colourFromHex(kText);
   const picture::Surface near = partAround(region, whole.scene, 1).mesh;
-  for (std::size_t f = 0; f < near.triangles.size(); ++f)
-    addOutline(near, f, {Vec::Zero(), grey, 0.25}, view.dots);
+  // Of more triangles the outlines would be no help, and their dots take gigabytes: near
+  // a free point is the whole scene.
+  constexpr std::size_t kMostOutlines = 2000;
+  if (near.triangles.size() <= kMostOutlines)
+    for (std::size_t f = 0; f < near.triangles.size(); ++f)
+      addOutline(near, f, {Vec::Zero(), grey, 0.25}, view.dots);
   for (const std::size_t feature : {0u, 1u})
     if (const auto f = triangleInScene(contact, feature, triangles))
       addOutline(whole.scene.mesh, *f, {Vec::Zero(), colour, 0.6}, view.dots);
@@ -259,19 +263,19 @@ Image drawWhole(View view, const SceneContact* contact, const Region& all, int w
   return draw(std::move(view), all, Vec(0.6, -0.65, 0.45).normalized(), width, height);
 }
 
-/// Capital letters, which are those that the pictures have.
 void writeCaption(Image& image, const StepMoment& moment, const SceneContact* contact) {
-  const auto line = [&](int row, const std::string& text, std::uint32_t colour) {
+  const auto line = [&](int row, std::string text, std::uint32_t colour) {
+    // Capital letters are those that the pictures have.
+    for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
     picture::drawText(image, text, 16, 16 + 22 * row, 2, picture::colourFromHex(colour));
   };
   line(0, "STEP " + std::to_string(moment.step) + "   T " + numberText(moment.time, 6),
        kText);
   if (contact == nullptr) return line(1, "NO CONTACT", kText);
   std::string text = wordsOf(contact->kind);
-  for (char& c : text) c = static_cast<char>(c >= 'a' && c <= 'z' ? c - 'a' + 'A' : c);
   for (int i = 0; i < contact->num_vertices; ++i) {
     const SceneVertex& vertex = contact->vertices[static_cast<std::size_t>(i)];
-    text += ' ' + std::string(vertex.of_b ? "B" : "") + std::to_string(vertex.id);
+    text += ' ' + nameOf(vertex);
   }
   line(1, text, colourOf(contact->kind));
 }

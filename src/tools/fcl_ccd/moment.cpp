@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "moment.h"
 
+#include "contact_text.h"
+
 namespace fcl_ccd {
 namespace {
 
@@ -47,11 +49,8 @@ std::optional<std::size_t> triangleInScene(const SceneContact& contact,
                                            const SceneTriangles& triangles) {
   if (contact.triangle_kinds[feature] != fcl::PrimitiveKind::kTriangle)
     return std::nullopt;
-  // The first and the last vertex tell the mesh of each feature.
-  const auto last = static_cast<std::size_t>(contact.num_vertices - 1);
-  const bool of_b = contact.vertices[feature * last].of_b;
   return static_cast<std::size_t>(contact.triangles[feature]) +
-         (of_b ? triangles.a->size() : 0);
+         (isOfB(contact, feature) ? triangles.a->size() : 0);
 }
 
 }  // namespace fcl_ccd

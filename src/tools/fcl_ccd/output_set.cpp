@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "output_set.h"
 
+#include <sys/stat.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 #include "write_error.h"
 
@@ -28,6 +33,12 @@ bool isSameFile(const std::string& a, const std::string& b) {
     return fs::is_regular_file(status) && fs::equivalent(a, b, error);
   return fs::weakly_canonical(fs::absolute(a, error), error) ==
          fs::weakly_canonical(fs::absolute(b, error), error);
+}
+
+[[noreturn]] void refuseTaken(const std::string& path, const std::string& taken) {
+  throw std::runtime_error(nameOfOutput(path) + ": cannot write: " +
+                           (isStandardOutput(path) ? "it can take one output only"
+                                                   : "it is also given as " + taken));
 }
 
 }  // namespace
@@ -58,13 +69,27 @@ void OutputSet::reserve(const std::string& path) {
   const auto taken =
       std::find_if(taken_.begin(), taken_.end(),
                    [&](const std::string& other) { return isSameFile(path, other); });
-  if (taken != taken_.end())
-    throw std::runtime_error(nameOfOutput(path) + ": cannot write: " +
-                             (isStandardOutput(path) ? "it can take one output only"
-                                                     : "it is also given as " + *taken));
+  if (taken != taken_.end()) refuseTaken(path, *taken);
   requireWritable(path);
   locks_.push_back(std::make_unique<OutputLock>(path));
   taken_.push_back(path);
+}
+
+void OutputSet::requireNotTaken(const std::vector<std::string>& outputs) const {
+  std::map<std::pair<dev_t, ino_t>, const std::string*> files;
+  const auto idOf = [](const std::string& path) {
+    struct stat found {};
+    const bool is_file = stat(path.c_str(), &found) == 0 && S_ISREG(found.st_mode);
+    return is_file ? std::make_optional(std::make_pair(found.st_dev, found.st_ino))
+                   : std::nullopt;
+  };
+  for (const std::string& path : taken_)
+    if (const auto id = idOf(path)) files.emplace(*id, &path);
+  for (const std::string& path : outputs) {
+    const auto id = idOf(path);
+    const auto found = id ? files.find(*id) : files.end();
+    if (found != files.end()) refuseTaken(path, *found->second);
+  }
 }
 
 const OutputLock& OutputSet::lockOf(const std::string& path) const {

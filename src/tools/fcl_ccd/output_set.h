@@ -35,6 +35,11 @@ class OutputSet {
   /// @throws std::runtime_error for the same reasons as open(); makes or changes no file.
   void reserve(const std::string& path);
 
+  /// @brief Refuses outputs that are files of the set. There may be many: each file is
+  /// looked up once.
+  /// @throws std::runtime_error that names the first one.
+  void requireNotTaken(const std::vector<std::string>& outputs) const;
+
   /// @brief The lock of an output that was reserved.
   const OutputLock& lockOf(const std::string& path) const;
 

@@ -17,7 +17,11 @@ inline double processMemory() {
     return static_cast<double>(pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
+#ifdef __APPLE__
+  constexpr double kUnit = 1;  // bytes
+#else
   constexpr double kUnit = 1024;  // bytes
+#endif
   return static_cast<double>(usage.ru_maxrss) * kUnit / 1e6;
 }
 

@@ -86,6 +86,33 @@ std::string stepsHead(const RunOptions& options, std::size_t num_frames) {
 using StepTaker = std::function<void(std::size_t, const StepRecord&)>;
 using StepSource = std::function<StepOutcome(const StepTaker&)>;
 
+/// @brief A folder of outputs. If it was made and nothing came into it, it does not stay.
+class OutputFolder {
+ public:
+  OutputFolder() = default;
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+  ~OutputFolder() {
+    std::error_code error;
+    // Folders that are not empty are not removed.
+    for (const std::filesystem::path& folder : made_)
+      std::filesystem::remove(folder, error);
+  }
+
+  /// @brief Makes it and those above it; does nothing for an empty path.
+  void make(const std::filesystem::path& path) {
+    std::error_code error;
+    for (std::filesystem::path folder = path;
+         !folder.empty() && !std::filesystem::exists(folder, error);
+         folder = folder.parent_path())
+      made_.push_back(folder);
+    if (!path.empty()) std::filesystem::create_directories(path, error);
+  }
+
+ private:
+  std::vector<std::filesystem::path> made_;  ///< the innermost first
+};
+
 /// @brief What a run needs before its first step.
 struct Preparation {
   Preparation() = default;
@@ -97,7 +124,8 @@ struct Preparation {
   std::optional<RunInputs> inputs;
   std::vector<std::string> notes;
   std::size_t num_listed_steps{0};  ///< also those of frames that are being written
-  // Of the process that writes the outputs.
+  // Of the process that writes the outputs. The folder goes after them.
+  OutputFolder report_folder;
   std::optional<OutputSet> outputs;
   GrowingOutputs growing;
   ResumePoint resume_point;
@@ -173,6 +201,7 @@ class Run {
     progress_.begin(prepared_.numSteps(), num_done_);
     return source([&](std::size_t step, const StepRecord& record) {
       progress_.clear();
+      if (options_.follow) requireNoFrameIsShown(record);
       outputs_.add(record);
       num_done_ = step + 1;
       outputs_.printRow(record);
@@ -212,6 +241,17 @@ class Run {
       }
   }
 
+  /// The same for the files of a step, which are written before the end.
+  void requireNoFrameIsShown(const StepRecord& record) const {
+    for (const auto& [path, bytes] :
+         {std::make_pair(&options_.picture_path, &record.picture),
+          std::make_pair(&options_.paint_path, &record.painted)}) {
+      if (bytes->empty() || !hasNumber(*path)) continue;
+      for (const auto* frames : {&prepared_.paths.a, &prepared_.paths.b})
+        requireNotAmong(*frames, withNumber(*path, record.number));
+    }
+  }
+
   int endAfter(const WriteError& error) {
     progress_.clear();
     outputs_.rollBack();
@@ -243,6 +283,19 @@ std::size_t firstShown(const RunOptions& options, const FramePaths& paths) {
   return steps.empty() ? paths.numbers[0] : *std::min_element(steps.begin(), steps.end());
 }
 
+/// The files of a name with a number, for all steps that it shows.
+std::vector<std::string> shownFiles(const RunOptions& options, const FramePaths& paths,
+                                    const std::string& path) {
+  std::vector<std::string> files;
+  if (!hasNumber(path)) return files;
+  for (const std::size_t number : options.shown.steps)
+    files.push_back(withNumber(path, number));
+  if (!files.empty()) return files;
+  for (std::size_t step = 0; step < paths.numSteps(); ++step)
+    files.push_back(withNumber(path, paths.numbers[step]));
+  return files;
+}
+
 /// Refuses steps that the run does not have.
 void requireShown(const RunOptions& options, const FramePaths& paths) {
   if (options.follow || paths.numSteps() == 0) return;
@@ -263,19 +316,14 @@ void reserveOutputs(const RunOptions& options, Preparation& run) {
   std::vector<std::string> inputs = run.paths.a;
   inputs.insert(inputs.end(), run.paths.b.begin(), run.paths.b.end());
   run.outputs.emplace(std::move(inputs));
-  std::error_code error;
-  const std::string& folder = options.report_folder;
-  const bool is_new =
-      !folder.empty() && std::filesystem::create_directories(folder, error);
-  try {
-    for (const std::string* path : {&options.contacts_path, &options.steps_path,
-                                    &options.json_path, &options.report_path})
-      run.outputs->reserve(*path);
-    for (const std::string* path : {&options.picture_path, &options.paint_path})
-      run.outputs->reserve(withNumber(*path, firstShown(options, run.paths)));
-  } catch (...) {
-    if (is_new) std::filesystem::remove(folder, error);
-    throw;
+  run.report_folder.make(options.report_folder);
+  for (const std::string* path : {&options.contacts_path, &options.steps_path,
+                                  &options.json_path, &options.report_path})
+    run.outputs->reserve(*path);
+  for (const std::string* path : {&options.picture_path, &options.paint_path}) {
+    // Only the first file of many is locked, but none may be a frame.
+    run.outputs->requireNotTaken(shownFiles(options, run.paths, *path));
+    run.outputs->reserve(withNumber(*path, firstShown(options, run.paths)));
   }
 }
 
@@ -336,6 +384,11 @@ void prepareResume(const RunOptions& options, Preparation& run) {
   const std::optional<std::size_t> again = firstToShow(options, run);
   if (again && *again < run.resume_point.step)
     run.resume_point = findResumePoint(run.growing, *again);
+  // Else the first contact of the summary would be taken for that of all steps.
+  if (run.resume_point.step > 0 && options.steps_path.empty())
+    run.notes.push_back("the summary has the steps from " +
+                        std::to_string(paths.numbers[run.resume_point.step]) +
+                        " on. With --steps it has those of before too");
 }
 
 void report(const std::vector<std::string>& notes) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh_io.h"
+#include "output_file.h"
 
 namespace fcl_ccd {
 namespace {
@@ -104,7 +105,8 @@ void addShowOptions(CLI::App& run, RunOptions& options) {
 }
 
 void expandReport(RunOptions& options) {
-  if (!options.report_path.empty() && extensionOf(options.report_path) != "html") {
+  if (!options.report_path.empty() && !isStandardOutput(options.report_path) &&
+      extensionOf(options.report_path) != "html") {
     const std::filesystem::path folder = options.report_path;
     options.report_folder = folder.string();
     options.report_path = (folder / "report.html").string();
