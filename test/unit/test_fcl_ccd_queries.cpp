@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "ccd_json.h"
 #include "ccd_tool.h"
 #include "csv_rows.h"
 #include "shared_data.h"
@@ -23,16 +24,7 @@ namespace {
 using namespace fcl::test;
 using Json = nlohmann::json;
 
-class CcdQueries : public fcl::test::CcdToolTest {
- protected:
-  Json json(const std::string& name) const { return Json::parse(readText(path(name))); }
-};
-
-std::set<std::string> keysOf(const Json& object) {
-  std::set<std::string> keys;
-  for (const auto& item : object.items()) keys.insert(item.key());
-  return keys;
-}
+class CcdQueries : public fcl::test::CcdJsonTest {};
 
 /// @brief One query in the format of the CSV files: points x denominators `den`.
 std::string queryRows(const std::vector<std::array<int, 3>>& points, const char* den,

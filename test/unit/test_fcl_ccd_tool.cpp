@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "ccd_json.h"
 #include "ccd_tool.h"
 #include "csv_rows.h"
 #include "mesh_files.h"
@@ -29,16 +30,7 @@ namespace {
 using namespace fcl::test;
 using Json = nlohmann::json;
 
-class CcdTool : public fcl::test::CcdToolTest {
- protected:
-  Json json(const std::string& name) const { return Json::parse(readText(path(name))); }
-};
-
-std::set<std::string> keysOf(const Json& object) {
-  std::set<std::string> keys;
-  for (const auto& item : object.items()) keys.insert(item.key());
-  return keys;
-}
+class CcdTool : public fcl::test::CcdJsonTest {};
 
 /// @brief Coordinates that need all 17 digits.
 Mesh unevenMesh() {
