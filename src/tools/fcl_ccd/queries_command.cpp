@@ -141,6 +141,7 @@ std::vector<std::string> answerColumns() { return namesOf(kAnswerColumns); }
 void queriesCommand(const QueriesOptions& options) {
   const std::vector<QueryFile> files = listQueryFiles(options.files, options.kind);
   std::vector<std::string> inputs;
+  inputs.reserve(files.size());
   for (const QueryFile& file : files) inputs.push_back(file.path);
   OutputSet outputs(inputs);
   OutputFile* const json_file = outputs.open(options.json_path);
