@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // A robot arm of two meshes and a capsule, a soft pad and a sensor map: first contact of
-// all, with the pair named. Links touch in joints: their group does not meet itself.
+// all, with the pair named. The joints turn at constant speed, and the links follow their
+// exact paths. Links touch in joints: their group does not meet itself.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -11,7 +12,7 @@
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
 #include <fcl/geometry/geometric_shape_to_BVH_model.h>
 #include <fcl/geometry/octree/octree.h>
-#include <fcl/math/motion/screw_motion.h>
+#include <fcl/math/motion/joint_chain.h>
 #include <fcl/math/motion/translation_motion.h>
 
 using namespace fcl;
@@ -41,24 +42,22 @@ Geometry makeMap() {
   return std::make_shared<OcTreed>(map);
 }
 
-/// Each joint turns by 0.5 radians. The geometry has the pose in the frame of its link.
-std::shared_ptr<MotionBased> linkMotion(int link, const Transform3d& pose) {
-  const AngleAxisd turn(.5, Vector3d::UnitZ());
-  Transform3d from = Translation3d(link, 0, 0) * pose, to(turn);
-  for (int k = 0; k < link; ++k) to = to * Translation3d(1, 0, 0) * turn;
-  return std::make_shared<ScrewMotion<double>>(from, to * pose);
-}
-
 int main() {
   const Transform3d here(Translation3d(0, 0, 0)), along_x(Translation3d(.5, 0, 0));
+  // Three joints, one at the end of each link before it, as in a URDF.
+  JointChain chain;
+  for (int i = 0; i < 3; ++i)
+    chain.addRevolute(Transform3d(Translation3d(i > 0, 0, 0)), Vector3d::UnitZ());
+  const AngleAxisd z_to_x(std::acos(0.), Vector3d::UnitY());
+  const int along_link = chain.addFixed(along_x * z_to_x);  // the frame of the capsule
+  const ChainMotion arm_motion(chain, {0, 0, 0}, {.5, .5, .5});
   const auto link = std::make_shared<BVHModel<OBBRSSd>>();
   generateBVHModel(*link, Boxd(1, .2, .2), along_x);
-  const AngleAxisd z_to_x(std::acos(0.), Vector3d::UnitY());
   const auto rest = std::make_shared<TranslationMotion<double>>(here, here);
   const auto capsule = std::make_shared<Capsuled>(.1, .8);
-  ContinuousCollisionObjectd objects[] = {{link, linkMotion(0, here)},
-                                          {link, linkMotion(1, here)},
-                                          {capsule, linkMotion(2, along_x * z_to_x)},
+  ContinuousCollisionObjectd objects[] = {{link, arm_motion.link(0)},
+                                          {link, arm_motion.link(1)},
+                                          {capsule, arm_motion.link(along_link)},
                                           {makePad(), rest},
                                           {makeMap(), rest}};
   const char* names[] = {"link 1", "link 2", "link 3", "pad", "map"};

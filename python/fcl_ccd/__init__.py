@@ -20,8 +20,8 @@ is late.
 
 Meshes: DeformableMesh, RigidMesh; weld_vertices() for triangle soup. Shapes: Box, Sphere,
 Capsule, Ellipsoid, Cone, Cylinder, Convex, Plane, Halfspace, TriangleP. Maps of occupied
-cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, SplineMotion, and your
-own as a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a
+cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, SplineMotion, the links of
+a robot (JointChain, ChainMotion), and your own as a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a
 Result. Many objects: CollisionManager. With min_distance features are in contact at a
 distance. For your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(),
 vertex_edge() and vertex_vertex() on arrays.
@@ -34,6 +34,7 @@ RuntimeError for an update of a mesh while a query of it runs.
 """
 
 from . import _requirements  # isort: skip - it says what is missing for the rest
+from ._chains import ChainMotion, JointChain, LinkMotion, urdf_origin
 from ._core import version as __version__
 from ._dataframes import to_dataframe
 from ._manager import CollisionManager, ManagerResult, Pair
@@ -71,6 +72,7 @@ __all__ = [
     "BoundedMotion",
     "Box",
     "Capsule",
+    "ChainMotion",
     "CollisionManager",
     "Cone",
     "Convex",
@@ -79,8 +81,10 @@ __all__ = [
     "Ellipsoid",
     "Filter",
     "Halfspace",
+    "JointChain",
     "Kind",
     "LinearMotion",
+    "LinkMotion",
     "ManagerResult",
     "Motion",
     "OcTree",
@@ -102,6 +106,7 @@ __all__ = [
     "self_candidates",
     "self_collide",
     "to_dataframe",
+    "urdf_origin",
     "vertex_edge",
     "vertex_face",
     "vertex_vertex",

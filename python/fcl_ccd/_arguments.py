@@ -208,6 +208,14 @@ def feature_points(values: ArrayLike, name: str, num_points: int) -> NDArray[np.
     return _array(values, name, "f", (None, num_points, 3))
 
 
+def list_of_numbers(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    """Any count of finite numbers."""
+    array = _array(values, name, "f", (None,))
+    if not np.isfinite(array).all():
+        raise ValueError(f"{name} has a number that is not finite")
+    return array
+
+
 def numbers(values: ArrayLike, name: str, *shape: int) -> NDArray[np.float64]:
     array = _array(values, name, "f", shape)
     if not np.isfinite(array).all():

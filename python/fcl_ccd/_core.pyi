@@ -196,6 +196,33 @@ class Motion(_Made):
         acceleration: Callable[[Tuple[float, float, float], float, float, float], float],
         angular_speed: Callable[[float, float], float],
     ) -> Motion: ...
+    @staticmethod
+    def link(motion: ChainMotion, number: int) -> Motion: ...
+
+class JointChain(_Made):
+    def __init__(self) -> None: ...
+    def add(
+        self, kind: str, origin: NDArray[np.float64], axis: NDArray[np.float64], parent: int
+    ) -> int: ...
+    def num_links(self) -> int: ...
+    def num_values(self) -> int: ...
+
+class ChainMotion(_Made):
+    @staticmethod
+    def linear(
+        chain: JointChain,
+        begin: NDArray[np.float64],
+        end: NDArray[np.float64],
+        base: NDArray[np.float64],
+    ) -> ChainMotion: ...
+    @staticmethod
+    def polynomial(
+        chain: JointChain, values: Sequence[Sequence[float]], base: NDArray[np.float64]
+    ) -> ChainMotion: ...
+
+def urdf_origin(
+    xyz: NDArray[np.float64], rpy: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
 
 class Filter(metaclass=_Class):
     def __init__(

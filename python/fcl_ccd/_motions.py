@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class Motion(_arguments.Built):
-    """The path of an object during a step: Linear-, Screw-, Spline- or BoundedMotion."""
+    """The path of an object during a step: Linear-, Screw-, Spline-, Link- or BoundedMotion."""
 
     _path: _core.Motion
     _made_by: Tuple[str, Tuple[Any, ...]]
@@ -161,6 +161,7 @@ _MAKERS: Dict[str, Callable[..., _core.Motion]] = {
     "screw": _core.Motion.screw,
     "spline": _core.Motion.spline,
     "bounded": _bounded,
+    "link": lambda motion, number: _core.Motion.link(motion._motion, number),
 }
 
 
@@ -176,8 +177,8 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
     if isinstance(motion, Motion):
         return motion._path
     wanted = (
-        "a pose of shape (4, 4), a pair of poses, or a LinearMotion, ScrewMotion, SplineMotion or "
-        "BoundedMotion"
+        "a pose of shape (4, 4), a pair of poses, or a LinearMotion, ScrewMotion, SplineMotion, "
+        "LinkMotion or BoundedMotion"
     )
     try:
         poses = np.asarray(motion)

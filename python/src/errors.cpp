@@ -37,7 +37,9 @@ constexpr Words kWords[] = {
     {"BoundedMotion::", ""},
     {"accelerationBound()", "acceleration_bound()"},
     {"angularSpeedBound()", "angular_speed_bound()"},
+    {"moreRounding()", "its rounding"},
     {"placementAt()", "pose()"},
+    {"JointChain::kBase or JointChain::kLast", "-1 for the base"},
     {"rateAt()", "rate()"},
     // Classes.
     {"a BVHModel or a DeformableBVHModel with triangles",

@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "motions.h"
 
+#include <pybind11/stl.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "classes.h"
 #include "fcl/math/motion/interp_motion.h"
+#include "fcl/math/motion/joint_chain.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
 #include "geometry.h"
@@ -134,22 +138,31 @@ Motion spline(const Doubles& translation, const Doubles& rotation) {
   return out;
 }
 
-Motion bounded(const py::function& pose, const py::function& rate,
-               const py::function& acceleration, const py::function& angular_speed) {
+/// @tparam Bounded  a BoundedMotion too
+template <typename Bounded>
+Motion following(const std::shared_ptr<Bounded>& bounded) {
   Motion motion{};
-  motion.own = std::make_shared<PythonMotion>(pose, rate, acceleration, angular_speed);
-  motion.functions = py::make_tuple(pose, rate, acceleration, angular_speed);
+  motion.bounded = bounded;
   motion.path.path = PathKind::kBounded;
-  motion.path.motion = motion.own.get();
+  motion.path.motion = bounded.get();
   for (const int end : {0, 1}) {
-    const auto at = motion.own->placementAt(end);
+    const auto at = bounded->placementAt(end);
     std::copy_n(at.rotation, 9, motion.path.pose[end].rotation);
     std::copy_n(at.translation, 3, motion.path.pose[end].translation);
   }
+  return motion;
+}
+
+Motion bounded(const py::function& pose, const py::function& rate,
+               const py::function& acceleration, const py::function& angular_speed) {
+  const auto own =
+      std::make_shared<PythonMotion>(pose, rate, acceleration, angular_speed);
+  Motion motion = following(own);
+  motion.functions = py::make_tuple(pose, rate, acceleration, angular_speed);
   // Wrong functions are found here as far as this is possible, not in a query.
-  for (const double t : {0., 1.}) motion.own->rateAt(t);
-  motion.own->accelerationBound({0, 0, 0}, 1, 0, 1);
-  motion.own->angularSpeedBound(0, 1);
+  for (const double t : {0., 1.}) own->rateAt(t);
+  own->accelerationBound({0, 0, 0}, 1, 0, 1);
+  own->angularSpeedBound(0, 1);
   return motion;
 }
 
@@ -157,6 +170,46 @@ Motion bounded(const py::function& pose, const py::function& rate,
 py::array poseAt(const Motion& motion, const Geometry& o, double t) {
   const Geometry::Reading reading(o);
   return toArray(fcl::detail::poseAt(motion.of(o.geometry()), t));
+}
+
+fcl::Transform3d toTransform(const Doubles& matrix, const char* name) {
+  requireSize(matrix, 16, name);
+  return fcl::detail::toTransform(toPose(matrix.data(), name));
+}
+
+Vector3d toVector(const Doubles& numbers, const char* name) {
+  requireSize(numbers, 3, name);
+  return Vector3d(numbers.data());
+}
+
+int addJoint(fcl::JointChain& chain, const std::string& kind, const Doubles& origin,
+             const Doubles& axis, int parent) {
+  const fcl::Transform3d tf = toTransform(origin, "origin");
+  const Vector3d about = toVector(axis, "axis");
+  if (kind == "revolute") return chain.addRevolute(tf, about, parent);
+  if (kind == "prismatic") return chain.addPrismatic(tf, about, parent);
+  return chain.addFixed(tf, parent);
+}
+
+fcl::ChainMotion linearValues(const fcl::JointChain& chain,
+                              const std::vector<double>& begin,
+                              const std::vector<double>& end, const Doubles& base) {
+  return fcl::ChainMotion(chain, begin, end, toTransform(base, "base"));
+}
+
+fcl::ChainMotion polynomials(const fcl::JointChain& chain,
+                             const std::vector<std::vector<double>>& values,
+                             const Doubles& base) {
+  return fcl::ChainMotion::polynomial(chain, values, toTransform(base, "base"));
+}
+
+Motion linkOf(const fcl::ChainMotion& motion, int number) {
+  return following(motion.link(number));
+}
+
+py::array urdfOrigin(const Doubles& xyz, const Doubles& rpy) {
+  return toArray(fcl::detail::toNumbers(
+      fcl::urdfOrigin(toVector(xyz, "xyz"), toVector(rpy, "rpy"))));
 }
 
 fcl::BoundedMotion::Placement toPlacement(const PoseNumbers<double>& parts) {
@@ -218,7 +271,7 @@ void PythonMotion::getTaylorModel(fcl::TMatrix3<double>&, fcl::TVector3<double>&
 
 std::shared_ptr<fcl::MotionBase<double>> toFclMotion(const Motion& motion, bool deforms) {
   const auto& path = motion.path;
-  if (motion.own) return motion.own;
+  if (motion.bounded) return motion.bounded;
   if (path.path == PathKind::kSpline) {
     const auto at = [&](int of, int i) { return Vector3d(path.control[of][i]); };
     return std::make_shared<fcl::SplineMotion<double>>(
@@ -259,7 +312,17 @@ void bindMotions(py::module_& module) {
       .def_static("turn", &turn)
       .def_static("screw", &screw)
       .def_static("spline", &spline)
-      .def_static("bounded", &bounded);
+      .def_static("bounded", &bounded)
+      .def_static("link", &linkOf);
+  Class<fcl::JointChain>(module, "JointChain")
+      .defInit<>()
+      .def("add", &addJoint)
+      .def("num_links", &fcl::JointChain::numLinks)
+      .def("num_values", &fcl::JointChain::numValues);
+  Class<fcl::ChainMotion>(module, "ChainMotion")
+      .def_static("linear", &linearValues)
+      .def_static("polynomial", &polynomials);
+  module.def("urdf_origin", &urdfOrigin);
 }
 
 }  // namespace python

@@ -48,8 +48,9 @@ class PythonMotion : public fcl::MotionBase<double>, public fcl::BoundedMotion {
 /// A path without the object that follows it.
 struct Motion {
   fcl::detail::MovingGeometry<double> path;
-  /// If the path is one of Python: the motion, and the tuple of its functions.
-  std::shared_ptr<PythonMotion> own;
+  /// If the path is a BoundedMotion: the motion. If it is one of Python: the tuple of its
+  /// functions.
+  std::shared_ptr<fcl::MotionBase<double>> bounded;
   py::object functions;
 
   fcl::detail::MovingGeometry<double> of(

@@ -31,6 +31,7 @@
 #include <fcl/math/bv/OBBRSS.h>
 #include <fcl/math/motion/bounded_motion.h>
 #include <fcl/math/motion/interp_motion.h>
+#include <fcl/math/motion/joint_chain.h>
 #include <fcl/math/motion/screw_motion.h>
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
@@ -250,8 +251,39 @@ class Swing : public fcl::MotionBased, public fcl::BoundedMotion {
   double a_, b_;
 };
 
+/// The joints with their values, the base, and the link.
+std::unique_ptr<fcl::MotionBased> readLink(bool is_linear) {
+  fcl::JointChain chain;
+  const int count = readInt();
+  for (int i = 0; i < count; ++i) {
+    const std::string kind = readWord();
+    const Transform3d origin = readPose();
+    const Vector3d axis = readVector();
+    const int parent = readInt();
+    if (kind == "revolute") chain.addRevolute(origin, axis, parent);
+    if (kind == "prismatic") chain.addPrismatic(origin, axis, parent);
+    if (kind == "fixed") chain.addFixed(origin, parent);
+  }
+  std::vector<std::vector<double>> values(static_cast<std::size_t>(chain.numValues()));
+  for (auto& of : values) {
+    of.resize(static_cast<std::size_t>(readInt()));
+    for (double& x : of) x = readNumber();
+  }
+  const Transform3d base = readPose();
+  std::vector<double> begin, end;
+  if (is_linear)
+    for (const auto& of : values) {
+      begin.push_back(of[0]);
+      end.push_back(of[1]);
+    }
+  const auto motion = is_linear ? fcl::ChainMotion(chain, begin, end, base)
+                                : fcl::ChainMotion::polynomial(chain, values, base);
+  return std::make_unique<fcl::LinkMotion<double>>(motion, readInt());
+}
+
 std::unique_ptr<fcl::MotionBased> readMotion() {
   const std::string kind = readWord();
+  if (kind == "link" || kind == "polynomial") return readLink(kind == "link");
   if (kind == "swing") {
     const double a = readNumber();
     return std::make_unique<Swing>(a, readNumber());

@@ -166,7 +166,17 @@ def no_speed(t0, t1):
     return 0
 
 
+def robot():
+    chain = fcl_ccd.JointChain()
+    chain.add_prismatic(fcl_ccd.urdf_origin((0.5, 0.5, 1)), (0, 0, 1))
+    chain.add_revolute(fcl_ccd.urdf_origin(rpy=(0.1, 0.2, 0.3)), (0, 0, 1))
+    chain.add_fixed(parent=1)
+    return chain
+
+
 MOTIONS = {
+    "LinkMotion": fcl_ccd.ChainMotion(robot(), [0, 1], [-2, 2]).link(2),
+    "polynomial": fcl_ccd.ChainMotion.polynomial(robot(), [[0, 0, -2], [1]], np.eye(4)).link(1),
     "LinearMotion": fcl_ccd.LinearMotion(*FALLS, (0.1, 0.2, 0.3)),
     "ScrewMotion": fcl_ccd.ScrewMotion(*FALLS),
     "SplineMotion": fcl_ccd.SplineMotion(
@@ -183,6 +193,26 @@ def test_motions(of):
     assert expected
     for same in copies(of):
         require_same(fcl_ccd.collide(mesh, ball, None, same, query="first"), expected)
+
+
+def test_chains():
+    """Also those that are changed later, and classes of the user."""
+
+    class Robot(fcl_ccd.JointChain):
+        pass
+
+    of = Robot()
+    of.add_revolute(fcl_ccd.urdf_origin((1, 2, 3), (0.1, 0.2, 0.3)), (1, 2, 3))
+    of.name = "robot"
+    same = copy.copy(of)
+    of.add_prismatic()
+    assert (same.num_links, same.num_values, same.name) == (1, 1, "robot")
+    assert type(same) is Robot and repr(same) == "JointChain(1 links, 1 values)"
+    motion = fcl_ccd.ChainMotion(robot(), [0, 1], [-2, 2])
+    mesh, ball = GEOMETRIES["at_rest"], GEOMETRIES["TriangleP"]
+    expected = fcl_ccd.collide(mesh, ball, None, motion.link(1), query="first")
+    for again in (copy.copy(motion), copy.deepcopy(motion), pickle.loads(pickle.dumps(motion))):
+        require_same(fcl_ccd.collide(mesh, ball, None, again.link(1), query="first"), expected)
 
 
 def test_motions_do_not_keep_the_arrays():

@@ -16,6 +16,9 @@ MANAGER = fcl_ccd.CollisionManager()
 MANAGER.register("ball", BALL)
 T0 = {points: np.zeros((1, points, 3)) for points in (2, 3, 4)}
 CONTROL = np.zeros((4, 3))
+CHAIN = fcl_ccd.JointChain()
+CHAIN.add_revolute()
+LINKS = fcl_ccd.ChainMotion(CHAIN, [0], [1])
 
 # Calls that are right. Methods are found in their class.
 CALLS = {
@@ -27,6 +30,8 @@ CALLS = {
     ),
     "Box": (1, 2, 3),
     "Capsule": (1, 2),
+    "ChainMotion": (CHAIN, [0], [1]),
+    "ChainMotion.link": (LINKS, 0),
     "CollisionManager": (),
     "CollisionManager.collide": (MANAGER, BALL, EYE),
     "CollisionManager.register": (fcl_ccd.CollisionManager(), "mesh", MESH),
@@ -43,7 +48,12 @@ CALLS = {
     "Ellipsoid": (1, 2, 3),
     "Filter": (),
     "Halfspace": ((0, 0, 1), 1),
+    "JointChain": (),
+    "JointChain.add_fixed": (fcl_ccd.JointChain(),),
+    "JointChain.add_prismatic": (fcl_ccd.JointChain(),),
+    "JointChain.add_revolute": (fcl_ccd.JointChain(),),
     "LinearMotion": (EYE, EYE),
+    "LinkMotion": (LINKS, 0),
     "OcTree": (VERTICES, 0.1),
     "OcTree.cells": (OCTREE, [0]),
     "Plane": ((0, 0, 1), 1),
@@ -57,6 +67,7 @@ CALLS = {
     "edge_edge": (T0[4], T0[4]),
     "self_candidates": (MESH,),
     "self_collide": (MESH,),
+    "urdf_origin": (),
     "vertex_edge": (T0[3], T0[3]),
     "vertex_face": (T0[4], T0[4]),
     "vertex_vertex": (T0[2], T0[2]),

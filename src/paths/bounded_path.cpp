@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Rounding (u = 2^-53) of a motion of the program: an entry of the rotation within 64 u,
-// the translation within 16 u of its size, the velocity within 128 u. This is the
-// contract of BoundedMotion.
+// the translation within 16 u of its size, the velocity within 128 u, and what the motion
+// says in moreRounding(). This is the contract of BoundedMotion.
 #include "paths/motion_path.h"
 
 #include <algorithm>
@@ -37,6 +37,14 @@ double checked(double bound, const char* function, const char* name) {
                 " gives a number that is negative or not finite. Correct the function");
 }
 
+BoundedMotion::Rounding checkedRounding(const BoundedMotion& motion, const char* name) {
+  const BoundedMotion::Rounding more = motion.moreRounding();
+  for (const double x :
+       {more.rotation, more.rotation_rate, more.translation, more.translation_rate})
+    checked(x, "moreRounding()", name);
+  return more;
+}
+
 double checkedAcceleration(const BoundedMotion& motion, const char* name,
                            const Vec& center, double radius, double t0, double t1) {
   const double point[3] = {center.x, center.y, center.z};
@@ -56,25 +64,49 @@ double AccelerationBound::ofProgram(const Vec& center, double radius) const {
 }
 
 MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
-  const BoundedMotion::Placement rate = checked(motion.rateAt(0), "rateAt()", name);
   MotionPath path;
   path.kind_ = Kind::kBounded;
   path.motion_ = &motion;
   path.name_ = name;
   path.stretch_ = 1 + 0x1p-39;
   path.turn_speed_ = checkedAngularSpeed(motion, name, 0, 1);
-  path.translation_speed_ = (norm(vecOf(rate.translation)) +
-                             checkedAcceleration(motion, name, {0, 0, 0}, 0, 0, 1)) *
-                            kUpward;
   path.rotation_error_ = 64;
+  path.more_rounding_ = checkedRounding(motion, name);
+  path.setBoundedSpeed();
   path.setBoundedSize();
   return path;
 }
 
+// From the beginning, |T'| grows by the acceleration at most. For turns of more than 8
+// radians this is far from what is reached. There it is bounded in spans of about a
+// radian, from the middle of each.
+void MotionPath::setBoundedSpeed() {
+  constexpr double kManyRadians = 8, kMostSpans = 64;
+  const auto acceleration = [this](double t0, double t1) {
+    return checkedAcceleration(*motion_, name_, {0, 0, 0}, 0, t0, t1);
+  };
+  const Vec begin = vecOf(boundedPose(0).translation);
+  if (turn_speed_ <= kManyRadians) {
+    translation_speed_ =
+        (norm(boundedRate(0).translation) + acceleration(0, 1)) * kUpward;
+    extent_ = translation_speed_;
+    return;
+  }
+  const double num_spans = std::min(std::ceil(turn_speed_), kMostSpans),
+               half = 0.5 / num_spans;
+  for (double i = 0; i < num_spans; ++i) {
+    const double t0 = i / num_spans, t1 = (i + 1) / num_spans, middle = t0 + half,
+                 speed = norm(boundedRate(middle).translation),
+                 bend = half * acceleration(t0, t1);
+    const Vec way = vecOf(boundedPose(middle).translation) - begin;
+    translation_speed_ = std::max(translation_speed_, (speed + bend) * kUpward);
+    extent_ = std::max(extent_, (norm(way) + half * speed + 0.5 * half * bend) * kUpward);
+  }
+}
+
 void MotionPath::setBoundedSize() {
   translation_size_ = largest_translation_ =
-      (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + translation_speed_) *
-      kUpward;
+      (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + extent_) * kUpward;
 }
 
 Pose MotionPath::boundedPose(double t) const {

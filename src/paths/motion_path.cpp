@@ -78,15 +78,17 @@ AccelerationBound MotionPath::acceleration(double t0, double t1) const {
 }
 
 double MotionPath::rotationError() const {
-  return (3 * rotation_error_ + 13) * stretch_ * kUnit;
+  return (3 * rotation_error_ + 13) * stretch_ * kUnit + more_rounding_.rotation;
 }
 
 double MotionPath::positionError(double radius) const {
-  return rotationError() * radius + 35 * translation_size_ * kUnit;
+  return rotationError() * radius + 35 * translation_size_ * kUnit +
+         more_rounding_.translation;
 }
 
 double MotionPath::rateError(double radius) const {
-  return (80 + 4 * (rotation_error_ - 24)) * kUnit * speed(radius);
+  return (80 + 4 * (rotation_error_ - 24)) * kUnit * speed(radius) +
+         more_rounding_.rotation_rate * radius + more_rounding_.translation_rate;
 }
 
 }  // namespace deformable

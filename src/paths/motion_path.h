@@ -193,6 +193,7 @@ class MotionPath {
   Pose splinePose(double t) const;
   PoseRate splineRate(double t) const;
   AccelerationBound splineAcceleration(double t0, double t1) const;
+  void setBoundedSpeed();
   void setBoundedSize();
   Pose boundedPose(double t) const;
   PoseRate boundedRate(double t) const;
@@ -210,6 +211,9 @@ class MotionPath {
   // Members of a motion of the program.
   const BoundedMotion* motion_{nullptr};
   double origin_[3]{};
+  BoundedMotion::Rounding more_rounding_{};
+  /// Bound on |T(t) - T(0)|.
+  double extent_{0};
 
   double stretch_{1};
   double largest_translation_{0};

@@ -18,6 +18,14 @@ inline double frobenius(const double (&m)[9]) {
   return std::sqrt(sum);
 }
 
+/// out = x y. For rotations each entry rounds by 3 u, the product by 9 u (Frobenius).
+inline void multiply(const double (&x)[9], const double (&y)[9], double (&out)[9]) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      out[3 * i + j] =
+          x[3 * i] * y[j] + x[3 * i + 1] * y[3 + j] + x[3 * i + 2] * y[6 + j];
+}
+
 /// Columns of [a] m.
 inline void crossColumns(const Vec& a, const double (&m)[9], double (&out)[9]) {
   for (int j = 0; j < 3; ++j) {

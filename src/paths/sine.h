@@ -63,6 +63,15 @@ inline SineCosine sineCosine(double x) {
   }
 }
 
+/// @brief The sine, and 1 - cosine in place of the cosine, which is within 8.2 u. Below 1
+/// it is computed from half of the angle: within 11 u of itself.
+inline SineCosine sineAndOneMinusCosine(double x) {
+  const SineCosine at = sineCosine(x);
+  if (std::abs(x) >= 1) return {at.sine, 1 - at.cosine};
+  const double half = sineCosine(0.5 * x).sine;
+  return {at.sine, 2 * half * half};
+}
+
 /// @brief The angle in [0, pi / 2] of a unit vector (cosine, sine), both not negative, to
 /// a few u. The first estimate is within 0.005. Then Newton's method of third order is
 /// applied twice: 2e-8, 1e-24.

@@ -87,13 +87,6 @@ double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
   return 2 * angleOf(q[3] / whole, length / whole);
 }
 
-SineCosine sineAndOneMinusCosine(double x) {
-  const SineCosine at = sineCosine(x);
-  if (x >= 1) return {at.sine, 1 - at.cosine};
-  const double half = sineCosine(0.5 * x).sine;
-  return {at.sine, 2 * half * half};
-}
-
 }  // namespace
 
 MotionPath MotionPath::still(const Pose& pose) {

@@ -296,6 +296,30 @@ TEST_F(BoundedMotions, BoundBallsAlongALine) {
   }
 }
 
+/// A pendulum that says that it rounds more.
+class Rough : public Pendulum {
+ public:
+  using Pendulum::Pendulum;
+  Rounding moreRounding() const override { return {1e-9, 1e-9, 1e-8, 1e-8}; }
+};
+
+TEST_F(BoundedMotions, HaveTheToleranceOfTheirRounding) {
+  using detail::deformable::MotionPath;
+  const Pendulum fine(1, 1, 0);
+  const Rough rough(1, 1, 0);
+  const MotionPath x = MotionPath::bounded(fine), y = MotionPath::bounded(rough);
+  EXPECT_NEAR(y.positionError(2) - x.positionError(2), 1.2e-8, 1e-20);
+  EXPECT_NEAR(y.rateError(2) - x.rateError(2), 1.2e-8, 1e-20);
+  EXPECT_NEAR(y.rotationError() - x.rotationError(), 1e-9, 1e-20);
+  // It touches a little earlier, and never later.
+  const auto plate = makeModel<Rigid>(makePlate(0.5));
+  ContinuousContactResult<double> exact, early;
+  collide<ContinuousContactRequest<double>>(*bar_, fine, *plate, exact);
+  collide<ContinuousContactRequest<double>>(*bar_, rough, *plate, early);
+  EXPECT_LE(early.time_of_contact, exact.time_of_contact);
+  EXPECT_NEAR(early.time_of_contact, exact.time_of_contact, 1e-6);
+}
+
 TEST_F(BoundedMotions, ReachShapes) {
   const Pendulum pendulum(1, 1, 0);
   const Sphere<double> sphere(0.5);
@@ -312,7 +336,7 @@ TEST_F(BoundedMotions, ReachShapes) {
 /// Says one thing that is wrong.
 class Wrong : public Pendulum {
  public:
-  enum class What { kPlacement, kLater, kRate, kAcceleration, kSpeed, kThrow };
+  enum class What { kPlacement, kLater, kRate, kAcceleration, kSpeed, kRounding, kThrow };
   explicit Wrong(What what) : Pendulum(1, 1, 0), what_(what) {}
   Placement placementAt(double t) const override {
     Placement at = Pendulum::placementAt(t);
@@ -335,6 +359,9 @@ class Wrong : public Pendulum {
   double angularSpeedBound(double t0, double t1) const override {
     return what_ == What::kSpeed ? HUGE_VAL : Pendulum::angularSpeedBound(t0, t1);
   }
+  Rounding moreRounding() const override {
+    return {0, 0, what_ == What::kRounding ? std::nan("") : 0, 0};
+  }
 
  private:
   What what_;
@@ -353,6 +380,8 @@ TEST_F(BoundedMotions, RefuseWhatIsNoNumber) {
                 "o1: BoundedMotion::accelerationBound()");
   expectRefused([&] { ask(Wrong::What::kSpeed); },
                 "o1: BoundedMotion::angularSpeedBound()");
+  expectRefused([&] { ask(Wrong::What::kRounding); },
+                "o1: BoundedMotion::moreRounding()");
   EXPECT_THROW(ask(Wrong::What::kThrow), std::runtime_error);
 }
 

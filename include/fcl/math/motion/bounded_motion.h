@@ -15,9 +15,10 @@ namespace fcl {
 /// t runs from 0 to 1. A point x of the body is at p(t) = R(t) x + T(t). The true path is
 /// a smooth one for which the bounds hold and from which placementAt() and rateAt()
 /// differ by rounding only: by at most 2^-47 in an entry of R, 2^-49 of the largest |T|
-/// in T, and 2^-46 of the speed of a point in its velocity. R is a rotation up to 2^-40.
-/// If a bound is too small, contacts may be missed. If it is too large, queries are
-/// slower.
+/// in T, and 2^-46 of the speed of a point in its velocity. A motion that rounds more,
+/// such as a product of many rotations, says so in moreRounding(). R is a rotation up to
+/// 2^-40. If a bound is too small, contacts may be missed. If it is too large, queries
+/// are slower.
 ///
 /// Queries know a BoundedMotion by its RTTI, so it does not compile with -fno-rtti.
 ///
@@ -29,6 +30,15 @@ class BoundedMotion {
   struct Placement {
     double rotation[9];
     double translation[3];
+  };
+
+  /// @brief Rounding beyond that of the contract: bounds on the errors of R(t) x and of
+  /// R'(t) x for |x| = 1, and of T(t) and T'(t), for t in [0, 1].
+  struct Rounding {
+    double rotation;
+    double rotation_rate;
+    double translation;
+    double translation_rate;
   };
 
 #if !defined(__GXX_RTTI) && !defined(__cpp_rtti)
@@ -51,6 +61,10 @@ class BoundedMotion {
   /// @brief Bound on the angular velocity during [t0, t1], in radians a step: |R'(t) x|
   /// is at most this times |x|. At least 0, finite.
   virtual double angularSpeedBound(double t0, double t1) const = 0;
+
+  /// @brief Rounding of placementAt() and rateAt() that the contract does not cover; each
+  /// at least 0, finite. The tolerance of a query grows with it.
+  virtual Rounding moreRounding() const { return {0, 0, 0, 0}; }
 };
 
 }  // namespace fcl

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Rounding (u = 2^-53), in spectral norms. The axis is within 3 u, entries of B [a]
+// within 3 u, B [a] within 12 u, B [a]^2 within 24 u. With sin and 1 - cos, at most 1 and
+// 2 and within 4 and 8.2 u, and the sum of three terms of sizes 1, 1 and 2, the matrix of
+// a joint is within 12 + 48 + 4 + 8.2 + 27 u of the turn by the computed angle. The
+// product with the rotation before it adds 9 u: below 128 u and the error of the angle.
+#include "paths/chain_path.h"
+
+#include <atomic>
+#include <string>
+#include <utility>
+
+#include "base/error.h"
+#include "base/slot_cache.h"
+#include "paths/path_matrix.h"
+#include "paths/posed_vector.h"
+#include "paths/sine.h"
+
+namespace fcl {
+namespace detail {
+namespace deformable {
+namespace {
+
+constexpr double kRoundingOfJoint = 128 * kUnit;
+
+/// A computed polynomial is within this: Horner's rule rounds twice a coefficient, and
+/// the coefficients were rounded once or twice.
+double errorOf(const Polynomial& p) {
+  return (2 * static_cast<double>(p.size()) + 2) * kUnit * sizeOf(p);
+}
+
+void requireValue(const Polynomial& value, bool is_angle, std::size_t joint) {
+  const double size = sizeOf(value);
+  if (std::isfinite(size) && !(is_angle && size > kMostAngle)) return;
+  throwBadInput("the value " + std::to_string(joint) + " of the joints " +
+                (std::isfinite(size) ? "is an angle of more than 2^20 radians. Subtract "
+                                       "whole turns"
+                                     : "is not finite. Correct it"));
+}
+
+std::uint64_t nextNumber() {
+  static std::atomic<std::uint64_t> count{0};
+  return ++count;
+}
+
+/// A path and a time. The number 0 is no path's.
+struct StateKey {
+  std::uint64_t path;
+  double t;
+  bool operator==(const StateKey& other) const {
+    return path == other.path && t == other.t;
+  }
+};
+
+/// The middle of a span, and half of its length.
+struct Middle {
+  double t, half;
+  Middle(double t0, double t1) : t(t0 + 0.5 * (t1 - t0)), half(0.5 * (t1 - t0)) {}
+};
+
+}  // namespace
+
+ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
+                     std::vector<Polynomial> values)
+    : tree_(std::move(tree)), base_(base), number_(nextNumber()) {
+  base_bounds_.reach = norm(base.translation);
+  const auto& joints = tree_->joints();
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    requireValue(values[j], joints[j].is_revolute, j);
+    bounds_.push_back(boundsOf(joints[j], values[j]));
+    Polynomial rate = derivativeOf(values[j]), acceleration = derivativeOf(rate);
+    values_.push_back({std::move(values[j]), std::move(rate), std::move(acceleration)});
+  }
+}
+
+JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
+                                const Polynomial& value) const {
+  const JointBounds& before = bounds(joint.parent);
+  const DerivativeBounds still{0, 0, 0}, moves = derivativeBounds(value);
+  const double offset = norm(joint.origin.pose.translation),
+               length = offset + (joint.is_revolute ? 0 : largestValue(value)),
+               angle_error = joint.is_revolute ? errorOf(value) : 0,
+               rate_error = errorOf(derivativeOf(value));
+  JointBounds out{};
+  out.rotation_before = before.rotation;
+  out.rotation = joint.is_revolute
+                     ? boundsOfProduct(before.rotation, boundsOfTurn(moves), 1)
+                     : before.rotation;
+  out.translation =
+      before.translation +
+      boundsOfProduct(before.rotation, joint.is_revolute ? still : moves, length);
+  out.reach = (before.reach + length) * kUpward;
+  // A rotation within e turns a vector within e of it, and rounds it by 6 u. The origin
+  // of the joint has its own errors, and an axis of a few u.
+  const double turned = before.rotation_error + 16 * kUnit;
+  out.rotation_error = before.rotation_error + kRoundingOfJoint + angle_error +
+                       joint.origin.rotation_error;
+  out.translation_error = before.translation_error + turned * length +
+                          joint.origin.translation_error + 2 * kUnit * out.reach +
+                          (joint.is_revolute ? 0 : errorOf(value));
+  out.turn_error = before.turn_error;
+  out.speed_error =
+      before.speed_error +
+      (before.turn_error + before.rotation.first * (turned + 8 * kUnit)) * length +
+      before.rotation.first * joint.origin.translation_error +
+      4 * kUnit * out.translation.first;
+  (joint.is_revolute ? out.turn_error : out.speed_error) +=
+      moves.first * (turned + joint.origin.rotation_error) + rate_error;
+  return out;
+}
+
+JointState ChainPath::baseState() const {
+  JointState state{};
+  std::copy(base_.rotation, base_.rotation + 9, state.rotation);
+  state.translation = vecOf(base_.translation);
+  return state;
+}
+
+JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& before,
+                            const Value& value, double t) const {
+  const double q = valueAt(value.at, t), rate = valueAt(value.rate, t),
+               acceleration = valueAt(value.acceleration, t);
+  const auto& origin = joint.origin.pose;
+  JointState out = before;
+  const Vec axis = rotated(before.rotation, joint.axis_in_parent);
+  Vec way = rotated(before.rotation, vecOf(origin.translation));
+  if (!joint.is_revolute) way = way + q * axis;
+  const Vec turning = cross(before.turn, way);
+  out.translation = before.translation + way;
+  out.speed = before.speed + turning;
+  out.acceleration =
+      before.acceleration + cross(before.turn_rate, way) + cross(before.turn, turning);
+  if (!joint.is_revolute) {
+    multiply(before.rotation, origin.rotation, out.rotation);
+    out.speed = out.speed + rate * axis;
+    out.acceleration =
+        out.acceleration + acceleration * axis + (2 * rate) * cross(before.turn, axis);
+    return out;
+  }
+  const SineCosine at = sineAndOneMinusCosine(q);
+  double own[9];
+  for (int i = 0; i < 9; ++i)
+    own[i] = origin.rotation[i] +
+             (at.sine * joint.sine_rotation[i] + at.cosine * joint.cosine_rotation[i]);
+  multiply(before.rotation, own, out.rotation);
+  out.turn = before.turn + rate * axis;
+  out.turn_rate =
+      before.turn_rate + acceleration * axis + rate * cross(before.turn, axis);
+  return out;
+}
+
+void ChainPath::computeStates(double t, std::vector<JointState>& states) const {
+  const JointState base = baseState();
+  const auto& joints = tree_->joints();
+  states.resize(joints.size());
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    const int parent = joints[j].parent;
+    states[j] =
+        moved(joints[j], parent < 0 ? base : states[static_cast<std::size_t>(parent)],
+              values_[j], t);
+  }
+}
+
+JointState ChainPath::stateAt(int joint, double t) const {
+  if (joint < 0) return baseState();
+  constexpr int kBits = 6;
+  using Cache = SlotCache<StateKey, std::vector<JointState>, 1 << kBits>;
+  thread_local const std::unique_ptr<Cache> kept(new Cache(StateKey{0, 0}));
+  const std::size_t slot = slotOf(t, static_cast<std::int32_t>(number_), kBits);
+  return kept->get(slot, {number_, t}, [&](std::vector<JointState>& states) {
+    computeStates(t, states);
+  })[static_cast<std::size_t>(joint)];
+}
+
+LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, int link)
+    : chain_(std::move(chain)) {
+  const auto& at = chain_->tree().links()[static_cast<std::size_t>(link)];
+  joint_ = at.joint;
+  pose_ = at.pose;
+}
+
+bool LinkPath::isRevolute() const {
+  return joint_ >= 0 &&
+         chain_->tree().joints()[static_cast<std::size_t>(joint_)].is_revolute;
+}
+
+BoundedMotion::Placement LinkPath::placementAt(double t) const {
+  const JointState state = chain_->stateAt(joint_, t);
+  Placement out;
+  multiply(state.rotation, pose_.pose.rotation, out.rotation);
+  set(out.translation,
+      rotated(state.rotation, vecOf(pose_.pose.translation)) + state.translation);
+  return out;
+}
+
+BoundedMotion::Placement LinkPath::rateAt(double t) const {
+  const JointState state = chain_->stateAt(joint_, t);
+  double rotation[9];
+  multiply(state.rotation, pose_.pose.rotation, rotation);
+  Placement out;
+  crossColumns(state.turn, rotation, out.rotation);
+  set(out.translation,
+      cross(state.turn, rotated(state.rotation, vecOf(pose_.pose.translation))) +
+          state.speed);
+  return out;
+}
+
+// R x = R_p B exp(q [a]) x, and only the part of x at right angles to a turns with q. The
+// derivatives of R are at least those of R_p, and what is more belongs to q.
+DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const {
+  const JointBounds& of = bounds();
+  const double far = norm(center) + radius;
+  double across = far;
+  if (isRevolute())
+    across = norm(cross(chain_->tree().joints()[static_cast<std::size_t>(joint_)].axis,
+                        center)) +
+             radius;
+  const auto bound = [&](double translation, double before, double rotation) {
+    return (translation + before * far + (rotation - before) * across) * kUpward;
+  };
+  return {bound(of.translation.first, of.rotation_before.first, of.rotation.first),
+          bound(of.translation.second, of.rotation_before.second, of.rotation.second),
+          bound(of.translation.third, of.rotation_before.third, of.rotation.third)};
+}
+
+// The computed acceleration has the relative errors of the rotations, of which a term has
+// up to three, and of angular velocities, which are below 2^-39 (largestValue()).
+double LinkPath::accelerationBound(const double (&center)[3], double radius, double t0,
+                                   double t1) const {
+  const Vec x = posed(pose_.pose, vecOf(center));
+  const double size = radius * (1 + 0x1p-39) + pose_.translation_error;
+  const DerivativeBounds whole = boundsOfBall(x, size);
+  const Middle middle(t0, t1);
+  const JointState state = chain_->stateAt(joint_, middle.t);
+  const Vec turned = rotated(state.rotation, x);
+  const double turning = (dot(state.turn, state.turn) + norm(state.turn_rate)) * size;
+  const double there = norm(state.acceleration + cross(state.turn_rate, turned) +
+                            cross(state.turn, cross(state.turn, turned))) +
+                       turning + (0x1p-36 + 16 * bounds().rotation_error) * whole.second;
+  return std::min(whole.second, there + middle.half * whole.third) * kUpward;
+}
+
+double LinkPath::angularSpeedBound(double t0, double t1) const {
+  const DerivativeBounds& whole = bounds().rotation;
+  const Middle middle(t0, t1);
+  const JointState state = chain_->stateAt(joint_, middle.t);
+  const double there = norm(state.turn) +
+                       (0x1p-36 + 16 * bounds().rotation_error) * whole.first +
+                       middle.half * whole.second;
+  return std::min(whole.first, there) * kUpward;
+}
+
+BoundedMotion::Rounding LinkPath::moreRounding() const {
+  const JointBounds& of = bounds();
+  const double offset = norm(pose_.pose.translation),
+               turned = of.rotation_error + 16 * kUnit,
+               rate = of.turn_error + of.rotation.first * (turned + 8 * kUnit);
+  return {(turned + pose_.rotation_error) * kUpward,
+          (rate + of.rotation.first * pose_.rotation_error) * kUpward,
+          (of.translation_error + turned * offset + pose_.translation_error +
+           2 * kUnit * (of.reach + offset)) *
+              kUpward,
+          (of.speed_error + rate * offset + of.rotation.first * pose_.translation_error +
+           4 * kUnit * of.translation.first) *
+              kUpward};
+}
+
+}  // namespace deformable
+}  // namespace detail
+}  // namespace fcl
