@@ -79,34 +79,40 @@ MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
 
 // From the beginning, |T'| grows by the acceleration at most. For turns of more than 8
 // radians this is far from what is reached. There it is bounded in spans of about a
-// radian, from the middle of each.
+// radian, from the middle of each. The computed T and T' may be off by what the motion
+// says in moreRounding().
 void MotionPath::setBoundedSpeed() {
   constexpr double kManyRadians = 8, kMostSpans = 64;
   const auto acceleration = [this](double t0, double t1) {
     return checkedAcceleration(*motion_, name_, {0, 0, 0}, 0, t0, t1);
   };
+  const double rate_error = more_rounding_.translation_rate,
+               way_error = 2 * more_rounding_.translation;
   const Vec begin = vecOf(boundedPose(0).translation);
   if (turn_speed_ <= kManyRadians) {
     translation_speed_ =
-        (norm(boundedRate(0).translation) + acceleration(0, 1)) * kUpward;
-    extent_ = translation_speed_;
+        (norm(boundedRate(0).translation) + rate_error + acceleration(0, 1)) * kUpward;
+    extent_ = (translation_speed_ + way_error) * kUpward;
     return;
   }
   const double num_spans = std::min(std::ceil(turn_speed_), kMostSpans),
                half = 0.5 / num_spans;
   for (double i = 0; i < num_spans; ++i) {
     const double t0 = i / num_spans, t1 = (i + 1) / num_spans, middle = t0 + half,
-                 speed = norm(boundedRate(middle).translation),
+                 speed = norm(boundedRate(middle).translation) + rate_error,
                  bend = half * acceleration(t0, t1);
     const Vec way = vecOf(boundedPose(middle).translation) - begin;
     translation_speed_ = std::max(translation_speed_, (speed + bend) * kUpward);
-    extent_ = std::max(extent_, (norm(way) + half * speed + 0.5 * half * bend) * kUpward);
+    extent_ = std::max(
+        extent_, (norm(way) + way_error + half * speed + 0.5 * half * bend) * kUpward);
   }
 }
 
 void MotionPath::setBoundedSize() {
   translation_size_ = largest_translation_ =
-      (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + extent_) * kUpward;
+      (norm(vecOf(pose(0).translation)) + norm(vecOf(origin_)) + extent_ +
+       more_rounding_.translation) *
+      kUpward;
 }
 
 Pose MotionPath::boundedPose(double t) const {

@@ -11,6 +11,7 @@
 #include <string>
 #include <utility>
 
+#include "base/default_floating_point.h"
 #include "base/error.h"
 #include "base/slot_cache.h"
 #include "paths/path_matrix.h"
@@ -81,7 +82,12 @@ JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
   const double offset = norm(joint.origin.pose.translation),
                length = offset + (joint.is_revolute ? 0 : largestValue(value)),
                angle_error = joint.is_revolute ? errorOf(value) : 0,
-               rate_error = errorOf(derivativeOf(value));
+               rate_error = errorOf(derivativeOf(value)),
+               way_error =
+                   joint.origin.translation_error +
+                   (joint.is_revolute ? 0
+                                      : errorOf(value) + largestValue(value) *
+                                                             joint.origin.rotation_error);
   JointBounds out{};
   out.rotation_before = before.rotation;
   out.rotation = joint.is_revolute
@@ -92,19 +98,19 @@ JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
       boundsOfProduct(before.rotation, joint.is_revolute ? still : moves, length);
   out.reach = (before.reach + length) * kUpward;
   // A rotation within e turns a vector within e of it, and rounds it by 6 u. The origin
-  // of the joint has its own errors, and an axis of a few u.
+  // of the joint has its own errors, and an axis of a few u. A sum of angular velocities
+  // rounds by u of its size.
   const double turned = before.rotation_error + 16 * kUnit;
   out.rotation_error = before.rotation_error + kRoundingOfJoint + angle_error +
                        joint.origin.rotation_error;
-  out.translation_error = before.translation_error + turned * length +
-                          joint.origin.translation_error + 2 * kUnit * out.reach +
-                          (joint.is_revolute ? 0 : errorOf(value));
-  out.turn_error = before.turn_error;
+  out.translation_error =
+      before.translation_error + turned * length + way_error + 2 * kUnit * out.reach;
+  out.turn_error =
+      before.turn_error + (joint.is_revolute ? 2 * kUnit * out.rotation.first : 0);
   out.speed_error =
       before.speed_error +
       (before.turn_error + before.rotation.first * (turned + 8 * kUnit)) * length +
-      before.rotation.first * joint.origin.translation_error +
-      4 * kUnit * out.translation.first;
+      before.rotation.first * way_error + 4 * kUnit * out.translation.first;
   (joint.is_revolute ? out.turn_error : out.speed_error) +=
       moves.first * (turned + joint.origin.rotation_error) + rate_error;
   return out;
@@ -162,6 +168,7 @@ void ChainPath::computeStates(double t, std::vector<JointState>& states) const {
   }
 }
 
+// The thread keeps what is computed here: the mode of a caller must not get into it.
 JointState ChainPath::stateAt(int joint, double t) const {
   if (joint < 0) return baseState();
   constexpr int kBits = 6;
@@ -186,6 +193,7 @@ bool LinkPath::isRevolute() const {
 }
 
 BoundedMotion::Placement LinkPath::placementAt(double t) const {
+  const DefaultFloatingPoint mode;
   const JointState state = chain_->stateAt(joint_, t);
   Placement out;
   multiply(state.rotation, pose_.pose.rotation, out.rotation);
@@ -195,6 +203,7 @@ BoundedMotion::Placement LinkPath::placementAt(double t) const {
 }
 
 BoundedMotion::Placement LinkPath::rateAt(double t) const {
+  const DefaultFloatingPoint mode;
   const JointState state = chain_->stateAt(joint_, t);
   double rotation[9];
   multiply(state.rotation, pose_.pose.rotation, rotation);
@@ -207,7 +216,8 @@ BoundedMotion::Placement LinkPath::rateAt(double t) const {
 }
 
 // R x = R_p B exp(q [a]) x, and only the part of x at right angles to a turns with q. The
-// derivatives of R are at least those of R_p, and what is more belongs to q.
+// derivatives of R are at least those of R_p, and what is more belongs to q. The computed
+// part is within 8 u of the size of x.
 DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const {
   const JointBounds& of = bounds();
   const double far = norm(center) + radius;
@@ -215,7 +225,7 @@ DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const 
   if (isRevolute())
     across = norm(cross(chain_->tree().joints()[static_cast<std::size_t>(joint_)].axis,
                         center)) +
-             radius;
+             64 * kUnit * norm(center) + radius;
   const auto bound = [&](double translation, double before, double rotation) {
     return (translation + before * far + (rotation - before) * across) * kUpward;
   };
@@ -225,23 +235,31 @@ DerivativeBounds LinkPath::boundsOfBall(const Vec& center, double radius) const 
 }
 
 // The computed acceleration has the relative errors of the rotations, of which a term has
-// up to three, and of angular velocities, which are below 2^-39 (largestValue()).
+// up to three, and of angular velocities, which are at most 2^-38 (errorOf(), and
+// largestValue()). An error of the direction of a velocity acts on all of x, the velocity
+// itself only on what is across.
 double LinkPath::accelerationBound(const double (&center)[3], double radius, double t0,
                                    double t1) const {
+  const DefaultFloatingPoint mode;
   const Vec x = posed(pose_.pose, vecOf(center));
-  const double size = radius * (1 + 0x1p-39) + pose_.translation_error;
+  const double distance = norm(vecOf(center)),
+               size = radius * (1 + 0x1p-39) + pose_.rotation_error * distance +
+                      pose_.translation_error + 0x1p-46 * (norm(x) + distance);
   const DerivativeBounds whole = boundsOfBall(x, size);
   const Middle middle(t0, t1);
   const JointState state = chain_->stateAt(joint_, middle.t);
   const Vec turned = rotated(state.rotation, x);
-  const double turning = (dot(state.turn, state.turn) + norm(state.turn_rate)) * size;
+  const double turning = dot(state.turn, state.turn) + norm(state.turn_rate),
+               error = 16 * bounds().rotation_error;
   const double there = norm(state.acceleration + cross(state.turn_rate, turned) +
                             cross(state.turn, cross(state.turn, turned))) +
-                       turning + (0x1p-36 + 16 * bounds().rotation_error) * whole.second;
+                       turning * (size + (error + 0x1p-44) * (norm(x) + size)) +
+                       (0x1p-36 + error) * whole.second;
   return std::min(whole.second, there + middle.half * whole.third) * kUpward;
 }
 
 double LinkPath::angularSpeedBound(double t0, double t1) const {
+  const DefaultFloatingPoint mode;
   const DerivativeBounds& whole = bounds().rotation;
   const Middle middle(t0, t1);
   const JointState state = chain_->stateAt(joint_, middle.t);
@@ -252,6 +270,7 @@ double LinkPath::angularSpeedBound(double t0, double t1) const {
 }
 
 BoundedMotion::Rounding LinkPath::moreRounding() const {
+  const DefaultFloatingPoint mode;
   const JointBounds& of = bounds();
   const double offset = norm(pose_.pose.translation),
                turned = of.rotation_error + 16 * kUnit,

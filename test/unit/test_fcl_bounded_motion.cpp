@@ -320,6 +320,18 @@ TEST_F(BoundedMotions, HaveTheToleranceOfTheirRounding) {
   EXPECT_NEAR(early.time_of_contact, exact.time_of_contact, 1e-6);
 }
 
+/// The true path is within the rounding of the computed one. The second frequency is one
+/// of more than 8 radians, whose speed is bounded in spans.
+TEST_F(BoundedMotions, BoundPathsThatAreOffByTheirRounding) {
+  using detail::deformable::MotionPath;
+  for (const double frequency : {1., 9.}) {
+    const MotionPath fine = MotionPath::bounded(Pendulum(1, frequency, 1)),
+                     rough = MotionPath::bounded(Rough(1, frequency, 1));
+    EXPECT_GE(rough.speed(0), fine.speed(0) + 0.999e-8);
+    EXPECT_GE(rough.largestTranslation(), fine.largestTranslation() + 2.999e-8);
+  }
+}
+
 TEST_F(BoundedMotions, ReachShapes) {
   const Pendulum pendulum(1, 1, 0);
   const Sphere<double> sphere(0.5);

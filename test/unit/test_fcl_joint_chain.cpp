@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cfenv>
 #include <cmath>
 #include <string>
 #include <thread>
@@ -42,6 +43,13 @@ RealPose realPose(const Tf& tf) {
   return {tf.linear().cast<Real>(), tf.translation().cast<Real>()};
 }
 
+RealPose realPose(const BoundedMotion::Placement& at) {
+  RealPose out;
+  for (int i = 0; i < 9; ++i) out.rotation(i / 3, i % 3) = at.rotation[i];
+  for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k];
+  return out;
+}
+
 /// A robot with its motion, in the library's form and as numbers.
 struct Robot {
   enum class Kind { kFixed, kRevolute, kPrismatic };
@@ -72,20 +80,45 @@ struct Robot {
   }
   ChainMotion motion() const { return ChainMotion::polynomial(chain(), values, base); }
 
-  RealPose at(int link, Real t) const {
-    if (link < 0) return realPose(base);
-    const Joint& j = joints[static_cast<std::size_t>(link)];
-    RealPose own{RealMatrix::Identity(), RealVector::Zero()};
-    if (j.kind != Kind::kFixed) {
-      Real q = 0;
-      for (std::size_t k = values[j.value].size(); k-- > 0;)
-        q = q * t + values[j.value][k];
-      const RealVector axis = j.axis.cast<Real>().normalized();
-      if (j.kind == Kind::kRevolute) own.rotation = rotationAbout(axis, q);
-      if (j.kind == Kind::kPrismatic) own.translation = q * axis;
+  /// A pose and its derivative by t.
+  struct State {
+    RealPose pose, rate;
+  };
+
+  State own(const Joint& j, Real t) const {
+    State out{{RealMatrix::Identity(), RealVector::Zero()},
+              {RealMatrix::Zero(), RealVector::Zero()}};
+    if (j.kind == Kind::kFixed) return out;
+    Real q = 0, rate = 0;
+    for (std::size_t k = values[j.value].size(); k-- > 0;) {
+      rate = rate * t + q;
+      q = q * t + values[j.value][k];
     }
-    return at(j.parent, t) * (realPose(j.origin) * own);
+    const RealVector axis = j.axis.cast<Real>().normalized();
+    if (j.kind == Kind::kRevolute) {
+      out.pose.rotation = rotationAbout(axis, q);
+      for (int k = 0; k < 3; ++k)
+        out.rate.rotation.col(k) = rate * axis.cross(out.pose.rotation.col(k));
+    } else {
+      out.pose.translation = q * axis;
+      out.rate.translation = rate * axis;
+    }
+    return out;
   }
+
+  State stateAt(int link, Real t) const {
+    if (link < 0) return {realPose(base), {RealMatrix::Zero(), RealVector::Zero()}};
+    const Joint& j = joints[static_cast<std::size_t>(link)];
+    const State before = stateAt(j.parent, t), moves = own(j, t);
+    const RealPose origin = realPose(j.origin), here = origin * moves.pose;
+    const RealMatrix to_world = before.pose.rotation * origin.rotation;
+    return {before.pose * here,
+            {before.rate.rotation * here.rotation + to_world * moves.rate.rotation,
+             before.rate.rotation * here.translation + to_world * moves.rate.translation +
+                 before.rate.translation}};
+  }
+
+  RealPose at(int link, Real t) const { return stateAt(link, t).pose; }
   ExactPath path(int link) const {
     return [this, link](Real t) { return at(link, t); };
   }
@@ -141,6 +174,139 @@ TEST(FCL_JOINT_CHAIN, followsTheExactChain) {
   EXPECT_LE(worst.rate, 1);
   // They are worst cases of sums of hundreds of roundings.
   EXPECT_GE(worst.pose, 0.02);
+}
+
+/// The largest parts of moreRounding() alone, without the rounding of the contract, that
+/// the errors of a link reached.
+RoundingParts ownRounding(const Robot& robot, int link, Random& random) {
+  const auto motion = robot.motion().link(link);
+  const BoundedMotion::Rounding more = motion->moreRounding();
+  RoundingParts worst{};
+  for (int i = 0; i < 4; ++i) {
+    const double t = i < 2 ? i : random.uniform(0, 1);
+    const Robot::State exact = robot.stateAt(link, t);
+    const auto off = [](const BoundedMotion::Placement& x, const RealPose& y) {
+      const RealPose found = realPose(x);
+      return RealPose{found.rotation - y.rotation, found.translation - y.translation};
+    };
+    const RealPose pose = off(motion->placementAt(t), exact.pose),
+                   rate = off(motion->rateAt(t), exact.rate);
+    const RealVector x = randomDirection(random).cast<Real>();
+    const auto part = [](Real error, double bound) {
+      return error == 0 ? 0 : static_cast<double>(error / Real{bound});
+    };
+    worst.pose = std::max({worst.pose, part((pose.rotation * x).norm(), more.rotation),
+                           part(pose.translation.norm(), more.translation)});
+    worst.rate =
+        std::max({worst.rate, part((rate.rotation * x).norm(), more.rotation_rate),
+                  part(rate.translation.norm(), more.translation_rate)});
+  }
+  return worst;
+}
+
+RoundingParts greatest(const RoundingParts& x, const RoundingParts& y) {
+  return {std::max(x.pose, y.pose), std::max(x.rate, y.rate)};
+}
+
+TEST(FCL_JOINT_CHAIN, saysItsRounding) {
+  Random random(7);
+  RoundingParts worst{};
+  for (int i = 0; i < rounds(4000); ++i) {
+    const Robot robot = randomRobot(random, i % 2 ? Values::kLinear : Values::kPolynomial,
+                                    i % 3 ? 3 : 20);
+    worst = greatest(worst, ownRounding(robot, lastLink(robot), random));
+  }
+  EXPECT_LE(worst.pose, 1);
+  EXPECT_LE(worst.rate, 1);
+  EXPECT_GE(worst.pose, .05);
+  EXPECT_GE(worst.rate, .05);
+}
+
+/// Turned by 1000 radians and moved by 1e6 at the beginning.
+TEST(FCL_JOINT_CHAIN, saysTheRoundingOfLargeValues) {
+  Random random(8);
+  RoundingParts worst{};
+  for (int i = 0; i < rounds(1000); ++i) {
+    Robot robot = randomRobot(random, Values::kLinear, 3);
+    for (const Robot::Joint& j : robot.joints)
+      if (j.kind != Robot::Kind::kFixed)
+        robot.values[j.value][0] *= j.kind == Robot::Kind::kRevolute ? 300 : 3e5;
+    worst = greatest(worst, ownRounding(robot, lastLink(robot), random));
+  }
+  EXPECT_LE(worst.pose, 1);
+  EXPECT_LE(worst.rate, 1);
+  EXPECT_GE(worst.pose, .05);
+}
+
+/// Coefficients of up to 1e8 that cancel at t = 1: the values there are rounding.
+TEST(FCL_JOINT_CHAIN, saysTheRoundingOfValuesThatCancel) {
+  Random random(9);
+  RoundingParts worst{};
+  for (int i = 0; i < rounds(1000); ++i) {
+    Robot robot = randomRobot(random, Values::kLinear, 3);
+    for (const Robot::Joint& j : robot.joints) {
+      if (j.kind == Robot::Kind::kFixed) continue;
+      const double size =
+          std::pow(10, random.uniform(0, j.kind == Robot::Kind::kRevolute ? 2 : 8));
+      std::vector<double> q{0};
+      for (std::size_t k = 1 + random.index(14); k > 0; --k) {
+        q.push_back(random.uniform(-size, size));
+        q[0] -= q.back();
+      }
+      robot.values[j.value] = q;
+    }
+    worst = greatest(worst, ownRounding(robot, lastLink(robot), random));
+  }
+  EXPECT_LE(worst.pose, 1);
+  EXPECT_LE(worst.rate, 1);
+  EXPECT_GE(worst.pose, .01);
+}
+
+/// A joint that slides far, after so many fixed ones that their rounding is the largest.
+/// They are alike, so that it adds up.
+TEST(FCL_JOINT_CHAIN, saysTheRoundingOfManyFixedJoints) {
+  Random random(10);
+  RoundingParts worst{};
+  for (int i = 0; i < 8; ++i) {
+    Robot robot;
+    if (i % 2) {
+      robot.add(Robot::Kind::kRevolute, Tf::Identity(), randomDirection(random), -1);
+      robot.values.back() = {0, 1};
+    }
+    const Matrix3<double> rotation = randomRotation(random);
+    for (int k = 0; k < 1000; ++k)
+      robot.add(Robot::Kind::kFixed, tfOf(rotation, random.point(1e-3)), Vector::UnitX(),
+                lastLink(robot));
+    robot.add(Robot::Kind::kPrismatic, Tf::Identity(), randomDirection(random),
+              lastLink(robot));
+    robot.values.back() = {1e6, 1};
+    worst = greatest(worst, ownRounding(robot, lastLink(robot), random));
+  }
+  EXPECT_LE(worst.pose, 1);
+  EXPECT_LE(worst.rate, 1);
+}
+
+/// A ball far out on the axis of its joint, which turns away from the axes of the world.
+/// The acceleration of its center is only rounding, and the bound is one for it.
+TEST(FCL_JOINT_CHAIN, boundsPointsFarOutOnTheAxis) {
+  Random random(11);
+  for (int i = 0; i < 200; ++i) {
+    const Vector axis = randomDirection(random), origin(1, 2, 3);
+    Robot robot;
+    robot.add(Robot::Kind::kRevolute, tfOf(randomRotation(random), origin), axis, -1);
+    robot.values.back() = {random.uniform(-3, 3), random.uniform(1, 3),
+                           random.uniform(-3, 3)};
+    const auto motion = robot.motion().link(0);
+    const Vector x = 1e6 * axis.normalized();
+    // Exactly, in the middle of the step: w' [a] x + w^2 [a]^2 x with the normalized
+    // axis.
+    const RealVector a = axis.cast<Real>().normalized(), y = a.cross(x.cast<Real>());
+    const auto& q = robot.values.back();
+    const Real w = Real{q[1]} + Real{q[2]}, rate = 2 * Real{q[2]};
+    const Real exact = (rate * y + w * w * a.cross(y)).norm();
+    const double t[2] = {.5, std::nextafter(.5, 1)};
+    EXPECT_GE(motion->accelerationBound({x[0], x[1], x[2]}, 0, t[0], t[1]), exact);
+  }
 }
 
 /// Bounds are never exceeded, and are near what is reached: nearer in short spans, and
@@ -232,6 +398,35 @@ S meet(const MotionBase<S>& motion, const Vector3<S>& at) {
   request.toc_err = S(1e-9);
   ContinuousCollisionResult<S> result;
   return continuousCollide(&ball, &motion, &ball, &still, request, result);
+}
+
+/// The mode of the caller does not matter, also if its thread computes the poses of a
+/// motion for the first time.
+TEST(FCL_JOINT_CHAIN, isTheSameInAllRoundingModes) {
+  Random random(12);
+  std::size_t contacts = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Robot robot = randomRobot(random, Values::kPolynomial, 2);
+    const int link = lastLink(robot);
+    const Vector at = (robot.at(link, random.uniform(0, 1)).translation.cast<double>()) +
+                      random.point(.5);
+    const double expected = meet<double>(*robot.motion().link(link), at);
+    const auto placement = robot.motion().link(link)->placementAt(.3);
+    contacts += expected < 1;
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+      // Of a motion of its own: nothing of it is kept.
+      const auto motion = robot.motion().link(link), other = robot.motion().link(link);
+      std::fesetround(mode);
+      const double found = meet<double>(*motion, at);
+      const auto placed = other->placementAt(.3);
+      std::fesetround(FE_TONEAREST);
+      EXPECT_EQ(found, expected);
+      for (int k = 0; k < 9; ++k) EXPECT_EQ(placed.rotation[k], placement.rotation[k]);
+      for (int k = 0; k < 3; ++k)
+        EXPECT_EQ(placed.translation[k], placement.translation[k]);
+    }
+  }
+  EXPECT_GE(contacts, 50U);
 }
 
 /// A ball on an arm of length 1 goes round 2.5 times while the arm rises by 5. It comes
