@@ -137,7 +137,8 @@ class ChainMotion(_arguments.Built):
 
     Give each geometry of the robot the motion of its link, link(number).
 
-    Raises ValueError for a wrong number of values, and values that are not finite.
+    Raises ValueError for a wrong number of values, values that are not finite, and angles
+    beyond 2^20 radians.
     """
 
     _motion: _core.ChainMotion
@@ -151,7 +152,8 @@ class ChainMotion(_arguments.Built):
         base: Optional[ArrayLike] = None,
     ) -> None:
         _require_chain(chain)
-        self._make("linear", tuple(chain._joints), _values(begin, "begin"), _values(end, "end"), base)
+        given = (_values(begin, "begin"), _values(end, "end"), base)
+        self._make(chain._chain, "linear", tuple(chain._joints), *given)
 
     @classmethod
     def polynomial(
@@ -168,17 +170,19 @@ class ChainMotion(_arguments.Built):
             for i, of in enumerate(_arguments.iterable(values, "values", wanted))
         ]
         motion = cls.__new__(cls)
-        motion._make("polynomial", tuple(chain._joints), coefficients, base)
+        motion._make(chain._chain, "polynomial", tuple(chain._joints), coefficients, base)
         return motion
 
     def link(self, number: int) -> LinkMotion:
         """The motion of a link, by its number in the chain."""
         return LinkMotion(self, _arguments.integer(number, "number"))
 
-    def _make(self, kind: str, joints: Tuple[_Joint, ...], *given: Any) -> None:
+    def _make(
+        self, chain: _core.JointChain, kind: str, joints: Tuple[_Joint, ...], *given: Any
+    ) -> None:
+        """joints: those of the chain, from which a copy of the motion is made."""
         *values, base = given
         pose = _pose(base, "base")
-        chain = _remade_chain(JointChain, joints)._chain
         if kind == "linear":
             self._motion = _core.ChainMotion.linear(chain, values[0], values[1], pose)
         else:
@@ -192,7 +196,8 @@ class ChainMotion(_arguments.Built):
 
 def _remade_motion(of: Any, given: Tuple[Any, ...]) -> Any:
     motion = of.__new__(of)
-    motion._make(*given)
+    _, joints, *_ = given
+    motion._make(_remade_chain(JointChain, joints)._chain, *given)
     return motion
 
 

@@ -119,6 +119,7 @@ def test_known_time():
         (lambda chain: fcl_ccd.ChainMotion(chain, [0, 1], [1]), "begin has 2 values"),
         (lambda chain: fcl_ccd.ChainMotion(chain, [0], [math.inf]), "not finite"),
         (lambda chain: fcl_ccd.ChainMotion(chain, [0], [1e7]), "radians"),
+        (lambda chain: fcl_ccd.ChainMotion.polynomial(chain, [[1e6, -2e6, 1e6]]), "coefficients"),
         (lambda chain: fcl_ccd.ChainMotion(chain, [[0]], [1]), "shape"),
         (lambda chain: fcl_ccd.ChainMotion(chain, [0], [1], np.zeros((4, 4))), "base"),
         (lambda chain: fcl_ccd.ChainMotion(fcl_ccd.JointChain(), [], []), "no joints"),

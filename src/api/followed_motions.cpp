@@ -108,6 +108,12 @@ JointTreePtr withJoint(const JointTreePtr& tree, JointKind kind,
   return out;
 }
 
+JointCounts jointCounts(const JointTreePtr& tree) {
+  if (!tree) return {0, 0};
+  return {static_cast<int>(tree->links().size()),
+          static_cast<int>(tree->joints().size())};
+}
+
 ChainPathPtr makeChainPath(const JointTreePtr& tree, const BoundedMotion::Placement& base,
                            const std::vector<std::vector<double>>& values) {
   const DefaultFloatingPoint mode;

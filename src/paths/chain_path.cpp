@@ -31,13 +31,19 @@ double errorOf(const Polynomial& p) {
   return (2 * static_cast<double>(p.size()) + 2) * kUnit * sizeOf(p);
 }
 
+/// Bound on |p(t)| for t in [0, 1]. A linear one is largest at an end.
+double mostOf(const Polynomial& p) {
+  return p.size() == 2 ? std::max(std::abs(p[0]), std::abs(p[0] + p[1])) : sizeOf(p);
+}
+
 void requireValue(const Polynomial& value, bool is_angle, std::size_t joint) {
-  const double size = sizeOf(value);
-  if (std::isfinite(size) && !(is_angle && size > kMostAngle)) return;
+  const bool is_finite = std::isfinite(sizeOf(value));
+  if (is_finite && !(is_angle && mostOf(value) > kMostAngle)) return;
   throwBadInput("the value " + std::to_string(joint) + " of the joints " +
-                (std::isfinite(size) ? "is an angle of more than 2^20 radians. Subtract "
-                                       "whole turns"
-                                     : "is not finite. Correct it"));
+                (is_finite ? "is an angle of more than 2^20 radians, or a polynomial of "
+                             "which the sizes of the coefficients have a larger sum. "
+                             "Subtract whole turns"
+                           : "is not finite. Correct it"));
 }
 
 std::uint64_t nextNumber() {

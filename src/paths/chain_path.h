@@ -54,6 +54,7 @@ class ChainPath {
   /// @param values  of each joint that moves, in radians or units of length, for t in
   /// [0, 1]
   /// @throws fcl::Exception  a value is not finite, or an angle beyond kMostAngle
+  /// (linear: at an end; else the sum of the sizes of the coefficients)
   ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
             std::vector<Polynomial> values);
 

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "fcl/common/exception.h"
@@ -520,6 +521,19 @@ TEST(FCL_JOINT_CHAIN, branches) {
   expectRefused([&] { motion.link(3); }, "no link 3");
 }
 
+TEST(FCL_JOINT_CHAIN, isEmptyAfterAMove) {
+  JointChain chain;
+  chain.addRevolute(Tf::Identity(), Vector(0, 0, 1));
+  chain.addFixed(Tf::Identity());
+  const JointChain moved = std::move(chain);
+  EXPECT_EQ(moved.numLinks(), 2);
+  EXPECT_EQ(moved.numValues(), 1);
+  EXPECT_EQ(chain.numLinks(), 0);
+  EXPECT_EQ(chain.numValues(), 0);
+  EXPECT_EQ(chain.addPrismatic(Tf::Identity(), Vector(0, 0, 1)), 0);
+  EXPECT_NO_THROW(ChainMotion(chain, {0}, {1}));
+}
+
 TEST(FCL_JOINT_CHAIN, refusesWhatIsNoChain) {
   const double nan = std::nan("");
   const Tf here = Tf::Identity();
@@ -539,6 +553,14 @@ TEST(FCL_JOINT_CHAIN, refusesWhatIsNoChain) {
   expectRefused([&] { ChainMotion(chain, {1}, {}); }, "end has 0 values");
   expectRefused([&] { ChainMotion(chain, {1}, {nan}); }, "value 0");
   expectRefused([&] { ChainMotion(chain, {0}, {2e6}); }, "2^20 radians");
+  expectRefused([&] { ChainMotion(chain, {-2e6}, {0}); }, "2^20 radians");
+  expectRefused(
+      [&] {
+        ChainMotion::polynomial(chain, {{1e6, -2e6, 1e6}});
+      },
+      "sizes of the coefficients");
+  // The sum of the sizes of a linear one does not matter.
+  EXPECT_NO_THROW(ChainMotion(chain, {1e6}, {-1e6}));
   expectRefused([&] { ChainMotion::polynomial(chain, {{}}); }, "0 coefficients");
   expectRefused([&] { ChainMotion::polynomial(chain, {std::vector<double>(17)}); },
                 "17 coefficients");

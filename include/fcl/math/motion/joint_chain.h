@@ -32,6 +32,12 @@ FCL_EXPORT JointTreePtr withJoint(const JointTreePtr& tree, JointKind kind,
                                   const BoundedMotion::Placement& origin,
                                   const double (&axis)[3], int parent);
 
+struct JointCounts {
+  int links, values;
+};
+/// @brief Null: no tree, which has none.
+FCL_EXPORT JointCounts jointCounts(const JointTreePtr& tree);
+
 /// @brief Of values that change linearly, and of polynomials.
 FCL_EXPORT ChainPathPtr makeChainPath(const JointTreePtr& tree,
                                       const BoundedMotion::Placement& base,
@@ -70,7 +76,7 @@ inline Transform3<double> urdfOrigin(const Vector3<double>& xyz,
 /// geometry or a tool, is a link of a fixed joint. It costs queries no time.
 ///
 /// Lengths have the unit of the geometries, angles are in radians. Copies are cheap and
-/// independent.
+/// independent. A chain that was moved from is empty.
 ///
 /// Thread-safety: as of a standard container.
 class JointChain {
@@ -104,11 +110,11 @@ class JointChain {
     return add(detail::JointKind::kFixed, origin, Vector3<double>::UnitX(), parent);
   }
 
-  int numLinks() const { return num_links_; }
+  int numLinks() const { return detail::jointCounts(tree_).links; }
 
   /// @brief The number of joints that move. Each has a value, in the order of the calls
   /// that added them.
-  int numValues() const { return num_values_; }
+  int numValues() const { return detail::jointCounts(tree_).values; }
 
   /// @brief For ChainMotion.
   const detail::JointTreePtr& tree() const { return tree_; }
@@ -116,16 +122,14 @@ class JointChain {
  private:
   int add(detail::JointKind kind, const Transform3<double>& origin,
           const Vector3<double>& axis, int parent) {
+    const int link = numLinks();
     tree_ = detail::withJoint(tree_, kind, detail::placementOf(origin),
                               {axis[0], axis[1], axis[2]},
-                              parent == kLast ? num_links_ - 1 : parent);
-    if (kind != detail::JointKind::kFixed) ++num_values_;
-    return num_links_++;
+                              parent == kLast ? link - 1 : parent);
+    return link;
   }
 
   detail::JointTreePtr tree_;
-  int num_links_{0};
-  int num_values_{0};
 };
 
 template <typename S>
@@ -148,7 +152,8 @@ class ChainMotion {
   /// @param begin, end  the value of each moving joint at t = 0 and t = 1
   /// @param base  the pose of the base in the world, at all times
   /// @throws fcl::Exception  a wrong number of values, a value that is not finite, an
-  /// angle beyond 2^20 radians, a base that is no rotation (up to 2^-6) and translation
+  /// angle at t = 0 or t = 1 beyond 2^20 radians, a base that is no rotation (up to 2^-6)
+  /// and translation
   ChainMotion(const JointChain& chain, const std::vector<double>& begin,
               const std::vector<double>& end,
               const Transform3<double>& base = Transform3<double>::Identity())
@@ -158,7 +163,8 @@ class ChainMotion {
   /// @brief The value of joint i at t is the sum of values[i][k] t^k.
   /// @param values  coefficients for each moving joint, 1 to 16 of them
   /// @param base  as of the constructor
-  /// @throws fcl::Exception  as the constructor
+  /// @throws fcl::Exception  as the constructor; of an angle with more than two
+  /// coefficients the sum of their sizes must be within 2^20
   static ChainMotion polynomial(
       const JointChain& chain, const std::vector<std::vector<double>>& values,
       const Transform3<double>& base = Transform3<double>::Identity()) {
