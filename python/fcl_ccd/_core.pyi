@@ -198,6 +198,14 @@ class Motion(_Made):
     ) -> Motion: ...
     @staticmethod
     def link(motion: ChainMotion, number: int) -> Motion: ...
+    @staticmethod
+    def twist(
+        pose: NDArray[np.float64],
+        linear: NDArray[np.float64],
+        angular: NDArray[np.float64],
+        reference: NDArray[np.float64],
+        is_screw: bool,
+    ) -> Motion: ...
 
 class JointChain(_Made):
     def __init__(self) -> None: ...

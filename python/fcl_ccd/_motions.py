@@ -8,13 +8,13 @@ import numpy as np
 from . import _arguments, _core
 
 if TYPE_CHECKING:
-    from typing import Sequence
+    from typing import Literal, Sequence
 
     from numpy.typing import ArrayLike
 
 
 class Motion(_arguments.Built):
-    """The path of an object during a step: Linear-, Screw-, Spline-, Link- or BoundedMotion."""
+    """The path of an object during a step: for example a LinearMotion."""
 
     _path: _core.Motion
     _made_by: Tuple[str, Tuple[Any, ...]]
@@ -72,6 +72,45 @@ class ScrewMotion(Motion):
         name = "a pose of ScrewMotion"
         self._make(
             "screw", _arguments.pose(begin, "begin"), _arguments.pose(end, "end"), name
+        )
+
+
+class TwistMotion(Motion):
+    """A motion with a constant velocity and a constant angular velocity, by any angle.
+
+    pose : (4, 4) array, at t = 0
+    linear : (3,) array, the velocity of the reference point at t = 0, in units of length a
+        step, in the axes of the world
+    angular : (3,) array, the angular velocity in radians a step, in the axes of the world. Its
+        length is the angle, also more than a turn.
+    path : "screw": the body follows the exponential of the twist, so that the reference point
+        turns with it about the axis. "straight": the reference point goes straight, and the
+        body turns about it, as rigid-body engines integrate a center of mass.
+    reference : (3,) array, the point that has the velocity linear, in the frame of the body
+
+    Raises ValueError for a pose that is no rotation and translation, numbers that are not
+    finite, and angles beyond 2^20 radians.
+    """
+
+    def __init__(
+        self,
+        pose: ArrayLike,
+        linear: ArrayLike,
+        angular: ArrayLike,
+        path: Literal["screw", "straight"] = "screw",
+        reference: ArrayLike = (0.0, 0.0, 0.0),
+    ) -> None:
+        if not isinstance(path, str):
+            raise _arguments.wrong_type("path", path, "'screw' or 'straight'")
+        if path not in ("screw", "straight"):
+            raise ValueError(f"path is {path!r}. Give 'screw' or 'straight'")
+        self._make(
+            "twist",
+            _arguments.pose(pose, "pose"),
+            _arguments.numbers(linear, "linear", 3),
+            _arguments.numbers(angular, "angular", 3),
+            _arguments.numbers(reference, "reference", 3),
+            path == "screw",
         )
 
 
@@ -160,6 +199,7 @@ _MAKERS: Dict[str, Callable[..., _core.Motion]] = {
     "turn": _core.Motion.turn,
     "screw": _core.Motion.screw,
     "spline": _core.Motion.spline,
+    "twist": _core.Motion.twist,
     "bounded": _bounded,
     "link": lambda motion, number: _core.Motion.link(motion._motion, number),
 }
@@ -177,8 +217,8 @@ def path_of(motion: MotionLike, name: str) -> _core.Motion:
     if isinstance(motion, Motion):
         return motion._path
     wanted = (
-        "a pose of shape (4, 4), a pair of poses, or a LinearMotion, ScrewMotion, SplineMotion, "
-        "LinkMotion or BoundedMotion"
+        "a pose of shape (4, 4), a pair of poses, or another Motion, for example a "
+        "LinearMotion"
     )
     try:
         poses = np.asarray(motion)

@@ -204,7 +204,7 @@ def collide(
                          speed about the origin of its frame, which goes straight. Each
                          vertex of a mesh that deforms goes straight from begin * previous
                          to end * current.
-        a LinearMotion, ScrewMotion, SplineMotion, LinkMotion or BoundedMotion
+        a Motion, for example a LinearMotion
     query : "all", "first" or "any"
         "all": all contacts. "first": the contacts that may be the first; later ones are
         skipped. "any": at most one contact; the query stops at the first proof.

@@ -15,6 +15,7 @@
 #include "fcl/math/motion/joint_chain.h"
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
+#include "fcl/math/motion/twist_motion.h"
 #include "geometry.h"
 
 namespace fcl_ccd {
@@ -203,6 +204,14 @@ fcl::ChainMotion polynomials(const fcl::JointChain& chain,
   return fcl::ChainMotion::polynomial(chain, values, toTransform(base, "base"));
 }
 
+Motion twist(const Doubles& pose, const Doubles& linear, const Doubles& angular,
+             const Doubles& reference, bool is_screw) {
+  return following(std::make_shared<fcl::TwistMotion<double>>(
+      toTransform(pose, "pose"), toVector(linear, "linear"), toVector(angular, "angular"),
+      is_screw ? fcl::ReferencePath::kScrew : fcl::ReferencePath::kStraight,
+      toVector(reference, "reference")));
+}
+
 Motion linkOf(const fcl::ChainMotion& motion, int number) {
   return following(motion.link(number));
 }
@@ -313,7 +322,8 @@ void bindMotions(py::module_& module) {
       .def_static("screw", &screw)
       .def_static("spline", &spline)
       .def_static("bounded", &bounded)
-      .def_static("link", &linkOf);
+      .def_static("link", &linkOf)
+      .def_static("twist", &twist);
   Class<fcl::JointChain>(module, "JointChain")
       .defInit<>()
       .def("add", &addJoint)

@@ -35,6 +35,7 @@
 #include <fcl/math/motion/screw_motion.h>
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
+#include <fcl/math/motion/twist_motion.h>
 #include <fcl/narrowphase/continuous_candidates.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/continuous_features.h>
@@ -292,6 +293,15 @@ std::unique_ptr<fcl::MotionBased> readMotion() {
     const auto t = readVectors(4), r = readVectors(4);
     return std::make_unique<fcl::SplineMotion<double>>(t[0], t[1], t[2], t[3], r[0], r[1],
                                                        r[2], r[3]);
+  }
+  if (kind == "twist") {
+    const Transform3d pose = readPose();
+    const Vector3d linear = readVector(), angular = readVector(),
+                   reference = readVector();
+    const auto path =
+        readInt() ? fcl::ReferencePath::kScrew : fcl::ReferencePath::kStraight;
+    return std::make_unique<fcl::TwistMotion<double>>(pose, linear, angular, path,
+                                                      reference);
   }
   const Transform3d begin = readPose(), end = readPose();
   if (kind == "screw") return std::make_unique<fcl::ScrewMotion<double>>(begin, end);

@@ -73,6 +73,31 @@ def test_as_in_cpp():
     assert collided >= 5
 
 
+def test_twists_as_in_cpp():
+    box_command, box = reference.shape("Box", 0.6, 0.6, 0.5)
+    ball = fcl_ccd.RigidMesh(*BALL)
+    commands = [box_command, reference.rigid(*BALL)]
+    still = f"translation {reference.poses(np.eye(4), np.eye(4))}"
+    begin = fcl_ccd.urdf_origin((1, 0, 0.1), (0.1, 0.2, 0.3))
+    linear, angular, about = (0.2, 0.1, -0.1), (0.5, 1.0, 9.0), (-1.0, 0.1, 0.2)
+    motions = []
+    for path in ("screw", "straight"):
+        numbers = " ".join(reference._text(np.asarray(x)) for x in (begin, linear, angular, about))
+        moves = f"twist {numbers} {int(path == 'screw')}"
+        commands.append(f"motions 0 1 {still} {moves} {reference.request(query='first')}")
+        motions.append(fcl_ccd.TwistMotion(begin, linear, angular, path, about))
+    collided = 0
+    for motion, lines in zip(motions, reference.run(commands)[2:]):
+        result = fcl_ccd.collide(box, ball, None, motion, query="first")
+        reference.require_same(result, lines)
+        collided += result.is_collide
+    assert collided
+    with pytest.raises(ValueError, match="path is 'round'. Give 'screw' or 'straight'"):
+        fcl_ccd.TwistMotion(begin, linear, angular, "round")
+    with pytest.raises(ValueError, match="radians"):
+        fcl_ccd.TwistMotion(begin, linear, (1e7, 0, 0))
+
+
 def test_known_time():
     """A ball at the end of an arm goes round 2.5 times, and meets one on its way."""
     chain = fcl_ccd.JointChain()

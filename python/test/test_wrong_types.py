@@ -61,6 +61,7 @@ CALLS = {
     "ScrewMotion": (EYE, EYE),
     "Sphere": (1,),
     "SplineMotion": (CONTROL, CONTROL),
+    "TwistMotion": (EYE, (0, 0, 1), (0, 0, 1)),
     "TriangleP": (*VERTICES[:3],),
     "candidates": (MESH, MESH),
     "collide": (MESH, BALL),

@@ -9,9 +9,11 @@
 #include "base/default_floating_point.h"
 #include "fcl/common/exception.h"
 #include "fcl/math/motion/joint_chain.h"
+#include "fcl/math/motion/twist_motion.h"
 #include "paths/chain_path.h"
 #include "paths/posed_vector.h"
 #include "paths/sine.h"
+#include "paths/twist_path.h"
 #include "prepare/nearest_rotation.h"
 
 namespace fcl {
@@ -38,9 +40,18 @@ void requireFinite(const Numbers& numbers, const std::string& name) {
     throw Exception(name + " has a number that is not finite. Correct it");
 }
 
+/// The same of lengths, which queries take up to 2^160 (query_range.cpp).
+void requireLengths(const double (&numbers)[3], const std::string& name) {
+  requireFinite(numbers, name);
+  const bool is_large = std::any_of(std::begin(numbers), std::end(numbers),
+                                    [](double x) { return std::abs(x) > 0x1p160; });
+  if (is_large)
+    throw Exception(name + " has a length beyond 2^160. Use a larger unit of length");
+}
+
 Pose requirePose(const BoundedMotion::Placement& placement, const std::string& name) {
   requireFinite(placement.rotation, name);
-  requireFinite(placement.translation, name);
+  requireLengths(placement.translation, name);
   Pose pose;
   std::copy(placement.rotation, placement.rotation + 9, pose.rotation);
   std::copy(placement.translation, placement.translation + 3, pose.translation);
@@ -149,6 +160,25 @@ std::shared_ptr<const BoundedMotion> makeLinkPath(const ChainPathPtr& chain, int
     throw Exception("ChainMotion: there is no link " + std::to_string(link) +
                     ". The chain has the links 0 to " + std::to_string(num_links - 1));
   return std::make_shared<deformable::LinkPath>(chain, link);
+}
+
+std::shared_ptr<const BoundedMotion> makeTwistPath(const BoundedMotion::Placement& pose,
+                                                   const double (&linear)[3],
+                                                   const double (&angular)[3],
+                                                   const double (&reference)[3],
+                                                   ReferencePath path) {
+  const DefaultFloatingPoint mode;
+  const Pose begin = requirePose(pose, "TwistMotion: the pose");
+  requireLengths(linear, "TwistMotion: the linear velocity");
+  requireFinite(angular, "TwistMotion: the angular velocity");
+  requireLengths(reference, "TwistMotion: the reference point");
+  if (!(deformable::norm(angular) <= deformable::kMostAngle))
+    throw Exception(
+        "TwistMotion: the angular velocity is more than 2^20 radians a step. Give "
+        "shorter steps");
+  return std::make_shared<deformable::TwistPath>(begin, vecOf(linear), vecOf(angular),
+                                                 vecOf(reference),
+                                                 path == ReferencePath::kScrew);
 }
 
 BoundedMotion::Placement placementOfUrdf(const double (&xyz)[3], const double (&rpy)[3]) {

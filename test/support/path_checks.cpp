@@ -78,6 +78,26 @@ RoundingParts roundingParts(const BoundedMotion& motion, const ExactPath& exact,
           ratio(rate, path.rateError(x.norm()) + 1e-14L * of.first.norm() + 1e-15L)};
 }
 
+RoundingParts ownRoundingParts(const BoundedMotion& motion, const RealPose& pose,
+                               const RealPose& rate, const Vector3<double>& direction,
+                               double t) {
+  const BoundedMotion::Rounding more = motion.moreRounding();
+  const auto part = [&](BoundedMotion::Placement at, const RealPose& exact,
+                        double rotation, double translation) {
+    const RealVector origin = applied(at, RealVector::Zero());
+    std::fill(at.translation, at.translation + 3, 0);
+    const RealVector x = applied(at, direction.cast<Real>());
+    return std::max(ratio((x - exact.rotation * direction.cast<Real>()).norm(), rotation),
+                    ratio((origin - exact.translation).norm(), translation));
+  };
+  return {part(motion.placementAt(t), pose, more.rotation, more.translation),
+          part(motion.rateAt(t), rate, more.rotation_rate, more.translation_rate)};
+}
+
+RoundingParts greatest(const RoundingParts& x, const RoundingParts& y) {
+  return {std::max(x.pose, y.pose), std::max(x.rate, y.rate)};
+}
+
 BoundParts boundParts(const BoundedMotion& motion, const ExactPath& exact,
                       const Vector3<double>& center, double radius, double t0, double t1,
                       Random& random) {

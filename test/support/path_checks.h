@@ -26,6 +26,17 @@ struct RoundingParts {
 RoundingParts roundingParts(const BoundedMotion& motion, const ExactPath& exact,
                             const Vector3<double>& x, double t);
 
+/// @brief The parts of moreRounding() alone that the errors of a pose and of its rate
+/// reached, for motions that say all of their rounding there.
+/// @param pose, rate  the exact ones at t
+/// @param direction  a unit vector
+RoundingParts ownRoundingParts(const BoundedMotion& motion, const RealPose& pose,
+                               const RealPose& rate, const Vector3<double>& direction,
+                               double t);
+
+/// @brief The larger one of each part.
+RoundingParts greatest(const RoundingParts& x, const RoundingParts& y);
+
 /// @brief The parts of the bounds on the acceleration and the angular speed that were
 /// reached at samples of a span. Both are at most 1.
 struct BoundParts {

@@ -44,13 +44,6 @@ RealPose realPose(const Tf& tf) {
   return {tf.linear().cast<Real>(), tf.translation().cast<Real>()};
 }
 
-RealPose realPose(const BoundedMotion::Placement& at) {
-  RealPose out;
-  for (int i = 0; i < 9; ++i) out.rotation(i / 3, i % 3) = at.rotation[i];
-  for (int k = 0; k < 3; ++k) out.translation[k] = at.translation[k];
-  return out;
-}
-
 /// A robot with its motion, in the library's form and as numbers.
 struct Robot {
   enum class Kind { kFixed, kRevolute, kPrismatic };
@@ -177,36 +170,17 @@ TEST(FCL_JOINT_CHAIN, followsTheExactChain) {
   EXPECT_GE(worst.pose, 0.02);
 }
 
-/// The largest parts of moreRounding() alone, without the rounding of the contract, that
-/// the errors of a link reached.
+/// At both ends and at two other times.
 RoundingParts ownRounding(const Robot& robot, int link, Random& random) {
   const auto motion = robot.motion().link(link);
-  const BoundedMotion::Rounding more = motion->moreRounding();
   RoundingParts worst{};
   for (int i = 0; i < 4; ++i) {
     const double t = i < 2 ? i : random.uniform(0, 1);
     const Robot::State exact = robot.stateAt(link, t);
-    const auto off = [](const BoundedMotion::Placement& x, const RealPose& y) {
-      const RealPose found = realPose(x);
-      return RealPose{found.rotation - y.rotation, found.translation - y.translation};
-    };
-    const RealPose pose = off(motion->placementAt(t), exact.pose),
-                   rate = off(motion->rateAt(t), exact.rate);
-    const RealVector x = randomDirection(random).cast<Real>();
-    const auto part = [](Real error, double bound) {
-      return error == 0 ? 0 : static_cast<double>(error / Real{bound});
-    };
-    worst.pose = std::max({worst.pose, part((pose.rotation * x).norm(), more.rotation),
-                           part(pose.translation.norm(), more.translation)});
-    worst.rate =
-        std::max({worst.rate, part((rate.rotation * x).norm(), more.rotation_rate),
-                  part(rate.translation.norm(), more.translation_rate)});
+    worst = greatest(worst, ownRoundingParts(*motion, exact.pose, exact.rate,
+                                             randomDirection(random), t));
   }
   return worst;
-}
-
-RoundingParts greatest(const RoundingParts& x, const RoundingParts& y) {
-  return {std::max(x.pose, y.pose), std::max(x.rate, y.rate)};
 }
 
 TEST(FCL_JOINT_CHAIN, saysItsRounding) {

@@ -55,7 +55,7 @@ FCL_EXPORT BoundedMotion::Placement placementOfUrdf(const double (&xyz)[3],
 
 }  // namespace detail
 
-/// @brief The pose that a URDF writes as <origin xyz="..." rpy="..."/>: a translation,
+/// @brief The pose that a URDF writes as an origin, with xyz and rpy: a translation,
 /// and turns about the fixed axes x, y and z, in this order, in radians.
 /// @throws fcl::Exception  a number is not finite, or an angle beyond 2^20
 inline Transform3<double> urdfOrigin(const Vector3<double>& xyz,
@@ -72,7 +72,7 @@ inline Transform3<double> urdfOrigin(const Vector3<double>& xyz,
 /// Each joint carries a link, whose frame is that of the joint, as in a URDF: with the
 /// value q, the frame of the link is `origin` in the frame of the link before it, turned
 /// by q radians about `axis`, or moved by q along it. Links may branch, as the fingers of
-/// a gripper do. A frame that is fixed to a link, such as the <origin> of a collision
+/// a gripper do. A frame that is fixed to a link, such as the origin of a collision
 /// geometry or a tool, is a link of a fixed joint. It costs queries no time.
 ///
 /// Lengths have the unit of the geometries, angles are in radians. Copies are cheap and
