@@ -335,6 +335,27 @@ class CurvedTraversal {
     return half(work.a.child) << 32 | half(work.b.child);
   }
 
+  /// In a span with one bound on the acceleration. A body may rest near another one in a
+  /// part of the span, and be fast in the rest: then steps by this bound are short.
+  static constexpr int kMostStepsInSpan = 64;
+
+  /// Whether a bound on the acceleration is as good in a long span as in a short one.
+  bool isBentAlike() const {
+    return body(0).path().hasConstantAcceleration() &&
+           body(1).path().hasConstantAcceleration();
+  }
+
+  /// Both halves of what is left of a pair's span. They share its steps. The first half
+  /// comes last, as in halveTiny().
+  void pushHalves(const PartWork& work) {
+    PartWork first = work, second = work;
+    first.t1 = second.t0 = second.start = work.start + 0.5 * (work.t1 - work.start);
+    if (!work.is_one_of_many) seen_[keyOf(work)].steps += work.steps;
+    first.is_one_of_many = second.is_one_of_many = true;
+    push(second);
+    push(first);
+  }
+
   /// Whether a pair had a contact in an earlier span: only the first one counts.
   bool touchedBefore(const PartWork& work) const {
     const auto it = seen_.find(keyOf(work));
@@ -391,15 +412,21 @@ class CurvedTraversal {
     if (work.steps == 0) ++counts_.triangle_pairs;
     const double t_stop = std::min(end, works_.nextTurn(work));
     PairOfManySpans* const known = work.is_one_of_many ? &seen_[keyOf(work)] : nullptr;
-    int left = std::max(options_.max_steps - (known ? known->steps : work.steps), 0);
+    const int before = known ? known->steps : work.steps,
+              all = std::max(options_.max_steps - before, 0);
+    int left = isBentAlike() ? all : std::min(all, kMostStepsInSpan);
+    const bool may_halve = left < all;
     const int most = left;
     const auto answer = pair.advance(work.start, t_stop, left, counts_);
     if (known) known->steps += most - left;
     setPartingDirection(pair, answer, work.start);
     if (answer == TriangleAdvance::Answer::kApart) return nullptr;
-    if (answer == TriangleAdvance::Answer::kOpen && left > 0) {
-      work.steps = options_.max_steps - left;
-      push(work);
+    if (answer == TriangleAdvance::Answer::kOpen && (left > 0 || may_halve)) {
+      work.steps = before + most - left;
+      if (left > 0)
+        push(work);
+      else
+        pushHalves(work);
       return nullptr;
     }
     if (known) known->toc = std::min(known->toc, work.start);

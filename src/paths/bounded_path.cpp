@@ -77,25 +77,31 @@ MotionPath MotionPath::bounded(const BoundedMotion& motion, const char* name) {
   return path;
 }
 
-// From the beginning, |T'| grows by the acceleration at most. For turns of more than 8
-// radians this is far from what is reached. There it is bounded in spans of about a
-// radian, from the middle of each. The computed T and T' may be off by what the motion
-// says in moreRounding().
+// From the beginning, |T'| grows by the acceleration at most. This is far from what is
+// reached for turns of more than 8 radians, and if the acceleration is much larger than
+// the speed at the beginning and the way, as on a path through many waypoints. There it
+// is bounded in spans, from the middle of each: in spans of about a radian, in which the
+// acceleration adds about as much as the speed and the way. The computed T and T' may be
+// off by what the motion says in moreRounding().
 void MotionPath::setBoundedSpeed() {
-  constexpr double kManyRadians = 8, kMostSpans = 64;
+  constexpr double kManyRadians = 8, kMuchBend = 16, kMostSpans = 64;
   const auto acceleration = [this](double t0, double t1) {
     return checkedAcceleration(*motion_, name_, {0, 0, 0}, 0, t0, t1);
   };
   const double rate_error = more_rounding_.translation_rate,
                way_error = 2 * more_rounding_.translation;
-  const Vec begin = vecOf(boundedPose(0).translation);
-  if (turn_speed_ <= kManyRadians) {
-    translation_speed_ =
-        (norm(boundedRate(0).translation) + rate_error + acceleration(0, 1)) * kUpward;
+  const Vec begin = vecOf(boundedPose(0).translation),
+            end = vecOf(boundedPose(1).translation);
+  const double first_speed = norm(boundedRate(0).translation) + rate_error,
+               whole_bend = acceleration(0, 1), moved = first_speed + norm(end - begin);
+  const bool is_bent = whole_bend > kMuchBend * moved;
+  if (turn_speed_ <= kManyRadians && !is_bent) {
+    translation_speed_ = (first_speed + whole_bend) * kUpward;
     extent_ = (translation_speed_ + way_error) * kUpward;
     return;
   }
-  const double num_spans = std::min(std::ceil(turn_speed_), kMostSpans),
+  const double wanted = std::max(turn_speed_, is_bent ? whole_bend / (2 * moved) : 1);
+  const double num_spans = std::min(std::ceil(wanted), kMostSpans),
                half = 0.5 / num_spans;
   for (double i = 0; i < num_spans; ++i) {
     const double t0 = i / num_spans, t1 = (i + 1) / num_spans, middle = t0 + half,

@@ -4,6 +4,7 @@
 // FCL's motions on the same path.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
@@ -134,6 +135,29 @@ class SteadyTurn : public Turn {
  private:
   double angle_;
   Vector way_;
+};
+
+/// Rests until t = 0.3, and rises then.
+class LateRise : public Turn {
+ public:
+  double accelerationBound(const double (&)[3], double, double,
+                           double t1) const override {
+    return t1 <= kStart ? 0 : kAcceleration;
+  }
+  double angularSpeedBound(double, double) const override { return 0; }
+
+ protected:
+  double angle(double) const override { return 0; }
+  double angleRate(double) const override { return 0; }
+  Vector way(double t) const override {
+    return {0, 0, 0.5 * kAcceleration * std::pow(std::max(t - kStart, 0.), 2)};
+  }
+  Vector wayRate(double t) const override {
+    return {0, 0, kAcceleration * std::max(t - kStart, 0.)};
+  }
+
+ private:
+  static constexpr double kStart = 0.3, kAcceleration = 1e4;
 };
 
 constexpr double kHalfWidth = 0.0625;
@@ -378,6 +402,22 @@ class Wrong : public Pendulum {
  private:
   What what_;
 };
+
+/// With the bound for the whole step, steps would be 1e-6 of it as long as the ball
+/// rests.
+TEST_F(BoundedMotions, RestNearAnotherObject) {
+  const LateRise rise;
+  const Sphere<double> ball(1);
+  const TranslationMotion<double> below(Matrix3<double>::Identity(),
+                                        Vector(0, 0, -2 - 1e-8), Vector(0, 0, -2 - 1e-8));
+  ContinuousContactRequest<double> request;
+  for (const ContinuousQuery query : {ContinuousQuery::kFirst, ContinuousQuery::kAll}) {
+    request.query = query;
+    ContinuousContactResult<double> result;
+    continuousCollide(&ball, &rise, &ball, &below, request, result);
+    EXPECT_FALSE(result.is_collide);
+  }
+}
 
 TEST_F(BoundedMotions, RefuseWhatIsNoNumber) {
   const auto plate = makeModel<Rigid>(makePlate(0.5));
