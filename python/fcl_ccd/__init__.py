@@ -21,11 +21,11 @@ is late.
 Meshes: DeformableMesh, RigidMesh; weld_vertices() for triangle soup. Shapes: Box, Sphere,
 Capsule, Ellipsoid, Cone, Cylinder, Convex, Plane, Halfspace, TriangleP. Maps of occupied
 cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, TwistMotion,
-SplineMotion, the links of a robot (JointChain, ChainMotion), and your own as a BoundedMotion.
-Queries: collide(), self_collide(), which take a Filter and give a Result. Many objects:
-CollisionManager. With min_distance features are in contact at a distance. For your own
-solver: candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
-vertex_vertex() on arrays.
+SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
+a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a Result.
+Many objects: CollisionManager. With min_distance features are in contact at a distance. For
+your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge()
+and vertex_vertex() on arrays.
 
 Tables and pictures: to_dataframe() makes a pandas.DataFrame of contacts, Result.show() draws
 them. Meshes, shapes, motions, filters and results can be copied and pickled.
@@ -40,7 +40,15 @@ from ._core import version as __version__
 from ._dataframes import to_dataframe
 from ._manager import CollisionManager, ManagerResult, Pair
 from ._meshes import DeformableMesh, RigidMesh, weld_vertices
-from ._motions import BoundedMotion, LinearMotion, Motion, ScrewMotion, SplineMotion, TwistMotion
+from ._motions import (
+    BoundedMotion,
+    LinearMotion,
+    Motion,
+    ScrewMotion,
+    SplineMotion,
+    TwistMotion,
+    WaypointMotion,
+)
 from ._octrees import OcTree, octree_cell_dtype
 from ._queries import (
     Filter,
@@ -98,6 +106,7 @@ __all__ = [
     "SplineMotion",
     "TriangleP",
     "TwistMotion",
+    "WaypointMotion",
     "candidate_dtype",
     "candidates",
     "collide",

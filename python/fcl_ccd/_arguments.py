@@ -291,6 +291,10 @@ def pose(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return _array(values, name, "f", (4, 4))
 
 
+def poses(values: ArrayLike, name: str) -> NDArray[np.float64]:
+    return _array(values, name, "f", (None, 4, 4))
+
+
 def integer(value: int, name: str, most: int = 2**31 - 1) -> int:
     if isinstance(value, bool):
         raise wrong_type(name, value, "an integer")

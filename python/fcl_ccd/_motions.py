@@ -114,13 +114,36 @@ class TwistMotion(Motion):
         )
 
 
+class WaypointMotion(Motion):
+    """A motion that passes through poses at given times, with a continuous velocity.
+
+    poses : (n, 4, 4) array, two or more
+    times : (n,) array that ascends from 0 to 1, with steps of at least 2^-30
+
+    Between two poses each coordinate of the origin follows a monotone cubic, in the axes of the
+    world. The mesh turns the shorter way round, by at most 180 degrees. Between equal poses it
+    rests exactly. Two poses are joined at constant speed.
+
+    Raises ValueError for another number of times, times that are not as above, poses that are
+    no rotation and translation, and numbers that are not finite.
+    """
+
+    def __init__(self, poses: ArrayLike, times: ArrayLike) -> None:
+        self._make(
+            "waypoints",
+            _arguments.poses(poses, "poses"),
+            _arguments.list_of_numbers(times, "times"),
+        )
+
+
 class SplineMotion(Motion):
     """A motion on cubic B-splines, as FCL's SplineMotion.
 
     translation : (4, 3) array, the control points of the position of the origin
     rotation : (4, 3) array, the control points of the rotation vector, in radians
 
-    The pose at t = 0 is (c0 + 4 c1 + c2) / 6 of each, at t = 1 (c1 + 4 c2 + c3) / 6.
+    The pose at t = 0 is (c0 + 4 c1 + c2) / 6 of each, at t = 1 (c1 + 4 c2 + c3) / 6. It does
+    not pass through the control points: a WaypointMotion passes through poses.
     """
 
     def __init__(self, translation: ArrayLike, rotation: ArrayLike) -> None:
@@ -200,6 +223,7 @@ _MAKERS: Dict[str, Callable[..., _core.Motion]] = {
     "screw": _core.Motion.screw,
     "spline": _core.Motion.spline,
     "twist": _core.Motion.twist,
+    "waypoints": _core.Motion.waypoints,
     "bounded": _bounded,
     "link": lambda motion, number: _core.Motion.link(motion._motion, number),
 }

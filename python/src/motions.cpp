@@ -16,6 +16,7 @@
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/spline_motion.h"
 #include "fcl/math/motion/twist_motion.h"
+#include "fcl/math/motion/waypoint_motion.h"
 #include "geometry.h"
 
 namespace fcl_ccd {
@@ -212,6 +213,15 @@ Motion twist(const Doubles& pose, const Doubles& linear, const Doubles& angular,
       toVector(reference, "reference")));
 }
 
+/// @param poses  4 x 4 each
+Motion waypoints(const Doubles& poses, const std::vector<double>& times) {
+  fcl::aligned_vector<fcl::Transform3d> tfs;
+  for (py::ssize_t i = 0; i < poses.size() / 16; ++i)
+    tfs.push_back(fcl::detail::toTransform(
+        toPose(poses.data() + 16 * i, "pose " + std::to_string(i))));
+  return following(std::make_shared<fcl::WaypointMotion<double>>(tfs, times));
+}
+
 Motion linkOf(const fcl::ChainMotion& motion, int number) {
   return following(motion.link(number));
 }
@@ -323,7 +333,8 @@ void bindMotions(py::module_& module) {
       .def_static("spline", &spline)
       .def_static("bounded", &bounded)
       .def_static("link", &linkOf)
-      .def_static("twist", &twist);
+      .def_static("twist", &twist)
+      .def_static("waypoints", &waypoints);
   Class<fcl::JointChain>(module, "JointChain")
       .defInit<>()
       .def("add", &addJoint)

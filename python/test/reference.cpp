@@ -36,6 +36,7 @@
 #include <fcl/math/motion/spline_motion.h>
 #include <fcl/math/motion/translation_motion.h>
 #include <fcl/math/motion/twist_motion.h>
+#include <fcl/math/motion/waypoint_motion.h>
 #include <fcl/narrowphase/continuous_candidates.h>
 #include <fcl/narrowphase/continuous_collision.h>
 #include <fcl/narrowphase/continuous_features.h>
@@ -302,6 +303,13 @@ std::unique_ptr<fcl::MotionBased> readMotion() {
         readInt() ? fcl::ReferencePath::kScrew : fcl::ReferencePath::kStraight;
     return std::make_unique<fcl::TwistMotion<double>>(pose, linear, angular, path,
                                                       reference);
+  }
+  if (kind == "waypoints") {
+    fcl::aligned_vector<Transform3d> poses(static_cast<std::size_t>(readInt()));
+    std::vector<double> times;
+    for (Transform3d& pose : poses) pose = readPose();
+    for (std::size_t i = 0; i < poses.size(); ++i) times.push_back(readNumber());
+    return std::make_unique<fcl::WaypointMotion<double>>(poses, times);
   }
   const Transform3d begin = readPose(), end = readPose();
   if (kind == "screw") return std::make_unique<fcl::ScrewMotion<double>>(begin, end);

@@ -98,6 +98,46 @@ def test_twists_as_in_cpp():
         fcl_ccd.TwistMotion(begin, linear, (1e7, 0, 0))
 
 
+def test_waypoints_as_in_cpp():
+    box_command, box = reference.shape("Box", 0.6, 0.6, 0.5)
+    ball = fcl_ccd.RigidMesh(*BALL)
+    poses = [
+        fcl_ccd.urdf_origin(xyz, rpy)
+        for xyz, rpy in (
+            ((1, 0, 0.1), (0.1, 0.2, 0.3)),
+            ((1, 0, 0.1), (0.1, 0.2, 0.3)),
+            ((0.9, 0.9, 0), (1, 2, 0.3)),
+            ((0.1, 0.2, 0.7), (1, 2.5, -0.3)),
+        )
+    ]
+    times = np.array([0, 0.2, 0.5, 1])
+    moves = f"waypoints 4 {reference._text(np.array(poses))} {reference._text(times)}"
+    still = f"translation {reference.poses(np.eye(4), np.eye(4))}"
+    asks = f"motions 0 1 {still} {moves} {reference.request(query='first')}"
+    lines = reference.run([box_command, reference.rigid(*BALL), asks])[2]
+    motion = fcl_ccd.WaypointMotion(poses, times)
+    result = fcl_ccd.collide(box, ball, None, motion, query="first")
+    reference.require_same(result, lines)
+    assert 0.2 < result.time_of_contact < 1
+
+
+@pytest.mark.parametrize(
+    "poses, times, text",
+    [
+        ([np.eye(4)], [0], "it has 1 pose"),
+        ([np.eye(4)] * 2, [0, 0.5, 1], "2 poses have 3 times"),
+        ([np.eye(4)] * 3, [0, 0.5, 0.5], "ascend"),
+        ([np.eye(4)] * 2, [0, 0.5], "from 0 to 1"),
+        ([np.eye(4)] * 2, [0, math.nan], "times has a number that is not finite"),
+        ([np.eye(4), np.diag([2, 2, 2, 1])], [0, 1], "pose 1"),
+        (np.eye(4), [0, 1], "shape"),
+    ],
+)
+def test_wrong_waypoints(poses, times, text):
+    with pytest.raises(ValueError, match=text):
+        fcl_ccd.WaypointMotion(poses, times)
+
+
 def test_known_time():
     """A ball at the end of an arm goes round 2.5 times, and meets one on its way."""
     chain = fcl_ccd.JointChain()

@@ -176,6 +176,7 @@ def robot():
 
 MOTIONS = {
     "TwistMotion": fcl_ccd.TwistMotion(FALLS[0], (0, 0, -2), (0.1, 9, 0), "straight"),
+    "WaypointMotion": fcl_ccd.WaypointMotion([FALLS[0], FALLS[0], FALLS[1]], (0, 0.2, 1)),
     "LinkMotion": fcl_ccd.ChainMotion(robot(), [0, 1], [-2, 2]).link(2),
     "polynomial": fcl_ccd.ChainMotion.polynomial(robot(), [[0, 0, -2], [1]], np.eye(4)).link(1),
     "LinearMotion": fcl_ccd.LinearMotion(*FALLS, (0.1, 0.2, 0.3)),

@@ -63,6 +63,7 @@ CALLS = {
     "SplineMotion": (CONTROL, CONTROL),
     "TwistMotion": (EYE, (0, 0, 1), (0, 0, 1)),
     "TriangleP": (*VERTICES[:3],),
+    "WaypointMotion": ([EYE, EYE], (0, 1)),
     "candidates": (MESH, MESH),
     "collide": (MESH, BALL),
     "edge_edge": (T0[4], T0[4]),

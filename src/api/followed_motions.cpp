@@ -10,10 +10,12 @@
 #include "fcl/common/exception.h"
 #include "fcl/math/motion/joint_chain.h"
 #include "fcl/math/motion/twist_motion.h"
+#include "fcl/math/motion/waypoint_motion.h"
 #include "paths/chain_path.h"
 #include "paths/posed_vector.h"
 #include "paths/sine.h"
 #include "paths/twist_path.h"
+#include "paths/waypoint_path.h"
 #include "prepare/nearest_rotation.h"
 
 namespace fcl {
@@ -99,6 +101,28 @@ void requireCount(std::size_t count, const JointTree& tree, const std::string& n
                     " joints that move. Give a value for each, none for fixed joints");
 }
 
+void requireTimes(const std::vector<double>& times, std::size_t num_poses) {
+  const std::string name = "WaypointMotion: ";
+  const auto text = [](std::size_t i) { return std::to_string(i); };
+  if (num_poses < 2)
+    throw Exception(name + "it has " + text(num_poses) +
+                    (num_poses == 1 ? " pose." : " poses.") + " Give two or more");
+  if (times.size() != num_poses)
+    throw Exception(name + text(num_poses) + " poses have " + text(times.size()) +
+                    " times. Give a time for each pose");
+  requireFinite(times, name + "the list of times");
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] - times[i - 1] >= deformable::kLeastPieceTime))
+      throw Exception(name + "the times of the poses " + text(i - 1) + " and " + text(i) +
+                      " are " + std::to_string(times[i - 1]) + " and " +
+                      std::to_string(times[i]) +
+                      ". Give times that ascend, by at least 2^-30");
+  if (times.front() != 0 || times.back() != 1)
+    throw Exception(name + "the times go from " + std::to_string(times.front()) + " to " +
+                    std::to_string(times.back()) +
+                    ". Let them go from 0 to 1: repeat a pose where the body rests");
+}
+
 }  // namespace
 
 JointTreePtr withJoint(const JointTreePtr& tree, JointKind kind,
@@ -179,6 +203,18 @@ std::shared_ptr<const BoundedMotion> makeTwistPath(const BoundedMotion::Placemen
   return std::make_shared<deformable::TwistPath>(begin, vecOf(linear), vecOf(angular),
                                                  vecOf(reference),
                                                  path == ReferencePath::kScrew);
+}
+
+std::shared_ptr<const BoundedMotion> makeWaypointPath(
+    const std::vector<BoundedMotion::Placement>& poses,
+    const std::vector<double>& times) {
+  const DefaultFloatingPoint mode;
+  requireTimes(times, poses.size());
+  std::vector<Pose> waypoints;
+  for (const auto& pose : poses)
+    waypoints.push_back(
+        requirePose(pose, "WaypointMotion: pose " + std::to_string(waypoints.size())));
+  return std::make_shared<deformable::WaypointPath>(waypoints, times);
 }
 
 BoundedMotion::Placement placementOfUrdf(const double (&xyz)[3], const double (&rpy)[3]) {

@@ -18,15 +18,13 @@
 #include "numerics/error_bounds.h"
 #include "paths/path_matrix.h"
 #include "paths/posed_vector.h"
+#include "paths/quaternion.h"
 #include "paths/sine.h"
 
 namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-/// A smaller rotation is only the rounding of the poses from which it was made.
-constexpr double kLeastAngle = 0x1p-50;
 
 /// From this angle on, a turn may go either way round. Poses that are rotations up to
 /// rounding need a few u below pi. But FCL's axis and this one may be computed from
@@ -48,43 +46,15 @@ double spectralBound(const double (&m)[9]) {
   return std::sqrt(most) * (1 + 0x1p-48);
 }
 
-/// The rotation from one pose to the other: a unit axis and an angle in [0, pi]. The
-/// angle is 0 if the rotation is only rounding.
-double turnBetween(const Pose& from, const Pose& to, Vec& axis) {
-  double m[3][3];
+/// The rotation from one pose to the other.
+Turning turningBetween(const Pose& from, const Pose& to) {
+  double m[9];
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j)
-      m[i][j] = to.rotation[3 * i] * from.rotation[3 * j] +
-                to.rotation[3 * i + 1] * from.rotation[3 * j + 1] +
-                to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
-  // Four times the quaternion, times its largest component (Shepperd 1978).
-  double q[4];
-  const double trace = m[0][0] + m[1][1] + m[2][2];
-  if (trace > 0) {
-    q[3] = 1 + trace;
-    for (int i = 0; i < 3; ++i) {
-      const int j = (i + 1) % 3, k = (i + 2) % 3;
-      q[i] = m[k][j] - m[j][k];
-    }
-  } else {
-    int i = m[1][1] > m[0][0] ? 1 : 0;
-    if (m[2][2] > m[i][i]) i = 2;
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    q[i] = 1 + m[i][i] - m[j][j] - m[k][k];
-    q[j] = m[j][i] + m[i][j];
-    q[k] = m[k][i] + m[i][k];
-    q[3] = m[k][j] - m[j][k];
-  }
-  Vec v = {q[0], q[1], q[2]};
-  if (q[3] < 0) {
-    v = -1. * v;
-    q[3] = -q[3];
-  }
-  const double length = norm(v), whole = std::sqrt(dot(v, v) + q[3] * q[3]);
-  if (!(length > 0.5 * kLeastAngle * whole)) return 0;
-  axis = (1 / length) * v;
-  axis = (1 / norm(axis)) * axis;
-  return 2 * angleOf(q[3] / whole, length / whole);
+      m[3 * i + j] = to.rotation[3 * i] * from.rotation[3 * j] +
+                     to.rotation[3 * i + 1] * from.rotation[3 * j + 1] +
+                     to.rotation[3 * i + 2] * from.rotation[3 * j + 2];
+  return turningOf(multipleOfQuaternion(m));
 }
 
 }  // namespace
@@ -99,7 +69,9 @@ MotionPath MotionPath::turnFrom(const Pose& beginning, const Pose& end,
                                 const Vec& half_turn_axis) {
   MotionPath path;
   path.turn_.beginning = beginning;
-  path.turn_.angle = turnBetween(beginning, end, path.turn_.axis);
+  const Turning turning = turningBetween(beginning, end);
+  path.turn_.axis = turning.axis;
+  path.turn_.angle = turning.angle;
   if (path.turn_.angle > kLeastHalfTurn && dot(path.turn_.axis, half_turn_axis) < 0) {
     path.turn_.axis = -1. * path.turn_.axis;
     path.turn_.angle = 2 * M_PI - path.turn_.angle;
