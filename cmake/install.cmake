@@ -22,7 +22,7 @@ if(TARGET fcl-ccd)
     RENAME fcl-ccd
     COMPONENT tool)
   # The program contains three.js, unless it was built without the viewer of its pages.
-  install(FILES ${fcl_ccd_viewer_license} DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.three.js
+  install(FILES ${FCL_CCD_VIEWER}.LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME LICENSE.three.js
           COMPONENT tool)
 endif()
 # From here on everything is for those who compile with the library.

@@ -26,7 +26,7 @@ def configure(folder: Path) -> None:
 
 
 class CMakeBuild(build_ext):
-    """Compiles the module fcl_ccd._core, and copies it to where setuptools wants it."""
+    """Compiles fcl_ccd._core, and copies it and the 3D view to where setuptools wants them."""
 
     def build_extension(self, ext: Extension) -> None:
         given = os.environ.get("FCL_CCD_BUILD_DIR")
@@ -38,8 +38,10 @@ class CMakeBuild(build_ext):
         subprocess.run(build, check=True)
         to = Path(self.get_ext_fullpath(ext.name))
         to.parent.mkdir(parents=True, exist_ok=True)
-        module = next((folder / "python" / "fcl_ccd").glob("_core.*.so"))
-        shutil.copy2(module, to)
+        built = folder / "python" / "fcl_ccd"
+        shutil.copy2(next(built.glob("_core.*.so")), to)
+        for viewer in built.glob("viewer.min.js*"):
+            shutil.copy2(viewer, to.parent)
         subprocess.run(["strip", "--strip-unneeded", to], check=True)
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, List, Optional, Union
 
 import numpy as np
 
+from . import _pages
 from ._pictures import Picture, clipped
 
 if TYPE_CHECKING:
@@ -21,6 +22,16 @@ _OTHER_CONTACT, _CONTACT = (0.45, 0.0, 0.15), (0.85, 0.0, 0.0)
 _EDGE = np.array((0.3, 0.3, 0.3, 0.5))
 _MOST_EDGED = 10000  # polygons: the edges of more of them leave no place for faces
 _SIZE = 7, 6  # inches
+
+
+def has_matplotlib() -> bool:
+    try:
+        importlib.import_module("matplotlib")
+    except ModuleNotFoundError as error:
+        if error.name != "matplotlib":
+            raise
+        return False
+    return True
 
 
 def show(picture: Picture, file: Optional[Union[str, os.PathLike[str]]]) -> None:
@@ -42,16 +53,13 @@ def show(picture: Picture, file: Optional[Union[str, os.PathLike[str]]]) -> None
 
 
 def _part_of_matplotlib(name: str) -> Any:
-    try:
-        importlib.import_module("matplotlib")
-    except ModuleNotFoundError as error:
-        if error.name != "matplotlib":
-            raise
+    if not has_matplotlib():
+        page = ". Or write a page that a browser opens: show(file='contact.html')"
         raise ImportError(
             "show() needs matplotlib. Install it: on Debian the package python3-matplotlib, "
-            "elsewhere by `pip install matplotlib`",
+            f"elsewhere by `pip install matplotlib`{page if _pages.has_viewer() else ''}",
             name="matplotlib",
-        ) from error
+        )
     return importlib.import_module(f"matplotlib.{name}")
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Dict, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
-from . import _arguments, _core, _figures
+from . import _arguments, _core, _figures, _pages
 from ._dataframes import to_dataframe
 from ._pictures import Picture, picture_of
 from ._surfaces import Surface, surface_at
@@ -127,10 +127,11 @@ class Result(_Asked, _arguments.Built):
     ) -> None:
         """Draw both objects at a time of the step, with its contacts.
 
-        Opens a window, or draws in the notebook. It needs matplotlib. The contacts that
-        have begun until then are drawn, and the chosen one at every time: as a point and a line
-        along its normal. Their triangles, free edges and points, and cells of an OcTree have a
-        stronger colour.
+        Opens a window, or draws in the notebook, with matplotlib. Without it, and for a file
+        contact.html, it makes a page with a 3D view for the notebook or the browser. The contacts
+        that have begun until then are drawn, and the chosen one at every time: as a point and a
+        line along its normal. Their triangles, free edges and points, and cells of an OcTree have
+        a stronger colour.
 
         t : float, optional
             In fractions of the step. None: when the contact begins; 1 without contacts.
@@ -138,15 +139,17 @@ class Result(_Asked, _arguments.Built):
             The number of the chosen contact, in contacts, on which the picture zooms. None: it
             shows the whole objects, by default at the time of contact.
         file : str or path, optional
-            Write the picture there instead, in the format of its suffix: .png, .svg, .pdf.
+            Write the picture there instead, in the format of its suffix: .png, .svg, .pdf, or
+            .html for the page, which needs no network and no other file.
 
         A result refers to the objects of its query, and keeps them alive, also a RigidMesh that
         the call made of a mesh of another package. Pickles and deep copies of it do not have
         them, and cannot be shown (ValueError). To keep many results without their objects,
         keep copy.deepcopy(result).
 
-        Raises RuntimeError if a mesh was updated since the query, or without a window;
-        ImportError without matplotlib.
+        Raises RuntimeError if a mesh was updated since the query, without a window or a browser,
+        or for a page if the package was built without its 3D view; ImportError if it needs
+        matplotlib, which is missing.
         """
         if t is not None:
             t = _arguments.number(t, "t")
@@ -160,7 +163,7 @@ class Result(_Asked, _arguments.Built):
             raise ValueError(
                 f"file is {os.fsdecode(file)!r}. Give the name of a file, for example 'contact.png'"
             )
-        _figures.show(_picture(self, t, contact), file)
+        _draw(_picture(self, t, contact), file)
 
     def __copy__(self) -> Result:
         made = object.__new__(type(self))
@@ -188,6 +191,16 @@ def result_of(
     result = Result(**fields)
     result.__dict__.update(_query=query, _has_places=bool(enable_contact), _queried=queried)
     return result
+
+
+def _draw(picture: Picture, file: Optional[Union[str, os.PathLike[str]]]) -> None:
+    """A page if the file is one, and in place of a window or a picture without matplotlib."""
+    if file is not None and os.path.splitext(os.fsdecode(file))[1].lower() == ".html":
+        _pages.write(picture, file)
+    elif file is None and _pages.has_viewer() and not _figures.has_matplotlib():
+        _pages.open_page(picture)
+    else:
+        _figures.show(picture, file)
 
 
 def _picture(result: Result, t: Optional[float], number: Optional[int]) -> Picture:

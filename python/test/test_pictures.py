@@ -2,8 +2,6 @@
 """Result.show(): what is drawn, where, and what is refused. No test opens a window."""
 
 import itertools
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -597,24 +595,6 @@ def test_no_contact_has_no_number():
     apart = fcl_ccd.collide(sheet(), fcl_ccd.RigidMesh(*BALL), None, pose((9, 9, 9)))
     with pytest.raises(ValueError, match="contact is 1. This Result has 0 contacts"):
         apart.show(contact=1)
-
-
-def test_without_matplotlib():
-    code = """
-import sys
-sys.modules["matplotlib"] = None
-import numpy as np, fcl_ccd
-mesh = fcl_ccd.RigidMesh(np.eye(3), [(0, 1, 2)])
-for file in (None, "picture.png"):
-    try:
-        fcl_ccd.collide(mesh, mesh).show(file=file)
-    except ImportError as error:
-        print(error)
-"""
-    done = subprocess.run([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, check=True)
-    lines = done.stdout.splitlines()
-    assert len(lines) == 2 and all(line.startswith("show() needs matplotlib") for line in lines)
-    assert "python3-matplotlib" in lines[0]
 
 
 def test_what_a_result_refers_to():

@@ -325,6 +325,9 @@ door_deb() { # Debian packages: no file of stock FCL, used beside it; cmake/bare
   configure_and_run deb_program "$root/usr/lib/fcl-ccd"
   PYTHONPATH=$root/usr/lib/python3/dist-packages "$python" -B -c \
     "import fcl_ccd; print(fcl_ccd.__file__)"
+  for file in _page.html _page.js viewer.min.js viewer.min.js.LICENSE; do
+    [ -f "$root/usr/lib/python3/dist-packages/fcl_ccd/$file" ] || fail "The Python package has no $file"
+  done
   # The package compiles its modules and removes what Python has compiled.
   dpkg-deb -e "$deb"/python3-fcl-ccd_*.deb "$work/deb_python"
   grep -q py3compile "$work/deb_python/postinst"

@@ -5,6 +5,15 @@
 // needed.
 'use strict';
 
+// The kinds of contacts.
+const kKinds = {
+  vf: { words: 'vertex-face', colour: '#e63946' },
+  ee: { words: 'edge-edge', colour: '#1d3557' },
+  ve: { words: 'vertex-edge', colour: '#f4a261' },
+  vv: { words: 'vertex-vertex', colour: '#2a9d8f' },
+  crossing: { words: 'crossing', colour: '#7b2cbf' },
+};
+
 // The numbers of appendNumbers(): seven bits a byte, the lowest first.
 class Numbers {
   constructor(bytes, begin) {
@@ -134,4 +143,6 @@ class RunData {
   placeOf(contact) {
     return contact.position.map((x, k) => x - this.mesh.origin[k]);
   }
+  colourOf(contact) { return kKinds[contact.kind].colour; }
+  isEdge() { return true; } // all sides of triangles
 }

@@ -4,13 +4,6 @@
 // view itself is in viewer.js; where it is missing or cannot start, there is a picture.
 'use strict';
 
-const kKinds = {
-  vf: { words: 'vertex-face', colour: '#e63946' },
-  ee: { words: 'edge-edge', colour: '#1d3557' },
-  ve: { words: 'vertex-edge', colour: '#f4a261' },
-  vv: { words: 'vertex-vertex', colour: '#2a9d8f' },
-  crossing: { words: 'crossing', colour: '#7b2cbf' },
-};
 const kStages = { build: '#8d99ae', update: '#2a9d8f', traverse: '#e9c46a', test: '#e76f51' };
 const kMostListed = 20;
 

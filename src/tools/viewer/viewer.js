@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// The 3D view of the page of a run, drawn by three.js.
+// The 3D view of the page of a run, and of a picture of the Python package, drawn by three.js.
 import {
   BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
   PerspectiveCamera, Points, PointsMaterial, Scene, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
-const kColours = { vf: '#e63946', ee: '#1d3557', ve: '#f4a261', vv: '#2a9d8f', crossing: '#7b2cbf' };
-const kColourOfA = new Color('#7fc8be'), kColourOfB = new Color('#c9ced4'), kTouched = new Color('#f28482');
+const kColours = { a: '#7fc8be', b: '#c9ced4', touched: '#f28482' };
+const kColourOfA = new Color(kColours.a), kColourOfB = new Color(kColours.b), kTouched = new Color(kColours.touched);
 const kLight = [0.37, -0.28, 0.88]; // the direction to it
 const kPickDistance = 14; // pixels
 // The same for all materials but that of points, so that the browser translates one program
@@ -30,6 +30,10 @@ function meets(origin, direction, a, b, c) {
 
 class Viewer {
   // host: the element of the view. pick: is called with the contact that was clicked on.
+  // data: of the meshes and their contacts, as the class RunData of report pages:
+  //   triangles, edges  ids of vertices, three and two for each; mesh: how many triangles
+  //   isEdge(t, k)      whether a side of a triangle is an edge of its surface
+  //   placeOf(contact), trianglesOf(contact), colourOf(contact)
   constructor(host, data, pick) {
     this.host = host;
     this.data = data;
@@ -116,7 +120,7 @@ class Viewer {
     this.copy(this.data.edges, this.cables);
     this.colour(times, time);
     const places = contacts.flatMap((c) => this.data.placeOf(c));
-    const colours = contacts.map((c) => (c.toc_lo <= time ? kColours[c.kind] : '#9aa0a6'));
+    const colours = contacts.map((c) => (c.toc_lo <= time ? this.data.colourOf(c) : '#9aa0a6'));
     this.fill(this.points, places, colours);
     this.resize();
     this.measure();
@@ -193,13 +197,14 @@ class Viewer {
     return Math.min(this.radius, 2.5 * Math.min(...reaches, Infinity));
   }
 
+  // The ends of the normal that is drawn.
+  normalOf(contact) {
+    const place = this.place(contact);
+    const tip = place.clone().addScaledVector(new Vector3().fromArray(contact.normal), 0.3 * this.reachOf(contact));
+    return [...place, ...tip];
+  }
   drawNormals(colours) {
-    const ends = this.contacts.flatMap((contact) => {
-      const place = this.place(contact);
-      const tip = place.clone().addScaledVector(new Vector3().fromArray(contact.normal), 0.3 * this.reachOf(contact));
-      return [...place, ...tip];
-    });
-    this.fill(this.normals, ends, colours, 2);
+    this.fill(this.normals, this.contacts.flatMap((contact) => this.normalOf(contact)), colours, 2);
   }
 
   select(contact, name) {
@@ -215,26 +220,31 @@ class Viewer {
   // The ends of the edges of triangles.
   outlinesOf(triangles) {
     return triangles.flatMap((t) => {
-      const [a, b, c] = this.corners(t);
-      return [a, b, b, c, c, a].flatMap((p) => [...p]);
+      const corners = this.corners(t);
+      return [0, 1, 2].filter((k) => this.data.isEdge(t, k))
+        .flatMap((k) => [...corners[k], ...corners[(k + 1) % 3]]);
     });
   }
 
-  // The edges around a contact. Those of everything would take most of the time of a frame
-  // where there is no graphics card.
-  drawEdges() {
+  // The triangles whose edges are drawn: those around a contact. All would take most of the
+  // time of a frame where there is no graphics card.
+  edged() {
     const { around } = this;
     const reaches = 4, most = 4000;
     const near = around ? this.trianglesNear(this.data.placeOf(around), reaches * this.reachOf(around)) : [];
-    const ends = this.outlinesOf(near.slice(0, most));
+    return near.slice(0, most);
+  }
+
+  drawEdges() {
+    const ends = this.outlinesOf(this.edged());
     this.fill(this.edges, ends, Array(ends.length / 3).fill('#5c6770'));
   }
 
-  // The contact that was chosen, with its triangles, before everything else.
+  // The contact that was chosen, with its triangles and its normal, before everything else.
   drawSelected() {
     const { selected } = this;
-    const ends = selected ? this.outlinesOf(this.data.trianglesOf(selected)) : [];
-    const colour = selected ? kColours[selected.kind] : '#000000';
+    const ends = selected ? [...this.outlinesOf(this.data.trianglesOf(selected)), ...this.normalOf(selected)] : [];
+    const colour = selected ? this.data.colourOf(selected) : '#000000';
     this.fill(this.outlines, ends, Array(ends.length / 3).fill(colour));
     this.fill(this.chosenPoint, selected ? this.data.placeOf(selected) : [], selected ? [colour] : []);
   }
@@ -262,7 +272,7 @@ class Viewer {
     const place = this.place(contact), normal = new Vector3().fromArray(contact.normal);
     const near = this.trianglesNear([...place], reach).map((t) => this.corners(t));
     const numDirections = 96, goldenAngle = Math.PI * (3 - Math.sqrt(5));
-    let best = new Vector3(0.6, -0.65, 0.45).normalize(), bestScore = -Infinity;
+    let best = this.above(), bestScore = -Infinity;
     for (let i = 0; i < numDirections; ++i) {
       const z = 1 - (2 * i + 1) / numDirections, r = Math.sqrt(1 - z * z);
       const direction = new Vector3(r * Math.cos(i * goldenAngle), r * Math.sin(i * goldenAngle), z);
@@ -279,8 +289,9 @@ class Viewer {
     this.look(this.place(contact), this.directionTo(contact, reach), reach);
   }
   showWhole() {
-    this.look(this.centre, new Vector3(0.6, -0.65, 0.45).normalize(), this.radius);
+    this.look(this.centre, this.above(), this.radius);
   }
+  above() { return new Vector3(0.6, -0.65, 0.45).normalize(); }
 
   // Shows a ball from a direction.
   look(target, direction, radius) {
@@ -349,4 +360,5 @@ class Viewer {
   }
 }
 
+Viewer.colours = kColours;
 window.FclCcdViewer = Viewer;
