@@ -68,6 +68,34 @@ def make_page(program, folder):
     return page
 
 
+def make_page_of_cables(program, folder):
+    """One step, in which a free edge of the body and a free point come near a cable."""
+    write_cables(folder)
+    page = folder / "cables.html"
+    frames = [folder / f"cable_{frame}.obj" for frame in (0, 1)]
+    subprocess.run([program, "run", *frames, "--against", folder / "thread.obj", "--no-self", "--thickness", "0.1",
+                    "--report", page], check=True, stdout=subprocess.DEVNULL)
+    return page
+
+
+def write_cables(folder):
+    for frame in (0, 1):
+        z = 1 - frame
+        lines = [f"v -1 0 {z}", f"v 1 0 {z}", f"v 0 0.5 {z}", "l 1 2", "p 3"]
+        (folder / f"cable_{frame}.obj").write_text("\n".join(lines) + "\n")
+    (folder / "thread.obj").write_text("v 0 -1 0\nv 0 1 0\nl 1 2\n")
+
+
+def check_cables(browser):
+    """Free edges and points have their names. A plot of one step shows its values."""
+    names = browser.script("return Array.from(document.querySelectorAll('#contacts li'), (e) => e.textContent).join()")
+    assert "edge 0 1 of free edge 0, edge b0 b1 of free edge b0" in names, names
+    assert "vertex 2 of free point 0, edge b0 b1 of free edge b0" in names, names
+    widths = browser.script("return Array.from(document.querySelectorAll('#plots svg'), (svg) => Math.max("
+                            "...Array.from(svg.querySelectorAll('circle'), (c) => c.getBoundingClientRect().width)))")
+    assert len(widths) == 4 and all(width > 4 for width in widths), widths
+
+
 def check_first_frame(browser):
     assert "first contact: step 1 at 0.8" in browser.script("return document.getElementById('answer').textContent")
     assert browser.script("return document.querySelectorAll('#table tbody tr').length") == STEPS
@@ -121,6 +149,14 @@ def check_sliders(browser):
     browser.wait_for(f"{step}.startsWith('0 ')")
 
 
+def check_stands_alone(browser):
+    errors = browser.errors()
+    assert errors == [], errors
+    loaded = browser.script("return performance.getEntriesByType('resource').map((e) => e.name)"
+                            ".filter((name) => !name.startsWith('data:') && !name.startsWith('blob:'))")
+    assert loaded == [], loaded
+
+
 def main():
     program, folder = sys.argv[1], pathlib.Path(sys.argv[2])
     missing = missing_programs()
@@ -146,10 +182,12 @@ def main():
             browser.click("#whole")
             browser.script("window.scrollTo(0, 0)")
             browser.screenshot(folder / "whole.png")
-        assert browser.errors() == [], browser.errors()
-        loaded = browser.script("return performance.getEntriesByType('resource').map((e) => e.name)"
-                                ".filter((name) => !name.startsWith('data:') && !name.startsWith('blob:'))")
-        assert loaded == [], loaded
+        check_stands_alone(browser)
+        browser.open(make_page_of_cables(program, folder).resolve().as_uri())
+        browser.wait_for("document.getElementById('page').dataset.ready === 'yes'")
+        check_cables(browser)
+        browser.screenshot(folder / "cables.png")
+        check_stands_alone(browser)
     shutil.rmtree(folder / "profile", ignore_errors=True)
     return 0
 

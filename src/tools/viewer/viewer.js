@@ -2,7 +2,7 @@
 //
 // The 3D view of the page of a run, and of a picture of the Python package, drawn by three.js.
 import {
-  BufferAttribute, BufferGeometry, Color, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+  BufferAttribute, BufferGeometry, Color, DoubleSide, LineSegments, Mesh, MeshBasicMaterial,
   PerspectiveCamera, Points, PointsMaterial, Scene, Vector2, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -11,8 +11,9 @@ const kColours = { a: '#7fc8be', b: '#c9ced4', touched: '#f28482' };
 const kColourOfA = new Color(kColours.a), kColourOfB = new Color(kColours.b), kTouched = new Color(kColours.touched);
 const kLight = [0.37, -0.28, 0.88]; // the direction to it
 const kPickDistance = 14; // pixels
-// The same for all materials but that of points, so that the browser translates one program
-// for the graphics card.
+// The same for all materials, so that the browser translates two programs for the graphics
+// card: one for points, and one for all else, lines too. Nothing is transparent, which would
+// need more of them.
 const kMaterial = { vertexColors: true, side: DoubleSide };
 
 // Whether a ray meets a triangle.
@@ -67,25 +68,27 @@ class Viewer {
     this.cables = new BufferGeometry();
     this.cables.setAttribute('position', new BufferAttribute(new Float32Array(3 * data.edges.length), 3));
     this.cables.setAttribute('color', new BufferAttribute(new Float32Array(3 * data.edges.length).fill(0.1), 3));
-    this.add(new LineSegments(this.cables, new LineBasicMaterial(kMaterial)));
+    this.add(new LineSegments(this.cables, new MeshBasicMaterial(kMaterial)));
     this.points = this.addPoints(7, true);
-    this.chosenPoint = this.addPoints(13, false);
     this.normals = this.addLines(true);
     this.outlines = this.addLines(false);
+    this.chosenPoint = this.addPoints(13, false);
   }
 
+  // What is added later is drawn later.
   add(object) {
     object.frustumCulled = false;
+    object.renderOrder = this.scene.children.length;
     this.scene.add(object);
     return object;
   }
   addPoints(size, hidden) {
     return this.add(new Points(new BufferGeometry(),
-      new PointsMaterial({ ...kMaterial, size, sizeAttenuation: false, depthTest: hidden, transparent: true })));
+      new PointsMaterial({ ...kMaterial, size, sizeAttenuation: false, depthTest: hidden })));
   }
   addLines(hidden) {
     return this.add(new LineSegments(new BufferGeometry(),
-      new LineBasicMaterial({ ...kMaterial, depthTest: hidden, transparent: true })));
+      new MeshBasicMaterial({ ...kMaterial, depthTest: hidden })));
   }
 
   makeCamera() {

@@ -23,12 +23,16 @@ function make(parent, name, attributes = {}, text = '') {
 const shortNumber = (x) => String(Number(x.toPrecision(6)));
 const point = (p) => '(' + p.map(shortNumber).join(', ') + ')';
 
-// "vertex 3 of triangle 1", by the ids of the files.
+// "vertex 3 of triangle 1", "edge b0 b1 of free edge b7", by the ids of the files.
 function features(contact) {
   const { kind, vertices, triangles } = contact;
   const numFirst = kind === 'ee' || kind === 'crossing' ? 2 : 1;
   const names = ['', 'vertex', 'edge', 'face'];
-  const name = (ids, triangle) => `${names[ids.length]} ${ids.join(' ')} of triangle ${triangle}`;
+  const parts = { '': 'triangle', e: 'free edge', p: 'free point' };
+  const name = (ids, part) => {
+    const [, body, kind, number] = /^(b?)([ep]?)(\d+)$/.exec(part);
+    return `${names[ids.length]} ${ids.join(' ')} of ${parts[kind]} ${body}${number}`;
+  };
   return [name(vertices.slice(0, numFirst), triangles[0]), name(vertices.slice(numFirst), triangles[1])];
 }
 
@@ -119,7 +123,8 @@ class Page {
         if (v === null) return;
         const begins = i === 0 || values[i - 1] === null;
         path += `${begins ? 'M' : 'L'}${x(i).toFixed(1)} ${y(v).toFixed(1)}`;
-        if (begins && (i + 1 === values.length || values[i + 1] === null)) path += 'h0.1';
+        const isAlone = begins && (i + 1 === values.length || values[i + 1] === null);
+        if (isAlone) make(svg, 'circle', { cx: x(i), cy: y(v), r: 2.5, fill: colour });
       });
       make(svg, 'path', { d: path, stroke: colour });
     }
