@@ -336,7 +336,6 @@ TEST_F(CcdReport, ANumberInTheNameIsAFileAStep) {
   expectFailure("run f --picture p.ply", "this option writes PNG");
 }
 
-// Resuming goes back to the step that the picture shows.
 // The file of step 1 would be the first frame. The folder that was made does not stay.
 TEST_F(CcdReport, NoFrameIsOverwrittenByAFileAStep) {
   fs::create_directories(path("g"));
@@ -348,6 +347,7 @@ TEST_F(CcdReport, NoFrameIsOverwrittenByAFileAStep) {
   EXPECT_FALSE(fs::exists(path("new")));
 }
 
+// Resuming goes back to the step that the picture shows.
 TEST_F(CcdReport, PaintAfterResumeIsThatOfTheWholeRun) {
   writeFrames(12);
   outputOf("run f --paint whole.ply" + kOutputs);
@@ -360,6 +360,43 @@ TEST_F(CcdReport, PaintAfterResumeIsThatOfTheWholeRun) {
     const auto [contacts, steps] = takeOutputs();
     EXPECT_TRUE(contacts == whole.first || steps == whole.second) << outputs;
   }
+}
+
+// Of a file a step those that are there stay, and one that is missing is made.
+TEST_F(CcdReport, ResumeKeepsTheFilesOfEarlierSteps) {
+  writeFrames(12);
+  outputOf("run f --paint whole_%d.ply" + kOutputs);
+  const auto whole = takeOutputs();
+  const std::string paint = " --paint p_%d.ply" + kOutputs;
+  outputOf("run f --end 8" + paint);
+  writeText(path("p_5.ply"), "kept");
+  const std::string json = " --resume --json r.json";
+  outputOf("run f" + json + paint);
+  EXPECT_EQ(takeOutputs(), whole);
+  EXPECT_EQ(Json::parse(readText(path("r.json"))).at("steps").at(0).at("step"), 8);
+  EXPECT_EQ(readText(path("p_5.ply")), "kept");
+  outputOf("run f --end 8" + kOutputs);
+  fs::remove(path("p_5.ply"));
+  outputOf("run f" + json + paint);
+  EXPECT_EQ(Json::parse(readText(path("r.json"))).at("steps").at(0).at("step"), 5);
+  for (std::size_t step = 0; step < 11; ++step) {
+    const std::string name = std::to_string(step) + ".ply";
+    EXPECT_EQ(readText(path("p_" + name)), readText(path("whole_" + name)));
+  }
+}
+
+// Each file would be the next frame.
+TEST_F(CcdReport, FollowRefusesOutputsAmongTheFrames) {
+  writeFrames(3);
+  const std::string cause = ": cannot write: --follow would take it for a frame";
+  for (const char* run : {"f --paint f/p.ply", "f --paint ./f/../f/p.ply",
+                          "'f/*.ply' --paint f/p.ply", "f/tip%d.ply --paint f/tip9.ply"})
+    expectFailure(std::string("run --follow=0.1 ") + run, cause);
+  expectFailure("run --follow=0.1 f --paint f/p%d.ply", "f/p0.ply" + cause);
+  EXPECT_EQ(std::distance(fs::directory_iterator(path("f")), {}), 3);
+  for (const char* run : {"f --paint p.ply", "f --picture f/p.png",
+                          "f/tip%d.ply --paint f/p.ply", "'f/t*.ply' --json -"})
+    outputOf(std::string("run --follow=0.1 ") + run);
 }
 
 TEST_F(CcdReport, PictureHasTheContactInItsMiddle) {

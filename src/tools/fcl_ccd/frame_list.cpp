@@ -216,6 +216,23 @@ bool mayGrow(const std::vector<std::string>& words) {
                                      : parseNumbered(name) || isPattern(name);
 }
 
+bool isNamedBy(const std::string& word, const std::string& file) {
+  const fs::path path(file);
+  const std::string name = path.filename().string();
+  std::error_code error;
+  const bool is_folder = fs::is_directory(word, error);
+  const fs::path folder = is_folder ? fs::path(word) : fs::path(word).parent_path();
+  const auto resolved = [&](const fs::path& of) {
+    return fs::weakly_canonical(fs::absolute(of.empty() ? "." : of, error), error);
+  };
+  if (resolved(folder / name) != resolved(path.parent_path() / name)) return false;
+  if (is_folder) return name[0] != '.' && isMeshFormat(extensionOf(name));
+  const std::string last = fs::path(word).filename().string();
+  if (const auto numbered = parseNumbered(last))
+    return numbered->numberOf(name).has_value();
+  return isPattern(last) && fnmatch(last.c_str(), name.c_str(), FNM_PERIOD) == 0;
+}
+
 bool isBeforeNaturally(const std::string& a, const std::string& b) {
   std::size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {

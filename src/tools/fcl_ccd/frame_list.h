@@ -55,6 +55,10 @@ std::vector<std::string> listFrames(const std::vector<std::string>& words,
 /// one word, (2), (3) or (4).
 bool mayGrow(const std::vector<std::string>& words);
 
+/// @brief Whether a file that comes later is among those that a word (2), (3) or (4)
+/// names.
+bool isNamedBy(const std::string& word, const std::string& file);
+
 /// @brief Whether a name is one with a number, as in (4).
 /// @throws std::runtime_error if the number is not written as there.
 bool hasNumber(const std::string& name);

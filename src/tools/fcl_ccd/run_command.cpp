@@ -223,7 +223,7 @@ class Run {
     return code;
   }
 
-  /// Frames that came since the outputs were reserved may have the name of one. Also
+  /// Frames that came since the outputs were reserved may be links to one. Also
   /// those count that were not used.
   void requireNoFrameIsOutput() const {
     FramePaths listed;
@@ -345,6 +345,21 @@ void prepareInputs(const RunOptions& options, bool is_alone, Preparation& run) {
         " each");
 }
 
+/// The first step whose file of many is not there. The others were written with their
+/// steps.
+std::optional<std::size_t> firstWithoutFile(const RunOptions& options,
+                                            const FramePaths& paths,
+                                            const std::string& path) {
+  std::error_code error;
+  for (std::size_t step = 0; step < paths.numSteps(); ++step) {
+    const std::size_t number = paths.numbers[step];
+    if (options.shown.has(number, path) &&
+        !std::filesystem::exists(withNumber(path, number), error))
+      return step;
+  }
+  return std::nullopt;
+}
+
 /// The first step whose picture is wanted, which the last run may have done.
 std::optional<std::size_t> firstToShow(const RunOptions& options,
                                        const Preparation& run) {
@@ -352,12 +367,14 @@ std::optional<std::size_t> firstToShow(const RunOptions& options,
   const FramePaths& paths = run.paths;
   for (const std::string* path : {&options.picture_path, &options.paint_path}) {
     if (path->empty() || run.numSteps() == 0) continue;
-    std::size_t step = run.numSteps() - 1;
-    if (!options.shown.isOfFirstContact(*path))
+    std::optional<std::size_t> step = run.numSteps() - 1;
+    if (hasNumber(*path))
+      step = firstWithoutFile(options, paths, *path);
+    else if (!options.shown.isOfFirstContact(*path))
       step = paths.numbers.frameOf(firstShown(options, paths)).value_or(0);
     else if (run.resume_point.first_contact)
       step = *run.resume_point.first_contact;
-    first = std::min(first.value_or(step), step);
+    if (step) first = std::min(first.value_or(*step), *step);
   }
   return first;
 }
@@ -458,6 +475,18 @@ void requireFollowable(const RunOptions& options, const Ranks& ranks) {
     throw std::runtime_error(
         "--follow needs frames whose number can grow: one folder, one pattern in quotes, "
         "or one name with a number such as frame_%04d.ply");
+  for (const std::string* output :
+       {&options.contacts_path, &options.steps_path, &options.json_path,
+        &options.report_path, &options.picture_path, &options.paint_path})
+    for (const auto* words : {&options.frames, &options.against}) {
+      // Of a file a step any number does.
+      const std::string file = withNumber(*output, 0);
+      if (output->empty() || isStandardOutput(*output) || !mayGrow(*words) ||
+          !isNamedBy((*words)[0], file))
+        continue;
+      throw std::runtime_error(file + ": cannot write: --follow would take it for a " +
+                               "frame. Name a file in another folder");
+    }
 }
 
 /// The first rank: makes steps like the others, and has the outputs.
