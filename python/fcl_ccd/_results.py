@@ -77,8 +77,10 @@ class Result(_Asked, _arguments.Built):
                                  min_distance the middle between their nearest points
         normal       (3,) float64  unit vector from o1 to o2, in the world frame; in a
                                  self-collision from the vertex to the face, or from edge
-                                 ea to edge eb. Zero if it is not defined, and if a
-                                 shape is overlapped at t = 0.
+                                 ea to edge eb. Zero if it is not defined.
+        penetration_depth  float64  with a shape or an OcTree that overlaps the other
+                                 object at t = 0: the least translation that parts the two
+                                 is this long, along the normal. 0 for other contacts
     contacts_cut : bool
         Whether num_max_contacts dropped contacts.
     initially_crossing : bool

@@ -31,6 +31,7 @@ py::dtype makeDtype<Contact>() {
       .field("toc_hi", "<f8", &Contact::toc_hi)
       .field("pos", "(3,)<f8", &Contact::pos)
       .field("normal", "(3,)<f8", &Contact::normal)
+      .field("penetration_depth", "<f8", &Contact::penetration_depth)
       .dtype();
 }
 

@@ -331,6 +331,13 @@ ConvexGap ConvexAdvance::gapAt(double t) const {
   return gap;
 }
 
+/// Of a flat, and of cores that are apart, the gap is the largest there is.
+Penetration ConvexAdvance::penetrationAt(double t, const ConvexGap& gap) const {
+  if (flat_ >= 0 || gap.gap > -tolerance_.touching) return {gap.direction, -gap.gap};
+  const State state = stateAt(t);
+  return penetrationOf(state.side[0].now, state.side[1].now);
+}
+
 ConvexAdvance::Answer ConvexAdvance::advance(double& t, double t_stop, int& steps,
                                              AdvanceCounts& counts) {
   ConvexGap gap;

@@ -9,6 +9,7 @@
 #include "bodies/moving_body.h"
 #include "shapes/convex_distance.h"
 #include "shapes/convex_shape.h"
+#include "shapes/penetration.h"
 
 namespace fcl {
 namespace detail {
@@ -68,6 +69,11 @@ class ConvexAdvance {
 
   /// @brief The gap of the cores, without a look at their flat sides.
   ConvexGap coreGapAt(double t) const { return gapOf(stateAt(t), 0); }
+
+  /// @brief The least translation that parts the cores.
+  /// @param gap  gapAt() of that time
+  /// @pre they overlap, or come within the tolerance
+  Penetration penetrationAt(double t, const ConvexGap& gap) const;
 
   /// @brief Bound on the relative speed of two points.
   double speed() const { return set_[0]->speed + set_[1]->speed; }

@@ -159,6 +159,7 @@ ContinuousContact<S> toContinuousContact(const DescribedContact& contact,
   out.toc_hi = contact.toc_hi;
   out.pos = toVector<S>(contact.position);
   out.normal = toVector<S>(contact.normal);
+  out.penetration_depth = static_cast<S>(contact.depth);
   return out;
 }
 
@@ -168,7 +169,7 @@ Contact<S> toContact(const ContinuousContact<S>& contact) {
                  static_cast<int>(contact.b2));
   out.pos = contact.pos;
   out.normal = contact.normal;
-  out.penetration_depth = 0;
+  out.penetration_depth = contact.penetration_depth;
   return out;
 }
 

@@ -152,8 +152,10 @@ QueryAnswer scaledAnswerOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>&
   options.min_distance *= factor;
   QueryAnswer answer = boundedAnswerOf(
       PlacedGeometry<S>(moving1), PlacedGeometry<S>(moving2), options, shapes, factor);
-  for (auto& contact : answer.shape_contacts)
+  for (auto& contact : answer.shape_contacts) {
     contact.position = (1 / factor) * contact.position;
+    contact.depth /= factor;
+  }
   return answer;
 }
 

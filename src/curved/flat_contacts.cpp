@@ -11,12 +11,14 @@ namespace detail {
 namespace deformable {
 namespace {
 
-/// How far apart two parallel flats are at both ends of the step. A gap that is not
-/// positive at an end is a contact; in between it is linear.
+/// How far apart two parallel flats are at both ends of the step; negative: how deep they
+/// overlap. A gap that is not positive at an end is a contact; in between it is linear.
 struct FlatGap {
   double at[2];
   /// 1: b is on the side of a's normal; -1: on the other side.
   double side{1};
+  /// Halfspaces that are below the same side always overlap.
+  bool can_part{true};
 
   FlatGap(const PosedFlat& a, const PosedFlat& b) {
     const bool is_same_side = dot(a.normal, b.normal) > 0;
@@ -26,8 +28,8 @@ struct FlatGap {
     // Which of them is above: a halfspace is below its plane, if it has a's direction.
     if (!a.is_solid && b.is_solid && is_same_side) side = -1;
     if (!a.is_solid && !b.is_solid && between[0] < 0) side = -1;
-    const bool overlap = a.is_solid && b.is_solid && is_same_side;
-    for (int k = 0; k < 2; ++k) at[k] = overlap ? 0 : side * between[k];
+    can_part = !(a.is_solid && b.is_solid && is_same_side);
+    for (int k = 0; k < 2; ++k) at[k] = can_part ? side * between[k] : 0;
   }
 };
 
@@ -64,7 +66,10 @@ QueryAnswer queryFlats(const PosedFlat& a, const PosedFlat& b,
       contact.within_tolerance = true;
       if (contact.toc_lo > options.t_max) return answer;
     }
-    if (begin > 0 && options.with_geometry) contact.normal = gap.side * a.normal;
+    if (options.with_geometry && gap.can_part) {
+      contact.normal = gap.side * a.normal;
+      contact.depth = std::max(-gap.at[0], 0.);
+    }
     position =
         ((1 - contact.toc_lo) * a.offset[0] + contact.toc_lo * a.offset[1]) * a.normal;
   }

@@ -82,7 +82,15 @@ class ShapeContacts {
     }
     if (!with_geometry) return contact;
     setPosition(gap, contact);
-    contact.normal = normalBefore(pair, gap, found.toc_lo);
+    if (gap.gap + tolerance_.touching > tolerance_.radii) {
+      contact.normal = gap.direction;
+    } else if (found.toc_lo > 0) {
+      contact.normal = normalBefore(pair, found.toc_lo);
+    } else {
+      const Penetration penetration = pair.penetrationAt(0, gap);
+      contact.normal = penetration.direction;
+      contact.depth = penetration.depth + tolerance_.radii;
+    }
     return contact;
   }
 
@@ -121,14 +129,11 @@ class ShapeContacts {
   }
 
  private:
-  /// The direction that parts the bodies at a time of contact. Round surfaces that nearly
-  /// touch may have none within rounding; then it is that of a time just before. Bodies
-  /// that overlap at t = 0 have none.
-  Vec normalBefore(const ConvexAdvance& pair, const ConvexGap& gap, double time) const {
+  /// The direction that parts the bodies just before a time. Round surfaces that nearly
+  /// touch may have none within rounding at the time itself.
+  Vec normalBefore(const ConvexAdvance& pair, double time) const {
     constexpr double kFirstShare = 0x1p-40, kLastShare = 0x1p-10, kGrowth = 0x1p5;
     const double radii = tolerance_.radii;
-    if (gap.gap + tolerance_.touching > radii) return gap.direction;
-    if (time == 0) return {0, 0, 0};
     for (double share = kFirstShare; share <= kLastShare; share *= kGrowth) {
       const ConvexGap before = pair.gapAt((1 - share) * time);
       if (before.gap > radii) return before.direction;

@@ -38,6 +38,8 @@ struct DescribedContact {
   double toc_lo{0}, toc_hi{0};
   /// In the world. The normal is that of ContinuousContact::normal; zero: there is none.
   Vec position{0, 0, 0}, normal{0, 0, 0};
+  /// ContinuousContact::penetration_depth.
+  double depth{0};
 };
 
 struct QueryAnswer {

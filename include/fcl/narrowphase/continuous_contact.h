@@ -97,8 +97,19 @@ struct ContinuousContact {
   /// touch.
   ///
   /// With a shape or an octree it is a direction that separates the two objects just
-  /// before they touch. It is the zero vector if they overlap at t = 0.
+  /// before they touch. If they overlap at t = 0: the direction of the least translation
+  /// that parts them (penetration_depth). It is the zero vector for two planes or
+  /// halfspaces that no translation parts.
   Vector3<S> normal{Vector3<S>::Zero()};
+
+  /// @brief With a shape or an octree that overlaps the other object at t = 0: how far o2
+  /// has to move along the normal until the two parts of the contact only touch, in the
+  /// unit of the coordinates. Of a mesh a part is a triangle, of an octree a cell. A move
+  /// in another direction is not shorter by more than 1e-10 of the size of the parts, or
+  /// 1e-4 if one of them is an ellipsoid, a cone or a cylinder; where hundreds of
+  /// directions are nearly as good as each other, the search stops before it proves this.
+  /// 0 for all other contacts. Set only with enable_contact.
+  S penetration_depth{0};
 
   /// @brief The number of entries of `vertices` that are used.
   int numVertices() const {
