@@ -23,9 +23,10 @@ Capsule, Ellipsoid, Cone, Cylinder, Convex, Plane, Halfspace, TriangleP. Maps of
 cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, TwistMotion,
 SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
 a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a Result.
-Many objects: CollisionManager. With min_distance features are in contact at a distance. For
-your own solver: candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge()
-and vertex_vertex() on arrays.
+How near two objects come: distance(), which gives a DistanceResult. Many objects:
+CollisionManager. With min_distance features are in contact at a distance. For your own
+solver: candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
+vertex_vertex() on arrays.
 
 Tables and pictures: to_dataframe() makes a pandas.DataFrame of contacts, Result.show() draws
 them. Meshes, shapes, motions, filters and results can be copied and pickled.
@@ -51,10 +52,12 @@ from ._motions import (
 )
 from ._octrees import OcTree, octree_cell_dtype
 from ._queries import (
+    DistanceResult,
     Filter,
     candidate_dtype,
     candidates,
     collide,
+    distance,
     edge_edge,
     feature_test_dtype,
     self_candidates,
@@ -87,6 +90,7 @@ __all__ = [
     "Convex",
     "Cylinder",
     "DeformableMesh",
+    "DistanceResult",
     "Ellipsoid",
     "Filter",
     "Halfspace",
@@ -111,6 +115,7 @@ __all__ = [
     "candidates",
     "collide",
     "contact_dtype",
+    "distance",
     "edge_edge",
     "feature_test_dtype",
     "octree_cell_dtype",

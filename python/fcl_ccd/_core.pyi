@@ -295,6 +295,16 @@ def self_collide(o: Mesh, request: Request) -> Dict[str, Any]: ...
 def collide(
     o1: Geometry, motion1: Motion, o2: Geometry, motion2: Motion, request: Request
 ) -> Dict[str, Any]: ...
+def distance(
+    o1: Geometry,
+    motion1: Motion,
+    o2: Geometry,
+    motion2: Motion,
+    request: Request,
+    abs_err: float,
+    rel_err: float,
+    max_distance: float,
+) -> Dict[str, Any]: ...
 def self_candidates(
     o: Mesh,
     sink: Callable[[NDArray[np.void]], Optional[bool]],

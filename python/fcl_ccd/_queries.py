@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Callable, List, Literal, Optional, Tuple, Union, overload
 
 import numpy as np
@@ -268,6 +269,95 @@ def collide(
     )
     fields = _core.collide(geometry1, path1, geometry2, path2, request)
     return result_of(fields, query, enable_contact, queried)
+
+
+@dataclass(frozen=True, eq=False)
+class DistanceResult(_arguments.Built):
+    """The answer of distance(). Distances have the unit of the vertices.
+
+    distance_lo, distance_hi : float
+        The objects are never nearer than distance_lo during the step. At `time` they are
+        not further apart than distance_hi. Both are 0 if they touch, and infinite if no
+        pair counts.
+    time : float
+        When they are distance_hi apart, in fractions of the step; the first time of
+        contact if they touch.
+    nearest_points : (2, 3) float64
+        The nearest points of o1 and o2 then, in the world frame.
+    b1, b2 : int
+        The triangles that have them; -1 for a shape; of an OcTree a number for its cells().
+    is_collide : bool
+        Whether they touch during the step.
+    is_cut_off : bool
+        Whether the query ended since they stay further apart than max_distance, which is
+        distance_lo then.
+    """
+
+    distance_lo: float
+    distance_hi: float
+    time: float
+    nearest_points: NDArray[np.float64]
+    b1: int
+    b2: int
+    is_collide: bool
+    is_cut_off: bool
+
+
+def distance(
+    o1: Union[Geometry, TriangleMesh],
+    o2: Union[Geometry, TriangleMesh],
+    motion1: MotionLike = None,
+    motion2: MotionLike = None,
+    *,
+    abs_err: float = 0.0,
+    rel_err: float = 1e-3,
+    t_max: float = 1.0,
+    max_distance: float = np.inf,
+    toc_err: float = 1e-4,
+    filter1: Optional[Filter] = None,
+    filter2: Optional[Filter] = None,
+    accepts_triangles: Optional[Callable[[int, int], bool]] = None,
+    num_threads: int = 1,
+) -> DistanceResult:
+    """The least distance of two objects during the step, and when, proved from both sides.
+
+    Objects, motions, filters, t_max and toc_err are those of collide().
+
+    abs_err, rel_err : float
+        distance_hi - distance_lo is at most the larger one of abs_err, in the unit of the
+        vertices, and of rel_err * distance_hi, as far as rounding allows.
+    max_distance : float
+        The query ends when it is proved that the objects stay further apart than this.
+
+    Raises ValueError and TypeError as collide(), and ValueError for two planes or
+    halfspaces. Other threads of Python run during the query.
+    """
+    request = request_of(
+        "first",
+        toc_err,
+        t_max,
+        None,
+        True,
+        False,
+        filter1,
+        filter2,
+        accepts_triangles,
+        num_threads,
+        0.0,
+        False,
+    )
+    return DistanceResult(
+        **_core.distance(
+            geometry_of(o1, "o1"),
+            path_of(motion1, "motion1"),
+            geometry_of(o2, "o2"),
+            path_of(motion2, "motion2"),
+            request,
+            _arguments.real(abs_err, "abs_err"),
+            _arguments.real(rel_err, "rel_err"),
+            _arguments.real(max_distance, "max_distance"),
+        )
+    )
 
 
 _BLOCK = 65536

@@ -26,6 +26,8 @@ constexpr Words kWords[] = {
     {"continuousSelfCollide", "self_collide()"},
     {"continuousSelfCandidates", "self_candidates()"},
     {"continuousCandidates", "candidates()"},
+    {"continuousDistance", "distance()"},
+    {"continuousCollide()", "collide()"},
     {"weldVertices", "weld_vertices()"},
     {"octreeCell: b is not", "cells(): a number is not"},
     {"setSelfCollision", "set_self_collision()"},

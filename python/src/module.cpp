@@ -33,6 +33,7 @@ PYBIND11_MODULE(_core, module) {
   python::bindOctrees(module);
   python::bindMotions(module);
   python::bindCollisions(module);
+  python::bindDistances(module);
   python::bindManager(module);
   python::bindFeatures(module);
 }

@@ -12,6 +12,9 @@ namespace python {
 /// Queries for contacts.
 void bindCollisions(pybind11::module_& module);
 
+/// Queries for the least distance.
+void bindDistances(pybind11::module_& module);
+
 /// Queries of many objects.
 void bindManager(pybind11::module_& module);
 

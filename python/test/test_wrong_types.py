@@ -66,6 +66,7 @@ CALLS = {
     "WaypointMotion": ([EYE, EYE], (0, 1)),
     "candidates": (MESH, MESH),
     "collide": (MESH, BALL),
+    "distance": (MESH, BALL),
     "edge_edge": (T0[4], T0[4]),
     "self_candidates": (MESH,),
     "self_collide": (MESH,),
@@ -77,7 +78,7 @@ CALLS = {
     "weld_vertices": ([VERTICES],),
 }
 REQUIRED = {"vertex_edge": {"min_distance": 1.0}, "vertex_vertex": {"min_distance": 1.0}}
-MADE_BY_QUERIES = "Kind", "ManagerResult", "Motion", "Pair", "Result"
+MADE_BY_QUERIES = "DistanceResult", "Kind", "ManagerResult", "Motion", "Pair", "Result"
 FRAMES = fcl_ccd.DeformableMesh.update  # has no names of arguments
 
 

@@ -312,6 +312,24 @@ ConvexGap ConvexAdvance::gapOf(const State& state, double contact) const {
   return convexGap(state.side[0].now, state.side[1].now, guess, margin(1), contact);
 }
 
+/// Each search ends where the distance is not above the gap by more than a tenth of what
+/// it was before.
+ConvexGap ConvexAdvance::nearestAt(double t, double error) const {
+  constexpr int kMostSearches = 16;
+  constexpr double kShare = 0.9;
+  const State state = stateAt(t);
+  ConvexGap gap = gapOf(state, 0);
+  double enough = margin(1);
+  for (int i = 0; i < kMostSearches && flat_ < 0; ++i) {
+    if (gap.depth > 0 || gap.distance - gap.gap <= error) break;
+    const double more = gap.gap + kShare * (gap.distance - gap.gap);
+    if (!(more > enough)) break;
+    enough = more;
+    gap = convexGap(state.side[0].now, state.side[1].now, gap.direction, enough, 0);
+  }
+  return gap;
+}
+
 /// Prefers the direction of a flat side: where the gap is a few roundings wide another
 /// one may happen to show as much.
 ConvexGap ConvexAdvance::gapAt(double t) const {

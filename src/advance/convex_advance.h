@@ -67,6 +67,10 @@ class ConvexAdvance {
   /// @brief The gap of the cores at a time.
   ConvexGap gapAt(double t) const;
 
+  /// @brief The nearest points of the cores at a time, up to rounding: their distance is
+  /// larger than the gap by no more than an error.
+  ConvexGap nearestAt(double t, double error) const;
+
   /// @brief The gap of the cores, without a look at their flat sides.
   ConvexGap coreGapAt(double t) const { return gapOf(stateAt(t), 0); }
 

@@ -301,8 +301,7 @@ TriangleAdvance::Answer TriangleAdvance::advance(double& t, double t_stop, int& 
       [this](double time, const State& state) {
         return step(time, state, directionOfNearest(state));
       });
-  if (answer == Answer::kGivenUp && t == 0 && isCrossingAt(at(0)))
-    return Answer::kContact;
+  if (answer == Answer::kGivenUp && t == 0 && isCrossingAt(0)) return Answer::kContact;
   return answer;
 }
 
@@ -320,14 +319,21 @@ Vec TriangleAdvance::directionAt(double t) const {
   return direction;
 }
 
-/// Whether an edge of one triangle passes through the other, for these points.
-bool TriangleAdvance::isCrossingAt(const State& state) {
+NearestFeatures TriangleAdvance::nearestAt(double t) const {
+  Vec p[2][3];
+  cornersAt(t, p);
+  return nearestFeatures(p[0], p[1], count_);
+}
+
+bool TriangleAdvance::isCrossingAt(double t) const {
+  Vec p[2][3];
+  cornersAt(t, p);
   double x[2][3][3];
   for (int body = 0; body < 2; ++body)
     for (int i = 0; i < 3; ++i) {
-      x[body][i][0] = state.p[body][i].x;
-      x[body][i][1] = state.p[body][i].y;
-      x[body][i][2] = state.p[body][i].z;
+      x[body][i][0] = p[body][i].x;
+      x[body][i][1] = p[body][i].y;
+      x[body][i][2] = p[body][i].z;
     }
   for (int body = 0; body < 2; ++body)
     for (int k = 0; k < 3; ++k)

@@ -90,6 +90,13 @@ class TriangleAdvance {
 
   const NearestFeatures& nearest() const { return nearest_; }
 
+  /// @brief The nearest features at a time.
+  NearestFeatures nearestAt(double t) const;
+
+  /// @brief Whether an edge of one triangle passes through the other at a time, where the
+  /// corners are computed to be.
+  bool isCrossingAt(double t) const;
+
   /// @brief A unit direction from a to b that parts the triangles at a time; if they have
   /// parallel sides that of the sides. 0: there is none.
   Vec directionAt(double t) const;
@@ -119,7 +126,6 @@ class TriangleAdvance {
   struct Projection;
   double greatestApproach(double t, const Vec& direction) const;
   Vec directionOfNearest(const State& state) const;
-  static bool isCrossingAt(const State& state);
   void cornersAt(double t, Vec (&p)[2][3]) const;
   bool provesCrossing(const Vec (&p)[2][3]) const;
 

@@ -3,6 +3,8 @@
 // Boxes that turn against each other, eight pairs at once.
 #include "shapes/body_boxes.h"
 
+#include <cmath>
+
 #if defined(FCL_CCD_USE_HIGHWAY)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bodies/body_kernels.cpp"
@@ -66,12 +68,16 @@ FCL_CCD_INLINE Projection project(const WorldBox& a, const BodyBoxes& b,
 struct Losses {
   Doubles before, after;
   DoubleMask apart;
+  /// See MeetingWindows::gap.
+  Doubles gap;
 };
 
 /// The gaps along a direction at the beginning, in the middle and at the end of the span,
 /// to the side where b's center is at one of these times.
 struct Gaps {
   Doubles first, middle, last;
+
+  FCL_CCD_INLINE Doubles least() const { return min(min(first, middle), last); }
 };
 
 FCL_CCD_INLINE Gaps gapsTo(const Doubles& side, const Projection (&p)[3],
@@ -96,6 +102,7 @@ FCL_CCD_INLINE Doubles lossOf(const Doubles& first, const Doubles& middle,
 }
 
 /// Uses the side of b's center at the beginning, and the side at the end.
+template <bool kMeasuresGaps>
 FCL_CCD_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
                               Losses& losses) {
   const Doubles zero = all(0);
@@ -111,8 +118,10 @@ FCL_CCD_INLINE void addLosses(const Projection (&p)[3], const Doubles& margin,
           select(starts_apart, lossOf(from.first, from.middle, from.last), zero));
   losses.after =
       max(losses.after, select(ends_apart, lossOf(to.last, to.middle, to.first), zero));
+  if (kMeasuresGaps) losses.gap = max(losses.gap, max(from.least(), to.least()));
 }
 
+template <bool kMeasuresGaps>
 void meetingWindows(const BodyBox* const (&a)[3], const SpanPoses& pose_a,
                     const BodyBoxes* const (&b)[3], const SpanPoses& pose_b,
                     const double (&margin)[8], const CalmDirection (&calm)[2], int count,
@@ -121,11 +130,12 @@ void meetingWindows(const BodyBox* const (&a)[3], const SpanPoses& pose_a,
                  am = inWorld(*a[1], pose_a.middle), a1 = inWorld(*a[2], pose_a.end);
   const Doubles zero = all(0), one = all(1);
   Doubles margins = load<kEight>(margin);
-  Losses losses{zero, zero, zero > zero};
+  Losses losses{zero, zero, zero > zero, all(-HUGE_VAL)};
   const auto tryDirection = [&](const Vectors& d) HWY_ATTR {
-    addLosses({project(a0, *b[0], pose_b.beginning, d),
-               project(am, *b[1], pose_b.middle, d), project(a1, *b[2], pose_b.end, d)},
-              margins, losses);
+    addLosses<kMeasuresGaps>(
+        {project(a0, *b[0], pose_b.beginning, d), project(am, *b[1], pose_b.middle, d),
+         project(a1, *b[2], pose_b.end, d)},
+        margins, losses);
   };
   const unsigned in_use = (1U << count) - 1;
   const auto left = [&]() HWY_ATTR {
@@ -155,6 +165,7 @@ void meetingWindows(const BodyBox* const (&a)[3], const SpanPoses& pose_a,
   }
   store(losses.before, out.lo);
   store(one - losses.after, out.hi);
+  if (kMeasuresGaps) store(losses.gap, out.gap);
 }
 
 /// Corners at the beginning, in the middle and at the end of a span.
@@ -268,10 +279,12 @@ void meetingHalves(const SpanTriangle& a, const BodyTriangles& b, const double* 
 }
 
 #if defined(FCL_CCD_USE_HIGHWAY)
-extern const BodyKernels kBodyKernels = {hwy::TargetName(HWY_TARGET), &meetingWindows,
+extern const BodyKernels kBodyKernels = {hwy::TargetName(HWY_TARGET),
+                                         &meetingWindows<false>, &meetingWindows<true>,
                                          &meetingHalves};
 #else
-extern const BodyKernels kBodyKernels = {"plain", &meetingWindows, &meetingHalves};
+extern const BodyKernels kBodyKernels = {"plain", &meetingWindows<false>,
+                                         &meetingWindows<true>, &meetingHalves};
 #endif
 
 const BodyKernels* bodyTable() { return &kBodyKernels; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "bodies/flat_windows.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "paths/posed_vector.h"
@@ -52,10 +53,13 @@ void flatWindows(const FlatShape& flat, const SpanPoses& pose_flat,
     double &lo = out.lo[lane], &hi = out.hi[lane];
     lo = 0;
     hi = 1;
-    if (!narrowWindow(h0.center[lane] - half0, h1.center[lane] - half1, lo, hi)) continue;
-    if (!flat.is_solid &&
-        !narrowWindow(-h0.center[lane] - half0, -h1.center[lane] - half1, lo, hi))
-      continue;
+    const double above[2] = {h0.center[lane] - half0, h1.center[lane] - half1},
+                 below[2] = {-h0.center[lane] - half0, -h1.center[lane] - half1};
+    out.gap[lane] = std::min(above[0], above[1]);
+    if (!flat.is_solid)
+      out.gap[lane] = std::max(out.gap[lane], std::min(below[0], below[1]));
+    if (!narrowWindow(above[0], above[1], lo, hi)) continue;
+    if (!flat.is_solid && !narrowWindow(below[0], below[1], lo, hi)) continue;
     if (lo <= hi) out.mask |= 1U << lane;
   }
 }

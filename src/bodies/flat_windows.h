@@ -10,7 +10,7 @@ namespace detail {
 namespace deformable {
 
 /// @brief As BodyKernels::meetingWindows(), for boxes and a plane or a halfspace. The
-/// only direction is its normal, which turns with it.
+/// only direction is its normal, which turns with it. It measures gaps.
 /// @param boxes  those at both ends of the span are used
 /// @param margin  a bound on how far the height of a point above the plane deviates from
 /// a straight line, with pads, requested distance and rounding

@@ -58,15 +58,17 @@ Vec towardsBox(const ConvexShape& shape, const Pose& pose_shape, const BodyBox& 
 }  // namespace
 
 PartWindows::PartWindows(const MovingBody& a, const MovingBody& b,
-                         const BodyTolerance& tolerance, double distance)
+                         const BodyTolerance& tolerance, double distance,
+                         bool measures_gaps)
     : side_{BodySide(a), BodySide(b)},
-      axes_share_(side_[0].axis ? side_[1].shareAlong(*side_[0].axis) : 1) {
+      axes_share_(side_[0].axis ? side_[1].shareAlong(*side_[0].axis) : 1),
+      measures_gaps_(measures_gaps) {
   // A kernel adds up no more than a hundred roundings of the sizes, and a time is
   // rounded by a few u.
   rounding_ = tolerance.position + 0x1p-44 * (a.size() + b.size()) +
               16 * kUnit * (a.speed() + b.speed());
   assert(distance >= tolerance.distance);
-  box_margin_ = distance + rounding_;
+  setDistance(distance);
   direction_bound_ =
       (1 + 0x1p-10) * std::max({1., a.path().stretch(), b.path().stretch()});
 }
@@ -173,8 +175,10 @@ void PartWindows::setWindows(int opened, const BodyNode& node, const PartSpan& o
     interpolate(other.frame[1], times.at[k], moving[k]);
     others[k] = &moving[k];
   }
-  bodyKernels().meetingWindows(others, pose_one, boxes, pose_many, margin, axes,
-                               node.count, windows);
+  const BodyKernels& kernels = bodyKernels();
+  const auto find =
+      measures_gaps_ ? kernels.meetingWindowsWithGaps : kernels.meetingWindows;
+  find(others, pose_one, boxes, pose_many, margin, axes, node.count, windows);
 }
 
 /// @param acceleration  of the node's boxes
@@ -240,6 +244,8 @@ bool PartWindows::narrowByShape(int opened, const PartWork& work,
   if (first > -slack && last > -slack &&
       gap(posedShape(poses[0].middle), posedBox(middle, poses[1].middle)) > -slack)
     windows.soon_apart |= 1U << lane;
+  if (measures_gaps_)
+    windows.gap[lane] = std::max(windows.gap[lane], std::min(first, last));
   return narrowWindow(first, last, windows.lo[lane], windows.hi[lane]);
 }
 

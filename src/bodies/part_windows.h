@@ -4,6 +4,8 @@
 #ifndef FCL_CCD_BODIES_PART_WINDOWS_H
 #define FCL_CCD_BODIES_PART_WINDOWS_H
 
+#include <algorithm>
+
 #include "bodies/body_side.h"
 #include "bodies/body_tolerance.h"
 #include "bodies/part_work.h"
@@ -17,8 +19,21 @@ namespace deformable {
 class PartWindows {
  public:
   /// @param distance  at which the bodies are in contact
+  /// @param measures_gaps  whether leastDistance() is asked for
   PartWindows(const MovingBody& a, const MovingBody& b, const BodyTolerance& tolerance,
-              double distance);
+              double distance, bool measures_gaps = false);
+
+  /// @brief Takes another distance at which the bodies are in contact.
+  void setDistance(double distance) {
+    distance_ = distance;
+    box_margin_ = distance + rounding_;
+  }
+
+  bool measuresGaps() const { return measures_gaps_; }
+  /// @brief The distance of two parts is at least this during the span of windows.
+  double leastDistance(const MeetingWindows& windows, int lane) const {
+    return std::max(distance_ + windows.gap[lane] / direction_bound_, 0.);
+  }
 
   BodySide& side(int k) { return side_[k]; }
   const BodySide& side(int k) const { return side_[k]; }
@@ -100,7 +115,9 @@ class PartWindows {
   /// The share of a body's deviation that it has along the axis of the other one.
   double axes_share_;
   double rounding_;
+  double distance_;
   double box_margin_;
+  bool measures_gaps_;
   double direction_bound_;
 };
 

@@ -91,6 +91,9 @@ struct MeetingWindows {
   /// the end of the span by so much that it is provably apart in parts of the span, if
   /// that is known.
   unsigned soon_apart{0};
+  /// The largest of the gaps along directions, less their margins: the least of each one
+  /// during the span. Set by what measures gaps, also for boxes that are apart.
+  double gap[BodyBoxes::kWidth];
 };
 
 /// @brief What is known of the triangles of a node beside a triangle of the other side.
@@ -153,6 +156,9 @@ struct BodyKernels {
                          const BodyBoxes* const (&b)[3], const SpanPoses& pose_b,
                          const double (&margin)[8], const CalmDirection (&calm)[2],
                          int count, MeetingWindows& out);
+
+  /// The same, and measures gaps: MeetingWindows::gap.
+  decltype(meetingWindows) meetingWindowsWithGaps;
 
   /// Tests eight triangles of body b against one of body a in both halves of a span.
   /// Along a direction the gap of two corners is at least the line between its values at

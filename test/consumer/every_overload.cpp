@@ -20,6 +20,7 @@
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_candidates.h>
 #include <fcl/narrowphase/continuous_collision.h>
+#include <fcl/narrowphase/continuous_distance.h>
 #include <fcl/narrowphase/continuous_feature_test.h>
 #include <fcl/narrowphase/detail/traversal/collision/deformable_continuous_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
@@ -72,6 +73,7 @@ class Checks {
     contacts();
     candidates();
     safeDisplacements();
+    leastDistances();
     features();
     node();
     discrete();
@@ -268,6 +270,30 @@ class Checks {
         rest.get(), at<S>(0, 0, 0), above.get(), at<S>(0, 0, 3), 9, 1);
     check(std::abs(bounds.of_o1[0] - 1) < 1e-6 && std::abs(bounds.of_o2[0] - 1) < 1e-6,
           "safeDisplacements");
+  }
+
+  void leastDistances() {
+    const auto rest = makeSquare<Model>(), fall = makeSquare<Model>();
+    const auto from = at<S>(0, 0, 3), to = at<S>(0, 0, 1), still = at<S>(0, 0, 0);
+    const auto checkResult = [&](const fcl::ContinuousDistanceResult<S>& result) {
+      check(!result.is_collide && result.distance_lo <= 1 && result.distance_hi >= 1 &&
+                result.time == 1,
+            "continuousDistance");
+    };
+    const fcl::ContinuousDistanceRequest<S> request;
+    fcl::ContinuousDistanceResult<S> result;
+    fcl::continuousDistance(rest.get(), still, still, fall.get(), from, to, request,
+                            result);
+    checkResult(result);
+    const fcl::TranslationMotion<S> no_motion(still, still), falling(from, to);
+    result = {};
+    fcl::continuousDistance(rest.get(), &no_motion, fall.get(), &falling, request,
+                            result);
+    checkResult(result);
+    const fcl::CollisionObject<S> o1(rest, still), o2(fall, from);
+    result = {};
+    fcl::continuousDistance(&o1, still, &o2, to, request, result);
+    checkResult(result);
   }
 
   void features() {

@@ -24,6 +24,7 @@
 #include "fcl/geometry/shape/sphere.h"
 #include "fcl/geometry/shape/triangle_p.h"
 #include "mesh_generators.h"
+#include "random_direction.h"
 
 namespace fcl {
 namespace test {
@@ -113,13 +114,6 @@ inline PosedShape posedTriangle(const Vector3<double>& a, const Vector3<double>&
   shape.points = {a, b, c};
   shape.geometry = std::make_shared<TriangleP<double>>(a, b, c);
   return shape;
-}
-
-inline Vector3<double> randomDirection(Random& random) {
-  while (true) {
-    const Vector3<double> v = random.point(1);
-    if (v.norm() > 0.1 && v.norm() < 1) return v.normalized();
-  }
 }
 
 /// @brief An octahedron whose corners are at random places on the axes.

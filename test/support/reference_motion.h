@@ -9,6 +9,7 @@
 #include "fcl/common/types.h"
 #include "mesh_generators.h"
 #include "paths/motion_path.h"
+#include "random_direction.h"
 
 namespace fcl {
 namespace test {
@@ -136,13 +137,6 @@ struct ReferenceMotion {
     return pose;
   }
 };
-
-inline Vector3<double> randomDirection(Random& random) {
-  Vector3<double> v;
-  do v = random.point(1);
-  while (v.norm() > 1 || v.norm() < 0.1);
-  return v.normalized();
-}
 
 inline Matrix3<double> randomRotation(Random& random) {
   Quaternion<double> q(random.uniform(-1, 1), random.uniform(-1, 1),

@@ -65,6 +65,7 @@ class ScalarWindow {
   bool mayMeet() const { return may_meet_; }
   double lo() const { return before_; }
   double hi() const { return 1 - after_; }
+  double gap() const { return gap_; }
 
  private:
   /// The gaps at the beginning, in the middle and at the end, to the side on which b is
@@ -76,6 +77,7 @@ class ScalarWindow {
         at[k] =
             (p[side].between < 0 ? -p[k].between : p[k].between) - (p[k].reach + margin);
     }
+    double least() const { return std::min({at[0], at[1], at[2]}); }
   };
 
   /// The part of the span before the gap closes, from where `first` is.
@@ -97,6 +99,7 @@ class ScalarWindow {
     if (to.at[2] > 0 && !apart)
       after_ = std::max(after_, lossOf(to.at[2], to.at[1], to.at[0]));
     if (before_ + after_ > 1) may_meet_ = false;
+    gap_ = std::max({gap_, from.least(), to.least()});
   }
 
   const BodyBox (&a_)[3];
@@ -106,6 +109,7 @@ class ScalarWindow {
   double margin_;
   bool may_meet_{true};
   double before_{0}, after_{0};
+  double gap_{-HUGE_VAL};
 };
 
 Vector3<double> randomUnit(Random& random) {
@@ -181,9 +185,12 @@ TEST(BodyKernels, EqualScalarCode) {
     for (int lane = 0; lane < 8; ++lane) used.margin[lane] = 0.5 * margin[lane];
     const BodyBox* const of_a[3] = {&a[0], &a[1], &a[2]};
     const BodyBoxes* const of_b[3] = {&boxes[0], &boxes[1], &boxes[2]};
-    MeetingWindows windows;
+    MeetingWindows windows, with_gaps;
     bodyKernels().meetingWindows(of_a, pose_a, of_b, pose_b, margin, calms, count,
                                  windows);
+    bodyKernels().meetingWindowsWithGaps(of_a, pose_a, of_b, pose_b, margin, calms, count,
+                                         with_gaps);
+    ASSERT_EQ(with_gaps.mask, windows.mask);
     for (int lane = 0; lane < count; ++lane) {
       const ScalarWindow scalar(a, pose_a, b[lane], pose_b, margin[lane], calm,
                                 used.margin[lane]);
@@ -192,6 +199,9 @@ TEST(BodyKernels, EqualScalarCode) {
       if (!scalar.mayMeet()) continue;
       ASSERT_EQ(windows.lo[lane], scalar.lo());
       ASSERT_EQ(windows.hi[lane], scalar.hi());
+      ASSERT_EQ(with_gaps.lo[lane], scalar.lo());
+      ASSERT_EQ(with_gaps.hi[lane], scalar.hi());
+      ASSERT_EQ(with_gaps.gap[lane], scalar.gap());
       part += scalar.lo() > 0 || scalar.hi() < 1;
     }
     ASSERT_EQ(windows.mask >> count, 0u);

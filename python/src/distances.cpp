@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "arrays.h"
+#include "fcl/narrowphase/continuous_distance.h"
+#include "meshes.h"
+#include "motions.h"
+#include "queries.h"
+#include "requests.h"
+
+namespace fcl_ccd {
+namespace python {
+namespace {
+
+using Distance = fcl::ContinuousDistanceResultd;
+
+/// The fields that a request for contacts has too come from one.
+fcl::ContinuousDistanceRequestd requestOf(const fcl::ContinuousContactRequestd& fields,
+                                          double abs_err, double rel_err,
+                                          double max_distance) {
+  fcl::ContinuousDistanceRequestd request;
+  request.abs_err = abs_err;
+  request.rel_err = rel_err;
+  request.max_distance = max_distance;
+  request.t_max = fields.t_max;
+  request.toc_err = fields.toc_err;
+  request.filter1 = fields.filter1;
+  request.filter2 = fields.filter2;
+  request.accepts_triangles = fields.accepts_triangles;
+  request.num_threads = fields.num_threads;
+  return request;
+}
+
+py::dict fieldsOf(const Distance& found) {
+  using py::literals::operator""_a;
+  py::array_t<double> points({2, 3});
+  for (int k = 0; k < 2; ++k)
+    for (int i = 0; i < 3; ++i)
+      points.mutable_at(k, i) = found.nearest_points[static_cast<std::size_t>(k)][i];
+  return py::dict("distance_lo"_a = found.distance_lo,
+                  "distance_hi"_a = found.distance_hi, "time"_a = found.time,
+                  "nearest_points"_a = points, "b1"_a = found.b1, "b2"_a = found.b2,
+                  "is_collide"_a = found.is_collide, "is_cut_off"_a = found.is_cut_off);
+}
+
+py::dict distanceOfPair(const Geometry& o1, const Motion& motion1, const Geometry& o2,
+                        const Motion& motion2, const Request& request, double abs_err,
+                        double rel_err, double max_distance) {
+  const Geometry::Reading reading1(o1), reading2(o2);
+  const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
+  Distance found;
+  {
+    TriangleFilter filter(request);
+    const py::gil_scoped_release release;
+    filter.run([&] {
+      fcl::detail::answerDistance(
+          moving1, moving2, requestOf(filter.request(), abs_err, rel_err, max_distance),
+          found);
+    });
+  }
+  return fieldsOf(found);
+}
+
+}  // namespace
+
+void bindDistances(py::module_& module) { module.def("distance", &distanceOfPair); }
+
+}  // namespace python
+}  // namespace fcl_ccd

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "fcl/narrowphase/continuous_distance.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "base/default_floating_point.h"
+#include "base/parallel.h"
+#include "curved/body_approach.h"
+#include "fcl/common/exception.h"
+#include "prepare/checked_request.h"
+#include "prepare/posed_flat.h"
+#include "prepare/prepared_motion.h"
+#include "prepare/prepared_shapes.h"
+#include "prepare/query_arguments.h"
+#include "prepare/query_range.h"
+
+namespace fcl {
+namespace detail {
+namespace {
+
+using deformable::ApproachAnswer;
+using deformable::ApproachOptions;
+using deformable::BodyApproach;
+using deformable::DefaultFloatingPoint;
+using deformable::PreparedMotion;
+
+/// The query for the first contact that the request of a distance implies.
+template <typename S>
+ContinuousContactRequest<S> contactRequestOf(
+    const ContinuousDistanceRequest<S>& request) {
+  ContinuousContactRequest<S> out;
+  out.query = ContinuousQuery::kFirst;
+  out.num_max_contacts = 1;
+  out.toc_err = request.toc_err;
+  out.t_max = request.t_max;
+  out.ccd_motion_type = request.ccd_motion_type;
+  out.filter1 = request.filter1;
+  out.filter2 = request.filter2;
+  out.accepts_triangles = request.accepts_triangles;
+  out.num_threads = request.num_threads;
+  return out;
+}
+
+void requireError(double error, const char* name) {
+  if (!(error >= 0) || !std::isfinite(error))
+    throw Exception(std::string(name) + " is negative or not finite. Give 0 or more");
+}
+
+template <typename S>
+ApproachOptions optionsOf(const ContinuousDistanceRequest<S>& request) {
+  ApproachOptions options;
+  options.abs_err = static_cast<double>(request.abs_err);
+  options.rel_err = static_cast<double>(request.rel_err);
+  options.t_max = static_cast<double>(request.t_max);
+  options.max_distance = static_cast<double>(request.max_distance);
+  requireError(options.abs_err, "request.abs_err");
+  requireError(options.rel_err, "request.rel_err");
+  if (!(options.max_distance > 0))
+    throw Exception(
+        "request.max_distance is not above 0. Give the largest distance that is of "
+        "interest, or infinity");
+  return options;
+}
+
+/// The largest number of S that is not above x, or the least one that is not below it.
+template <typename S>
+S roundedDown(double x) {
+  const S near = static_cast<S>(x);
+  return static_cast<double>(near) > x
+             ? std::nextafter(near, -std::numeric_limits<S>::infinity())
+             : near;
+}
+template <typename S>
+S roundedUp(double x) {
+  return -roundedDown<S>(-x);
+}
+
+template <typename S>
+Vector3<S> toVector(const deformable::Vec& x) {
+  return Vector3<S>(static_cast<S>(x.x), static_cast<S>(x.y), static_cast<S>(x.z));
+}
+
+template <typename S>
+ContinuousDistanceResult<S> resultOf(const ApproachAnswer& answer) {
+  ContinuousDistanceResult<S> out;
+  out.distance_lo = roundedDown<S>(answer.lo);
+  out.distance_hi = roundedUp<S>(answer.hi);
+  out.time = static_cast<S>(answer.time);
+  for (int k = 0; k < 2; ++k) out.nearest_points[k] = toVector<S>(answer.point[k]);
+  out.b1 = static_cast<std::intptr_t>(answer.triangle[0]);
+  out.b2 = static_cast<std::intptr_t>(answer.triangle[1]);
+  out.is_cut_off = answer.is_cut_off;
+  return out;
+}
+
+/// The distance of objects of which no pair counts.
+template <typename S>
+ContinuousDistanceResult<S> noDistance() {
+  ContinuousDistanceResult<S> out;
+  out.distance_lo = out.distance_hi = std::numeric_limits<S>::infinity();
+  return out;
+}
+
+template <typename S>
+ContinuousDistanceResult<S> touchingAt(const ContinuousContactResult<S>& found) {
+  ContinuousDistanceResult<S> out;
+  out.is_collide = true;
+  out.time = found.time_of_contact;
+  const ContinuousContact<S>& first =
+      found.initially_crossing ? found.crossing : found.contacts.front();
+  out.nearest_points[0] = out.nearest_points[1] = first.pos;
+  out.b1 = first.b1;
+  out.b2 = first.b2;
+  return out;
+}
+
+/// Two objects of which the distance is asked.
+template <typename S>
+class DistanceQuery {
+ public:
+  DistanceQuery(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                const ContinuousDistanceRequest<S>& request)
+      : moving_{&o1, &o2},
+        placed_{PlacedGeometry<S>(o1), PlacedGeometry<S>(o2)},
+        contact_request_(contactRequestOf(request)),
+        checked_(contact_request_),
+        options_(optionsOf(request)) {
+    requireAnswer();
+  }
+
+  int numThreads() const { return checked_.options.num_threads; }
+
+  ContinuousDistanceResult<S> run() {
+    RequestFilter filter(checked_, placed_[0].geometry(), placed_[1].geometry(), false);
+    if (filter.rejectsAll() || isNoObstacle(0) || isNoObstacle(1)) return noDistance<S>();
+    if (const auto* pairs = filter.prepare()) options_.rules = &pairs->rules();
+    const int first = firstOf(placed_[0]), second = 1 - first;
+    const PreparedMotion bounded = prepared(first, 0),
+                         other = prepared(second,
+                                          bounded.isEmpty() ? 0 : bounded.body().size());
+    if (bounded.isEmpty() || other.isEmpty()) return noDistance<S>();
+    const PreparedMotion &motion1 = first == 0 ? bounded : other,
+                         &motion2 = first == 0 ? other : bounded;
+    requireProvenRange(motion1, motion2);
+    return answerOf([&] { return search(motion1.body(), motion2.body()); });
+  }
+
+ private:
+  void requireAnswer() const {
+    if (answererOf(placed_[0], placed_[1]) == Answerer::kFcl)
+      throw Exception("continuousDistance: " + whyFclAnswers(placed_[0], placed_[1]) +
+                      ", and FCL has no such query. Give a mesh, a shape or an octree "
+                      "that follows one of FCL's motions, or derive the motion class "
+                      "from BoundedMotion too");
+    if (deformable::isUnbounded(placed_[0].geometry()) &&
+        deformable::isUnbounded(placed_[1].geometry()))
+      throw Exception(
+          "continuousDistance: o1 and o2 are both a plane or a halfspace, which have no "
+          "end. Give a bounded shape in the place of one, or ask continuousCollide() "
+          "whether they touch");
+    placed_[0].requireFinitePoses("o1");
+    placed_[1].requireFinitePoses("o2");
+  }
+
+  /// As in FCL, the cells of an octree meet only what the program calls occupied.
+  bool isNoObstacle(int k) const {
+    return placed_[k].isOctree() && !placed_[1 - k].isOctree() &&
+           !placed_[1 - k].geometry().isOccupied();
+  }
+
+  PreparedMotion prepared(int k, double other_radius) const {
+    return PreparedMotion(placed_[k], k == 0 ? "o1" : "o2", checked_.options.toc_err,
+                          checked_.options.num_threads, other_radius);
+  }
+
+  ContinuousDistanceResult<S> search(const deformable::MovingBody& a,
+                                     const deformable::MovingBody& b) {
+    BodyApproach approach(a, b, options_);
+    // Triangles were found that are so near that they may cross at another time.
+    if (!approach.search()) {
+      ContinuousContactResult<S> found;
+      if (doTouch(found)) return touchingAt(found);
+      approach.search();
+      return resultOf<S>(approach.answer());
+    }
+    const ApproachAnswer answer = approach.answer();
+    ContinuousContactResult<S> found;
+    if (!(answer.lo > 0) && doTouch(found)) return touchingAt(found);
+    return resultOf<S>(answer);
+  }
+
+  bool doTouch(ContinuousContactResult<S>& found) const {
+    QueryOutcome<S> outcome;
+    answerPair(*moving_[0], *moving_[1], contact_request_, outcome,
+               static_cast<ContinuousContacts<S>*>(&found));
+    found.time_of_contact = outcome.toc_lo;
+    return outcome.is_collide;
+  }
+
+  const MovingGeometry<S>* moving_[2];
+  const PlacedGeometry<S> placed_[2];
+  const ContinuousContactRequest<S> contact_request_;
+  const CheckedRequest checked_;
+  ApproachOptions options_;
+};
+
+}  // namespace
+
+template <typename S>
+void answerDistance(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
+                    const ContinuousDistanceRequest<S>& request,
+                    ContinuousDistanceResult<S>& result) {
+  const DefaultFloatingPoint mode;
+  DistanceQuery<S> query(o1, o2, request);
+  if (query.numThreads() == 1) {
+    result = query.run();
+    return;
+  }
+  deformable::inArena(query.numThreads(), [&] {
+    const DefaultFloatingPoint mode_of_its_thread;
+    result = query.run();
+  });
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                                     \
+  template void answerDistance(const MovingGeometry<S>&, const MovingGeometry<S>&, \
+                               const ContinuousDistanceRequest<S>&,                \
+                               ContinuousDistanceResult<S>&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace detail
+}  // namespace fcl
