@@ -14,6 +14,9 @@ namespace detail {
 namespace deformable {
 namespace {
 
+Vec edge(const Vec (&x)[3], int k) { return x[(k + 1) % 3] - x[k]; }
+Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
+
 double clampedUnit(double x) { return x > 0 ? (x < 1 ? x : 1) : 0; }
 
 /// The nearest points of an edge pq and an edge rs, as fractions of the edges. An edge
@@ -48,6 +51,26 @@ bool nearestOnFace(const Vec& p, const Vec (&f)[3], Vec& foot) {
   return true;
 }
 
+/// The point of a face that is nearest to a point whose foot is inside. It is a point of
+/// the face also where this is so thin that its normal rounds by much more than the
+/// corners: only the place between the longest edge and the third corner is as uncertain
+/// as the normal, and it is kept between them.
+Vec pointOnFace(const Vec& p, const Vec (&f)[3]) {
+  int longest = 0;
+  for (int k = 1; k < 3; ++k)
+    if (norm(edge(f, k)) > norm(edge(f, longest))) longest = k;
+  const Vec &from = f[longest], along = edge(f, longest),
+            to_third = f[(longest + 2) % 3] - from;
+  const double square = dot(along, along);
+  // Twice, since the first difference cancels.
+  Vec across = to_third - (dot(to_third, along) / square) * along;
+  across = across - (dot(across, along) / square) * along;
+  const double height = clampedUnit(dot(p - from, across) / dot(across, across));
+  const Vec base = from + height * to_third;
+  const double rest = clampedUnit(dot(p - base, along) / square);
+  return base + std::min(rest, 1 - height) * along;
+}
+
 /// Gap along a direction: b's least minus a's greatest coordinate.
 double gapAlong(const Vec& n, const Vec (&a)[3], const Vec (&b)[3]) {
   return std::min(std::min(dot(n, b[0]), dot(n, b[1])), dot(n, b[2])) -
@@ -77,9 +100,6 @@ void tryDirection(const Vec& d, const Vec (&a)[3], const Vec (&b)[3], Vec& best,
     best = opposite;
   }
 }
-
-Vec edge(const Vec (&x)[3], int k) { return x[(k + 1) % 3] - x[k]; }
-Vec normal(const Vec (&x)[3]) { return cross(x[1] - x[0], x[2] - x[0]); }
 
 /// The part of a vector that is perpendicular to another one.
 Vec across(const Vec& edge, const Vec& v) { return cross(edge, cross(v, edge)); }
@@ -319,10 +339,20 @@ Vec TriangleAdvance::directionAt(double t) const {
   return direction;
 }
 
+/// The foot on the plane of a thin face may be beside the face by much more than
+/// rounding.
 NearestFeatures TriangleAdvance::nearestAt(double t) const {
   Vec p[2][3];
   cornersAt(t, p);
-  return nearestFeatures(p[0], p[1], count_);
+  NearestFeatures near = nearestFeatures(p[0], p[1], count_);
+  if (near.kind == NearestFeatures::Kind::kEdges) return near;
+  const bool is_of_a = near.kind == NearestFeatures::Kind::kVertexOfA;
+  const Vec &vertex = is_of_a ? p[0][near.a] : p[1][near.b],
+            on_face = pointOnFace(vertex, p[is_of_a ? 1 : 0]);
+  near.point = is_of_a ? vertex : on_face;
+  near.between = (is_of_a ? on_face : vertex) - near.point;
+  near.square = dot(near.between, near.between);
+  return near;
 }
 
 bool TriangleAdvance::isCrossingAt(double t) const {

@@ -90,7 +90,8 @@ class TriangleAdvance {
 
   const NearestFeatures& nearest() const { return nearest_; }
 
-  /// @brief The nearest features at a time.
+  /// @brief The nearest features at a time. Both points are points of the triangles, up
+  /// to rounding of the corners.
   NearestFeatures nearestAt(double t) const;
 
   /// @brief Whether an edge of one triangle passes through the other at a time, where the

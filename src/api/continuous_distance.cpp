@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
 
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
@@ -55,6 +56,7 @@ ApproachOptions optionsOf(const ContinuousDistanceRequest<S>& request) {
   options.rel_err = static_cast<double>(request.rel_err);
   options.t_max = static_cast<double>(request.t_max);
   options.max_distance = static_cast<double>(request.max_distance);
+  options.float_times = std::is_same<S, float>::value;
   requireError(options.abs_err, "request.abs_err");
   requireError(options.rel_err, "request.rel_err");
   if (!(options.max_distance > 0))

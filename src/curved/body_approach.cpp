@@ -23,6 +23,13 @@ namespace detail {
 namespace deformable {
 namespace {
 
+/// The bracket is never narrower than this many times BodyTolerance::touching.
+constexpr double kTouchings = 8;
+
+/// The square of a length underflows by a few units of 2^-1074, and its root by less than
+/// this.
+constexpr double kUnderflow = 0x1p-530;
+
 /// Two parts in a span, and what their boxes show.
 struct NearWork {
   PartWork work;
@@ -38,6 +45,16 @@ bool isFurther(const NearWork& x, const NearWork& y) {
     return std::make_tuple(near.least, work.a.box, work.b.box, work.start);
   };
   return key(x) > key(y);
+}
+
+/// The largest distance that is to be proved. No point of a body is further from the
+/// origin than its size. A distance below what a search rounds by would be lost beside
+/// the radii of the shapes.
+double mostOf(const BodiesNearOrigin& near, double max_distance) {
+  const double radii = coreDistance(near.a.shape(), near.b.shape(), 0),
+               sizes = 2 * (near.a.size() + near.b.size()) + kUnderflow,
+               rounding = BodyTolerance(near.a, near.b, radii).touching;
+  return std::max(std::min(sizes, max_distance), kTouchings * rounding);
 }
 
 /// The nearest points of two surfaces at a time.
@@ -132,8 +149,7 @@ class BodyApproach::Search {
       : options_(options),
         near_(a, b),
         calm_(near_.a, near_.b),
-        // No point of a body is further from the origin than its size.
-        most_(std::min(2 * (near_.a.size() + near_.b.size()), options.max_distance)),
+        most_(mostOf(near_, options.max_distance)),
         tolerance_(near_.a, near_.b, coreDistance(a.shape(), b.shape(), most_)),
         calm_tolerance_(tolerance_),
         windows_(calm_.body(0), calm_.body(1), tolerance_,
@@ -193,7 +209,7 @@ class BodyApproach::Search {
   void setProved();
   double tolerance() const {
     return std::max({options_.abs_err, options_.rel_err * std::min(hi_, most_),
-                     8 * tolerance_.touching});
+                     kTouchings * tolerance_.touching});
   }
 
   const ApproachOptions options_;
@@ -216,13 +232,16 @@ class BodyApproach::Search {
   NearestPoints nearest_{HUGE_VAL, {}};
   PartWork nearest_work_{};
   std::int32_t nearest_index_[2]{kNoTriangle, kNoTriangle};
-  /// The distance that is to be proved, and what was proved of a pair that was given up.
-  double proved_{0}, given_up_{HUGE_VAL};
+  /// The distance that is to be proved, and the least one that was proved of a pair in
+  /// its place.
+  double proved_{HUGE_VAL}, given_up_{HUGE_VAL};
 };
 
-/// Takes the distance that is to be proved: a tolerance less than what was found.
+/// Takes the distance that is to be proved: a tolerance less than what was found. It
+/// never grows, so that what was proved before stays proved, however the difference
+/// rounds.
 void BodyApproach::Search::setProved() {
-  proved_ = hi_ < HUGE_VAL ? std::min(hi_ - tolerance(), most_) : most_;
+  proved_ = std::min({proved_, most_, hi_ - tolerance()});
   if (!(proved_ > 0)) return;
   tolerance_.distance = proved_ + may_change_ + tolerance_.radii;
   calm_tolerance_.distance = tolerance_.distance + calm_.deviation();
@@ -345,10 +364,13 @@ void BodyApproach::Search::decidePair(const PartWork& work, const Pair& pair) {
     }
     auto between = pair.between(t, end, wanted);
     int left = kMostSteps;
-    if (between.advance(t, end, left, counts_) == AdvanceAnswer::kApart) {
-      if (lowered > 0) given_up_ = std::min(given_up_, proved_ - lowered);
-      return;
-    }
+    const double before = t;
+    const bool are_apart =
+        between.advance(t, end, left, counts_) == AdvanceAnswer::kApart;
+    // Up to t, too, no more was proved.
+    if (lowered > 0 && (are_apart || t > before))
+      given_up_ = std::min(given_up_, proved_ - lowered);
+    if (are_apart) return;
     if (improve(work, pair, t, endOfDescent(pair, t, end)))
       lowered = 0;
     else
@@ -382,9 +404,10 @@ bool BodyApproach::Search::improve(const PartWork& work, const Pair& pair, doubl
   const double before = hi_, wanted = before - 0.5 * tolerance(),
                error = 0x1p-3 * tolerance();
   const auto between = pair.between(t0, t1, tolerance_);
-  const auto distanceAt = [&](double t) {
+  const auto distanceAt = [&](double time) {
+    const double t = options_.float_times ? static_cast<float>(time) : time;
     const NearestPoints near = pair.nearestAt(between, t, error);
-    const double most = near.distance + tolerance_.position;
+    const double most = near.distance + tolerance_.position + kUnderflow;
     if (most < hi_) {
       hi_ = most;
       time_ = t;
@@ -411,7 +434,9 @@ ApproachAnswer BodyApproach::Search::answer() const {
   out.counts = counts_;
   out.hi = hi_;
   out.lo = std::max(std::min(proved_, given_up_), 0.);
-  out.is_cut_off = proved_ == options_.max_distance;
+  // Below rounding, max_distance is less than most_.
+  out.is_cut_off = proved_ == most_ && out.lo >= options_.max_distance;
+  if (out.is_cut_off) out.lo = options_.max_distance;
   out.time = time_;
   const MovingBody* const body[2] = {&near_.a, &near_.b};
   const std::int32_t place[2] = {~nearest_work_.a.child, ~nearest_work_.b.child};

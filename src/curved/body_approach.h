@@ -29,6 +29,9 @@ struct ApproachOptions {
   double t_max{1};
   /// Larger distances do not matter.
   double max_distance{HUGE_VAL};
+  /// Whether `time` is to be a float: then distances are taken at such times only.
+  /// @pre t_max is one
+  bool float_times{false};
   /// Selects the triangle pairs that count; null: all of them.
   const PairRules* rules{nullptr};
 };

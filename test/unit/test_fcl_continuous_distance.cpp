@@ -15,6 +15,7 @@
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/geometry/octree/octree.h"
 #include "fcl/geometry/shape/box.h"
+#include "fcl/geometry/shape/capsule.h"
 #include "fcl/geometry/shape/cylinder.h"
 #include "fcl/geometry/shape/halfspace.h"
 #include "fcl/geometry/shape/plane.h"
@@ -24,6 +25,7 @@
 #include "fcl/math/motion/screw_motion.h"
 #include "fcl/math/motion/translation_motion.h"
 #include "fcl/narrowphase/continuous_distance.h"
+#include "feature_distance.h"
 #include "moving_objects.h"
 #include "sanitizer.h"
 #include "test_models.h"
@@ -238,6 +240,36 @@ TEST(FCL_CONTINUOUS_DISTANCE, maxDistance) {
   EXPECT_GE(far.distance_hi, 87);
 }
 
+TEST(FCL_CONTINUOUS_DISTANCE, maxDistanceBelowRounding) {
+  // The radii have no digits for it, but far more than that is proved.
+  const Sphere<double> a(0.25), b(0.5);
+  const auto box = makeModel<Rigid>(makeBox(V(0.25, 0.25, 0.25), 2));
+  Request request;
+  request.max_distance = 1e-300;
+  for (const Geometry* first :
+       {static_cast<const Geometry*>(&a), static_cast<const Geometry*>(box.get())}) {
+    const Result cut =
+        ask(*first, at(-1, 0, 0), at(3, 0, 0), b, at(0, 2, 0), at(0, 2, 0), request);
+    EXPECT_FALSE(cut.is_collide);
+    EXPECT_TRUE(cut.is_cut_off);
+    EXPECT_EQ(cut.distance_lo, 1e-300);
+  }
+  // Their boxes show no gap: the direction that parts them is no axis of a box.
+  const Capsule<double> rod(0.25, 10);
+  const Pose tilt = turned(0.7, V(1, 1, 0).normalized());
+  Pose place = tilt;
+  place.translation() = 0.51 * V(1, 1, 0).normalized() + 3 * tilt.linear().col(2);
+  const Result rods = ask(rod, at(0, 0, 0), at(0, 0, 1), rod, place, place, request);
+  EXPECT_TRUE(rods.is_cut_off);
+  EXPECT_EQ(rods.distance_lo, 1e-300);
+  EXPECT_GE(rods.distance_hi, 0.01 - 1e-9);
+  // What touches is not cut off.
+  const Result touch =
+      ask(a, at(-3, 0, 0), at(3, 0, 0), b, at(0, 0, 0), at(0, 0, 0), request);
+  EXPECT_TRUE(touch.is_collide);
+  EXPECT_FALSE(touch.is_cut_off);
+}
+
 TEST(FCL_CONTINUOUS_DISTANCE, filters) {
   // A floor in two parts of which the nearer one does not count.
   TestMesh mesh;
@@ -283,6 +315,38 @@ TEST(FCL_CONTINUOUS_DISTANCE, degenerateMeshes) {
                  1);
 }
 
+// The normal of a thin face is off by far more than its corners. A foot on that plane is
+// beside the face, and seems too near.
+TEST(FCL_CONTINUOUS_DISTANCE, thinFaces) {
+  constexpr double kRounding = 1e-13;
+  const Pose here = at(0, 0, 0);
+  Random random(3);
+  for (const double width : {1e-6, 1e-8, 1e-10})
+    for (int round = 0; round < rounds(200); ++round) {
+      const V along = randomDirection(random),
+              across = along.cross(randomDirection(random)).normalized(),
+              from = random.point(1), to = from + along,
+              third = from + random.uniform(0.1, 0.9) * along + width * across,
+              p = from + random.uniform(0.2, 0.8) * along +
+                  random.uniform(0.1, 1) * along.cross(across);
+      TestMesh mesh{{from, to, third}, {Triangle(0, 1, 2)}};
+      const auto face = makeModel<Rigid>(mesh);
+      Model point;
+      point.beginModel();
+      point.addPoint(p);
+      point.endModel();
+      // The edge is further away by less than the square of the width.
+      const double distance = distanceOfEdges(from, to, p, p);
+      for (const bool is_first : {true, false}) {
+        const Result result = is_first ? ask(*face, here, here, point, here, here)
+                                       : ask(point, here, here, *face, here, here);
+        ASSERT_GE(result.distance_hi, distance - width * width - kRounding);
+        ASSERT_LE(result.distance_hi, distance * (1 + 1e-3) + kRounding);
+        ASSERT_LE(result.distance_lo, distance + kRounding);
+      }
+    }
+}
+
 TEST(FCL_CONTINUOUS_DISTANCE, sizes) {
   const auto box = makeModel<Rigid>(makeBox(V(1, 1, 1), 4));
   for (const double size : {1e-30, 1e-6, 1., 1e6, 1e30}) {
@@ -296,6 +360,28 @@ TEST(FCL_CONTINUOUS_DISTANCE, sizes) {
     EXPECT_GT(result.distance_lo, 1.5 * size);
     EXPECT_LT(result.distance_hi, 2 * size);
   }
+}
+
+// Squares of such lengths underflow. The bracket of shapes is right, if not narrow.
+TEST(FCL_CONTINUOUS_DISTANCE, sizesOfWhichSquaresUnderflow) {
+  for (const double size : {1e-160, 1e-200, 1e-300}) {
+    SCOPED_TRACE(size);
+    const Sphere<double> ball(size);
+    const Box<double> box(2 * size, 2 * size, 2 * size);
+    for (const Geometry* o :
+         {static_cast<const Geometry*>(&ball), static_cast<const Geometry*>(&box)}) {
+      const Result result = ask(*o, at(-9 * size, 0, 0), at(9 * size, 0, 0), *o,
+                                at(0, 4 * size, 0), at(0, 4 * size, 0));
+      EXPECT_FALSE(result.is_collide);
+      EXPECT_LE(result.distance_lo, 2 * size);
+      EXPECT_GE(result.distance_hi, 2 * size);
+      EXPECT_LE(result.distance_hi, 2 * size + 1e-159);
+    }
+  }
+  const Sphere<double> huge(1e60);
+  expectRefused(
+      [&] { ask(huge, at(0, 0, 0), at(0, 0, 0), huge, at(4e60, 0, 0), at(4e60, 0, 0)); },
+      "2^160");
 }
 
 TEST(FCL_CONTINUOUS_DISTANCE, formsOfArguments) {
@@ -327,6 +413,74 @@ TEST(FCL_CONTINUOUS_DISTANCE, formsOfArguments) {
   EXPECT_LE(in_float.distance_lo, 1.25F);
   EXPECT_GE(in_float.distance_hi, 1.25F);
   EXPECT_LE(in_float.distance_hi - in_float.distance_lo, 2e-3F);
+}
+
+// A point that is fast and passes another one closely is much further away when the time
+// is rounded to a float.
+TEST(FCL_CONTINUOUS_DISTANCE, timesOfFloatsAreFloats) {
+  const auto pointAt = [](const Vector3<float>& p) {
+    auto model = std::make_shared<DeformableBVHModel<KDOP<float, 16>>>();
+    model->beginModel();
+    model->addPoint(p);
+    model->endModel();
+    return model;
+  };
+  const float gap = 0x1p-10F;
+  const auto a = pointAt({0, 0, 0}), b = pointAt({0, gap, 0});
+  const Transform3<float> rest = Transform3<float>::Identity();
+  for (const float place : {0.1F, 0.3F, 0.7F}) {
+    Transform3<float> begin = rest, end = rest;
+    begin.translation()[0] = -10000 * place;
+    end.translation()[0] = begin.translation()[0] + 10000;
+    ContinuousDistanceResult<float> result;
+    continuousDistance(a.get(), begin, end, b.get(), rest, rest,
+                       ContinuousDistanceRequest<float>(), result);
+    const double from = begin.translation()[0], to = end.translation()[0],
+                 x = from + (to - from) * double{result.time};
+    EXPECT_GE(double{result.distance_hi}, std::hypot(x, gap) - 1e-9);
+    EXPECT_LE(result.distance_lo, gap);
+    EXPECT_GT(result.distance_lo, 0.98F * gap);
+  }
+}
+
+// Two threads, the query before, and what the result held change nothing.
+TEST(FCL_CONTINUOUS_DISTANCE, resultHoldsNothingOfTheQueryBefore) {
+  const Sphere<double> a(0.25), b(0.5);
+  Result result;
+  const auto askInto = [&](double y) {
+    continuousDistance(&a, at(-1, 0, 0), at(3, 0, 0), &b, at(0, y, 0), at(0, y, 0),
+                       Request(), result);
+  };
+  askInto(0);
+  EXPECT_TRUE(result.is_collide);
+  askInto(2);
+  expectDistance(result, 1.25, 0.25, Request(), 0.2);
+}
+
+TEST(FCL_CONTINUOUS_DISTANCE, pointsThatMeet) {
+  // They have the distance 0, but that is no contact.
+  constexpr double kRounding = 1e-12;
+  Model points;
+  points.beginModel();
+  points.addPoint(V(1, 2, 3));
+  points.endModel();
+  const Pose here = at(0, 0, 0);
+  for (const Pose& from : {here, at(1, 0, 0)}) {
+    const Result result = ask(points, from, here, points, here, here);
+    EXPECT_FALSE(result.is_collide);
+    EXPECT_EQ(result.distance_lo, 0);
+    EXPECT_NEAR(result.distance_hi, 0, kRounding);
+    EXPECT_EQ(result.time, from.translation()[0]);
+    EXPECT_NEAR((result.nearest_points[0] - V(1, 2, 3)).norm(), 0, kRounding);
+  }
+}
+
+TEST(FCL_CONTINUOUS_DISTANCE, onlyTheBeginningCounts) {
+  const Sphere<double> a(0.25), b(0.5);
+  Request request;
+  request.t_max = 0;
+  expectDistance(ask(a, at(-3, 0, 0), at(3, 0, 0), b, at(0, 0, 0), at(0, 0, 0), request),
+                 2.25, 0, request, 0);
 }
 
 TEST(FCL_CONTINUOUS_DISTANCE, errors) {
@@ -370,6 +524,11 @@ TEST(FCL_CONTINUOUS_DISTANCE, errors) {
       [&] { continuousDistance(&ball, &thrown, &ball, &still, Request(), result); },
       "BoundedMotion");
   TestMesh bad = makeIcosphere(1, 1);
+  const Rigid unbuilt;
+  expectRefused([&] { ask(unbuilt, here, here, ball, there, there); }, "o1");
+  Pose sheared = here;
+  sheared.linear()(0, 1) = 0.5;
+  expectRefused([&] { ask(ball, here, here, ball, there, sheared); }, "o2");
   bad.vertices[3][1] = kNaN;
   const auto broken = makeModel<Rigid>(bad);
   expectRefused([&] { ask(*broken, here, here, ball, there, there); }, "vertex 3");

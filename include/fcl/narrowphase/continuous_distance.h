@@ -155,12 +155,14 @@ S distanceOfObjects(const CollisionObject<S>* o1, const Transform3<S>& tf1_end,
 /// same.
 ///
 /// A bracket is wider than the tolerance if a pair takes more than 10,000 steps, as
-/// surfaces may that slide along each other at a tiny distance, or if matrices are
-/// rotations up to 2^-10 only. distance_lo and distance_hi are right all the same.
+/// surfaces may that slide along each other at a tiny distance; if matrices are rotations
+/// up to 2^-10 only; or in float, if an object goes further than the tolerance between
+/// two times that are floats. distance_lo and distance_hi are right all the same.
 ///
 /// @throws fcl::Exception  as continuousCollide(), where FCL would answer the pair, and:
 /// both objects are planes or halfspaces; abs_err, rel_err or max_distance is negative or
-/// NaN, or abs_err or rel_err is not finite; max_distance is 0.
+/// NaN, or abs_err or rel_err is not finite; max_distance is 0; coordinates are beyond
+/// 2^160, also those of two shapes.
 /// @return distance_lo
 /// @{
 
