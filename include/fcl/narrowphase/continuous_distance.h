@@ -54,6 +54,8 @@ using ContinuousDistanceRequestd = ContinuousDistanceRequest<double>;
 
 /// @brief The least distance of two objects during the step.
 template <typename S>
+// clang-tidy 14 names a variable of the copy that the compiler writes for an array.
+// NOLINTNEXTLINE(bugprone-reserved-identifier)
 struct ContinuousDistanceResult {
   /// @brief During the step the objects are never nearer than distance_lo. At `time` they
   /// are not further apart than distance_hi. Both are 0 if they touch. Both are infinite
