@@ -36,11 +36,14 @@ class Kind(enum.IntEnum):
 
 
 class _Asked:
-    """Of its query, what show() needs. These are no fields: asdict() would copy the objects."""
+    """Of its query, what show() needs. These are no fields: asdict() would copy the objects.
 
-    _queried: Optional[Tuple[Queried, Queried]] = None
-    _query: str = "all"
-    _has_places: bool = True
+    They have no annotations, as attributes have that exist only after __init__().
+    """
+
+    _queried = None  # type: Optional[Tuple[Queried, Queried]]
+    _query = "all"
+    _has_places = True
 
 
 @dataclass(frozen=True, eq=False, repr=False)

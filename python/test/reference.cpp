@@ -349,6 +349,7 @@ void print(const fcl::ContinuousContactd& c) {
   std::printf(" %d %d %a %a", c.first_on_o1, c.within_tolerance, c.toc_lo, c.toc_hi);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.pos[k]);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.normal[k]);
+  std::printf(" %a", c.penetration_depth);
   std::printf("\n");
 }
 

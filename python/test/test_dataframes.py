@@ -31,7 +31,8 @@ def test_contacts():
     np.testing.assert_array_equal(frame[PLACES[:3]], contacts["pos"])
     np.testing.assert_array_equal(frame[PLACES[3:]], contacts["normal"])
     np.testing.assert_array_equal(frame[[f"vertices_{i}" for i in range(5)]], contacts["vertices"])
-    assert frame.shape[1] == 7 + 6 + 5
+    np.testing.assert_array_equal(frame["penetration_depth"], contacts["penetration_depth"])
+    assert frame.shape[1] == 7 + 6 + 1 + 5
     faces = frame[frame["kind"] == fcl_ccd.Kind.VERTEX_FACE]
     assert 0 < len(faces) < len(frame)
     some = fcl_ccd.to_dataframe(contacts[::2])
