@@ -4,6 +4,7 @@
 #include <string>
 #include <unordered_set>
 
+#include "api/meeting_query.h"
 #include "base/default_floating_point.h"
 #include "base/prefetch.h"
 #include "broadphase/broad_phase.h"
@@ -55,18 +56,6 @@ void readBounds(void* const* objects, std::size_t count, Read read,
                       " of the list)");
     }
   }
-}
-
-MeetingQuery queryOf(const BroadPhaseSettings& settings) {
-  requireDistance(settings.distance, "request.min_distance");
-  if (!(settings.t_max >= 0 && settings.t_max <= 1))
-    throw Exception("request.t_max is " + std::to_string(settings.t_max) +
-                    "; it must be in [0, 1]");
-  MeetingQuery query;
-  query.distance = settings.distance;
-  query.latest = settings.t_max;
-  query.with_self = settings.with_self;
-  return query;
 }
 
 std::vector<BroadPhasePair> toPairs(const std::vector<MeetingObjects>& meeting) {
@@ -162,6 +151,11 @@ std::vector<void*> ContinuousBroadPhase<S>::objects() const {
 }
 
 template <typename S>
+const BroadPhase& ContinuousBroadPhase<S>::boxes() const {
+  return *boxes_;
+}
+
+template <typename S>
 StepBox ContinuousBroadPhase<S>::stepBox(const void* object, Read read) {
   const DefaultFloatingPoint mode;
   BoundsList list;
@@ -189,14 +183,14 @@ template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairs(
     const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
-  return toPairs(boxes_->pairs(queryOf(settings)));
+  return toPairs(boxes_->pairs(meetingQueryOf(settings)));
 }
 
 template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsOf(
     void* object, Read read, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
-  const MeetingQuery query = queryOf(settings);
+  const MeetingQuery query = meetingQueryOf(settings);
   BoundsList bounds;
   readBounds<S>(&object, 1, read, &prefetchNothing, bounds);
   return toPairs(boxes_->pairsOf(object, bounds.at(0), query));
@@ -206,7 +200,7 @@ template <typename S>
 std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsWith(
     const ContinuousBroadPhase& other, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
-  return toPairs(boxes_->pairsWith(*other.boxes_, queryOf(settings)));
+  return toPairs(boxes_->pairsWith(*other.boxes_, meetingQueryOf(settings)));
 }
 
 template class ContinuousBroadPhase<double>;

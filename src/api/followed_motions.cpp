@@ -16,7 +16,7 @@
 #include "paths/sine.h"
 #include "paths/twist_path.h"
 #include "paths/waypoint_path.h"
-#include "prepare/nearest_rotation.h"
+#include "prepare/required_pose.h"
 
 namespace fcl {
 namespace detail {
@@ -28,42 +28,6 @@ using deformable::JointTree;
 using deformable::Pose;
 using deformable::Vec;
 using deformable::vecOf;
-
-template <typename Numbers>
-bool areFinite(const Numbers& numbers) {
-  return std::all_of(std::begin(numbers), std::end(numbers),
-                     [](double x) { return std::isfinite(x); });
-}
-
-/// @param name  what the exception calls it
-template <typename Numbers>
-void requireFinite(const Numbers& numbers, const std::string& name) {
-  if (!areFinite(numbers))
-    throw Exception(name + " has a number that is not finite. Correct it");
-}
-
-/// The same of lengths, which queries take up to 2^160 (query_range.cpp).
-void requireLengths(const double (&numbers)[3], const std::string& name) {
-  requireFinite(numbers, name);
-  const bool is_large = std::any_of(std::begin(numbers), std::end(numbers),
-                                    [](double x) { return std::abs(x) > 0x1p160; });
-  if (is_large)
-    throw Exception(name + " has a length beyond 2^160. Use a larger unit of length");
-}
-
-Pose requirePose(const BoundedMotion::Placement& placement, const std::string& name) {
-  requireFinite(placement.rotation, name);
-  requireLengths(placement.translation, name);
-  Pose pose;
-  std::copy(placement.rotation, placement.rotation + 9, pose.rotation);
-  std::copy(placement.translation, placement.translation + 3, pose.translation);
-  if (!deformable::toNearestRotation(pose.rotation))
-    throw Exception(
-        name +
-        " scales, mirrors or shears, by more than 2^-6. Give a rotation and a "
-        "translation: normalise the rotation");
-  return pose;
-}
 
 /// The vector divided by its length, which neither overflows nor loses digits.
 Vec requireDirection(const double (&v)[3], const std::string& name) {
@@ -179,11 +143,12 @@ ChainPathPtr makeChainPath(const JointTreePtr& tree, const BoundedMotion::Placem
 }
 
 std::shared_ptr<const BoundedMotion> makeLinkPath(const ChainPathPtr& chain, int link) {
-  const std::size_t num_links = chain->tree().links().size();
-  if (link < 0 || static_cast<std::size_t>(link) >= num_links)
+  const auto& links = chain->tree().links();
+  if (link < 0 || static_cast<std::size_t>(link) >= links.size())
     throw Exception("ChainMotion: there is no link " + std::to_string(link) +
-                    ". The chain has the links 0 to " + std::to_string(num_links - 1));
-  return std::make_shared<deformable::LinkPath>(chain, link);
+                    ". The chain has the links 0 to " + std::to_string(links.size() - 1));
+  return std::make_shared<deformable::LinkPath>(chain,
+                                                links[static_cast<std::size_t>(link)]);
 }
 
 std::shared_ptr<const BoundedMotion> makeTwistPath(const BoundedMotion::Placement& pose,

@@ -386,25 +386,42 @@ std::vector<MeetingObjects> BroadPhase::pairs(const MeetingQuery& query) const {
   return sorted(found, *this);
 }
 
-std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds& bounds,
-                                                const MeetingQuery& query) const {
+/// Calls visit(slot number, slot, window) for the objects that meet another one.
+template <typename Visit>
+void BroadPhase::visitMet(const MovingBounds& bounds, const ObjectFilter& filter,
+                          const MeetingQuery& query, Visit&& visit) const {
   const LinearQuery linear = linearQuery(query);
   const LinearBox box = linearBox(bounds);
-  const ObjectFilter filter = filterOf(object);
-  std::vector<Found> found;
-  const auto add = [&](SlotNumber i) {
+  const auto test = [&](SlotNumber i) {
     const Slot& slot = at(i);
-    if (slot.object == object || !filter.accepts(slot.filter)) return;
+    if (!filter.accepts(slot.filter)) return;
     const MeetingWindow window = meetingWindow(bounds, slot.bounds(), query.distance);
-    if (!window.isEmpty() && window.lo <= query.latest)
-      found.push_back({window, slot.serial, slot.serial, i, i});
+    if (!window.isEmpty() && window.lo <= query.latest) visit(i, slot, window);
   };
   for (const MovingBoxTree& tree : tree_)
-    visitMeeting(tree, box, bounds.flat, linear, add);
-  for (const SlotNumber i : members_[kUnbounded]) add(i);
+    visitMeeting(tree, box, bounds.flat, linear, test);
+  for (const SlotNumber i : members_[kUnbounded]) test(i);
+}
+
+std::vector<MeetingObjects> BroadPhase::pairsOf(void* object, const MovingBounds& bounds,
+                                                const MeetingQuery& query) const {
+  std::vector<Found> found;
+  visitMet(bounds, filterOf(object), query,
+           [&](SlotNumber i, const Slot& slot, const MeetingWindow& window) {
+             if (slot.object != object)
+               found.push_back({window, slot.serial, slot.serial, i, i});
+           });
   std::vector<MeetingObjects> out = sorted(found, *this);
   for (MeetingObjects& pair : out) pair.o1 = object;
   return out;
+}
+
+void BroadPhase::addMet(const MovingBounds& bounds, const ObjectFilter& filter,
+                        const MeetingQuery& query, std::vector<MetObject>& met) const {
+  visitMet(bounds, filter, query,
+           [&](SlotNumber, const Slot& slot, const MeetingWindow& window) {
+             met.push_back({window, slot.object, slot.serial});
+           });
 }
 
 std::vector<MeetingObjects> BroadPhase::pairsWith(const BroadPhase& other,

@@ -59,6 +59,14 @@ struct MeetingObjects {
   void* o2;
 };
 
+/// @brief An object whose box meets that of another one.
+struct MetObject {
+  MeetingWindow window;
+  void* object;
+  /// Grows from object to object in the order of insertion.
+  std::uint64_t serial;
+};
+
 struct MeetingQuery {
   double distance{0};
   double latest{1};
@@ -107,6 +115,9 @@ class BroadPhase {
   /// @brief The pairs of one object, which is o1, with all others.
   std::vector<MeetingObjects> pairsOf(void* object, const MovingBounds& bounds,
                                       const MeetingQuery& query) const;
+  /// @brief Adds the objects that meet one which is not in this set, in no order.
+  void addMet(const MovingBounds& bounds, const ObjectFilter& filter,
+              const MeetingQuery& query, std::vector<MetObject>& met) const;
   /// @brief o1 is in this set, o2 in the other one.
   std::vector<MeetingObjects> pairsWith(const BroadPhase& other,
                                         const MeetingQuery& query) const;
@@ -141,6 +152,9 @@ class BroadPhase {
     std::uint64_t serial_a, serial_b;
     SlotNumber a, b;
   };
+  template <typename Visit>
+  void visitMet(const MovingBounds& bounds, const ObjectFilter& filter,
+                const MeetingQuery& query, Visit&& visit) const;
   Slot& at(SlotNumber i) { return slots_[static_cast<std::size_t>(i)]; }
   const Slot& at(SlotNumber i) const { return slots_[static_cast<std::size_t>(i)]; }
   SlotNumber numberOf(const void* object) const { return slot_of_.at(object); }

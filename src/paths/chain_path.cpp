@@ -122,6 +122,12 @@ JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
   return out;
 }
 
+std::vector<double> ChainPath::valuesAt(double t) const {
+  std::vector<double> values;
+  for (const Value& value : values_) values.push_back(valueAt(value.at, t));
+  return values;
+}
+
 JointState ChainPath::baseState() const {
   JointState state{};
   std::copy(base_.rotation, base_.rotation + 9, state.rotation);
@@ -186,12 +192,8 @@ JointState ChainPath::stateAt(int joint, double t) const {
   })[static_cast<std::size_t>(joint)];
 }
 
-LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, int link)
-    : chain_(std::move(chain)) {
-  const auto& at = chain_->tree().links()[static_cast<std::size_t>(link)];
-  joint_ = at.joint;
-  pose_ = at.pose;
-}
+LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link)
+    : chain_(std::move(chain)), joint_(link.joint), pose_(link.pose) {}
 
 bool LinkPath::isRevolute() const {
   return joint_ >= 0 &&

@@ -59,10 +59,14 @@ class ChainPath {
             std::vector<Polynomial> values);
 
   const JointTree& tree() const { return *tree_; }
+  const std::shared_ptr<const JointTree>& sharedTree() const { return tree_; }
   const Pose& base() const { return base_; }
   const JointBounds& bounds(int joint) const {
     return joint < 0 ? base_bounds_ : bounds_[static_cast<std::size_t>(joint)];
   }
+
+  /// @brief The values of the joints at t in [0, 1].
+  std::vector<double> valuesAt(double t) const;
 
   /// @brief The frame of a joint at t. All joints are computed together, and the thread
   /// keeps them: other links ask for the same times.
@@ -92,8 +96,8 @@ class ChainPath {
 /// @brief The motion of a link.
 class LinkPath : public BoundedMotion {
  public:
-  /// @param link  a number of a link of the tree
-  LinkPath(std::shared_ptr<const ChainPath> chain, int link);
+  /// @param link  a link of the tree, or another frame that a joint of it carries
+  LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link);
 
   Placement placementAt(double t) const override;
   Placement rateAt(double t) const override;

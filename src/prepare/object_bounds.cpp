@@ -32,13 +32,6 @@ constexpr int kMostSpans = 16;
 /// refused.
 constexpr double kDefaultTocErr = 1e-4;
 
-/// What the bounds of a body are made from: boxes in its frame, at t = 0 and t = 1, and
-/// its path.
-struct BoundedBody {
-  BodyBox box[2];
-  MotionPath path;
-};
-
 double accelerationOf(const AccelerationBound& bound, const BodyBox (&box)[2]) {
   if (bound.isZero() && bound.per_displacement == 0) return 0;
   const auto center = [](const BodyBox& at) -> Vec {
@@ -83,46 +76,16 @@ int numSpans(const BoundedBody& body) {
   return n;
 }
 
-[[noreturn]] void refuse() {
+[[noreturn]] void refuse(const std::string& name) {
   throw Exception(
-      "object: its geometry or its path is not finite, or too large for doubles. Give "
+      name +
+      ": its geometry or its path is not finite, or too large for doubles. Give "
       "finite numbers");
 }
 
 bool isFinite(const HalfAxisBox& box) {
   return std::all_of(box.half, box.half + HalfAxisBox::kSides,
                      [](double x) { return std::isfinite(x); });
-}
-
-void appendBody(const BoundedBody& body, BoundsList& list) {
-  for (const BodyBox& box : body.box)
-    if (!std::isfinite(norm(box.center) + box.radius)) refuse();
-  const int n = numSpans(body);
-  const double stretch = body.path.stretch();
-  double size = body.path.largestTranslation(), pad = 0;
-  for (const BodyBox& box : body.box) {
-    size = std::max(
-        size, body.path.largestTranslation() + stretch * (norm(box.center) + box.radius));
-    pad = std::max(
-        pad, stretch * box.pad + body.path.positionError(norm(box.center) + box.radius));
-  }
-  const std::size_t first = list.boxes.size();
-  for (int i = 0; i <= n; ++i)
-    list.boxes.push_back(boxAt(body, double(i) / n, pad + kRoom * size));
-  double before = 0;
-  for (int i = 0; i <= n; ++i) {
-    const double dt = 1. / n;
-    double after = 0;
-    if (i < n)
-      after = 0.125 * dt * dt * kUpward *
-              accelerationOf(body.path.acceleration(i * dt, (i + 1) * dt), body.box);
-    for (double& half : list.boxes[first + static_cast<std::size_t>(i)].half)
-      half += std::max(before, after);
-    before = after;
-  }
-  const auto end = list.boxes.end();
-  if (!std::all_of(end - (n + 1), end, isFinite)) refuse();
-  list.items.push_back({first, n});
 }
 
 void appendUnbounded(BoundsList& list) {
@@ -211,7 +174,7 @@ template <typename Shape>
 void appendFlat(const Shape& flat, const MotionPath& path, BoundsList& list) {
   const double length =
       norm(Vec{double{flat.n[0]}, double{flat.n[1]}, double{flat.n[2]}});
-  if (!std::isfinite(length) || !std::isfinite(flat.d)) refuse();
+  if (!std::isfinite(length) || !std::isfinite(flat.d)) refuse(path.name());
   appendUnbounded(list);
   if (!(length > 0)) return;  // a query refuses it
   const ConvexShape shape = convexShapeOf(flat, "object", 0);
@@ -220,37 +183,95 @@ void appendFlat(const Shape& flat, const MotionPath& path, BoundsList& list) {
   list.flats.push_back(movingFlat(*shape.flat(), path));
 }
 
+/// A plane or a halfspace.
 template <typename S>
-void appendShape(const PlacedGeometry<S>& placed, BoundsList& list) {
+bool isFlat(const CollisionGeometry<S>& o) {
+  return o.getNodeType() == GEOM_PLANE || o.getNodeType() == GEOM_HALFSPACE;
+}
+
+/// @pre it is a plane or a halfspace
+template <typename S>
+void appendFlat(const PlacedGeometry<S>& placed, BoundsList& list) {
   requireFinite(placed.beginning(), placed.end(), "object");
   const CollisionGeometry<S>& o = placed.geometry();
   const MotionPath path = motionPathOf(placed, "object");
   if (o.getNodeType() == GEOM_PLANE)
     return appendFlat(static_cast<const Plane<S>&>(o), path, list);
-  if (o.getNodeType() == GEOM_HALFSPACE)
-    return appendFlat(static_cast<const Halfspace<S>&>(o), path, list);
-  const ConvexShape shape = convexShapeOf(o, "object", 0);
-  appendBody({{shape.outerBox(), shape.outerBox()}, path}, list);
+  appendFlat(static_cast<const Halfspace<S>&>(o), path, list);
 }
 
 }  // namespace
 
+void appendBody(const BoundedBody& body, BoundsList& list) {
+  for (const BodyBox& box : body.box)
+    if (!std::isfinite(norm(box.center) + box.radius)) refuse(body.path.name());
+  const int n = numSpans(body);
+  const double stretch = body.path.stretch();
+  double size = body.path.largestTranslation(), pad = 0;
+  for (const BodyBox& box : body.box) {
+    size = std::max(
+        size, body.path.largestTranslation() + stretch * (norm(box.center) + box.radius));
+    pad = std::max(
+        pad, stretch * box.pad + body.path.positionError(norm(box.center) + box.radius));
+  }
+  const std::size_t first = list.boxes.size();
+  for (int i = 0; i <= n; ++i)
+    list.boxes.push_back(boxAt(body, double(i) / n, pad + kRoom * size));
+  double before = 0;
+  for (int i = 0; i <= n; ++i) {
+    const double dt = 1. / n;
+    double after = 0;
+    if (i < n)
+      after = 0.125 * dt * dt * kUpward *
+              accelerationOf(body.path.acceleration(i * dt, (i + 1) * dt), body.box);
+    for (double& half : list.boxes[first + static_cast<std::size_t>(i)].half)
+      half += std::max(before, after);
+    before = after;
+  }
+  const auto end = list.boxes.end();
+  if (!std::all_of(end - (n + 1), end, isFinite)) refuse(body.path.name());
+  list.items.push_back({first, n});
+}
+
+template <typename S>
+bool isBounded(const PlacedGeometry<S>& placed) {
+  return placed.moving().path != PathKind::kUnknown &&
+         (placed.isShape() ? !isFlat(placed.geometry())
+                           : placed.isMesh() || placed.isOctree());
+}
+
+template <typename S>
+BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name) {
+  requireFinite(placed.beginning(), placed.end(), name);
+  if (placed.isShape()) {
+    const MotionPath path = motionPathOf(placed, name);
+    const BodyBox box = convexShapeOf(placed.geometry(), name, 0).outerBox();
+    return {{box, box}, path};
+  }
+  const PreparedMotion motion(placed, name, kDefaultTocErr, 1);
+  if (motion.isEmpty()) return {{BodyBox(), BodyBox()}, motionPathOf(placed, name)};
+  const MovingBody& body = motion.body();
+  BoundedBody out{{body.box(body.root(), 0), body.box(body.root(), 1)}, body.path()};
+  out.path.setName(name);
+  return out;
+}
+
 template <typename S>
 void appendBounds(const MovingGeometry<S>& moving, BoundsList& list) {
   const PlacedGeometry<S> placed(moving);
-  if (moving.path == PathKind::kUnknown) return appendUnbounded(list);
-  if (placed.isShape()) return appendShape(placed, list);
-  if (!placed.isMesh() && !placed.isOctree()) return appendUnbounded(list);
-  requireFinite(placed.beginning(), placed.end(), "object");
-  const PreparedMotion motion(placed, "object", kDefaultTocErr, 1);
-  if (motion.isEmpty())
-    return appendBody({{BodyBox(), BodyBox()}, motionPathOf(placed, "object")}, list);
-  const MovingBody& body = motion.body();
-  appendBody({{body.box(body.root(), 0), body.box(body.root(), 1)}, body.path()}, list);
+  if (isBounded(placed)) return appendBody(boundedBodyOf(placed, "object"), list);
+  if (placed.isShape() && moving.path != PathKind::kUnknown)
+    return appendFlat(placed, list);
+  appendUnbounded(list);
 }
 
-template void appendBounds(const MovingGeometry<double>&, BoundsList&);
-template void appendBounds(const MovingGeometry<float>&, BoundsList&);
+#define FCL_CCD_INSTANTIATE(S)                                               \
+  template bool isBounded(const PlacedGeometry<S>&);                         \
+  template BoundedBody boundedBodyOf(const PlacedGeometry<S>&, const char*); \
+  template void appendBounds(const MovingGeometry<S>&, BoundsList&);
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
 
 }  // namespace detail
 }  // namespace fcl

@@ -4,9 +4,33 @@
 
 #include "broadphase/broad_phase.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
+#include "paths/motion_path.h"
+#include "prepare/query_arguments.h"
+#include "shapes/body_boxes.h"
 
 namespace fcl {
 namespace detail {
+
+/// @brief What the moving bounds of an object are made from: boxes in its frame, at t = 0
+/// and t = 1, and its path.
+struct BoundedBody {
+  deformable::BodyBox box[2];
+  deformable::MotionPath path;
+};
+
+/// @brief Whether an object has boxes. Not: planes, halfspaces, and what appendBounds()
+/// has no bounds for.
+template <typename S>
+bool isBounded(const PlacedGeometry<S>& placed);
+
+/// @param name  of the object in errors; lives as long as the path
+/// @pre isBounded(); the floating-point mode is the default one
+/// @throws fcl::Exception  as appendBounds()
+template <typename S>
+BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name);
+
+/// @brief As appendBounds().
+void appendBody(const BoundedBody& body, deformable::BoundsList& list);
 
 /// @brief Adds the moving bounds of an object. They contain it at each time of the step,
 /// and what rounding or the tolerance of a query adds to it.

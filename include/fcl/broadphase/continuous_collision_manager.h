@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -15,10 +14,14 @@
 #include <vector>
 
 #include "fcl/broadphase/broadphase_continuous_collision_manager.h"
+#include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "fcl/narrowphase/continuous_collision.h"
 
 namespace fcl {
+
+template <typename S>
+class CollisionRobot;
 
 /// @brief Two objects in contact. A mesh in contact with itself is both of them.
 template <typename S>
@@ -190,6 +193,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
                 DistanceCallBack<S> callback) const override;
 
  private:
+  friend class CollisionRobot<S>;
+
   using Pairs = std::vector<detail::BroadPhasePair>;
   using Request = ContinuousContactRequest<S>;
   using Result = ContinuousManagerResult<S>;
@@ -212,12 +217,6 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
             Request& request, Result& result, PairResult& tested) const;
   void answer(const Pairs& pairs, const ContinuousCollisionManager& other,
               const Request& request, Result& result) const;
-  static bool isEarlier(const PairResult& x, const PairResult& y) {
-    return x.result.time_of_contact < y.result.time_of_contact;
-  }
-  static void sortByTime(std::vector<PairResult>& pairs);
-  void answerFirst(const Pairs& pairs, const ContinuousCollisionManager& other,
-                   const Request& request, Result& result) const;
   static void callBack(const Pairs& pairs, void* cdata,
                        ContinuousCollisionCallBack<S> callback);
   CollisionObject<S>* sweptObject(Object* object) const;
@@ -403,79 +402,18 @@ bool ContinuousCollisionManager<S>::test(const detail::BroadPhasePair& pair,
 template <typename S>
 void ContinuousCollisionManager<S>::answer(const Pairs& pairs,
                                            const ContinuousCollisionManager& other,
-                                           const Request& asked, Result& out) const {
+                                           const Request& request, Result& out) const {
   Result result;
   result.num_box_pairs = pairs.size();
-  Request request = asked;
-  request.filter1 = request.filter2 = ContinuousFilter();
-  if (asked.query == ContinuousQuery::kFirst) {
-    answerFirst(pairs, other, request, result);
-  } else {
-    for (const detail::BroadPhasePair& pair : pairs) {
-      PairResult tested;
-      if (!test(pair, other, request, result, tested)) continue;
-      result.pairs.push_back(std::move(tested));
-      if (asked.query == ContinuousQuery::kAny) break;
-    }
-    sortByTime(result.pairs);
-  }
+  result.pairs = detail::answersOf<PairResult>(
+      pairs, request,
+      [&](const detail::BroadPhasePair& pair, Request& asked, PairResult& tested) {
+        return test(pair, other, asked, result, tested);
+      });
   result.is_collide = !result.pairs.empty();
   if (result.is_collide)
     result.time_of_contact = result.pairs.front().result.time_of_contact;
   out = std::move(result);
-}
-
-/// Pairs at the same time keep their order. std::stable_sort() would do it, but in
-/// libstdc++ 12 it calls a deprecated function, of which clang 19 warns in the program.
-template <typename S>
-void ContinuousCollisionManager<S>::sortByTime(std::vector<PairResult>& pairs) {
-  std::vector<std::pair<S, std::size_t>> order;
-  for (const PairResult& pair : pairs)
-    order.emplace_back(pair.result.time_of_contact, order.size());
-  std::sort(order.begin(), order.end());
-  std::vector<PairResult> sorted;
-  sorted.reserve(pairs.size());
-  for (const auto& place : order) sorted.push_back(std::move(pairs[place.second]));
-  pairs = std::move(sorted);
-}
-
-/// The bracket of a contact may depend on t_max, by up to toc_err. So if the times of two
-/// pairs differ by less, their order may depend on it too. Therefore pairs are tested up
-/// to 2 toc_err after the best time. At the end those in this range are tested again, up
-/// to the request's t_max. So the answer does not depend on the order of the tests.
-template <typename S>
-void ContinuousCollisionManager<S>::answerFirst(const Pairs& pairs,
-                                                const ContinuousCollisionManager& other,
-                                                const Request& asked,
-                                                Result& result) const {
-  struct InContact {
-    std::size_t pair;
-    bool is_cut;
-    PairResult tested;
-  };
-  std::vector<InContact> found;
-  Request request = asked;
-  request.filter1 = request.filter2 = ContinuousFilter();
-  const S range =
-      2 * std::max(asked.toc_err, S(0)) + 64 * std::numeric_limits<S>::epsilon();
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (pairs[i].t_lo > static_cast<double>(request.t_max)) break;
-    PairResult tested;
-    if (!test(pairs[i], other, request, result, tested)) continue;
-    const S latest = tested.result.time_of_contact + range;
-    found.push_back({i, request.t_max < asked.t_max, std::move(tested)});
-    request.t_max = std::min(request.t_max, latest);
-  }
-  const S latest = request.t_max;
-  request.t_max = asked.t_max;
-  for (InContact& contact : found) {
-    if (contact.tested.result.time_of_contact > latest) continue;
-    if (contact.is_cut) test(pairs[contact.pair], other, request, result, contact.tested);
-    if (result.pairs.empty())
-      result.pairs.push_back(std::move(contact.tested));
-    else if (isEarlier(contact.tested, result.pairs.front()))
-      result.pairs.front() = std::move(contact.tested);
-  }
 }
 
 template <typename S>

@@ -17,6 +17,10 @@ namespace fcl {
 
 namespace detail {
 
+namespace deformable {
+class BroadPhase;
+}  // namespace deformable
+
 /// @brief Two objects whose boxes meet during [t_lo, t_hi].
 struct BroadPhasePair {
   double t_lo, t_hi;
@@ -74,6 +78,9 @@ class FCL_EXPORT ContinuousBroadPhase {
                                       const BroadPhaseSettings& settings) const;
   std::vector<BroadPhasePair> pairsWith(const ContinuousBroadPhase& other,
                                         const BroadPhaseSettings& settings) const;
+
+  /// For the library.
+  const deformable::BroadPhase& boxes() const;
 
  private:
   class Boxes;

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// The boxes of a robot's parts during a step, and the pairs that meet.
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "api/meeting_query.h"
+#include "base/default_floating_point.h"
+#include "broadphase/broad_phase.h"
+#include "fcl/broadphase/detail/robot_step.h"
+#include "fcl/common/exception.h"
+#include "paths/chain_path.h"
+#include "prepare/object_bounds.h"
+#include "prepare/query_arguments.h"
+#include "prepare/required_pose.h"
+
+namespace fcl {
+namespace detail {
+
+using deformable::BoundsList;
+using deformable::ChainPath;
+using deformable::DefaultFloatingPoint;
+using deformable::JointTree;
+using deformable::LinkPath;
+using deformable::MeetingQuery;
+using deformable::MeetingWindow;
+using deformable::MotionPath;
+
+template <typename S>
+class RobotPart {
+ public:
+  const CollisionGeometry<S>* geometry;
+  JointTree::Link frame;
+  std::string name;
+  /// Its boxes in its own frame. Planes and halfspaces have none.
+  bool has_boxes;
+  deformable::BodyBox box[2];
+};
+
+namespace {
+
+JointTree::Link linkOf(const JointTree& tree, int link) {
+  return link < 0 ? JointTree::Link{-1, {}} : tree.links()[std::size_t(link)];
+}
+
+/// A geometry at rest in its own frame.
+template <typename S>
+MovingGeometry<S> unmoved(const CollisionGeometry<S>* geometry) {
+  const PoseNumbers<S> still{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  return {geometry, {still, still}, PathKind::kStraight, {}, {}, nullptr, {}};
+}
+
+struct FoundPair {
+  RobotPair pair;
+  /// Of the obstacle.
+  std::uint64_t serial;
+
+  bool operator<(const FoundPair& other) const { return key() < other.key(); }
+
+ private:
+  std::tuple<double, int, bool, int, std::uint64_t> key() const {
+    return {pair.t_lo, pair.part1, pair.part2 < 0, pair.part2, serial};
+  }
+};
+
+}  // namespace
+
+template <typename S>
+RobotPartPtr<S> makeRobotPart(const JointTreePtr& tree, int link,
+                              const BoundedMotion::Placement& origin,
+                              const CollisionGeometry<S>* geometry,
+                              const std::string& name) {
+  const DefaultFloatingPoint mode;
+  require(geometry, (name + ": the geometry").c_str());
+  const MovingGeometry<S> moving = unmoved(geometry);
+  const PlacedGeometry<S> placed(moving);
+  if (!placed.isKnown())
+    throw Exception(name + " is " + kindOf(*geometry) +
+                    ", not a triangle mesh, a shape or an octree. Give one of these");
+  auto part = std::make_shared<RobotPart<S>>();
+  part->geometry = geometry;
+  part->name = name;
+  const deformable::RoundedPose own{requirePose(origin, name + ": its origin"), 0, 0};
+  const JointTree::Link carrier = linkOf(*tree, link);
+  part->frame = {carrier.joint, link < 0 ? own : carrier.pose * own};
+  part->has_boxes = isBounded(placed);
+  if (part->has_boxes) {
+    const BoundedBody body = boundedBodyOf(placed, part->name.c_str());
+    std::copy(body.box, body.box + 2, part->box);
+  }
+  return part;
+}
+
+LinkRelation linkRelation(const JointTreePtr& tree, int link1, int link2) {
+  const int joint1 = linkOf(*tree, link1).joint, joint2 = linkOf(*tree, link2).joint;
+  if (joint1 == joint2) return LinkRelation::kFixed;
+  const auto parentOf = [&](int joint) {
+    return joint < 0 ? joint : tree->joints()[std::size_t(joint)].parent;
+  };
+  const bool are_neighbours = (joint1 >= 0 && parentOf(joint1) == joint2) ||
+                              (joint2 >= 0 && parentOf(joint2) == joint1);
+  return are_neighbours ? LinkRelation::kNeighbours : LinkRelation::kApart;
+}
+
+std::vector<double> jointValuesAt(const ChainPathPtr& chain, double t) {
+  const DefaultFloatingPoint mode;
+  return chain->valuesAt(t);
+}
+
+JointTreePtr jointTreeOf(const ChainPathPtr& chain) { return chain->sharedTree(); }
+
+template <typename S>
+class RobotStep<S>::Parts {
+ public:
+  Parts(const RobotBodies<S>& bodies, const ChainPathPtr& chain) : bodies_(bodies) {
+    paths_.reserve(bodies.parts.size());
+    for (const auto& part : bodies.parts) paths_.emplace_back(chain, part->frame);
+  }
+
+  std::size_t count() const { return paths_.size(); }
+
+  MovingGeometry<S> moving(std::size_t i) const {
+    MovingGeometry<S> moving{
+        bodies_.parts[i]->geometry, {}, PathKind::kBounded, {}, {}, &paths_[i], {}};
+    for (int end = 0; end < 2; ++end) {
+      const BoundedMotion::Placement at = paths_[i].placementAt(end);
+      PoseNumbers<S>& pose = moving.pose[end];
+      for (int k = 0; k < 9; ++k) pose.rotation[k] = static_cast<S>(at.rotation[k]);
+      for (int k = 0; k < 3; ++k) pose.translation[k] = static_cast<S>(at.translation[k]);
+    }
+    return moving;
+  }
+
+  void appendBounds(BoundsList& list) const {
+    for (std::size_t i = 0; i < count(); ++i) {
+      const RobotPart<S>& part = *bodies_.parts[i];
+      if (part.has_boxes)
+        appendBody({{part.box[0], part.box[1]},
+                    MotionPath::bounded(paths_[i], part.name.c_str())},
+                   list);
+      else
+        detail::appendBounds(moving(i), list);
+    }
+  }
+
+  void addMet(const BoundsList& bounds, const deformable::BroadPhase& obstacles,
+              const MeetingQuery& query, std::vector<FoundPair>& found) const {
+    std::vector<deformable::MetObject> met;
+    for (std::size_t i = 0; i < count(); ++i) {
+      const auto& filter = bodies_.filters[i];
+      obstacles.addMet(bounds.at(i), {filter.first, filter.second}, query, met);
+      for (const deformable::MetObject& one : met)
+        found.push_back(
+            {{one.window.lo, one.window.hi, static_cast<int>(i), -1, one.object},
+             one.serial});
+      met.clear();
+    }
+  }
+
+  void addOwn(const BoundsList& bounds, const MeetingQuery& query,
+              std::vector<FoundPair>& found) const {
+    for (const auto& pair : bodies_.own_pairs) {
+      const MeetingWindow window =
+          deformable::meetingWindow(bounds.at(std::size_t(pair.first)),
+                                    bounds.at(std::size_t(pair.second)), query.distance);
+      if (!window.isEmpty() && window.lo <= query.latest)
+        found.push_back({{window.lo, window.hi, pair.first, pair.second, nullptr}, 0});
+    }
+  }
+
+ private:
+  const RobotBodies<S> bodies_;
+  std::vector<LinkPath> paths_;
+};
+
+template <typename S>
+RobotStep<S>::RobotStep(const RobotBodies<S>& bodies, const ChainPathPtr& chain)
+    : parts_(new Parts(bodies, chain)) {}
+
+template <typename S>
+RobotStep<S>::~RobotStep() = default;
+
+template <typename S>
+std::vector<RobotPair> RobotStep<S>::pairs(const ContinuousBroadPhase<S>* obstacles,
+                                           const BroadPhaseSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  const MeetingQuery query = meetingQueryOf(settings);
+  BoundsList bounds;
+  parts_->appendBounds(bounds);
+  std::vector<FoundPair> found;
+  if (obstacles) parts_->addMet(bounds, obstacles->boxes(), query, found);
+  parts_->addOwn(bounds, query, found);
+  std::sort(found.begin(), found.end());
+  std::vector<RobotPair> pairs;
+  pairs.reserve(found.size());
+  for (const FoundPair& one : found) pairs.push_back(one.pair);
+  return pairs;
+}
+
+template <typename S>
+MovingGeometry<S> RobotStep<S>::part(int number) const {
+  const DefaultFloatingPoint mode;
+  return parts_->moving(std::size_t(number));
+}
+
+#define FCL_CCD_INSTANTIATE(S)                                   \
+  template RobotPartPtr<S> makeRobotPart(                        \
+      const JointTreePtr&, int, const BoundedMotion::Placement&, \
+      const CollisionGeometry<S>*, const std::string&);          \
+  template class RobotStep<S>;
+FCL_CCD_INSTANTIATE(double)
+FCL_CCD_INSTANTIATE(float)
+#undef FCL_CCD_INSTANTIATE
+
+}  // namespace detail
+}  // namespace fcl
