@@ -58,11 +58,14 @@ struct FoundPair {
   /// Of the obstacle.
   std::uint64_t serial;
 
+  bool isOwn() const { return pair.part2 >= 0; }
+
+  /// The numbers of two pairs differ.
   bool operator<(const FoundPair& other) const { return key() < other.key(); }
 
  private:
-  std::tuple<double, int, bool, int, std::uint64_t> key() const {
-    return {pair.t_lo, pair.part1, pair.part2 < 0, pair.part2, serial};
+  std::tuple<double, int, int, std::uint64_t> key() const {
+    return {pair.t_lo, pair.part1, pair.part2, serial};
   }
 };
 
@@ -185,7 +188,8 @@ RobotStep<S>::~RobotStep() = default;
 
 template <typename S>
 std::vector<RobotPair> RobotStep<S>::pairs(const ContinuousBroadPhase<S>* obstacles,
-                                           const BroadPhaseSettings& settings) const {
+                                           const BroadPhaseSettings& settings,
+                                           Order order) const {
   const DefaultFloatingPoint mode;
   const MeetingQuery query = meetingQueryOf(settings);
   BoundsList bounds;
@@ -193,7 +197,10 @@ std::vector<RobotPair> RobotStep<S>::pairs(const ContinuousBroadPhase<S>* obstac
   std::vector<FoundPair> found;
   if (obstacles) parts_->addMet(bounds, obstacles->boxes(), query, found);
   parts_->addOwn(bounds, query, found);
-  std::sort(found.begin(), found.end());
+  std::sort(found.begin(), found.end(), [order](const FoundPair& x, const FoundPair& y) {
+    if (order == Order::kObstaclesFirst && x.isOwn() != y.isOwn()) return y.isOwn();
+    return x < y;
+  });
   std::vector<RobotPair> pairs;
   pairs.reserve(found.size());
   for (const FoundPair& one : found) pairs.push_back(one.pair);

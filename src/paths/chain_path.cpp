@@ -168,15 +168,16 @@ JointState ChainPath::moved(const JointTree::Joint& joint, const JointState& bef
   return out;
 }
 
-void ChainPath::computeStates(double t, std::vector<JointState>& states) const {
-  const JointState base = baseState();
+void ChainPath::computeStates(double t, std::size_t count, Kept& kept) const {
   const auto& joints = tree_->joints();
-  states.resize(joints.size());
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const int parent = joints[j].parent;
-    states[j] =
-        moved(joints[j], parent < 0 ? base : states[static_cast<std::size_t>(parent)],
-              values_[j], t);
+  kept.states.resize(joints.size());
+  for (; kept.count < count; ++kept.count) {
+    const JointTree::Joint& joint = joints[kept.count];
+    kept.states[kept.count] =
+        moved(joint,
+              joint.parent < 0 ? baseState()
+                               : kept.states[static_cast<std::size_t>(joint.parent)],
+              values_[kept.count], t);
   }
 }
 
@@ -184,12 +185,13 @@ void ChainPath::computeStates(double t, std::vector<JointState>& states) const {
 JointState ChainPath::stateAt(int joint, double t) const {
   if (joint < 0) return baseState();
   constexpr int kBits = 6;
-  using Cache = SlotCache<StateKey, std::vector<JointState>, 1 << kBits>;
-  thread_local const std::unique_ptr<Cache> kept(new Cache(StateKey{0, 0}));
+  using Cache = SlotCache<StateKey, Kept, 1 << kBits>;
+  thread_local const std::unique_ptr<Cache> cache(new Cache(StateKey{0, 0}));
   const std::size_t slot = slotOf(t, static_cast<std::int32_t>(number_), kBits);
-  return kept->get(slot, {number_, t}, [&](std::vector<JointState>& states) {
-    computeStates(t, states);
-  })[static_cast<std::size_t>(joint)];
+  Kept& kept = cache->get(slot, {number_, t}, [](Kept& made) { made.count = 0; });
+  const auto place = static_cast<std::size_t>(joint);
+  computeStates(t, place + 1, kept);
+  return kept.states[place];
 }
 
 LinkPath::LinkPath(std::shared_ptr<const ChainPath> chain, const JointTree::Link& link)

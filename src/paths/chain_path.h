@@ -16,6 +16,7 @@
 #ifndef FCL_CCD_PATHS_CHAIN_PATH_H
 #define FCL_CCD_PATHS_CHAIN_PATH_H
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -68,7 +69,7 @@ class ChainPath {
   /// @brief The values of the joints at t in [0, 1].
   std::vector<double> valuesAt(double t) const;
 
-  /// @brief The frame of a joint at t. All joints are computed together, and the thread
+  /// @brief The frame of a joint at t. Those before it are computed too, and the thread
   /// keeps them: other links ask for the same times.
   JointState stateAt(int joint, double t) const;
 
@@ -79,7 +80,14 @@ class ChainPath {
   };
 
   JointState baseState() const;
-  void computeStates(double t, std::vector<JointState>& states) const;
+  /// The frames of the first joints at a time.
+  struct Kept {
+    std::vector<JointState> states;
+    std::size_t count{0};
+  };
+
+  /// Computes frames until there are `count`.
+  void computeStates(double t, std::size_t count, Kept& kept) const;
   JointState moved(const JointTree::Joint& joint, const JointState& before,
                    const Value& value, double t) const;
   JointBounds boundsOf(const JointTree::Joint& joint, const Polynomial& value) const;

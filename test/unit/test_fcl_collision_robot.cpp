@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -75,7 +76,7 @@ ArmBodies bodiesOf(const ArmScene& scene, const RobotPairResult<double>& pair) {
 }
 
 TEST(CollisionRobot, NoStateOnAFreeEdgeTouches) {
-  constexpr double kStep = .005;
+  constexpr double kStep = .001;
   int num_free = 0, num_hit = 0, num_between = 0;
   visitEdges(1, numEdges(200),
              [&](const ArmScene& scene, const JointValues& from, const JointValues& to) {

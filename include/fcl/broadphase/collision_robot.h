@@ -345,8 +345,10 @@ bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
                                   RobotEdgeResult<S>& out) const {
   RobotEdgeResult<S> result;
   const Step step({read_, filters_, own_pairs_}, path);
+  const bool is_any = request.query == ContinuousQuery::kAny;
   const std::vector<detail::RobotPair> pairs =
-      step.pairs(obstacles ? &obstacles->boxes_ : nullptr, Manager::settingsOf(request));
+      step.pairs(obstacles ? &obstacles->boxes_ : nullptr, Manager::settingsOf(request),
+                 is_any ? Step::Order::kObstaclesFirst : Step::Order::kTime);
   result.num_box_pairs = pairs.size();
   result.pairs = detail::answersOf<PairResult>(
       pairs, request,

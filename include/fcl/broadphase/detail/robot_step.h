@@ -79,11 +79,18 @@ class FCL_EXPORT RobotStep {
   RobotStep(const RobotStep&) = delete;
   RobotStep& operator=(const RobotStep&) = delete;
 
-  /// @brief Sorted by t_lo, then by the numbers of the parts, obstacles in the order of
-  /// their registration after own parts.
+  enum class Order {
+    /// By t_lo.
+    kTime,
+    /// Obstacles by t_lo, then own pairs: most of these are of links near each other,
+    /// whose boxes always meet, and few are in contact.
+    kObstaclesFirst
+  };
+
+  /// @brief Pairs in an order that does not depend on the trees of the manager.
   /// @param obstacles  null: none
   std::vector<RobotPair> pairs(const ContinuousBroadPhase<S>* obstacles,
-                               const BroadPhaseSettings& settings) const;
+                               const BroadPhaseSettings& settings, Order order) const;
 
   /// @brief A part with its motion, which lives as long as the step.
   MovingGeometry<S> part(int number) const;
