@@ -24,9 +24,9 @@ cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, TwistMotio
 SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
 a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a Result.
 How near two objects come: distance(), which gives a DistanceResult. Many objects:
-CollisionManager. With min_distance features are in contact at a distance. For your own
-solver: candidates(), self_candidates(); vertex_face(), edge_edge(), vertex_edge() and
-vertex_vertex() on arrays.
+CollisionManager. Edges of a planner: CollisionRobot. With min_distance features are in
+contact at a distance. For your own solver: candidates(), self_candidates(); vertex_face(),
+edge_edge(), vertex_edge() and vertex_vertex() on arrays.
 
 Tables and pictures: to_dataframe() makes a pandas.DataFrame of contacts, Result.show() draws
 them. Meshes, shapes, motions, filters and results can be copied and pickled.
@@ -67,6 +67,7 @@ from ._queries import (
     vertex_vertex,
 )
 from ._results import Kind, Result, contact_dtype
+from ._robots import CollisionRobot, EdgeResult, RobotPair
 from ._shapes import (
     Box,
     Capsule,
@@ -86,11 +87,13 @@ __all__ = [
     "Capsule",
     "ChainMotion",
     "CollisionManager",
+    "CollisionRobot",
     "Cone",
     "Convex",
     "Cylinder",
     "DeformableMesh",
     "DistanceResult",
+    "EdgeResult",
     "Ellipsoid",
     "Filter",
     "Halfspace",
@@ -105,6 +108,7 @@ __all__ = [
     "Plane",
     "Result",
     "RigidMesh",
+    "RobotPair",
     "ScrewMotion",
     "Sphere",
     "SplineMotion",

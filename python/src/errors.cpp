@@ -42,6 +42,11 @@ constexpr Words kWords[] = {
     {"moreRounding()", "its rounding"},
     {"placementAt()", "pose()"},
     {"JointChain::kBase or JointChain::kLast", "-1 for the base"},
+    {"JointChain::kBase", "-1, the base"},
+    {"CollisionRobot::chain()", "the chain of the robot"},
+    {"setFilter", "set_filter()"},
+    {"checkMotion", "check_motion()"},
+    {"attach() returned", "attach() gave"},
     {"rateAt()", "rate()"},
     // Classes.
     {"a BVHModel or a DeformableBVHModel with triangles",

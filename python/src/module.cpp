@@ -35,5 +35,6 @@ PYBIND11_MODULE(_core, module) {
   python::bindCollisions(module);
   python::bindDistances(module);
   python::bindManager(module);
+  python::bindRobots(module);
   python::bindFeatures(module);
 }

@@ -174,11 +174,6 @@ py::array poseAt(const Motion& motion, const Geometry& o, double t) {
   return toArray(fcl::detail::poseAt(motion.of(o.geometry()), t));
 }
 
-fcl::Transform3d toTransform(const Doubles& matrix, const char* name) {
-  requireSize(matrix, 16, name);
-  return fcl::detail::toTransform(toPose(matrix.data(), name));
-}
-
 Vector3d toVector(const Doubles& numbers, const char* name) {
   requireSize(numbers, 3, name);
   return Vector3d(numbers.data());
@@ -243,6 +238,11 @@ fcl::BoundedMotion::Placement toPlacement(const PoseNumbers<double>& parts) {
 }
 
 }  // namespace
+
+fcl::Transform3d toTransform(const Doubles& matrix, const char* name) {
+  requireSize(matrix, 16, name);
+  return fcl::detail::toTransform(toPose(matrix.data(), name));
+}
 
 fcl::BoundedMotion::Placement PythonMotion::placementAt(double t) const {
   const py::gil_scoped_acquire acquire;
@@ -338,6 +338,7 @@ void bindMotions(py::module_& module) {
   Class<fcl::JointChain>(module, "JointChain")
       .defInit<>()
       .def("add", &addJoint)
+      .def("copy", [](const fcl::JointChain& chain) { return fcl::JointChain(chain); })
       .def("num_links", &fcl::JointChain::numLinks)
       .def("num_values", &fcl::JointChain::numValues);
   Class<fcl::ChainMotion>(module, "ChainMotion")

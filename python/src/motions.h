@@ -70,6 +70,10 @@ struct Motion {
 /// @throws ValueError  deforms and the path is straight and turns: FCL has no such motion
 std::shared_ptr<fcl::MotionBase<double>> toFclMotion(const Motion& motion, bool deforms);
 
+/// A 4x4 array as a transform.
+/// @param name  what an exception calls it
+fcl::Transform3d toTransform(const Doubles& matrix, const char* name);
+
 /// A pose as a 4x4 array.
 py::array toArray(const fcl::detail::PoseNumbers<double>& pose);
 

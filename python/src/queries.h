@@ -18,6 +18,9 @@ void bindDistances(pybind11::module_& module);
 /// Queries of many objects.
 void bindManager(pybind11::module_& module);
 
+/// Edges of a planner.
+void bindRobots(pybind11::module_& module);
+
 /// Candidates and elementary tests.
 void bindFeatures(pybind11::module_& module);
 

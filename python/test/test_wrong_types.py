@@ -19,6 +19,7 @@ CONTROL = np.zeros((4, 3))
 CHAIN = fcl_ccd.JointChain()
 CHAIN.add_revolute()
 LINKS = fcl_ccd.ChainMotion(CHAIN, [0], [1])
+ROBOT = fcl_ccd.CollisionRobot(CHAIN)
 
 # Calls that are right. Methods are found in their class.
 CALLS = {
@@ -39,6 +40,16 @@ CALLS = {
     "CollisionManager.set_self_collision": (MANAGER, "ball", False),
     "CollisionManager.unregister": (fcl_ccd.CollisionManager(), "ball"),
     "CollisionManager.update": (MANAGER,),
+    "CollisionRobot": (CHAIN,),
+    "CollisionRobot.allow": (ROBOT, 0, -1),
+    "CollisionRobot.allow_neighbours": (ROBOT,),
+    "CollisionRobot.attach": (fcl_ccd.CollisionRobot(CHAIN), 0, BALL),
+    "CollisionRobot.check_edge": (ROBOT, [0], [1]),
+    "CollisionRobot.check_motion": (ROBOT, LINKS),
+    "CollisionRobot.detach": (fcl_ccd.CollisionRobot(CHAIN), 0),
+    "CollisionRobot.name_of": (ROBOT, 0),
+    "CollisionRobot.set_filter": (ROBOT, 0),
+    "CollisionRobot.update": (ROBOT,),
     "Cone": (1, 2),
     "Convex": (VERTICES, TRIANGLES),
     "Cylinder": (1, 2),
@@ -78,7 +89,16 @@ CALLS = {
     "weld_vertices": ([VERTICES],),
 }
 REQUIRED = {"vertex_edge": {"min_distance": 1.0}, "vertex_vertex": {"min_distance": 1.0}}
-MADE_BY_QUERIES = "DistanceResult", "Kind", "ManagerResult", "Motion", "Pair", "Result"
+MADE_BY_QUERIES = (
+    "DistanceResult",
+    "EdgeResult",
+    "Kind",
+    "ManagerResult",
+    "Motion",
+    "Pair",
+    "Result",
+    "RobotPair",
+)
 FRAMES = fcl_ccd.DeformableMesh.update  # has no names of arguments
 
 
