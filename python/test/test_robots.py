@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """CollisionRobot: known contacts, and the pairs of collide() for each pair, to the bit."""
 
+import copy
+import gc
 import math
+import pickle
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -152,6 +156,28 @@ def test_threads():
     for thread in threads:
         thread.join()
     assert len(found) == 80 and len(set(found)) == 1
+
+
+def test_copies_are_refused():
+    robot = fcl_ccd.CollisionRobot(two_links())
+    for make in (copy.copy, copy.deepcopy, pickle.dumps):
+        with pytest.raises(TypeError, match="a CollisionRobot cannot be copied or pickled"):
+            make(robot)
+
+
+def test_cycles_are_freed():
+    """A mesh of the user that refers to the robot which holds it."""
+
+    class Owned(fcl_ccd.RigidMesh):
+        pass
+
+    mesh = Owned(*sphere(6, 8, 0.1))
+    mesh.robot = fcl_ccd.CollisionRobot(two_links())
+    mesh.robot.attach(0, mesh)
+    seen = weakref.ref(mesh)
+    del mesh
+    gc.collect()
+    assert seen() is None
 
 
 @pytest.mark.parametrize(
