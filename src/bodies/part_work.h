@@ -27,6 +27,9 @@ struct PartWork {
   bool is_one_of_many{false};
   /// Whether the parts are apart in shorter spans: MeetingWindows::soon_apart.
   bool is_soon_apart{false};
+  /// The number by which the traversal counts the steps of a pair in the halves of one
+  /// span; -1: the span was not halved while the pair was advanced.
+  std::int32_t halves{-1};
 };
 
 /// @brief Hands out work. Where one contact is enough, the earliest comes first, but for

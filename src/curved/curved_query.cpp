@@ -150,7 +150,9 @@ class CurvedTraversal {
       // It is too large for the stack of a small thread.
       const auto task = std::make_unique<CurvedTraversal>(body(0), body(1), options_);
       for (std::size_t i = number; i < pieces.size(); i += found.size()) {
-        task->push(pieces[i]);
+        PartWork piece = pieces[i];
+        piece.halves = -1;
+        task->push(piece);
         task->traverse([&](const PartWork& work) { task->advance(work); });
       }
       found[number] = {std::move(task->contacts_), task->counts_};
@@ -198,7 +200,7 @@ class CurvedTraversal {
     parting_.set(pair.directionAt(t));
   }
 
-  /// A pair that is advanced in many spans.
+  /// A pair that is advanced in more than one span.
   struct PairOfManySpans {
     /// The earliest contact that was found. HUGE_VAL: none.
     double toc{HUGE_VAL};
@@ -225,17 +227,33 @@ class CurvedTraversal {
 
   /// Both halves of what is left of a pair's span. They share its steps. The first half
   /// comes last, as in halveTiny().
-  void pushHalves(const PartWork& work) {
+  void pushHalves(PartWork work) {
+    if (!work.is_one_of_many && work.halves < 0) {
+      work.halves = static_cast<std::int32_t>(steps_of_halves_.size());
+      steps_of_halves_.push_back(work.steps);
+    }
+    work.t1 = std::max(std::min(work.t1, latest_), work.start);
     PartWork first = work, second = work;
     first.t1 = second.t0 = second.start = work.start + 0.5 * (work.t1 - work.start);
-    if (!work.is_one_of_many) seen_[keyOf(work)].steps += work.steps;
-    first.is_one_of_many = second.is_one_of_many = true;
     push(second);
     push(first);
   }
 
+  /// What a pair has if its spans are counted together; null: it has one span.
+  PairOfManySpans* manySpansOf(const PartWork& work) {
+    return work.is_one_of_many || work.halves >= 0 ? &seen_[keyOf(work)] : nullptr;
+  }
+
+  /// All steps that the pair took in this span, before it was halved too; or in all of
+  /// its spans, if they are very many.
+  int& stepsOf(PartWork& work, PairOfManySpans* known) {
+    if (work.halves >= 0) return steps_of_halves_[static_cast<std::size_t>(work.halves)];
+    return known ? known->steps : work.steps;
+  }
+
   /// Whether a pair had a contact in an earlier span: only the first one counts.
   bool touchedBefore(const PartWork& work) const {
+    if (!work.is_one_of_many && work.halves < 0) return false;
     const auto it = seen_.find(keyOf(work));
     return it != seen_.end() && it->second.toc <= work.start;
   }
@@ -259,7 +277,7 @@ class CurvedTraversal {
 
   /// Advances a pair of triangles, shapes or cells of an octree.
   void advance(const PartWork& work) {
-    if (work.is_one_of_many && touchedBefore(work)) return;
+    if (touchedBefore(work)) return;
     const MovingBody &a = body(0), &b = body(1);
     const std::int32_t place[2] = {~work.a.child, ~work.b.child};
     const double end = std::min(work.t1, latest_);
@@ -289,18 +307,17 @@ class CurvedTraversal {
     if (options_.rules && !options_.rules->accept(index[0], index[1])) return nullptr;
     if (work.steps == 0) ++counts_.triangle_pairs;
     const double t_stop = std::min(end, works_.nextTurn(work));
-    PairOfManySpans* const known = work.is_one_of_many ? &seen_[keyOf(work)] : nullptr;
-    const int before = known ? known->steps : work.steps,
-              all = std::max(options_.max_steps - before, 0);
-    int left = isBentAlike() ? all : std::min(all, kMostStepsInSpan);
-    const bool may_halve = left < all;
-    const int most = left;
+    PairOfManySpans* const known = manySpansOf(work);
+    int& steps = stepsOf(work, known);
+    const int all = std::max(options_.max_steps - steps, 0),
+              most = isBentAlike() ? all : std::min(all, kMostStepsInSpan);
+    int left = most;
     const auto answer = pair.advance(work.start, t_stop, left, counts_);
-    if (known) known->steps += most - left;
+    steps += most - left;
     setPartingDirection(pair, answer, work.start);
     if (answer == TriangleAdvance::Answer::kApart) return nullptr;
-    if (answer == TriangleAdvance::Answer::kOpen && (left > 0 || may_halve)) {
-      work.steps = before + most - left;
+    if (answer == TriangleAdvance::Answer::kOpen && (left > 0 || most < all)) {
+      work.steps = steps;
       if (left > 0)
         push(work);
       else
@@ -375,6 +392,8 @@ class CurvedTraversal {
   int num_apart_{0};
   /// The pairs that are advanced in many spans.
   std::unordered_map<std::uint64_t, PairOfManySpans> seen_;
+  /// PartWork::halves.
+  std::vector<int> steps_of_halves_;
   std::vector<CurvedContact> contacts_;
   AdvanceCounts counts_;
 };

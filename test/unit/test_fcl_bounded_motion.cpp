@@ -15,6 +15,7 @@
 #include "fcl/math/motion/bounded_motion.h"
 #include "fcl/math/motion/interp_motion.h"
 #include "fcl/math/motion/translation_motion.h"
+#include "fcl/math/motion/twist_motion.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_collision.h"
 #include "moving_mesh.h"
@@ -416,6 +417,28 @@ TEST_F(BoundedMotions, RestNearAnotherObject) {
     ContinuousContactResult<double> result;
     continuousCollide(&ball, &rise, &ball, &below, request, result);
     EXPECT_FALSE(result.is_collide);
+  }
+}
+
+/// A plate turns in its plane, very near a ball. Its path is bent alike everywhere, so
+/// that halves of a span need as many steps as the span.
+TEST_F(BoundedMotions, SlideBesideAnotherObject) {
+  const auto plate =
+      makeModel<Rigid>({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
+                        {Triangle(0, 1, 2), Triangle(0, 2, 3)}});
+  const TwistMotion<double> turn(Transform3<double>::Identity(), Vector::Zero(),
+                                 Vector::UnitZ());
+  const Sphere<double> ball(0.1);
+  for (const double gap : {1e-7, 1e-8, 2e-9}) {
+    const Vector place(1, 0.3, 0.1 + gap);
+    const TranslationMotion<double> rests(Matrix3<double>::Identity(), place, place);
+    ContinuousContactRequest<double> request;
+    for (const ContinuousQuery query : {ContinuousQuery::kFirst, ContinuousQuery::kAll}) {
+      request.query = query;
+      ContinuousContactResult<double> result;
+      continuousCollide(plate.get(), &turn, &ball, &rests, request, result);
+      EXPECT_FALSE(result.is_collide) << gap;
+    }
   }
 }
 
