@@ -2,7 +2,7 @@
 class FclCcd < Formula
   desc "Continuous collision detection of deforming meshes, as an extension of FCL"
   homepage "ADDRESS"
-  url "ADDRESS/v0.2.0.tar.gz"
+  url "ADDRESS/v0.3.0.tar.gz"
   sha256 "CHECKSUM"
   license "BSD-3-Clause"
 
