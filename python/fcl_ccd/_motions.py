@@ -118,7 +118,7 @@ class WaypointMotion(Motion):
     """A motion that passes through poses at given times, with a continuous velocity.
 
     poses : (n, 4, 4) array, two or more
-    times : (n,) array that ascends from 0 to 1, with steps of at least 2^-30
+    times : (n,) array that ascends from 0 to 1, with steps of at least 2^-16
 
     Between two poses each coordinate of the origin follows a monotone cubic, in the axes of the
     world. The mesh turns the shorter way round, by at most 180 degrees. Between equal poses it

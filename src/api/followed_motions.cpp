@@ -3,6 +3,7 @@
 // The motion classes of this library: checks of what a program gives.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -65,6 +66,12 @@ void requireCount(std::size_t count, const JointTree& tree, const std::string& n
                     " joints that move. Give a value for each, none for fixed joints");
 }
 
+std::string digitsOf(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.17g", x);
+  return text;
+}
+
 void requireTimes(const std::vector<double>& times, std::size_t num_poses) {
   const std::string name = "WaypointMotion: ";
   const auto text = [](std::size_t i) { return std::to_string(i); };
@@ -78,12 +85,11 @@ void requireTimes(const std::vector<double>& times, std::size_t num_poses) {
   for (std::size_t i = 1; i < times.size(); ++i)
     if (!(times[i] - times[i - 1] >= deformable::kLeastPieceTime))
       throw Exception(name + "the times of the poses " + text(i - 1) + " and " + text(i) +
-                      " are " + std::to_string(times[i - 1]) + " and " +
-                      std::to_string(times[i]) +
-                      ". Give times that ascend, by at least 2^-30");
+                      " are " + digitsOf(times[i - 1]) + " and " + digitsOf(times[i]) +
+                      ". Give times that ascend, by at least 2^-16");
   if (times.front() != 0 || times.back() != 1)
-    throw Exception(name + "the times go from " + std::to_string(times.front()) + " to " +
-                    std::to_string(times.back()) +
+    throw Exception(name + "the times go from " + digitsOf(times.front()) + " to " +
+                    digitsOf(times.back()) +
                     ". Let them go from 0 to 1: repeat a pose where the body rests");
 }
 

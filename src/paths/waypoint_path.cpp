@@ -167,7 +167,7 @@ WaypointPath::Piece WaypointPath::makePiece(const Waypoint& x, const Waypoint& y
   const bool is_turn = turn.v.x != 0 || turn.v.y != 0 || turn.v.z != 0;
   return {x.t,
           duration,
-          LinkPath(path, last),
+          LinkPath(path, tree->links()[static_cast<std::size_t>(last)]),
           bounds.rotation,
           bounds.translation,
           is_turn ? kTurnError : 0,

@@ -35,7 +35,7 @@ namespace deformable {
 
 /// @brief The least time between two waypoints. Rounding of velocities grows with its
 /// inverse.
-constexpr double kLeastPieceTime = 0x1p-30;
+constexpr double kLeastPieceTime = 0x1p-16;
 
 class WaypointPath : public BoundedMotion {
  public:

@@ -441,7 +441,7 @@ TEST(FCL_WAYPOINT_MOTION, refusesWhatAreNoWaypoints) {
   expectRefused([&] { Motion(Poses{here, there}, {0, .5, 1}); }, "3 times");
   expectRefused([&] { Motion(Poses{here, there, here}, {0, .5, .5}); }, "ascend");
   expectRefused([&] { Motion(Poses{here, there, here}, {0, .5, .4}); }, "ascend");
-  expectRefused([&] { Motion(Poses{here, there, here}, {0, 1 - 1e-10, 1}); }, "2^-30");
+  expectRefused([&] { Motion(Poses{here, there, here}, {0, 1 - 0x1p-17, 1}); }, "2^-16");
   expectRefused([&] { Motion(Poses{here, there}, {0, nan}); }, "not finite");
   expectRefused([&] { Motion(Poses{here, there}, {.1, 1}); }, "from 0 to 1");
   expectRefused([&] { Motion(Poses{here, there}, {0, 2}); }, "from 0.000000 to 2");

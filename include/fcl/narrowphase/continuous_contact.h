@@ -99,7 +99,8 @@ struct ContinuousContact {
   /// With a shape or an octree it is a direction that separates the two objects just
   /// before they touch. If they overlap at t = 0: the direction of the least translation
   /// that parts them (penetration_depth). It is the zero vector for two planes or
-  /// halfspaces that no translation parts.
+  /// halfspaces that no translation parts, or of which one turns, or follows a spline or
+  /// a BoundedMotion.
   Vector3<S> normal{Vector3<S>::Zero()};
 
   /// @brief With a shape or an octree that overlaps the other object at t = 0: how far o2

@@ -152,8 +152,8 @@ class ChainMotion {
   /// @param begin, end  the value of each moving joint at t = 0 and t = 1
   /// @param base  the pose of the base in the world, at all times
   /// @throws fcl::Exception  a wrong number of values, a value that is not finite, an
-  /// angle at t = 0 or t = 1 beyond 2^20 radians, a base that is no rotation (up to 2^-6)
-  /// and translation
+  /// angle at t = 0 or t = 1 beyond 2^20 radians, a chain without joints, a base that is
+  /// no rotation (up to 2^-6) and translation
   ChainMotion(const JointChain& chain, const std::vector<double>& begin,
               const std::vector<double>& end,
               const Transform3<double>& base = Transform3<double>::Identity())

@@ -54,7 +54,7 @@ class WaypointMotion : public detail::FollowedMotion<S> {
  public:
   /// @param poses  two or more Transform3<S> in any container, such as an
   /// aligned_vector<Transform3<S>>. A rotation up to 2^-6 is replaced by the nearest one.
-  /// @param times  one for each pose: they ascend from 0 to 1, at least 2^-30 apart
+  /// @param times  one for each pose: they ascend from 0 to 1, at least 2^-16 apart
   /// @throws fcl::Exception  a wrong number of poses or times, times that are not as
   /// above, a number that is not finite, a length beyond 2^160, or a pose that is no
   /// rotation and translation

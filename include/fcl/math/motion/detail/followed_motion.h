@@ -55,7 +55,7 @@ class FollowedMotion : public MotionBase<S>, public BoundedMotion {
   /// @brief Sets the time of getCurrentTransform(), as FCL's own motions do. It changes
   /// the motion. Queries of this library do not call it.
   bool integrate(S t) const override {
-    t_ = t < 0 ? S(0) : t > 1 ? S(1) : t;
+    t_ = t > 0 ? (t < 1 ? t : S(1)) : S(0);  // NaN: 0
     return true;
   }
   using MotionBase<S>::getCurrentTransform;
