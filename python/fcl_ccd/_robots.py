@@ -68,7 +68,7 @@ class EdgeResult(_arguments.Built):
         query="any": one pair in contact. "first": the pair that is first in contact. "all":
         all pairs in contact.
     num_box_pairs : int, the number of pairs whose boxes meet
-    num_tested : int, the number of pairs that were tested
+    num_tested : int, the number of tests of pairs; with "first" a pair may be tested twice
     """
 
     is_free: bool
@@ -130,16 +130,15 @@ class CollisionRobot(_arguments.Built):
         for name in names:
             if not isinstance(name, str):
                 raise _arguments.wrong_type("link_names", link_names, "a list of str")
-        self._chain = JointChain()
-        self._chain._chain, self._chain._joints = chain._chain.copy(), list(chain._joints)
+        self._chain = _copy_of(chain)
         self._robot = _core.Robot(self._chain._chain, names)
         self._base = _pose(base, "base")
         self._frames = {}
 
     @property
     def chain(self) -> JointChain:
-        """The chain that motions for check_motion() are made from. Do not add joints to it."""
-        return self._chain
+        """A copy of the chain, from which motions for check_motion() are made."""
+        return _copy_of(self._chain)
 
     def attach(
         self,
@@ -180,11 +179,18 @@ class CollisionRobot(_arguments.Built):
         self._robot._update()
 
     def allow(self, link1: int, link2: int) -> None:
-        """Parts of these two links are not tested with each other from now on."""
+        """Parts of these two links are not tested with each other from now on.
+
+        That holds for all that is attached to them, now and later. Attach what the robot holds to
+        a fixed link of its own (JointChain.add_fixed()) if it may not touch them.
+        """
         self._robot._allow(_link(link1, "link1"), _link(link2, "link2"))
 
     def allow_neighbours(self) -> None:
-        """allow() for all pairs of links that one joint connects."""
+        """allow() for the link that carries a joint, and the link that it moves; for all joints.
+
+        What is fixed to one of them is another link, and is tested with the other one.
+        """
         self._robot._allow_neighbours()
 
     def set_filter(self, link: int, group: int = 1, mask: int = _ALL_GROUPS) -> None:
@@ -308,6 +314,8 @@ class CollisionRobot(_arguments.Built):
         """What Result.show() needs of a part: its mesh or shape, and its path."""
         kind, joints, *values, base = motion._made_by
         chain = _remade_chain(JointChain, joints)
+        if part not in self._frames:
+            raise RuntimeError("the robot was changed by another thread during the query")
         link, origin = self._frames[part]
         frame = chain.add_fixed(origin, link)
         own = ChainMotion.__new__(ChainMotion)
@@ -322,6 +330,12 @@ class CollisionRobot(_arguments.Built):
 
     def __repr__(self) -> str:
         return f"CollisionRobot({self._chain.num_links} links, {len(self._frames)} parts)"
+
+
+def _copy_of(chain: JointChain) -> JointChain:
+    copy = JointChain()
+    copy._chain, copy._joints = chain._chain.copy(), list(chain._joints)
+    return copy
 
 
 def _link(value: Any, name: str) -> int:

@@ -35,7 +35,12 @@ class Robot : public Guarded {
     const Reading reading(geometry);
     const int part =
         robot_.attach(link, borrow(geometry), toTransform(origin, "origin"), touch_links);
-    parts_.emplace(part, Part{std::move(owner), geometry.numUpdates()});
+    try {
+      parts_.emplace(part, Part{std::move(owner), geometry.numUpdates()});
+    } catch (...) {
+      robot_.detach(part);
+      throw;
+    }
     return part;
   }
 

@@ -98,13 +98,11 @@ RobotPartPtr<S> makeRobotPart(const JointTreePtr& tree, int link,
 }
 
 LinkRelation linkRelation(const JointTreePtr& tree, int link1, int link2) {
-  const int joint1 = linkOf(*tree, link1).joint, joint2 = linkOf(*tree, link2).joint;
-  if (joint1 == joint2) return LinkRelation::kFixed;
-  const auto parentOf = [&](int joint) {
-    return joint < 0 ? joint : tree->joints()[std::size_t(joint)].parent;
-  };
-  const bool are_neighbours = (joint1 >= 0 && parentOf(joint1) == joint2) ||
-                              (joint2 >= 0 && parentOf(joint2) == joint1);
+  const deformable::JointTree::Link &first = linkOf(*tree, link1),
+                                    &second = linkOf(*tree, link2);
+  if (first.joint == second.joint) return LinkRelation::kFixed;
+  const bool are_neighbours = (first.is_moved && first.parent == link2) ||
+                              (second.is_moved && second.parent == link1);
   return are_neighbours ? LinkRelation::kNeighbours : LinkRelation::kApart;
 }
 

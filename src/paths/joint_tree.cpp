@@ -42,14 +42,14 @@ int JointTree::add(Type type, const Pose& origin, const Vec& axis, int parent) {
       parent < 0 ? Link{-1, {}} : links_[static_cast<std::size_t>(parent)];
   const RoundedPose in_carrier = parent < 0 ? own : carrier.pose * own;
   if (type == Type::kFixed) {
-    links_.push_back({carrier.joint, in_carrier});
+    links_.push_back({carrier.joint, in_carrier, parent, false});
   } else {
     Joint joint{type == Type::kRevolute, carrier.joint, in_carrier, axis, {}, {}, {}};
     const double(&rotation)[9] = joint.origin.pose.rotation;
     joint.axis_in_parent = rotated(rotation, axis);
     timesCross(rotation, axis, joint.sine_rotation);
     timesCross(joint.sine_rotation, axis, joint.cosine_rotation);
-    links_.push_back({static_cast<int>(joints_.size()), {}});
+    links_.push_back({static_cast<int>(joints_.size()), {}, parent, true});
     joints_.push_back(joint);
   }
   return static_cast<int>(links_.size()) - 1;

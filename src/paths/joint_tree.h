@@ -51,6 +51,9 @@ class JointTree {
     int joint;
     /// In the frame of that joint.
     RoundedPose pose;
+    /// The link that carries the joint of this one, which may be fixed; -1: the base.
+    int parent{-1};
+    bool is_moved{false};
   };
 
   /// @brief Adds a joint and its link, whose number is returned.

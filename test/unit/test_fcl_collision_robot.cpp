@@ -297,12 +297,18 @@ TEST(CollisionRobot, NeighboursMayTouch) {
   EXPECT_EQ(numTested(robot), 9u);
   Robot without = robot;
   without.allowNeighbours();
-  // What is left: base to elbow, cover and wrist; shoulder to wrist.
-  EXPECT_EQ(numTested(without), 4u);
+  // What is left: base to elbow, cover and wrist; shoulder to cover and wrist; cover to
+  // wrist. No joint connects the cover with the shoulder or the wrist.
+  EXPECT_EQ(numTested(without), 6u);
   EXPECT_EQ(numTested(robot), 9u);
-  // Parts that are attached later, too.
-  without.attach(cover, large);
+  // Parts that are attached later, too: beside the base, the shoulder and the wrist.
+  const int later = without.attach(cover, large);
+  EXPECT_EQ(numTested(without), 9u);
+  // Numbers of the others do not change when one goes.
+  without.detach(0);
   EXPECT_EQ(numTested(without), 5u);
+  without.detach(later);
+  EXPECT_EQ(numTested(without), 3u);
 }
 
 TEST(CollisionRobot, HoldsObjects) {
@@ -393,6 +399,8 @@ TEST(CollisionRobot, GroupsOfTrianglesOfAnObstacle) {
   };
   EXPECT_FALSE(isFree(2, 4));
   EXPECT_TRUE(isFree(4, 4));
+  // The boxes accept the obstacle, whose second triangle is not reached.
+  EXPECT_TRUE(isFree(4, 2));
 }
 
 TEST(CollisionRobot, ObstaclesMayMove) {

@@ -37,9 +37,11 @@ struct RobotPairResult {
 template <typename S>
 struct RobotEdgeResult {
   /// @brief True is proved: nothing touches at any time of the step, up to the request's
-  /// t_max. False: see `pairs`. Some contacts are only proved up to the tolerance of a
-  /// query (ContinuousContact::within_tolerance).
-  bool is_free{true};
+  /// t_max. (A mesh is a surface: one inside of another one does not touch it.) False:
+  /// see `pairs`. Some contacts are only proved up to the tolerance of a query
+  /// (ContinuousContact::within_tolerance). False too before an edge was checked, and
+  /// after an exception.
+  bool is_free{false};
 
   /// @brief The time of the first contact among `pairs`, in fractions of the step; never
   /// later than the true one. 1 if the edge is free.
@@ -52,7 +54,8 @@ struct RobotEdgeResult {
   /// contact. kAll: all pairs in contact, sorted by their time of contact.
   std::vector<RobotPairResult<S>> pairs;
 
-  /// @brief The number of pairs whose boxes meet, and how many of these were tested.
+  /// @brief The number of pairs whose boxes meet, and the number of tests of pairs. With
+  /// ContinuousQuery::kFirst a pair may be tested twice.
   std::size_t num_box_pairs{0};
   std::size_t num_tested{0};
 };
@@ -95,8 +98,8 @@ class CollisionRobot {
   /// @param touch_links  links which the part may touch
   /// @return the number of the part: 0, 1, ... Numbers are not used again.
   /// @throws fcl::Exception  there is no such link; the geometry is null, a point cloud
-  /// or of a class of the program; a mesh is not built; a number is not finite. Then
-  /// nothing has changed.
+  /// or of a class of the program; a mesh is not built; a number is not finite; the
+  /// origin is no rotation (up to 2^-6) and translation. Then nothing has changed.
   int attach(int link, const Geometry& geometry,
              const Transform3<double>& origin = Transform3<double>::Identity(),
              const std::vector<int>& touch_links = {});
@@ -105,10 +108,14 @@ class CollisionRobot {
   /// @brief Reads all geometries again. @throws fcl::Exception  as attach()
   void update();
 
-  /// @brief Parts of these two links are not tested with each other from now on.
+  /// @brief Parts of these two links are not tested with each other from now on. That
+  /// holds for all that is attached to them, now and later. Attach what the robot holds
+  /// to a fixed link of its own (JointChain::addFixed()) if it may not touch them.
   /// @throws fcl::Exception  there is no such link
   void allow(int link1, int link2);
-  /// @brief allow() for all pairs of links that one joint connects.
+  /// @brief allow() for all pairs of links that one joint connects: the link that carries
+  /// a joint, and the link that it moves. What is fixed to one of them is another link,
+  /// and is tested with the other one.
   void allowNeighbours();
 
   /// @brief Sets which obstacles the parts of a link can be in contact with, as
@@ -236,10 +243,22 @@ int CollisionRobot<S>::attach(int link, const Geometry& geometry,
   requireLink(link, "attach");
   for (const int touched : touch_links) requireLink(touched, "attach: touch_links");
   Part part{next_part_, link, geometry, detail::placementOf(origin), touch_links};
-  read_.push_back(read(part));
+  auto of_library = read(part);
+  // What comes now does not throw, but for setOwnPairs().
+  parts_.reserve(parts_.size() + 1);
+  read_.reserve(read_.size() + 1);
+  filters_.reserve(filters_.size() + 1);
   parts_.push_back(std::move(part));
+  read_.push_back(std::move(of_library));
   filters_.push_back(link_filters_[static_cast<std::size_t>(link + 1)]);
-  setOwnPairs();
+  try {
+    setOwnPairs();
+  } catch (...) {
+    parts_.pop_back();
+    read_.pop_back();
+    filters_.pop_back();
+    throw;
+  }
   return next_part_++;
 }
 
@@ -254,7 +273,17 @@ void CollisionRobot<S>::detach(int part) {
   parts_.erase(place);
   read_.erase(read_.begin() + i);
   filters_.erase(filters_.begin() + i);
-  setOwnPairs();
+  const int removed = static_cast<int>(i);
+  own_pairs_.erase(std::remove_if(own_pairs_.begin(), own_pairs_.end(),
+                                  [removed](const std::pair<int, int>& pair) {
+                                    return pair.first == removed ||
+                                           pair.second == removed;
+                                  }),
+                   own_pairs_.end());
+  for (auto& pair : own_pairs_) {
+    pair.first -= pair.first > removed ? 1 : 0;
+    pair.second -= pair.second > removed ? 1 : 0;
+  }
 }
 
 template <typename S>
@@ -295,11 +324,12 @@ bool CollisionRobot<S>::mayTouch(const Part& x, const Part& y) const {
 
 template <typename S>
 void CollisionRobot<S>::setOwnPairs() {
-  own_pairs_.clear();
+  std::vector<std::pair<int, int>> pairs;
   for (std::size_t i = 0; i < parts_.size(); ++i)
     for (std::size_t k = i + 1; k < parts_.size(); ++k)
       if (!mayTouch(parts_[i], parts_[k]))
-        own_pairs_.emplace_back(static_cast<int>(i), static_cast<int>(k));
+        pairs.emplace_back(static_cast<int>(i), static_cast<int>(k));
+  own_pairs_.swap(pairs);
 }
 
 template <typename S>
@@ -343,6 +373,7 @@ template <typename S>
 bool CollisionRobot<S>::checkPath(const detail::ChainPathPtr& path,
                                   const Manager* obstacles, const Request& request,
                                   RobotEdgeResult<S>& out) const {
+  out = RobotEdgeResult<S>();
   RobotEdgeResult<S> result;
   const Step step({read_, filters_, own_pairs_}, path);
   const bool is_any = request.query == ContinuousQuery::kAny;

@@ -39,8 +39,8 @@ FCL_EXPORT RobotPartPtr<S> makeRobotPart(const JointTreePtr& tree, int link,
 /// @brief How two links move relative to each other.
 enum class LinkRelation {
   kFixed,       ///< not at all
-  kNeighbours,  ///< by one joint
-  kApart        ///< by more joints
+  kNeighbours,  ///< one of them carries the joint that moves the other one
+  kApart
 };
 /// @param link1, link2  of the tree, or -1: the base
 FCL_EXPORT LinkRelation linkRelation(const JointTreePtr& tree, int link1, int link2);
