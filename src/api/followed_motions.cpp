@@ -182,6 +182,7 @@ std::shared_ptr<const BoundedMotion> makeWaypointPath(
   const DefaultFloatingPoint mode;
   requireTimes(times, poses.size());
   std::vector<Pose> waypoints;
+  waypoints.reserve(poses.size());
   for (const auto& pose : poses)
     waypoints.push_back(
         requirePose(pose, "WaypointMotion: pose " + std::to_string(waypoints.size())));

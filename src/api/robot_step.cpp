@@ -21,7 +21,6 @@ namespace fcl {
 namespace detail {
 
 using deformable::BoundsList;
-using deformable::ChainPath;
 using deformable::DefaultFloatingPoint;
 using deformable::JointTree;
 using deformable::LinkPath;

@@ -76,8 +76,8 @@ ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
   for (std::size_t j = 0; j < joints.size(); ++j) {
     requireValue(values[j], joints[j].is_revolute, j);
     bounds_.push_back(boundsOf(joints[j], values[j]));
-    Polynomial rate = derivativeOf(values[j]), acceleration = derivativeOf(rate);
-    values_.push_back({std::move(values[j]), std::move(rate), std::move(acceleration)});
+    const Polynomial rate = derivativeOf(values[j]);
+    values_.push_back({std::move(values[j]), rate, derivativeOf(rate)});
   }
 }
 
