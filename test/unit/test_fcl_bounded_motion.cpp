@@ -423,9 +423,8 @@ TEST_F(BoundedMotions, RestNearAnotherObject) {
 /// A plate turns in its plane, very near a ball. Its path is bent alike everywhere, so
 /// that halves of a span need as many steps as the span.
 TEST_F(BoundedMotions, SlideBesideAnotherObject) {
-  const auto plate =
-      makeModel<Rigid>({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
-                        {Triangle(0, 1, 2), Triangle(0, 2, 3)}});
+  const auto plate = makeModel<Rigid>({{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
+                                       {Triangle(0, 1, 2), Triangle(0, 2, 3)}});
   const TwistMotion<double> turn(Transform3<double>::Identity(), Vector::Zero(),
                                  Vector::UnitZ());
   const Sphere<double> ball(0.1);

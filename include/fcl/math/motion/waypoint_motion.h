@@ -52,8 +52,9 @@ std::vector<BoundedMotion::Placement> placementsOf(const Poses& poses) {
 template <typename S>
 class WaypointMotion : public detail::FollowedMotion<S> {
  public:
-  /// @param poses  two or more Transform3<S> in any container, such as an
-  /// aligned_vector<Transform3<S>>. A rotation up to 2^-6 is replaced by the nearest one.
+  /// @param poses  two or more transforms of the type S in any container, such as
+  /// aligned_vector (fcl/common/types.h). A rotation up to 2^-6 is replaced by the
+  /// nearest one.
   /// @param times  one for each pose: they ascend from 0 to 1, at least 2^-16 apart
   /// @throws fcl::Exception  a wrong number of poses or times, times that are not as
   /// above, a number that is not finite, a length beyond 2^160, or a pose that is no
