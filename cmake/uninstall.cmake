@@ -11,7 +11,9 @@ foreach(file IN LISTS files)
   # What Python has compiled beside a module that was imported.
   if(file MATCHES "^(.*)/([^/]+)\\.py$")
     file(GLOB compiled "$ENV{DESTDIR}${CMAKE_MATCH_1}/__pycache__/${CMAKE_MATCH_2}.*")
-    file(REMOVE ${compiled})
+    if(compiled) # a module that is loaded late may not be compiled
+      file(REMOVE ${compiled})
+    endif()
     file(GLOB rest "$ENV{DESTDIR}${CMAKE_MATCH_1}/__pycache__/*")
     if(NOT rest)
       file(REMOVE_RECURSE "$ENV{DESTDIR}${CMAKE_MATCH_1}/__pycache__")
