@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Installs missing packages (Debian), builds in Release and runs the tests.
 #   bash cmake/test.sh           the test suite: 20 to 25 minutes on two cores
-#   bash cmake/test.sh --all     also clang with -Werror and sanitizers, clang-tidy, the
-#                                reference, and a build without vectors and threads (CI runs
-#                                this; CI=true means the same)
-#   bash cmake/test.sh --doors   only every way to link the package (test/consumer), with
-#                                gcc and clang and each set of flags: half an hour or more
+#   bash cmake/test.sh --all     also clang with -Werror and sanitizers, clang-tidy, and the
+#                                reference (CI runs this; CI=true means the same)
+#   bash cmake/test.sh --doors   only a build without vectors and threads, and every way to
+#                                link the package (test/consumer), with gcc and clang and
+#                                each set of flags: an hour or more
 #   bash cmake/test.sh --compilers [COMPILER ...]
 #                                only library, program, examples, some tests and two ways to
 #                                link, with those of g++ 11 to 14 and clang++ 14, 16 and 19
@@ -125,6 +125,9 @@ tell_what_was_skipped() {
 }
 
 if $doors; then
+  # Without vectors and threads: the tests that compare with scalar code and brute force.
+  build plain
+  watched ctest --preset plain -j "$jobs"
   build release -DFCL_CCD_BUILD_PYTHON=ON
   for compiler in g++ clang++; do
     watched bash test/consumer/run.sh build/release "$compiler" "build/release/doors_$compiler"
@@ -146,13 +149,6 @@ if $all; then
   step "reference"
   watched doxygen doc/Doxyfile
   watched bash cmake/check_reference.sh
-  # The tests that compare with scalar code and brute force.
-  plain_tests=(test_fcl_kernels test_fcl_deformable_query test_fcl_continuous_contact)
-  step "plain: build and tests"
-  cmake --preset plain
-  watched cmake --build --preset plain --target "${plain_tests[@]}"
-  printf '%s\n' "${plain_tests[@]}" |
-    watched xargs -P "$jobs" -I '{}' env "build/plain/test/unit/{}" --gtest_brief=1
   build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
   watched cmake --build --preset release --target programs
 else

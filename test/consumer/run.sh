@@ -31,7 +31,7 @@ all_doors=(
   python_package python_extension uninstall deb
   spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti
   flags_cxx11 flags_cxx11_avx flags_baseline flags_v3 flags_native flags_native_O0
-  add_subdirectory add_subdirectory_native add_subdirectory_static
+  add_subdirectory add_subdirectory_native add_subdirectory_static add_subdirectory_plain
 )
 doors=("$@")
 if [ $# -eq 0 ]; then doors=("${all_doors[@]}"); fi
@@ -55,15 +55,14 @@ stock_dir=$(sed -n "s|$recorded|\1|p" "$prefix/$config")
 read -ra around <<<"$(pkg-config --cflags eigen3 ccd octomap)"
 run_with() { LD_LIBRARY_PATH=$1/$lib "${@:2}"; }
 
-# configure_and_run NAME PREFIX [OPTION ...]: the consumer's programs through CMake.
+# configure_and_run NAME PREFIX [OPTION ...]: the consumer's program through CMake.
 configure_and_run() {
   local name=$1 where=$2
   shift 2
   cmake -S "$source_dir" -B "$work/$name" -DCMAKE_PREFIX_PATH="$where" "$@" \
     >"$work/$name.log"
-  cmake --build "$work/$name" --target app deforming >>"$work/$name.log"
+  cmake --build "$work/$name" --target app >>"$work/$name.log"
   "$work/$name/app"
-  "$work/$name/deforming"
 }
 
 package() {
@@ -137,6 +136,8 @@ door_stock() { # control: with stock FCL alone the program fails
 door_cmake_target() { # find_package and the target fcl
   # Some distributions link in this way by default: the linker drops a library without calls.
   LDFLAGS=-Wl,--as-needed configure_and_run cmake_target "$prefix"
+  cmake --build "$work/cmake_target" --target deforming >>"$work/cmake_target.log"
+  "$work/cmake_target/deforming"
   grep -q "extended by fcl_ccd .* $prefix/$lib" "$work/cmake_target.log" ||
     fail "CMake does not print which FCL it uses"
 }
@@ -469,17 +470,23 @@ door_add_subdirectory_native() {
     -DCMAKE_CXX_FLAGS_RELEASE=-O1
 }
 
-door_add_subdirectory_static() { # BUILD_SHARED_LIBS=OFF, and installed from there
-  subproject static -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
+# static_subproject NAME OPTION...: with BUILD_SHARED_LIBS=OFF, and installed from there.
+static_subproject() {
+  local name=$1 libs installed=$work/$1_prefix
+  subproject "$@" -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 \
     -DBUILD_SHARED_LIBS=OFF -DFCL_CCD_INSTALL=ON
-  cmake --install "$work/static" --prefix "$work/static_prefix" >/dev/null
-  [ -f "$work/static_prefix/$lib/libfcl_ccd.a" ] || fail "no static library"
-  configure_and_run static_cmake "$work/static_prefix"
-  by_hand static_lfcl "$work/static_prefix" -lfcl
-  PKG_CONFIG_PATH=$work/static_prefix/$lib/pkgconfig pkg-config --libs fcl >"$work/static_libs"
-  local libs
-  read -ra libs <"$work/static_libs"
-  by_hand static_pc "$work/static_prefix" "${libs[@]}"
+  cmake --install "$work/$name" --prefix "$installed" >/dev/null
+  [ -f "$installed/$lib/libfcl_ccd.a" ] || fail "no static library"
+  configure_and_run "${name}_cmake" "$installed"
+  by_hand "${name}_lfcl" "$installed" -lfcl
+  PKG_CONFIG_PATH=$installed/$lib/pkgconfig pkg-config --libs fcl >"$work/${name}_libs"
+  read -ra libs <"$work/${name}_libs"
+  by_hand "${name}_pc" "$installed" "${libs[@]}"
+}
+
+door_add_subdirectory_static() { static_subproject static; }
+door_add_subdirectory_plain() { # without Highway and oneTBB
+  static_subproject plain -DFCL_CCD_USE_HIGHWAY=OFF -DFCL_CCD_USE_TBB=OFF
 }
 
 for door in "${doors[@]}"; do

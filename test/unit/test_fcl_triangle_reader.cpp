@@ -15,6 +15,7 @@
 #include "model/fcl_tree.h"
 #include "moving_mesh.h"
 #include "query/triangle_reader.h"
+#include "sanitizer.h"
 #include "test_models.h"
 
 namespace fcl {
@@ -101,7 +102,7 @@ TEST(FCL_TRIANGLE_READER, trianglesShareTheirVertices) {
     }
     Random random(6);
     TriangleReader reader(mesh);
-    for (int round = 0; round < 20000; ++round) {
+    for (int round = 0; round < rounds(20000); ++round) {
       // Most are near the last ones.
       const int number =
           round % 50 == 0 ? static_cast<int>(random.index(5120))
