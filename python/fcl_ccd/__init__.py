@@ -39,7 +39,7 @@ from . import _requirements  # isort: skip - it says what is missing for the res
 from ._chains import ChainMotion, JointChain, LinkMotion, urdf_origin
 from ._core import version as __version__
 from ._dataframes import to_dataframe
-from ._manager import CollisionManager, ManagerResult, Pair
+from ._manager import CollisionManager, ManagerResult, NearestPair, Pair
 from ._meshes import DeformableMesh, RigidMesh, weld_vertices
 from ._motions import (
     BoundedMotion,
@@ -103,6 +103,7 @@ __all__ = [
     "LinkMotion",
     "ManagerResult",
     "Motion",
+    "NearestPair",
     "OcTree",
     "Pair",
     "Plane",

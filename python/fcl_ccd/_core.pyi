@@ -1,4 +1,15 @@
-from typing import Any, Callable, Dict, Hashable, List, NoReturn, Optional, Sequence, Tuple
+from typing import (
+    Any,
+    Callable,
+    Dict,
+    Hashable,
+    List,
+    NoReturn,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 import numpy as np
 from numpy.typing import NDArray
@@ -269,6 +280,11 @@ class Request(metaclass=_Class):
         ignore_initially_closer: bool,
     ) -> None: ...
 
+class DistanceRequest(metaclass=_Class):
+    def __init__(
+        self, contacts: Request, abs_err: float, rel_err: float, max_distance: float
+    ) -> None: ...
+
 class ManagedObject(_Made): ...
 
 class Manager(metaclass=_Class):
@@ -285,12 +301,16 @@ class Manager(metaclass=_Class):
     def _update(self, objects: Sequence[ManagedObject], motions: Sequence[Motion]) -> None: ...
     def _set_filter(self, object: ManagedObject, filter: Filter) -> None: ...
     def _set_self_collision(self, object: ManagedObject, enabled: bool) -> None: ...
-    def _collide_all(self, request: Request) -> Dict[str, Any]: ...
-    def _collide_one(self, object: ManagedObject, request: Request) -> Dict[str, Any]: ...
-    def _collide_geometry(
-        self, geometry: Geometry, motion: Motion, request: Request
+    def _ask_all(self, request: Union[Request, DistanceRequest]) -> Dict[str, Any]: ...
+    def _ask_one(
+        self, object: ManagedObject, request: Union[Request, DistanceRequest]
     ) -> Dict[str, Any]: ...
-    def _collide_manager(self, other: Manager, request: Request) -> Dict[str, Any]: ...
+    def _ask_geometry(
+        self, geometry: Geometry, motion: Motion, request: Union[Request, DistanceRequest]
+    ) -> Dict[str, Any]: ...
+    def _ask_manager(
+        self, other: Manager, request: Union[Request, DistanceRequest]
+    ) -> Dict[str, Any]: ...
 
 class Robot(metaclass=_Class):
     def __init__(self, chain: JointChain, names: Sequence[str]) -> None: ...
@@ -316,14 +336,7 @@ def collide(
     o1: Geometry, motion1: Motion, o2: Geometry, motion2: Motion, request: Request
 ) -> Dict[str, Any]: ...
 def distance(
-    o1: Geometry,
-    motion1: Motion,
-    o2: Geometry,
-    motion2: Motion,
-    request: Request,
-    abs_err: float,
-    rel_err: float,
-    max_distance: float,
+    o1: Geometry, motion1: Motion, o2: Geometry, motion2: Motion, request: DistanceRequest
 ) -> Dict[str, Any]: ...
 def self_candidates(
     o: Mesh,

@@ -21,7 +21,14 @@ import numpy as np
 from . import _arguments, _core
 from ._dataframes import columns_of, frame_of
 from ._motions import AT_ORIGIN, MotionLike, path_of
-from ._queries import Filter, filter_of, geometry_of, request_of
+from ._queries import (
+    DistanceResult,
+    Filter,
+    distance_request_of,
+    filter_of,
+    geometry_of,
+    request_of,
+)
 from ._results import Result, result_of
 
 if TYPE_CHECKING:
@@ -89,6 +96,24 @@ class ManagerResult(_arguments.Built):
             f"ManagerResult(is_collide={self.is_collide}, time_of_contact="
             f"{self.time_of_contact}, {len(self.pairs)} pairs)"
         )
+
+
+@dataclass(frozen=True, eq=False)
+class NearestPair(_arguments.Built):
+    """The answer of CollisionManager.distance().
+
+    o1, o2 : the names of the two objects that come nearest; of those that touch first, if
+        any touch. None: no distance was computed, as no pair counts, or all stay further apart
+        than max_distance. A mesh or shape that was given to distance() without a name is None too.
+    result : DistanceResult
+        Of the two. No two objects are nearer than its distance_lo during the step.
+    num_tested : int, the number of pairs whose distance was looked for
+    """
+
+    o1: Hashable
+    o2: Hashable
+    result: DistanceResult
+    num_tested: int
 
 
 class CollisionManager(_arguments.Built):
@@ -250,28 +275,64 @@ class CollisionManager(_arguments.Built):
         ]
         return ManagerResult(pairs=pairs, **fields)
 
+    def distance(
+        self,
+        other: Union[None, Geometry, TriangleMesh, CollisionManager] = None,
+        motion: MotionLike = None,
+        *,
+        name: Optional[Hashable] = None,
+        abs_err: float = 0.0,
+        rel_err: float = 1e-3,
+        t_max: float = 1.0,
+        max_distance: float = np.inf,
+        toc_err: float = 1e-4,
+        accepts_triangles: Optional[Callable[[int, int], bool]] = None,
+        num_threads: int = 1,
+    ) -> NearestPair:
+        """The least distance of the objects from each other during the step, and when.
+
+        Which objects: as in collide(). A mesh has no distance from itself. Pairs of two
+        planes or halfspaces are left out. The other keywords are those of
+        fcl_ccd.distance().
+
+        Raises RuntimeError if a mesh was updated after the manager had read it.
+        """
+        request = distance_request_of(
+            abs_err,
+            rel_err,
+            t_max,
+            max_distance,
+            toc_err,
+            None,
+            None,
+            accepts_triangles,
+            num_threads,
+        )
+        fields = self._ask(other, motion, name, request)
+        return NearestPair(result=DistanceResult(**fields.pop("result")), **fields)
+
     def _ask(
         self,
         other: Union[None, Geometry, TriangleMesh, CollisionManager],
         motion: MotionLike,
         name: Optional[Hashable],
-        request: _core.Request,
+        request: Union[_core.Request, _core.DistanceRequest],
     ) -> Dict[str, Any]:
         if name is not None and other is not None:
             raise ValueError("name and other are given. Give one of them")
         if isinstance(other, _core.Geometry) or _arguments.is_mesh(other):
             geometry = geometry_of(other, "other")  # type: ignore[arg-type]
-            return self._manager._collide_geometry(geometry, path_of(motion, "motion"), request)
+            return self._manager._ask_geometry(geometry, path_of(motion, "motion"), request)
         if other is not None and not isinstance(other, CollisionManager):
             wanted = "a mesh, a shape, an OcTree or a CollisionManager"
             raise _arguments.wrong_type("other", other, wanted)
         if motion is not None:
             raise ValueError("motion is for a mesh or a shape that is given as other")
         if other is not None:
-            return self._manager._collide_manager(other._manager, request)
+            return self._manager._ask_manager(other._manager, request)
         if name is not None:
-            return self._manager._collide_one(self._object(name), request)
-        return self._manager._collide_all(request)
+            return self._manager._ask_one(self._object(name), request)
+        return self._manager._ask_all(request)
 
     def _is_registered(self, name: Hashable) -> bool:
         try:

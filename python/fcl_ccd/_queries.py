@@ -332,7 +332,40 @@ def distance(
     Raises ValueError and TypeError as collide(), and ValueError for two planes or
     halfspaces. Other threads of Python run during the query.
     """
-    request = request_of(
+    request = distance_request_of(
+        abs_err,
+        rel_err,
+        t_max,
+        max_distance,
+        toc_err,
+        filter1,
+        filter2,
+        accepts_triangles,
+        num_threads,
+    )
+    return DistanceResult(
+        **_core.distance(
+            geometry_of(o1, "o1"),
+            path_of(motion1, "motion1"),
+            geometry_of(o2, "o2"),
+            path_of(motion2, "motion2"),
+            request,
+        )
+    )
+
+
+def distance_request_of(
+    abs_err: float,
+    rel_err: float,
+    t_max: float,
+    max_distance: float,
+    toc_err: float,
+    filter1: Optional[Filter],
+    filter2: Optional[Filter],
+    accepts_triangles: Optional[Callable[[int, int], bool]],
+    num_threads: int,
+) -> _core.DistanceRequest:
+    contacts = request_of(
         "first",
         toc_err,
         t_max,
@@ -346,17 +379,11 @@ def distance(
         0.0,
         False,
     )
-    return DistanceResult(
-        **_core.distance(
-            geometry_of(o1, "o1"),
-            path_of(motion1, "motion1"),
-            geometry_of(o2, "o2"),
-            path_of(motion2, "motion2"),
-            request,
-            _arguments.real(abs_err, "abs_err"),
-            _arguments.real(rel_err, "rel_err"),
-            _arguments.real(max_distance, "max_distance"),
-        )
+    return _core.DistanceRequest(
+        contacts,
+        _arguments.real(abs_err, "abs_err"),
+        _arguments.real(rel_err, "rel_err"),
+        _arguments.real(max_distance, "max_distance"),
     )
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "arrays.h"
+#include "classes.h"
 #include "fcl/narrowphase/continuous_distance.h"
 #include "meshes.h"
 #include "motions.h"
@@ -8,28 +9,23 @@
 
 namespace fcl_ccd {
 namespace python {
-namespace {
 
-using Distance = fcl::ContinuousDistanceResultd;
-
-/// The fields that a request for contacts has too come from one.
-fcl::ContinuousDistanceRequestd requestOf(const fcl::ContinuousContactRequestd& fields,
-                                          double abs_err, double rel_err,
-                                          double max_distance) {
+fcl::ContinuousDistanceRequestd DistanceRequest::of(
+    const fcl::ContinuousContactRequestd& from) const {
   fcl::ContinuousDistanceRequestd request;
   request.abs_err = abs_err;
   request.rel_err = rel_err;
   request.max_distance = max_distance;
-  request.t_max = fields.t_max;
-  request.toc_err = fields.toc_err;
-  request.filter1 = fields.filter1;
-  request.filter2 = fields.filter2;
-  request.accepts_triangles = fields.accepts_triangles;
-  request.num_threads = fields.num_threads;
+  request.t_max = from.t_max;
+  request.toc_err = from.toc_err;
+  request.filter1 = from.filter1;
+  request.filter2 = from.filter2;
+  request.accepts_triangles = from.accepts_triangles;
+  request.num_threads = from.num_threads;
   return request;
 }
 
-py::dict fieldsOf(const Distance& found) {
+py::dict fieldsOf(const fcl::ContinuousDistanceResultd& found) {
   using py::literals::operator""_a;
   py::array_t<double> points({2, 3});
   for (int k = 0; k < 2; ++k)
@@ -41,19 +37,23 @@ py::dict fieldsOf(const Distance& found) {
                   "is_collide"_a = found.is_collide, "is_cut_off"_a = found.is_cut_off);
 }
 
+namespace {
+
+DistanceRequest makeRequest(const Request& contacts, double abs_err, double rel_err,
+                            double max_distance) {
+  return {contacts, abs_err, rel_err, max_distance};
+}
+
 py::dict distanceOfPair(const Geometry& o1, const Motion& motion1, const Geometry& o2,
-                        const Motion& motion2, const Request& request, double abs_err,
-                        double rel_err, double max_distance) {
+                        const Motion& motion2, const DistanceRequest& request) {
   const Geometry::Reading reading1(o1), reading2(o2);
   const auto moving1 = motion1.of(o1.geometry()), moving2 = motion2.of(o2.geometry());
-  Distance found;
+  fcl::ContinuousDistanceResultd found;
   {
-    TriangleFilter filter(request);
+    TriangleFilter filter(request.contacts);
     const py::gil_scoped_release release;
     filter.run([&] {
-      fcl::detail::answerDistance(
-          moving1, moving2, requestOf(filter.request(), abs_err, rel_err, max_distance),
-          found);
+      fcl::detail::answerDistance(moving1, moving2, request.of(filter.request()), found);
     });
   }
   return fieldsOf(found);
@@ -61,7 +61,12 @@ py::dict distanceOfPair(const Geometry& o1, const Motion& motion1, const Geometr
 
 }  // namespace
 
-void bindDistances(py::module_& module) { module.def("distance", &distanceOfPair); }
+void bindDistances(py::module_& module) {
+  Class<DistanceRequest>(module, "DistanceRequest")
+      .def(py::init(&makeRequest), py::arg("contacts"), py::arg("abs_err"),
+           py::arg("rel_err"), py::arg("max_distance"));
+  module.def("distance", &distanceOfPair);
+}
 
 }  // namespace python
 }  // namespace fcl_ccd

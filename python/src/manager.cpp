@@ -40,6 +40,16 @@ py::dict fieldsOf(FclResult& result) {
                   "num_tested"_a = result.num_tested);
 }
 
+py::dict fieldsOf(const FclDistance& nearest) {
+  using py::literals::operator""_a;
+  const auto nameOf = [](const fcl::ContinuousCollisionObjectd* object) -> py::object {
+    return object ? static_cast<const ManagedObject*>(object)->name() : py::none();
+  };
+  return py::dict("o1"_a = nameOf(nearest.o1), "o2"_a = nameOf(nearest.o2),
+                  "result"_a = fieldsOf(nearest.result),
+                  "num_tested"_a = nearest.num_tested);
+}
+
 void bindManager(py::module_& module) {
   Class<ManagedObject>(module, "ManagedObject", seenByCollector<ManagedObject>());
   Class<Manager>(module, "Manager", seenByCollector<Manager>())
@@ -49,10 +59,14 @@ void bindManager(py::module_& module) {
       .def("_update", &Manager::update)
       .def("_set_filter", &Manager::setFilter)
       .def("_set_self_collision", &Manager::setSelfCollision)
-      .def("_collide_all", &Manager::collideAll)
-      .def("_collide_one", &Manager::collideOne)
-      .def("_collide_geometry", &Manager::collideGeometry)
-      .def("_collide_manager", &Manager::collideManager);
+      .def("_ask_all", &Manager::askAll<Request>)
+      .def("_ask_all", &Manager::askAll<DistanceRequest>)
+      .def("_ask_one", &Manager::askOne<Request>)
+      .def("_ask_one", &Manager::askOne<DistanceRequest>)
+      .def("_ask_geometry", &Manager::askGeometry<Request>)
+      .def("_ask_geometry", &Manager::askGeometry<DistanceRequest>)
+      .def("_ask_manager", &Manager::askManager<Request>)
+      .def("_ask_manager", &Manager::askManager<DistanceRequest>);
 }
 
 }  // namespace python

@@ -25,6 +25,7 @@ namespace python {
 using FclManager = fcl::ContinuousCollisionManagerd;
 using FclRequest = fcl::ContinuousContactRequestd;
 using FclResult = fcl::ContinuousManagerResultd;
+using FclDistance = fcl::ContinuousManagerDistanced;
 
 /// A path, which keeps its functions of Python alive, and FCL's motion on it.
 struct FclMotion {
@@ -90,6 +91,9 @@ class ManagedObject : public fcl::ContinuousCollisionObjectd {
 
 /// The fields of a ManagerResult of Python.
 py::dict fieldsOf(FclResult& result);
+
+/// The fields of a NearestPair of Python.
+py::dict fieldsOf(const FclDistance& nearest);
 
 /// The fields of a Result of Python, without its objects.
 py::dict fieldsOfPair(fcl::ContinuousContactResultd& result);
@@ -168,40 +172,37 @@ class Manager : public Guarded {
     manager_.setSelfCollision(&object, enabled);
   }
 
-  py::dict collideAll(const Request& request) const {
+  /// @tparam AnyRequest  Request, for contacts, or DistanceRequest
+  template <typename AnyRequest>
+  py::dict askAll(const AnyRequest& request) const {
     Reading reading;
     addAll(reading);
-    return answer(request, [&](const FclRequest& asked, FclResult& result) {
-      manager_.collide(asked, result);
-    });
+    return answer(request);
   }
 
   /// @param object  registered
-  py::dict collideOne(ManagedObject& object, const Request& request) const {
+  template <typename AnyRequest>
+  py::dict askOne(ManagedObject& object, const AnyRequest& request) const {
     Reading reading;
     addAll(reading);
-    return answer(request, [&](const FclRequest& asked, FclResult& result) {
-      manager_.collide(&object, asked, result);
-    });
+    return answer(request, &object);
   }
 
-  py::dict collideGeometry(const py::object& geometry, const Motion& motion,
-                           const Request& request) const {
+  template <typename AnyRequest>
+  py::dict askGeometry(const py::object& geometry, const Motion& motion,
+                       const AnyRequest& request) const {
     ManagedObject object(py::none(), geometry, motion);
     Reading reading(object.geometry());
     addAll(reading);
-    return answer(request, [&](const FclRequest& asked, FclResult& result) {
-      manager_.collide(&object, asked, result);
-    });
+    return answer(request, &object);
   }
 
-  py::dict collideManager(const Manager& other, const Request& request) const {
+  template <typename AnyRequest>
+  py::dict askManager(const Manager& other, const AnyRequest& request) const {
     Reading reading;
     addAll(reading);
     other.addAll(reading);
-    return answer(request, [&](const FclRequest& asked, FclResult& result) {
-      manager_.collide(other.manager_, asked, result);
-    });
+    return answer(request, other.manager_);
   }
 
   template <typename Visit>
@@ -241,15 +242,28 @@ class Manager : public Guarded {
     }
   }
 
-  template <typename Ask>
-  static py::dict answer(const Request& request, const Ask& ask) {
+  /// @param other  whom the objects meet: nothing, one object or a manager
+  template <typename... Other>
+  py::dict answer(const Request& request, const Other&... other) const {
     FclResult result;
     {
       TriangleFilter filter(request);
       const py::gil_scoped_release release;
-      filter.run([&] { ask(filter.request(), result); });
+      filter.run([&] { manager_.collide(other..., filter.request(), result); });
     }
     return fieldsOf(result);
+  }
+
+  template <typename... Other>
+  py::dict answer(const DistanceRequest& request, const Other&... other) const {
+    FclDistance nearest;
+    {
+      TriangleFilter filter(request.contacts);
+      const py::gil_scoped_release release;
+      filter.run(
+          [&] { manager_.distance(other..., request.of(filter.request()), nearest); });
+    }
+    return fieldsOf(nearest);
   }
 
   FclManager manager_;

@@ -10,6 +10,7 @@
 
 #include "arrays.h"
 #include "fcl/narrowphase/continuous_contact.h"
+#include "fcl/narrowphase/continuous_distance.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 
 namespace fcl_ccd {
@@ -22,6 +23,17 @@ using Outcome = fcl::detail::QueryOutcome<double>;
 struct Request {
   fcl::ContinuousContactRequestd fields;
   py::object accepts_triangles;
+};
+
+/// A request for the least distance. What it shares with one for contacts is in
+/// `contacts`.
+struct DistanceRequest {
+  Request contacts;
+  double abs_err, rel_err, max_distance;
+
+  /// @param contacts  with the function that accepts triangles
+  fcl::ContinuousDistanceRequestd of(
+      const fcl::ContinuousContactRequestd& contacts) const;
 };
 
 /// The function of Python that accepts pairs of triangles. The threads of a query call it
@@ -78,6 +90,9 @@ class TriangleFilter {
 
 /// The fields of the class Result of Python.
 py::dict fieldsOf(const Outcome& outcome, Contacts&& contacts);
+
+/// The fields of the class DistanceResult of Python.
+py::dict fieldsOf(const fcl::ContinuousDistanceResultd& found);
 
 }  // namespace python
 }  // namespace fcl_ccd

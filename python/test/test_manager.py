@@ -280,3 +280,45 @@ def test_lifetimes():
     del result
     gc.collect()
     assert alive() is None
+
+
+def test_the_least_distance_is_that_of_all_pairs():
+    apart = 0
+    for seed in range(12):
+        objects = scene(seed, 2 + seed)
+        manager = managed(objects)
+        pairs = []
+        for name1, name2 in itertools.combinations(objects, 2):
+            (o1, motion1), (o2, motion2) = objects[name1], objects[name2]
+            pairs.append((name1, name2, fcl_ccd.distance(o1, o2, motion1, motion2)))
+        nearest = manager.distance()
+        least = min(pairs, key=lambda pair: pair[2].distance_hi)[2]
+        assert nearest.result.is_collide == least.is_collide
+        assert nearest.result.distance_lo <= least.distance_hi
+        assert nearest.result.distance_hi >= min(p[2].distance_lo for p in pairs)
+        own = [p[2] for p in pairs if p[:2] == (nearest.o1, nearest.o2)][0]
+        assert own.distance_lo <= nearest.result.distance_hi
+        apart += not least.is_collide
+    assert 2 <= apart < 12
+
+
+def test_distance_of_one_object_and_of_what_is_not_registered():
+    manager = fcl_ccd.CollisionManager()
+    for x in range(3):
+        manager.register(x, fcl_ccd.Sphere(1), pose((4 * x * x, 0, 0)))
+    nearest = manager.distance(rel_err=1e-6)
+    assert {nearest.o1, nearest.o2} == {0, 1} and nearest.num_tested >= 1
+    assert abs(nearest.result.distance_hi - 2) < 1e-5
+    assert manager.distance(name=2).o2 == 1
+    ball = manager.distance(fcl_ccd.Sphere(1), (pose((30, 0, 0)), pose((19, 0, 0))))
+    assert ball.o1 is None and ball.o2 == 2 and ball.result.time == 1
+    assert abs(ball.result.distance_hi - 1) < 1e-2
+    other = fcl_ccd.CollisionManager()
+    other.register("far", fcl_ccd.Sphere(1), pose((-9, 0, 0)))
+    assert manager.distance(other).o2 == "far"
+    cut = manager.distance(max_distance=1)
+    assert cut.result.is_cut_off and cut.result.distance_lo == 1
+    nothing = fcl_ccd.CollisionManager().distance()
+    assert nothing.o1 is None and nothing.result.distance_lo == np.inf
+    with pytest.raises(ValueError, match="max_distance"):
+        manager.distance(max_distance=0)

@@ -416,11 +416,12 @@ double TriangleAdvance::proveContact(double t, double width) const {
     for (int j = 0; j < 3; ++j)
       speed = std::max(speed, norm(state.v[1][j] - state.v[0][i]));
   return provedTimeAfter(t, width, tolerance_.position, speed, [this](double time) {
+    if (tolerance_.distance > 0)
+      return std::sqrt(nearestAt(time).square) + tolerance_.position <=
+             tolerance_.distance;
     Vec later[2][3];
     cornersAt(time, later);
-    if (!(tolerance_.distance > 0)) return provesCrossing(later);
-    const NearestFeatures near = nearestFeatures(later[0], later[1], count_);
-    return std::sqrt(near.square) + tolerance_.position <= tolerance_.distance;
+    return provesCrossing(later);
   });
 }
 

@@ -20,6 +20,8 @@ using deformable::BroadPhase;
 using deformable::DefaultFloatingPoint;
 using deformable::MeetingObjects;
 using deformable::MeetingQuery;
+using deformable::NearestQuery;
+using deformable::NearObjects;
 
 template <typename S>
 class ContinuousBroadPhase<S>::Boxes : public BroadPhase {
@@ -64,6 +66,16 @@ std::vector<BroadPhasePair> toPairs(const std::vector<MeetingObjects>& meeting) 
   for (const MeetingObjects& pair : meeting)
     pairs.push_back({pair.window.lo, pair.window.hi, pair.o1, pair.o2});
   return pairs;
+}
+
+NearestQuery nearestQueryOf(const NearestSettings& settings) {
+  NearestQuery query;
+  query.latest = settings.t_max;
+  query.limit = settings.limit;
+  query.visit = [&settings](const NearObjects& pair) {
+    return settings.visit({pair.distance, pair.o1, pair.o2});
+  };
+  return query;
 }
 
 void requireRegistered(const BroadPhase& boxes, const void* object) {
@@ -201,6 +213,28 @@ std::vector<BroadPhasePair> ContinuousBroadPhase<S>::pairsWith(
     const ContinuousBroadPhase& other, const BroadPhaseSettings& settings) const {
   const DefaultFloatingPoint mode;
   return toPairs(boxes_->pairsWith(*other.boxes_, meetingQueryOf(settings)));
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::visitNearest(const NearestSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  boxes_->visitNearest(nearestQueryOf(settings));
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::visitNearestOf(void* object, Read read,
+                                             const NearestSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  BoundsList bounds;
+  readBounds<S>(&object, 1, read, &prefetchNothing, bounds);
+  boxes_->visitNearestOf(object, bounds.at(0), nearestQueryOf(settings));
+}
+
+template <typename S>
+void ContinuousBroadPhase<S>::visitNearestWith(const ContinuousBroadPhase& other,
+                                               const NearestSettings& settings) const {
+  const DefaultFloatingPoint mode;
+  boxes_->visitNearestWith(*other.boxes_, nearestQueryOf(settings));
 }
 
 template class ContinuousBroadPhase<double>;

@@ -27,23 +27,6 @@ using deformable::BodyApproach;
 using deformable::DefaultFloatingPoint;
 using deformable::PreparedMotion;
 
-/// The query for the first contact that the request of a distance implies.
-template <typename S>
-ContinuousContactRequest<S> contactRequestOf(
-    const ContinuousDistanceRequest<S>& request) {
-  ContinuousContactRequest<S> out;
-  out.query = ContinuousQuery::kFirst;
-  out.num_max_contacts = 1;
-  out.toc_err = request.toc_err;
-  out.t_max = request.t_max;
-  out.ccd_motion_type = request.ccd_motion_type;
-  out.filter1 = request.filter1;
-  out.filter2 = request.filter2;
-  out.accepts_triangles = request.accepts_triangles;
-  out.num_threads = request.num_threads;
-  return out;
-}
-
 void requireError(double error, const char* name) {
   if (!(error >= 0) || !std::isfinite(error))
     throw Exception(std::string(name) + " is negative or not finite. Give 0 or more");
@@ -211,6 +194,11 @@ class DistanceQuery {
 }  // namespace
 
 template <typename S>
+void requireValid(const ContinuousDistanceRequest<S>& request) {
+  optionsOf(request);
+}
+
+template <typename S>
 void answerDistance(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                     const ContinuousDistanceRequest<S>& request,
                     ContinuousDistanceResult<S>& result) {
@@ -227,6 +215,7 @@ void answerDistance(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                     \
+  template void requireValid(const ContinuousDistanceRequest<S>&);                 \
   template void answerDistance(const MovingGeometry<S>&, const MovingGeometry<S>&, \
                                const ContinuousDistanceRequest<S>&,                \
                                ContinuousDistanceResult<S>&);

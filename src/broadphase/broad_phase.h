@@ -2,8 +2,10 @@
 #ifndef FCL_CCD_BROADPHASE_BROAD_PHASE_H
 #define FCL_CCD_BROADPHASE_BROAD_PHASE_H
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <unordered_map>
@@ -67,6 +69,23 @@ struct MetObject {
   std::uint64_t serial;
 };
 
+/// @brief Two objects, and a distance that their boxes keep.
+struct NearObjects {
+  double distance;
+  void* o1;
+  void* o2;
+};
+
+/// @brief Which pairs are visited in the order of the distance of their boxes.
+struct NearestQuery {
+  /// The latest time that counts.
+  double latest{1};
+  /// The largest distance that is of interest.
+  double limit{HUGE_VAL};
+  /// Visits a pair; returns the new limit. Negative or NaN: the search ends.
+  std::function<double(const NearObjects&)> visit;
+};
+
 struct MeetingQuery {
   double distance{0};
   double latest{1};
@@ -122,7 +141,19 @@ class BroadPhase {
   std::vector<MeetingObjects> pairsWith(const BroadPhase& other,
                                         const MeetingQuery& query) const;
 
+  /// @brief Visits pairs in the order of the distance of their boxes, until it is above
+  /// the limit. The order is the same however the objects came here. Of a pair, o1 was
+  /// inserted first.
+  void visitNearest(const NearestQuery& query) const;
+  /// @brief The pairs of one object, which is o1, with all others.
+  void visitNearestOf(void* object, const MovingBounds& bounds,
+                      const NearestQuery& query) const;
+  /// @brief o1 is in this set, o2 in the other one.
+  void visitNearestWith(const BroadPhase& other, const NearestQuery& query) const;
+
  private:
+  class NearestSearch;
+
   using SlotNumber = std::int32_t;
   enum Mobility { kMoving, kResting, kUnbounded, kNumMobilities };
 

@@ -53,6 +53,17 @@ class MovingBoxTree {
   void visitPairs(const MovingBoxTree& other, const LinearQuery& query,
                   Visit&& visit) const;
 
+  /// @brief For other searches: nodes are numbers below numNodes(), some of them unused.
+  /// @return -1 if the tree is empty
+  std::int32_t root() const { return root_; }
+  std::size_t numNodes() const { return nodes_.size(); }
+  bool isLeaf(std::int32_t node) const { return at(node).isLeaf(); }
+  const LinearBox& boxOf(std::int32_t node) const { return at(node).box; }
+  /// @pre it is no leaf
+  std::int32_t childOf(std::int32_t node, int k) const { return at(node).child[k]; }
+  /// @pre it is a leaf
+  std::int32_t objectOf(std::int32_t leaf) const { return at(leaf).child[0]; }
+
  private:
   static constexpr std::int32_t kNone = -1;
 

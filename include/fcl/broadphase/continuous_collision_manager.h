@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
-// Continuous collision of many objects: which of them meet during the step, and when.
+// Continuous collision of many objects: which of them meet during the step, and when, and
+// how near they come.
 #ifndef FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
 #define FCL_BROADPHASE_CONTINUOUS_COLLISION_MANAGER_H
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <unordered_map>
@@ -17,6 +20,7 @@
 #include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/broadphase/swept_collision_object.h"
 #include "fcl/narrowphase/continuous_collision.h"
+#include "fcl/narrowphase/continuous_distance.h"
 
 namespace fcl {
 
@@ -57,6 +61,89 @@ struct ContinuousManagerResult {
 using ContinuousManagerResultf = ContinuousManagerResult<float>;
 using ContinuousManagerResultd = ContinuousManagerResult<double>;
 
+/// @brief The least distance of many objects during the step.
+template <typename S>
+struct ContinuousManagerDistance {
+  /// @brief The two objects that come nearest; null if no distance was computed: no pair
+  /// counts, or all stay further apart than max_distance.
+  ContinuousCollisionObject<S>* o1{nullptr};
+  ContinuousCollisionObject<S>* o2{nullptr};
+
+  /// @brief The distance, of o1 and o2, and the bound for all pairs: no two objects are
+  /// nearer than distance_lo during the step. Both distances are infinite if no pair
+  /// counts; with a finite max_distance that is the same as if all were cut off. If any
+  /// two objects touch, the answer is about the two that touch first.
+  ContinuousDistanceResult<S> result;
+
+  /// @brief The number of pairs whose distance was looked for.
+  std::size_t num_tested{0};
+};
+
+using ContinuousManagerDistancef = ContinuousManagerDistance<float>;
+using ContinuousManagerDistanced = ContinuousManagerDistance<double>;
+
+namespace detail {
+
+/// The answer without a pair.
+template <typename S>
+ContinuousManagerDistance<S> noPair() {
+  ContinuousManagerDistance<S> none;
+  none.result.distance_lo = none.result.distance_hi = std::numeric_limits<S>::infinity();
+  return none;
+}
+
+/// @brief Takes the distance of two objects into the least of all.
+template <typename S>
+void takeDistance(ContinuousCollisionObject<S>* o1, ContinuousCollisionObject<S>* o2,
+                  const ContinuousDistanceResult<S>& tested,
+                  ContinuousManagerDistance<S>& nearest) {
+  ++nearest.num_tested;
+  const S lower = std::min(nearest.result.distance_lo, tested.distance_lo);
+  if (tested.distance_hi < nearest.result.distance_hi) {
+    nearest.o1 = o1;
+    nearest.o2 = o2;
+    nearest.result = tested;
+  }
+  nearest.result.distance_lo = lower;
+}
+
+/// Whether both are planes or halfspaces.
+template <typename S>
+bool areFlats(const ContinuousCollisionObject<S>& o1,
+              const ContinuousCollisionObject<S>& o2) {
+  const auto isFlat = [](NODE_TYPE type) {
+    return type == GEOM_PLANE || type == GEOM_HALFSPACE;
+  };
+  return isFlat(o1.getNodeType()) && isFlat(o2.getNodeType());
+}
+
+}  // namespace detail
+
+/// @brief For DefaultContinuousDistanceFunction(), in the way of FCL's
+/// DefaultDistanceData.
+template <typename S>
+struct DefaultContinuousDistanceData {
+  ContinuousDistanceRequest<S> request;
+
+  /// @brief The nearest pair so far. Before the first one its distances are infinite.
+  ContinuousManagerDistance<S> nearest{detail::noPair<S>()};
+
+  /// @brief Whether no other pair can be nearer: two objects touch.
+  bool done{false};
+};
+
+/// @brief A callback for ContinuousCollisionManager::distance(), in the way of FCL's
+/// DefaultDistanceFunction: it keeps the nearest pair. If objects touch it stops at two
+/// that do; which touch first, it does not say.
+/// @param o1, o2  objects of the manager: their getUserData() are the ones that move
+/// @param cdata  a DefaultContinuousDistanceData<S>
+/// @param dist  is lowered to the least distance so far
+/// @return whether the search may end
+/// @throws fcl::Exception  as continuousDistance()
+template <typename S>
+bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
+                                       void* cdata, S& dist);
+
 /// @brief Finds the contacts of many objects that move. FCL declares the interface
 /// BroadPhaseContinuousCollisionManager and has no class that implements it; this class
 /// does.
@@ -83,15 +170,16 @@ using ContinuousManagerResultd = ContinuousManagerResult<double>;
 /// large part of them at once, O(n log n), to build a new tree.
 ///
 /// Thread-safety: const functions may run at the same time, except those that call back
-/// with FCL's CollisionCallBack. The broad phase itself runs in the caller's thread;
-/// ContinuousContactRequest::num_threads is for the queries of pairs. Answers do not
-/// depend on it.
+/// with FCL's CollisionCallBack or DistanceCallBack. The broad phase itself runs in the
+/// caller's thread; ContinuousContactRequest::num_threads is for the queries of pairs.
+/// Answers do not depend on it.
 ///
 /// The manager does not own the objects. They must live until they are unregistered.
 ///
 /// A ContinuousCollisionCallBack may change the manager. The pairs of its query were
 /// found before, and all of them come: objects that it unregisters must live until the
-/// query returns. FCL's CollisionCallBack must not unregister objects.
+/// query returns. FCL's CollisionCallBack must not unregister objects, and its
+/// DistanceCallBack must not change the manager.
 ///
 /// @throws fcl::Exception  An object is null, or has no geometry or motion; it is
 /// registered twice, or is not registered; a mesh is not built; a geometry or a path is
@@ -183,12 +271,37 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   void collide(BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
                CollisionCallBack<S> callback) const override;
 
-  /// @brief Not available: FCL has no continuous distance query that a callback could
-  /// call. @throws fcl::Exception  always
+  /// @brief The least distance of all objects from each other, and when: of all pairs
+  /// that the filters do not reject. As in continuousDistance() it is proved from both
+  /// sides, and is 0 if any two objects touch, with the two that touch first.
+  ///
+  /// Only pairs whose boxes come near enough are looked at. All fields of the request act
+  /// as in continuousDistance(), but filter1 and filter2 are those of setFilter(). With
+  /// setSelfCollision() nothing changes: a mesh has no distance from itself. Two planes
+  /// or halfspaces that do not touch are left out.
+  /// @throws fcl::Exception  what continuousDistance() throws, with the numbers of the
+  /// objects in getObjects()
+  void distance(const ContinuousDistanceRequest<S>& request,
+                ContinuousManagerDistance<S>& result) const;
+  /// @brief The same for one object, which is o1, and all others. It need not be
+  /// registered. It is read now.
+  void distance(Object* object, const ContinuousDistanceRequest<S>& request,
+                ContinuousManagerDistance<S>& result) const;
+  /// @brief The same for the objects of this manager, which are o1, and of another one.
+  void distance(const ContinuousCollisionManager& other,
+                const ContinuousDistanceRequest<S>& request,
+                ContinuousManagerDistance<S>& result) const;
+
+  /// @brief FCL's interface: calls back for pairs of objects, those whose boxes come
+  /// nearest first, while their boxes may be nearer than `dist`, which the callback
+  /// lowers. It gets a SweptCollisionObject for each object, as in collide(). Pairs of
+  /// two planes or halfspaces do not come. The callback must not change the manager. See
+  /// DefaultContinuousDistanceFunction().
   void distance(void* cdata, DistanceCallBack<S> callback) const override;
   /// @overload
   void distance(Object* object, void* cdata, DistanceCallBack<S> callback) const override;
   /// @overload
+  /// @throws fcl::Exception  the other manager is no ContinuousCollisionManager
   void distance(BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
                 DistanceCallBack<S> callback) const override;
 
@@ -206,7 +319,14 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   static std::vector<void*> addressesOf(const std::vector<Object*>& objects);
   static detail::BroadPhaseSettings settingsOf(const Request& request);
   static detail::BroadPhaseSettings allBoxPairs() { return {0, 1, false}; }
-  [[noreturn]] static void refuseDistance();
+
+  /// Two sets of objects, of which each one of the first meets each one of the second.
+  struct Sides {
+    /// Null: the objects of the first set meet each other.
+    const ContinuousCollisionManager* other;
+    /// The first set, if it is one object. Null: it is all of this manager.
+    Object* object;
+  };
 
   const ContinuousFilter& filterOf(const Object* object) const;
   static bool hasTriangles(const ContinuousFilter& filter) {
@@ -222,7 +342,18 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   CollisionObject<S>* sweptObject(Object* object) const;
   /// The other manager as one of this class; null if it is none.
   const ContinuousCollisionManager* managerOf(
-      const BroadPhaseContinuousCollisionManager<S>& other) const;
+      const BroadPhaseContinuousCollisionManager<S>* other) const;
+  const ContinuousCollisionManager& requireManager(
+      const BroadPhaseContinuousCollisionManager<S>* other, const char* query) const;
+  /// The box pairs, without those of two planes or halfspaces.
+  Pairs pairsOf(const Sides& sides, const detail::BroadPhaseSettings& settings) const;
+  /// The pairs in the order of the distance of their boxes, without the same.
+  /// @param visit  S visit(o1, o2) returns the distance beyond which pairs do not count
+  template <typename Visit>
+  void visitNearest(const Sides& sides, S t_max, S limit, const Visit& visit) const;
+  void answerDistance(const Sides& sides, const ContinuousDistanceRequest<S>& request,
+                      ContinuousManagerDistance<S>& result) const;
+  void callBack(const Sides& sides, void* cdata, DistanceCallBack<S> callback) const;
   void callBack(const Pairs& pairs, const ContinuousCollisionManager& other, void* cdata,
                 CollisionCallBack<S> callback) const;
 
@@ -485,51 +616,186 @@ void ContinuousCollisionManager<S>::collide(
     BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
     CollisionCallBack<S> callback) const {
   if (other == this) return collide(cdata, callback);
-  const ContinuousCollisionManager* manager = other ? managerOf(*other) : nullptr;
-  if (!manager)
-    throw Exception(
-        "collide: the other manager is not a ContinuousCollisionManager, so its objects "
-        "have no boxes that move. Register its objects in one");
-  callBack(boxes_.pairsWith(manager->boxes_, allBoxPairs()), *manager, cdata, callback);
+  const ContinuousCollisionManager& manager = requireManager(other, "collide");
+  callBack(boxes_.pairsWith(manager.boxes_, allBoxPairs()), manager, cdata, callback);
 }
 
 template <typename S>
 const ContinuousCollisionManager<S>* ContinuousCollisionManager<S>::managerOf(
-    const BroadPhaseContinuousCollisionManager<S>& other) const {
+    const BroadPhaseContinuousCollisionManager<S>* other) const {
   using Base = BroadPhaseContinuousCollisionManager<S>;
   static const ContinuousCollisionManager plain;
-  if (detail::haveSameClass<Base>(*this, other) ||
-      detail::haveSameClass<Base>(plain, other))
-    return static_cast<const ContinuousCollisionManager*>(&other);
+  if (!other) return nullptr;
+  if (detail::haveSameClass<Base>(*this, *other) ||
+      detail::haveSameClass<Base>(plain, *other))
+    return static_cast<const ContinuousCollisionManager*>(other);
 #if defined(__GXX_RTTI) || defined(__cpp_rtti)
-  if (detail::typeInfoOf(&other))
-    return dynamic_cast<const ContinuousCollisionManager*>(&other);
+  if (detail::typeInfoOf(other))
+    return dynamic_cast<const ContinuousCollisionManager*>(other);
 #endif
   return nullptr;
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::refuseDistance() {
-  throw Exception(
-      "ContinuousCollisionManager has no distance query: FCL has none for objects that "
-      "move. For contact at a distance set ContinuousContactRequest::min_distance; for "
-      "distances at one pose use one of FCL's managers of CollisionObjects");
+const ContinuousCollisionManager<S>& ContinuousCollisionManager<S>::requireManager(
+    const BroadPhaseContinuousCollisionManager<S>* other, const char* query) const {
+  if (const ContinuousCollisionManager* manager = managerOf(other)) return *manager;
+  throw Exception(std::string(query) +
+                  ": the other manager is not a ContinuousCollisionManager, so its "
+                  "objects have no boxes that move. Register its objects in one");
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::distance(void*, DistanceCallBack<S>) const {
-  refuseDistance();
+typename ContinuousCollisionManager<S>::Pairs ContinuousCollisionManager<S>::pairsOf(
+    const Sides& sides, const detail::BroadPhaseSettings& settings) const {
+  Pairs pairs = sides.object
+                    ? boxes_.pairsOf(sides.object, &detail::readObject<S>, settings)
+                : sides.other ? boxes_.pairsWith(sides.other->boxes_, settings)
+                              : boxes_.pairs(settings);
+  const auto areFlats = [](const detail::BroadPhasePair& pair) {
+    return detail::areFlats(*objectOf(pair.o1), *objectOf(pair.o2));
+  };
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(), areFlats), pairs.end());
+  return pairs;
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::distance(Object*, void*, DistanceCallBack<S>) const {
-  refuseDistance();
+template <typename Visit>
+void ContinuousCollisionManager<S>::visitNearest(const Sides& sides, S t_max, S limit,
+                                                 const Visit& visit) const {
+  const detail::NearestSettings settings{
+      static_cast<double>(t_max), static_cast<double>(limit),
+      [&visit, &limit](const detail::NearPair& pair) {
+        Object *const o1 = objectOf(pair.o1), *const o2 = objectOf(pair.o2);
+        if (!detail::areFlats(*o1, *o2)) limit = visit(o1, o2);
+        return static_cast<double>(limit);
+      }};
+  if (sides.object)
+    boxes_.visitNearestOf(sides.object, &detail::readObject<S>, settings);
+  else if (sides.other)
+    boxes_.visitNearestWith(sides.other->boxes_, settings);
+  else
+    boxes_.visitNearest(settings);
 }
 
 template <typename S>
-void ContinuousCollisionManager<S>::distance(BroadPhaseContinuousCollisionManager<S>*,
-                                             void*, DistanceCallBack<S>) const {
-  refuseDistance();
+void ContinuousCollisionManager<S>::answerDistance(
+    const Sides& sides, const ContinuousDistanceRequest<S>& request,
+    ContinuousManagerDistance<S>& out) const {
+  detail::requireValid(request);
+  const ContinuousCollisionManager& other = sides.other ? *sides.other : *this;
+  ContinuousManagerDistance<S> nearest = detail::noPair<S>();
+  ContinuousDistanceRequest<S> asked = request;
+  const auto test = [&](Object* o1, Object* o2) {
+    asked.filter1 = filterOf(o1);
+    asked.filter2 = other.filterOf(o2);
+    ContinuousDistanceResult<S> tested;
+    try {
+      continuousDistance(o1->collisionGeometry().get(), o1->getMotion(),
+                         o2->collisionGeometry().get(), o2->getMotion(), asked, tested);
+    } catch (const Exception& error) {
+      throw Exception("o1 is " + nameOf(o1) + ", o2 is " + other.nameOf(o2) + ": " +
+                      error.what());
+    }
+    detail::takeDistance(o1, o2, tested, nearest);
+  };
+
+  const Request contact = detail::contactRequestOf(request);
+  Result first;
+  answer(pairsOf(sides, settingsOf(contact)), other, contact, first);
+  if (first.is_collide) {
+    test(first.pairs.front().o1, first.pairs.front().o2);
+    out = nearest;
+    return;
+  }
+  visitNearest(sides, request.t_max, request.max_distance, [&](Object* o1, Object* o2) {
+    test(o1, o2);
+    asked.max_distance = std::min(request.max_distance, nearest.result.distance_hi);
+    return asked.max_distance > 0 ? asked.max_distance : S(-1);
+  });
+  // Pairs that were not looked at are further apart than the nearest one, or than is of
+  // interest.
+  ContinuousDistanceResult<S>& result = nearest.result;
+  result.distance_lo =
+      std::min({result.distance_lo, result.distance_hi, request.max_distance});
+  result.is_cut_off =
+      std::isfinite(request.max_distance) && result.distance_lo == request.max_distance;
+  out = nearest;
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(const ContinuousDistanceRequest<S>& request,
+                                             ContinuousManagerDistance<S>& result) const {
+  answerDistance({nullptr, nullptr}, request, result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(Object* object,
+                                             const ContinuousDistanceRequest<S>& request,
+                                             ContinuousManagerDistance<S>& result) const {
+  detail::requireUsable(object);
+  answerDistance({nullptr, object}, request, result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(const ContinuousCollisionManager& other,
+                                             const ContinuousDistanceRequest<S>& request,
+                                             ContinuousManagerDistance<S>& result) const {
+  answerDistance({&other == this ? nullptr : &other, nullptr}, request, result);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::callBack(const Sides& sides, void* cdata,
+                                             DistanceCallBack<S> callback) const {
+  const ContinuousCollisionManager& other = sides.other ? *sides.other : *this;
+  S dist = std::numeric_limits<S>::max();
+  visitNearest(sides, S(1), dist, [&](Object* o1, Object* o2) {
+    const bool ends = callback(sweptObject(o1), other.sweptObject(o2), cdata, dist);
+    return ends ? S(-1) : dist;
+  });
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(void* cdata,
+                                             DistanceCallBack<S> callback) const {
+  callBack(Sides{nullptr, nullptr}, cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(Object* object, void* cdata,
+                                             DistanceCallBack<S> callback) const {
+  detail::requireUsable(object);
+  callBack(Sides{nullptr, object}, cdata, callback);
+}
+
+template <typename S>
+void ContinuousCollisionManager<S>::distance(
+    BroadPhaseContinuousCollisionManager<S>* other, void* cdata,
+    DistanceCallBack<S> callback) const {
+  if (other == this) return distance(cdata, callback);
+  callBack(Sides{&requireManager(other, "distance"), nullptr}, cdata, callback);
+}
+
+template <typename S>
+bool DefaultContinuousDistanceFunction(CollisionObject<S>* o1, CollisionObject<S>* o2,
+                                       void* cdata, S& dist) {
+  auto& data = *static_cast<DefaultContinuousDistanceData<S>*>(cdata);
+  if (data.done) return true;
+  ContinuousDistanceRequest<S> request = data.request;
+  request.max_distance = std::min(request.max_distance, dist);
+  auto *moving1 = static_cast<ContinuousCollisionObject<S>*>(o1->getUserData()),
+       *moving2 = static_cast<ContinuousCollisionObject<S>*>(o2->getUserData());
+  ContinuousDistanceResult<S> tested;
+  continuousDistance(moving1->collisionGeometry().get(), moving1->getMotion(),
+                     moving2->collisionGeometry().get(), moving2->getMotion(), request,
+                     tested);
+  detail::takeDistance(moving1, moving2, tested, data.nearest);
+  // Others stay further apart than is asked for.
+  S& lower = data.nearest.result.distance_lo;
+  lower = std::min(lower, data.request.max_distance);
+  dist = std::min(request.max_distance, tested.distance_hi);
+  data.done = tested.is_collide;
+  return data.done;
 }
 
 }  // namespace fcl

@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -34,6 +35,23 @@ struct BroadPhaseSettings {
   /// Pairs that meet no later than this time.
   double t_max;
   bool with_self;
+};
+
+/// @brief Two objects, and a distance that their boxes keep.
+struct NearPair {
+  double distance;
+  void* o1;
+  void* o2;
+};
+
+/// @brief Which pairs are visited in the order of the distance of their boxes.
+struct NearestSettings {
+  /// The latest time that counts.
+  double t_max;
+  /// The largest distance that is of interest.
+  double limit;
+  /// Visits a pair; returns the new limit. Negative or NaN: the search ends.
+  std::function<double(const NearPair&)> visit;
 };
 
 /// @brief The box of an object during the whole step.
@@ -78,6 +96,13 @@ class FCL_EXPORT ContinuousBroadPhase {
                                       const BroadPhaseSettings& settings) const;
   std::vector<BroadPhasePair> pairsWith(const ContinuousBroadPhase& other,
                                         const BroadPhaseSettings& settings) const;
+
+  /// Visits pairs in the order of the distance of their boxes, until it is above the
+  /// limit.
+  void visitNearest(const NearestSettings& settings) const;
+  void visitNearestOf(void* object, Read read, const NearestSettings& settings) const;
+  void visitNearestWith(const ContinuousBroadPhase& other,
+                        const NearestSettings& settings) const;
 
   /// For the library.
   const deformable::BroadPhase& boxes() const;

@@ -89,6 +89,27 @@ using ContinuousDistanceResultd = ContinuousDistanceResult<double>;
 
 namespace detail {
 
+/// @brief The request for the first contact that the request of a distance implies.
+template <typename S>
+ContinuousContactRequest<S> contactRequestOf(
+    const ContinuousDistanceRequest<S>& request) {
+  ContinuousContactRequest<S> out;
+  out.query = ContinuousQuery::kFirst;
+  out.num_max_contacts = 1;
+  out.toc_err = request.toc_err;
+  out.t_max = request.t_max;
+  out.ccd_motion_type = request.ccd_motion_type;
+  out.filter1 = request.filter1;
+  out.filter2 = request.filter2;
+  out.accepts_triangles = request.accepts_triangles;
+  out.num_threads = request.num_threads;
+  return out;
+}
+
+/// @throws fcl::Exception  a field has no valid value
+template <typename S>
+FCL_EXPORT void requireValid(const ContinuousDistanceRequest<S>& request);
+
 template <typename S>
 FCL_EXPORT void answerDistance(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                                const ContinuousDistanceRequest<S>& request,
