@@ -136,7 +136,7 @@ struct DefaultContinuousDistanceData {
 /// DefaultDistanceFunction: it keeps the nearest pair. If objects touch it stops at two
 /// that do; which touch first, it does not say.
 /// @param o1, o2  objects of the manager: their getUserData() are the ones that move
-/// @param cdata  a DefaultContinuousDistanceData<S>
+/// @param cdata  a DefaultContinuousDistanceData of the same number type
 /// @param dist  is lowered to the least distance so far
 /// @return whether the search may end
 /// @throws fcl::Exception  as continuousDistance()
