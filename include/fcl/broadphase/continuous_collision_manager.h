@@ -107,14 +107,16 @@ void takeDistance(ContinuousCollisionObject<S>* o1, ContinuousCollisionObject<S>
   nearest.result.distance_lo = lower;
 }
 
-/// Whether both are planes or halfspaces.
+/// Whether both are planes or halfspaces. The node type of a mesh may not be asked for:
+/// it is that of FCL's tree, which may be missing.
 template <typename S>
 bool areFlats(const ContinuousCollisionObject<S>& o1,
               const ContinuousCollisionObject<S>& o2) {
-  const auto isFlat = [](NODE_TYPE type) {
-    return type == GEOM_PLANE || type == GEOM_HALFSPACE;
+  const auto isFlat = [](const ContinuousCollisionObject<S>& o) {
+    return o.getObjectType() == OT_GEOM &&
+           (o.getNodeType() == GEOM_PLANE || o.getNodeType() == GEOM_HALFSPACE);
   };
-  return isFlat(o1.getNodeType()) && isFlat(o2.getNodeType());
+  return isFlat(o1) && isFlat(o2);
 }
 
 }  // namespace detail
