@@ -47,18 +47,19 @@ class BroadPhase::NearestSearch {
       for (const Mobility mobility : {kMoving, kResting})
         tree_[set][mobility] =
             set == 1 && &first == &second ? tree_[0][mobility] : makeTree(set, mobility);
+    for (int set = 0; set < 2; ++set)
+      for (const SlotNumber i : set_[set]->members_[kUnbounded])
+        unbounded_[set].push_back(partOf(set_[set]->at(i)));
   }
 
   /// The pairs of the first set.
   void addOwnPairs() {
     for (const Tree* tree : tree_[0]) addWithin(*tree, tree->of->root());
     addPair(rootOf(tree_[0][kMoving]), rootOf(tree_[0][kResting]));
-    const std::vector<SlotNumber>& unbounded = set_[0]->members_[kUnbounded];
-    for (std::size_t i = 0; i < unbounded.size(); ++i) {
-      const Part part = partOf(set_[0]->at(unbounded[i]));
+    for (std::size_t i = 0; i < unbounded_[0].size(); ++i) {
+      const Part& part = unbounded_[0][i];
       for (const Tree* tree : tree_[0]) addPair(part, rootOf(tree));
-      for (std::size_t k = 0; k < i; ++k)
-        addPair(part, partOf(set_[0]->at(unbounded[k])));
+      for (std::size_t k = 0; k < i; ++k) addPair(part, unbounded_[0][k]);
     }
   }
 
@@ -71,8 +72,7 @@ class BroadPhase::NearestSearch {
   /// The pairs across.
   void addPairsAcross() {
     for (const Tree* tree : tree_[0]) addWithSecond(rootOf(tree));
-    for (const SlotNumber i : set_[0]->members_[kUnbounded])
-      addWithSecond(partOf(set_[0]->at(i)));
+    for (const Part& part : unbounded_[0]) addWithSecond(part);
   }
 
   void run(const NearestQuery& query) {
@@ -185,8 +185,7 @@ class BroadPhase::NearestSearch {
 
   void addWithSecond(const Part& part) {
     for (const Tree* tree : tree_[1]) addPair(part, rootOf(tree));
-    for (const SlotNumber i : set_[1]->members_[kUnbounded])
-      addPair(part, partOf(set_[1]->at(i)));
+    for (const Part& other : unbounded_[1]) addPair(part, other);
   }
 
   void addPair(const Part& a, const Part& b) {
@@ -242,6 +241,7 @@ class BroadPhase::NearestSearch {
   std::deque<Tree> trees_;
   /// Of each set, by mobility.
   const Tree* tree_[2][2];
+  std::vector<Part> unbounded_[2];
   std::deque<Object> single_;
   std::priority_queue<Work> queue_;
 };

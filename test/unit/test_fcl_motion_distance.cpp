@@ -21,7 +21,6 @@
 #include "fcl/narrowphase/continuous_collision.h"
 #include "feature_distance.h"
 #include "moving_mesh.h"
-#include "random_direction.h"
 #include "reference_motion.h"
 #include "sanitizer.h"
 #include "test_models.h"
@@ -448,37 +447,6 @@ TEST(FCL_MOTION_DISTANCE, slidesInAPlane) {
       EXPECT_EQ(result.time_of_contact, 0);
     }
   }
-}
-
-// A thin face turns about its long edge. Its normal rounds by so much that the foot of a
-// point is beside the face, and nearer than the face is.
-TEST(FCL_MOTION_DISTANCE, thinFaces) {
-  constexpr double kNearer = 1e-8;
-  Random random(9);
-  for (const double width : {1e-12, 1e-13, 1e-14})
-    for (int round = 0; round < rounds(200); ++round) {
-      const V along = randomDirection(random),
-              across = along.cross(randomDirection(random)).normalized(),
-              from = random.point(1), out = along.cross(across),
-              third = from + random.uniform(0.1, 0.9) * along + width * across,
-              p = from + random.uniform(0.2, 0.8) * along + random.uniform(0.1, 1) * out;
-      const auto face = makeModel<Rigid>(
-                     TestMesh{{from, from + along, third}, {Triangle(0, 1, 2)}}),
-                 other = makeModel<Rigid>(
-                     TestMesh{{p, p + 0.1 * out, p + 0.1 * out + 0.1 * across},
-                              {Triangle(0, 1, 2)}});
-      Transform3<double> still = Transform3<double>::Identity(), end = still;
-      end.linear() =
-          Eigen::AngleAxisd(random.uniform(-0.5, 0.5), along).toRotationMatrix();
-      end.translation() = from - end.linear() * from;
-      const ScrewMotion<double> turn(still, end), rest(still, still);
-      Request request;
-      request.min_distance = (p - from).cross(along).norm() - 2 * width - kNearer;
-      Result result;
-      continuousCollide(face.get(), &turn, other.get(), &rest, request, result);
-      for (const Contact& contact : result.contacts)
-        ASSERT_TRUE(contact.within_tolerance) << width << ", " << round;
-    }
 }
 
 // Candidates within the distance hold all contacts of two features.

@@ -279,8 +279,8 @@ class ContinuousCollisionManager : public BroadPhaseContinuousCollisionManager<S
   ///
   /// Only pairs whose boxes come near enough are looked at. All fields of the request act
   /// as in continuousDistance(), but filter1 and filter2 are those of setFilter(). With
-  /// setSelfCollision() nothing changes: a mesh has no distance from itself. Two planes
-  /// or halfspaces that do not touch are left out.
+  /// setSelfCollision() nothing changes: a mesh has no distance from itself. Pairs of two
+  /// planes or halfspaces are left out, also if they touch.
   /// @throws fcl::Exception  what continuousDistance() throws, with the numbers of the
   /// objects in getObjects()
   void distance(const ContinuousDistanceRequest<S>& request,
