@@ -149,7 +149,8 @@ if $all; then
   step "reference"
   watched doxygen doc/Doxyfile
   watched bash cmake/check_reference.sh
-  build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON
+  build release -DFCL_CCD_WERROR=ON -DFCL_CCD_BUILD_REPRODUCTION=ON -DFCL_CCD_BUILD_PYTHON=ON \
+    -DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld
   watched cmake --build --preset release --target programs
 else
   build release -DFCL_CCD_BUILD_PYTHON=ON

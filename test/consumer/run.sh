@@ -29,7 +29,7 @@ all_doors=(
   cmake_target cmake_variables pkg_config plain_flags lfcl dlopen find_library system_prefix
   both_folders
   python_package python_extension uninstall deb
-  spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti
+  spaces standards cxx14_message two_consumers examples lto eigen_names no_rtti no_rtti_float
   flags_cxx11 flags_cxx11_avx flags_baseline flags_v3 flags_native flags_native_O0
   add_subdirectory add_subdirectory_native add_subdirectory_static add_subdirectory_plain
 )
@@ -402,15 +402,19 @@ door_eigen_names() {
     "${around[@]}" "$source_dir/main.cpp"
 }
 
-door_no_rtti() { # a program without RTTI
-  local standard
-  for standard in 11 17; do
-    # In C++11 without FCL's templates in float, which take most of the time.
-    "$CXX" -std=c++$standard -fno-rtti $([ $standard = 17 ] || echo -DONLY_DOUBLE) -I"$prefix/include" "${around[@]}" \
-      "$source_dir/no_rtti.cpp" -o "$work/no_rtti_$standard" -L"$prefix/$lib" -lfcl -lccd
-    run_with "$prefix" "$work/no_rtti_$standard"
-  done
+# no_rtti STANDARD [FLAG ...]: a program without RTTI.
+no_rtti() {
+  local standard=$1
+  "$CXX" -std=c++"$standard" -fno-rtti "${@:2}" -I"$prefix/include" "${around[@]}" \
+    "$source_dir/no_rtti.cpp" -o "$work/no_rtti_$standard" -L"$prefix/$lib" -lfcl -lccd
+  run_with "$prefix" "$work/no_rtti_$standard"
 }
+
+door_no_rtti() {
+  no_rtti 11 -DONLY_DOUBLE
+  no_rtti 17 -DONLY_DOUBLE
+}
+door_no_rtti_float() { no_rtti 17; } # FCL's templates in float take a compiler a minute
 
 door_lto() {
   "$CXX" -std=c++17 -O2 -flto -I"$prefix/include" "${around[@]}" \
@@ -485,8 +489,8 @@ static_subproject() {
 }
 
 door_add_subdirectory_static() { static_subproject static; }
-door_add_subdirectory_plain() { # without Highway and oneTBB
-  static_subproject plain -DFCL_CCD_USE_HIGHWAY=OFF -DFCL_CCD_USE_TBB=OFF
+door_add_subdirectory_plain() { # without Highway and oneTBB, in a project that joins its files
+  static_subproject plain -DFCL_CCD_USE_HIGHWAY=OFF -DFCL_CCD_USE_TBB=OFF -DCMAKE_UNITY_BUILD=ON
 }
 
 for door in "${doors[@]}"; do
