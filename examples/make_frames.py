@@ -7,8 +7,8 @@ A wrinkled cloth of 3,200 triangles falls on a ball in one step. Then:
     fcl-ccd run FOLDER/cloth_0.obj FOLDER/cloth_1.obj --against FOLDER/ball.obj --report report
 """
 
+import argparse
 import math
-import sys
 from pathlib import Path
 
 N = 41  # vertices along a side of the cloth
@@ -62,9 +62,11 @@ def write(path, vertices, triangles):
 
 
 def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    folder = Path(sys.argv[1])
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help="made if it is missing")
+    folder = parser.parse_args().folder
     folder.mkdir(parents=True, exist_ok=True)
     places = [(2 * i / (N - 1) - 1, 2 * j / (N - 1) - 1) for i in range(N) for j in range(N)]
     for frame in (0, 1):

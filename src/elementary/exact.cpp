@@ -40,10 +40,8 @@ bool isDecidedAtStart(const ExactQuery& query, double t_max, ElementaryResult& r
 
 }  // namespace
 
-ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
-                               double t_max) {
-  const ExactPair& pair = query.pair();
-  const int clock_exponent = query.digits().clock_exponent;
+ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double toc_err,
+                               double t_stop, double t_max) {
   std::vector<Root> times = pair.candidates();
   std::sort(times.begin(), times.end(),
             [](const Root& a, const Root& b) { return a.lowerBound() < b.lowerBound(); });
@@ -76,7 +74,16 @@ ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& 
     result = solveMagnified(query, toc_err, t_stop, t_max);
     if (result.answer != Answer::kUnsure) return result;
   }
-  return decideByRoots(query, toc_err, t_stop, t_max);
+  return decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, t_stop,
+                       t_max);
+}
+
+ElementaryResult decideExactly(const ExactPair& pair, double toc_err) {
+  assert(toc_err > 0);
+  Root start(0, 0);
+  if (start.signOf(pair.volume()) == 0 && pair.touchAt(start))
+    return {Answer::kYes, 0, 0, DecidedBy::kExact};
+  return decideByRoots(pair, 0, toc_err, 1, 1);
 }
 
 }  // namespace deformable

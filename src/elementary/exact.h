@@ -18,13 +18,17 @@ namespace deformable {
 ElementaryResult decideExactly(ContinuousContactKind kind, const FeaturePoints& x,
                                double toc_err, double t_stop = 1, double t_max = 1);
 
-class ExactQuery;
+class ExactPair;
 
 /// @brief The stage of decideExactly() that decides by roots of polynomials with integer
 /// coefficients, where solveMagnified() cannot.
+/// @param clock_exponent  of the integers, see FrameDigits
 /// @pre the features do not touch at t = 0, and t_max > 0
-ElementaryResult decideByRoots(ExactQuery& query, double toc_err, double t_stop,
-                               double t_max);
+ElementaryResult decideByRoots(const ExactPair& pair, int clock_exponent, double toc_err,
+                               double t_stop, double t_max);
+
+/// @brief The same answer for a pair whose coordinates are not doubles.
+ElementaryResult decideExactly(const ExactPair& pair, double toc_err);
 
 }  // namespace deformable
 }  // namespace detail

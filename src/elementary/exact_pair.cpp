@@ -45,16 +45,23 @@ std::array<MovingPoint, 4> integerPaths(const FeaturePoints& x,
 
 ExactPair::ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
                      const FrameDigits& digits)
+    : ExactPair(kind, integerPaths(x, digits), axisOfCommonPlane(x)) {}
+
+ExactPair::ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4>& paths)
+    : ExactPair(kind, paths, -1) {}
+
+ExactPair::ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4>& paths,
+                     int common_axis)
     : table_(pairTable(kind)),
       is_edge_edge_(kind == ContinuousContactKind::kEdgeEdge),
-      p_(integerPaths(x, digits)) {
+      p_(paths) {
   for (std::size_t i = 0; i < differences_.size(); ++i) {
     const auto [to, from] = table_.difference[i];
     differences_[i] = p_[to] - p_[from];
   }
   const auto& [u, v, w, r, q] = differences_;
-  if (const int axis = axisOfCommonPlane(x); axis >= 0) {
-    const auto k = static_cast<std::size_t>(axis);
+  if (common_axis >= 0) {
+    const auto k = static_cast<std::size_t>(common_axis);
     n_[k] = crossComponent(v, w, k);
     return;
   }

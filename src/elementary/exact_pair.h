@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // The definition of a contact, evaluated with integers. Coordinates are doubles, and so
-// they are integers times a common power of two. All conditions are polynomials in t with
-// integer coefficients, and times of contact are roots of these.
+// they are integers times a common power of two; or rational numbers, and so integers
+// divided by a common denominator. All conditions are polynomials in t with integer
+// coefficients, and times of contact are roots of these.
 #ifndef FCL_CCD_ELEMENTARY_EXACT_PAIR_H
 #define FCL_CCD_ELEMENTARY_EXACT_PAIR_H
 
@@ -30,6 +31,8 @@ class ExactPair {
 
   ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
             const FrameDigits& digits);
+  /// @param paths  of the four points, with coordinates of degree 1
+  ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4>& paths);
 
   /// @brief The volume u . (v x w) of the four points.
   const Polynomial& volume() const { return volume_; }
@@ -38,10 +41,15 @@ class ExactPair {
   /// them.
   std::vector<Root> candidates() const;
 
-  /// @brief Whether the features touch at one of the candidates().
+  /// @brief Whether the features touch at a time at which volume() is 0, as it is at the
+  /// candidates().
   bool touchAt(Root& t) const;
 
  private:
+  /// @param common_axis  axisOfCommonPlane(), which saves what is 0; or -1
+  ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4>& paths,
+            int common_axis);
+
   struct PointAndSegment {
     const MovingPoint &p, &q, &r;
   };

@@ -76,7 +76,7 @@ TEST_F(CcdCompare, CountsQueriesThatDifferFromTheirRows) {
   EXPECT_EQ(figures.at("false_negatives"), 1);
   EXPECT_EQ(figures.at("false_positives"), 2);
   EXPECT_EQ(figures.at("uncertain"), 0);
-  EXPECT_EQ(figures.at("rounded_queries"), 0);
+  EXPECT_EQ(figures.at("queries_not_doubles"), 0);
   EXPECT_TRUE(figures.at("wrong_times").is_null());
   EXPECT_TRUE(figures.at("time_error").is_null());
   const double mean = figures.at("us_per_query").at("mean"),
@@ -283,7 +283,7 @@ TEST_F(CcdCompare, PublicQueriesHaveNoError) {
   EXPECT_EQ(figures.at("contacts"), 160);
   EXPECT_EQ(figures.at("false_negatives"), 0);
   EXPECT_EQ(figures.at("false_positives"), 0);
-  EXPECT_EQ(figures.at("rounded_queries"), 0);
+  EXPECT_EQ(figures.at("queries_not_doubles"), 0);
 }
 
 }  // namespace

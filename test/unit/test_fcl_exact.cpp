@@ -41,7 +41,7 @@ ElementaryResult exactByRoots(const MovingPair& pair, double toc_err, double t_m
   ExactQuery query(pair.kind, pair.points());
   if (query.touchInFrame(0)) return {Answer::kYes, 0, 0, DecidedBy::kExact};
   if (t_max == 0) return {Answer::kNo, 0, 0, DecidedBy::kExact};
-  return decideByRoots(query, toc_err, 1, t_max);
+  return decideByRoots(query.pair(), query.digits().clock_exponent, toc_err, 1, t_max);
 }
 
 /// Touching at time k / n, by integers of few digits.

@@ -19,7 +19,7 @@ _fcl_ccd() {
             step kind i0 i1 i2 i3 i4 toc_lo toc_hi t0 t1 x y z nx ny nz'
           ;;
         candidates) words='kind,i0,i1,i2,i3,t_lo,t_hi kind i0 i1 i2 i3 t_lo t_hi t0 t1' ;;
-        queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc rounded file' ;;
+        queries) words='index,answer,toc_lo,toc_hi index answer toc_lo toc_hi kind truth toc not_doubles file' ;;
       esac
       ;;
     --start | --end | --stride | --follow | --thickness | --jobs | --threads | --toc-err | --repeat | --at-step | --at-time) return ;;

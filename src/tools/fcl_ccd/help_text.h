@@ -131,8 +131,8 @@ inline constexpr const char* kQueriesDetails = R"(Input:
   are a vertex and a face (vf), or edge a and edge b (ee). A row is x,y,z as decimal numbers,
   or num,den,num,den,num,den: fractions of integers of any size. Then may come whether the
   features truly touch, 0 or 1, and after it the true first time, or nothing. A first line of
-  names is skipped. The value of a decimal is exact: 0.1 is 1/10. A coordinate that no double
-  has is rounded to the nearest one, with a warning.
+  names is skipped. The value of a decimal is exact: 0.1 is 1/10. Queries with coordinates that
+  no double has are decided exactly too, which takes 10 to 100 times as long.
   Without --kind the names tell the kind: they end in vf or vertex-face, ee or edge-edge, or
   are in a folder vertex-face or edge-edge. Of a folder all CSV files below it are taken.
 
@@ -142,8 +142,8 @@ Output:
   --print: index,answer,toc_lo,toc_hi for each query; answer is yes or no. Each answer is
   proved, so that 'uncertain' is 0.
   --columns: these columns and a first line with their names. There are index, answer, toc_lo,
-  toc_hi, kind, truth (yes or no), toc (the true time, as the nearest double), rounded (how many
-  coordinates) and file.
+  toc_hi, kind, truth (yes or no), toc (the true time, as the nearest double), not_doubles (how
+  many coordinates) and file.
   --json: the counts. Those that need the truth are null without it.
 
 Examples:

@@ -85,9 +85,9 @@ constexpr CsvColumn<AnswerRow> kAnswerColumns[] = {
      }},
     {"toc",
      [](const AnswerRow& row, std::string& line) { appendTime(row.query().toc, line); }},
-    {"rounded",
+    {"not_doubles",
      [](const AnswerRow& row, std::string& line) {
-       line.append(std::to_string(row.query().num_rounded));
+       line.append(std::to_string(row.query().num_not_doubles));
      }},
     {"file", [](const AnswerRow& row, std::string& line) {
        line.append(csvField(row.set.fileOf(row.index).path));
@@ -114,7 +114,7 @@ Json toJson(const QuerySet& set, const QueryErrors& errors, double ns_per_query)
       {"false_positives", ifTruth(errors.false_positives)},
       {"wrong_times", errors.num_times > 0 ? Json(errors.wrong_times) : Json(nullptr)},
       {"uncertain", errors.uncertain},
-      {"rounded_queries", numRoundedQueries(set)},
+      {"queries_not_doubles", numQueriesNotDoubles(set)},
       {"ns_per_query", ns_per_query}};
 }
 
@@ -146,8 +146,6 @@ void queriesCommand(const QueriesOptions& options) {
   OutputSet outputs(inputs);
   OutputFile* const json_file = outputs.open(options.json_path);
   const QuerySet set = readQuerySet(files);
-  const std::string note = noteOnRounding(set);
-  if (!note.empty()) std::fprintf(stderr, "fcl-ccd: %s\n", note.c_str());
 
   double seconds = 0;
   const std::vector<ElementaryResult> results = runQueries(set, options, seconds);

@@ -92,8 +92,6 @@ class QueryComparison : public Comparison {
                                ": does not tell the truth, and there is no file of "
                                "answers. Give --truth FILE, "
                                "or 0 or 1 at the end of each row");
-    const std::string note = noteOnRounding(set);
-    if (!note.empty()) std::fprintf(stderr, "fcl-ccd: %s\n", note.c_str());
     const TimedResults timed = runTimed(set, options_.toc_err, options_.repeat);
     return report(set, timed);
   }
@@ -123,7 +121,7 @@ class QueryComparison : public Comparison {
              {"false_negatives", errors.false_negatives},
              {"false_positives", errors.false_positives},
              {"uncertain", errors.uncertain},
-             {"rounded_queries", numRoundedQueries(set)},
+             {"queries_not_doubles", numQueriesNotDoubles(set)},
              {"wrong_times", time_error ? Json(errors.wrong_times) : Json(nullptr)},
              {"time_error", time_error ? Json(*time_error) : Json(nullptr)},
              {"us_per_query", {{"mean", mean}, {"max", max}}}}};

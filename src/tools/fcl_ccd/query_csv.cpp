@@ -8,6 +8,7 @@
 
 #include "counted.h"
 #include "file_bytes.h"
+#include "rational_points.h"
 #include "rational_text.h"
 #include "text_scan.h"
 
@@ -47,7 +48,8 @@ RowForm formOf(const Fields& fields) {
 
 struct Row {
   double position[3];
-  std::size_t num_rounded{0};
+  Rational exact[3];
+  std::size_t num_not_doubles{0};
   bool truth{false};
   std::optional<double> toc;
 };
@@ -108,8 +110,9 @@ void requireOrder(const Fields& header) {
 /// @brief The true first time of contact; nothing if the field is empty.
 std::optional<double> parseToc(std::string_view field, bool truth) {
   if (field.empty()) return std::nullopt;
-  const double toc = namingPlace([] { return std::string("toc"); },
-                                 [&] { return nearestDouble(field).value; });
+  const double toc =
+      namingPlace([] { return std::string("toc"); },
+                  [&] { return nearestDouble(parseDecimal(field)).value; });
   if (!truth)
     throw std::runtime_error("there is a time, " + quoted(field) +
                              ", but the truth is 0: no contact");
@@ -119,23 +122,22 @@ std::optional<double> parseToc(std::string_view field, bool truth) {
   return toc;
 }
 
-/// @brief The k-th coordinate of a row.
-NearestDouble parseCoordinate(const RowForm& form, const Fields& fields, std::size_t k) {
-  return namingPlace([&] { return std::string(kDecimals[k]); },
-                     [&] {
-                       return form.isDecimal()
-                                  ? nearestDouble(fields[k])
-                                  : nearestDouble(fields[2 * k], fields[2 * k + 1]);
-                     });
+/// @brief Reads the k-th coordinate of a row.
+void parseCoordinate(const RowForm& form, const Fields& fields, std::size_t k, Row& row) {
+  namingPlace([&] { return std::string(kDecimals[k]); },
+              [&] {
+                row.exact[k] = form.isDecimal()
+                                   ? parseDecimal(fields[k])
+                                   : parseFraction(fields[2 * k], fields[2 * k + 1]);
+                const NearestDouble nearest = nearestDouble(row.exact[k]);
+                row.position[k] = nearest.value;
+                if (!nearest.exact) ++row.num_not_doubles;
+              });
 }
 
 Row parseRow(const RowForm& form, const Fields& fields) {
   Row row;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const NearestDouble nearest = parseCoordinate(form, fields, k);
-    row.position[k] = nearest.value;
-    if (!nearest.exact) ++row.num_rounded;
-  }
+  for (std::size_t k = 0; k < 3; ++k) parseCoordinate(form, fields, k, row);
   if (!form.hasTruth()) return row;
   const std::string_view truth = fields[form.numCoordinates()];
   if (truth != "0" && truth != "1")
@@ -188,15 +190,22 @@ class QueryBuilder {
                                ". The eight rows of a query have the same");
     auto& path = query_.x[point % 4];
     auto& target = point < 4 ? path.t0 : path.t1;
-    for (std::size_t k = 0; k < 3; ++k) target[k] = row.position[k];
-    query_.num_rounded += row.num_rounded;
+    for (std::size_t k = 0; k < 3; ++k) {
+      target[k] = row.position[k];
+      exact_.set(point % 4, point / 4, k, row.exact[k]);
+    }
+    query_.num_not_doubles += row.num_not_doubles;
     ++num_rows_;
-    if (point + 1 == kRowsAQuery) list_.queries.push_back(query_);
+    if (point + 1 < kRowsAQuery) return;
+    if (query_.num_not_doubles > 0)
+      query_.exact = std::make_shared<const RationalPoints>(exact_);
+    list_.queries.push_back(query_);
   }
 
   QueryList& list_;
   RowForm form_;
   ElementaryQuery query_;
+  RationalPoints exact_;
   std::size_t num_rows_{0};
 };
 

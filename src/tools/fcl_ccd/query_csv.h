@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,12 +13,17 @@
 
 namespace fcl_ccd {
 
+class RationalPoints;
+
 /// @brief Four points with straight paths: v, f0, f1, f2 or ea0, ea1, eb0, eb1.
 struct ElementaryQuery {
   std::array<fcl::detail::deformable::VertexPath, 4> x;
   bool truth{false};
-  std::optional<double> toc;   ///< the true first time of contact, if it is known
-  std::size_t num_rounded{0};  ///< coordinates that are not exactly a double
+  std::optional<double> toc;  ///< the true first time of contact, if it is known
+  /// Coordinates that are not exactly a double. In x they are the nearest ones.
+  std::size_t num_not_doubles{0};
+  /// The exact coordinates; null if all are doubles.
+  std::shared_ptr<const RationalPoints> exact;
 };
 
 struct QueryList {
@@ -30,7 +36,7 @@ struct QueryList {
 /// two integers of any size, numerator and denominator. Then may come whether the
 /// features touch, 0 or 1, and after it the true first time of contact, which may be
 /// empty (both are the same in all eight rows). All rows have as many fields. A first
-/// line of names is skipped. A coordinate becomes the nearest double.
+/// line of names is skipped.
 /// @throws std::runtime_error that names the file, the line, the field and the cause.
 QueryList readQueries(const std::string& path);
 

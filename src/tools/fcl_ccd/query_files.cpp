@@ -127,22 +127,10 @@ QuerySet readQuerySet(std::vector<QueryFile> files) {
   return set;
 }
 
-std::size_t numRoundedQueries(const QuerySet& set) {
+std::size_t numQueriesNotDoubles(const QuerySet& set) {
   return static_cast<std::size_t>(
       std::count_if(set.queries.begin(), set.queries.end(),
-                    [](const ElementaryQuery& query) { return query.num_rounded > 0; }));
-}
-
-std::string noteOnRounding(const QuerySet& set) {
-  const std::size_t num_queries = numRoundedQueries(set);
-  std::size_t num_coordinates = 0;
-  for (const ElementaryQuery& query : set.queries) num_coordinates += query.num_rounded;
-  if (num_queries == 0) return "";
-  return "warning: " + counted(num_coordinates, "coordinate") + " of " +
-         (num_queries == 1 ? "1 query" : std::to_string(num_queries) + " queries") +
-         (num_coordinates == 1 ? " is" : " are") +
-         " not exactly of type double, and rounded to the nearest one. The answers are " +
-         "exact for the rounded coordinates";
+                    [](const ElementaryQuery& query) { return query.exact != nullptr; }));
 }
 
 }  // namespace fcl_ccd

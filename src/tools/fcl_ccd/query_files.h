@@ -48,11 +48,8 @@ struct QuerySet {
 /// @throws std::runtime_error that names the file, the line and the cause.
 QuerySet readQuerySet(std::vector<QueryFile> files);
 
-/// @brief The number of queries with coordinates that are rounded.
-std::size_t numRoundedQueries(const QuerySet& set);
-
-/// @brief A line for the user about coordinates that are rounded; empty if none is.
-std::string noteOnRounding(const QuerySet& set);
+/// @brief The number of queries with coordinates that are not doubles.
+std::size_t numQueriesNotDoubles(const QuerySet& set);
 
 }  // namespace fcl_ccd
 

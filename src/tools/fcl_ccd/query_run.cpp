@@ -5,6 +5,8 @@
 #include <limits>
 #include <optional>
 
+#include "rational_points.h"
+
 namespace fcl_ccd {
 
 using fcl::detail::deformable::Answer;
@@ -12,12 +14,13 @@ using fcl::detail::deformable::ElementaryResult;
 using fcl::detail::deformable::VertexPath;
 
 ElementaryResult runQuery(const QuerySet& set, std::size_t query, double toc_err) {
-  const auto& x = set.queries[query].x;
-  const VertexPath paths[4] = {x[0], x[1], x[2], x[3]};
+  const auto& [x, truth, toc, num_not_doubles, exact] = set.queries[query];
+  const fcl::ContinuousContactKind kind = set.fileOf(query).kind;
   // The width of a bracket is above 0. As in the library, 0 stands for the smallest one.
   const double width = std::max(toc_err, std::numeric_limits<double>::min());
-  return fcl::detail::deformable::elementaryTest(set.fileOf(query).kind, paths, 0, 1,
-                                                 width);
+  if (exact) return exact->decide(kind, width);
+  const VertexPath paths[4] = {x[0], x[1], x[2], x[3]};
+  return fcl::detail::deformable::elementaryTest(kind, paths, 0, 1, width);
 }
 
 QueryErrors compareWithTruth(const QuerySet& set,

@@ -10,7 +10,8 @@
 
 namespace fcl_ccd {
 
-/// @brief Runs the elementary test on a query of the set.
+/// @brief Runs the elementary test on a query of the set, or where coordinates are not
+/// doubles its exact stage, on the rational numbers.
 /// @param toc_err  as of the option --toc-err: 0 or more
 fcl::detail::deformable::ElementaryResult runQuery(const QuerySet& set, std::size_t query,
                                                    double toc_err);

@@ -2,7 +2,6 @@
 #include "rational_text.h"
 
 #include <algorithm>
-#include <boost/multiprecision/cpp_int.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -76,15 +75,6 @@ NearestDouble round(const ScaledQuotient& quotient) {
   return {value, exact};
 }
 
-NearestDouble nearestDouble(const cpp_int& num, const cpp_int& den) {
-  if (num == 0) return {0, true};
-  NearestDouble nearest = round(divide(abs(num), abs(den)));
-  if (!std::isfinite(nearest.value))
-    throw std::runtime_error("the coordinate is beyond double's range");
-  if ((num < 0) != (den < 0)) nearest.value = -nearest.value;
-  return nearest;
-}
-
 /// @brief digits * 10^exponent.
 struct Decimal {
   std::string digits;  ///< with a sign, without leading zeros; empty: 0
@@ -124,13 +114,13 @@ Decimal split(std::string_view text) {
 
 }  // namespace
 
-NearestDouble nearestDouble(std::string_view numerator, std::string_view denominator) {
+Rational parseFraction(std::string_view numerator, std::string_view denominator) {
   const cpp_int num = parseBigInteger(numerator), den = parseBigInteger(denominator);
   if (den == 0) throw std::runtime_error("the denominator is 0");
-  return nearestDouble(num, den);
+  return den < 0 ? Rational{-num, -den} : Rational{num, den};
 }
 
-NearestDouble nearestDouble(std::string_view text) {
+Rational parseDecimal(std::string_view text) {
   switch (classifyNumber(text)) {
     case NumberToken::kFinite:
       break;
@@ -140,17 +130,25 @@ NearestDouble nearestDouble(std::string_view text) {
       throw std::runtime_error(quoted(text) + " is not a number");
   }
   const Decimal decimal = split(text);
-  if (decimal.digits.empty()) return {0, true};
-  // Below half of the smallest subnormal, 2.5e-324, all is rounded to 0. The powers of
-  // ten of other numbers have at most this many digits and those of the text.
-  constexpr long long kLowestExponent = -400;
+  if (decimal.digits.empty()) return {};
+  constexpr long long kLowestExponent = -5000;
   if (decimal.exponent + static_cast<long long>(decimal.digits.size()) < kLowestExponent)
-    return {0, false};
+    throw std::runtime_error(quoted(text) +
+                             " is closer to 0 than 1e-5000. Write 0, or scale all "
+                             "coordinates of the query");
   const cpp_int digits = parseBigInteger(decimal.digits),
                 scale = boost::multiprecision::pow(
                     cpp_int(10), static_cast<unsigned>(std::abs(decimal.exponent)));
-  return decimal.exponent < 0 ? nearestDouble(digits, scale)
-                              : nearestDouble(cpp_int(digits * scale), cpp_int(1));
+  return decimal.exponent < 0 ? Rational{digits, scale} : Rational{digits * scale, 1};
+}
+
+NearestDouble nearestDouble(const Rational& number) {
+  if (number.numerator == 0) return {0, true};
+  NearestDouble nearest = round(divide(abs(number.numerator), number.denominator));
+  if (!std::isfinite(nearest.value))
+    throw std::runtime_error("the coordinate is beyond double's range");
+  if (number.numerator < 0) nearest.value = -nearest.value;
+  return nearest;
 }
 
 }  // namespace fcl_ccd
