@@ -102,14 +102,7 @@ bool answerSelfCandidates(const CollisionGeometry<S>* o, const CandidateSink& si
   require(sink);
   requireDistance(min_distance, "min_distance");
   requireMesh(*o, "continuousSelfCandidates");
-  const MovingGeometry<S> still{o,
-                                {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
-                                 {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}}},
-                                PathKind::kStraight,
-                                {},
-                                {},
-                                nullptr,
-                                {}};
+  const MovingGeometry<S> still = unmoved(o);
   const PreparedMesh mesh = prepared(PlacedGeometry<S>(still), "o");
   return handOut(sink, [&](const auto& inner) {
     return deformable::candidatesSelf(mesh.instance(), inner, min_distance);

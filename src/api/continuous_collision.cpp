@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <cassert>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "api/compound_query.h"
 #include "api/contact_conversion.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "base/stopwatch.h"
 #include "curved/curved_contacts.h"
 #include "curved/shape_contacts.h"
+#include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -197,6 +201,69 @@ void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   }
 }
 
+/// Answers two geometries, neither of them a compound.
+template <typename S>
+void answerGeometries(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                      Answerer answerer, const CheckedRequest& request,
+                      const Reply<S>& reply) {
+  if (answerer == Answerer::kShapes)
+    answerShapes(o1, o2, request, reply);
+  else if (answerer == Answerer::kCurvedPaths)
+    answerCurved(o1, o2, request, reply);
+  else
+    answerStraight(o1, o2, request, reply);
+}
+
+/// What is asked of the pairs of parts.
+template <typename S>
+ContinuousContactRequest<S> requestOf(const QueryOptions& options) {
+  ContinuousContactRequest<S> request;
+  request.query = options.query;
+  request.t_max = static_cast<S>(options.t_max);
+  request.toc_err = static_cast<S>(options.toc_err);
+  return request;
+}
+
+/// Answers two objects, one or both of them compounds.
+template <typename S>
+void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                     const CheckedRequest& request, const Reply<S>& reply) {
+  const deformable::Stopwatch start;
+  const CompoundPair<S> compounds(o1, o2);
+  compounds.requireNoTriangleGroups(request);
+  CheckedRequest asked = request;
+  StageCounts counts;
+  StageTimes times;
+  const auto test = [&](const PartPair& pair, const ContinuousContactRequest<S>& now,
+                        PartAnswer<S>& answer) {
+    asked.options.t_max = static_cast<double>(now.t_max);
+    answer.part1 = compounds.number1(pair);
+    answer.part2 = compounds.number2(pair);
+    auto& result = answer.result;
+    compounds.ask(pair, [&](const PlacedGeometry<S>& x, const PlacedGeometry<S>& y) {
+      answerGeometries(x, y, answererOf(x, y), asked,
+                       {result.outcome, reply.contacts ? &result : nullptr});
+    });
+    result.time_of_contact = result.outcome.toc_lo;
+    counts += result.counts;
+    times.update += result.times.update;
+    times.traverse += result.times.traverse;
+    return result.outcome.is_collide;
+  };
+  const QueryOptions& options = request.options;
+  std::vector<PartAnswer<S>> answers =
+      pairsInContact<PartAnswer<S>>(compounds.near(options), requestOf<S>(options), test);
+  const QueryOutcome<S> outcome = earliestOf(answers);
+  if (reply.contacts) {
+    ContinuousContacts<S> contacts = joinedContacts(std::move(answers), options);
+    contacts.counts = counts;
+    contacts.times = times;
+    contacts.times.test = start.seconds() - times.update - times.traverse;
+    *reply.contacts = std::move(contacts);
+  }
+  reply.outcome = outcome;
+}
+
 }  // namespace
 
 template <typename S, typename Request>
@@ -210,12 +277,10 @@ bool answerPair(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
   const CheckedRequest checked(request);
   const Reply<S> reply{outcome, contacts};
   const auto answer = [&] {
-    if (answerer == Answerer::kShapes)
-      answerShapes(placed1, placed2, checked, reply);
-    else if (answerer == Answerer::kCurvedPaths)
-      answerCurved(placed1, placed2, checked, reply);
+    if (placed1.compound() || placed2.compound())
+      answerCompounds(placed1, placed2, checked, reply);
     else
-      answerStraight(placed1, placed2, checked, reply);
+      answerGeometries(placed1, placed2, answerer, checked, reply);
   };
   if (checked.options.num_threads == 1) {
     answer();

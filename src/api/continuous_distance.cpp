@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "fcl/narrowphase/continuous_distance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <type_traits>
 
+#include "api/compound_query.h"
 #include "base/default_floating_point.h"
 #include "base/parallel.h"
 #include "curved/body_approach.h"
@@ -98,6 +100,8 @@ ContinuousDistanceResult<S> touchingAt(const ContinuousContactResult<S>& found) 
   out.nearest_points[0] = out.nearest_points[1] = first.pos;
   out.b1 = first.b1;
   out.b2 = first.b2;
+  out.part1 = first.part1;
+  out.part2 = first.part2;
   return out;
 }
 
@@ -191,6 +195,102 @@ class DistanceQuery {
   ApproachOptions options_;
 };
 
+/// The least distance of two objects of which one or both are compounds: that of two
+/// parts. Pairs that stay further apart than the least distance so far cost little.
+template <typename S>
+class CompoundDistance {
+ public:
+  /// @param o1, o2  live as long as this
+  CompoundDistance(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
+                   const ContinuousDistanceRequest<S>& request)
+      : o1_(o1),
+        o2_(o2),
+        request_(request),
+        contact_request_(contactRequestOf(request)),
+        checked_(contact_request_),
+        compounds_(o1, o2),
+        best_(noDistance<S>()) {
+    optionsOf(request);
+    compounds_.requireNoTriangleGroups(checked_);
+  }
+
+  int numThreads() const { return checked_.options.num_threads; }
+
+  ContinuousDistanceResult<S> run() {
+    if (!doFiltersAccept()) return noDistance<S>();
+    const auto limit = static_cast<double>(request_.max_distance);
+    const bool are_some_far =
+        compounds_.visitNearest(limit, [this](const PartPair& pair) {
+          if (!is_collide_) take(pair);
+          return static_cast<double>(request_.max_distance);
+        });
+    if (is_collide_) return firstTouch();
+    best_.is_cut_off = !is_measured_ && (is_cut_off_ || are_some_far);
+    if (best_.is_cut_off)
+      best_.distance_lo = std::min(best_.distance_lo, static_cast<S>(limit));
+    return best_;
+  }
+
+ private:
+  bool doFiltersAccept() const {
+    const ContinuousFilter &x = request_.filter1, &y = request_.filter2;
+    const bool have_triangles = !x.triangle_groups.empty() || !x.triangle_masks.empty() ||
+                                !y.triangle_groups.empty() || !y.triangle_masks.empty();
+    return have_triangles || ((x.group & y.mask) != 0 && (y.group & x.mask) != 0);
+  }
+
+  void take(const PartPair& pair) {
+    ContinuousDistanceResult<S> one;
+    compounds_.ask(pair, [&](const PlacedGeometry<S>& x, const PlacedGeometry<S>& y) {
+      one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
+    });
+    is_collide_ = one.is_collide;
+    is_cut_off_ |= one.is_cut_off;
+    is_measured_ |= !one.is_cut_off && std::isfinite(one.distance_lo);
+    const S least = std::min(best_.distance_lo, one.distance_lo);
+    if (one.distance_hi < best_.distance_hi) {
+      best_ = one;
+      best_.part1 = compounds_.number1(pair);
+      best_.part2 = compounds_.number2(pair);
+    }
+    best_.distance_lo = least;
+    // A pair that is not nearer need not be measured. 0 is no limit that a query takes.
+    if (one.distance_hi > 0)
+      request_.max_distance = std::min(request_.max_distance, one.distance_hi);
+  }
+
+  ContinuousDistanceResult<S> firstTouch() const {
+    QueryOutcome<S> outcome;
+    ContinuousContactResult<S> found;
+    answerPair(o1_.moving(), o2_.moving(), contact_request_, outcome,
+               static_cast<ContinuousContacts<S>*>(&found));
+    found.time_of_contact = outcome.toc_lo;
+    return touchingAt(found);
+  }
+
+  const PlacedGeometry<S>&o1_, &o2_;
+  /// With the least distance so far as max_distance.
+  ContinuousDistanceRequest<S> request_;
+  const ContinuousContactRequest<S> contact_request_;
+  const CheckedRequest checked_;
+  const CompoundPair<S> compounds_;
+  ContinuousDistanceResult<S> best_;
+  bool is_collide_{false}, is_cut_off_{false}, is_measured_{false};
+};
+
+/// Runs a query in its threads.
+template <typename S, typename Query>
+void run(Query& query, ContinuousDistanceResult<S>& result) {
+  if (query.numThreads() == 1) {
+    result = query.run();
+    return;
+  }
+  deformable::inArena(query.numThreads(), [&] {
+    const DefaultFloatingPoint mode_of_its_thread;
+    result = query.run();
+  });
+}
+
 }  // namespace
 
 template <typename S>
@@ -203,15 +303,14 @@ void answerDistance(const MovingGeometry<S>& o1, const MovingGeometry<S>& o2,
                     const ContinuousDistanceRequest<S>& request,
                     ContinuousDistanceResult<S>& result) {
   const DefaultFloatingPoint mode;
-  DistanceQuery<S> query(o1, o2, request);
-  if (query.numThreads() == 1) {
-    result = query.run();
-    return;
+  const PlacedGeometry<S> placed1(o1), placed2(o2);
+  if (placed1.compound() || placed2.compound()) {
+    answererOf(placed1, placed2);  // refuses what no query answers
+    CompoundDistance<S> query(placed1, placed2, request);
+    return run(query, result);
   }
-  deformable::inArena(query.numThreads(), [&] {
-    const DefaultFloatingPoint mode_of_its_thread;
-    result = query.run();
-  });
+  DistanceQuery<S> query(o1, o2, request);
+  run(query, result);
 }
 
 #define FCL_CCD_INSTANTIATE(S)                                                     \

@@ -45,13 +45,6 @@ JointTree::Link linkOf(const JointTree& tree, int link) {
   return link < 0 ? JointTree::Link{-1, {}} : tree.links()[std::size_t(link)];
 }
 
-/// A geometry at rest in its own frame.
-template <typename S>
-MovingGeometry<S> unmoved(const CollisionGeometry<S>* geometry) {
-  const PoseNumbers<S> still{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
-  return {geometry, {still, still}, PathKind::kStraight, {}, {}, nullptr, {}};
-}
-
 struct FoundPair {
   RobotPair pair;
   /// Of the obstacle.
@@ -124,7 +117,7 @@ class RobotStep<S>::Parts {
 
   MovingGeometry<S> moving(std::size_t i) const {
     MovingGeometry<S> moving{
-        bodies_.parts[i]->geometry, {}, PathKind::kBounded, {}, {}, &paths_[i], {}};
+        bodies_.parts[i]->geometry, {}, PathKind::kBounded, {}, {}, &paths_[i], {}, {}};
     for (int end = 0; end < 2; ++end) {
       const BoundedMotion::Placement at = paths_[i].placementAt(end);
       PoseNumbers<S>& pose = moving.pose[end];

@@ -86,6 +86,11 @@ double MotionPath::positionError(double radius) const {
          more_rounding_.translation;
 }
 
+double MotionPath::rotationRateError() const {
+  return (80 + 4 * (rotation_error_ - 24)) * kUnit * turn_speed_ +
+         more_rounding_.rotation_rate;
+}
+
 double MotionPath::rateError(double radius) const {
   return (80 + 4 * (rotation_error_ - 24)) * kUnit * speed(radius) +
          more_rounding_.rotation_rate * radius + more_rounding_.translation_rate;

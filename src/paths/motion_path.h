@@ -114,6 +114,12 @@ class MotionPath {
   /// @pre it is a turn
   MotionPath withoutTurn() const;
 
+  /// @brief The path of a frame that is fixed to the body. What it rounds more is in the
+  /// bounds.
+  /// @param offset  the frame in that of the body; a rotation up to 2^-47
+  /// @pre it is a turn
+  MotionPath placed(const Pose& offset) const;
+
   /// @brief The name of the object in errors. It must live as long as the path.
   const char* name() const { return name_; }
   void setName(const char* name) { name_ = name; }
@@ -174,6 +180,9 @@ class MotionPath {
   /// @brief Bound on the factor by which the derivative of the rotation makes a vector
   /// longer.
   double turnSpeed() const { return turn_speed_; }
+
+  /// @brief The same as rotationError(), but for rate(t).
+  double rotationRateError() const;
 
   /// @brief The same as positionError(), but for rate(t).
   double rateError(double radius) const;

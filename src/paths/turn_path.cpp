@@ -175,6 +175,35 @@ MotionPath MotionPath::withoutTurn() const {
   return path.withFixedRotation();
 }
 
+// p(t) of the point R_o y + t_o: each matrix M of the turn becomes M R_o, and each vector
+// v becomes M t_o + v. A product of matrices rounds by 9 u, and the sum of the four, of
+// sizes up to 1, 1, 2 and a rounding, by 36 u. M t_o rounds by 6 u of |t_o|, the sum by u
+// of its size.
+MotionPath MotionPath::placed(const Pose& offset) const {
+  MotionPath path = *this;
+  Turn& turn = path.turn_;
+  const Vec shift = vecOf(offset.translation);
+  const auto move = [&](const double(&from)[9], double(&matrix)[9], double(&vector)[3]) {
+    set(vector, rotated(from, shift) + vecOf(vector));
+    multiply(from, offset.rotation, matrix);
+  };
+  move(turn_.beginning.rotation, turn.beginning.rotation, turn.beginning.translation);
+  move(turn_.sine_rotation, turn.sine_rotation, turn.sine_translation);
+  move(turn_.cosine_rotation, turn.cosine_rotation, turn.cosine_translation);
+  move(turn_.linear_rotation, turn.linear_rotation, turn.linear_translation);
+  const double distance = norm(shift);
+  path.stretch_ *= spectralBound(offset.rotation) * kUpward;
+  path.reference_size_ += path.stretch_ * distance;
+  path.setTurnBounds();
+  path.more_rounding_.rotation += 64 * kUnit * path.stretch_;
+  path.more_rounding_.rotation_rate += 64 * kUnit * path.turn_speed_;
+  path.more_rounding_.translation +=
+      32 * kUnit * path.stretch_ * distance + 4 * kUnit * path.translation_size_;
+  path.more_rounding_.translation_rate +=
+      32 * kUnit * path.turn_speed_ * distance + 4 * kUnit * path.translation_speed_;
+  return path;
+}
+
 /// Whether the rotation changes with the angle.
 bool MotionPath::hasTurningRotation() const {
   return turn_.angle > 0 &&

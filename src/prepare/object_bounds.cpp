@@ -236,8 +236,9 @@ void appendBody(const BoundedBody& body, BoundsList& list) {
 template <typename S>
 bool isBounded(const PlacedGeometry<S>& placed) {
   return placed.moving().path != PathKind::kUnknown &&
-         (placed.isShape() ? !isFlat(placed.geometry())
-                           : placed.isMesh() || placed.isOctree());
+         (placed.isShape()    ? !isFlat(placed.geometry())
+          : placed.compound() ? placed.compound()->has_box
+                              : placed.isMesh() || placed.isOctree());
 }
 
 template <typename S>
@@ -247,6 +248,10 @@ BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name) {
     const MotionPath path = motionPathOf(placed, name);
     const BodyBox box = convexShapeOf(placed.geometry(), name, 0).outerBox();
     return {{box, box}, path};
+  }
+  if (const auto* compound = placed.compound()) {
+    requireParts(*compound, name);
+    return {{compound->box, compound->box}, motionPathOf(placed, name)};
   }
   const PreparedMotion motion(placed, name, kDefaultTocErr, 1);
   if (motion.isEmpty()) return {{BodyBox(), BodyBox()}, motionPathOf(placed, name)};

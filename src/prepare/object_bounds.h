@@ -18,8 +18,8 @@ struct BoundedBody {
   deformable::MotionPath path;
 };
 
-/// @brief Whether an object has boxes. Not: planes, halfspaces, and what appendBounds()
-/// has no bounds for.
+/// @brief Whether an object has boxes. Not: planes, halfspaces, compounds with one of
+/// these, and what appendBounds() has no bounds for.
 template <typename S>
 bool isBounded(const PlacedGeometry<S>& placed);
 

@@ -21,6 +21,8 @@ constexpr double kMostPathSize = 0x1p200;
 /// Shapes are scaled before that. Up to this no square of a length overflows.
 constexpr double kMostShapeSize = 0x1p500;
 
+constexpr double kOrigin[3] = {0, 0, 0};
+
 bool haveSameRotation(const Pose& x, const Pose& y) {
   return std::equal(x.rotation, x.rotation + 9, y.rotation);
 }
@@ -65,29 +67,38 @@ Vec halfTurnAxis(const MovingGeometry<S>& moving) {
   return halfTurnAxisOfFcl(toPose(moving.pose[0]), toPose(moving.pose[1]));
 }
 
+/// The path of the body that carries a part, or of another geometry.
 /// @param name  in errors
+/// @pre it does not go straight
 template <typename S>
-MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
+MotionPath curvedPathOf(const PlacedGeometry<S>& placed, const char* name) {
   const MovingGeometry<S>& moving = placed.moving();
-  const double origin[3] = {0, 0, 0};
-  if (isPosed(placed)) return MotionPath::still(Pose());
-  if (placed.goesStraight())
-    return MotionPath::interpolation(placed.beginning(), placed.end(), origin,
-                                     halfTurnAxis(moving));
+  const Pose &beginning = placed.bodyBeginning(), &end = placed.bodyEnd();
   switch (moving.path) {
     case PathKind::kBounded:
       return MotionPath::bounded(*moving.motion, name);
     case PathKind::kSpline:
       return MotionPath::spline(moving.control[0], moving.control[1], name);
     case PathKind::kScrew:
-      return MotionPath::screw(placed.beginning(), placed.end(), halfTurnAxis(moving));
+      return MotionPath::screw(beginning, end, halfTurnAxis(moving));
     case PathKind::kTurn:
-      return MotionPath::interpolation(placed.beginning(), placed.end(), moving.reference,
+      return MotionPath::interpolation(beginning, end, moving.reference,
                                        halfTurnAxis(moving));
     default:
-      return MotionPath::interpolation(placed.beginning(), placed.end(), origin,
-                                       halfTurnAxis(moving));
+      return MotionPath::interpolation(beginning, end, kOrigin, halfTurnAxis(moving));
   }
+}
+
+/// @param name  in errors
+template <typename S>
+MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
+  if (isPosed(placed)) return MotionPath::still(Pose());
+  if (placed.goesStraight())
+    return MotionPath::interpolation(placed.beginning(), placed.end(), kOrigin,
+                                     halfTurnAxis(placed.moving()));
+  const PartOffset& offset = placed.moving().offset;
+  const MotionPath path = curvedPathOf(placed, name);
+  return offset.is_set ? path.placed(toPose(offset)) : path;
 }
 
 }  // namespace
@@ -99,6 +110,16 @@ void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
                     ": a transform scales, mirrors or shears, by more than 2^-6. Give a "
                     "rotation and a translation: normalise the rotation, or change the "
                     "geometry instead");
+}
+
+template <typename S>
+void requireDefinedPath(const PlacedGeometry<S>& placed, const std::string& name) {
+  if (placed.goesStraight() || placed.moving().path != PathKind::kUndefined) return;
+  throw Exception(
+      name + ", " + kindOf(placed.geometry()) +
+      ": request.ccd_motion_type does not define how it turns between two transforms. "
+      "Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has the control "
+      "points of a spline");
 }
 
 template <typename S>
@@ -148,14 +169,8 @@ template <typename S>
 void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
                                     const std::string& name, double toc_err) const {
   const MovingGeometry<S>& moving = placed.moving();
-  if (placed.goesStraight()) return;
-  if (moving.path == PathKind::kUndefined)
-    throw Exception(
-        name + ", " + kindOf(placed.geometry()) +
-        ": request.ccd_motion_type does not define how it turns between two transforms. "
-        "Use CCDM_LINEAR or CCDM_SCREW, or give a SplineMotion, which has the control "
-        "points of a spline");
-  if (moving.path != PathKind::kTurn) return;
+  requireDefinedPath(placed, name);
+  if (placed.goesStraight() || moving.path != PathKind::kTurn) return;
   double way[3];
   for (int k = 0; k < 3; ++k)
     way[k] = placed.end().translation[k] - placed.beginning().translation[k];
@@ -217,6 +232,7 @@ MeshInstance PreparedMotion::beginning() const {
 
 #define FCL_CCD_INSTANTIATE(S)                                                          \
   template void requireRotations(const PlacedGeometry<S>&, const char*);                \
+  template void requireDefinedPath(const PlacedGeometry<S>&, const std::string&);       \
   template MotionPath motionPathOf(const PlacedGeometry<S>&, const char*);              \
   template PreparedMotion::PreparedMotion(const PlacedGeometry<S>&, const std::string&, \
                                           double, int, double, double, ConvexShape*);

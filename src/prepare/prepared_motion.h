@@ -21,6 +21,12 @@ namespace deformable {
 template <typename S>
 void requireRotations(const PlacedGeometry<S>& placed, const char* name);
 
+/// @brief Refuses a path between two transforms that request.ccd_motion_type does not
+/// define.
+/// @param name  the name of the geometry in errors
+template <typename S>
+void requireDefinedPath(const PlacedGeometry<S>& placed, const std::string& name);
+
 /// @brief The path of a geometry that this library answers.
 /// @param name  the name of the geometry in errors; must live as long as the path
 /// @pre placed.isKnown()

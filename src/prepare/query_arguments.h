@@ -13,6 +13,8 @@
 #include "fcl/geometry/collision_geometry.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "mesh/non_finite_vertex.h"
+#include "paths/path_matrix.h"
+#include "prepare/compound_parts.h"
 #include "prepare/convex_shapes.h"
 #include "prepare/nearest_rotation.h"
 #include "prepare/octree_nodes.h"
@@ -31,6 +33,7 @@ template <typename S>
 const char* kindOf(const CollisionGeometry<S>& o) {
   if (deformable::meshKindOf(o) != deformable::MeshKind::kNotAMesh)
     return "a triangle mesh";
+  if (compoundPartsOf(o)) return "a compound";
   if (o.getObjectType() != OT_BVH) return kindOf(o.getNodeType());
   return o.getNodeType() == BV_UNKNOWN ? "a model whose BV is none of FCL's"
                                        : "a point cloud";
@@ -60,12 +63,29 @@ inline void requireDistance(double distance, const char* name) {
                     "coordinates");
 }
 
-template <typename S>
-deformable::Pose toPose(const PoseNumbers<S>& numbers) {
+/// @tparam Numbers  PoseNumbers or PartOffset
+template <typename Numbers>
+deformable::Pose toPose(const Numbers& numbers) {
   deformable::Pose pose;
   for (int k = 0; k < 9; ++k) pose.rotation[k] = numbers.rotation[k];
   for (int k = 0; k < 3; ++k) pose.translation[k] = numbers.translation[k];
   return pose;
+}
+
+/// A geometry at rest in its own frame.
+template <typename S>
+MovingGeometry<S> unmoved(const CollisionGeometry<S>* geometry) {
+  const PoseNumbers<S> still{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}};
+  return {geometry, {still, still}, PathKind::kStraight, {}, {}, nullptr, {}, {}};
+}
+
+/// The pose of a part whose body is in a pose. For rotations it rounds by 9 u, and a
+/// coordinate by 3 u of the offset and u of itself.
+inline deformable::Pose partPose(const deformable::Pose& body, const PartOffset& offset) {
+  deformable::Pose out;
+  deformable::multiply(body.rotation, offset.rotation, out.rotation);
+  deformable::set(out.translation, posed(body, deformable::vecOf(offset.translation)));
+  return out;
 }
 
 /// A geometry and the poses in which a query prepares it. It must be made in the default
@@ -78,7 +98,10 @@ class PlacedGeometry {
         is_shape_(deformable::isConvexShape(*moving.geometry)),
         kind_(is_shape_ ? deformable::MeshKind::kNotAMesh
                         : deformable::meshKindOf(*moving.geometry)),
-        is_octree_(!is_shape_ && deformable::isOctree(*moving.geometry)) {
+        is_octree_(!is_shape_ && deformable::isOctree(*moving.geometry)),
+        compound_(is_shape_ || isMesh() || is_octree_
+                      ? nullptr
+                      : compoundPartsOf(*moving.geometry)) {
     using deformable::MeshKind;
     beginning_ = toPose(moving.pose[0]);
     end_ = toPose(moving.pose[1]);
@@ -91,25 +114,38 @@ class PlacedGeometry {
     if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
     if (isRigid())
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
-    if (isMesh() && goes_straight_) return;
+    if (isMesh() && goes_straight_) {
+      applyOffset();
+      return;
+    }
     // A turn is defined between rotations only, and a sphere that is sheared is no
     // sphere.
     const bool has_poses =
         moving.path != PathKind::kBounded && moving.path != PathKind::kSpline;
     for (deformable::Pose* pose : {&beginning_, &end_})
       are_rotations_ &= takeRotation(pose->rotation, has_poses);
+    applyOffset();
   }
 
   const CollisionGeometry<S>& geometry() const { return *moving_.geometry; }
   const MovingGeometry<S>& moving() const { return moving_; }
   const deformable::Pose& beginning() const { return beginning_; }
   const deformable::Pose& end() const { return end_; }
+  /// The poses of the body that carries a part. Of other geometries: as above.
+  const deformable::Pose& bodyBeginning() const {
+    return moving_.offset.is_set ? body_[0] : beginning_;
+  }
+  const deformable::Pose& bodyEnd() const {
+    return moving_.offset.is_set ? body_[1] : end_;
+  }
 
   bool isMesh() const { return kind_ != deformable::MeshKind::kNotAMesh; }
   bool isShape() const { return is_shape_; }
   bool isOctree() const { return is_octree_; }
+  /// Null: it is none.
+  const CompoundParts<S>* compound() const { return compound_; }
   bool isRigid() const {
-    return kind_ == deformable::MeshKind::kRigid || is_shape_ || is_octree_;
+    return kind_ == deformable::MeshKind::kRigid || is_shape_ || is_octree_ || compound_;
   }
 
   /// Whether all vertices move on straight lines.
@@ -136,7 +172,7 @@ class PlacedGeometry {
 
   /// Whether this library can follow the path.
   bool isKnown() const {
-    return (isMesh() || isShape() || isOctree()) &&
+    return (isMesh() || isShape() || isOctree() || compound_) &&
            (goes_straight_ || moving_.path != PathKind::kUnknown);
   }
 
@@ -154,11 +190,22 @@ class PlacedGeometry {
     return true;
   }
 
+  void applyOffset() {
+    if (!moving_.offset.is_set) return;
+    body_[0] = beginning_;
+    body_[1] = end_;
+    beginning_ = partPose(body_[0], moving_.offset);
+    end_ = partPose(body_[1], moving_.offset);
+  }
+
   const MovingGeometry<S>& moving_;
   bool is_shape_;
   deformable::MeshKind kind_;
   bool is_octree_;
+  const CompoundParts<S>* compound_;
   deformable::Pose beginning_, end_;
+  /// Of a part.
+  deformable::Pose body_[2];
   bool goes_straight_{false};
   bool are_rotations_{true};
   bool has_replaced_rotation_{false};
@@ -167,7 +214,7 @@ class PlacedGeometry {
 enum class Answerer {
   kStraightPaths,  ///< all vertices of both meshes move on straight lines
   kCurvedPaths,    ///< two meshes, and at least one turns or follows a spline
-  kShapes,         ///< one is a shape or an octree, the other one of these or a mesh
+  kShapes,  ///< one is a shape, an octree or a compound, the other one of these or a mesh
   kFcl  ///< FCL: one is a point cloud, or follows a motion that is not known, for example
 };
 
@@ -184,21 +231,43 @@ void requireNodeType(const CollisionGeometry<S>& o, const char* name) {
                     "or a mesh");
 }
 
+/// Why FCL answers a pair: the first object that this library cannot follow.
+template <typename S>
+std::string whyFclAnswers(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  const bool is_first = !o1.isKnown();
+  const PlacedGeometry<S>& o = is_first ? o1 : o2;
+  const std::string name = is_first ? "o1" : "o2", kind = kindOf(o.geometry());
+  if (o.isMesh() || o.isRigid())
+    return name + ", " + kind +
+           ", follows a motion class that is neither FCL's nor a BoundedMotion";
+  return name + " is " + kind + ", not a triangle mesh, a shape or an octree";
+}
+
 template <typename S>
 Answerer answererFcl(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
+  if (o1.compound() || o2.compound())
+    throw Exception(
+        whyFclAnswers(o1, o2) +
+        ", and FCL has no compounds. Give a mesh, a shape, an octree or a compound that "
+        "follows one of FCL's motions, or derive the motion class from BoundedMotion "
+        "too");
   requireNodeType(o1.geometry(), "o1");
   requireNodeType(o2.geometry(), "o2");
   return Answerer::kFcl;
 }
 
 /// Which method answers a pair.
-/// @throws fcl::Exception  when a node type is not one of FCL's; when one of two meshes
+/// @throws fcl::Exception  when a node type is not one of FCL's, or one is a compound and
+/// this library does not answer; when one of two meshes
 /// does not go straight and a pose is not finite. (A rotation that is not finite is not
 /// constant. PreparedMesh checks the poses of straight paths. FCL gets other geometries
 /// as they are.)
 template <typename S>
 Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
-  if (o1.isShape() || o2.isShape() || o1.isOctree() || o2.isOctree()) {
+  const auto is_no_mesh = [](const PlacedGeometry<S>& o) {
+    return o.isShape() || o.isOctree() || o.compound();
+  };
+  if (is_no_mesh(o1) || is_no_mesh(o2)) {
     if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
     o1.requireFinitePoses("o1");
     o2.requireFinitePoses("o2");
@@ -211,18 +280,6 @@ Answerer answererOf(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
   }
   if (!o1.isKnown() || !o2.isKnown()) return answererFcl(o1, o2);
   return Answerer::kCurvedPaths;
-}
-
-/// Why FCL answers a pair: the first object that this library cannot follow.
-template <typename S>
-std::string whyFclAnswers(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2) {
-  const bool is_first = !o1.isKnown();
-  const PlacedGeometry<S>& o = is_first ? o1 : o2;
-  const std::string name = is_first ? "o1" : "o2", kind = kindOf(o.geometry());
-  if (o.isMesh() || o.isRigid())
-    return name + ", " + kind +
-           ", follows a motion class that is neither FCL's nor a BoundedMotion";
-  return name + " is " + kind + ", not a triangle mesh, a shape or an octree";
 }
 
 /// Runs a query. A vertex that is not finite becomes FCL's exception.

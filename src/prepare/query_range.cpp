@@ -29,6 +29,7 @@ double largestLength(const MovingGeometry<S>& o, const PreparedMotion& motion) {
   };
   for (const PoseNumbers<S>& pose : o.pose) take(pose.translation);
   take(o.reference);
+  take(o.offset.translation);
   if (o.path == PathKind::kSpline)
     for (const auto& point : o.control[0]) take(point);
   return most;
@@ -85,6 +86,7 @@ MovingGeometry<S> scaledPath(const MovingGeometry<S>& o, double factor) {
   for (PoseNumbers<S>& pose : out.pose)
     for (S& x : pose.translation) x = static_cast<S>(factor * double{x});
   for (double& x : out.reference) x *= factor;
+  for (double& x : out.offset.translation) x *= factor;
   for (auto& point : out.control[0])
     for (double& x : point) x *= factor;
   return out;

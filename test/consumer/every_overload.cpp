@@ -10,6 +10,7 @@
 
 #include <fcl/common/exception.h>
 #include <fcl/geometry/bvh/deformable_bvh_model.h>
+#include <fcl/geometry/compound_geometry.h>
 #include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/math/bv/OBBRSS.h>
@@ -69,6 +70,7 @@ class Checks {
     pairs<fcl::ContinuousContactRequest<S>, fcl::ContinuousContactResult<S>>();
     self<fcl::ContinuousCollisionRequest<S>, fcl::ContinuousCollisionResult<S>>();
     self<fcl::ContinuousContactRequest<S>, fcl::ContinuousContactResult<S>>();
+    compound();
     ownMotion();
     contacts();
     candidates();
@@ -100,6 +102,23 @@ class Checks {
     const Vector p = result.contact_tf2.translation();
     check(result.contact_tf2.linear().isApprox(Transform::Identity().linear(), 0), what);
     check(p[0] == S(0.25) && p[1] == S(0.5) && p[2] <= 0 && p[2] > S(-0.002), what);
+  }
+
+  /// The lower one of two squares that fall together meets the other one.
+  void compound() {
+    const auto rest = makeSquare<fcl::BVHModel<fcl::OBBRSS<S>>>(),
+               fall = makeSquare<fcl::BVHModel<fcl::OBBRSS<S>>>();
+    fcl::CompoundGeometry<S> both;
+    both.addPart(fall, at<double>(0, 0, 4));
+    both.addPart(fall);
+    const Transform still = at<S>(0, 0, 0);
+    fcl::ContinuousContactResult<S> result;
+    const S time = fcl::continuousCollide(rest.get(), still, still, &both,
+                                          at<S>(.25, .5, 3), at<S>(.25, .5, -5),
+                                          fcl::ContinuousContactRequest<S>(), result);
+    checkFall(time, result, "continuousCollide(compound)");
+    check(result.contacts.at(0).part1 == -1 && result.contacts[0].part2 == 1,
+          "part of a compound");
   }
 
   template <typename Request, typename Result>

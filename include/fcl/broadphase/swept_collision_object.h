@@ -167,7 +167,7 @@ MovingGeometry<S> readObject(const void* object) {
   const auto& o = *static_cast<const ContinuousCollisionObject<S>*>(object);
   const MotionBase<S>& motion = *o.getMotion();
   MovingGeometry<S> moving{
-      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr, {}};
+      o.collisionGeometry().get(), {}, PathKind::kUnknown, {}, {}, nullptr, {}, {}};
   if (detail::readMotion(motion, moving)) return moving;
   if (const BoundedMotion* bounded = detail::asBoundedMotion(motion))
     detail::readBoundedMotion(*bounded, moving);

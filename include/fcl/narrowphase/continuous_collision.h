@@ -27,14 +27,15 @@ namespace fcl {
 /// (OcTree::isNodeOccupied()), below nodes that reach it too. Other cells are no
 /// obstacles, and neither is an object beside an octree whose
 /// CollisionGeometry::isOccupied() is false. The query reads octomap's nodes in place,
-/// and only those near the other object.
+/// and only those near the other object. A CompoundGeometry of rigid meshes, shapes and
+/// octrees is answered against all of these: as its parts are.
 ///
 /// Which pairs FCL answers: point clouds, geometries of the program, and a rigid mesh, a
 /// shape or an octree that follows a motion class of the program that is no
 /// BoundedMotion. FCL takes a mesh as it is in its current frame and ignores the
-/// deformation. It samples the motion and may miss a contact. There are no contacts. The
-/// way out: derive the motion class from BoundedMotion too. doc/choosing.md has the
-/// limits.
+/// deformation. It samples the motion and may miss a contact. There are no contacts. A
+/// compound, which FCL does not know, is refused there. The way out: derive the motion
+/// class from BoundedMotion too. doc/choosing.md has the limits.
 ///
 /// Rotations: the matrix of a shape, an octree or a mesh that turns is taken as it is if
 /// no entry of |R R' - I| is above 2^-10 (typed with four digits). Up to 2^-6 (.71 for

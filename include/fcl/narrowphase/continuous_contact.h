@@ -36,6 +36,12 @@ struct ContinuousContact {
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
+  /// @brief The numbers of the parts of two compounds (CompoundGeometry) that are in
+  /// contact. o1, o2, b1 and b2 are then of these parts. -1 where the object is no
+  /// compound.
+  int part1{-1};
+  int part2{-1};
+
   /// @brief Vertex ids. VF: v, f0, f1, f2. EE: ea0, ea1, eb0, eb1. Crossing: e0, e1, f0,
   /// f1, f2. VE: v, e0, e1. VV: v of o1, v of o2; in a self-collision the lower id first.
   /// With a shape or a cell: the ids of the vertex, edge or face of the mesh that is
@@ -234,10 +240,11 @@ using ContinuousContactRequestd = ContinuousContactRequest<double>;
 template <typename S>
 struct ContinuousContacts {
   /// @brief The contacts, sorted by (toc_lo, kind, side, vertex ids); with a shape or an
-  /// octree by (toc_lo, b1, b2). With ContinuousQuery::kFirst: the contacts that may be
-  /// the first, whose bracket begins no later than the earliest bracket ends. (A contact
-  /// of a rigid mesh may be found several times with different brackets; the shortest one
-  /// decides.) With kAny: at most one.
+  /// octree by (toc_lo, b1, b2); of a compound by (toc_lo, part1, part2) first. With
+  /// ContinuousQuery::kFirst: the contacts that may be the first, whose bracket begins no
+  /// later than the earliest bracket ends. (A contact of a rigid mesh may be found
+  /// several times with different brackets; the shortest one decides.) With kAny: at most
+  /// one.
   std::vector<ContinuousContact<S>> contacts;
 
   /// @brief Whether num_max_contacts dropped contacts.

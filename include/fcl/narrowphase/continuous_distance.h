@@ -75,6 +75,11 @@ struct ContinuousDistanceResult {
   std::intptr_t b1{-1};
   std::intptr_t b2{-1};
 
+  /// @brief The numbers of the parts of compounds that have these points, as in
+  /// ContinuousContact; b1 and b2 are then of these parts.
+  int part1{-1};
+  int part2{-1};
+
   /// @brief Whether the objects touch during the step, as continuousCollide() decides it.
   bool is_collide{false};
 

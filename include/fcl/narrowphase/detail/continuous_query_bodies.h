@@ -145,7 +145,7 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const MotionBase<S>* motion,
                                  const CollisionGeometry<S>* other) {
-  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr, {}};
+  MovingGeometry<S> moving{o, {}, PathKind::kUnknown, {}, {}, nullptr, {}, {}};
   if (detail::readMotion(*motion, moving)) return moving;
   if (const BoundedMotion* bounded = detail::asBoundedMotion(*motion)) {
     detail::readBoundedMotion(*bounded, moving);

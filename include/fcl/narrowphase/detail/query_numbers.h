@@ -135,6 +135,14 @@ enum class PathKind {
   kUnknown     ///< another motion class of the program
 };
 
+/// @brief The frame of a part of a compound in that of the body.
+struct PartOffset {
+  /// False: the geometry is no part, and its frame is that of the body.
+  bool is_set;
+  double rotation[9];
+  double translation[3];
+};
+
 /// @brief A geometry and how it moves during the step.
 template <typename S>
 struct MovingGeometry {
@@ -151,6 +159,8 @@ struct MovingGeometry {
   /// kTurn, kScrew: the axis of the motion object, which tells which way round a half
   /// turn goes. Zero: the way of FCL's constructors.
   double axis[3];
+  /// Of a part: all above is of the body that carries it. Not with kBounded.
+  PartOffset offset;
 };
 
 /// @brief A geometry that goes from one transform to another. Compiled with the caller.
@@ -158,9 +168,10 @@ template <typename S>
 MovingGeometry<S> movingGeometry(const CollisionGeometry<S>* o,
                                  const Transform3<S>& tf_beg, const Transform3<S>& tf_end,
                                  PathKind path = PathKind::kStraight) {
-  return {
-      o, {detail::toNumbers(tf_beg), detail::toNumbers(tf_end)}, path, {}, {}, nullptr,
-      {}};
+  return {o,    {detail::toNumbers(tf_beg), detail::toNumbers(tf_end)},
+          path, {},
+          {},   nullptr,
+          {},   {}};
 }
 
 /// @brief What a geometry of this type is, for messages.
