@@ -8,7 +8,6 @@
 #include <tuple>
 #include <utility>
 
-#include "prepare/object_bounds.h"
 #include "prepare/prepared_motion.h"
 
 namespace fcl {
@@ -51,14 +50,9 @@ double gapAtEnds(const deformable::MovingBounds& a, const deformable::MovingBoun
                   gap(a.boxes[a.num_spans], b.boxes[b.num_spans]));
 }
 
-/// Which bounds of a list meet another object.
-std::vector<int> meeting(const BoundsList& parts, const deformable::MovingBounds& other,
-                         double distance) {
-  std::vector<int> out;
-  for (std::size_t i = 0; i < parts.items.size(); ++i)
-    if (!deformable::meetingWindow(parts.at(i), other, distance).isEmpty())
-      out.push_back(static_cast<int>(i));
-  return out;
+void removeLast(BoundsList& list) {
+  list.boxes.resize(list.items.back().first);
+  list.items.pop_back();
 }
 
 }  // namespace
@@ -69,28 +63,65 @@ CompoundSide<S>::CompoundSide(const PlacedGeometry<S>& placed, const char* name)
   if (!parts_) return;
   requireParts(*parts_, name);
   deformable::requireDefinedPath(placed, name);
-  path_.emplace(deformable::motionPathOf(placed, name));
-  if (!placed.hasReplacedRotation()) return;
-  copyPose(placed.beginning(), body_.pose[0]);
-  copyPose(placed.end(), body_.pose[1]);
+  if (placed.hasReplacedRotation()) {
+    copyPose(placed.beginning(), body_.pose[0]);
+    copyPose(placed.end(), body_.pose[1]);
+  }
+  // Of the poses that the parts get, which are rounded to S.
+  path_.emplace(deformable::motionPathOf(PlacedGeometry<S>(body_), name));
+}
+
+template <typename S>
+void CompoundSide<S>::appendPart(int i, PathPoses& poses, int most_spans,
+                                 BoundsList& list) const {
+  const Part& one = part(i);
+  if (one.has_box)
+    appendBox({one.box, one.box}, poses, most_spans, list);
+  else
+    detail::appendBounds(MovingPart(*this, i).moving(), list);
 }
 
 template <typename S>
 void CompoundSide<S>::appendBounds(BoundsList& list) const {
   if (!parts_) return appendWhole(list);
+  PathPoses poses(*path_);
+  for (int i = 0; i < count(); ++i) appendPart(i, poses, kMostSpans, list);
+}
+
+template <typename S>
+std::vector<int> CompoundSide<S>::appendNear(const deformable::MovingBounds& other,
+                                             double distance, BoundsList& list) const {
+  if (!parts_) return {0};
+  PathPoses poses(*path_);
+  const bool is_straight = path_->acceleration(0, 1).isZero();
+  const auto meets = [&] {
+    return !deformable::meetingWindow(list.at(list.items.size() - 1), other, distance)
+                .isEmpty();
+  };
+  std::vector<int> near;
   for (int i = 0; i < count(); ++i) {
-    const auto& part = parts_->parts[static_cast<std::size_t>(i)];
-    if (part.has_box)
-      appendBody({{part.box, part.box}, *path_}, list);
+    // Most far parts need the bounds of one span only.
+    if (part(i).has_box && !is_straight) {
+      appendPart(i, poses, 1, list);
+      const bool is_near = meets();
+      removeLast(list);
+      if (!is_near) continue;
+    }
+    appendPart(i, poses, kMostSpans, list);
+    if (meets())
+      near.push_back(i);
     else
-      detail::appendBounds(MovingPart(*this, i).moving(), list);
+      removeLast(list);
   }
+  return near;
 }
 
 template <typename S>
 void CompoundSide<S>::appendWhole(BoundsList& list) const {
-  if (parts_ && parts_->has_box)
-    return appendBody({{parts_->box, parts_->box}, *path_}, list);
+  if (parts_ && parts_->has_box) {
+    PathPoses poses(*path_);
+    return appendBox({parts_->box, parts_->box}, poses, kMostSpans, list);
+  }
   const PlacedGeometry<S> placed(body_);
   if (isBounded(placed)) return appendBody(boundedBodyOf(placed, name_), list);
   detail::appendBounds(body_, list);
@@ -100,8 +131,7 @@ template <typename S>
 CompoundSide<S>::MovingPart::MovingPart(const CompoundSide& side, int i)
     : moving_(side.body_) {
   if (!side.parts_) return;
-  const auto& part = side.parts_->parts[static_cast<std::size_t>(i)];
-  requireRigidPart(*part.geometry, side.name_);
+  const Part& part = side.part(i);
   moving_.geometry = part.geometry.get();
   if (moving_.path != PathKind::kBounded && moving_.path != PathKind::kSpline) {
     moving_.offset = toOffset(part.offset);
@@ -145,27 +175,19 @@ std::vector<PartPair> CompoundPair<S>::near(
   side2_.appendWhole(whole2);
   const deformable::MovingBounds all1 = whole1.at(0), all2 = whole2.at(0);
   if (deformable::meetingWindow(all1, all2, distance).isEmpty()) return {};
-  const auto take = [](const CompoundSide<S>& side, const BoundsList& whole,
-                       BoundsList& bounds) {
-    if (side.isCompound())
-      side.appendBounds(bounds);
-    else
-      bounds = whole;
-  };
-  take(side1_, whole1, bounds1);
-  take(side2_, whole2, bounds2);
-  const std::vector<int> near1 = meeting(bounds1, all2, distance),
-                         near2 = meeting(bounds2, all1, distance);
+  const std::vector<int> near1 = side1_.appendNear(all2, distance, bounds1),
+                         near2 = side2_.appendNear(all1, distance, bounds2);
+  const BoundsList &list1 = side1_.isCompound() ? bounds1 : whole1,
+                   &list2 = side2_.isCompound() ? bounds2 : whole2;
   std::vector<PartPair> pairs;
-  for (const int i : near1)
-    for (const int k : near2) {
+  for (std::size_t i = 0; i < near1.size(); ++i)
+    for (std::size_t k = 0; k < near2.size(); ++k) {
       const MeetingWindow window =
-          deformable::meetingWindow(bounds1.at(static_cast<std::size_t>(i)),
-                                    bounds2.at(static_cast<std::size_t>(k)), distance);
+          deformable::meetingWindow(list1.at(i), list2.at(k), distance);
       // A contact may be reported earlier than boxes meet, by up to toc_err.
       const double earliest = window.lo - options.toc_err;
       if (!window.isEmpty() && earliest <= options.t_max)
-        pairs.push_back({earliest, i, k});
+        pairs.push_back({earliest, near1[i], near2[k]});
     }
   std::sort(pairs.begin(), pairs.end(), [](const PartPair& x, const PartPair& y) {
     return std::tie(x.t_lo, x.part1, x.part2) < std::tie(y.t_lo, y.part1, y.part2);

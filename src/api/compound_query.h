@@ -15,6 +15,7 @@
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "paths/offset_path.h"
 #include "prepare/checked_request.h"
+#include "prepare/object_bounds.h"
 #include "prepare/query_arguments.h"
 
 namespace fcl {
@@ -35,6 +36,11 @@ class CompoundSide {
 
   /// @brief Adds the bounds of all parts.
   void appendBounds(deformable::BoundsList& list) const;
+  /// @brief Adds the bounds of the parts that meet another object. An object that is no
+  /// compound is taken to meet it, and nothing is added.
+  /// @return their numbers
+  std::vector<int> appendNear(const deformable::MovingBounds& other, double distance,
+                              deformable::BoundsList& list) const;
   /// @brief Adds the bounds of the object as one.
   void appendWhole(deformable::BoundsList& list) const;
 
@@ -42,6 +48,11 @@ class CompoundSide {
   class MovingPart;
 
  private:
+  using Part = typename CompoundParts<S>::Part;
+  const Part& part(int i) const { return parts_->parts[static_cast<std::size_t>(i)]; }
+  void appendPart(int i, PathPoses& poses, int most_spans,
+                  deformable::BoundsList& list) const;
+
   const char* name_;
   /// Null: no compound.
   const CompoundParts<S>* parts_;
@@ -117,7 +128,6 @@ template <typename S>
 struct PartAnswer {
   struct Result : ContinuousContacts<S> {
     QueryOutcome<S> outcome;
-    S time_of_contact;
   };
   int part1, part2;
   Result result;

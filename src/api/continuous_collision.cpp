@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
 #include <cassert>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +13,6 @@
 #include "base/stopwatch.h"
 #include "curved/curved_contacts.h"
 #include "curved/shape_contacts.h"
-#include "fcl/broadphase/detail/pair_answers.h"
 #include "fcl/common/exception.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
@@ -214,14 +215,33 @@ void answerGeometries(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
     answerStraight(o1, o2, request, reply);
 }
 
-/// What is asked of the pairs of parts.
-template <typename S>
-ContinuousContactRequest<S> requestOf(const QueryOptions& options) {
-  ContinuousContactRequest<S> request;
-  request.query = options.query;
-  request.t_max = static_cast<S>(options.t_max);
-  request.toc_err = static_cast<S>(options.toc_err);
-  return request;
+/// The pairs of parts in contact that a query asks for.
+///
+/// ContinuousQuery::kFirst: a contact may be the first one if its bracket begins no later
+/// than the earliest bracket ends. It begins up to toc_err early, so pairs are tested up
+/// to toc_err after that end, and the brackets of such contacts are all complete. Pairs
+/// whose windows begin together are tested up to the same time. So the answer does not
+/// depend on the numbers of the parts.
+/// @param pairs  sorted by t_lo
+/// @param test  bool test(pair, latest, answer): whether a pair is in contact
+template <typename S, typename Test>
+std::vector<PartAnswer<S>> answersOf(const std::vector<PartPair>& pairs,
+                                     const QueryOptions& options, const Test& test) {
+  constexpr double kRounding = 64 * std::numeric_limits<S>::epsilon();
+  std::vector<PartAnswer<S>> answers;
+  double latest = options.t_max, next_latest = latest;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (i > 0 && pairs[i].t_lo > pairs[i - 1].t_lo) latest = next_latest;
+    if (pairs[i].t_lo > latest) break;
+    PartAnswer<S> tested;
+    if (!test(pairs[i], latest, tested)) continue;
+    if (options.query == ContinuousQuery::kFirst)
+      next_latest = std::min(next_latest, double{tested.result.outcome.toc_hi} +
+                                              options.toc_err + kRounding);
+    answers.push_back(std::move(tested));
+    if (options.query == ContinuousQuery::kAny) break;
+  }
+  return answers;
 }
 
 /// Answers two objects, one or both of them compounds.
@@ -231,12 +251,13 @@ void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
   const deformable::Stopwatch start;
   const CompoundPair<S> compounds(o1, o2);
   compounds.requireNoTriangleGroups(request);
+  // Far parts are not asked, so that a filter of a wrong size is refused here.
+  const RequestFilter filter(request, o1.geometry(), o2.geometry(), false);
   CheckedRequest asked = request;
   StageCounts counts;
   StageTimes times;
-  const auto test = [&](const PartPair& pair, const ContinuousContactRequest<S>& now,
-                        PartAnswer<S>& answer) {
-    asked.options.t_max = static_cast<double>(now.t_max);
+  const auto test = [&](const PartPair& pair, double latest, PartAnswer<S>& answer) {
+    asked.options.t_max = latest;
     answer.part1 = compounds.number1(pair);
     answer.part2 = compounds.number2(pair);
     auto& result = answer.result;
@@ -244,15 +265,15 @@ void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
       answerGeometries(x, y, answererOf(x, y), asked,
                        {result.outcome, reply.contacts ? &result : nullptr});
     });
-    result.time_of_contact = result.outcome.toc_lo;
     counts += result.counts;
     times.update += result.times.update;
     times.traverse += result.times.traverse;
     return result.outcome.is_collide;
   };
   const QueryOptions& options = request.options;
-  std::vector<PartAnswer<S>> answers =
-      pairsInContact<PartAnswer<S>>(compounds.near(options), requestOf<S>(options), test);
+  std::vector<PartAnswer<S>> answers;
+  if (!filter.rejectsAll())
+    answers = answersOf<S>(compounds.near(options), options, test);
   const QueryOutcome<S> outcome = earliestOf(answers);
   if (reply.contacts) {
     ContinuousContacts<S> contacts = joinedContacts(std::move(answers), options);

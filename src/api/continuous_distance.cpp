@@ -217,14 +217,15 @@ class CompoundDistance {
   int numThreads() const { return checked_.options.num_threads; }
 
   ContinuousDistanceResult<S> run() {
-    if (!doFiltersAccept()) return noDistance<S>();
+    const RequestFilter filter(checked_, o1_.geometry(), o2_.geometry(), false);
+    if (filter.rejectsAll()) return noDistance<S>();
     const auto limit = static_cast<double>(request_.max_distance);
     const bool are_some_far =
         compounds_.visitNearest(limit, [this](const PartPair& pair) {
-          if (!is_collide_) take(pair);
+          if (!best_.is_collide) take(pair);
           return static_cast<double>(request_.max_distance);
         });
-    if (is_collide_) return firstTouch();
+    if (best_.is_collide) return firstTouch();
     best_.is_cut_off = !is_measured_ && (is_cut_off_ || are_some_far);
     if (best_.is_cut_off)
       best_.distance_lo = std::min(best_.distance_lo, static_cast<S>(limit));
@@ -232,27 +233,17 @@ class CompoundDistance {
   }
 
  private:
-  bool doFiltersAccept() const {
-    const ContinuousFilter &x = request_.filter1, &y = request_.filter2;
-    const bool have_triangles = !x.triangle_groups.empty() || !x.triangle_masks.empty() ||
-                                !y.triangle_groups.empty() || !y.triangle_masks.empty();
-    return have_triangles || ((x.group & y.mask) != 0 && (y.group & x.mask) != 0);
-  }
-
   void take(const PartPair& pair) {
     ContinuousDistanceResult<S> one;
     compounds_.ask(pair, [&](const PlacedGeometry<S>& x, const PlacedGeometry<S>& y) {
       one = DistanceQuery<S>(x.moving(), y.moving(), request_).run();
     });
-    is_collide_ = one.is_collide;
+    one.part1 = compounds_.number1(pair);
+    one.part2 = compounds_.number2(pair);
     is_cut_off_ |= one.is_cut_off;
     is_measured_ |= !one.is_cut_off && std::isfinite(one.distance_lo);
     const S least = std::min(best_.distance_lo, one.distance_lo);
-    if (one.distance_hi < best_.distance_hi) {
-      best_ = one;
-      best_.part1 = compounds_.number1(pair);
-      best_.part2 = compounds_.number2(pair);
-    }
+    if (one.is_collide || one.distance_hi < best_.distance_hi) best_ = one;
     best_.distance_lo = least;
     // A pair that is not nearer need not be measured. 0 is no limit that a query takes.
     if (one.distance_hi > 0)
@@ -264,6 +255,8 @@ class CompoundDistance {
     ContinuousContactResult<S> found;
     answerPair(o1_.moving(), o2_.moving(), contact_request_, outcome,
                static_cast<ContinuousContacts<S>*>(&found));
+    // Parts that only graze may be none for the boxes of both objects.
+    if (!outcome.is_collide) return best_;
     found.time_of_contact = outcome.toc_lo;
     return touchingAt(found);
   }
@@ -274,8 +267,9 @@ class CompoundDistance {
   const ContinuousContactRequest<S> contact_request_;
   const CheckedRequest checked_;
   const CompoundPair<S> compounds_;
+  /// Of the nearest parts so far, or of some that touch.
   ContinuousDistanceResult<S> best_;
-  bool is_collide_{false}, is_cut_off_{false}, is_measured_{false};
+  bool is_cut_off_{false}, is_measured_{false};
 };
 
 /// Runs a query in its threads.

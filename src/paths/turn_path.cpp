@@ -277,8 +277,9 @@ PoseRate MotionPath::turnAccelerationAt(double t) const {
 }
 
 // p'' = w^2 (cos (D x + Q) - sin (C x + P)). The two vectors are perpendicular and have
-// the same length, up to a rounding of at most 16 u (|x| + |P| + |Q|). This adds no more
-// than twice as much to the length of the result.
+// the same length, up to a rounding of at most 16 u (|x| + |P| + |Q|), and of a frame on
+// the body by what more_rounding_ has for it. This adds no more than twice as much to the
+// length of the result.
 AccelerationBound MotionPath::turnAcceleration() const {
   AccelerationBound bound{};
   if (turn_.angle == 0) {
@@ -289,11 +290,13 @@ AccelerationBound MotionPath::turnAcceleration() const {
   for (int i = 0; i < 9; ++i) bound.turn[i] = square * turn_.sine_rotation[i];
   for (int k = 0; k < 3; ++k) bound.offset[k] = square * turn_.sine_translation[k];
   if (hasTurningRotation()) {
-    bound.per_radius = (square * stretch_ + rounding) * kUpward;
-    bound.per_distance = rounding * stretch_;
+    const double more = 2 * square * more_rounding_.rotation;
+    bound.per_radius = (square * stretch_ + rounding + more) * kUpward;
+    bound.per_distance = rounding * stretch_ + more;
   }
   bound.constant = rounding * (norm(vecOf(turn_.sine_translation)) +
-                               norm(vecOf(turn_.cosine_translation)));
+                               norm(vecOf(turn_.cosine_translation))) +
+                   2 * square * more_rounding_.translation;
   bound.per_displacement = 2 * turn_speed_ * kUpward;
   bound.jerk = turn_.angle * kUpward;
   return bound;

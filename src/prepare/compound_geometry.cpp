@@ -131,6 +131,10 @@ template <typename S>
 void requireParts(const CompoundParts<S>& compound, const std::string& name) {
   if (compound.parts.empty())
     throw Exception(name + " is a compound without parts. Call addPart() first");
+  // Also of parts that are far: a box that was read before a mesh deformed may be wrong.
+  for (std::size_t i = 0; i < compound.parts.size(); ++i)
+    if (compound.parts[i].geometry->getObjectType() == OT_BVH)
+      requireRigidPart(*compound.parts[i].geometry, nameOfPart(i) + ", " + name + ",");
 }
 
 template <typename S>

@@ -27,7 +27,6 @@ constexpr double kRoom = 0x1p-40;
 /// The deviation from straight lines is at most this share of the radius of an object, if
 /// this needs no more than kMostSpans.
 constexpr double kDeviation = 0x1p-4;
-constexpr int kMostSpans = 16;
 /// FCL's default. A larger rounding error of an InterpMotion's reference point is
 /// refused.
 constexpr double kDefaultTocErr = 1e-4;
@@ -42,10 +41,10 @@ double accelerationOf(const AccelerationBound& bound, const BodyBox (&box)[2]) {
          bound.per_displacement * box[0].displacement;
 }
 
-/// The box of the body at t in the world, without the deviation in a span.
-HalfAxisBox boxAt(const BoundedBody& body, double t, double pad) {
-  const Pose pose = body.path.pose(t);
-  const BodyBox &from = body.box[0], &to = body.box[1];
+/// The box of a body at t in the world, without the deviation in a span.
+/// @param pose  at t
+HalfAxisBox boxAt(const BodyBox (&box)[2], const Pose& pose, double t, double pad) {
+  const BodyBox &from = box[0], &to = box[1];
   double center[3], extent[3];
   for (int k = 0; k < 3; ++k) {
     center[k] = (1 - t) * from.center[k] + t * to.center[k];
@@ -68,11 +67,11 @@ HalfAxisBox boxAt(const BoundedBody& body, double t, double pad) {
   return out;
 }
 
-int numSpans(const BoundedBody& body) {
-  const double deviation = 0.125 * accelerationOf(body.path.acceleration(0, 1), body.box);
-  const double wanted = kDeviation * std::max(body.box[0].radius, body.box[1].radius);
+int numSpans(const BodyBox (&box)[2], double acceleration, int most) {
+  const double deviation = 0.125 * acceleration,
+               wanted = kDeviation * std::max(box[0].radius, box[1].radius);
   int n = 1;
-  while (n < kMostSpans && deviation > wanted * n * n) n *= 2;
+  while (n < most && deviation > wanted * n * n) n *= 2;
   return n;
 }
 
@@ -202,35 +201,51 @@ void appendFlat(const PlacedGeometry<S>& placed, BoundsList& list) {
 
 }  // namespace
 
-void appendBody(const BoundedBody& body, BoundsList& list) {
-  for (const BodyBox& box : body.box)
-    if (!std::isfinite(norm(box.center) + box.radius)) refuse(body.path.name());
-  const int n = numSpans(body);
-  const double stretch = body.path.stretch();
-  double size = body.path.largestTranslation(), pad = 0;
-  for (const BodyBox& box : body.box) {
+const Pose& PathPoses::at(int i, int n) {
+  std::optional<Pose>& pose = poses_[std::size_t(i * (kMostSpans / n))];
+  if (!pose) pose = path_.pose(double(i) / n);
+  return *pose;
+}
+
+void appendBox(const BodyBox (&body)[2], PathPoses& poses, int most_spans,
+               BoundsList& list) {
+  const MotionPath& path = poses.path();
+  for (const BodyBox& box : body)
+    if (!std::isfinite(norm(box.center) + box.radius)) refuse(path.name());
+  const double acceleration = accelerationOf(path.acceleration(0, 1), body);
+  const int n = numSpans(body, acceleration, most_spans);
+  const double stretch = path.stretch();
+  double size = path.largestTranslation(), pad = 0;
+  for (const BodyBox& box : body) {
     size = std::max(
-        size, body.path.largestTranslation() + stretch * (norm(box.center) + box.radius));
-    pad = std::max(
-        pad, stretch * box.pad + body.path.positionError(norm(box.center) + box.radius));
+        size, path.largestTranslation() + stretch * (norm(box.center) + box.radius));
+    pad = std::max(pad,
+                   stretch * box.pad + path.positionError(norm(box.center) + box.radius));
   }
   const std::size_t first = list.boxes.size();
   for (int i = 0; i <= n; ++i)
-    list.boxes.push_back(boxAt(body, double(i) / n, pad + kRoom * size));
+    list.boxes.push_back(boxAt(body, poses.at(i, n), double(i) / n, pad + kRoom * size));
   double before = 0;
   for (int i = 0; i <= n; ++i) {
     const double dt = 1. / n;
     double after = 0;
     if (i < n)
       after = 0.125 * dt * dt * kUpward *
-              accelerationOf(body.path.acceleration(i * dt, (i + 1) * dt), body.box);
+              (n == 1 || path.hasConstantAcceleration()
+                   ? acceleration
+                   : accelerationOf(path.acceleration(i * dt, (i + 1) * dt), body));
     for (double& half : list.boxes[first + static_cast<std::size_t>(i)].half)
       half += std::max(before, after);
     before = after;
   }
   const auto end = list.boxes.end();
-  if (!std::all_of(end - (n + 1), end, isFinite)) refuse(body.path.name());
+  if (!std::all_of(end - (n + 1), end, isFinite)) refuse(path.name());
   list.items.push_back({first, n});
+}
+
+void appendBody(const BoundedBody& body, BoundsList& list) {
+  PathPoses poses(body.path);
+  appendBox(body.box, poses, kMostSpans, list);
 }
 
 template <typename S>

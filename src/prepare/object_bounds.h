@@ -2,6 +2,8 @@
 #ifndef FCL_CCD_PREPARE_OBJECT_BOUNDS_H
 #define FCL_CCD_PREPARE_OBJECT_BOUNDS_H
 
+#include <optional>
+
 #include "broadphase/broad_phase.h"
 #include "fcl/narrowphase/detail/query_numbers.h"
 #include "paths/motion_path.h"
@@ -18,6 +20,24 @@ struct BoundedBody {
   deformable::MotionPath path;
 };
 
+/// @brief The largest number of spans of moving bounds, a power of two.
+constexpr int kMostSpans = 16;
+
+/// @brief The poses of a path at the ends of spans, each computed once.
+class PathPoses {
+ public:
+  /// @param path  lives as long as this
+  explicit PathPoses(const deformable::MotionPath& path) : path_(path) {}
+
+  const deformable::MotionPath& path() const { return path_; }
+  /// @brief The pose at i / n. @param n  a power of two up to kMostSpans
+  const deformable::Pose& at(int i, int n);
+
+ private:
+  const deformable::MotionPath& path_;
+  std::optional<deformable::Pose> poses_[kMostSpans + 1];
+};
+
 /// @brief Whether an object has boxes. Not: planes, halfspaces, compounds with one of
 /// these, and what appendBounds() has no bounds for.
 template <typename S>
@@ -28,6 +48,12 @@ bool isBounded(const PlacedGeometry<S>& placed);
 /// @throws fcl::Exception  as appendBounds()
 template <typename S>
 BoundedBody boundedBodyOf(const PlacedGeometry<S>& placed, const char* name);
+
+/// @brief As appendBounds(), of a body with these boxes in its frame at t = 0 and t = 1.
+/// @param most_spans  a power of two up to kMostSpans; fewer spans cost less, and the
+/// bounds are wider
+void appendBox(const deformable::BodyBox (&body)[2], PathPoses& poses, int most_spans,
+               deformable::BoundsList& list);
 
 /// @brief As appendBounds().
 void appendBody(const BoundedBody& body, deformable::BoundsList& list);

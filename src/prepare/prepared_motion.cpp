@@ -9,6 +9,7 @@
 #include "numerics/error_bounds.h"
 #include "paths/posed_vector.h"
 #include "prepare/octree_nodes.h"
+#include "prepare/required_pose.h"
 
 namespace fcl {
 namespace detail {
@@ -101,6 +102,14 @@ MotionPath unnamedPathOf(const PlacedGeometry<S>& placed, const char* name) {
   return offset.is_set ? path.placed(toPose(offset)) : path;
 }
 
+[[noreturn]] void refuseReference(const std::string& name) {
+  throw Exception(
+      name +
+      ": the reference point of the InterpMotion is not finite or far too large. FCL's "
+      "constructors of two poses do not set it. Use the constructor of five arguments, "
+      "InterpMotion(R1, T1, R2, T2, O), with O = 0");
+}
+
 }  // namespace
 
 template <typename S>
@@ -114,7 +123,11 @@ void requireRotations(const PlacedGeometry<S>& placed, const char* name) {
 
 template <typename S>
 void requireDefinedPath(const PlacedGeometry<S>& placed, const std::string& name) {
-  if (placed.goesStraight() || placed.moving().path != PathKind::kUndefined) return;
+  const MovingGeometry<S>& moving = placed.moving();
+  if (placed.goesStraight()) return;
+  if (moving.path == PathKind::kTurn && !areFinite(moving.reference))
+    refuseReference(name);
+  if (moving.path != PathKind::kUndefined) return;
   throw Exception(
       name + ", " + kindOf(placed.geometry()) +
       ": request.ccd_motion_type does not define how it turns between two transforms. "
@@ -181,11 +194,7 @@ void PreparedMotion::requireDefined(const PlacedGeometry<S>& placed,
             norm(placed.end().translation);
   if (!(kRounding * norm(moving.reference) <=
         std::max(toc_err, kLeastRelevantTocErr) * size))
-    throw Exception(
-        name +
-        ": the reference point of the InterpMotion is not finite or far too large. FCL's "
-        "constructors of two poses do not set it. Use the constructor of five arguments, "
-        "InterpMotion(R1, T1, R2, T2, O), with O = 0");
+    refuseReference(name);
 }
 
 double PreparedMotion::size() const {

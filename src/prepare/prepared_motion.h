@@ -22,7 +22,7 @@ template <typename S>
 void requireRotations(const PlacedGeometry<S>& placed, const char* name);
 
 /// @brief Refuses a path between two transforms that request.ccd_motion_type does not
-/// define.
+/// define, and one about a reference point that is not finite.
 /// @param name  the name of the geometry in errors
 template <typename S>
 void requireDefinedPath(const PlacedGeometry<S>& placed, const std::string& name);

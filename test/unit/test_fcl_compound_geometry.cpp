@@ -553,7 +553,7 @@ TEST(CompoundGeometry, QueriesNameTheObjectAndThePart) {
   expectError(ask(pair, Request()), "o1 is part 0 of a compound: ");
   ball->radius = 1;
   update(*model, moved(mesh, 1, 0, 0));
-  expectError(ask(pair, Request()), "o1 is part 1 of a compound: ");
+  expectError(ask(pair, Request()), "part 1 of a CompoundGeometry, o1, is a mesh that");
   expectError(errorOf([&] { pair.update(); }), "part 1 of a CompoundGeometry");
   expectError(errorOf([&] {
                 continuousCandidates(
@@ -572,11 +572,13 @@ TEST(CompoundGeometry, QueriesNameTheObjectAndThePart) {
                 continuousCollide(&pair, &thrown, ball.get(), &thrown, Request(), result);
               }),
               "FCL has no compounds");
+  Compound single;
+  single.addPart(ball);
   Tf bad = here;
   bad.linear() *= 2;
   expectError(errorOf([&] {
                 Result result;
-                continuousCollide(&pair, bad, bad, ball.get(), here, here, Request(),
+                continuousCollide(&single, bad, bad, ball.get(), here, here, Request(),
                                   result);
               }),
               "o1, a compound: a transform scales");

@@ -34,11 +34,11 @@ void sortByTime(std::vector<Answer>& pairs) {
 /// pairs differ by less, their order may depend on it too. Therefore pairs are tested up
 /// to 2 toc_err after the best time. At the end those in this range are tested again, up
 /// to the request's t_max. So the answer does not depend on the order of the tests.
-/// @return the pairs that may be the first in contact, in the order of their tests
+/// @return the pair that is first in contact, or none
 template <typename Answer, typename S, typename Pair, typename Test>
-std::vector<Answer> earliestAnswers(const std::vector<Pair>& pairs,
-                                    const ContinuousContactRequest<S>& asked,
-                                    const Test& test) {
+std::vector<Answer> firstAnswer(const std::vector<Pair>& pairs,
+                                const ContinuousContactRequest<S>& asked,
+                                const Test& test) {
   struct InContact {
     std::size_t pair;
     bool is_cut;
@@ -58,28 +58,30 @@ std::vector<Answer> earliestAnswers(const std::vector<Pair>& pairs,
   }
   const S latest = request.t_max;
   request.t_max = asked.t_max;
-  std::vector<Answer> earliest;
+  std::vector<Answer> first;
   for (InContact& contact : found) {
     if (contact.tested.result.time_of_contact > latest) continue;
     if (contact.is_cut) test(pairs[contact.pair], request, contact.tested);
-    earliest.push_back(std::move(contact.tested));
+    if (first.empty())
+      first.push_back(std::move(contact.tested));
+    else if (contact.tested.result.time_of_contact < first.front().result.time_of_contact)
+      first.front() = std::move(contact.tested);
   }
-  return earliest;
+  return first;
 }
 
-/// @brief The pairs in contact that a request asks for, in the order of their tests.
-/// ContinuousQuery::kFirst: all that may be the first.
+/// @brief The pairs in contact that a request asks for, sorted by time.
 /// @param pairs  sorted by t_lo
 /// @param asked  the test may set its filters
 /// @param test  bool test(pair, request, answer): whether a pair is in contact
 template <typename Answer, typename S, typename Pair, typename Test>
-std::vector<Answer> pairsInContact(const std::vector<Pair>& pairs,
-                                   const ContinuousContactRequest<S>& asked,
-                                   const Test& test) {
+std::vector<Answer> answersOf(const std::vector<Pair>& pairs,
+                              const ContinuousContactRequest<S>& asked,
+                              const Test& test) {
   ContinuousContactRequest<S> request = asked;
   request.filter1 = request.filter2 = ContinuousFilter();
   if (request.query == ContinuousQuery::kFirst)
-    return detail::earliestAnswers<Answer>(pairs, request, test);
+    return detail::firstAnswer<Answer>(pairs, request, test);
   std::vector<Answer> answers;
   for (const Pair& pair : pairs) {
     Answer tested;
@@ -87,18 +89,7 @@ std::vector<Answer> pairsInContact(const std::vector<Pair>& pairs,
     answers.push_back(std::move(tested));
     if (request.query == ContinuousQuery::kAny) break;
   }
-  return answers;
-}
-
-/// @brief The same, sorted by time. ContinuousQuery::kFirst: the first one.
-template <typename Answer, typename S, typename Pair, typename Test>
-std::vector<Answer> answersOf(const std::vector<Pair>& pairs,
-                              const ContinuousContactRequest<S>& asked,
-                              const Test& test) {
-  std::vector<Answer> answers = detail::pairsInContact<Answer>(pairs, asked, test);
   detail::sortByTime<S>(answers);
-  if (asked.query == ContinuousQuery::kFirst && answers.size() > 1)
-    answers.erase(answers.begin() + 1, answers.end());
   return answers;
 }
 
