@@ -20,6 +20,10 @@ using deformable::Pose;
 
 namespace {
 
+/// Wider bounds cost less, and let some more parts be asked. With these a query of boxes
+/// that turn costs the least.
+constexpr int kWholeSpans = 4, kPartSpans = 8;
+
 template <typename S>
 void copyPose(const Pose& pose, PoseNumbers<S>& out) {
   const auto round = [](double x) { return static_cast<S>(x); };
@@ -83,17 +87,16 @@ void CompoundSide<S>::appendPart(int i, PathPoses& poses, int most_spans,
 
 template <typename S>
 void CompoundSide<S>::appendBounds(BoundsList& list) const {
-  if (!parts_) return appendWhole(list);
+  if (!parts_) return appendWhole(nullptr, list);
   PathPoses poses(*path_);
-  for (int i = 0; i < count(); ++i) appendPart(i, poses, kMostSpans, list);
+  for (int i = 0; i < count(); ++i) appendPart(i, poses, kPartSpans, list);
 }
 
 template <typename S>
 std::vector<int> CompoundSide<S>::appendNear(const deformable::MovingBounds& other,
-                                             double distance, BoundsList& list) const {
-  if (!parts_) return {0};
-  PathPoses poses(*path_);
-  const bool is_straight = path_->acceleration(0, 1).isZero();
+                                             double distance, PathPoses& poses,
+                                             BoundsList& list) const {
+  const bool is_straight = poses.acceleration().isZero();
   const auto meets = [&] {
     return !deformable::meetingWindow(list.at(list.items.size() - 1), other, distance)
                 .isEmpty();
@@ -107,7 +110,7 @@ std::vector<int> CompoundSide<S>::appendNear(const deformable::MovingBounds& oth
       removeLast(list);
       if (!is_near) continue;
     }
-    appendPart(i, poses, kMostSpans, list);
+    appendPart(i, poses, kPartSpans, list);
     if (meets())
       near.push_back(i);
     else
@@ -117,11 +120,9 @@ std::vector<int> CompoundSide<S>::appendNear(const deformable::MovingBounds& oth
 }
 
 template <typename S>
-void CompoundSide<S>::appendWhole(BoundsList& list) const {
-  if (parts_ && parts_->has_box) {
-    PathPoses poses(*path_);
-    return appendBox({parts_->box, parts_->box}, poses, kMostSpans, list);
-  }
+void CompoundSide<S>::appendWhole(PathPoses* poses, BoundsList& list) const {
+  if (parts_ && parts_->has_box)
+    return appendBox({parts_->box, parts_->box}, *poses, kWholeSpans, list);
   const PlacedGeometry<S> placed(body_);
   if (isBounded(placed)) return appendBody(boundedBodyOf(placed, name_), list);
   detail::appendBounds(body_, list);
@@ -170,13 +171,17 @@ template <typename S>
 std::vector<PartPair> CompoundPair<S>::near(
     const deformable::QueryOptions& options) const {
   const double distance = options.min_distance;
+  std::optional<PathPoses> poses1, poses2;
+  if (side1_.path()) poses1.emplace(*side1_.path());
+  if (side2_.path()) poses2.emplace(*side2_.path());
   BoundsList whole1, whole2, bounds1, bounds2;
-  side1_.appendWhole(whole1);
-  side2_.appendWhole(whole2);
+  side1_.appendWhole(poses1 ? &*poses1 : nullptr, whole1);
+  side2_.appendWhole(poses2 ? &*poses2 : nullptr, whole2);
   const deformable::MovingBounds all1 = whole1.at(0), all2 = whole2.at(0);
   if (deformable::meetingWindow(all1, all2, distance).isEmpty()) return {};
-  const std::vector<int> near1 = side1_.appendNear(all2, distance, bounds1),
-                         near2 = side2_.appendNear(all1, distance, bounds2);
+  std::vector<int> near1{0}, near2{0};
+  if (poses1) near1 = side1_.appendNear(all2, distance, *poses1, bounds1);
+  if (poses2) near2 = side2_.appendNear(all1, distance, *poses2, bounds2);
   const BoundsList &list1 = side1_.isCompound() ? bounds1 : whole1,
                    &list2 = side2_.isCompound() ? bounds2 : whole2;
   std::vector<PartPair> pairs;

@@ -36,13 +36,17 @@ class CompoundSide {
 
   /// @brief Adds the bounds of all parts.
   void appendBounds(deformable::BoundsList& list) const;
-  /// @brief Adds the bounds of the parts that meet another object. An object that is no
-  /// compound is taken to meet it, and nothing is added.
+  /// @brief Adds the bounds of the parts that meet another object.
+  /// @param poses  of path()
   /// @return their numbers
+  /// @pre it is a compound
   std::vector<int> appendNear(const deformable::MovingBounds& other, double distance,
-                              deformable::BoundsList& list) const;
+                              PathPoses& poses, deformable::BoundsList& list) const;
   /// @brief Adds the bounds of the object as one.
-  void appendWhole(deformable::BoundsList& list) const;
+  /// @param poses  of path(); null: it is no compound
+  void appendWhole(PathPoses* poses, deformable::BoundsList& list) const;
+  /// @brief Of a compound; null: it is none.
+  const deformable::MotionPath* path() const { return path_ ? &*path_ : nullptr; }
 
   /// @brief A part and its motion.
   class MovingPart;

@@ -212,7 +212,7 @@ void appendBox(const BodyBox (&body)[2], PathPoses& poses, int most_spans,
   const MotionPath& path = poses.path();
   for (const BodyBox& box : body)
     if (!std::isfinite(norm(box.center) + box.radius)) refuse(path.name());
-  const double acceleration = accelerationOf(path.acceleration(0, 1), body);
+  const double acceleration = accelerationOf(poses.acceleration(), body);
   const int n = numSpans(body, acceleration, most_spans);
   const double stretch = path.stretch();
   double size = path.largestTranslation(), pad = 0;

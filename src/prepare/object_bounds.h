@@ -27,14 +27,18 @@ constexpr int kMostSpans = 16;
 class PathPoses {
  public:
   /// @param path  lives as long as this
-  explicit PathPoses(const deformable::MotionPath& path) : path_(path) {}
+  explicit PathPoses(const deformable::MotionPath& path)
+      : path_(path), acceleration_(path.acceleration(0, 1)) {}
 
   const deformable::MotionPath& path() const { return path_; }
+  /// @brief During the step.
+  const deformable::AccelerationBound& acceleration() const { return acceleration_; }
   /// @brief The pose at i / n. @param n  a power of two up to kMostSpans
   const deformable::Pose& at(int i, int n);
 
  private:
   const deformable::MotionPath& path_;
+  const deformable::AccelerationBound acceleration_;
   std::optional<deformable::Pose> poses_[kMostSpans + 1];
 };
 
