@@ -20,8 +20,8 @@ is late.
 
 Meshes: DeformableMesh, RigidMesh; weld_vertices() for triangle soup. Shapes: Box, Sphere,
 Capsule, Ellipsoid, Cone, Cylinder, Convex, Plane, Halfspace, TriangleP. Maps of occupied
-cells: OcTree. Motions: a pose, two poses, LinearMotion, ScrewMotion, TwistMotion,
-SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
+cells: OcTree. Bodies of several of these: Compound. Motions: a pose, two poses,
+LinearMotion, ScrewMotion, TwistMotion, SplineMotion, WaypointMotion, the links of a robot (JointChain, ChainMotion), and your own as
 a BoundedMotion. Queries: collide(), self_collide(), which take a Filter and give a Result.
 How near two objects come: distance(), which gives a DistanceResult. Many objects:
 CollisionManager. Edges of a planner: CollisionRobot. With min_distance features are in
@@ -37,6 +37,7 @@ RuntimeError for an update of a mesh while a query of it runs.
 
 from . import _requirements  # isort: skip - it says what is missing for the rest
 from ._chains import ChainMotion, JointChain, LinkMotion, urdf_origin
+from ._compounds import Compound
 from ._core import version as __version__
 from ._dataframes import to_dataframe
 from ._manager import CollisionManager, ManagerResult, NearestPair, Pair
@@ -88,6 +89,7 @@ __all__ = [
     "ChainMotion",
     "CollisionManager",
     "CollisionRobot",
+    "Compound",
     "Cone",
     "Convex",
     "Cylinder",

@@ -174,6 +174,13 @@ class TriangleP(Geometry):
     @property
     def c(self) -> NDArray[np.float64]: ...
 
+class Compound(Geometry):
+    def __init__(
+        self, parts: Sequence[Geometry], offsets: Sequence[NDArray[np.float64]]
+    ) -> None: ...
+    @property
+    def num_parts(self) -> int: ...
+
 class OcTree(Geometry):
     def __init__(self, points: NDArray[np.float64], resolution: float) -> None: ...
     @property

@@ -125,7 +125,7 @@ def geometry_of(o: Union[Geometry, TriangleMesh], name: str) -> Geometry:
     if not isinstance(o, _core.Geometry):
         if _arguments.is_mesh(o):
             return RigidMesh(o)
-        wanted = "a DeformableMesh, a RigidMesh, a shape or an OcTree"
+        wanted = "a DeformableMesh, a RigidMesh, a shape, an OcTree or a Compound"
         raise _arguments.wrong_type(name, o, wanted)
     return o
 
@@ -194,7 +194,7 @@ def collide(
 
     Parameters
     ----------
-    o1, o2 : DeformableMesh, RigidMesh, a shape, for example Box, or an OcTree
+    o1, o2 : DeformableMesh, RigidMesh, a shape, for example Box, an OcTree or a Compound
         Shapes are solid; Plane and TriangleP are surfaces. A mesh of another package with
         vertices and faces, for example a trimesh.Trimesh, becomes a RigidMesh in each
         call: make it once for more calls.
@@ -286,6 +286,8 @@ class DistanceResult(_arguments.Built):
         The nearest points of o1 and o2 then, in the world frame.
     b1, b2 : int
         The triangles that have them; -1 for a shape; of an OcTree a number for its cells().
+    part1, part2 : int
+        The parts that have them; -1 where the object is no Compound.
     is_collide : bool
         Whether they touch during the step.
     is_cut_off : bool
@@ -299,6 +301,8 @@ class DistanceResult(_arguments.Built):
     nearest_points: NDArray[np.float64]
     b1: int
     b2: int
+    part1: int
+    part2: int
     is_collide: bool
     is_cut_off: bool
 

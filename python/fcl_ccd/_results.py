@@ -66,6 +66,8 @@ class Result(_Asked, _arguments.Built):
         b1, b2       int64       triangles of o1 and o2 that have the features; free edges
                                  and points are numbered after them; -1 for a shape; of an
                                  OcTree a number for its cells()
+        part1, part2  int32      the parts of o1 and o2 of which these are; -1 where the
+                                 object is no Compound
         vertices     (5,) int32  VERTEX_FACE: v, f0, f1, f2. EDGE_EDGE: ea0, ea1, eb0, eb1.
                                  CROSSING: e0, e1, f0, f1, f2. VERTEX_EDGE: v, e0, e1.
                                  VERTEX_VERTEX: v of o1, v of o2. With a shape: the

@@ -73,6 +73,11 @@ def surface_at(queried: Queried, name: str, t: float) -> Surface:
     """
     o, path, num_updates = queried
     surface: Surface
+    if isinstance(o, _core.Compound):
+        raise ValueError(
+            f"{name} is a Compound, which show() cannot draw. Query the part that touches by "
+            "itself, and show() that Result"
+        )
     if isinstance(o, _core.DeformableMesh):
         previous, triangles, edges, points, _, current = o._parts()
         # The parts are of one step. It is that of the query if there was no update until now.

@@ -24,6 +24,8 @@ py::dtype makeDtype<Contact>() {
       .field("kind", "<i4", &Contact::kind)
       .field("b1", "<i8", &Contact::b1)
       .field("b2", "<i8", &Contact::b2)
+      .field("part1", "<i4", &Contact::part1)
+      .field("part2", "<i4", &Contact::part2)
       .field("vertices", "(5,)<i4", &Contact::vertices)
       .field("first_on_o1", "?", &Contact::first_on_o1)
       .field("within_tolerance", "?", &Contact::within_tolerance)

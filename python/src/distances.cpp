@@ -34,6 +34,7 @@ py::dict fieldsOf(const fcl::ContinuousDistanceResultd& found) {
   return py::dict("distance_lo"_a = found.distance_lo,
                   "distance_hi"_a = found.distance_hi, "time"_a = found.time,
                   "nearest_points"_a = points, "b1"_a = found.b1, "b2"_a = found.b2,
+                  "part1"_a = found.part1, "part2"_a = found.part2,
                   "is_collide"_a = found.is_collide, "is_cut_off"_a = found.is_cut_off);
 }
 

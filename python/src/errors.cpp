@@ -44,6 +44,7 @@ constexpr Words kWords[] = {
     {"JointChain::kBase or JointChain::kLast", "-1 for the base"},
     {"JointChain::kBase", "-1, the base"},
     {"CollisionRobot::chain()", "the chain of the robot"},
+    {"CompoundGeometry", "Compound"},
     {"setFilter", "set_filter()"},
     {"checkMotion", "check_motion()"},
     {"attach() returned", "attach() gave"},

@@ -14,6 +14,7 @@ void Guarded::Reading::add(const Guarded& read) {
                              "update has ended");
   read_.push_back(&read);
   ++read.num_readers_;
+  read.addParts(*this);
 }
 
 Guarded::Writing::Writing(const Guarded& written) : written_(written) {

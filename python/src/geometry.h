@@ -28,11 +28,17 @@ class Guarded {
   /// How often somebody has written to it.
   std::uint64_t numUpdates() const { return num_updates_; }
 
+  class Reading;
+  class Writing;
+
+  /// Who reads it reads these too.
+  virtual void addParts(Reading& /*reading*/) const {}
+
   /// Made and destroyed while the thread has the GIL, which guards the counters.
   class Reading {
    public:
     Reading() = default;
-    explicit Reading(const Guarded& read) { add(read); }
+    explicit Reading(const Guarded& read) : Reading() { add(read); }
     ~Reading() {
       for (const Guarded* read : read_) --read->num_readers_;
     }
@@ -67,7 +73,7 @@ class Guarded {
   mutable std::uint64_t num_updates_{0};
 };
 
-/// A mesh or a shape.
+/// A mesh, a shape, an octree or a compound.
 class Geometry : public Guarded {
  public:
   Geometry() : Guarded("mesh") {}

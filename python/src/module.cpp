@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "compounds.h"
 #include "errors.h"
 #include "fcl/ccd_version.h"
 #include "fcl/common/exception.h"
@@ -31,6 +32,7 @@ PYBIND11_MODULE(_core, module) {
   python::bindMeshes(module);
   python::bindShapes(module);
   python::bindOctrees(module);
+  python::bindCompounds(module);
   python::bindMotions(module);
   python::bindCollisions(module);
   python::bindDistances(module);

@@ -345,6 +345,7 @@ void printHalfway() {
 void print(const fcl::ContinuousContactd& c) {
   std::printf("%d %ld %ld", static_cast<int>(c.kind), static_cast<long>(c.b1),
               static_cast<long>(c.b2));
+  std::printf(" %d %d", c.part1, c.part2);
   for (const int v : c.vertices) std::printf(" %d", v);
   std::printf(" %d %d %a %a", c.first_on_o1, c.within_tolerance, c.toc_lo, c.toc_hi);
   for (int k = 0; k < 3; ++k) std::printf(" %a", c.pos[k]);

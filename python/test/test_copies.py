@@ -79,6 +79,9 @@ GEOMETRIES = {
     "Halfspace": fcl_ccd.Halfspace((0.3, 0.2, 0.7), -0.1),
     "TriangleP": fcl_ccd.TriangleP(*BALL[0][:3]),
     "OcTree": fcl_ccd.OcTree(CURRENT, 0.07),
+    "Compound": fcl_ccd.Compound(
+        [(fcl_ccd.Sphere(1 / 3), None), (fcl_ccd.RigidMesh(*BALL), pose((0.5, 0, 0), (1, 1, 2), 1))]
+    ),
 }
 
 

@@ -256,7 +256,7 @@ NAMES_OF_CPP = r"::|\b[a-z]+[A-Z]\w*|\bk[A-Z]\w+|BVH|CCDM|request\.|Continuous[A
 NOT_REACHED = (
     r"[a-z]\w*\.*Model\(|[aA]ddSub|updateFclTree|FclTree|between begin|null|ccd_motion_type|In float|"
     r"none of FCL's|motion class|one of FCL's motions|base class|safe\w*Displacements|traversal can|"
-    r"models of the same BV|the other manager|[vV]ertices given for|refitTopDown|distance query"
+    r"models of the same BV|the other manager|[vV]ertices given for|refitTopDown|distance query|without parts"
 )
 
 

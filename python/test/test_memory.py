@@ -41,6 +41,7 @@ def one_step(mesh, ball, i):
     if i % 10 == 5:
         fcl_ccd.collide(ball, fcl_ccd.OcTree(PREVIOUS[:5] + 1e-6 * i, 0.1)).contacts.copy()
         fcl_ccd.collide(fcl_ccd.Sphere(0.2), ball, None, bounded(i), query="any")
+        fcl_ccd.collide(fcl_ccd.Compound([(ball, None), (fcl_ccd.Box(1, 1, 1), None)]), ball)
     manager = fcl_ccd.CollisionManager()
     manager.register("mesh", mesh, self_collision=True)
     manager.register("ball", ball, pose((0.5, 0.5, 0.1)))

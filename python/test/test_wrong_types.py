@@ -51,6 +51,7 @@ CALLS = {
     "CollisionRobot.name_of": (ROBOT, 0),
     "CollisionRobot.set_filter": (ROBOT, 0),
     "CollisionRobot.update": (ROBOT,),
+    "Compound": ([(BALL, EYE)],),
     "Cone": (1, 2),
     "Convex": (VERTICES, TRIANGLES),
     "Cylinder": (1, 2),

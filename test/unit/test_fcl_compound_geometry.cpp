@@ -33,6 +33,7 @@
 #include "fcl/narrowphase/collision.h"
 #include "fcl/narrowphase/continuous_candidates.h"
 #include "fcl/narrowphase/continuous_distance.h"
+#include "fcl/narrowphase/distance.h"
 #include "moving_objects.h"
 #include "paths/offset_path.h"
 #include "test_models.h"
@@ -601,6 +602,16 @@ TEST(CompoundGeometry, FclSeesABoxOnly) {
   EXPECT_EQ(fcl::collide(&object, &ball, CollisionRequest<double>(), result), 0u);
   EXPECT_NE(testing::internal::GetCapturedStderr().find("not supported"),
             std::string::npos);
+  testing::internal::CaptureStderr();
+  DistanceResult<double> distance;
+  fcl::distance(&ball, &object, DistanceRequest<double>(), distance);
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("not supported"),
+            std::string::npos);
+  const auto swung = makeObject(pair, translation({0, 0, 0}, {0, 10, 0}));
+  const SweptCollisionObject<double> swept(swung.get());
+  EXPECT_TRUE(swept.getAABB().contain(Vector(-3, -1, -1)));
+  EXPECT_TRUE(swept.getAABB().contain(Vector(3, 11, 3)));
+  EXPECT_LT(swept.getAABB().height(), 12.1);
   // A plane has no end.
   pair->addPart(std::make_shared<Plane<double>>(Vector::UnitZ(), 0));
   object.computeAABB();
@@ -629,6 +640,60 @@ TEST(CompoundGeometry, ManagerHasOneBoxForIt) {
     EXPECT_EQ(result.pairs.size(), num_pairs);
     EXPECT_LE(result.num_box_pairs, 15u);
   }
+}
+
+TEST(CompoundGeometry, ManagerTellsTheLeastDistance) {
+  Random random(71);
+  int num_apart = 0;
+  for (int n = 0; n < 20; ++n) {
+    std::vector<Body> bodies;
+    std::vector<std::unique_ptr<ContinuousCollisionObject<double>>> objects;
+    ContinuousCollisionManager<double> manager;
+    for (int i = 0; i < 4; ++i) {
+      Body body = randomBody(random, BodyMotion::Kind::kTranslation);
+      body.motion.beg.pretranslate(Vector(4. * i, 0, 0));
+      body.motion.end.pretranslate(Vector(4. * i, 0, 0));
+      body.motion.motion = body.motion.of(Tf::Identity());
+      bodies.push_back(body);
+      objects.push_back(makeObject(body.compound, body.motion.motion));
+      manager.registerObject(objects.back().get());
+    }
+    double lo = std::numeric_limits<double>::infinity(), hi = lo;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t k = i + 1; k < 4; ++k) {
+        ContinuousDistanceResult<double> one;
+        continuousDistance(bodies[i].compound.get(), bodies[i].motion.motion.get(),
+                           bodies[k].compound.get(), bodies[k].motion.motion.get(),
+                           ContinuousDistanceRequest<double>(), one);
+        lo = std::min(lo, one.distance_lo);
+        hi = std::min(hi, one.distance_hi);
+      }
+    ContinuousManagerDistance<double> result;
+    manager.distance(ContinuousDistanceRequest<double>(), result);
+    // Both brackets have the least distance.
+    EXPECT_LE(result.result.distance_lo, hi);
+    EXPECT_GE(result.result.distance_hi, lo);
+    num_apart += lo > 0 ? 1 : 0;
+  }
+  EXPECT_GT(num_apart, 10);
+}
+
+/// One geometry in several parts, and one compound on both sides.
+TEST(CompoundGeometry, SharesGeometries) {
+  const auto mesh = makeModel<Rigid>(makeIcosphere(1, .5));
+  Compound pair;
+  for (const double x : {-2., 2.}) pair.addPart(mesh, at(x, 0, 0));
+  const Tf rest = Tf::Identity();
+  Request request;
+  request.query = ContinuousQuery::kFirst;
+  Result result;
+  // The right ball of o2 comes to the left one of o1, whose balls rest.
+  continuousCollide(&pair, rest, rest, &pair, at(-8, .01, 0), at(-4, .01, 0), request,
+                    result);
+  ASSERT_TRUE(result.is_collide);
+  EXPECT_EQ(result.contacts.at(0).part1, 0);
+  EXPECT_EQ(result.contacts.at(0).part2, 1);
+  EXPECT_EQ(result.contacts.at(0).o1, result.contacts.at(0).o2);
 }
 
 TEST(CompoundGeometry, RobotCarriesIt) {

@@ -238,6 +238,44 @@ TEST(CompoundMotions, FarPartsChangeNothing) {
   EXPECT_GT(num_contacts, 100);
 }
 
+/// Parts in another order have the same times to the bit, also where some touch together.
+TEST(CompoundMotions, FirstDoesNotDependOnNumbers) {
+  Random random(67);
+  const auto mesh = makeModel<Rigid>(makeIcosphere(2, .2));
+  const auto wall = makeModel<Rigid>(makeBox({3, 3, .1}, 4));
+  int num_contacts = 0;
+  for (int n = 0; n < 40; ++n) {
+    std::vector<Tf> offsets;
+    for (int i = 0; i < 5; ++i) {
+      offsets.push_back(i % 2 == 0 ? randomPose(random, .3) : Tf::Identity());
+      offsets.back().translation() = Vector(.5 * i - 1, 0, 1e-5 * (i % 3));
+    }
+    Compound forward, backward;
+    for (int i = 0; i < 5; ++i) {
+      forward.addPart(mesh, offsets[std::size_t(i)]);
+      backward.addPart(mesh, offsets[std::size_t(4 - i)]);
+    }
+    const Tf from = at(0, 0, 1);
+    Tf to = at(0, 0, -.1);
+    if (n % 2 == 1) to.linear() = AngleAxis<double>(.5, Vector::UnitZ()).matrix();
+    const ScrewMotion<double> motion(from, to);
+    const TranslationMotion<double> still(Tf::Identity(), Tf::Identity());
+    Request request;
+    request.query = ContinuousQuery::kFirst;
+    Result one, other, all;
+    continuousCollide(&forward, &motion, wall.get(), &still, request, one);
+    continuousCollide(&backward, &motion, wall.get(), &still, request, other);
+    request.query = ContinuousQuery::kAll;
+    continuousCollide(&forward, &motion, wall.get(), &still, request, all);
+    ASSERT_EQ(one.is_collide, other.is_collide);
+    ASSERT_EQ(one.time_of_contact, other.time_of_contact);
+    ASSERT_EQ(one.contacts.size(), other.contacts.size());
+    ASSERT_NEAR(one.time_of_contact, all.time_of_contact, request.toc_err);
+    num_contacts += one.is_collide ? 1 : 0;
+  }
+  EXPECT_GT(num_contacts, 10);
+}
+
 /// A mesh that deforms, and a compound that turns between two transforms, against each
 /// part by itself.
 TEST(CompoundMotions, MeetsAMeshThatDeforms) {
