@@ -67,12 +67,7 @@ CompoundSide<S>::CompoundSide(const PlacedGeometry<S>& placed, const char* name)
   if (!parts_) return;
   requireParts(*parts_, name);
   deformable::requireDefinedPath(placed, name);
-  if (placed.hasReplacedRotation()) {
-    copyPose(placed.beginning(), body_.pose[0]);
-    copyPose(placed.end(), body_.pose[1]);
-  }
-  // Of the poses that the parts get, which are rounded to S.
-  path_.emplace(deformable::motionPathOf(PlacedGeometry<S>(body_), name));
+  path_.emplace(deformable::motionPathOf(placed, name));
 }
 
 template <typename S>

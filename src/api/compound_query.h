@@ -60,7 +60,6 @@ class CompoundSide {
   const char* name_;
   /// Null: no compound.
   const CompoundParts<S>* parts_;
-  /// Of a compound, with rotations.
   MovingGeometry<S> body_;
   std::optional<deformable::MotionPath> path_;
 };

@@ -114,12 +114,9 @@ class PlacedGeometry {
     if (kind_ == MeshKind::kDeforming) goes_straight_ = !bends;
     if (isRigid())
       goes_straight_ = !bends && is_constant && moving.path != PathKind::kUnknown;
-    if (isMesh() && goes_straight_) {
-      applyOffset();
-      return;
-    }
+    if (isMesh() && goes_straight_ && !moving.offset.is_set) return;
     // A turn is defined between rotations only, and a sphere that is sheared is no
-    // sphere.
+    // sphere. All parts of a body go with the same rotation.
     const bool has_poses =
         moving.path != PathKind::kBounded && moving.path != PathKind::kSpline;
     for (deformable::Pose* pose : {&beginning_, &end_})

@@ -328,9 +328,9 @@ TEST(CompoundMotions, MeetsAMeshThatDeforms) {
   EXPECT_GT(num_free, 1);
 }
 
-/// The nearest rotation to a pose is rounded to float, which moves a part at the end of a
-/// long arm by more than the room of its box.
-TEST(CompoundMotions, FindsPartsWhereRoundedPosesPutThem) {
+/// The nearest rotation to a pose is not rounded to float, which would move a part at the
+/// end of a long arm out of its box.
+TEST(CompoundMotions, FindsPartsWhereReplacedPosesPutThem) {
   Random random(53);
   constexpr double kArm = 1000, kRadius = .5;
   int num_contacts = 0, num_free = 0;
@@ -344,8 +344,9 @@ TEST(CompoundMotions, FindsPartsWhereRoundedPosesPutThem) {
     for (int i = 0; i < 9; ++i) nearest[i] = double(rotation(i / 3, i % 3));
     ASSERT_TRUE(detail::deformable::toNearestRotation(nearest));
     Vector center;
-    for (int i = 0; i < 3; ++i) center[i] = kArm * double(float(nearest[3 * i]));
-    const Vector direction = randomDirection(random);
+    for (int i = 0; i < 3; ++i) center[i] = kArm * nearest[3 * i];
+    // Where boxes of balls touch with these.
+    const Vector direction = (n % 2 == 0 ? 1. : -1.) * Vector::Unit(n % 3);
     const Sphere<float> ball(float{kRadius});
     Transform3<float> place = Transform3<float>::Identity();
     place.translation() =
