@@ -285,6 +285,7 @@ class Request(metaclass=_Class):
         num_threads: int,
         min_distance: float,
         ignore_initially_closer: bool,
+        min_approach_speed: float,
     ) -> None: ...
 
 class DistanceRequest(metaclass=_Class):

@@ -232,6 +232,7 @@ class CollisionManager(_arguments.Built):
         t_max: float = 1.0,
         min_distance: float = 0.0,
         ignore_initially_closer: bool = False,
+        min_approach_speed: float = 0.0,
         num_max_contacts: Optional[int] = None,
         enable_contact: bool = True,
         enable_crossings: bool = False,
@@ -267,6 +268,7 @@ class CollisionManager(_arguments.Built):
             num_threads,
             min_distance,
             ignore_initially_closer,
+            min_approach_speed,
         )
         fields = self._ask(other, motion, name, request)
         pairs = [

@@ -81,6 +81,7 @@ def request_of(
     num_threads: int,
     min_distance: float,
     ignore_initially_closer: bool,
+    min_approach_speed: float = 0.0,
 ) -> _core.Request:
     if not isinstance(query, str):
         raise _arguments.wrong_type("query", query, "'all', 'first' or 'any'")
@@ -99,6 +100,7 @@ def request_of(
         _arguments.integer(num_threads, "num_threads"),
         _arguments.real(min_distance, "min_distance"),
         _arguments.flag(ignore_initially_closer, "ignore_initially_closer"),
+        _arguments.real(min_approach_speed, "min_approach_speed"),
     )
 
 
@@ -138,6 +140,7 @@ def self_collide(
     t_max: float = 1.0,
     min_distance: float = 0.0,
     ignore_initially_closer: bool = False,
+    min_approach_speed: float = 0.0,
     num_max_contacts: Optional[int] = None,
     enable_contact: bool = True,
     enable_crossings: bool = False,
@@ -163,6 +166,7 @@ def self_collide(
         num_threads,
         min_distance,
         ignore_initially_closer,
+        min_approach_speed,
     )
     mesh = mesh_of(o, "o")
     queried = mesh, AT_ORIGIN, mesh._num_updates
@@ -182,6 +186,7 @@ def collide(
     t_max: float = 1.0,
     min_distance: float = 0.0,
     ignore_initially_closer: bool = False,
+    min_approach_speed: float = 0.0,
     num_max_contacts: Optional[int] = None,
     enable_contact: bool = True,
     enable_crossings: bool = False,
@@ -220,6 +225,10 @@ def collide(
     ignore_initially_closer : bool
         Whether pairs that are nearer than min_distance at t = 0 are in contact only when
         they come nearer than they are then. If false, they are contacts at t = 0.
+    min_approach_speed : float
+        Only contacts count that approach faster than this, in the unit of the vertices per
+        step: bodies may slide over the edges of a floor. 0: all contacts. Only for meshes
+        on straight paths.
     num_max_contacts : int, optional
         Keep at most this number of contacts, the earliest ones.
     enable_contact : bool
@@ -259,6 +268,7 @@ def collide(
         num_threads,
         min_distance,
         ignore_initially_closer,
+        min_approach_speed,
     )
     geometry1, path1 = geometry_of(o1, "o1"), path_of(motion1, "motion1")
     geometry2, path2 = geometry_of(o2, "o2"), path_of(motion2, "motion2")

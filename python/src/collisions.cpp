@@ -133,7 +133,8 @@ Request makeRequest(const std::string& query, double toc_err,
                     double t_max, bool enable_crossings,
                     const fcl::ContinuousFilter& filter1,
                     const fcl::ContinuousFilter& filter2, py::object accepts_triangles,
-                    int num_threads, double min_distance, bool ignore_initially_closer) {
+                    int num_threads, double min_distance, bool ignore_initially_closer,
+                    double min_approach_speed) {
   Request request;
   request.fields.query = toQuery(query);
   request.fields.toc_err = toc_err;
@@ -145,6 +146,7 @@ Request makeRequest(const std::string& query, double toc_err,
   request.fields.num_threads = num_threads;
   request.fields.min_distance = min_distance;
   request.fields.ignore_initially_closer = ignore_initially_closer;
+  request.fields.min_approach_speed = min_approach_speed;
   request.fields.filter1 = filter1;
   request.fields.filter2 = filter2;
   request.accepts_triangles = std::move(accepts_triangles);
@@ -167,7 +169,7 @@ void bindCollisions(py::module_& module) {
            py::arg("num_max_contacts"), py::arg("enable_contact"), py::arg("t_max"),
            py::arg("enable_crossings"), py::arg("filter1"), py::arg("filter2"),
            py::arg("accepts_triangles"), py::arg("num_threads"), py::arg("min_distance"),
-           py::arg("ignore_initially_closer"));
+           py::arg("ignore_initially_closer"), py::arg("min_approach_speed"));
   module.def("self_collide", &collideSelf);
   module.def("collide", &collidePair);
 }

@@ -199,6 +199,7 @@ Request readRequest() {
   request.num_max_contacts = static_cast<std::size_t>(std::stoull(readWord()));
   request.min_distance = readNumber();
   request.ignore_initially_closer = readInt() != 0;
+  request.min_approach_speed = readNumber();
   request.enable_contact = readInt() != 0;
   request.enable_crossings = readInt() != 0;
   request.filter1 = readFilter();

@@ -35,6 +35,8 @@ REQUESTS = [
     {"accepts_triangles": by_parity},
     {"min_distance": 0.004},
     {"min_distance": 0.02, "ignore_initially_closer": True, "query": "first"},
+    {"min_approach_speed": 0.2},
+    {"min_distance": 0.01, "min_approach_speed": 0.2, "query": "first"},
 ]
 
 

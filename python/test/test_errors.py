@@ -295,6 +295,10 @@ def test_words_of_python():
             lambda: fcl_ccd.self_collide(mesh, ignore_initially_closer=True),
             "^ignore_initially_closer is about pairs that are nearer than min_distance, which is 0",
         ),
+        (
+            lambda: fcl_ccd.collide(mesh, fcl_ccd.Box(1, 1, 1), min_approach_speed=0.1),
+            "^min_approach_speed acts on meshes on straight paths only. One of these two is a shape",
+        ),
         (lambda: fcl_ccd.weld_vertices([]), r"^weld_vertices\(\): there is no frame"),
         (
             lambda: fcl_ccd.OcTree(VERTICES, 0.1).cells([-1]),

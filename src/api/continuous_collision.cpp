@@ -53,6 +53,13 @@ QueryAnswer filteredAnswerOf(const RequestFilter& filter, Query&& query) {
   return filter.rejectsAll() ? QueryAnswer() : answerOf(query);
 }
 
+/// @param objects  what has no such test, and what to give in its place
+void requireAllSpeeds(const QueryOptions& options, const std::string& objects) {
+  if (options.min_approach_speed > 0)
+    throw Exception("request.min_approach_speed acts on meshes on straight paths only. " +
+                    objects + ", or 0 for contacts at any speed");
+}
+
 /// Where the answer of a query goes.
 template <typename S>
 struct Reply {
@@ -95,6 +102,7 @@ template <typename S>
 void answerCurved(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   const CheckedRequest& request, const Reply<S>& reply) {
   QueryOptions options = request.options;
+  requireAllSpeeds(options, "One of these two turns: give transforms of equal rotation");
   const PreparedMotion motion1(o1, "o1", options.toc_err, options.num_threads),
       motion2(o2, "o2", options.toc_err, options.num_threads);
   RequestFilter filter(request, o1.geometry(), o2.geometry(), false);
@@ -189,6 +197,8 @@ void followShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
 template <typename S>
 void answerShapes(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                   const CheckedRequest& request, const Reply<S>& reply) {
+  requireAllSpeeds(request.options,
+                   "One of these two is a shape or an octree: give a mesh in its place");
   const bool are_flats =
       deformable::isUnbounded(o1.geometry()) && deformable::isUnbounded(o2.geometry());
   const auto follow = [&](const PreparedShapes& shapes) {

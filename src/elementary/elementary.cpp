@@ -13,9 +13,9 @@
 #include "elementary/exact.h"
 #include "elementary/in_plane.h"
 #include "elementary/interval_stack.h"
+#include "elementary/moving_pair.h"
 #include "elementary/pair_table.h"
 #include "elementary/predicates.h"
-#include "elementary/separating_direction.h"
 #include "numerics/error_bounds.h"
 #include "numerics/illinois.h"
 #include "numerics/moving_vector.h"
@@ -24,71 +24,6 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 namespace {
-
-/// The difference of two vertices over the step.
-struct Difference {
-  Vec t0, t1;
-  double norm;
-
-  Difference() = default;
-  Difference(const VertexPath& p, const VertexPath& q)
-      : t0{p.t0[0] - q.t0[0], p.t0[1] - q.t0[1], p.t0[2] - q.t0[2]},
-        t1{p.t1[0] - q.t1[0], p.t1[1] - q.t1[1], p.t1[2] - q.t1[2]},
-        norm(std::max(std::max(maxNorm(t0), maxNorm(t1)), kLeastNorm)) {}
-
-  Vec at(double t) const {
-    if (t == 0) return t0;
-    if (t == 1) return t1;
-    return (1 - t) * t0 + t * t1;
-  }
-};
-
-/// A vector that moves linearly, with its norm bound over the whole step.
-struct StepSegment : Segment {
-  double norm;
-};
-
-StepSegment restrict(const Difference& d, double lo, double hi) {
-  assert(0 <= lo && lo <= hi && hi <= 1);
-  return {{d.at(lo), d.at(hi)}, d.norm};
-}
-
-MovingCross cross(const StepSegment& a, const StepSegment& b) {
-  const double norm = a.norm * b.norm;
-  const Segment &of_a = a, &of_b = b;
-  return {cross(of_a, of_b), 2 * norm, kCrossBound * norm};
-}
-
-/// The volume spanned by u, v, w over an interval, with bounds that follow from norms
-/// over the whole step. See EndsVolume in magnified_solve.cpp.
-struct StepVolume : VolumeCubic {
-  // Error bounds of the outer and inner coefficients; infinite if there is no bound.
-  double outer, inner;
-
-  bool hasBounds() const { return std::isfinite(outer); }
-  /// All coefficients certainly have one sign, so there is no root.
-  bool hasNoRoot() const {
-    return (b[0] > outer && b[1] > inner && b[2] > inner && b[3] > outer) ||
-           (b[0] < -outer && b[1] < -inner && b[2] < -inner && b[3] < -outer);
-  }
-  /// The ends certainly have opposite signs, so there is a root.
-  bool changesSign() const {
-    return (b[0] > outer && b[3] < -outer) || (b[0] < -outer && b[3] > outer);
-  }
-  /// The coefficients are rounding only: a subdivision will not show a sign.
-  bool isLost() const {
-    return std::abs(b[0]) <= outer && std::abs(b[1]) <= inner &&
-           std::abs(b[2]) <= inner && std::abs(b[3]) <= outer;
-  }
-};
-
-StepVolume spannedVolume(const StepSegment& u, const MovingCross& n) {
-  const double size = u.norm * (0.5 * n.size);
-  const double bound = isInRange(size) && isInRange(n.size)
-                           ? size
-                           : std::numeric_limits<double>::infinity();
-  return {VolumeCubic::of(u, n), kOuterBound * bound, kInnerBound * bound};
-}
 
 StepVolume restrict(const AccuratePair& pair, double lo, double hi) {
   StepVolume g;
@@ -100,54 +35,11 @@ StepVolume restrict(const AccuratePair& pair, double lo, double hi) {
   return g;
 }
 
-/// Sign of the quartic q . n over the whole segment. Not the same as sideOver() in
-/// magnified_solve.cpp: the sum of three is added in another order, and rounds otherwise.
-Side sideOver(const MovingCross& q, const MovingCross& n) {
-  const double size = q.size * n.size;
-  if (!isInRange(size) || !isInRange(q.size) || !isInRange(n.size)) return Side::kLost;
-  const double c[5] = {dot(q.c0, n.c0), dot(q.c0, n.c1) + dot(q.c1, n.c0),
-                       dot(q.c0, n.c2) + dot(q.c2, n.c0) + dot(q.c1, n.c1),
-                       dot(q.c1, n.c2) + dot(q.c2, n.c1), dot(q.c2, n.c2)};
-  const double bound = kInsideTerms * (q.size * n.error + q.error * (n.size + n.error)) +
-                       kInsideRounding * size;
-  bool positive = true, negative = true;
-  for (const double ck : c) {
-    positive &= ck > bound;
-    negative &= ck < -bound;
-  }
-  if (positive) return Side::kPositive;
-  if (negative) return Side::kNegative;
-  for (const double ck : c)
-    if (std::abs(ck) > bound) return Side::kMixed;
-  return Side::kLost;
-}
-
-/// The pair as differences, see pair_table.h.
-struct Pair {
-  const PairTable& table;
-  Difference difference[kNumPairDifferences];
-
-  Pair(ContinuousContactKind k, const FeaturePoints& x) : table(pairTable(k)) {
-    for (int i = 0; i < table.num_differences; ++i) {
-      const auto [to, from] = table.difference[i];
-      difference[i] = {x[to], x[from]};
-    }
-  }
-
-  /// The direction from one feature to the nearest point of the other.
-  Vec directionAt(double t) const {
-    Vec at_t[4] = {};
-    for (int i = 0; i < table.num_corners; ++i)
-      at_t[i] = table.corner[i].sign * difference[table.corner[i].difference].at(t);
-    return separatingDirection(at_t, table.isTriangle());
-  }
-};
-
 /// Whether a plane through the origin keeps all differences of the features' vertices on
 /// one side at lo and hi, and so in between. Its normal is the direction from one feature
 /// to the nearest point of the other in the middle of [lo, hi]. No other test decides
 /// pairs without a normal (parallel edges, triangles without area).
-bool areSeparated(const Pair& pair, double lo, double hi) {
+bool areSeparated(const MovingPair& pair, double lo, double hi) {
   const Vec d = pair.directionAt(lo + 0.5 * (hi - lo));
   const double size = maxNorm(d);
   for (int i = 0; i < pair.table.num_corners; ++i) {
@@ -183,7 +75,7 @@ bool isStill(const FeaturePoints& x) {
 
 /// Whether the points pass each other so closely that double-double cannot decide the
 /// pair: there the volume is 2^-78 of the volume elsewhere.
-bool nearlyMeet(const Pair& pair) {
+bool nearlyMeet(const MovingPair& pair) {
   const Difference &u = pair.difference[kU], &v = pair.difference[kV],
                    &w = pair.difference[kW];
   const ClosestApproach closest({u.t0, v.t0, w.t0}, {u.t1, v.t1, w.t1});
@@ -362,7 +254,7 @@ class ContactSearch {
   double toc_err_, t_stop_;
   /// An interval this short is not cut further.
   double min_width_;
-  Pair pair_;
+  MovingPair pair_;
   /// The pair in double-double, from the look on from which it is used.
   std::optional<AccuratePair> accurate_;
   Intervals open_;
@@ -393,7 +285,7 @@ ElementaryResult solveCoplanarity(ContinuousContactKind kind, const FeaturePoint
 double apartUntil(ContinuousContactKind kind, const FeaturePoints& x, double window_lo,
                   double window_hi) {
   assert(0 <= window_lo && window_lo <= window_hi && window_hi <= 1);
-  const Pair pair(kind, x);
+  const MovingPair pair(kind, x);
   const Vec d = pair.directionAt(window_lo);
   const double size = maxNorm(d);
   double until = window_hi;
@@ -501,7 +393,7 @@ void contactGeometry(ContinuousContactKind kind, const FeaturePoints& x, double 
   constexpr double kParallel = 0x1p-48;
   assert(0 <= t && t <= 1);
   const bool vf = kind == ContinuousContactKind::kVertexFace;
-  const Pair pair(kind, x);
+  const MovingPair pair(kind, x);
   const Vec u = pair.difference[kU].at(t), v_there = pair.difference[kV].at(t),
             w_there = pair.difference[kW].at(t);
   const double v_scale = scaleOf(v_there), w_scale = scaleOf(w_there);

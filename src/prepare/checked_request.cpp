@@ -73,6 +73,8 @@ CheckedRequest::CheckedRequest(const ContinuousContactRequest<S>& request) {
         "request.ignore_initially_closer is about pairs that are nearer than "
         "request.min_distance, which is 0. Give a distance");
   options.ignores_initially_closer = request.ignore_initially_closer;
+  options.min_approach_speed = static_cast<double>(request.min_approach_speed);
+  requireDistance(options.min_approach_speed, "request.min_approach_speed");
   filter[0] = &request.filter1;
   filter[1] = &request.filter2;
   if (request.accepts_triangles) accepts_triangles = &request.accepts_triangles;

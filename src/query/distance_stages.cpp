@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "query/distance_stages.h"
 #include "base/bits.h"
+#include "elementary/approach_speed.h"
 
 #include <algorithm>
 #include <cassert>
@@ -14,7 +15,8 @@ bool DistanceStages::onlyStartMatters(double latest) const {
   return options_.query == ContinuousQuery::kFirst && options_.min_distance > 0x1p-150 &&
          batch_.cullDistance() < 0x1p150 && findings_.firstHi() == 0 &&
          batch_.isAtStart(latest) && !options_.filter &&
-         !options_.ignores_initially_closer && !options_.lists_near_pairs;
+         !(options_.min_approach_speed > 0) && !options_.ignores_initially_closer &&
+         !options_.lists_near_pairs;
 }
 
 /// At the start there are no windows.
@@ -97,7 +99,11 @@ void DistanceStages::advance() {
   Approach found[kMostApproaching];
   kernels_.approach(kind_, points, candidates_.size(), request(), found);
   for (std::size_t i = 0; i < candidates_.size() && !findings_.isDone(); ++i) {
-    if (found[i].answer == Approach::Answer::kOpen)
+    // Whether a contact approaches is not decided by vectors.
+    const bool is_open =
+        found[i].answer == Approach::Answer::kOpen ||
+        (found[i].answer == Approach::Answer::kYes && options_.min_approach_speed > 0);
+    if (is_open)
       advanceAlone(candidates_[i]);
     else if (found[i].answer == Approach::Answer::kYes)
       add(candidates_[i], contactOf(kind_, found[i]));
@@ -107,8 +113,9 @@ void DistanceStages::advance() {
 }
 
 void DistanceStages::advanceAlone(const FeatureCandidate& candidate) {
-  const DistanceContact found = advanceToDistance(
-      candidate.kind, CandidatePoints(candidate).get(), request(), idsOf(candidate));
+  const DistanceContact found =
+      advanceToApproach(candidate.kind, CandidatePoints(candidate).get(), request(),
+                        options_.min_approach_speed, idsOf(candidate));
   if (found.is_contact)
     add(candidate, found);
   else

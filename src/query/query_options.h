@@ -36,6 +36,9 @@ struct QueryOptions {
   double min_distance{0};
   /// See DistanceRequest.
   bool ignores_initially_closer{false};
+  /// Contacts that approach no faster do not count; 0: all count. See
+  /// elementary/approach_speed.h.
+  double min_approach_speed{0};
   /// With a distance: whether a contact is named after the parts of its features that are
   /// nearest, or after the features.
   bool names_parts{true};

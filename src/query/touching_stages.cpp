@@ -5,6 +5,7 @@
 #include <cassert>
 
 #include "base/bits.h"
+#include "elementary/approach_speed.h"
 #include "elementary/coplanarity_filter.h"
 #include "elementary/elementary.h"
 #include "elementary/magnified_solve.h"
@@ -63,8 +64,8 @@ void TouchingStages::solve(const std::vector<Piece>& pieces, OnNo&& on_no,
       if (answers.no >> lane & 1U)
         on_no(pieces[i]);
       else if (answers.yes >> lane & 1U)
-        findings_.addTouching(candidates_[pieces[i].candidate],
-                              {answers.toc_lo[lane], answers.toc_hi[lane]});
+        add(candidates_[pieces[i].candidate],
+            {answers.toc_lo[lane], answers.toc_hi[lane]});
       else
         on_open(pieces[i]);
     }
@@ -176,7 +177,21 @@ void TouchingStages::solveAlone(const FeatureCandidate& candidate) {
   if (result.answer == Answer::kNo)
     ++(is_exact ? counts_.exact_culled : counts_.solver_culled);
   else
-    findings_.addTouching(candidate, {result.toc_lo, result.toc_hi});
+    add(candidate, {result.toc_lo, result.toc_hi});
+}
+
+/// Adds a contact, from the time on from which it counts.
+void TouchingStages::add(const FeatureCandidate& candidate, const TimeBracket& bracket) {
+  const QueryOptions& options = findings_.options();
+  if (!(options.min_approach_speed > 0)) return findings_.addTouching(candidate, bracket);
+  const double from =
+      approachesFrom(candidate.kind, CandidatePoints(candidate).get(),
+                     {bracket.lo, bracket.hi, options.t_max, options.min_approach_speed});
+  if (from > options.t_max)
+    ++counts_.solver_culled;
+  else
+    findings_.addTouching(candidate,
+                          from > bracket.hi ? TimeBracket{from, from} : bracket);
 }
 
 }  // namespace deformable

@@ -54,6 +54,7 @@ class TouchingStages {
   ElementaryResult decideOnce(const FeatureCandidate& candidate);
   ElementaryResult decide(const FeatureCandidate& candidate, double t_stop) const;
   void solveAlone(const FeatureCandidate& candidate);
+  void add(const FeatureCandidate& candidate, const TimeBracket& bracket);
 
   const Kernels& kernels_{kernels()};
   FeatureBatch& batch_;

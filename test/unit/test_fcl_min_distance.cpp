@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "elementary/approach_speed.h"
 #include "elementary/distance_advance.h"
 #include "fcl/geometry/bvh/deformable_bvh_model.h"
 #include "fcl/math/bv/OBBRSS.h"
@@ -27,6 +28,7 @@ namespace fcl {
 namespace test {
 namespace {
 
+using detail::deformable::advanceToApproach;
 using detail::deformable::advanceToDistance;
 using detail::deformable::DistanceContact;
 using detail::deformable::DistanceRequest;
@@ -94,8 +96,9 @@ Contacts contactsOf(const Result& result, bool is_self) {
 /// All pairs of features of two meshes, or of one with itself, tested one by one.
 class BruteForce {
  public:
-  BruteForce(const MovingMesh& a, const MovingMesh& b, const DistanceRequest& request)
-      : mesh_{&a, &b}, request_(request) {}
+  BruteForce(const MovingMesh& a, const MovingMesh& b, const DistanceRequest& request,
+             double min_approach_speed)
+      : mesh_{&a, &b}, request_(request), min_approach_speed_(min_approach_speed) {}
 
   Contacts find() {
     const bool is_self = mesh_[0] == mesh_[1];
@@ -135,8 +138,8 @@ class BruteForce {
         x[i].t1[k] = mesh.t1[static_cast<std::size_t>(id[i])][k];
       }
     }
-    const DistanceContact c =
-        advanceToDistance(kind, {{&x[0], &x[1], &x[2], &x[3]}}, request_, ids);
+    const DistanceContact c = advanceToApproach(kind, {{&x[0], &x[1], &x[2], &x[3]}},
+                                                request_, min_approach_speed_, ids);
     if (!c.is_contact) return;
     Feature parts[2];
     for (std::size_t i = 0; i < 4 && c.points[i] >= 0; ++i) {
@@ -156,6 +159,7 @@ class BruteForce {
 
   const MovingMesh* mesh_[2];
   DistanceRequest request_;
+  double min_approach_speed_;
   Contacts found_;
 };
 
@@ -165,7 +169,7 @@ Contacts bruteForce(const MovingMesh& a, const MovingMesh& b, const Request& req
   distance.toc_err = request.toc_err;
   distance.t_max = request.t_max;
   distance.ignores_initially_closer = request.ignore_initially_closer;
-  return BruteForce(a, b, distance).find();
+  return BruteForce(a, b, distance, request.min_approach_speed).find();
 }
 
 Request requestAt(double distance) {
@@ -204,6 +208,7 @@ TEST(FCL_MIN_DISTANCE, selfAgainstAllPairs) {
         SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(distance));
         Request request = requestAt(distance);
         request.ignore_initially_closer = ignores;
+        request.min_approach_speed = i % 3 ? 0 : 0.1;
         const Result result = selfContacts<double>(*model, request);
         const Contacts found = contactsOf(result, true);
         ASSERT_EQ(found, bruteForce(mesh, mesh, request));
@@ -360,6 +365,7 @@ TEST(FCL_MIN_DISTANCE, pairsAgainstAllPairs) {
       SCOPED_TRACE(std::to_string(i) + " at " + std::to_string(distance));
       Request request = requestAt(distance);
       request.ignore_initially_closer = i % 3 == 0;
+      request.min_approach_speed = i % 4 ? 0 : 0.1;
       request.t_max = i % 2 ? 1 : 0.3;
       const Contacts truth = bruteForce(a, b, request);
       const Contacts found = contactsOf(pairContacts(*model_a, *model_b, request), false);

@@ -207,6 +207,34 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// distance. The query throws if min_distance is 0.
   bool ignore_initially_closer{false};
 
+  /// @brief Only contacts count that approach faster than this speed, in units of length
+  /// per step; not negative, finite. 0: all contacts count. For bodies that rest or slide
+  /// on others: with it the edges inside of a flat floor stop nobody. Only for meshes on
+  /// straight paths; the query throws for others.
+  ///
+  /// A contact is left out only with a proof that the gap shrinks no faster; what is not
+  /// decided stays. A pair whose first contact is left out is followed further: its
+  /// contact is then the first time of the step from which on it approaches faster.
+  /// A vertex that sinks more slowly than this passes through a face. Crossings at t = 0
+  /// are reported as ever.
+  ///
+  /// min_distance = 0: the speed is that of the vertex relative to the point of the face
+  /// that it touches, along the normal of the face, or of two edges along their common
+  /// normal. Its sign does not matter to features that touch at t = 0, which have no
+  /// side. A pair counts as touching as long as the vertex is above or below the face (or
+  /// the edges are), and has not gone back to its side. Features that stay in a plane of
+  /// constant x, y or z do not approach. Parallel edges and faces without area have no
+  /// normal: they stay contacts. If the time of contact is not the first touch, toc_hi
+  /// equals toc_lo.
+  ///
+  /// min_distance > 0: the speed at which the distance of the pair shrinks, between the
+  /// nearest points. A pair that comes within min_distance at a lower speed is left out
+  /// as long as it stays further apart than it was then, minus this speed times the time
+  /// since then (and minus 2e-9 of the distance). So no pair comes nearer than
+  /// min_distance - min_approach_speed without a contact. A pair that would touch within
+  /// the step at this speed is allowed a lower one, so that no pair passes through.
+  S min_approach_speed{0};
+
   /// @brief Whether ContinuousContacts::crossings lists all crossings at t = 0. Cannot be
   /// combined with ContinuousQuery::kAny.
   bool enable_crossings{false};
