@@ -70,6 +70,20 @@ double mostNormalChange(const StepSegment& v, const StepSegment& w, const Vec& d
   return std::max(at_lo, at_hi) * kUpward + 192 * kUnit * (v.norm * w.norm);
 }
 
+/// Whether the volume has at most one root in the interval: its coefficients change their
+/// sign at most once, also if any that is not certain has either sign.
+bool hasOneRootAtMost(const StepVolume& f) {
+  const double bound[4] = {f.outer, f.inner, f.inner, f.outer};
+  const auto isCertain = [&](int i, double sign) { return sign * f.b[i] > bound[i]; };
+  const double first = f.b[0] < 0 ? -1 : 1;
+  int last = 0;
+  while (last < 4 && isCertain(last, first)) ++last;
+  // The coefficient after these may have any sign.
+  for (int i = last + 1; i < 4; ++i)
+    if (!isCertain(i, -first)) return false;
+  return true;
+}
+
 /// The times at which a pair may approach, the earliest first.
 class ApproachSearch {
  public:
@@ -110,7 +124,7 @@ class ApproachSearch {
     const StepVolume f = spannedVolume(u, n);
     if (!f.hasBounds()) return false;
     const double sign = f.b[0] > f.outer ? 1 : f.b[0] < -f.outer ? -1 : 0;
-    if (is_first) side_ = sign;
+    if (is_first && hasOneRootAtMost(f)) side_ = sign;
     if (side_ != 0 && sign == side_ && f.hasNoRoot()) return true;
     if (isSlow(u, v, w, n, f)) return true;
     const StepSegment segments[] = {u, v, w, restrict(pair_.difference[kR], lo, hi),

@@ -231,6 +231,30 @@ TEST(FCL_APPROACH_SPEED, touchingAgainstSamples) {
   EXPECT_LE(undecided, (later + kept) / 20);
 }
 
+/// A bracket of the first touch that is so wide that the features also change sides in it
+/// where they are not above each other does not hide an approach.
+TEST(FCL_APPROACH_SPEED, wideBrackets) {
+  Random random(16);
+  int later = 0;
+  for (int i = 0; i < manyOf(100000); ++i) {
+    const Kind kind = i % 2 ? Kind::kVertexFace : Kind::kEdgeEdge;
+    const RandomPair pair =
+        randomPair(random, kind, random.uniform(0, 0.05), i % 3 ? 0.1 : 0.02);
+    const ElementaryResult tight = elementaryTest(kind, pair.points(), 0, 1, 1e-9);
+    if (tight.answer != Answer::kYes) continue;
+    const double before = random.uniform(0, 0.5), speed = random.uniform(0.01, 0.1),
+                 lo = std::max(0., tight.toc_lo - before),
+                 from = approachesFrom(kind, pair.points(),
+                                       {tight.toc_lo, tight.toc_hi, 1, speed}),
+                 of_wide =
+                     approachesFrom(kind, pair.points(), {lo, tight.toc_hi, 1, speed});
+    later += from > tight.toc_hi && from <= 1;
+    SCOPED_TRACE(std::to_string(i));
+    EXPECT_LE(of_wide, from + 0x1p-12);
+  }
+  EXPECT_GE(later, manyOf(100));
+}
+
 // Bodies.
 
 constexpr double kDistance = 0.01, kSpeed = 1e-3;
