@@ -5,7 +5,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "elementary/flat_passage.h"
 #include "elementary/in_plane.h"
 #include "elementary/interval_stack.h"
 #include "elementary/moving_pair.h"
@@ -87,15 +89,21 @@ bool hasOneRootAtMost(const StepVolume& f) {
 /// The times at which a pair may approach, the earliest first.
 class ApproachSearch {
  public:
-  ApproachSearch(ContinuousContactKind kind, const FeaturePoints& x, double speed)
-      : pair_(kind, x), speed_(speed) {
+  ApproachSearch(ContinuousContactKind kind, const FeaturePoints& x,
+                 const TouchingRequest& request)
+      : pair_(kind, x), request_(request) {
     for (int i = 0; i < 3; ++i) change_[i] = changeOf(pair_.difference[i]);
+    if (!request.stars) return;
+    for (int flat = 0; flat < (pair_.table.isTriangle() ? 1 : 2); ++flat)
+      passages_[flat].emplace(pair_, x, *request.stars, flat, request.toc_lo,
+                              request.min_approach_speed);
   }
 
-  double first(double toc_lo, double toc_hi, double t_max) {
-    if (toc_hi < t_max) open_.push({toc_hi, t_max});
+  double first() {
+    const double toc_hi = request_.toc_hi;
+    if (toc_hi < request_.t_max) open_.push({toc_hi, request_.t_max});
     // A contact that approaches is decided by the first look.
-    open_.push({toc_lo, toc_hi});
+    open_.push({request_.toc_lo, toc_hi});
     for (int looks = 0; !open_.isEmpty(); ++looks) {
       const Interval now = open_.pop();
       if (isLeftOut(now.lo, now.hi, looks == 0)) continue;
@@ -126,13 +134,30 @@ class ApproachSearch {
     const double sign = f.b[0] > f.outer ? 1 : f.b[0] < -f.outer ? -1 : 0;
     if (is_first && hasOneRootAtMost(f)) side_ = sign;
     if (side_ != 0 && sign == side_ && f.hasNoRoot()) return true;
-    if (isSlow(u, v, w, n, f)) return true;
+    if (!may_be_across_ && areSeparated(pair_, lo, hi)) return true;
+    if (isSlow(u, v, w, n, f)) {
+      may_be_across_ = true;
+      return true;
+    }
     const StepSegment segments[] = {u, v, w, restrict(pair_.difference[kR], lo, hi),
                                     restrict(pair_.difference[kQ], lo, hi)};
-    return insideness(pair_.table, [&](int i) {
-             const auto& [p, q] = pair_.table.inside[i];
-             return sideOver(cross(segments[p], segments[q]), n);
-           }) == Side::kNegative;
+    const auto sideOf = [&](int i) {
+      const auto& [p, q] = pair_.table.inside[i];
+      return sideOver(cross(segments[p], segments[q]), n);
+    };
+    return insideness(pair_.table, sideOf) == Side::kNegative ||
+           passesFlat(lo, hi, sideOf);
+  }
+
+  template <typename SideOf>
+  bool passesFlat(double lo, double hi, const SideOf& sideOf) {
+    for (const auto& passage : passages_) {
+      if (!passage) continue;
+      const FlatPassage::Answer answer = passage->passes(lo, hi, sideOf);
+      may_be_across_ |= answer == FlatPassage::Answer::kAcross;
+      if (answer != FlatPassage::Answer::kUnknown) return true;
+    }
+    return false;
   }
 
   /// The derivative of volume / |n| is volume' / |n| - (volume / |n|) (n . n') / |n|^2.
@@ -145,15 +170,19 @@ class ApproachSearch {
         mostVolumeChange(change_, of_others, u.norm * (v.norm * w.norm));
     const double height = mostVolume(f) / least;
     const double turned = height * mostNormalChange(v, w, change_[kV], change_[kW]);
-    return (change + turned) * kUpward <= speed_ * least;
+    return (change + turned) * kUpward <= request_.min_approach_speed * least;
   }
 
   MovingPair pair_;
   /// Of u, v and w.
   Vec change_[3];
-  double speed_;
+  const TouchingRequest& request_;
   /// The sign of the volume before the contact; 0: not known.
   double side_{0};
+  /// Whether the features may have passed through each other so far.
+  bool may_be_across_{false};
+  /// For each feature that may be flat.
+  std::optional<FlatPassage> passages_[2];
   Intervals open_;
 };
 
@@ -163,8 +192,7 @@ double approachesFrom(ContinuousContactKind kind, const FeaturePoints& x,
                       const TouchingRequest& request) {
   assert(request.min_approach_speed > 0 && request.toc_lo <= request.toc_hi);
   if (axisOfCommonPlane(x) >= 0) return kNever;
-  return ApproachSearch(kind, x, request.min_approach_speed)
-      .first(request.toc_lo, request.toc_hi, std::max(request.toc_hi, request.t_max));
+  return ApproachSearch(kind, x, request).first();
 }
 
 }  // namespace deformable

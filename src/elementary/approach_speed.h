@@ -6,6 +6,7 @@
 #define FCL_CCD_ELEMENTARY_APPROACH_SPEED_H
 
 #include "elementary/feature_points.h"
+#include "elementary/flat_passage.h"
 
 namespace fcl {
 namespace detail {
@@ -19,6 +20,8 @@ struct TouchingRequest {
   double t_max;
   /// Above 0.
   double min_approach_speed;
+  /// The surroundings of both features; null: they are not known.
+  const PairStars* stars{nullptr};
 };
 
 /// @brief The time from which on a pair that touches approaches faster than the speed, as
@@ -29,7 +32,10 @@ struct TouchingRequest {
 /// is left out with one of these proofs:
 /// - the features are not above each other: an inside condition is negative;
 /// - the height changes by no more than the speed, in either direction;
-/// - the height has the sign all the time that it has at toc_lo, before they touch.
+/// - the height has the sign all the time that it has at toc_lo, before they touch;
+/// - one feature is inside of a flat part of its mesh, and the other one does not pass
+///   through that (FlatPassage);
+/// - they are apart, and were in contact by the last proof only.
 ///
 /// So a vertex that passes through a face slowly is still in contact with it when it
 /// moves faster, as long as it is below the face. Features that touch at t = 0 have no

@@ -35,25 +35,6 @@ StepVolume restrict(const AccuratePair& pair, double lo, double hi) {
   return g;
 }
 
-/// Whether a plane through the origin keeps all differences of the features' vertices on
-/// one side at lo and hi, and so in between. Its normal is the direction from one feature
-/// to the nearest point of the other in the middle of [lo, hi]. No other test decides
-/// pairs without a normal (parallel edges, triangles without area).
-bool areSeparated(const MovingPair& pair, double lo, double hi) {
-  const Vec d = pair.directionAt(lo + 0.5 * (hi - lo));
-  const double size = maxNorm(d);
-  for (int i = 0; i < pair.table.num_corners; ++i) {
-    const auto [place, sign] = pair.table.corner[i];
-    const Difference& corner = pair.difference[place];
-    const double scale = size * corner.norm;
-    if (!isInRange(scale)) return false;
-    if (!(sign * dot(d, corner.at(lo)) > kSideBound * scale) ||
-        !(sign * dot(d, corner.at(hi)) > kSideBound * scale))
-      return false;
-  }
-  return true;
-}
-
 bool isFinite(const FeaturePoints& x) {
   double sum = 0;
   for (int i = 0; i < 4; ++i)

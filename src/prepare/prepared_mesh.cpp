@@ -201,6 +201,7 @@ void PreparedMesh::prepareModel(const BVHModel<BV>& model, const Pose& beginning
       VertexFrames(deforming ? model.prev_vertices->data() : current, current, count);
   instance_.frames.setPoses(beginning, end);
   instance_.triangles = model.tri_indices;
+  instance_.num_triangles = static_cast<std::size_t>(model.num_tris);
   if (!deforming && isTreeSound(model)) {
     instance_.rigid = RigidTree(fclTree(model), beginning);
     if (owners == FeatureOwners::kAlways) {

@@ -10,6 +10,7 @@
 #include "base/stopwatch.h"
 #include "query/block_traversal.h"
 #include "query/self_proofs.h"
+#include "query/surroundings.h"
 #include "tree/box_position.h"
 
 namespace fcl {
@@ -45,7 +46,9 @@ class ContactQuery {
                                      options.num_threads)
                          : SelfProofs{},
                 options.min_distance},
+        surroundings_(a, b),
         proof_time_(start_.seconds()) {
+    if (options.min_approach_speed > 0) task_options_.surroundings = &surroundings_;
     // One contact more than wanted tells whether there are more.
     if (options.query == ContinuousQuery::kFirst && options.isLimited())
       ++task_options_.max_contacts;
@@ -142,6 +145,7 @@ class ContactQuery {
   QueryOptions task_options_;
   const Schedule& schedule_;
   const MeshPair meshes_;
+  const Surroundings surroundings_;
   const double proof_time_;
   QueryProgress progress_;
   std::vector<NodePair> pieces_;

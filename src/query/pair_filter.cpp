@@ -8,25 +8,52 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+namespace {
+
+struct NumberedTriangle {
+  std::uint32_t ids[3];
+};
+
+/// The triangles of a mesh in the order of their numbers; those of a tree are not.
+std::vector<NumberedTriangle> trianglesOf(const MeshInstance& mesh) {
+  if (mesh.tree) {
+    std::vector<NumberedTriangle> triangles(mesh.tree->triangles().size());
+    for (const TreeTriangle& from : mesh.tree->triangles())
+      std::copy(from.id, from.id + 3, triangles[from.index].ids);
+    return triangles;
+  }
+  std::vector<NumberedTriangle> triangles(mesh.num_triangles);
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    mesh.triangles.copyIds(i, triangles[i].ids);
+  return triangles;
+}
+
+}  // namespace
+
+/// A triangle of a rigid mesh with a vertex that is not there has an error when a query
+/// comes to it. It is at none of its vertices.
 TrianglesAtVertices::TrianglesAtVertices(const MeshInstance& mesh) {
-  assert(mesh.tree || !mesh.owners);
-  if (!mesh.tree) return;
-  const auto& triangles = mesh.tree->triangles();
-  first_.assign(mesh.frames.size() + 1, 0);
-  for (const TreeTriangle& triangle : triangles)
-    for (const std::uint32_t id : triangle.id) ++first_[id + 1];
+  const std::vector<NumberedTriangle> triangles = trianglesOf(mesh);
+  const std::size_t num_vertices = mesh.frames.size();
+  const auto isThere = [&](const NumberedTriangle& triangle) {
+    return mesh.tree || std::all_of(triangle.ids, triangle.ids + 3,
+                                    [&](std::uint32_t id) { return id < num_vertices; });
+  };
+  first_.assign(num_vertices + 1, 0);
+  for (const NumberedTriangle& triangle : triangles)
+    if (isThere(triangle))
+      for (const std::uint32_t id : triangle.ids) ++first_[id + 1];
   for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-  // The triangles of a tree are not in the order of their numbers.
-  std::vector<const TreeTriangle*> by_number(triangles.size());
-  for (const TreeTriangle& triangle : triangles) by_number[triangle.index] = &triangle;
-  corners_.resize(3 * triangles.size());
+  corners_.resize(first_.back());
   std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
-  for (const TreeTriangle* triangle : by_number)
-    for (const std::uint32_t id : triangle->id) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (!isThere(triangles[i])) continue;
+    for (const std::uint32_t id : triangles[i].ids) {
       Corner& corner = corners_[next[id]++];
-      corner.triangle = static_cast<std::int32_t>(triangle->index);
-      std::copy(triangle->id, triangle->id + 3, corner.ids);
+      corner.triangle = static_cast<std::int32_t>(i);
+      std::copy(triangles[i].ids, triangles[i].ids + 3, corner.ids);
     }
+  }
 }
 
 bool TrianglesAtVertices::holds(const Corner& corner, const HeldFeature& feature) {

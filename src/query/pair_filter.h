@@ -68,8 +68,9 @@ struct HeldFeature {
 /// @brief The triangles at each vertex of a mesh.
 class TrianglesAtVertices {
  public:
-  /// @param mesh  Without a moving tree its features have no owners: each triangle is
-  /// tested with all its features, so that no list is needed.
+  /// Lists none: of a mesh whose features have no owners each triangle is tested with all
+  /// its features.
+  TrianglesAtVertices() = default;
   explicit TrianglesAtVertices(const MeshInstance& mesh);
 
   /// @brief Calls visit(triangle) for the triangles that hold the feature, lowest number
@@ -81,6 +82,14 @@ class TrianglesAtVertices {
     for (std::uint32_t i = first_[feature.ids[0]]; i < first_[feature.ids[0] + 1]; ++i)
       if (holds(corners_[i], feature) && visit(corners_[i].triangle)) return true;
     return false;
+  }
+
+  /// @brief Calls visit(ids) for the triangles at a vertex, lowest number first. A
+  /// triangle that has the vertex several times is visited as often.
+  template <typename Visit>
+  void forEachAt(std::uint32_t vertex, Visit&& visit) const {
+    for (std::uint32_t i = first_[vertex]; i < first_[vertex + 1]; ++i)
+      visit(corners_[i].ids);
   }
 
  private:
@@ -101,8 +110,8 @@ class PairFilter {
   /// @param a, b  the same object for a self-collision
   /// @param rules  copied, but not what its pointers refer to
   PairFilter(const MeshInstance& a, const MeshInstance& b, const PairRules& rules)
-      : rules_(rules), holders_of_a_(a) {
-    if (&a != &b) holders_of_b_.emplace(b);
+      : rules_(rules), holders_of_a_(holdersOf(a)) {
+    if (&a != &b) holders_of_b_ = holdersOf(b);
   }
 
   const PairRules& rules() const { return rules_; }
@@ -118,6 +127,10 @@ class PairFilter {
   bool find(const FeatureIds& pair, std::int32_t (&triangles)[2]) const;
 
  private:
+  static TrianglesAtVertices holdersOf(const MeshInstance& mesh) {
+    return mesh.tree ? TrianglesAtVertices(mesh) : TrianglesAtVertices();
+  }
+
   PairRules rules_;
   TrianglesAtVertices holders_of_a_;
   /// Empty for a self-collision.

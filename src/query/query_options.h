@@ -11,6 +11,8 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
+class Surroundings;
+
 /// @brief What is asked of a query.
 struct QueryOptions {
   ContinuousQuery query{ContinuousQuery::kAll};
@@ -39,6 +41,8 @@ struct QueryOptions {
   /// Contacts that approach no faster do not count; 0: all count. See
   /// elementary/approach_speed.h.
   double min_approach_speed{0};
+  /// What is around the features; null if it does not matter.
+  const Surroundings* surroundings{nullptr};
   /// With a distance: whether a contact is named after the parts of its features that are
   /// nearest, or after the features.
   bool names_parts{true};

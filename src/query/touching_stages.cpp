@@ -10,6 +10,7 @@
 #include "elementary/elementary.h"
 #include "elementary/magnified_solve.h"
 #include "query/coarse_time.h"
+#include "query/surroundings.h"
 
 namespace fcl {
 namespace detail {
@@ -184,9 +185,16 @@ void TouchingStages::solveAlone(const FeatureCandidate& candidate) {
 void TouchingStages::add(const FeatureCandidate& candidate, const TimeBracket& bracket) {
   const QueryOptions& options = findings_.options();
   if (!(options.min_approach_speed > 0)) return findings_.addTouching(candidate, bracket);
-  const double from =
-      approachesFrom(candidate.kind, CandidatePoints(candidate).get(),
-                     {bracket.lo, bracket.hi, options.t_max, options.min_approach_speed});
+  const CandidatePoints points(candidate);
+  TouchingRequest request{bracket.lo, bracket.hi, options.t_max,
+                          options.min_approach_speed};
+  double from = approachesFrom(candidate.kind, points.get(), request);
+  if (from <= options.t_max) {
+    // Few pairs are left, for which the triangles around them are read.
+    const PairStars stars = options.surroundings->of(candidate);
+    request.stars = &stars;
+    from = approachesFrom(candidate.kind, points.get(), request);
+  }
   if (from > options.t_max)
     ++counts_.solver_culled;
   else

@@ -34,6 +34,7 @@ struct MeshInstance {
   /// triangle owns all its features, so that a feature pair can be met repeatedly.
   const MeshTriangle* owners{nullptr};
   TriangleArray triangles;
+  std::size_t num_triangles{0};
 
   /// How the paths of the vertices are bent. Null: they are straight. Not with a moving
   /// tree; set RigidTree::setBend() too.

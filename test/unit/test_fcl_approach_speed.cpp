@@ -37,6 +37,7 @@ using detail::deformable::DistanceRequest;
 using detail::deformable::ElementaryResult;
 using detail::deformable::elementaryTest;
 using detail::deformable::FeaturePoints;
+using detail::deformable::PairStars;
 using detail::deformable::VertexPath;
 using Vector = Vector3<double>;
 using Kind = ContinuousContactKind;
@@ -255,6 +256,96 @@ TEST(FCL_APPROACH_SPEED, wideBrackets) {
   EXPECT_GE(later, manyOf(100));
 }
 
+VertexPath pathOf(const Vector& from, const Vector& to) {
+  return {{from.x(), from.y(), from.z()}, {to.x(), to.y(), to.z()}};
+}
+
+/// A face and a vertex at rest in (0, 0, 0), with six triangles around it in z = 0.
+struct FaceOverVertex {
+  VertexPath path[4] = {pathOf(Vector::Zero(), Vector::Zero()), {}, {}, {}};
+  std::vector<Vector> ring;
+  PairStars stars;
+
+  FaceOverVertex(const Vector (&from)[3], const Vector (&to)[3]) {
+    for (int k = 0; k < 3; ++k) path[1 + k] = pathOf(from[k], to[k]);
+    for (int k = 0; k < 6; ++k)
+      ring.emplace_back(std::cos(k * M_PI / 3), std::sin(k * M_PI / 3), 0);
+    setStar({0, 1, 2, 3, 4, 5});
+  }
+  /// The triangles that begin at these spokes.
+  void setStar(const std::vector<std::uint32_t>& spokes) {
+    stars.at[0].clear();
+    for (const std::uint32_t k : spokes) {
+      const std::uint32_t l = (k + 1) % 6;
+      stars.at[0].push_back(
+          {{k, l}, {pathOf(ring[k], ring[k]), pathOf(ring[l], ring[l])}});
+    }
+  }
+  double from(double speed, double toc_lo, double toc_hi) const {
+    return approachesFrom(Kind::kVertexFace, {{&path[0], &path[1], &path[2], &path[3]}},
+                          {toc_lo, toc_hi, 1, speed, &stars});
+  }
+  double from(double speed = 0.01) const { return from(speed, 0.5, 0.5 + 1e-7); }
+};
+
+/// A side face whose lower border meets the vertex at t = 0.5 and sinks by `sinks`.
+FaceOverVertex sideFace(double sinks = 0) {
+  const Vector by(-1, 0.3, -sinks);
+  const Vector from[3] = {{.5, -2, 0}, {.5, 2, 0}, {.5, 0, 1}},
+               to[3] = {from[0] + by, from[1] + by, from[2] + by};
+  return {from, to};
+}
+
+/// Which vertices are inside of a flat part, and what passes over it.
+TEST(FCL_APPROACH_SPEED, facesOverFlatVertices) {
+  EXPECT_GT(sideFace().from(), 1);
+  EXPECT_GT(sideFace(-0.5).from(), 1);
+  // It sinks more slowly than the speed, or faster.
+  EXPECT_GT(sideFace(0.008).from(), 1);
+  EXPECT_LE(sideFace(0.012).from(), 0.5 + 1e-7);
+  // It reaches far below the plane.
+  FaceOverVertex deep = sideFace();
+  for (int k = 1; k < 3; ++k) deep.path[k].t0[2] = deep.path[k].t1[2] = -0.5;
+  EXPECT_LE(deep.from(), 0.5 + 1e-7);
+  // A triangle is not there, or there are three on one side that fold over each other.
+  FaceOverVertex open = sideFace();
+  open.setStar({0, 1, 2, 3, 4});
+  EXPECT_LE(open.from(), 0.5 + 1e-7);
+  FaceOverVertex folded = sideFace();
+  folded.ring[2] = folded.ring[0];
+  folded.setStar({0, 1});
+  EXPECT_LE(folded.from(), 0.5 + 1e-7);
+  // Triangles with other windings, and twice, are as good.
+  FaceOverVertex twice = sideFace();
+  twice.setStar({0, 1, 2, 3, 4, 5, 0, 1, 2, 3, 4, 5});
+  for (std::size_t k = 0; k < 6; ++k) {
+    std::swap(twice.stars.at[0][k].ids[0], twice.stars.at[0][k].ids[1]);
+    std::swap(twice.stars.at[0][k].x[0], twice.stars.at[0][k].x[1]);
+  }
+  EXPECT_GT(twice.from(), 1);
+  // A spoke is above the plane.
+  for (const double height : {1e-9, 1e-7}) {
+    FaceOverVertex bent = sideFace();
+    bent.ring[3].z() = height;
+    bent.setStar({0, 1, 2, 3, 4, 5});
+    EXPECT_EQ(bent.from() > 1, height < 0x1p-20 * 0.01);
+  }
+}
+
+/// A face that falls flat on the vertex approaches it along the normal, also if the
+/// bracket of the touch ends just below, where the two are apart again.
+TEST(FCL_APPROACH_SPEED, facesThatFallOnFlatVertices) {
+  constexpr double kSlow = 0.01, kLittle = 0x1p-20 * kSlow;
+  const Vector down(0, 0, 2);
+  const Vector from[3] = {{-2, -2, 1}, {2, -2, 1}, {0, 2, 1}},
+               to[3] = {from[0] - down, from[1] - down, from[2] - down};
+  const FaceOverVertex face(from, to);
+  for (const double below : {0.1, 0.25, 0.5}) {
+    const double lo = 0.5 - kLittle, hi = 0.5 + 0.5 * below * kLittle;
+    EXPECT_LE(face.from(kSlow, lo, hi), hi);
+  }
+}
+
 // Bodies.
 
 constexpr double kDistance = 0.01, kSpeed = 1e-3;
@@ -380,6 +471,211 @@ TEST(FCL_APPROACH_SPEED, slidesThatTouch) {
   EXPECT_GE(touch_without, count / 3);
 }
 
+/// A box that stands on a floor, whose bottom is at z = 0 exactly.
+TestMesh makeStandingBody(Random& random, bool is_turned) {
+  const Vector half(random.uniform(0.1, 0.3), random.uniform(0.1, 0.3), 0.1);
+  TestMesh body = makeBox(half, 1 + static_cast<int>(random.index(3)));
+  const Matrix3<double> turn =
+      AngleAxis<double>(is_turned ? random.uniform(0, 3) : 0, Vector::UnitZ())
+          .toRotationMatrix();
+  for (auto& p : body.vertices) {
+    const double up = p.z() + half.z();
+    p = turn * p;
+    p.z() = up;
+  }
+  return body;
+}
+
+/// A solid body slides on the floor at the height 0: its side faces meet vertices and
+/// edges of the floor with their lower borders. Those inside of the floor are flat and
+/// stop nobody. Every third floor is turned, so that its coordinates round: it may then
+/// cross the body at t = 0. Others are a mesh that FCL's tree holds.
+TEST(FCL_APPROACH_SPEED, solidsSlideAtHeightZero) {
+  Random random(12);
+  int touch_without = 0;
+  const int count = manyOf(1000);
+  for (int i = 0; i < count; ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    const Place place(random);
+    const TestMesh floor = makeFloor(4 + i % 5, 1.5),
+                   body = makeStandingBody(random, i % 4 != 0);
+    const TestMesh from = moved(body, slideOf(random, 0.3));
+    const double way = random.uniform(0.1, 0.8);
+    const TestMesh to = moved(from, i % 8 ? slideOf(random, way) : Vector(way, 0, 0));
+    const bool is_rounded = i % 3 == 0;
+    const auto o1 = is_rounded ? place.model(from, to) : makeModel<Model>(from, to);
+    const ContinuousQuery query = kQueries[i / 2 % 3];
+    const auto ask = [&](double speed) {
+      const Request request = requestOf(query, 0, speed);
+      if (is_rounded)
+        return pairContacts<double>(*o1, *place.model(floor, floor), request);
+      if (i % 3 == 1)
+        return pairContacts<double>(*makeModel<Model>(floor, floor), *o1, request);
+      Result result;
+      const auto rigid = makeModel<BVHModel<OBBRSS<double>>>(floor);
+      const Transform3<double> rest = Transform3<double>::Identity();
+      continuousCollide(o1.get(), rest, rest, rigid.get(), rest, rest, request, result);
+      return result;
+    };
+    const Result result = ask(kSpeed);
+    EXPECT_EQ(result.contacts.size(), 0U);
+    EXPECT_EQ(result.is_collide, result.initially_crossing);
+    touch_without += !ask(0).contacts.empty();
+  }
+  EXPECT_GE(touch_without, count / 2);
+}
+
+/// A body that stands on the floor slides against a wall, or a plate that lies on it. The
+/// wall is a part of the floor, or stands on it. It is hit as without a floor and without
+/// the option.
+TEST(FCL_APPROACH_SPEED, standingBodiesHitAWall) {
+  Random random(13);
+  for (int i = 0; i < manyOf(600); ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    // A vertical wall from x = 0.75 up, of columns of the floor, which goes on above.
+    const int quads = 8;
+    const double height = random.uniform(0.05, 0.4);
+    const TestMesh step = makeSheet(quads + 2, quads, [&](double u, double v) {
+      const int column = static_cast<int>(std::lround(u * (quads + 2)));
+      const double x = column <= 6 ? -1.5 + 0.375 * column : -1.5 + 0.375 * (column - 1);
+      return Vector(x, 3 * v - 1.5, column <= 6 ? 0 : height);
+    });
+    TestMesh body = i % 3 ? makeStandingBody(random, i % 2) : makeFloor(1 + i % 4, 0.2);
+    const TestMesh from = moved(body, -0.2, 0, 0),
+                   to = moved(from, 1.5, random.uniform(-0.3, 0.3), 0);
+    double front = -1;
+    for (const auto& p : from.vertices) front = std::max(front, p.x());
+    const auto o1 = makeModel<Model>(from, to), o2 = makeModel<Model>(step, step);
+    const double toc = (0.75 - front) / 1.5;
+    for (const ContinuousQuery query : kQueries) {
+      Request request = requestOf(query, 0);
+      const Result result = pairContacts<double>(*o1, *o2, request);
+      ASSERT_TRUE(result.is_collide);
+      request.num_threads = 3;
+      expectIdentical(result, pairContacts<double>(*o1, *o2, request));
+      if (query == ContinuousQuery::kAny) continue;
+      EXPECT_NEAR(result.time_of_contact, toc, 1e-4);
+    }
+  }
+}
+
+/// A plate hits a wall at the height of an edge inside of the wall, with a corner or with
+/// its front edge. Each face of the wall alone is only grazed.
+TEST(FCL_APPROACH_SPEED, platesHitEdgesInsideOfWalls) {
+  Random random(17);
+  for (int i = 0; i < manyOf(500); ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    // The wall is wider than the plate, or not as wide.
+    const double width = i % 2 ? 2 : 0.1;
+    const TestMesh wall = makeSheet(1 + i % 3, 2, [&](double u, double v) {
+      return Vector(1, width * (2 * u - 1), v - 0.5);
+    });
+    const TestMesh plate = makeFloor(1 + i % 4, 0.4);
+    const Matrix3<double> turn =
+        AngleAxis<double>(random.uniform(-0.3, 0.3), Vector::UnitZ()).toRotationMatrix();
+    TestMesh from = plate;
+    for (auto& p : from.vertices) {
+      p = turn * p;
+      p.z() = 0;
+    }
+    const TestMesh to = moved(from, 1.5, random.uniform(-0.1, 0.1), 0);
+    const auto o1 = makeModel<Model>(from, to), o2 = makeModel<Model>(wall, wall);
+    const Result truth = pairContacts<double>(*o1, *o2, requestOf(kQueries[0], 0, 0));
+    ASSERT_TRUE(truth.is_collide);
+    for (const ContinuousQuery query : kQueries) {
+      const Result result = pairContacts<double>(*o1, *o2, requestOf(query, 0));
+      ASSERT_TRUE(result.is_collide);
+      if (query == ContinuousQuery::kAny) continue;
+      EXPECT_NEAR(result.time_of_contact, truth.time_of_contact, 1e-4);
+    }
+  }
+}
+
+/// A spike, or a roof with its edge, falls on a vertex or an edge inside of a flat floor.
+TEST(FCL_APPROACH_SPEED, spikesHitFlatParts) {
+  Random random(14);
+  for (int i = 0; i < manyOf(600); ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    const TestMesh floor = makeFloor(6, 1.5);
+    TestMesh spike = makeBox(Vector(0.1, 0.1, 0.1));
+    // Its lower vertices become one point, or two.
+    for (auto& p : spike.vertices) {
+      p.z() += 0.1;
+      if (p.z() < 0.01) p = Vector(i % 2 ? p.x() : 0, 0, 0);
+    }
+    // A vertex of the floor, or the middle of an edge.
+    const double drop = random.uniform(0.01, 0.3), x = i % 4 < 2 ? 0 : 0.25;
+    const TestMesh from = moved(spike, x, 0, drop),
+                   to = moved(spike,
+                              Vector(x, 0, -drop) + slideOf(random, i % 8 < 4 ? 0 : 0.5));
+    const auto o1 = makeModel<Model>(from, to), o2 = makeModel<Model>(floor, floor);
+    for (const ContinuousQuery query : kQueries) {
+      const Result result = pairContacts<double>(*o1, *o2, requestOf(query, 0));
+      ASSERT_TRUE(result.is_collide);
+      // Any contact may be the one that is found.
+      if (query == ContinuousQuery::kAny) continue;
+      EXPECT_NEAR(result.time_of_contact, 0.5, 1e-4);
+    }
+  }
+}
+
+/// Bodies whose vertices move at random over a floor whose vertices do, from the height 0
+/// or above. No vertex is deeper below the other surface than the speed allows, before a
+/// contact. Bodies that keep above the floor have none as a rule.
+TEST(FCL_APPROACH_SPEED, depthsAgainstSamples) {
+  constexpr int kSamples = 100;
+  Random random(15);
+  int hits = 0, deep = 0;
+  for (int i = 0; i < manyOf(1000); ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    const int quads = 4;
+    const TestMesh floor = makeFloor(quads, 1.5),
+                   from = moved(makeStandingBody(random, i % 2),
+                                Vector(0, 0, i % 3 ? 0 : random.uniform(0, 0.01)));
+    const double across = std::pow(10, random.uniform(-4, -1)), along = i % 5 ? 0.05 : 0,
+                 of_floor = i % 4 ? 0 : across;
+    const Vector way = slideOf(random, random.uniform(0, 0.6));
+    const auto changed = [&](TestMesh mesh, double vertical, double horizontal) {
+      for (auto& p : mesh.vertices) {
+        const Vector change = random.point(1);
+        p += Vector(horizontal * change.x(), horizontal * change.y(),
+                    vertical * change.z());
+      }
+      return mesh;
+    };
+    const TestMesh to = moved(changed(from, across, along), way),
+                   risen = changed(floor, of_floor, 0);
+    const Result result =
+        pairContacts<double>(*makeModel<Model>(from, to), *makeModel<Model>(floor, risen),
+                             requestOf(kQueries[i % 2], 0));
+    const double toc = result.is_collide ? result.time_of_contact : 1;
+    hits += result.is_collide;
+    for (int j = 0; j <= kSamples; ++j) {
+      const double t = toc * j / kSamples;
+      for (std::size_t v = 0; v < from.vertices.size(); ++v) {
+        const Vector p = (1 - t) * from.vertices[v] + t * to.vertices[v];
+        for (const Triangle& f : floor.triangles) {
+          Vector c[3];
+          for (int k = 0; k < 3; ++k)
+            c[k] = (1 - t) * floor.vertices[f[k]] + t * risen.vertices[f[k]];
+          const Vector n = (c[1] - c[0]).cross(c[2] - c[0]);
+          bool is_over = true;
+          for (int k = 0; k < 3; ++k) {
+            const Vector side = c[(k + 1) % 3] - c[k], at = p - c[k];
+            is_over &= (side.x() * at.y() - side.y() * at.x()) * n.z() >= 0;
+          }
+          if (!is_over) continue;
+          const double height = (p - c[0]).dot(n) / n.z();
+          deep += height < 0;
+          ASSERT_GE(height, -kSpeed * t * 1.01 - 1e-8) << t;
+        }
+      }
+    }
+  }
+  EXPECT_GE(hits, manyOf(200));
+  EXPECT_GE(deep, manyOf(200));
+}
+
 /// A body that falls, also sideways, is in contact when it is as near.
 TEST(FCL_APPROACH_SPEED, falls) {
   Random random(5);
@@ -489,6 +785,28 @@ TEST(FCL_APPROACH_SPEED, slidesInOneMesh) {
       to.vertices[v].z() -= 0.1;
     EXPECT_TRUE(selfContacts<double>(*place.model(from, to), request).is_collide);
   }
+}
+
+TEST(FCL_APPROACH_SPEED, solidsSlideInOneMesh) {
+  Random random(18);
+  int touch_without = 0;
+  for (int i = 0; i < manyOf(60); ++i) {
+    SCOPED_TRACE(std::to_string(i));
+    TestMesh from = makeStandingBody(random, i % 2),
+             to = moved(from, slideOf(random, 0.6));
+    const TestMesh floor = makeFloor(6, 1.5);
+    append(from, floor);
+    append(to, floor);
+    const auto model = makeModel<Model>(from, to);
+    const Request request = requestOf(kQueries[i % 3], 0);
+    EXPECT_FALSE(selfContacts<double>(*model, request).is_collide);
+    touch_without +=
+        selfContacts<double>(*model, requestOf(kQueries[i % 3], 0, 0)).is_collide;
+    for (std::size_t v = 0; v < to.vertices.size() - floor.vertices.size(); ++v)
+      to.vertices[v].z() -= 0.1;
+    EXPECT_TRUE(selfContacts<double>(*makeModel<Model>(from, to), request).is_collide);
+  }
+  EXPECT_GE(touch_without, manyOf(50));
 }
 
 TEST(FCL_APPROACH_SPEED, freeFeatures) {

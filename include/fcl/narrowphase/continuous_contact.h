@@ -215,17 +215,24 @@ struct ContinuousContactRequest : ContinuousCollisionRequest<S> {
   /// A contact is left out only with a proof that the gap shrinks no faster; what is not
   /// decided stays. A pair whose first contact is left out is followed further: its
   /// contact is then the first time of the step from which on it approaches faster.
-  /// A vertex that sinks more slowly than this passes through a face. Crossings at t = 0
-  /// are reported as ever.
+  /// Crossings at t = 0 are reported as ever.
   ///
   /// min_distance = 0: the speed is that of the vertex relative to the point of the face
   /// that it touches, along the normal of the face, or of two edges along their common
-  /// normal. Its sign does not matter to features that touch at t = 0, which have no
+  /// normal. A vertex that sinks more slowly than this passes through a face, and a sheet
+  /// that does so as a whole is not seen in the next step: it wants a min_distance. The
+  /// sign of the speed does not matter to features that touch at t = 0, which have no
   /// side. A pair counts as touching as long as the vertex is above or below the face (or
   /// the edges are), and has not gone back to its side. Features that stay in a plane of
-  /// constant x, y or z do not approach. Parallel edges and faces without area have no
-  /// normal: they stay contacts. If the time of contact is not the first touch, toc_hi
-  /// equals toc_lo.
+  /// constant x, y or z do not approach. If the time of contact is not the first touch,
+  /// toc_hi equals toc_lo.
+  ///
+  /// A vertex or an edge inside of a flat part of a mesh has the normal of that part,
+  /// from whichever side the other feature comes: what the lower border of a side face
+  /// meets does not stop a body that stands on the floor. The part is flat if the
+  /// triangles there go around the vertex, or lie on both sides of the edge, and keep
+  /// within 2^-20 of this speed of one plane. Other parallel edges, and faces without
+  /// area, have no normal: they stay contacts.
   ///
   /// min_distance > 0: the speed at which the distance of the pair shrinks, between the
   /// nearest points. A pair that comes within min_distance at a lower speed is left out
