@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from ._core import Geometry
 
 
-class Compound(Copied, _core.Compound):
+class Compound(Copied, _arguments.Built, _core.Compound):
     """One body of several geometries: a link of a robot, a vehicle of boxes.
 
     parts : list of (geometry, offset)
@@ -38,7 +38,7 @@ class Compound(Copied, _core.Compound):
     RuntimeError.
     """
 
-    _parts: Tuple[Tuple[Geometry, NDArray[np.float64]], ...] = ()
+    _parts: Tuple[Tuple[Geometry, NDArray[np.float64]], ...]
 
     def __init__(
         self, parts: Iterable[Tuple[Union[Geometry, TriangleMesh], Optional[ArrayLike]]]
@@ -67,11 +67,9 @@ class Compound(Copied, _core.Compound):
         return tuple((geometry, offset.copy()) for geometry, offset in self._parts)
 
     def _built_from(self) -> Tuple[Any, ...]:
-        if not self._parts:
-            raise TypeError("its __init__() was not called, or has not ended")
         return [geometry for geometry, _ in self._parts], [offset for _, offset in self._parts]
 
     def __repr__(self) -> str:
-        if not self._parts:
+        if "_parts" not in self.__dict__:
             return "Compound(not built)"
         return f"Compound({', '.join(type(geometry).__name__ for geometry, _ in self._parts)})"

@@ -32,7 +32,9 @@ def test_contacts():
     np.testing.assert_array_equal(frame[PLACES[3:]], contacts["normal"])
     np.testing.assert_array_equal(frame[[f"vertices_{i}" for i in range(5)]], contacts["vertices"])
     np.testing.assert_array_equal(frame["penetration_depth"], contacts["penetration_depth"])
-    assert frame.shape[1] == 7 + 6 + 1 + 5
+    for name in ("part1", "part2"):
+        assert (frame[name] == -1).all()
+    assert frame.shape[1] == 7 + 6 + 1 + 2 + 5
     faces = frame[frame["kind"] == fcl_ccd.Kind.VERTEX_FACE]
     assert 0 < len(faces) < len(frame)
     some = fcl_ccd.to_dataframe(contacts[::2])

@@ -206,7 +206,7 @@ def test_wrong_types():
     for ask, words in (
         (lambda: fcl_ccd.CollisionRobot("chain"), "JointChain"),
         (lambda: fcl_ccd.CollisionRobot(two_links(), [1, 2]), "list of str"),
-        (lambda: robot.attach(0, "mesh"), "a shape or an OcTree"),
+        (lambda: robot.attach(0, "mesh"), "an OcTree or a Compound"),
         (lambda: robot.check_edge([0, 0], [1, 1], "wall"), "CollisionManager, or None"),
         (lambda: robot.check_motion("motion"), "ChainMotion"),
     ):
