@@ -259,6 +259,8 @@ template <typename S>
 void answerCompounds(const PlacedGeometry<S>& o1, const PlacedGeometry<S>& o2,
                      const CheckedRequest& request, const Reply<S>& reply) {
   const deformable::Stopwatch start;
+  requireAllSpeeds(request.options,
+                   "One of these two is a compound: give a mesh in its place");
   const CompoundPair<S> compounds(o1, o2);
   compounds.requireNoTriangleGroups(request);
   // Far parts are not asked, so that a filter of a wrong size is refused here.

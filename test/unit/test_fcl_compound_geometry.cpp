@@ -550,6 +550,9 @@ TEST(CompoundGeometry, QueriesNameTheObjectAndThePart) {
   Request request;
   request.filter1.triangle_groups = {1, 2};
   expectError(ask(pair, request), "request.filter1 has groups of triangles");
+  request = Request();
+  request.min_approach_speed = 1e-3;
+  expectError(ask(pair, request), "One of these two is a compound: give a mesh");
   ball->radius = -1;
   expectError(ask(pair, Request()), "o1 is part 0 of a compound: ");
   ball->radius = 1;
