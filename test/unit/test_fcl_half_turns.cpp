@@ -77,8 +77,9 @@ Pose halfway(const MotionBase<double>& motion) {
 /// The path of a query, halfway.
 Pose halfwayInQuery(const CollisionGeometry<double>& geometry,
                     const MotionBase<double>& motion) {
-  detail::MovingGeometry<double> moving{&geometry, {}, detail::PathKind::kUnknown, {}, {},
-                                        nullptr,   {}};
+  detail::MovingGeometry<double> moving{};
+  moving.geometry = &geometry;
+  moving.path = detail::PathKind::kUnknown;
   EXPECT_TRUE(detail::readFclMotion(motion, moving));
   return detail::toTransform(detail::poseAt(moving, 0.5));
 }
