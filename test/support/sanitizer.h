@@ -15,12 +15,12 @@ constexpr bool kHasAddressSanitizer = __has_feature(address_sanitizer);
 constexpr bool kHasAddressSanitizer = false;
 #endif
 
-/// @brief `count` random cases, or a sixteenth of them under the address sanitizer. It
+/// @brief `count` random cases, or an eighth of them under the address sanitizer. It
 /// looks for errors in memory, which need fewer cases than wrong answers, and each takes
 /// 10 to 20 times as long.
 template <typename Count>
 constexpr Count rounds(Count count) {
-  return kHasAddressSanitizer ? (count + 15) / 16 : count;
+  return kHasAddressSanitizer ? (count + 7) / 8 : count;
 }
 
 }  // namespace test
