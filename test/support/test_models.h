@@ -189,16 +189,21 @@ inline void expectMessage(const std::string& message, const std::string& word) {
   EXPECT_NE(message.find(word), std::string::npos) << message;
 }
 
-/// @brief Expects fcl::Exception with a message that contains `word`.
+/// @brief The message of the fcl::Exception that a call throws; empty if it throws none.
 template <typename Call>
-void expectRefused(Call&& call, const std::string& word) {
-  std::string message;
+std::string errorOf(Call&& call) {
   try {
     call();
   } catch (const Exception& error) {
-    message = error.what();
+    return error.what();
   }
-  expectMessage(message, word);
+  return "";
+}
+
+/// @brief Expects fcl::Exception with a message that contains `word`.
+template <typename Call>
+void expectRefused(Call&& call, const std::string& word) {
+  expectMessage(errorOf(call), word);
 }
 
 }  // namespace test
