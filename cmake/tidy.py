@@ -26,8 +26,8 @@ def groups():
     """The sources that are compiled alike, by folder. One that includes itself is alone."""
     found = collections.defaultdict(list)
     for entry in json.loads((BUILD / "compile_commands.json").read_text(encoding="utf-8")):
-        path = Path(entry["file"])
-        if SOURCE / "src" not in path.parents:
+        paths = [path for path in compiled(Path(entry["file"])) if SOURCE / "src" in path.parents]
+        if not paths:
             continue
         command = shlex.split(entry["command"])
         if "ccache" in command[0]:
@@ -36,9 +36,17 @@ def groups():
             at = command.index(option)
             del command[at : at + 2]
         command = without_precompiled(command)
-        alone = "foreach_target.h" in path.read_text(encoding="utf-8")
-        found[path if alone else path.parent, tuple(command)].append(path)
+        for path in paths:
+            alone = "foreach_target.h" in path.read_text(encoding="utf-8")
+            found[path if alone else path.parent, tuple(command)].append(path)
     return [(list(command), sorted(paths)) for (_, command), paths in found.items()]
+
+
+def compiled(file):
+    """The sources that the compiler reads in this file: those that CMake has joined, or itself."""
+    if "Unity" not in file.parts:
+        return [file]
+    return [Path(name) for name in re.findall('#include "(.*)"', file.read_text(encoding="utf-8"))]
 
 
 def without_precompiled(command):

@@ -139,11 +139,11 @@ ChainPathPtr makeChainPath(const JointTreePtr& tree, const BoundedMotion::Placem
   const DefaultFloatingPoint mode;
   requireCount(begin.size(), requireTree(tree), "begin");
   requireCount(end.size(), *tree, "end");
-  std::vector<deformable::Polynomial> values;
+  std::vector<deformable::Coefficients> values;
   for (std::size_t i = 0; i < begin.size(); ++i)
     values.push_back(begin[i] == end[i]
-                         ? deformable::Polynomial{begin[i]}
-                         : deformable::Polynomial{begin[i], end[i] - begin[i]});
+                         ? deformable::Coefficients{begin[i]}
+                         : deformable::Coefficients{begin[i], end[i] - begin[i]});
   return std::make_shared<ChainPath>(tree, requirePose(base, "ChainMotion: the base"),
                                      std::move(values));
 }

@@ -64,9 +64,9 @@ struct NearestPoints {
 };
 
 /// Two triangles, one of each mesh.
-class TrianglePair {
+class TwoTriangles {
  public:
-  TrianglePair(const MovingBody& a, const MovingBody& b, const PartWork& work)
+  TwoTriangles(const MovingBody& a, const MovingBody& b, const PartWork& work)
       : body_{&a, &b}, triangle_{a.triangle(~work.a.child), b.triangle(~work.b.child)} {}
 
   std::int32_t index(int k) const { return triangle_[k].index; }
@@ -324,7 +324,7 @@ void BodyApproach::Search::visitPair(const PartWork& work, Visit&& visit) {
       visit(pair);
   };
   if (areMeshes())
-    visitIfAccepted(TrianglePair(near_.a, near_.b, work));
+    visitIfAccepted(TwoTriangles(near_.a, near_.b, work));
   else
     visitIfAccepted(ConvexPair(near_.a, near_.b, work));
 }

@@ -14,7 +14,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// More than the sum of all underflows in one of the numbers below.
 constexpr double kUnderflow = 0x1p-1060;
 
@@ -86,7 +85,7 @@ struct AccuratePair::Cross {
         a.is_double && b.is_double ? 0 : 2 * kProductBound * norm;
     r.error = isInAccurateRange(norm)
                   ? product_error + 3 * kSumBound * largest + kUnderflow
-                  : kInfinity;
+                  : std::numeric_limits<double>::infinity();
   }
 };
 
@@ -109,7 +108,7 @@ AccuratePair::AccuratePair(ContinuousContactKind kind, const FeaturePoints& x)
   volume_error_ = isInAccurateRange(u_.norm * (v_.norm * w_.norm))
                       ? 9.5 * u_.norm * normal_.error +
                             0x1p-97 * (u_.norm * normal_.size) + kUnderflow
-                      : kInfinity;
+                      : std::numeric_limits<double>::infinity();
 }
 
 AccurateDifference AccuratePair::difference(PairDifference i) const {

@@ -19,7 +19,8 @@ MovingPoint operator-(const MovingPoint& a, const MovingPoint& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
-Polynomial crossComponent(const MovingPoint& a, const MovingPoint& b, std::size_t k) {
+ExactPolynomial crossComponent(const MovingPoint& a, const MovingPoint& b,
+                               std::size_t k) {
   const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
   return a[i] * b[j] - a[j] * b[i];
 }
@@ -36,7 +37,7 @@ std::array<MovingPoint, 4> integerPaths(const FeaturePoints& x,
     for (int k = 0; k < 3; ++k) {
       const Integer from = toInteger<Integer>(x[i].t0[k], digits.lowest[0]);
       points[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)] =
-          Polynomial{from, toInteger<Integer>(x[i].t1[k], digits.lowest[1]) - from};
+          ExactPolynomial{from, toInteger<Integer>(x[i].t1[k], digits.lowest[1]) - from};
     }
   return points;
 }
@@ -73,7 +74,7 @@ ExactPair::ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4
 
 std::vector<Root> ExactPair::candidates() const {
   std::vector<Root> times;
-  const auto addRootsOf = [&times](const Polynomial& p) {
+  const auto addRootsOf = [&times](const ExactPolynomial& p) {
     if (p.degree() < 1) return;
     for (Root& root : rootsInUnitInterval(p)) times.push_back(std::move(root));
   };
@@ -91,7 +92,7 @@ std::vector<Root> ExactPair::candidates() const {
   // Always parallel, or without area. Parallel edges touch only while a is on the line
   // of cd, or c is d.
   if (is_edge_edge_)
-    for (const Polynomial& off : cross(differences_[kU], differences_[kW]))
+    for (const ExactPolynomial& off : cross(differences_[kU], differences_[kW]))
       if (!off.isZero()) {
         addRootsOf(off);
         return times;
@@ -126,7 +127,7 @@ bool ExactPair::touchAt(Root& t) const {
 }
 
 /// Component k of the cross product that gives weight i.
-Polynomial ExactPair::weight(int i, std::size_t k) const {
+ExactPolynomial ExactPair::weight(int i, std::size_t k) const {
   const auto& [x, y] = table_.inside[i];
   return crossComponent(differences_[x], differences_[y], k);
 }
@@ -146,7 +147,7 @@ bool ExactPair::isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& 
     if (t.signOf(p[k] - q[k]) * t.signOf(p[k] - r[k]) > 0) return false;
   const MovingPoint off = cross(p - q, r - q);
   return std::all_of(off.begin(), off.end(),
-                     [&t](const Polynomial& o) { return t.signOf(o) == 0; });
+                     [&t](const ExactPolynomial& o) { return t.signOf(o) == 0; });
 }
 
 bool ExactQuery::touchInFrame(int t) const {

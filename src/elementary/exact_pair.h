@@ -27,7 +27,7 @@ namespace deformable {
 /// n_k. All have to be >= 0.
 class ExactPair {
  public:
-  using MovingPoint = std::array<Polynomial, 3>;
+  using MovingPoint = std::array<ExactPolynomial, 3>;
 
   ExactPair(ContinuousContactKind kind, const FeaturePoints& x,
             const FrameDigits& digits);
@@ -35,7 +35,7 @@ class ExactPair {
   ExactPair(ContinuousContactKind kind, const std::array<MovingPoint, 4>& paths);
 
   /// @brief The volume u . (v x w) of the four points.
-  const Polynomial& volume() const { return volume_; }
+  const ExactPolynomial& volume() const { return volume_; }
 
   /// @brief A set of times. If there is a contact after 0, the first one is at one of
   /// them.
@@ -54,7 +54,7 @@ class ExactPair {
     const MovingPoint &p, &q, &r;
   };
 
-  Polynomial weight(int i, std::size_t k) const;
+  ExactPolynomial weight(int i, std::size_t k) const;
   std::vector<PointAndSegment> pointsOnSegments() const;
   static bool isOnSegmentAt(Root& t, const MovingPoint& p, const MovingPoint& q,
                             const MovingPoint& r);
@@ -64,7 +64,7 @@ class ExactPair {
   std::array<MovingPoint, 4> p_;
   std::array<MovingPoint, kQ + 1> differences_;
   MovingPoint n_;
-  Polynomial volume_;
+  ExactPolynomial volume_;
 };
 
 /// @brief A pair for the exact stages. Its polynomials are computed when they are first

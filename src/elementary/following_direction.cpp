@@ -12,7 +12,7 @@ namespace deformable {
 namespace {
 
 /// A polynomial of degree 6 or less.
-struct Polynomial {
+struct Polynomial6 {
   static constexpr int kDegree = 6;
   double c[kDegree + 1]{};
 
@@ -141,7 +141,7 @@ double followingStep(const DifferencePolygon& polygon, const Vec* corners,
   if (!n.normalize(corners[nearest.corners[0]])) return 0;
   const Vec(&m)[kDegree + 1] = n.coefficient;
   // What all corners have in common: `least` and the rounding.
-  Polynomial common;
+  Polynomial6 common;
   double lengths[kDegree + 1];
   for (int i = 0; i <= kDegree; ++i) lengths[i] = std::sqrt(dot(m[i], m[i]));
   const double q[2] = {1, dot(m[0], m[1])};
@@ -149,7 +149,7 @@ double followingStep(const DifferencePolygon& polygon, const Vec* corners,
     for (int j = 0; j <= kDegree; ++j) common.c[i + j] -= least * dot(m[i], m[j]);
   common.addProduct(-least, q, q);
   common.addProduct(-kRounding * size, lengths, lengths);
-  Polynomial above[DifferencePolygon::kMaxCorners];
+  Polynomial6 above[DifferencePolygon::kMaxCorners];
   for (int k = 0; k < polygon.count(); ++k) {
     double height[kDegree + 2] = {};
     for (int i = 0; i <= kDegree; ++i) {

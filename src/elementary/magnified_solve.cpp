@@ -375,7 +375,7 @@ bool cut(const Interval& i, const Place& place, unsigned time_bits, Intervals& o
 }
 
 /// The only root of p, simple, between lo / 2^m and hi / 2^m.
-Root rootBetween(const Polynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) {
+Root rootBetween(const ExactPolynomial& p, DoubleWord lo, DoubleWord hi, unsigned m) {
   const int sign_lo = p.signAt(lo, m);
   for (;;) {
     const DoubleWord width = hi - lo;

@@ -42,55 +42,55 @@ double ratioToDouble(const Integer& a, const Integer& b, int direction) {
 }
 
 /// p divided by (2^m t - k), a root of it.
-Polynomial withoutRoot(const Polynomial& p, const Integer& k, unsigned m) {
-  return p.quotient(Polynomial{-k, Integer(1) << m}).primitive();
+ExactPolynomial withoutRoot(const ExactPolynomial& p, const Integer& k, unsigned m) {
+  return p.quotient(ExactPolynomial{-k, Integer(1) << m}).primitive();
 }
 
 }  // namespace
 
-Polynomial& Polynomial::operator+=(const Polynomial& other) {
+ExactPolynomial& ExactPolynomial::operator+=(const ExactPolynomial& other) {
   if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
   for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] += other.c_[i];
   trim();
   return *this;
 }
 
-Polynomial& Polynomial::operator-=(const Polynomial& other) {
+ExactPolynomial& ExactPolynomial::operator-=(const ExactPolynomial& other) {
   if (c_.size() < other.c_.size()) c_.resize(other.c_.size());
   for (std::size_t i = 0; i < other.c_.size(); ++i) c_[i] -= other.c_[i];
   trim();
   return *this;
 }
 
-Polynomial operator*(const Polynomial& a, const Polynomial& b) {
-  Polynomial product;
+ExactPolynomial operator*(const ExactPolynomial& a, const ExactPolynomial& b) {
+  ExactPolynomial product;
   if (a.isZero() || b.isZero()) return product;
-  assert(a.degree() + b.degree() <= Polynomial::kMaxDegree);
+  assert(a.degree() + b.degree() <= ExactPolynomial::kMaxDegree);
   product.c_.resize(a.c_.size() + b.c_.size() - 1);
   for (std::size_t i = 0; i < a.c_.size(); ++i)
     for (std::size_t j = 0; j < b.c_.size(); ++j) product.c_[i + j] += a.c_[i] * b.c_[j];
   return product;
 }
 
-Polynomial Polynomial::derivative() const {
-  Polynomial d;
+ExactPolynomial ExactPolynomial::derivative() const {
+  ExactPolynomial d;
   for (std::size_t i = 1; i < c_.size(); ++i) d.c_.push_back(c_[i] * i);
   return d;
 }
 
-Polynomial Polynomial::primitive() const {
+ExactPolynomial ExactPolynomial::primitive() const {
   Integer content = 0;
   for (const Integer& c : c_) content = boost::multiprecision::gcd(content, c);
   if (content <= 1) return *this;
-  Polynomial p = *this;
+  ExactPolynomial p = *this;
   for (Integer& c : p.c_) c /= content;
   return p;
 }
 
 /// Remainder of a by b, times a constant.
-Polynomial remainder(const Polynomial& a, const Polynomial& b) {
+ExactPolynomial remainder(const ExactPolynomial& a, const ExactPolynomial& b) {
   assert(!b.isZero());
-  Polynomial rest = a;
+  ExactPolynomial rest = a;
   const std::size_t n = b.c_.size();
   while (rest.c_.size() >= n) {
     const Integer top = rest.c_.back();
@@ -104,9 +104,9 @@ Polynomial remainder(const Polynomial& a, const Polynomial& b) {
   return rest;
 }
 
-Polynomial Polynomial::quotient(const Polynomial& divisor) const {
+ExactPolynomial ExactPolynomial::quotient(const ExactPolynomial& divisor) const {
   assert(!divisor.isZero() && degree() >= divisor.degree());
-  Polynomial rest = *this, q;
+  ExactPolynomial rest = *this, q;
   const std::size_t n = divisor.c_.size();
   const Integer& lead = divisor.c_.back();
   q.c_.resize(c_.size() - n + 1);
@@ -124,11 +124,11 @@ Polynomial Polynomial::quotient(const Polynomial& divisor) const {
   return q;
 }
 
-int Polynomial::signAt(const Integer& k, unsigned m) const {
+int ExactPolynomial::signAt(const Integer& k, unsigned m) const {
   return valueAt(k, m).sign();
 }
 
-Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
+Integer ExactPolynomial::valueAt(const Integer& k, unsigned m) const {
   if (isZero()) return 0;
   Integer value = c_.back();  // Horner's rule
   for (int i = degree() - 1; i >= 0; --i) {
@@ -138,8 +138,8 @@ Integer Polynomial::valueAt(const Integer& k, unsigned m) const {
   return value;
 }
 
-int Polynomial::signAtFraction(const Integer& numerator,
-                               const Integer& denominator) const {
+int ExactPolynomial::signAtFraction(const Integer& numerator,
+                                    const Integer& denominator) const {
   assert(denominator > 0);
   if (isZero()) return 0;
   Integer value = c_.back(), power = 1;
@@ -150,7 +150,8 @@ int Polynomial::signAtFraction(const Integer& numerator,
   return value.sign();
 }
 
-Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) const {
+ExactPolynomial::Coefficients ExactPolynomial::bernstein(const Integer& k,
+                                                         unsigned m) const {
   const std::size_t n = c_.size();
   // q(s) = 2^(m degree) p((k + s) / 2^m) by repeated synthetic division.
   Coefficients q = c_;
@@ -166,7 +167,7 @@ Polynomial::Coefficients Polynomial::bernstein(const Integer& k, unsigned m) con
   return q;
 }
 
-int Polynomial::signChanges(const Integer& k, unsigned m) const {
+int ExactPolynomial::signChanges(const Integer& k, unsigned m) const {
   int changes = 0, last = 0;
   for (const Integer& b : bernstein(k, m)) {
     const int sign = b.sign();
@@ -177,9 +178,9 @@ int Polynomial::signChanges(const Integer& k, unsigned m) const {
   return changes;
 }
 
-Polynomial gcd(Polynomial a, Polynomial b) {
+ExactPolynomial gcd(ExactPolynomial a, ExactPolynomial b) {
   while (!b.isZero()) {
-    Polynomial rest = remainder(a, b);
+    ExactPolynomial rest = remainder(a, b);
     a = std::move(b);
     b = std::move(rest);
   }
@@ -188,13 +189,13 @@ Polynomial gcd(Polynomial a, Polynomial b) {
 
 /// An estimate of the root in (k, k + 1) / 2^m, from 0 to 1, of a polynomial with
 /// different signs at the ends.
-static double estimateRoot(const Polynomial& p, const Integer& k, unsigned m) {
-  const Polynomial::Coefficients exact = p.bernstein(k, m);
+static double estimateRoot(const ExactPolynomial& p, const Integer& k, unsigned m) {
+  const ExactPolynomial::Coefficients exact = p.bernstein(k, m);
   std::size_t bits = 0;
   for (const Integer& b : exact)
     if (!b.is_zero()) bits = std::max<std::size_t>(bits, msb(abs(b)));
   const std::size_t drop = bits > 60 ? bits - 60 : 0;
-  double b[Polynomial::kMaxDegree + 1];
+  double b[ExactPolynomial::kMaxDegree + 1];
   const std::size_t n = exact.size();
   for (std::size_t i = 0; i < n; ++i) {
     const Integer head = abs(exact[i]) >> drop;
@@ -216,7 +217,7 @@ namespace {
 /// The search for the roots of a polynomial in [0, 1], by Descartes' rule of signs.
 class RootSearch {
  public:
-  explicit RootSearch(const Polynomial& polynomial)
+  explicit RootSearch(const ExactPolynomial& polynomial)
       : p_(polynomial), is_square_free_(polynomial.degree() <= 1) {}
 
   std::vector<Root> run() {
@@ -273,7 +274,7 @@ class RootSearch {
   /// Makes roots of higher multiplicity simple.
   /// @return whether there are some
   bool takeRepeated() {
-    const Polynomial repeated = gcd(p_, p_.derivative());
+    const ExactPolynomial repeated = gcd(p_, p_.derivative());
     is_square_free_ = true;
     if (repeated.degree() <= 0) return false;
     p_ = p_.quotient(repeated).primitive();
@@ -311,7 +312,7 @@ class RootSearch {
     return true;
   }
 
-  Polynomial p_;
+  ExactPolynomial p_;
   bool is_square_free_;
   std::vector<Interval> open_;
   std::vector<Root> roots_;
@@ -319,7 +320,7 @@ class RootSearch {
 
 }  // namespace
 
-std::vector<Root> rootsInUnitInterval(const Polynomial& polynomial) {
+std::vector<Root> rootsInUnitInterval(const ExactPolynomial& polynomial) {
   assert(!polynomial.isZero());
   return RootSearch(polynomial).run();
 }
@@ -392,13 +393,13 @@ int Root::compare(const Integer& numerator, const Integer& denominator) const {
 
 /// Sign of a linear polynomial at the root. Its own root is a fraction, and the sign
 /// tells on which side of this root the fraction lies.
-int Root::signOfLine(const Polynomial& g) const {
+int Root::signOfLine(const ExactPolynomial& g) const {
   assert(g.degree() == 1 && !is_dyadic_);
   const int slope = g[1].sign();
   return slope * compare(slope > 0 ? -g[0] : g[0], abs(g[1]));
 }
 
-int Root::signOf(const Polynomial& g) {
+int Root::signOf(const ExactPolynomial& g) {
   if (g.degree() <= 0) return g.isZero() ? 0 : g[0].sign();
   if (is_dyadic_) return g.signAt(k_, m_);
   if (g == polynomial_) return 0;
@@ -415,7 +416,7 @@ int Root::signOf(const Polynomial& g) {
     if (!first && !common_known) {
       // A common root in the interval is this root, since its polynomial has no other
       // there. The divisor changes its sign at it.
-      const Polynomial common = gcd(polynomial_, g);
+      const ExactPolynomial common = gcd(polynomial_, g);
       if (common.degree() > 0 && common.signAt(k_, m_) != common.signAt(k_ + 1, m_))
         return 0;
       common_known = true;

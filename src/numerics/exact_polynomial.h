@@ -25,37 +25,41 @@ using Integer =
 
 /// @brief Coefficients by ascending power. The last one is not 0; the polynomial 0 has
 /// none.
-class Polynomial {
+class ExactPolynomial {
  public:
   /// The conditions of a contact have at most this degree.
   static constexpr int kMaxDegree = 3;
   using Coefficients = boost::container::static_vector<Integer, kMaxDegree + 1>;
 
-  Polynomial() = default;
-  Polynomial(std::initializer_list<Integer> coefficients)
+  ExactPolynomial() = default;
+  ExactPolynomial(std::initializer_list<Integer> coefficients)
       : c_(coefficients.begin(), coefficients.end()) {
     trim();
   }
 
   bool isZero() const { return c_.empty(); }
-  bool operator==(const Polynomial& other) const { return c_ == other.c_; }
+  bool operator==(const ExactPolynomial& other) const { return c_ == other.c_; }
   int degree() const { return static_cast<int>(c_.size()) - 1; }
   const Integer& operator[](int i) const {
     assert(i >= 0 && i <= degree());
     return c_[static_cast<std::size_t>(i)];
   }
 
-  Polynomial& operator+=(const Polynomial& other);
-  Polynomial& operator-=(const Polynomial& other);
-  friend Polynomial operator+(Polynomial a, const Polynomial& b) { return a += b; }
-  friend Polynomial operator-(Polynomial a, const Polynomial& b) { return a -= b; }
-  friend Polynomial operator*(const Polynomial& a, const Polynomial& b);
+  ExactPolynomial& operator+=(const ExactPolynomial& other);
+  ExactPolynomial& operator-=(const ExactPolynomial& other);
+  friend ExactPolynomial operator+(ExactPolynomial a, const ExactPolynomial& b) {
+    return a += b;
+  }
+  friend ExactPolynomial operator-(ExactPolynomial a, const ExactPolynomial& b) {
+    return a -= b;
+  }
+  friend ExactPolynomial operator*(const ExactPolynomial& a, const ExactPolynomial& b);
 
-  Polynomial derivative() const;
+  ExactPolynomial derivative() const;
   /// @brief Divided by the greatest common divisor of the coefficients.
-  Polynomial primitive() const;
+  ExactPolynomial primitive() const;
   /// @brief Quotient by a divisor that leaves no remainder, up to a constant factor.
-  Polynomial quotient(const Polynomial& divisor) const;
+  ExactPolynomial quotient(const ExactPolynomial& divisor) const;
 
   /// @brief The value at k / 2^m, times 2^(m degree).
   Integer valueAt(const Integer& k, unsigned m) const;
@@ -75,7 +79,7 @@ class Polynomial {
   int signChanges(const Integer& k, unsigned m) const;
 
  private:
-  friend Polynomial remainder(const Polynomial& a, const Polynomial& b);
+  friend ExactPolynomial remainder(const ExactPolynomial& a, const ExactPolynomial& b);
 
   void trim() {
     while (!c_.empty() && c_.back().is_zero()) c_.pop_back();
@@ -86,7 +90,7 @@ class Polynomial {
 
 /// @brief Greatest common divisor, primitive; of degree 0 when the two have no common
 /// root.
-Polynomial gcd(Polynomial a, Polynomial b);
+ExactPolynomial gcd(ExactPolynomial a, ExactPolynomial b);
 
 /// @brief A root in [0, 1] of a polynomial. It is the number k / 2^m itself, or the only
 /// root in the open interval (k, k + 1) / 2^m. In this case it is simple, and the ends of
@@ -96,7 +100,7 @@ class Root {
   /// @brief The number k / 2^m.
   Root(Integer k, unsigned m) : k_(std::move(k)), m_(m) {}
   /// @brief The root of a polynomial in (k, k + 1) / 2^m.
-  Root(Integer k, unsigned m, Polynomial polynomial)
+  Root(Integer k, unsigned m, ExactPolynomial polynomial)
       : k_(std::move(k)),
         m_(m),
         is_dyadic_(false),
@@ -104,7 +108,7 @@ class Root {
         polynomial_(std::move(polynomial)) {}
 
   /// @brief The exact sign of g at the root. It may narrow the interval.
-  int signOf(const Polynomial& g);
+  int signOf(const ExactPolynomial& g);
 
   /// @brief Sign of root - numerator / denominator, denominator > 0; exact.
   int compare(const Integer& numerator, const Integer& denominator) const;
@@ -131,7 +135,7 @@ class Root {
   static constexpr unsigned kMaxBits = 1100;
 
   std::pair<double, double> bracketOnClock(double width, int clock_exponent);
-  int signOfLine(const Polynomial& g) const;
+  int signOfLine(const ExactPolynomial& g) const;
   /// Makes the interval shorter by a factor of 2^-bits if the root is where it seems to
   /// be, and by a half if it is not.
   /// @return whether the root was there
@@ -145,7 +149,7 @@ class Root {
   unsigned m_;
   bool is_dyadic_{true};
   int sign_below_{0};
-  Polynomial polynomial_;
+  ExactPolynomial polynomial_;
 };
 
 /// @brief A double not above (direction -1) or not below (1) the time t in [0, 1] with
@@ -154,7 +158,7 @@ class Root {
 double timeOf(const Integer& k, unsigned m, int clock_exponent, int direction);
 
 /// @brief All roots of p (not zero) in [0, 1], in no order.
-std::vector<Root> rootsInUnitInterval(const Polynomial& p);
+std::vector<Root> rootsInUnitInterval(const ExactPolynomial& p);
 
 }  // namespace deformable
 }  // namespace detail

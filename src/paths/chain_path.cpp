@@ -27,16 +27,16 @@ constexpr double kRoundingOfJoint = 128 * kUnit;
 
 /// A computed polynomial is within this: Horner's rule rounds twice a coefficient, and
 /// the coefficients were rounded once or twice.
-double errorOf(const Polynomial& p) {
+double errorOf(const Coefficients& p) {
   return (2 * static_cast<double>(p.size()) + 2) * kUnit * sizeOf(p);
 }
 
 /// Bound on |p(t)| for t in [0, 1]. A linear one is largest at an end.
-double mostOf(const Polynomial& p) {
+double mostOf(const Coefficients& p) {
   return p.size() == 2 ? std::max(std::abs(p[0]), std::abs(p[0] + p[1])) : sizeOf(p);
 }
 
-void requireValue(const Polynomial& value, bool is_angle, std::size_t joint) {
+void requireValue(const Coefficients& value, bool is_angle, std::size_t joint) {
   const bool is_finite = std::isfinite(sizeOf(value));
   if (is_finite && !(is_angle && mostOf(value) > kMostAngle)) return;
   throwBadInput("the value " + std::to_string(joint) + " of the joints " +
@@ -69,20 +69,20 @@ struct Middle {
 }  // namespace
 
 ChainPath::ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
-                     std::vector<Polynomial> values)
+                     std::vector<Coefficients> values)
     : tree_(std::move(tree)), base_(base), number_(nextNumber()) {
   base_bounds_.reach = norm(base.translation);
   const auto& joints = tree_->joints();
   for (std::size_t j = 0; j < joints.size(); ++j) {
     requireValue(values[j], joints[j].is_revolute, j);
     bounds_.push_back(boundsOf(joints[j], values[j]));
-    const Polynomial rate = derivativeOf(values[j]);
+    const Coefficients rate = derivativeOf(values[j]);
     values_.push_back({std::move(values[j]), rate, derivativeOf(rate)});
   }
 }
 
 JointBounds ChainPath::boundsOf(const JointTree::Joint& joint,
-                                const Polynomial& value) const {
+                                const Coefficients& value) const {
   const JointBounds& before = bounds(joint.parent);
   const DerivativeBounds still{0, 0, 0}, moves = derivativeBounds(value);
   const double offset = norm(joint.origin.pose.translation),

@@ -57,7 +57,7 @@ class ChainPath {
   /// @throws fcl::Exception  a value is not finite, or an angle beyond kMostAngle
   /// (linear: at an end; else the sum of the sizes of the coefficients)
   ChainPath(std::shared_ptr<const JointTree> tree, const Pose& base,
-            std::vector<Polynomial> values);
+            std::vector<Coefficients> values);
 
   const JointTree& tree() const { return *tree_; }
   const std::shared_ptr<const JointTree>& sharedTree() const { return tree_; }
@@ -76,7 +76,7 @@ class ChainPath {
  private:
   /// The joint's value and derivatives, as polynomials.
   struct Value {
-    Polynomial at, rate, acceleration;
+    Coefficients at, rate, acceleration;
   };
 
   JointState baseState() const;
@@ -90,7 +90,7 @@ class ChainPath {
   void computeStates(double t, std::size_t count, Kept& kept) const;
   JointState moved(const JointTree::Joint& joint, const JointState& before,
                    const Value& value, double t) const;
-  JointBounds boundsOf(const JointTree::Joint& joint, const Polynomial& value) const;
+  JointBounds boundsOf(const JointTree::Joint& joint, const Coefficients& value) const;
 
   std::shared_ptr<const JointTree> tree_;
   Pose base_;

@@ -15,6 +15,7 @@ namespace deformable {
 
 inline double norm(const Vec& v) { return std::sqrt(dot(v, v)); }
 inline double norm(const double (&v)[3]) { return norm(vecOf(v)); }
+inline Vec unit(const Vec& v) { return (1 / norm(v)) * v; }
 
 /// @brief The first or second derivative of a pose by t.
 struct PoseRate {

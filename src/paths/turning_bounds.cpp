@@ -5,9 +5,9 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-double largestValue(const Polynomial& p) {
+double largestValue(const Coefficients& p) {
   if (p.size() < 2) return sizeOf(p);
-  const Polynomial slope = derivativeOf(p);
+  const Coefficients slope = derivativeOf(p);
   if (slope.size() == 1)
     return std::max(std::abs(p[0]), std::abs(p[0] + p[1])) * kUpward +
            0x1p-10 * sizeOf(p);
@@ -18,9 +18,9 @@ double largestValue(const Polynomial& p) {
   return most * kUpward + largestValue(slope) * (0.5 / kParts) + 0x1p-10 * sizeOf(p);
 }
 
-DerivativeBounds derivativeBounds(const Polynomial& p) {
-  const Polynomial first = derivativeOf(p), second = derivativeOf(first),
-                   third = derivativeOf(second);
+DerivativeBounds derivativeBounds(const Coefficients& p) {
+  const Coefficients first = derivativeOf(p), second = derivativeOf(first),
+                     third = derivativeOf(second);
   return {largestValue(first), largestValue(second), largestValue(third)};
 }
 

@@ -15,24 +15,24 @@ namespace fcl {
 namespace detail {
 namespace deformable {
 
-/// @brief A polynomial in t: the sum of coefficients[k] t^k.
-using Polynomial = std::vector<double>;
+/// @brief Those of a polynomial in t: the sum of coefficients[k] t^k.
+using Coefficients = std::vector<double>;
 
-inline double valueAt(const Polynomial& p, double t) {
+inline double valueAt(const Coefficients& p, double t) {
   double value = 0;
   for (std::size_t k = p.size(); k-- > 0;) value = value * t + p[k];
   return value;
 }
 
-inline Polynomial derivativeOf(const Polynomial& p) {
-  Polynomial out;
+inline Coefficients derivativeOf(const Coefficients& p) {
+  Coefficients out;
   for (std::size_t k = 1; k < p.size(); ++k) out.push_back(static_cast<double>(k) * p[k]);
   return out;
 }
 
 /// @brief The sum of |coefficients|: a bound on |p(t)| for t in [0, 1], and the size of
 /// the terms that round.
-inline double sizeOf(const Polynomial& p) {
+inline double sizeOf(const Coefficients& p) {
   double size = 0;
   for (const double x : p) size += std::abs(x);
   return size;
@@ -41,7 +41,7 @@ inline double sizeOf(const Polynomial& p) {
 /// @brief Bound on |p(t)| for t in [0, 1], at least 2^-10 of its size unless p is
 /// constant. Between the middles of 32 parts p changes by at most its slope. So the bound
 /// is too large by 1/64 of the largest slope, and the size of p by 2^-10.
-double largestValue(const Polynomial& p);
+double largestValue(const Coefficients& p);
 
 /// @brief Bounds on the first three derivatives of a function of t.
 struct DerivativeBounds {
@@ -49,7 +49,7 @@ struct DerivativeBounds {
 };
 
 /// @brief Bounds on the derivatives of p.
-DerivativeBounds derivativeBounds(const Polynomial& p);
+DerivativeBounds derivativeBounds(const Coefficients& p);
 
 /// @brief Bounds for the rotation by an angle about a fixed axis (spectral norm). R'' is
 /// angle'' [a] R + angle'^2 [a]^2 R, of which the two terms are at right angles, and

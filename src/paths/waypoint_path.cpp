@@ -92,17 +92,17 @@ std::vector<Vec> velocitiesAt(const std::vector<Vec>& changes,
 /// A chain that is built joint by joint. Joints that do not move are left out.
 struct Chain {
   JointTree tree;
-  std::vector<Polynomial> values;
+  std::vector<Coefficients> values;
 
   int last() const { return static_cast<int>(tree.links().size()) - 1; }
 
-  void slide(const Vec& axis, const Polynomial& value) {
+  void slide(const Vec& axis, const Coefficients& value) {
     if (sizeOf(value) == 0) return;
     tree.add(JointTree::Type::kPrismatic, {}, axis, last());
     values.push_back(value);
   }
   /// @param value  for a turn by a radian
-  void turn(const Turning& turning, Polynomial value) {
+  void turn(const Turning& turning, Coefficients value) {
     if (turning.angle == 0) return;
     for (double& x : value) x *= turning.angle;
     tree.add(JointTree::Type::kRevolute, {}, turning.axis, last());
@@ -111,7 +111,7 @@ struct Chain {
 };
 
 /// From 0 to `way`, with the slopes `begin` and `end`.
-Polynomial cubic(double way, double begin, double end) {
+Coefficients cubic(double way, double begin, double end) {
   return {0, begin, 3 * way - (2 * begin + end), (begin + end) - 2 * way};
 }
 

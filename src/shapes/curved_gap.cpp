@@ -11,8 +11,6 @@ namespace detail {
 namespace deformable {
 namespace {
 
-Vec unit(const Vec& v) { return (1 / norm(v)) * v; }
-
 /// Two unit vectors at right angles to a unit vector and to each other. Those of the
 /// opposite vector are their opposites, so that the order of the sets does not matter.
 void setAxes(const Vec& n, Vec (&axis)[2]) {

@@ -46,8 +46,6 @@ struct Cell {
   void setLeast();
 };
 
-Vec unit(const Vec& v) { return (1 / norm(v)) * v; }
-
 /// The least of the known points' reach in a cell.
 class LeastReach {
  public:

@@ -50,9 +50,9 @@ struct Bounds {
 
 /// Divides the longest extent of items into slabs of equal width. Only every stride-th
 /// item is used to find the extent.
-class Slabs {
+class SplitSlabs {
  public:
-  Slabs(const TreeItem* items, std::size_t count, std::size_t stride, int num_slabs)
+  SplitSlabs(const TreeItem* items, std::size_t count, std::size_t stride, int num_slabs)
       : last_(num_slabs - 1) {
     // Four bounds, each of every fourth item: with a single one each minimum would wait
     // for the previous one.
@@ -190,7 +190,7 @@ class Splitter {
 
   /// Moves the items before a slab to the front, without a change of their order, and
   /// returns their number.
-  std::size_t partition(ItemRange r, const Slabs& slabs, int slab) {
+  std::size_t partition(ItemRange r, const SplitSlabs& slabs, int slab) {
     TreeItem* items = items_.data() + r.first;
     TreeItem* scratch = scratch_.data() + r.first;
     std::size_t before = 0, after = 0;
@@ -210,7 +210,7 @@ class Splitter {
   /// Moves the `first` items with the lowest coordinates along the axis to the front.
   void splitAt(ItemRange r, std::size_t first) {
     constexpr int kSlabs = 64;
-    const Slabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
+    const SplitSlabs slabs(items_.data() + r.first, r.count, 1, kSlabs);
     if (slabs.isOne()) return;
     std::uint32_t count[kSlabs] = {};
     for (std::size_t i = r.first; i < r.first + r.count; ++i) ++count[slabs(items_[i])];
@@ -238,7 +238,7 @@ class Splitter {
   std::size_t splitByArea(ItemRange r) {
     constexpr int kSlabs = 8;
     const std::size_t stride = 1 + r.count / kMaxSample;
-    const Slabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
+    const SplitSlabs slabs(items_.data() + r.first, r.count, stride, kSlabs);
     if (slabs.isOne()) return r.count / 2;
     Bounds bounds[kSlabs];
     std::size_t count[kSlabs] = {};

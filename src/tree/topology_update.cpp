@@ -19,7 +19,7 @@ namespace deformable {
 namespace {
 
 constexpr std::uint32_t kNone = TopologyDifference::kNone;
-constexpr std::size_t kWidth = MovingKdopNode::kWidth;
+constexpr std::size_t kChildren = MovingKdopNode::kWidth;
 
 /// A possible child of a node, and four times its center.
 struct Entry {
@@ -203,7 +203,7 @@ class MovingKdopTree::TopologyUpdate {
   void copy(std::int32_t i) {
     const MovingKdopNode& node = tree_.node(i);
     entries_.clear();
-    if (count(i) <= kWidth) {
+    if (count(i) <= kChildren) {
       gather(i);
     } else {
       addTriangles(i);
@@ -223,7 +223,7 @@ class MovingKdopTree::TopologyUpdate {
                               hungOn(i).size() == static_cast<std::size_t>(num_triangles);
     const NodeSize first_size =
         is_as_before ? tree_.first_sizes_[static_cast<std::size_t>(i)] : NodeSize{};
-    if (entries_.size() > kWidth)
+    if (entries_.size() > kChildren)
       for (Entry& entry : entries_)
         if (entry.child < 0)
           pointOf(static_cast<std::uint32_t>(~entry.child), entry.point);
@@ -276,7 +276,7 @@ class MovingKdopTree::TopologyUpdate {
   std::int32_t group(Entry* first, Entry* last, std::int32_t next,
                      const NodeSize& first_size) {
     const auto count = static_cast<std::size_t>(last - first);
-    if (count > kWidth) {
+    if (count > kChildren) {
       Entry* middle = splitEntries(first, last);
       return group(first, middle, group(middle, last, next, {}), {});
     }

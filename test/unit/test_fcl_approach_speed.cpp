@@ -623,7 +623,7 @@ TEST(FCL_APPROACH_SPEED, spikesHitFlatParts) {
 /// or above. No vertex is deeper below the other surface than the speed allows, before a
 /// contact. Bodies that keep above the floor have none as a rule.
 TEST(FCL_APPROACH_SPEED, depthsAgainstSamples) {
-  constexpr int kSamples = 100;
+  constexpr int kSamples = rounds(100);
   Random random(15);
   int hits = 0, deep = 0;
   for (int i = 0; i < manyOf(1000); ++i) {

@@ -841,6 +841,7 @@ void writeQueriesOfThePage(const fs::path& folder) {
 
 // The commands of the page, in its order, in a folder with the files that it names.
 TEST_F(CcdSequence, TheManualsCommandsWork) {
+  if (kHasAddressSanitizer) GTEST_SKIP() << "The other tests have these commands";
   writeFramesOfThePages();
   writeQueriesOfThePage(path(""));
   writeText(path("scan_0.stl"), toBinaryStl(toSoup(stripAndSpike(0))));

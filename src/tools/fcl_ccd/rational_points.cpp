@@ -9,8 +9,8 @@
 namespace fcl_ccd {
 
 namespace deformable = fcl::detail::deformable;
+using deformable::ExactPolynomial;
 using deformable::Integer;
-using deformable::Polynomial;
 
 deformable::ElementaryResult RationalPoints::decide(fcl::ContinuousContactKind kind,
                                                     double toc_err) const {
@@ -26,7 +26,7 @@ deformable::ElementaryResult RationalPoints::decide(fcl::ContinuousContactKind k
   for (std::size_t i = 0; i < 4; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       const Integer from = toInteger(x_[i][k][0]);
-      paths[i][k] = Polynomial{from, toInteger(x_[i][k][1]) - from};
+      paths[i][k] = ExactPolynomial{from, toInteger(x_[i][k][1]) - from};
     }
   return decideExactly(deformable::ExactPair(kind, paths), toc_err);
 }
